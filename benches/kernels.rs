@@ -1,0 +1,113 @@
+//! The two tests that everything rests on: ray against sphere and ray against box, at every width,
+//! and the exact test. All data stays in the first-level cache.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use glam::{DVec3, Vec3 as Point};
+use spherule::intersect::{FilterRay, SlabRay, confirm, filter};
+use spherule::lanes::{F32x4, F32x8, F32x16, Lanes, Mask};
+use spherule::ray::{ExactRay, MISS, Rays};
+use spherule::sampling::{stream, uniform_sphere, unit_pair};
+use spherule::vec3::Vec3;
+use std::hint::black_box;
+
+/// Spheres and rays in, how many of their pairs pass out.
+type Kernel = fn(&[(Point, f32)], &Rays) -> u32;
+
+const RAYS: usize = 16;
+const SPHERES: usize = 512;
+
+/// Spheres in the unit cube, and rays from around it that are aimed into it.
+fn data() -> (Vec<(Point, f32)>, Rays) {
+    let point = |i: u64| {
+        let ([x, y], [z, r]) = (unit_pair(stream(i, 0)), unit_pair(stream(i, 1)));
+        (Point::new(x, y, z), 0.02 + 0.1 * r)
+    };
+    let spheres: Vec<_> = (0..SPHERES as u64).map(point).collect();
+    let mut rays = Rays::with_capacity(RAYS);
+    for i in 0..RAYS as u64 {
+        let origin = Point::splat(0.5) + 2.0 * uniform_sphere(unit_pair(stream(9, i)));
+        rays.push(origin, (point(1000 + i).0 - origin).normalize(), MISS);
+    }
+    (spheres, rays)
+}
+
+fn hits_by_filter<L: Lanes>(spheres: &[(Point, f32)], rays: &Rays) -> u32 {
+    let mut hits = 0;
+    for row in (0..RAYS).step_by(L::WIDTH) {
+        let ray = FilterRay::new(rays.origin.load::<L>(row), rays.direction.load::<L>(row));
+        for &(c, radius) in spheres {
+            let center = Vec3::splat(c.x, c.y, c.z);
+            let mask = filter(&ray, center, L::splat(radius), L::splat(f32::INFINITY));
+            hits += mask.bits().count_ones();
+        }
+    }
+    hits
+}
+
+fn boxes_entered<L: Lanes>(spheres: &[(Point, f32)], rays: &Rays) -> u32 {
+    let mut entered = 0;
+    for row in (0..RAYS).step_by(L::WIDTH) {
+        let ray = SlabRay::new(rays.origin.load::<L>(row), rays.direction.load::<L>(row));
+        for &(c, radius) in spheres {
+            let (low, high) = ((c - radius).to_array(), (c + radius).to_array());
+            entered += ray.enters(low, high, L::splat(f32::INFINITY)).bits().count_ones();
+        }
+    }
+    entered
+}
+
+fn hits_by_confirm(spheres: &[(DVec3, f64)], rays: &[ExactRay]) -> u32 {
+    let hit = |ray: &ExactRay| {
+        spheres.iter().filter(|(center, radius)| confirm(ray, *center, *radius).is_some()).count()
+    };
+    rays.iter().map(|ray| hit(ray) as u32).sum()
+}
+
+fn kernels(criterion: &mut Criterion) {
+    let (spheres, rays) = data();
+    let wide: Vec<_> = spheres.iter().map(|(c, r)| (c.as_dvec3(), f64::from(*r))).collect();
+    let exact: Vec<_> = (0..RAYS).map(|row| rays.exact(row)).collect();
+    let hits = hits_by_confirm(&wide, &exact);
+    let entered = boxes_entered::<f32>(&spheres, &rays);
+    assert!(hits > 0 && entered > hits);
+
+    let mut bench = |name: &str, expected: u32, kernels: [(&str, Kernel); 4]| {
+        let mut group = criterion.benchmark_group(name);
+        group.throughput(Throughput::Elements((RAYS * SPHERES) as u64));
+        for (width, kernel) in kernels {
+            assert_eq!(kernel(&spheres, &rays), expected, "{name}, {width} lanes");
+            group.bench_function(width, |bencher| {
+                bencher.iter(|| kernel(black_box(&spheres), black_box(&rays)));
+            });
+        }
+    };
+    // In so tame a scene the filter lets nothing pass that the exact test rejects.
+    bench(
+        "sphere",
+        hits,
+        [
+            ("1", hits_by_filter::<f32>),
+            ("4", hits_by_filter::<F32x4>),
+            ("8", hits_by_filter::<F32x8>),
+            ("16", hits_by_filter::<F32x16>),
+        ],
+    );
+    bench(
+        "box",
+        entered,
+        [
+            ("1", boxes_entered::<f32>),
+            ("4", boxes_entered::<F32x4>),
+            ("8", boxes_entered::<F32x8>),
+            ("16", boxes_entered::<F32x16>),
+        ],
+    );
+    let mut group = criterion.benchmark_group("exact");
+    group.throughput(Throughput::Elements((RAYS * SPHERES) as u64));
+    group.bench_function("1", |bencher| {
+        bencher.iter(|| hits_by_confirm(black_box(&wide), black_box(&exact)));
+    });
+}
+
+criterion_group!(benches, kernels);
+criterion_main!(benches);

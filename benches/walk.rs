@@ -1,0 +1,136 @@
+//! Tracing alone: brute force, the scalar walk and packets of 4, 8 and 16 rays, for four classes of
+//! rays. Rays are made beforehand; each run's hits are compared with those of the scalar walk.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use glam::Vec3;
+use spherule::bvh::Bvh;
+use spherule::bvh::build::build;
+use spherule::bvh::walk::{Any, Closest, Method, Query, trace};
+use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
+use spherule::ray::{Hits, MISS, Rays};
+use spherule::sampling::{Frame, cosine_hemisphere, stream, unit_pair};
+use spherule::scene::generate::{Field, Generator, Volume};
+use spherule::world::Spheres;
+use std::hint::black_box;
+use std::time::Duration;
+
+/// Pixels along the side of the picture whose rays are traced.
+const SIDE: u32 = 256;
+
+struct Case {
+    name: &'static str,
+    spheres: Spheres,
+    bvh: Bvh,
+}
+
+/// Spheres of a generator, scaled as a world is: by a power of two, to coordinates of about 1.
+fn case(name: &'static str, generator: &Generator) -> Case {
+    let from = generator.generate(1).expect("parameters are valid").spheres;
+    let reach = (0..from.len()).map(|i| from.center(i).abs().max_element()).fold(0.0, f64::max);
+    let scale = (-reach.log2().ceil()).exp2();
+    let column = |values: &[f64]| values.iter().map(|x| (x * scale) as f32).collect();
+    let mut spheres = Spheres::from_columns(
+        column(&from.x),
+        column(&from.y),
+        column(&from.z),
+        column(&from.radius),
+    );
+    let bvh = build(&mut spheres);
+    bvh.validate(&spheres).expect("the tree is sound");
+    Case { name, spheres, bvh }
+}
+
+fn closest<L: Lanes>(case: &Case, method: Method, rays: &Rays) -> Hits {
+    run::<L, Closest>(case, method, rays)
+}
+
+fn run<L: Lanes, Q: Query>(case: &Case, method: Method, rays: &Rays) -> Hits {
+    let mut hits = Hits::with_capacity(rays.len());
+    trace::<L, Q>(method, &case.bvh, &case.spheres, rays, &mut hits);
+    hits
+}
+
+/// Camera rays from a corner, in blocks of 4 x 4 pixels.
+fn camera(case: &Case) -> Rays {
+    let (low, high) = case.bvh.bounds().expect("there are spheres");
+    let (low, high) = (Vec3::from(low), Vec3::from(high));
+    let (middle, size) = ((low + high) / 2.0, (high - low).length());
+    let forward = Vec3::new(-0.5, -0.6, -0.6).normalize();
+    let eye = middle - forward * size;
+    let right = forward.cross(Vec3::Y).normalize();
+    let up = right.cross(forward);
+    let mut rays = Rays::with_capacity((SIDE * SIDE) as usize);
+    for i in 0..SIDE * SIDE {
+        let (block, inside) = (i / 16, i % 16);
+        let x = block % (SIDE / 4) * 4 + inside % 4;
+        let y = block / (SIDE / 4) * 4 + inside / 4;
+        let across = |p: u32| (p as f32 + 0.5) / SIDE as f32 - 0.5;
+        let direction = forward + right * across(x) - up * across(y);
+        rays.push(eye, direction.normalize(), MISS);
+    }
+    rays
+}
+
+/// From what the camera sees: toward a light, or anywhere above the surface.
+fn secondary(case: &Case, toward: Option<Vec3>) -> Rays {
+    let primary = camera(case);
+    let hits = closest::<f32>(case, Method::Tree, &primary);
+    let mut rays = Rays::with_capacity(primary.len());
+    for row in (0..primary.len()).filter(|&row| hits.sphere[row] != MISS) {
+        let sphere = hits.sphere[row] as usize;
+        let center = case.spheres.center(sphere).as_dvec3();
+        let normal = (primary.exact(row).at(hits.t[row]) - center).normalize();
+        let point = (center + normal * f64::from(case.spheres.radius[sphere])).as_vec3();
+        let direction = toward.unwrap_or_else(|| {
+            let u = unit_pair(stream(2, row as u64));
+            Frame::new(normal.as_vec3()).to_world(cosine_hemisphere(u)).normalize()
+        });
+        if direction.dot(normal.as_vec3()) > 0.0 {
+            rays.push(point, direction, sphere as u32);
+        }
+    }
+    rays
+}
+
+fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, rays: &Rays) {
+    let mut group = criterion.benchmark_group(format!("{}/{class}", case.name));
+    group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(10);
+    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+    let expected = run::<f32, Q>(case, Method::Tree, rays);
+    let mut bench = |name: &str, walk: fn(&Case, Method, &Rays) -> Hits, method| {
+        let missed = |hits: &Hits, row: usize| hits.sphere[row] == MISS;
+        let same = |hits: &Hits| {
+            if Q::ANY {
+                (0..rays.len()).all(|row| missed(hits, row) == missed(&expected, row))
+            } else {
+                hits.sphere == expected.sphere && hits.t == expected.t
+            }
+        };
+        assert!(same(&walk(case, method, rays)), "{name} differs from the scalar walk");
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter(|| walk(black_box(case), method, black_box(rays)));
+        });
+    };
+    if case.spheres.len() <= 1000 {
+        bench("brute-16", run::<F32x16, Q>, Method::Brute);
+    }
+    bench("scalar", run::<f32, Q>, Method::Tree);
+    bench("packet-4", run::<F32x4, Q>, Method::Tree);
+    bench("packet-8", run::<F32x8, Q>, Method::Tree);
+    bench("packet-16", run::<F32x16, Q>, Method::Tree);
+}
+
+fn walks(criterion: &mut Criterion) {
+    let field = Generator::Field(Field { count: 20, ..Field::default() });
+    let volume = Generator::Volume(Volume { count: 100_000, ..Volume::default() });
+    for case in [case("field400", &field), case("volume100k", &volume)] {
+        let light = Vec3::new(0.5, 1.0, 0.3).normalize();
+        bench_class::<Closest>(criterion, &case, "camera", &camera(&case));
+        bench_class::<Any>(criterion, &case, "shadow", &secondary(&case, Some(light)));
+        bench_class::<Any>(criterion, &case, "occlusion", &secondary(&case, None));
+        bench_class::<Closest>(criterion, &case, "diffuse", &secondary(&case, None));
+    }
+}
+
+criterion_group!(benches, walks);
+criterion_main!(benches);

@@ -1,0 +1,290 @@
+//! The command line as typed.
+
+use super::names::{BITS, FILTERS, INTEGRATORS, LANES, PPM, SAMPLERS, TONES, Traversal};
+use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS};
+use clap::{Parser, Subcommand, ValueEnum, value_parser};
+use spherule::film::Region;
+use spherule::image::{Depth, PpmEncoding};
+use spherule::scene::{Filter, Integrator, Roulette, SamplerKind, Tone};
+use spherule::trace::Width;
+use std::path::PathBuf;
+
+/// Renders scenes made of spheres: exact visibility, and the same picture at every speed setting
+#[derive(Debug, Parser)]
+#[command(name = "spherule", version, after_help = PROGRAM_EXAMPLES)]
+pub(super) struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Render a scene or a particle file to a picture (the default command)
+    #[command(allow_negative_numbers = true, after_help = RENDER_EXAMPLES)]
+    Render(Box<RenderArgs>),
+    /// Write a generated scene: a TOML file, and its spheres in a CSV file beside it
+    #[command(allow_negative_numbers = true, after_help = FIELD_EXAMPLES)]
+    Field(FieldArgs),
+    /// Say what is in a scene, and what a render of it will do without
+    #[command(after_help = INFO_EXAMPLES)]
+    Info(InfoArgs),
+    /// Measure how far a picture is from a reference
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare(CompareArgs),
+    /// Print a completion script for a shell
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions(CompletionsArgs),
+}
+
+#[derive(Debug, Parser)]
+pub(super) struct RenderArgs {
+    /// A scene (.toml) or a file of particles (any other name); without it, a random field of
+    /// spheres
+    pub(super) scene: Option<PathBuf>,
+    /// The picture: .png, .ppm, .pfm or .exr
+    #[arg(short, long, value_name = "FILE", default_value = "spherule.png")]
+    pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) picture: PictureArgs,
+    #[command(flatten)]
+    pub(super) encoding: EncodingArgs,
+    #[command(flatten)]
+    pub(super) speed: SpeedArgs,
+    #[command(flatten)]
+    pub(super) report: ReportArgs,
+}
+
+/// What replaces the scene's own settings.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Picture, instead of what the scene says")]
+pub(super) struct PictureArgs {
+    /// Width and height in pixels, each 1 to 65535
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = values::size)]
+    pub(super) size: Option<Size>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(SAMPLES))]
+    pub(super) spp: Option<u32>,
+    /// Most scatterings on a path: a number, or unlimited
+    #[arg(long, value_name = "N", value_parser = values::depth)]
+    pub(super) depth: Option<DepthLimit>,
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+    /// How light is gathered
+    #[arg(long, value_parser = INTEGRATORS.parser())]
+    pub(super) integrator: Option<Integrator>,
+    /// Samples toward each light at each hit, for the integrator whitted
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(SAMPLES))]
+    pub(super) shadow_samples: Option<u32>,
+    /// What is farther does not occlude, for the integrator ao; in the scene's unit, or inf
+    #[arg(long, value_name = "DISTANCE", value_parser = values::distance)]
+    pub(super) ao_distance: Option<f64>,
+    /// Where samples lie
+    #[arg(long, value_parser = SAMPLERS.parser())]
+    pub(super) sampler: Option<SamplerKind>,
+    /// How samples become pixels
+    #[arg(long, value_parser = FILTERS.parser())]
+    pub(super) filter: Option<Filter>,
+    /// How paths end by chance: none, throughput, or the probability P to survive each bounce
+    #[arg(long, value_name = "none|throughput|P", value_parser = values::roulette)]
+    pub(super) roulette: Option<Roulette>,
+    /// Render this part alone: column and row of its top left corner, its width and height
+    #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true, value_parser = values::region)]
+    pub(super) region: Option<Region>,
+}
+
+/// How the picture becomes a file.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "File")]
+pub(super) struct EncodingArgs {
+    /// Stops: PNG and PPM show the radiance multiplied by 2 to this power
+    #[arg(long, value_name = "STOPS", value_parser = values::exposure)]
+    pub(super) exposure: Option<f64>,
+    /// From radiance to what PNG and PPM can show
+    #[arg(long, value_parser = TONES.parser())]
+    pub(super) tone: Option<Tone>,
+    /// Bits of each channel of PNG and PPM [default: 8]
+    #[arg(long, value_parser = BITS.parser())]
+    pub(super) bits: Option<Depth>,
+    /// Dialect of PPM [default: binary]
+    #[arg(long, value_parser = PPM.parser())]
+    pub(super) ppm: Option<PpmEncoding>,
+}
+
+/// What never changes the picture.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Speed; the picture is the same to the last bit")]
+pub(super) struct SpeedArgs {
+    /// Threads [default: what the affinity mask and the control group's quota allow]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(THREADS))]
+    pub(super) threads: Option<u16>,
+    /// How rays find spheres
+    #[arg(long, value_enum, default_value_t = Traversal::Auto)]
+    pub(super) traversal: Traversal,
+    /// Rays in a packet; with --traversal auto, of camera and shadow rays [default: 16]
+    #[arg(long, value_parser = LANES.parser())]
+    pub(super) lanes: Option<Width>,
+}
+
+/// What is told.
+#[derive(Clone, Copy, Debug, clap::Args)]
+#[command(next_help_heading = "Reports")]
+pub(super) struct ReportArgs {
+    /// Nothing but warnings and errors
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub(super) quiet: bool,
+    /// Also what the scene contains and what is skipped because it contains no such thing
+    #[arg(short, long)]
+    pub(super) verbose: bool,
+    /// Statistics and settings as one JSON object on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct FieldArgs {
+    /// What to generate
+    #[arg(value_enum, default_value_t = Kind::Field)]
+    pub(super) kind: Kind,
+    /// The scene: a name that ends in .toml; the spheres go to a .csv file of the same name
+    #[arg(short, long, value_name = "FILE.toml")]
+    pub(super) output: PathBuf,
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Nothing but errors
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+    #[command(flatten)]
+    pub(super) parameters: ParameterArgs,
+}
+
+/// Kinds of generated scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Kind {
+    /// N x N equal spheres on a plane
+    Grid,
+    /// N x N random spheres on a plane: what `spherule render` shows when it is given no scene
+    Field,
+    /// N random spheres in a cube
+    Volume,
+    /// A crystal, face-centered cubic, of N x N x N cells of four spheres
+    Lattice,
+    /// Haines' sphereflake
+    Sphereflake,
+    /// The last scene of "Ray Tracing in One Weekend"
+    Weekend,
+}
+
+/// Parameters of the generators; each belongs to some of the kinds.
+#[derive(Debug, Default, clap::Args)]
+#[command(next_help_heading = "Parameters; without them, the kind's own")]
+pub(super) struct ParameterArgs {
+    /// grid, field: spheres along each side [20]; volume: spheres [10000]; lattice: cells along
+    /// each edge [10]
+    #[arg(long, value_name = "N")]
+    pub(super) count: Option<u64>,
+    /// grid [0.4], lattice, sphereflake [0.5]: one radius; field [0.1,0.45], volume: least and
+    /// greatest
+    #[arg(long, value_name = "R|MIN,MAX", allow_hyphen_values = true, value_parser = values::radii)]
+    pub(super) radius: Option<Radii>,
+    /// grid: distance between neighboring centers [1]
+    #[arg(long, value_name = "DISTANCE", value_parser = values::finite)]
+    pub(super) spacing: Option<f64>,
+    /// field: shares of diffuse, metal and glass spheres [0.68,0.2,0.12]
+    #[arg(long, value_name = "D,M,G", allow_hyphen_values = true, value_parser = values::mix)]
+    pub(super) mix: Option<[f64; 3]>,
+    /// field [true], volume [false]: whether each sphere has its own color
+    #[arg(long, value_name = "BOOL")]
+    pub(super) colors: Option<bool>,
+    /// volume: edge of the cube [the cube root of N]
+    #[arg(long, value_name = "LENGTH", value_parser = values::finite)]
+    pub(super) size: Option<f64>,
+    /// lattice: thermal displacement, in distances between neighbors [0]
+    #[arg(long, value_name = "DEVIATION", value_parser = values::finite)]
+    pub(super) jitter: Option<f64>,
+    /// sphereflake: generations of children [4]
+    #[arg(long, value_name = "N")]
+    pub(super) level: Option<u32>,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct InfoArgs {
+    /// A scene (.toml) or a file of particles (any other name)
+    pub(super) scene: PathBuf,
+    /// One JSON object on standard output
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct CompareArgs {
+    /// The picture: EXR, PFM, PNG, PPM or Radiance HDR
+    #[arg(value_name = "A")]
+    pub(super) picture: PathBuf,
+    /// The reference
+    #[arg(value_name = "B")]
+    pub(super) reference: PathBuf,
+    /// One JSON object on standard output; what is infinite is null
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    pub(super) shell: clap_complete::Shell,
+}
+
+impl Args {
+    /// What this process was called with; leaves the process if that is a call for help, or not
+    /// understood.
+    pub(super) fn of_process() -> Command {
+        let usual = || Command::Render(Box::new(RenderArgs::parse_from(["spherule"])));
+        Self::parse().command.unwrap_or_else(usual)
+    }
+}
+
+const PROGRAM_EXAMPLES: &str = "\
+Examples:
+  spherule                                   a random field of spheres, to spherule.png
+  spherule render scenes/weekend.toml -o weekend.png
+  spherule info scenes/weekend.toml
+
+Exit codes: 0 done, 1 failed, 2 command line not understood, 130 interrupted";
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  spherule render                            a random field of spheres, to spherule.png
+  spherule render scene.toml -o picture.exr --size 1920x1080 --spp 256
+  spherule render particles.xyz -o figure.png --integrator ao
+  spherule render scene.toml --region 100,50,64x64 -o detail.png
+  spherule render scene.toml --json --quiet > statistics.json
+
+Ctrl-C saves the picture so far and exits with code 130.";
+
+const FIELD_EXAMPLES: &str = "\
+Examples:
+  spherule field -o field.toml               the scene of `spherule render`
+  spherule field --count 500 --mix 1,0,0 --seed 7 -o large.toml
+  spherule field grid --count 50 --radius 0.3 -o grid.toml
+  spherule field lattice --jitter 0.03 -o crystal.toml";
+
+const INFO_EXAMPLES: &str = "\
+Examples:
+  spherule info scene.toml
+  spherule info particles.csv --json";
+
+const COMPARE_EXAMPLES: &str = "\
+Differences are in linear radiance. Exit code 0 says that the pictures could be compared, not that
+they are equal.
+
+Examples:
+  spherule compare picture.exr reference.exr
+  spherule compare a.png b.png --json";
+
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  spherule completions bash > ~/.local/share/bash-completion/completions/spherule
+  spherule completions zsh > ~/.zfunc/_spherule";

@@ -1,0 +1,70 @@
+//! `spherule compare`: how far a picture is from a reference.
+
+use super::Failure;
+use super::args::CompareArgs;
+use super::output;
+use indicatif::HumanCount;
+use serde::Serialize;
+use spherule::image::{Comparison, Image, compare};
+use std::borrow::Cow;
+use std::process::ExitCode;
+
+/// A comparison and what was compared.
+#[derive(Serialize)]
+struct Report<'a> {
+    picture: Cow<'a, str>,
+    reference: Cow<'a, str>,
+    width: u32,
+    height: u32,
+    #[serde(flatten)]
+    comparison: Comparison,
+}
+
+/// Measures and tells.
+pub(super) fn run(args: &CompareArgs) -> Result<ExitCode, Failure> {
+    let picture = Image::read(&args.picture)?;
+    let reference = Image::read(&args.reference)?;
+    let report = Report {
+        picture: args.picture.to_string_lossy(),
+        reference: args.reference.to_string_lossy(),
+        width: picture.width,
+        height: picture.height,
+        comparison: compare(&picture, &reference)?,
+    };
+    if args.json {
+        output::print_json(&report);
+    } else {
+        print(&report);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn print(report: &Report) {
+    let comparison = &report.comparison;
+    let most = &comparison.max_difference;
+    let channel = ["red", "green", "blue"][usize::from(most.channel) % 3];
+    output::print(format_args!(
+        "RMSE                {:.6e}\n\
+         relative MSE        {:.6e}\n\
+         PSNR                {:.2} dB\n\
+         maximal difference  {:.6e} ({channel} of pixel {}, {})\n\
+         bias                {:+.6e} +- {:.1e}\n\
+         differing pixels    {} of {}",
+        comparison.rmse,
+        comparison.relative_mse,
+        comparison.psnr,
+        most.value,
+        most.x,
+        most.y,
+        comparison.bias,
+        comparison.bias_standard_error,
+        HumanCount(comparison.differing_pixels),
+        HumanCount(comparison.pixels),
+    ));
+    if comparison.non_finite > 0 {
+        output::warn(format_args!(
+            "{} values are NaN or infinite in one of the pictures at least; no number counts them",
+            HumanCount(comparison.non_finite)
+        ));
+    }
+}

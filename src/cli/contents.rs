@@ -1,0 +1,54 @@
+//! What a world contains, in words.
+
+use indicatif::HumanCount;
+use spherule::World;
+use spherule::world::Kind;
+
+/// What there is of each sort, one phrase each.
+pub(super) fn found(world: &World) -> Vec<String> {
+    let features = &world.features;
+    let mut found = Vec::new();
+    for kind in Kind::ALL {
+        let count = features.spheres_by_kind[kind as usize];
+        if count > 0 {
+            found.push(format!("{} of {}", spheres(count), kind.name()));
+        }
+    }
+    if let Some(kind) = features.ground_kind {
+        found.push(format!("a ground of {}", kind.name()));
+    }
+    let mut find = |present: bool, what: &str| {
+        if present {
+            found.push(what.to_owned());
+        }
+    };
+    find(features.colors, "colors of single spheres");
+    find(features.lights, &format!("{} to sample", plural(world.lights.len() as u64, "light")));
+    find(features.environment, "an environment that can be seen");
+    find(features.lens, "a lens");
+    let around = features.glass_at_camera.len() as u64;
+    find(around > 0, &format!("{} of glass around the camera", spheres(around)));
+    found
+}
+
+/// `1 sphere`, `2 spheres`.
+pub(super) fn spheres(count: u64) -> String {
+    plural(count, "sphere")
+}
+
+/// A count and its noun.
+pub(super) fn plural(count: u64, noun: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{} {noun}{ending}", HumanCount(count))
+}
+
+/// What the world had to leave out, if anything.
+pub(super) fn dropped(world: &World) -> Option<String> {
+    let count = world.features.vanished;
+    (count > 0).then(|| {
+        format!(
+            "{} left out: too small for single precision beside the scene's extent",
+            spheres(count)
+        )
+    })
+}

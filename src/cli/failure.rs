@@ -1,0 +1,139 @@
+//! Why a command failed, and how that is told: scene files with the faulty line drawn, all else in
+//! a line.
+
+use super::args::Args;
+use super::output;
+use clap::CommandFactory;
+use clap::error::ErrorKind;
+use miette::{
+    LabeledSpan, MietteError, MietteHandlerOpts, MietteSpanContents, SourceCode, SourceSpan,
+    SpanContents,
+};
+use spherule::image::{CompareError, ImageError};
+use spherule::scene::generate::GenerateError;
+use spherule::scene::{Place, SceneError};
+use spherule::world::WorldError;
+use std::fmt;
+use std::process::ExitCode;
+
+/// Why a command failed.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    #[error("{0}")]
+    Usage(clap::Error),
+    #[error("{}", .0.message)]
+    Scene(Box<SceneError>),
+    #[error("{0}: {1}")]
+    World(String, WorldError),
+    #[error("{0}")]
+    Image(#[from] ImageError),
+    #[error("{0}")]
+    Compare(#[from] CompareError),
+    #[error("--{} {}", .0.parameter, .0.message)]
+    Generate(#[from] GenerateError),
+    #[error("cannot start {0} threads: {1}; give --threads a smaller number")]
+    Threads(usize, rayon::ThreadPoolBuildError),
+    #[error("there is no memory for {0} x {1} pixels; give --size or --region smaller numbers")]
+    Memory(u32, u32),
+    #[error(
+        "this program was compiled for a processor with {0}, which this one does not have; build \
+         it on this machine: cargo build --release"
+    )]
+    Processor(String),
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(Box::new(error))
+    }
+}
+
+impl Failure {
+    /// A command line that only turns out to be wrong once it is read as a whole.
+    pub(super) fn usage(command: &str, message: impl fmt::Display) -> Self {
+        let mut program = Args::command();
+        program.build();
+        let command = program.find_subcommand_mut(command).cloned().unwrap_or(program);
+        Self::Usage(command.clone().error(ErrorKind::ValueValidation, message))
+    }
+
+    /// Tells the user, and says with which code to exit: 2 for a wrong command line, 1 for all
+    /// else.
+    pub(crate) fn report(self) -> ExitCode {
+        match self {
+            Self::Usage(error) => {
+                // Nobody is left to tell if standard error is closed.
+                let _ = error.print();
+                return ExitCode::from(2);
+            }
+            Self::Scene(error) => report_scene(*error),
+            other => output::error(other),
+        }
+        ExitCode::FAILURE
+    }
+}
+
+fn report_scene(mut error: SceneError) {
+    let Some(place) = error.place.take() else {
+        return output::error(error);
+    };
+    // Long lines are left to the terminal, so that messages can be searched for. That the hook is
+    // set already is the only way to fail.
+    let _ = miette::set_hook(Box::new(|_| {
+        Box::new(MietteHandlerOpts::new().terminal_links(false).wrap_lines(false).build())
+    }));
+    let report = miette::Report::new(Drawn { error, place: *place });
+    output::tell_plain(format_args!("{report:?}"));
+}
+
+/// A fault in a scene, for drawing.
+#[derive(Debug)]
+struct Drawn {
+    error: SceneError,
+    place: Place,
+}
+
+impl fmt::Display for Drawn {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.error.message)
+    }
+}
+
+impl std::error::Error for Drawn {}
+
+impl miette::Diagnostic for Drawn {
+    fn help(&self) -> Option<Box<dyn fmt::Display + '_>> {
+        self.error.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::underline(self.place.span.clone());
+        Some(Box::new(std::iter::once(label)))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(self)
+    }
+}
+
+impl SourceCode for Drawn {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let text = self.place.source_text.as_str();
+        let contents = text.read_span(span, lines_before, lines_after)?;
+        // The text may begin in the middle of its file.
+        let line = contents.line() + self.place.first_line - 1;
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.error.path.display().to_string(),
+            contents.data(),
+            *contents.span(),
+            line,
+            contents.column(),
+            contents.line_count(),
+        )))
+    }
+}

@@ -1,0 +1,137 @@
+//! `spherule field`: a generated scene becomes a scene file.
+
+use super::args::{FieldArgs, Kind, ParameterArgs};
+use super::contents::spheres;
+use super::field_scene;
+use super::values::Radii;
+use super::{Failure, output};
+use clap::ValueEnum;
+use spherule::scene::generate::{
+    DEFAULT_MIX, Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend,
+};
+use spherule::scene::write;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Generates the scene and writes it.
+pub(super) fn run(args: &FieldArgs) -> Result<ExitCode, Failure> {
+    check_name(&args.output)?;
+    let generator = args.parameters.generator(args.kind)?;
+    let scene = field_scene::scene(&generator, args.seed)?;
+    write(&scene, &args.output)?;
+    if !args.quiet {
+        let count = spheres(scene.spheres.len() as u64);
+        let columns = args.output.with_extension("csv");
+        output::print(format_args!("{}: {count} in {}", args.output.display(), columns.display()));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Only what ends in `.toml` is read as a scene.
+fn check_name(path: &Path) -> Result<(), Failure> {
+    if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
+        return Ok(());
+    }
+    let name = path.display();
+    Err(Failure::usage("field", format!("--output {name}: give a name that ends in .toml")))
+}
+
+impl ParameterArgs {
+    /// The generator, after a look at whether every parameter is one of its own.
+    fn generator(&self, kind: Kind) -> Result<Generator, Failure> {
+        self.check_kind(kind)?;
+        Ok(match kind {
+            Kind::Grid => Generator::Grid(self.grid()?),
+            Kind::Field => Generator::Field(self.field()),
+            Kind::Volume => Generator::Volume(self.volume()),
+            Kind::Lattice => Generator::Lattice(self.lattice()?),
+            Kind::Sphereflake => Generator::Sphereflake(self.sphereflake()?),
+            Kind::Weekend => Generator::Weekend(Weekend),
+        })
+    }
+
+    fn grid(&self) -> Result<Grid, Failure> {
+        let usual = Grid::default();
+        Ok(Grid {
+            count: self.count.unwrap_or(usual.count),
+            spacing: self.spacing.unwrap_or(usual.spacing),
+            radius: self.one_radius()?.unwrap_or(usual.radius),
+        })
+    }
+
+    fn field(&self) -> Field {
+        let usual = Field::default();
+        Field {
+            count: self.count.unwrap_or(usual.count),
+            radius: self.radius.map_or(usual.radius, Radii::range),
+            colors: self.colors.unwrap_or(usual.colors),
+            mix: Some(self.mix.unwrap_or(DEFAULT_MIX)),
+        }
+    }
+
+    fn volume(&self) -> Volume {
+        let usual = Volume::default();
+        Volume {
+            count: self.count.unwrap_or(usual.count),
+            size: self.size,
+            radius: self.radius.map(Radii::range),
+            colors: self.colors.unwrap_or(usual.colors),
+        }
+    }
+
+    fn lattice(&self) -> Result<Lattice, Failure> {
+        let usual = Lattice::default();
+        Ok(Lattice {
+            count: self.count.unwrap_or(usual.count),
+            radius: self.one_radius()?.unwrap_or(usual.radius),
+            jitter: self.jitter.unwrap_or(usual.jitter),
+        })
+    }
+
+    fn sphereflake(&self) -> Result<Sphereflake, Failure> {
+        let usual = Sphereflake::default();
+        Ok(Sphereflake {
+            level: self.level.unwrap_or(usual.level),
+            radius: self.one_radius()?.unwrap_or(usual.radius),
+        })
+    }
+
+    /// The radius of generators whose spheres are all equal.
+    fn one_radius(&self) -> Result<Option<f64>, Failure> {
+        match self.radius {
+            Some(radii) if radii.least != radii.greatest => {
+                Err(Failure::usage("field", "--radius takes one radius here, as in 0.4"))
+            }
+            radii => Ok(radii.map(|radii| radii.least)),
+        }
+    }
+
+    fn check_kind(&self, kind: Kind) -> Result<(), Failure> {
+        use Kind::{Field, Grid, Lattice, Sphereflake, Volume};
+        let rules: [(&str, bool, &[Kind]); 8] = [
+            ("count", self.count.is_some(), &[Grid, Field, Volume, Lattice]),
+            ("radius", self.radius.is_some(), &[Grid, Field, Volume, Lattice, Sphereflake]),
+            ("spacing", self.spacing.is_some(), &[Grid]),
+            ("mix", self.mix.is_some(), &[Field]),
+            ("colors", self.colors.is_some(), &[Field, Volume]),
+            ("size", self.size.is_some(), &[Volume]),
+            ("jitter", self.jitter.is_some(), &[Lattice]),
+            ("level", self.level.is_some(), &[Sphereflake]),
+        ];
+        let stray = rules.iter().find(|(_, typed, kinds)| *typed && !kinds.contains(&kind));
+        let Some((option, _, kinds)) = stray else { return Ok(()) };
+        let owners: Vec<String> = kinds.iter().map(|kind| name(*kind)).collect();
+        let (kind, owners) = (name(kind), owners.join(", "));
+        Err(Failure::usage("field", format!("--{option} is not for {kind}; it is for: {owners}")))
+    }
+}
+
+impl Radii {
+    fn range(self) -> [f64; 2] {
+        [self.least, self.greatest]
+    }
+}
+
+fn name(kind: Kind) -> String {
+    kind.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}

@@ -1,0 +1,234 @@
+//! `spherule info`: what is in a scene, what it takes, and what a render will do without.
+
+use super::args::InfoArgs;
+use super::contents::{dropped, found, plural, spheres};
+use super::source::Source;
+use super::{Failure, output, settings};
+use indicatif::{BinaryBytes, HumanCount};
+use serde::Serialize;
+use spherule::World;
+use spherule::film::Region;
+use spherule::scene::{EnvironmentMap, Projection, Scene};
+use spherule::world::Kind;
+use std::process::ExitCode;
+
+/// What is in a scene, lengths in its own unit.
+#[derive(Serialize)]
+struct Info {
+    file: String,
+    title: String,
+    spheres: usize,
+    dropped_spheres: u64,
+    /// Lower and upper corner; null without spheres.
+    bounds: Option<[[f64; 3]; 2]>,
+    /// Least and greatest; null without spheres.
+    radius: Option<[f64; 2]>,
+    materials: Vec<MaterialInfo>,
+    ground: bool,
+    lights: LightInfo,
+    environment: &'static str,
+    camera: CameraInfo,
+    settings: settings::List,
+    memory: MemoryInfo,
+    found: Vec<String>,
+    skipped: Vec<String>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct MaterialInfo {
+    name: String,
+    kind: &'static str,
+    spheres: u64,
+}
+
+#[derive(Serialize)]
+struct LightInfo {
+    emissive_spheres: usize,
+    points: usize,
+    suns: usize,
+    sampled_environment: bool,
+}
+
+#[derive(Serialize)]
+struct CameraInfo {
+    projection: &'static str,
+    eye: [f64; 3],
+    lens: bool,
+}
+
+#[derive(Serialize)]
+struct MemoryInfo {
+    sphere_bytes: usize,
+    tree_bytes: usize,
+    tree_nodes: usize,
+    bytes_per_sphere: f64,
+}
+
+/// How many materials are listed one by one.
+const SHOWN: usize = 12;
+
+/// Looks and tells.
+pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
+    let source = Source::of_path(&args.scene);
+    let scene = source.load()?;
+    let world =
+        World::build(&scene).map_err(|error| Failure::World(source.name().into_owned(), error))?;
+    let info = Info::new(&source, &scene, &world);
+    if args.json {
+        output::print_json(&info);
+    } else {
+        info.print();
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Info {
+    fn new(source: &Source, scene: &Scene, world: &World) -> Self {
+        let (width, height) = (scene.settings.width, scene.settings.height);
+        Self {
+            file: source.name().into_owned(),
+            title: source.title(scene).into_owned(),
+            spheres: scene.spheres.len(),
+            dropped_spheres: world.features.vanished,
+            bounds: bounds(scene),
+            radius: radii(scene),
+            materials: materials(scene),
+            ground: scene.ground.is_some(),
+            lights: LightInfo::new(world),
+            environment: environment(scene),
+            camera: CameraInfo::new(scene, world),
+            settings: settings::list(&scene.settings, Region { x: 0, y: 0, width, height }),
+            memory: MemoryInfo::new(world),
+            found: found(world),
+            skipped: world.features.skipped(),
+            warnings: scene.warnings.iter().cloned().chain(dropped(world)).collect(),
+        }
+    }
+
+    fn print(&self) {
+        output::print(format_args!("{}: {}", self.file, self.title));
+        output::print(format_args!("spheres      {}", HumanCount(self.spheres as u64)));
+        if let (Some([low, high]), Some([least, greatest])) = (self.bounds, self.radius) {
+            output::print(format_args!("bounds       {low:?} to {high:?}"));
+            output::print(format_args!("radius       {least} to {greatest}"));
+        }
+        for MaterialInfo { name, kind, spheres: count } in self.materials.iter().take(SHOWN) {
+            output::print(format_args!("material     {name}: {kind}, {}", spheres(*count)));
+        }
+        if self.materials.len() > SHOWN {
+            let more = self.materials.len() - SHOWN;
+            output::print(format_args!("material     and {more} more; --json lists all"));
+        }
+        let yes = if self.ground { "yes" } else { "no" };
+        output::print(format_args!("ground       {yes}"));
+        output::print(format_args!("lights       {}", self.lights.text()));
+        output::print(format_args!("environment  {}", self.environment));
+        output::print(format_args!("camera       {}", self.camera.text()));
+        output::print(format_args!("memory       {}", self.memory.text()));
+        output::print(format_args!("found        {}", self.found.join(", ")));
+        for skipped in &self.skipped {
+            output::print(format_args!("skipped      {skipped}"));
+        }
+        self.warnings.iter().for_each(output::warn);
+    }
+}
+
+impl LightInfo {
+    fn new(world: &World) -> Self {
+        Self {
+            emissive_spheres: world.lights.emitters.len(),
+            points: world.lights.points.len(),
+            suns: world.lights.suns.len(),
+            sampled_environment: world.lights.sky,
+        }
+    }
+
+    fn text(&self) -> String {
+        let counts = [
+            (self.emissive_spheres, "emissive sphere"),
+            (self.points, "point"),
+            (self.suns, "sun"),
+            (usize::from(self.sampled_environment), "sampled environment"),
+        ];
+        let present = counts.iter().filter(|(count, _)| *count > 0);
+        let texts: Vec<String> = present.map(|&(count, noun)| plural(count as u64, noun)).collect();
+        if texts.is_empty() { "none to sample".to_owned() } else { texts.join(", ") }
+    }
+}
+
+impl CameraInfo {
+    fn new(scene: &Scene, world: &World) -> Self {
+        let projection = match scene.camera.projection {
+            Projection::Perspective { .. } => "perspective",
+            Projection::Orthographic { .. } => "orthographic",
+        };
+        let eye = world.camera.eye / world.frame.scale + world.frame.shift;
+        Self { projection, eye: eye.to_array(), lens: world.camera.has_lens() }
+    }
+
+    fn text(&self) -> String {
+        let lens = if self.lens { ", with a lens" } else { "" };
+        format!("{} from {:?}{lens}", self.projection, self.eye)
+    }
+}
+
+impl MemoryInfo {
+    fn new(world: &World) -> Self {
+        let (sphere_bytes, tree_bytes) = (world.spheres.bytes(), world.bvh.bytes());
+        let total = (sphere_bytes + tree_bytes) as f64;
+        Self {
+            sphere_bytes,
+            tree_bytes,
+            tree_nodes: world.bvh.nodes().len(),
+            bytes_per_sphere: total / world.spheres.len().max(1) as f64,
+        }
+    }
+
+    fn text(&self) -> String {
+        format!(
+            "{} for spheres, {} for the tree of {}, {:.1} bytes per sphere",
+            BinaryBytes(self.sphere_bytes as u64),
+            BinaryBytes(self.tree_bytes as u64),
+            plural(self.tree_nodes as u64, "node"),
+            self.bytes_per_sphere
+        )
+    }
+}
+
+/// The box of all spheres.
+fn bounds(scene: &Scene) -> Option<[[f64; 3]; 2]> {
+    let spheres = &scene.spheres;
+    let boxes = (0..spheres.len()).map(|row| {
+        let (center, radius) = (spheres.center(row), spheres.radius[row]);
+        (center - radius, center + radius)
+    });
+    let all = boxes.reduce(|(low, high), (lower, upper)| (low.min(lower), high.max(upper)));
+    all.map(|(low, high)| [low.to_array(), high.to_array()])
+}
+
+fn radii(scene: &Scene) -> Option<[f64; 2]> {
+    let pairs = scene.spheres.radius.iter().map(|&radius| [radius; 2]);
+    pairs.reduce(|[least, greatest], [radius, _]| [least.min(radius), greatest.max(radius)])
+}
+
+fn materials(scene: &Scene) -> Vec<MaterialInfo> {
+    let mut counts = vec![0; scene.materials.len()];
+    for row in 0..scene.spheres.len() {
+        counts[scene.spheres.material_of(row) as usize] += 1;
+    }
+    let rows = scene.materials.iter().zip(counts);
+    rows.map(|(named, spheres)| {
+        let kind = Kind::of(&named.material).name();
+        MaterialInfo { name: named.name.clone(), kind, spheres }
+    })
+    .collect()
+}
+
+fn environment(scene: &Scene) -> &'static str {
+    match scene.environment.map {
+        EnvironmentMap::Constant(_) => "constant",
+        EnvironmentMap::Gradient { .. } => "gradient",
+        EnvironmentMap::Picture { .. } => "picture",
+    }
+}

@@ -1,0 +1,34 @@
+//! The command line: `Args` as typed, a job without strings, a run that reads as the program's
+//! outline.
+
+mod args;
+mod compare;
+mod completions;
+mod contents;
+mod failure;
+mod field;
+mod field_scene;
+mod info;
+mod names;
+mod output;
+mod processor;
+mod render;
+mod settings;
+mod source;
+mod values;
+
+use self::args::{Args, Command};
+pub(crate) use self::failure::Failure;
+use std::process::ExitCode;
+
+/// Does what the command line says.
+pub(crate) fn run() -> Result<ExitCode, Failure> {
+    processor::check()?;
+    match Args::of_process() {
+        Command::Render(args) => render::run(&args),
+        Command::Field(args) => field::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Completions(args) => Ok(completions::run(&args)),
+    }
+}

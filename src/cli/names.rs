@@ -1,0 +1,95 @@
+//! The words of the command line, and what each of them means.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use spherule::image::{Depth, PpmEncoding};
+use spherule::scene::{Filter, Integrator, SamplerKind, Tone};
+use spherule::trace::Width;
+use std::mem::discriminant;
+
+/// Names of values with their help, in the order in which they are listed. Of a value with
+/// parameters only the kind counts.
+pub(super) struct Names<T: 'static>(&'static [(&'static str, T, &'static str)]);
+
+impl<T: Clone + Send + Sync> Names<T> {
+    /// Reads one of the names.
+    pub(super) fn parser(&self) -> impl TypedValueParser<Value = T> + use<T> {
+        let table = self.0;
+        let names = table.iter().map(|(name, _, help)| PossibleValue::new(*name).help(*help));
+        PossibleValuesParser::new(names).try_map(|name| {
+            let row = table.iter().find(|row| row.0 == name);
+            row.map(|row| row.1.clone()).ok_or("not one of the names")
+        })
+    }
+
+    /// The name of a value.
+    pub(super) fn name(&self, value: &T) -> &'static str {
+        let row = self.0.iter().find(|row| discriminant(&row.1) == discriminant(value));
+        row.map_or("", |row| row.0)
+    }
+}
+
+/// Samples toward each light where neither scene nor command says how many.
+const SHADOW_SAMPLES: u32 = 16;
+
+/// Integrators, with their usual parameters.
+pub(super) const INTEGRATORS: Names<Integrator> = Names(&[
+    ("path", Integrator::Path, "Path tracing with light samples: everything there is"),
+    (
+        "whitted",
+        Integrator::Whitted { shadow_samples: SHADOW_SAMPLES },
+        "Direct light, mirrors and glass only",
+    ),
+    ("ao", Integrator::Ao { distance: f64::INFINITY }, "Ambient occlusion: shape without light"),
+]);
+
+/// Samplers.
+pub(super) const SAMPLERS: Names<SamplerKind> = Names(&[
+    ("sobol", SamplerKind::Sobol, "Owen-scrambled Sobol points: least noise"),
+    ("stratified", SamplerKind::Stratified, "Jittered strata"),
+    ("independent", SamplerKind::Independent, "Independent random numbers"),
+]);
+
+/// Pixel filters.
+pub(super) const FILTERS: Names<Filter> = Names(&[
+    ("box", Filter::Box, "The pixel's own square"),
+    ("gaussian", Filter::Gaussian, "Standard deviation of half a pixel"),
+    ("blackman-harris", Filter::BlackmanHarris, "4 pixels wide"),
+]);
+
+/// Tone curves.
+pub(super) const TONES: Names<Tone> = Names(&[
+    ("linear", Tone::Linear, "Clip at 1"),
+    ("filmic", Tone::Filmic, "Roll highlights off"),
+]);
+
+/// Bits of a channel.
+pub(super) const BITS: Names<Depth> =
+    Names(&[("8", Depth::Eight, "0 to 255"), ("16", Depth::Sixteen, "0 to 65535")]);
+
+/// Dialects of PPM.
+pub(super) const PPM: Names<PpmEncoding> = Names(&[
+    ("plain", PpmEncoding::Plain, "P3: numbers as text"),
+    ("binary", PpmEncoding::Binary, "P6: bytes"),
+]);
+
+/// Rays in a packet.
+pub(super) const LANES: Names<Width> = Names(&[
+    ("1", Width::One, "One ray at a time"),
+    ("4", Width::Four, "Packets of four"),
+    ("8", Width::Eight, "Packets of eight"),
+    ("16", Width::Sixteen, "Packets of sixteen"),
+]);
+
+/// How rays find spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Traversal {
+    /// What is fastest: packets for camera and shadow rays, one ray at a time after a bounce
+    Auto,
+    /// Test every sphere: slow, the reference
+    Brute,
+    /// The tree, one ray at a time
+    Scalar,
+    /// The tree, all rays in packets
+    #[value(alias = "tree")]
+    Packet,
+}

@@ -1,0 +1,105 @@
+//! What is to be rendered, how, and where to: validated as far as it can be without the scene.
+
+use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
+use crate::cli::failure::Failure;
+use crate::cli::names::Traversal;
+use crate::cli::settings::region_text;
+use crate::cli::source::Source;
+use spherule::bvh::walk::Method;
+use spherule::film::Region;
+use spherule::image::Format;
+use spherule::scene::Settings;
+use spherule::trace::{Tracer, Width};
+use std::path::PathBuf;
+use std::thread::available_parallelism;
+
+/// A render to be done.
+pub(super) struct Job<'a> {
+    pub(super) source: Source,
+    pub(super) output: PathBuf,
+    pub(super) format: Format,
+    pub(super) picture: &'a PictureArgs,
+    pub(super) encoding: &'a EncodingArgs,
+    pub(super) speed: &'a SpeedArgs,
+    pub(super) tracer: Tracer,
+    pub(super) threads: usize,
+    pub(super) report: ReportArgs,
+}
+
+impl<'a> Job<'a> {
+    /// What was typed, made sense of.
+    pub(super) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
+        let seed = args.picture.seed.unwrap_or(0);
+        let source = args.scene.as_deref().map_or(Source::Field { seed }, Source::of_path);
+        Ok(Self {
+            source,
+            output: args.output.clone(),
+            format: Format::of_suffix(&args.output)?,
+            picture: &args.picture,
+            encoding: &args.encoding,
+            speed: &args.speed,
+            tracer: tracer(args.speed.traversal, args.speed.lanes),
+            threads: args.speed.threads.map_or_else(usual_threads, usize::from),
+            report: args.report,
+        })
+    }
+
+    /// The threads that do it.
+    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(self.threads);
+        builder.build().map_err(|error| Failure::Threads(self.threads, error))
+    }
+
+    /// The part of the picture that is rendered, once its size is known.
+    pub(super) fn region(&self, settings: &Settings) -> Result<Region, Failure> {
+        let (width, height) = (settings.width, settings.height);
+        let Some(part) = self.picture.region else {
+            return Ok(Region { x: 0, y: 0, width, height });
+        };
+        let fits = |first: u32, count: u32, most: u32| {
+            u64::from(first) + u64::from(count) <= u64::from(most)
+        };
+        if fits(part.x, part.width, width) && fits(part.y, part.height, height) {
+            return Ok(part);
+        }
+        let message = format!(
+            "--region {} does not lie in the picture of {width}x{height}; X + W is at most \
+             {width}, Y + H at most {height}",
+            region_text(part)
+        );
+        Err(Failure::usage("render", message))
+    }
+}
+
+/// What the affinity mask and the control group's quota allow; 1 where the system does not tell.
+fn usual_threads() -> usize {
+    available_parallelism().map_or(1, usize::from)
+}
+
+fn tracer(traversal: Traversal, lanes: Option<Width>) -> Tracer {
+    let usual = Tracer::default();
+    let width = lanes.unwrap_or(Width::Sixteen);
+    let packets = |method, width| Tracer { method, coherent: width, incoherent: width };
+    match traversal {
+        Traversal::Auto => Tracer { coherent: lanes.unwrap_or(usual.coherent), ..usual },
+        Traversal::Brute => packets(Method::Brute, width),
+        Traversal::Scalar => packets(Method::Tree, Width::One),
+        Traversal::Packet => packets(Method::Tree, width),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn traversals_are_what_they_are_called() {
+        assert_eq!(tracer(Traversal::Auto, None), Tracer::default());
+        assert_eq!(tracer(Traversal::Auto, Some(Width::Four)).coherent, Width::Four);
+        let scalar = tracer(Traversal::Scalar, Some(Width::Eight));
+        assert_eq!((scalar.coherent, scalar.incoherent), (Width::One, Width::One));
+        let packet = tracer(Traversal::Packet, Some(Width::Eight));
+        assert_eq!((packet.method, packet.incoherent), (Method::Tree, Width::Eight));
+        assert_eq!(tracer(Traversal::Brute, None).method, Method::Brute);
+    }
+}

@@ -1,0 +1,46 @@
+//! How the picture is written, and what its file says about itself.
+//!
+//! The file says everything that makes the picture, and nothing else: no time, no machine, no
+//! threads. Equal pictures have equal files.
+
+use super::job::Job;
+use super::prepare::Prepared;
+use crate::cli::settings;
+use serde_json::Value;
+use spherule::image::{Metadata, WriteOptions};
+use spherule::render::Render;
+
+/// All that the picture's file needs besides the picture.
+pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> WriteOptions {
+    let (typed, scene) = (job.encoding, &prepared.scene.settings);
+    let mut options = WriteOptions {
+        depth: typed.bits.unwrap_or_default(),
+        ppm: typed.ppm.unwrap_or_default(),
+        exposure: typed.exposure.unwrap_or(scene.exposure),
+        tone: typed.tone.unwrap_or(scene.tone),
+        metadata: Metadata::new(),
+    };
+    options.metadata = metadata(job, prepared, render, &options);
+    options
+}
+
+fn metadata(job: &Job, prepared: &Prepared, render: &Render, options: &WriteOptions) -> Metadata {
+    let mut metadata = Metadata::new();
+    metadata.push("Software", concat!("spherule ", env!("CARGO_PKG_VERSION")));
+    if !prepared.title.is_empty() {
+        // NUL is the one character that files have no room for.
+        metadata.push("Title", prepared.title.replace('\0', " "));
+    }
+    let listed = settings::list(&prepared.scene.settings, prepared.region);
+    for (name, value) in listed.into_iter().chain(settings::list_encoding(job.format, options)) {
+        let text = match value {
+            Value::String(text) => text,
+            other => other.to_string(),
+        };
+        metadata.push(name, text);
+    }
+    if !render.complete {
+        metadata.push("samples taken", render.counters.camera_rays.to_string());
+    }
+    metadata
+}

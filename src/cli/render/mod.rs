@@ -1,0 +1,63 @@
+//! `spherule render`: a scene becomes a picture in a file.
+
+mod interrupt;
+mod job;
+mod metadata;
+mod notes;
+mod prepare;
+mod progress;
+mod summary;
+
+use self::job::Job;
+use self::prepare::Prepared;
+use self::progress::Meter;
+use self::summary::Summary;
+use super::args::RenderArgs;
+use super::{Failure, output};
+use spherule::image::check_writable;
+use spherule::render::{Options, Render, render};
+use std::process::ExitCode;
+
+/// What a shell reports of a process that Ctrl-C ended.
+const INTERRUPTED: u8 = 130;
+
+/// Renders and writes the picture, and tells how it went.
+pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+    let job = Job::new(args)?;
+    check_writable(&job.output)?;
+    job.pool()?.install(|| make_picture(&job))
+}
+
+fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
+    let prepared = Prepared::load(job)?;
+    prepared.tell(job);
+    let render = trace(job, &prepared);
+    if render.counters.camera_rays == 0 {
+        output::warn("interrupted before the first sample: nothing is written");
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    let options = metadata::write_options(job, &prepared, &render);
+    render.image.write(&job.output, &options)?;
+    Summary::new(job, &prepared, &render, &options).tell(job.report);
+    if render.complete {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let share = 100.0 * prepared.share(&render);
+    let output = job.output.display();
+    output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
+    Ok(ExitCode::from(INTERRUPTED))
+}
+
+fn trace(job: &Job, prepared: &Prepared) -> Render {
+    let meter = Meter::new(job.report.quiet);
+    let show = |progress| meter.show(progress);
+    let options = Options {
+        tracer: job.tracer,
+        region: Some(prepared.region),
+        progress: Some(&show),
+        cancel: Some(interrupt::flag()),
+    };
+    let render = render(&prepared.world, &prepared.scene.settings, &options);
+    meter.finish();
+    render
+}

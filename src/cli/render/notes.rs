@@ -1,0 +1,60 @@
+//! Settings that have no effect, and why.
+
+use super::job::Job;
+use crate::cli::names::Traversal;
+use crate::cli::settings::shows;
+use spherule::World;
+use spherule::image::Format;
+use spherule::scene::{Integrator, Roulette, Settings, Tone};
+
+/// The scattering from which roulette by throughput begins, from 1.
+const ROULETTE_BEGINS: u32 = 4;
+
+/// What the user asked for in vain, one sentence each.
+pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String> {
+    let mut notes = Vec::new();
+    let mut note = |asked: bool, idle: bool, name: &str, why: &str| {
+        if asked && idle {
+            notes.push(format!("{name} has no effect: {why}"));
+        }
+    };
+    let picture = job.picture;
+    let whitted = matches!(settings.integrator, Integrator::Whitted { .. });
+    let ao = matches!(settings.integrator, Integrator::Ao { .. });
+    let shadow_samples = picture.shadow_samples.is_some();
+    note(shadow_samples, !whitted, "--shadow-samples", "only the integrator whitted takes them");
+    let dark = whitted && !world.features.lights;
+    note(shadow_samples, dark, "--shadow-samples", "the scene has no lights to sample");
+    note(picture.ao_distance.is_some(), !ao, "--ao-distance", "only the integrator ao looks at it");
+    let one_bounce = "the integrator ao follows no paths";
+    note(picture.depth.is_some(), ao, "--depth", one_bounce);
+    note(picture.roulette.is_some(), ao, "--roulette", one_bounce);
+    let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);
+    let late = !ao && short && picture.roulette == Some(Roulette::Throughput);
+    note(late, true, "--roulette throughput", "it begins at the fourth scattering, past --depth");
+    let scalar = job.speed.traversal == Traversal::Scalar;
+    note(
+        job.speed.lanes.is_some(),
+        scalar,
+        "--lanes",
+        "--traversal scalar takes one ray at a time",
+    );
+    let encoding = job.encoding;
+    let linear = !shows(job.format);
+    let holds = format!("{} files hold linear radiance", job.format);
+    note(exposed(job, settings), linear, "exposure", &holds);
+    note(toned(job, settings), linear, "tone", &holds);
+    note(encoding.bits.is_some(), linear, "--bits", "EXR and PFM files hold 32-bit floats");
+    note(encoding.ppm.is_some(), job.format != Format::Ppm, "--ppm", "the file is no PPM");
+    notes
+}
+
+/// Whether someone, command or scene, asks for an exposure.
+fn exposed(job: &Job, settings: &Settings) -> bool {
+    job.encoding.exposure.is_some() || settings.exposure != 0.0
+}
+
+/// Whether someone, command or scene, asks for a tone curve.
+fn toned(job: &Job, settings: &Settings) -> bool {
+    job.encoding.tone.is_some() || settings.tone != Tone::Linear
+}

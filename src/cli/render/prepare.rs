@@ -1,0 +1,95 @@
+//! From a job to a world that can be rendered.
+
+use super::job::Job;
+use super::notes::notes;
+use crate::cli::contents::{dropped, found};
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use spherule::World;
+use spherule::film::Region;
+use spherule::render::Render;
+use spherule::scene::{Scene, Spheres};
+use std::time::{Duration, Instant};
+
+/// A world that can be rendered, and how it came about.
+pub(super) struct Prepared {
+    /// Without its spheres, which are the world's now.
+    pub(super) scene: Scene,
+    pub(super) title: String,
+    pub(super) world: World,
+    /// The part of the picture that is rendered.
+    pub(super) region: Region,
+    /// Time for reading or generating.
+    pub(super) load: Duration,
+    /// Time for the columns and the tree.
+    pub(super) build: Duration,
+    /// Settings that have no effect.
+    pub(super) notes: Vec<String>,
+    /// What is wrong with the input.
+    pub(super) warnings: Vec<String>,
+}
+
+impl Prepared {
+    /// Loads the scene, puts in the job's settings, and builds the world.
+    pub(super) fn load(job: &Job) -> Result<Self, Failure> {
+        let start = Instant::now();
+        let mut scene = job.source.load()?;
+        let load = start.elapsed();
+        job.picture.replace(&mut scene.settings);
+        let region = job.region(&scene.settings)?;
+        check_memory(region)?;
+        let start = Instant::now();
+        let world = World::build(&scene)
+            .map_err(|error| Failure::World(job.source.name().into_owned(), error))?;
+        let build = start.elapsed();
+        // Gigabytes, in large scenes.
+        scene.spheres = Spheres::default();
+        let mut warnings = std::mem::take(&mut scene.warnings);
+        warnings.extend(dropped(&world));
+        Ok(Self {
+            title: job.source.title(&scene).into_owned(),
+            notes: notes(job, &scene.settings, &world),
+            scene,
+            world,
+            region,
+            load,
+            build,
+            warnings,
+        })
+    }
+
+    /// Tells what is worth knowing before the render takes its time.
+    pub(super) fn tell(&self, job: &Job) {
+        self.warnings.iter().for_each(output::warn);
+        if job.report.quiet {
+            return;
+        }
+        self.notes.iter().for_each(output::note);
+        if job.report.verbose {
+            output::note(format_args!("found: {}", found(&self.world).join(", ")));
+            for skipped in self.world.features.skipped() {
+                output::note(format_args!("skipped: {skipped}"));
+            }
+        }
+    }
+
+    /// Samples that a complete render takes.
+    pub(super) fn samples(&self) -> u64 {
+        let pixels = u64::from(self.region.width) * u64::from(self.region.height);
+        pixels * u64::from(self.scene.settings.spp)
+    }
+
+    /// Share of the samples that a render has taken, 0..=1.
+    pub(super) fn share(&self, render: &Render) -> f64 {
+        render.counters.camera_rays as f64 / self.samples() as f64
+    }
+}
+
+/// Finds out whether there is memory for the sums and the picture, before an allocation ends the
+/// program.
+fn check_memory(region: Region) -> Result<(), Failure> {
+    type Pixel = ([f64; 3], [f32; 3]);
+    let pixels = region.width as usize * region.height as usize;
+    let reserved = Vec::<Pixel>::new().try_reserve_exact(pixels);
+    reserved.map_err(|_| Failure::Memory(region.width, region.height))
+}

@@ -1,0 +1,134 @@
+//! How far the render is: a bar on a terminal, a line now and then elsewhere.
+
+use crate::cli::output;
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use spherule::render::Progress;
+use std::io::{IsTerminal, stderr};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// Steps of the bar.
+const STEPS: f64 = 1000.0;
+
+/// Share of the work between two lines.
+const SHARE: f64 = 0.1;
+
+/// Time between two lines.
+const PAUSE: Duration = Duration::from_secs(3);
+
+/// Where progress is shown.
+pub(super) enum Meter {
+    /// On a terminal.
+    Bar {
+        bar: ProgressBar,
+        /// The farthest that was shown: reports of different threads may come out of order.
+        step: AtomicU64,
+    },
+    /// In a file or a pipe.
+    Lines(Mutex<Line>),
+    /// Nowhere.
+    Silent,
+}
+
+/// When a line was written last.
+#[derive(Default)]
+pub(super) struct Line {
+    done: f64,
+    elapsed: Duration,
+}
+
+impl Meter {
+    pub(super) fn new(quiet: bool) -> Self {
+        if quiet {
+            Self::Silent
+        } else if stderr().is_terminal() {
+            Self::Bar { bar: bar(), step: AtomicU64::new(0) }
+        } else {
+            Self::Lines(Mutex::default())
+        }
+    }
+
+    /// Shows how far the render is; from any thread.
+    pub(super) fn show(&self, progress: Progress) {
+        match self {
+            Self::Bar { bar, step } => {
+                let now = (progress.done * STEPS) as u64;
+                if step.fetch_max(now, Ordering::Relaxed) < now {
+                    bar.set_message(rate(progress.rays, progress.elapsed));
+                    bar.set_position(now);
+                }
+            }
+            Self::Lines(line) => {
+                // Whoever finds it taken has nothing newer to say.
+                if let Ok(mut line) = line.try_lock()
+                    && line.is_due(&progress)
+                {
+                    *line = Line { done: progress.done, elapsed: progress.elapsed };
+                    output::tell_plain(text(&progress));
+                }
+            }
+            Self::Silent => {}
+        }
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(&self) {
+        if let Self::Bar { bar, .. } = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Line {
+    fn is_due(&self, progress: &Progress) -> bool {
+        progress.done < 1.0
+            && progress.done >= self.done + SHARE
+            && progress.elapsed >= self.elapsed + PAUSE
+    }
+}
+
+/// Million rays per second, in words.
+pub(super) fn rate(rays: u64, elapsed: Duration) -> String {
+    let mega = rays as f64 / elapsed.as_secs_f64().max(1e-9) / 1e6;
+    format!("{mega:.1} Mrays/s")
+}
+
+fn text(progress: &Progress) -> String {
+    let left = progress.elapsed.mul_f64((1.0 - progress.done) / progress.done);
+    let (percent, rate) = (100.0 * progress.done, rate(progress.rays, progress.elapsed));
+    format!("{percent:.0} %, {:#} left, {rate}", HumanDuration(left))
+}
+
+fn bar() -> ProgressBar {
+    let template = "{bar:40} {percent:>3} %  {eta} left  {msg}";
+    let style = ProgressStyle::with_template(template);
+    let bar = ProgressBar::new(STEPS as u64);
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.tick();
+    bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(done: f64, seconds: u64) -> Progress {
+        Progress { done, rays: 30_000_000, elapsed: Duration::from_secs(seconds) }
+    }
+
+    #[test]
+    fn lines_are_neither_many_nor_early() {
+        let start = Line::default();
+        assert!(!start.is_due(&at(0.5, 1)) && !start.is_due(&at(0.05, 100)));
+        assert!(start.is_due(&at(0.2, 3)));
+        let later = Line { done: 0.2, elapsed: Duration::from_secs(3) };
+        assert!(!later.is_due(&at(0.29, 50)) && later.is_due(&at(0.31, 6)));
+        assert!(!later.is_due(&at(1.0, 50)));
+    }
+
+    #[test]
+    fn lines_tell_percent_time_left_and_speed() {
+        assert_eq!(text(&at(0.25, 10)), "25 %, 30s left, 3.0 Mrays/s");
+    }
+}

@@ -1,0 +1,209 @@
+//! How a render went: the same facts as lines and as JSON.
+
+use super::job::Job;
+use super::prepare::Prepared;
+use super::progress::rate;
+use crate::cli::args::ReportArgs;
+use crate::cli::contents::{found, plural, spheres};
+use crate::cli::output;
+use crate::cli::settings::{self, List};
+use indicatif::{BinaryBytes, HumanCount};
+use serde::Serialize;
+use spherule::bvh::walk::Method;
+use spherule::image::WriteOptions;
+use spherule::integrator::workspace::Counters;
+use spherule::render::Render;
+use spherule::scene::Settings;
+use spherule::trace::Width;
+use std::time::Duration;
+
+/// How a render went.
+#[derive(Serialize)]
+pub(super) struct Summary<'a> {
+    program: &'static str,
+    version: &'static str,
+    scene: &'a str,
+    output: String,
+    complete: bool,
+    settings: List,
+    tracer: TracerSummary,
+    statistics: Statistics,
+    found: Vec<String>,
+    skipped: Vec<String>,
+    notes: &'a [String],
+    warnings: Vec<String>,
+    /// Those of the warnings that only the render could bring.
+    #[serde(skip)]
+    new_warnings: usize,
+}
+
+/// How rays found spheres, and who looked.
+#[derive(Serialize)]
+struct TracerSummary {
+    threads: usize,
+    method: &'static str,
+    coherent_lanes: u32,
+    incoherent_lanes: u32,
+}
+
+/// Counts and times.
+#[derive(Serialize)]
+struct Statistics {
+    spheres: u64,
+    dropped_spheres: u64,
+    sphere_bytes: usize,
+    tree_bytes: usize,
+    load_seconds: f64,
+    build_seconds: f64,
+    render_seconds: f64,
+    samples: u64,
+    rays: u64,
+    camera_rays: u64,
+    bounce_rays: u64,
+    shadow_rays: u64,
+    mrays_per_second: f64,
+    cut_paths: u64,
+    non_finite_samples: u64,
+    nesting_overflows: u64,
+}
+
+impl<'a> Summary<'a> {
+    pub(super) fn new(
+        job: &Job,
+        prepared: &'a Prepared,
+        render: &Render,
+        options: &WriteOptions,
+    ) -> Self {
+        let mut listed = settings::list(&prepared.scene.settings, prepared.region);
+        listed.extend(settings::list_encoding(job.format, options));
+        let new_warnings = warnings(&render.counters, &prepared.scene.settings);
+        Self {
+            program: "spherule",
+            version: env!("CARGO_PKG_VERSION"),
+            scene: &prepared.title,
+            output: job.output.display().to_string(),
+            complete: render.complete,
+            settings: listed,
+            tracer: TracerSummary::new(job),
+            statistics: Statistics::new(prepared, render),
+            found: found(&prepared.world),
+            skipped: prepared.world.features.skipped(),
+            notes: &prepared.notes,
+            new_warnings: new_warnings.len(),
+            warnings: prepared.warnings.iter().cloned().chain(new_warnings).collect(),
+        }
+    }
+
+    /// Prints it, as JSON or else as lines, and the warnings that are new.
+    pub(super) fn tell(&self, report: ReportArgs) {
+        if report.json {
+            output::print_json(self);
+        } else if !report.quiet {
+            self.print();
+        }
+        let old = self.warnings.len() - self.new_warnings;
+        self.warnings[old..].iter().for_each(output::warn);
+    }
+
+    fn print(&self) {
+        let statistics = &self.statistics;
+        let render = Duration::from_secs_f64(statistics.render_seconds);
+        output::print(format_args!(
+            "{}: {}\n\
+             load    {:.3} s, {}\n\
+             build   {:.3} s, tree of {}\n\
+             render  {:.3} s on {}, {}\n\
+             rays    {} camera, {} bounce, {} shadow",
+            self.output,
+            plural(statistics.samples, "sample"),
+            statistics.load_seconds,
+            spheres(statistics.spheres),
+            statistics.build_seconds,
+            BinaryBytes(statistics.tree_bytes as u64),
+            statistics.render_seconds,
+            plural(self.tracer.threads as u64, "thread"),
+            rate(statistics.rays, render),
+            HumanCount(statistics.camera_rays),
+            HumanCount(statistics.bounce_rays),
+            HumanCount(statistics.shadow_rays),
+        ));
+    }
+}
+
+impl TracerSummary {
+    fn new(job: &Job) -> Self {
+        Self {
+            threads: job.threads,
+            method: match job.tracer.method {
+                Method::Brute => "brute",
+                Method::Tree => "tree",
+            },
+            coherent_lanes: lanes(job.tracer.coherent),
+            incoherent_lanes: lanes(job.tracer.incoherent),
+        }
+    }
+}
+
+impl Statistics {
+    fn new(prepared: &Prepared, render: &Render) -> Self {
+        let (world, counters) = (&prepared.world, &render.counters);
+        let seconds = render.elapsed.as_secs_f64();
+        Self {
+            spheres: world.spheres.len() as u64,
+            dropped_spheres: world.features.vanished,
+            sphere_bytes: world.spheres.bytes(),
+            tree_bytes: world.bvh.bytes(),
+            load_seconds: prepared.load.as_secs_f64(),
+            build_seconds: prepared.build.as_secs_f64(),
+            render_seconds: seconds,
+            samples: counters.camera_rays,
+            rays: counters.rays(),
+            camera_rays: counters.camera_rays,
+            bounce_rays: counters.bounce_rays,
+            shadow_rays: counters.shadow_rays,
+            mrays_per_second: counters.rays() as f64 / seconds.max(1e-9) / 1e6,
+            cut_paths: counters.cut_paths,
+            non_finite_samples: counters.bad_samples,
+            nesting_overflows: counters.nesting_overflows,
+        }
+    }
+}
+
+fn lanes(width: Width) -> u32 {
+    match width {
+        Width::One => 1,
+        Width::Four => 4,
+        Width::Eight => 8,
+        Width::Sixteen => 16,
+    }
+}
+
+/// What is wrong with the picture.
+fn warnings(counters: &Counters, settings: &Settings) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let mut warn = |count: u64, text: &dyn Fn(String) -> String| {
+        if count > 0 {
+            warnings.push(text(HumanCount(count).to_string()));
+        }
+    };
+    let limit = settings.depth.map_or_else(
+        || format!("the hard limit of {} scatterings", Settings::HARD_DEPTH),
+        |depth| format!("--depth {depth}"),
+    );
+    warn(counters.cut_paths, &|count| {
+        let samples = HumanCount(counters.camera_rays);
+        format!(
+            "{limit} cut {count} of {samples} paths: the picture is too dark by the light that \
+             they would have carried"
+        )
+    });
+    warn(counters.bad_samples, &|count| {
+        format!(
+            "{count} samples were not finite and count as black: this is a fault of the program"
+        )
+    });
+    warn(counters.nesting_overflows, &|count| {
+        format!("{count} times a path was in more glass spheres at once than it can remember")
+    });
+    warnings
+}

@@ -1,0 +1,110 @@
+//! A picture's settings: what the command line replaces, and how they are listed in files and
+//! reports.
+
+use super::args::PictureArgs;
+use super::names::{FILTERS, INTEGRATORS, PPM, SAMPLERS, TONES};
+use serde_json::{Map, Value, json};
+use spherule::film::Region;
+use spherule::image::{Depth, Format, WriteOptions};
+use spherule::scene::{Integrator, Roulette, Settings};
+
+/// Names and values, in order.
+pub(super) type List = Map<String, Value>;
+
+impl PictureArgs {
+    /// Puts what was typed in the place of what the scene says.
+    pub(super) fn replace(&self, settings: &mut Settings) {
+        if let Some(size) = self.size {
+            (settings.width, settings.height) = (size.width, size.height);
+        }
+        if let Some(depth) = self.depth {
+            settings.depth = depth.0;
+        }
+        settings.spp = self.spp.unwrap_or(settings.spp);
+        settings.seed = self.seed.unwrap_or(settings.seed);
+        settings.sampler = self.sampler.unwrap_or(settings.sampler);
+        settings.filter = self.filter.unwrap_or(settings.filter);
+        settings.roulette = self.roulette.unwrap_or(settings.roulette);
+        settings.integrator = self.integrator(settings.integrator);
+    }
+
+    /// The integrator; one that was typed keeps the scene's parameters if it is the scene's own.
+    fn integrator(&self, scene: Integrator) -> Integrator {
+        let same = |typed: &Integrator| INTEGRATORS.name(typed) == INTEGRATORS.name(&scene);
+        match self.integrator.filter(|typed| !same(typed)).unwrap_or(scene) {
+            Integrator::Path => Integrator::Path,
+            Integrator::Whitted { shadow_samples } => Integrator::Whitted {
+                shadow_samples: self.shadow_samples.unwrap_or(shadow_samples),
+            },
+            Integrator::Ao { distance } => {
+                Integrator::Ao { distance: self.ao_distance.unwrap_or(distance) }
+            }
+        }
+    }
+}
+
+/// All settings that make the picture, by the names that scene files use, and nothing else: of two
+/// pictures that are equal, the lists are equal.
+pub(super) fn list(settings: &Settings, region: Region) -> List {
+    let mut list = List::new();
+    let mut put = |name: &str, value: Value| list.insert(name.to_owned(), value);
+    put("width", json!(settings.width));
+    put("height", json!(settings.height));
+    let whole = Region { x: 0, y: 0, width: settings.width, height: settings.height };
+    if region != whole {
+        put("region", json!(region_text(region)));
+    }
+    put("spp", json!(settings.spp));
+    put("depth", settings.depth.map_or(json!("unlimited"), |depth| json!(depth)));
+    put("seed", json!(settings.seed));
+    put("integrator", json!(INTEGRATORS.name(&settings.integrator)));
+    match settings.integrator {
+        Integrator::Path => None,
+        Integrator::Whitted { shadow_samples } => put("shadow_samples", json!(shadow_samples)),
+        Integrator::Ao { distance } if distance.is_finite() => put("ao_distance", json!(distance)),
+        Integrator::Ao { .. } => put("ao_distance", json!("inf")),
+    };
+    put("sampler", json!(SAMPLERS.name(&settings.sampler)));
+    put("filter", json!(FILTERS.name(&settings.filter)));
+    put("roulette", roulette(settings.roulette));
+    list
+}
+
+/// How the format shows the picture; nothing for formats that hold it as it is.
+pub(super) fn list_encoding(format: Format, options: &WriteOptions) -> List {
+    let mut list = List::new();
+    if shows(format) {
+        list.insert("exposure".to_owned(), json!(options.exposure));
+        list.insert("tone".to_owned(), json!(TONES.name(&options.tone)));
+        list.insert("bits".to_owned(), json!(bits(options.depth)));
+    }
+    if format == Format::Ppm {
+        list.insert("ppm".to_owned(), json!(PPM.name(&options.ppm)));
+    }
+    list
+}
+
+/// Whether a format holds what a display shows, exposed and encoded, or else linear radiance.
+pub(super) fn shows(format: Format) -> bool {
+    matches!(format, Format::Png | Format::Ppm)
+}
+
+/// A region as it is typed.
+pub(super) fn region_text(region: Region) -> String {
+    format!("{},{},{}x{}", region.x, region.y, region.width, region.height)
+}
+
+fn roulette(roulette: Roulette) -> Value {
+    match roulette {
+        Roulette::None => json!("none"),
+        Roulette::Throughput => json!("throughput"),
+        Roulette::Fixed(probability) => json!(probability),
+    }
+}
+
+fn bits(depth: Depth) -> u32 {
+    match depth {
+        Depth::Eight => 8,
+        Depth::Sixteen => 16,
+    }
+}

@@ -1,0 +1,96 @@
+//! What can go wrong with a picture file, and the mend.
+
+use super::Format;
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+/// Why a picture could not be made, read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImageError {
+    /// The file cannot be opened or read.
+    #[error("cannot read the picture {path:?}: {reason}; name a file that exists and may be read")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: io::Error,
+    },
+    /// The first bytes are of no format that is read here.
+    #[error(
+        "{path:?} is not a picture of a known format; convert it to EXR, PFM, PNG, PPM (P3 or P6) \
+         or Radiance HDR"
+    )]
+    UnknownContent {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The content is cut off, damaged, not supported, or claims an absurd size.
+    #[error("cannot read {path:?} as {format}: {reason}")]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What its first bytes say it is.
+        format: Format,
+        /// What is wrong, where, and what would be right.
+        reason: String,
+    },
+    /// The suffix of the destination names no format that is written here.
+    #[error("the suffix of {path:?} names no format; end the name in .png, .ppm, .pfm or .exr")]
+    UnknownSuffix {
+        /// The destination.
+        path: PathBuf,
+    },
+    /// The destination cannot be written; what was there before is untouched.
+    #[error("cannot write {path:?}: {reason}")]
+    Write {
+        /// The destination.
+        path: PathBuf,
+        /// What the system said, or what to do first.
+        reason: io::Error,
+    },
+    /// The format cannot hold the picture.
+    #[error(
+        "cannot write {path:?} as {format}: {reason}; choose another format or a smaller picture"
+    )]
+    Encode {
+        /// The destination.
+        path: PathBuf,
+        /// The format its suffix asks for.
+        format: Format,
+        /// What the encoder said.
+        reason: String,
+    },
+    /// The number of pixels is not the product of width and height, or it is 0.
+    #[error(
+        "a picture of {width} x {height} cannot have {count} pixels; give width * height of them, \
+         at least one"
+    )]
+    Shape {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Pixels that are there.
+        count: usize,
+    },
+    /// The exposure is not a finite number.
+    #[error("an exposure of {0} stops makes no picture; give a finite number, 0 for none")]
+    Exposure(f64),
+    /// An entry of the metadata that files cannot hold.
+    #[error("the metadata entry {key:?} cannot be written: {reason}")]
+    Metadata {
+        /// The entry's key.
+        key: String,
+        /// What is wrong, and what would be right.
+        reason: &'static str,
+    },
+}
+
+impl ImageError {
+    pub(super) fn malformed(path: &Path, format: Format, reason: String) -> Self {
+        Self::Malformed { path: path.to_owned(), format, reason }
+    }
+}

@@ -1,0 +1,239 @@
+//! File formats: how they are told apart, and the way to their codecs.
+
+use super::{Image, ImageError, WriteOptions, exr, pfm, png, ppm, radiance};
+use std::{
+    fmt,
+    fs::File,
+    io::{self, Read},
+    panic::catch_unwind,
+    path::Path,
+};
+
+/// The most pixels a header may claim where the file's length does not bound them: 3 GiB of floats.
+pub(super) const MAXIMUM_PIXELS: u64 = 1 << 28;
+
+/// No magic number is longer.
+const MAGIC_LENGTH: u64 = 16;
+
+/// A picture file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// `OpenEXR`: linear floats.
+    Exr,
+    /// Portable float map: linear floats, uncompressed.
+    Pfm,
+    /// Portable network graphics: sRGB codes of 8 or 16 bits.
+    Png,
+    /// Portable pixmap: sRGB codes, uncompressed.
+    Ppm,
+    /// Radiance HDR (RGBE): linear, read only.
+    Radiance,
+}
+
+impl Format {
+    /// The format that the first bytes of a file speak of, if it is one that is read here.
+    pub fn of_content(bytes: &[u8]) -> Option<Self> {
+        let starts = |magic: &[u8]| bytes.starts_with(magic);
+        let netpbm = bytes.get(2).is_some_and(|&byte| byte.is_ascii_whitespace() || byte == b'#');
+        if starts(b"\x89PNG\r\n\x1a\n") {
+            Some(Self::Png)
+        } else if starts(b"\x76\x2f\x31\x01") {
+            Some(Self::Exr)
+        } else if starts(b"#?RADIANCE") || starts(b"#?RGBE") {
+            Some(Self::Radiance)
+        } else if netpbm && (starts(b"PF") || starts(b"Pf")) {
+            Some(Self::Pfm)
+        } else if netpbm && (starts(b"P3") || starts(b"P6")) {
+            Some(Self::Ppm)
+        } else {
+            None
+        }
+    }
+
+    /// The format that is written to a file of this name: by its suffix, in any case.
+    ///
+    /// # Errors
+    /// [`ImageError::UnknownSuffix`] if it is not `.png`, `.ppm`, `.pfm` or `.exr`.
+    pub fn of_suffix(path: &Path) -> Result<Self, ImageError> {
+        let suffix = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        match suffix.as_str() {
+            "exr" => Ok(Self::Exr),
+            "pfm" => Ok(Self::Pfm),
+            "png" => Ok(Self::Png),
+            "ppm" => Ok(Self::Ppm),
+            _ => Err(ImageError::UnknownSuffix { path: path.to_owned() }),
+        }
+    }
+
+    /// Decodes a whole file; the error says what is wrong with it.
+    ///
+    /// A decoder of another crate that panics on a damaged file (integer overflow in a debug build,
+    /// say) must not take the caller down: that becomes an error too.
+    pub(super) fn decode(self, bytes: &[u8]) -> Result<Image, String> {
+        let decode: fn(&[u8]) -> Result<Image, String> = match self {
+            Self::Exr => exr::decode,
+            Self::Pfm => pfm::decode,
+            Self::Png => png::decode,
+            Self::Ppm => ppm::decode,
+            Self::Radiance => radiance::decode,
+        };
+        catch_unwind(|| decode(bytes))
+            .unwrap_or_else(|_| Err("the file is damaged; write it anew".into()))
+    }
+
+    /// Encodes a picture whose shape and options have been checked.
+    pub(super) fn encode(self, image: &Image, options: &WriteOptions) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Exr => exr::encode(image, &options.metadata),
+            Self::Pfm => Ok(pfm::encode(image)),
+            Self::Png => png::encode(image, options),
+            Self::Ppm => Ok(ppm::encode(image, options)),
+            Self::Radiance => Err("Radiance HDR is only read".into()),
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Exr => "EXR",
+            Self::Pfm => "PFM",
+            Self::Png => "PNG",
+            Self::Ppm => "PPM",
+            Self::Radiance => "Radiance HDR",
+        })
+    }
+}
+
+/// The format and the content of a file. Content of no known format is not read to its end.
+pub(super) fn read_file(path: &Path) -> Result<(Format, Vec<u8>), ImageError> {
+    let unreadable = |reason: io::Error| ImageError::Read { path: path.to_owned(), reason };
+    let mut file = File::open(path).map_err(unreadable)?;
+    let mut bytes = Vec::new();
+    file.by_ref().take(MAGIC_LENGTH).read_to_end(&mut bytes).map_err(unreadable)?;
+    let format = Format::of_content(&bytes)
+        .ok_or_else(|| ImageError::UnknownContent { path: path.to_owned() })?;
+    file.read_to_end(&mut bytes).map_err(unreadable)?;
+    Ok((format, bytes))
+}
+
+/// The number of pixels a header claims, once it is known to be more than 0 and at most `limit`.
+pub(super) fn checked_area(width: u64, height: u64, limit: u64) -> Result<usize, String> {
+    match width.checked_mul(height) {
+        Some(0) => Err(format!("its size of {width} x {height} has no pixels; give it some")),
+        Some(area) if area <= limit => usize::try_from(area).map_err(|error| error.to_string()),
+        _ => Err(format!(
+            "its header claims {width} x {height} pixels where at most {limit} can be; the file is \
+             cut off or damaged, or the picture too large: write it anew, or smaller"
+        )),
+    }
+}
+
+/// What a decoder of another crate says, and the mend.
+pub(super) fn damaged(error: &dyn fmt::Display) -> String {
+    format!("{error}; write the file anew")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::tests::ramp;
+    use proptest::prelude::*;
+
+    const ALL: [Format; 4] = [Format::Exr, Format::Pfm, Format::Png, Format::Ppm];
+
+    /// A file of 4 x 1 red pixels, in the old encoding without runs.
+    pub(in crate::image) const RADIANCE: &[u8] =
+        b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 4\n\
+        \x80\0\0\x81\x80\0\0\x81\x80\0\0\x81\x80\0\0\x81";
+
+    fn sample(format: Format) -> Vec<u8> {
+        match format {
+            Format::Radiance => RADIANCE.to_vec(),
+            written => written.encode(&ramp(9, 5), &WriteOptions::default()).unwrap(),
+        }
+    }
+
+    #[test]
+    fn suffixes_are_known_in_any_case_and_listed_when_unknown() {
+        assert_eq!(Format::of_suffix(Path::new("a/b.ExR")).unwrap(), Format::Exr);
+        for name in ["a.hdr", "a", ".png", "a.png~"] {
+            let message = Format::of_suffix(Path::new(name)).unwrap_err().to_string();
+            for suffix in [name, ".png", ".ppm", ".pfm", ".exr"] {
+                assert!(message.contains(suffix), "{message}");
+            }
+        }
+    }
+
+    #[test]
+    fn contents_are_told_by_their_magic() {
+        for format in ALL.into_iter().chain([Format::Radiance]) {
+            assert_eq!(Format::of_content(&sample(format)), Some(format));
+        }
+        for other in [&b"P5\n1 1\n255\n\0"[..], b"P33", b"Pf", b"GIF89a", b""] {
+            assert_eq!(Format::of_content(other), None);
+        }
+    }
+
+    #[test]
+    fn unknown_content_and_missing_files_name_the_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("text.png");
+        std::fs::write(&path, "no picture").unwrap();
+        for (path, word) in [(path, "known format"), (folder.path().join("gone.exr"), "gone.exr")] {
+            let message = read_file(&path).unwrap_err().to_string();
+            assert!(
+                message.contains(word) && message.contains("convert") | message.contains("exists")
+            );
+        }
+    }
+
+    #[test]
+    fn every_proper_prefix_of_a_file_is_an_error() {
+        for format in ALL.into_iter().chain([Format::Radiance]) {
+            let bytes = sample(format);
+            assert!(format.decode(&bytes).is_ok(), "{format}");
+            // The last chunk of a PNG carries nothing but the end, which a decoder need not reach.
+            let needed = if format == Format::Png { bytes.len() - 12 } else { bytes.len() };
+            for length in 0..needed {
+                assert!(format.decode(&bytes[..length]).is_err(), "{format} {length}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_decoder_that_panics_gives_an_error() {
+        // Endless run-length markers overflow the run's length, which debug builds do not let pass.
+        let head = &RADIANCE[..RADIANCE.len() - 12];
+        let bytes = [head, &b"\x01\x01\x01\0".repeat(40)].concat();
+        assert!(Format::Radiance.decode(&bytes).is_err());
+    }
+
+    #[test]
+    fn areas_are_bounded() {
+        assert_eq!(checked_area(3, 5, 15), Ok(15));
+        assert!(checked_area(0, 5, 15).is_err());
+        assert!(checked_area(4, 4, 15).is_err());
+        assert!(checked_area(u64::MAX, 2, u64::MAX).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn damage_gives_a_picture_of_the_claimed_size_or_an_error(
+            format in prop::sample::select(vec![
+                Format::Exr, Format::Pfm, Format::Png, Format::Ppm, Format::Radiance,
+            ]),
+            damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        ) {
+            let mut bytes = sample(format);
+            for (place, value) in damage {
+                let place = place.index(bytes.len());
+                bytes[place] = value;
+            }
+            if let Ok(image) = format.decode(&bytes) {
+                let area = u64::from(image.width) * u64::from(image.height);
+                prop_assert_eq!(image.pixels.len() as u64, area);
+            }
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Pictures: linear RGB in memory, and the files they come from and go to.
+//!
+//! A render is an [`Image`] of linear radiance. [`Image::write`] turns it into a file: as it is
+//! (EXR, PFM), or exposed, tone-mapped and sRGB-encoded for a display (PNG, PPM). [`Image::read`]
+//! is the way back, for environment maps and for [`compare()`]. Files appear whole or not at all
+//! ([`atomic::write_atomically`]), and [`check_writable`] finds a destination that cannot be
+//! written before hours are spent on the picture.
+
+pub mod compare;
+mod error;
+mod exr;
+mod format;
+mod metadata;
+mod netpbm;
+mod options;
+mod pfm;
+mod png;
+mod ppm;
+mod radiance;
+pub mod tone;
+
+pub use self::compare::{CompareError, Comparison, Difference, compare};
+pub use self::error::ImageError;
+pub use self::format::Format;
+pub use self::metadata::{Metadata, read_metadata};
+pub use self::options::{Depth, PpmEncoding, WriteOptions};
+
+use crate::atomic;
+use std::path::Path;
+
+/// A picture in linear RGB with the primaries of sRGB.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Pixels in a row, 1 or more.
+    pub width: u32,
+    /// Rows, 1 or more.
+    pub height: u32,
+    /// `width * height` triples (red, green, blue), row by row from the top left. Renders hold
+    /// values of 0 or more; files may bring any, NaN included.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+impl Image {
+    /// A picture of the given pixels, row by row from the top left.
+    ///
+    /// # Errors
+    /// [`ImageError::Shape`] if there are not exactly `width * height` pixels, or none at all.
+    pub fn new(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self, ImageError> {
+        let image = Self { width, height, pixels };
+        image.check_shape()?;
+        Ok(image)
+    }
+
+    /// A picture of one color.
+    ///
+    /// # Errors
+    /// [`ImageError::Shape`] if `width` or `height` is 0, or if their product does not fit in
+    /// memory's address range.
+    pub fn filled(width: u32, height: u32, color: [f32; 3]) -> Result<Self, ImageError> {
+        let area = usize::try_from(u64::from(width) * u64::from(height)).unwrap_or(0);
+        Self::new(width, height, vec![color; area])
+    }
+
+    /// The pixel in column `x` from the left and row `y` from the top; `None` outside of the
+    /// picture.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        let index = y as usize * self.width as usize + x as usize;
+        if x < self.width { self.pixels.get(index).copied() } else { None }
+    }
+
+    /// How many of the `3 * width * height` values are NaN or infinite: 0 for a sound render.
+    ///
+    /// PNG and PPM cannot hold such values ([`tone::DisplayTransform`] says what they become), so
+    /// whoever writes a picture can warn with this number.
+    pub fn count_non_finite(&self) -> u64 {
+        self.pixels.iter().flatten().filter(|value| !value.is_finite()).count() as u64
+    }
+
+    /// Reads an EXR, PFM, PNG, PPM (P3, P6) or Radiance HDR file; its content says which, not its
+    /// name.
+    ///
+    /// PNG and PPM are decoded by the sRGB curve; the others are linear already. Gray becomes RGB,
+    /// and alpha is dropped without dividing by it. Of an EXR file the first part with channels
+    /// `R`, `G`, `B`, or `Y` alone, is read over its data window. Radiance values are divided by
+    /// the header's `EXPOSURE`.
+    ///
+    /// # Errors
+    /// [`ImageError::Read`] if the file cannot be read, [`ImageError::UnknownContent`] if it is of
+    /// another kind, [`ImageError::Malformed`] if it is cut off, damaged, uses a feature that is
+    /// not supported, or claims more than 2^28 pixels in a compressed format.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ImageError> {
+        let path = path.as_ref();
+        let (format, bytes) = format::read_file(path)?;
+        format.decode(&bytes).map_err(|reason| ImageError::malformed(path, format, reason))
+    }
+
+    /// Writes a PNG, PPM, PFM or EXR file, as the suffix of `path` says (in any case).
+    ///
+    /// PNG and PPM get exposed, tone-mapped, sRGB-encoded codes. EXR and PFM get the linear values
+    /// as they are, without exposure and tone, NaN and infinities included. PFM has no room for
+    /// metadata. The file is complete or absent: see [`atomic::write_atomically`].
+    ///
+    /// # Errors
+    /// [`ImageError::UnknownSuffix`]; [`ImageError::Shape`] if the fields of the picture contradict
+    /// each other; [`ImageError::Exposure`] and [`ImageError::Metadata`] for options that cannot be
+    /// written; [`ImageError::Encode`] if the format cannot hold the picture; [`ImageError::Write`]
+    /// if the file cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>, options: &WriteOptions) -> Result<(), ImageError> {
+        let path = path.as_ref();
+        let format = Format::of_suffix(path)?;
+        self.check_shape()?;
+        options.check()?;
+        let bytes = format.encode(self, options).map_err(|reason| ImageError::Encode {
+            path: path.to_owned(),
+            format,
+            reason,
+        })?;
+        atomic::write_atomically(path, |file| file.write_all(&bytes))
+            .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
+    }
+
+    fn check_shape(&self) -> Result<(), ImageError> {
+        let area = u64::from(self.width) * u64::from(self.height);
+        if area == 0 || area != self.pixels.len() as u64 {
+            let (width, height, count) = (self.width, self.height, self.pixels.len());
+            return Err(ImageError::Shape { width, height, count });
+        }
+        Ok(())
+    }
+}
+
+/// Finds out whether [`Image::write`] could write `path`, without touching a file that is there.
+///
+/// For use before a long render. Only writing itself can tell for certain: disks fill up.
+///
+/// # Errors
+/// [`ImageError::UnknownSuffix`], or [`ImageError::Write`] if the folder is missing or not
+/// writable, if `path` is a folder, or if it is a file that must not be written.
+pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    Format::of_suffix(path)?;
+    atomic::check_destination(path)
+        .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// A picture of distinct values in 0..1.
+    pub(super) fn ramp(width: u32, height: u32) -> Image {
+        let count = width as usize * height as usize;
+        let value = |index: usize| index as f32 / (3 * count) as f32;
+        let pixels = (0..count).map(|i| [value(3 * i), value(3 * i + 1), value(3 * i + 2)]);
+        Image::new(width, height, pixels.collect()).unwrap()
+    }
+
+    #[test]
+    fn constructors_check_the_length() {
+        assert!(Image::new(2, 3, vec![[0.0; 3]; 6]).is_ok());
+        assert!(Image::new(2, 3, vec![[0.0; 3]; 5]).is_err());
+        assert!(Image::new(0, 3, vec![]).is_err());
+        assert!(Image::filled(4, 0, [1.0; 3]).is_err());
+        assert_eq!(Image::filled(2, 1, [1.0; 3]).unwrap().pixels, vec![[1.0; 3]; 2]);
+    }
+
+    #[test]
+    fn pixels_are_found_and_non_finite_ones_counted() {
+        let mut image = ramp(3, 2);
+        assert_eq!(image.pixel(2, 1), Some(image.pixels[5]));
+        assert_eq!(image.pixel(3, 0), None);
+        assert_eq!(image.pixel(0, 2), None);
+        image.pixels[1] = [f32::NAN, 1.0, f32::NEG_INFINITY];
+        assert_eq!(image.count_non_finite(), 2);
+    }
+
+    #[test]
+    fn every_format_survives_odd_sizes() {
+        let folder = tempfile::tempdir().unwrap();
+        for (width, height) in [(1, 1), (1, 7), (7, 1), (5, 3), (33, 17)] {
+            let image = ramp(width, height);
+            for (name, tolerance) in
+                [("a.exr", 0.0), ("a.PFM", 0.0), ("a.png", 0.01), ("a.ppm", 0.01)]
+            {
+                let path = folder.path().join(name);
+                image.write(&path, &WriteOptions::default()).unwrap();
+                let back = Image::read(&path).unwrap();
+                assert_eq!((back.width, back.height), (width, height));
+                let error = compare(&back, &image).unwrap().max_difference.value;
+                assert!(error <= tolerance, "{name} {width} x {height}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn content_counts_and_not_the_suffix() {
+        let folder = tempfile::tempdir().unwrap();
+        let (true_name, other_name) = (folder.path().join("a.pfm"), folder.path().join("a.png"));
+        ramp(3, 2).write(&true_name, &WriteOptions::default()).unwrap();
+        fs::rename(true_name, &other_name).unwrap();
+        assert_eq!(Image::read(&other_name).unwrap(), ramp(3, 2));
+    }
+
+    #[test]
+    fn destinations_that_cannot_be_written_are_found_and_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let good = folder.path().join("good.png");
+        assert!(check_writable(&good).is_ok());
+        assert!(!good.exists());
+        fs::write(&good, b"old").unwrap();
+        assert!(check_writable(&good).is_ok());
+        assert_eq!(fs::read(&good).unwrap(), b"old");
+        for name in ["missing/a.png", "a.jpeg", "a", "good.png/a.exr"] {
+            assert!(check_writable(folder.path().join(name)).is_err(), "{name}");
+        }
+        fs::create_dir(folder.path().join("folder.png")).unwrap();
+        let message = check_writable(folder.path().join("folder.png")).unwrap_err().to_string();
+        assert!(message.contains("folder.png") && message.contains("is a folder"), "{message}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn damaged_pictures_and_options_are_refused_before_the_file_is_touched() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let torn = Image { width: 2, height: 2, pixels: vec![[0.0; 3]; 3] };
+        assert!(matches!(
+            torn.write(&path, &WriteOptions::default()),
+            Err(ImageError::Shape { .. })
+        ));
+        let dark = WriteOptions { exposure: f64::NAN, ..WriteOptions::default() };
+        assert!(matches!(ramp(1, 1).write(&path, &dark), Err(ImageError::Exposure(_))));
+        assert!(!path.exists());
+    }
+}

@@ -1,0 +1,84 @@
+//! How a picture is written.
+
+use super::{ImageError, Metadata};
+use crate::scene::Tone;
+
+/// How [`Image::write`](super::Image::write) turns a picture into a file.
+///
+/// The default is what suits a preview: 8 bits, binary, no exposure, no tone curve, no metadata.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WriteOptions {
+    /// Bits of each channel of PNG and PPM; EXR and PFM are always 32-bit floats.
+    pub depth: Depth,
+    /// The dialect of PPM.
+    pub ppm: PpmEncoding,
+    /// Stops, finite: PNG and PPM show the picture multiplied by 2 to this power.
+    pub exposure: f64,
+    /// From exposed radiance to display-linear values, for PNG and PPM.
+    pub tone: Tone,
+    /// What the file says about itself: PNG text chunks, PPM comments, the EXR attribute
+    /// `comments`.
+    pub metadata: Metadata,
+}
+
+/// Bits of each channel of a file with integer codes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Depth {
+    /// 8 bits, codes 0..=255.
+    #[default]
+    Eight,
+    /// 16 bits, codes 0..=65535.
+    Sixteen,
+}
+
+/// The two dialects of PPM.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PpmEncoding {
+    /// P3: decimal numbers, a pixel per line.
+    Plain,
+    /// P6: bytes, the high one first where there are two.
+    #[default]
+    Binary,
+}
+
+impl Default for WriteOptions {
+    fn default() -> Self {
+        Self {
+            depth: Depth::default(),
+            ppm: PpmEncoding::default(),
+            exposure: 0.0,
+            tone: Tone::Linear,
+            metadata: Metadata::default(),
+        }
+    }
+}
+
+impl WriteOptions {
+    /// Refuses what no file can hold, whatever the format, so that options do not fail by suffix.
+    pub(super) fn check(&self) -> Result<(), ImageError> {
+        if !self.exposure.is_finite() {
+            return Err(ImageError::Exposure(self.exposure));
+        }
+        self.metadata.check()
+    }
+}
+
+impl Depth {
+    /// The largest code: 255 or 65535.
+    pub fn maximum(self) -> u16 {
+        match self {
+            Self::Eight => u16::from(u8::MAX),
+            Self::Sixteen => u16::MAX,
+        }
+    }
+
+    /// The bytes of samples in file order, the high byte first where there are two (PNG and PPM
+    /// agree).
+    pub(super) fn pack(self, codes: &[[u16; 3]]) -> Vec<u8> {
+        let codes = codes.iter().flatten();
+        match self {
+            Self::Eight => codes.map(|&code| code as u8).collect(),
+            Self::Sixteen => codes.flat_map(|code| code.to_be_bytes()).collect(),
+        }
+    }
+}

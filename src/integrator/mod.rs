@@ -1,0 +1,50 @@
+//! From rays to radiance: loops over columns, no recursion.
+//!
+//! All three integrators begin with [`stages::generate`], alternate [`stages::intersect`] with
+//! shading, one system for each kind of material that was hit, and leave the radiance of each path
+//! in [`workspace::Paths`]. A stage whose column is empty does nothing.
+
+pub mod ao;
+pub mod path;
+pub mod stages;
+pub mod whitted;
+pub mod workspace;
+
+use crate::sampling::{PixelFilter, Sampler};
+use crate::scene::{Integrator, Settings};
+use crate::trace::Tracer;
+use crate::world::World;
+use workspace::Workspace;
+
+/// What an integrator reads.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    /// What there is.
+    pub world: &'a World,
+    /// How the picture is made.
+    pub settings: &'a Settings,
+    /// Where samples lie.
+    pub sampler: &'a Sampler,
+    /// How samples become pixels.
+    pub filter: &'a PixelFilter,
+    /// How rays find spheres.
+    pub tracer: Tracer,
+}
+
+impl Job<'_> {
+    /// The most scatterings of a path.
+    pub fn depth(&self) -> u32 {
+        self.settings.depth.unwrap_or(Settings::HARD_DEPTH)
+    }
+
+    /// Follows the paths that were generated to their ends.
+    pub fn integrate(&self, work: &mut Workspace) {
+        match self.settings.integrator {
+            Integrator::Path => path::integrate(self, work),
+            Integrator::Whitted { shadow_samples } => {
+                whitted::integrate(self, work, shadow_samples);
+            }
+            Integrator::Ao { distance } => ao::integrate(self, work, distance),
+        }
+    }
+}

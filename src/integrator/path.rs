@@ -1,0 +1,211 @@
+//! Path tracing with next-event estimation and multiple importance sampling.
+//!
+//! At each surface a path looks for light at one light, chosen by power, and goes on in a direction
+//! sampled from the material. Light that both ways can find is weighted by the power heuristic
+//! (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH
+//! 1995), but from a diffuse surface a light that is not close, a sun or a point is left to the
+//! light samples alone: adding the other way would only add variance. A constant or gradient
+//! environment is left to the material's samples alone.
+
+use super::Job;
+use super::stages::{self, Local, ShadeKind};
+use super::workspace::{Arrival, Workspace, chord};
+use crate::ray::GROUND;
+use crate::scene::{Rgb, Roulette};
+use crate::shade::Bsdf;
+use crate::trace::Coherence;
+use crate::world::{Kind, LightSample, MaterialId};
+use glam::Vec3;
+
+/// Follows all paths to their ends.
+pub fn integrate(job: &Job, work: &mut Workspace) {
+    let mut coherence = Coherence::Coherent;
+    for bounce in 0.. {
+        stages::intersect(job, work, coherence);
+        escape(job, work);
+        emit(job, work);
+        if bounce == job.depth() {
+            work.counters.cut_paths += work.bins.scattered();
+            return;
+        }
+        stages::glass(job, work, bounce);
+        stages::by_kind(job, work, &mut Shade { job, bounce });
+        stages::occlude(job, work, Coherence::Coherent);
+        work.compact();
+        if work.is_empty() {
+            return;
+        }
+        work.counters.bounce_rays += work.len() as u64;
+        coherence = Coherence::Incoherent;
+    }
+}
+
+/// Gives the environment's light, and the suns', to paths that leave the scene.
+fn escape(job: &Job, work: &mut Workspace) {
+    let world = job.world;
+    for i in 0..work.bins.escaped.len() {
+        let row = work.bins.escaped[i] as usize;
+        let place = work.place[row] as usize;
+        let arrival = work.paths.arrival[place];
+        let direction = work.rays.direction.row(row);
+        let mut light = Rgb::ZERO;
+        if world.environment.illuminates || arrival.unscattered {
+            let weight =
+                heuristic(arrival.pdf, world.lights.sky_pdf(&world.environment, direction));
+            light += world.environment.radiance(direction) * weight;
+        }
+        if !arrival.diffuse {
+            for (radiance, pdf) in world.lights.suns_toward(direction) {
+                light += radiance * heuristic(arrival.pdf, pdf);
+            }
+        }
+        work.paths.radiance[place] += work.paths.throughput[place] * light;
+        work.end(row);
+    }
+}
+
+/// Gives the light of emitters to paths that hit them.
+fn emit(job: &Job, work: &mut Workspace) {
+    let world = job.world;
+    for i in 0..work.bins.kind[Kind::Emitter as usize].len() {
+        let row = work.bins.kind[Kind::Emitter as usize][i] as usize;
+        let place = work.place[row] as usize;
+        let arrival = work.paths.arrival[place];
+        let hit = work.hits.sphere[row];
+        let weight = match arrival.pdf {
+            None => 1.0,
+            Some(pdf) => {
+                let from = (work.rays.origin.row(row), work.rays.own[row]);
+                match world.lights.emitter_pdf(&world.spheres, hit, from) {
+                    (_, false) if arrival.diffuse => 0.0,
+                    (other, _) => heuristic(Some(pdf), other),
+                }
+            }
+        };
+        let radiance = world.materials.emitter[world.material(hit).row()].radiance;
+        work.paths.radiance[place] += work.paths.throughput[place] * radiance * weight;
+    }
+}
+
+/// Weight of what was found with density `found` and might have been found with density `other`.
+/// `None` is a density that is infinite.
+fn heuristic(found: Option<f32>, other: f32) -> f32 {
+    let Some(found) = found else { return 1.0 };
+    if other == 0.0 {
+        return 1.0;
+    }
+    // By the ratio, whose square may overflow to the right limit.
+    1.0 / (1.0 + (other / found).powi(2))
+}
+
+/// One bounce's shading.
+struct Shade<'a> {
+    job: &'a Job<'a>,
+    bounce: u32,
+}
+
+impl ShadeKind for Shade<'_> {
+    fn shade<B: Bsdf>(&mut self, work: &mut Workspace, kind: Kind, bsdf: impl Fn(MaterialId) -> B) {
+        let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
+        for &row in &rows {
+            let row = row as usize;
+            let hit = work.hits.sphere[row];
+            let bsdf = bsdf(self.job.world.material(hit)).tinted(self.job.world.color(hit));
+            let local = Local::new(work, row);
+            if self.job.world.features.lights && !bsdf.is_delta() {
+                self.look_for_light(work, row, &bsdf, &local);
+            }
+            self.go_on(work, row, &bsdf, &local);
+        }
+        work.bins.kind[kind as usize] = rows;
+    }
+}
+
+impl Shade<'_> {
+    /// Samples one light.
+    #[inline]
+    fn look_for_light<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
+        let world = self.job.world;
+        let place = work.place[row] as usize;
+        let draw = self.job.sampler.light(&work.paths.sample[place], self.bounce);
+        let Some((light, probability)) = world.lights.choose(draw.light) else { return };
+        let origin = (work.surface.point[row], work.hits.sphere[row]);
+        let aim = world.lights.aim(world, light, origin);
+        let Some(sample) = aim.and_then(|aim| aim.sample(draw.point)) else { return };
+        let incoming = local.frame.to_local(sample.direction);
+        if incoming.z <= 0.0 {
+            return;
+        }
+        let weight = match sample.pdf {
+            Some(pdf) if !B::DIFFUSE || sample.close => {
+                heuristic(Some(pdf * probability), bsdf.pdf(local.outgoing, incoming))
+            }
+            _ => 1.0,
+        };
+        let response = bsdf.eval(local.outgoing, incoming);
+        let light =
+            work.paths.throughput[place] * response * sample.weight * (weight / probability);
+        cast_shadow(self.job, work, row, (&sample, light), local.inside);
+    }
+
+    /// Sends the path on, or ends it.
+    #[inline]
+    fn go_on<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
+        let place = work.place[row] as usize;
+        let draw = self.job.sampler.scatter(&work.paths.sample[place], self.bounce);
+        let Some(scatter) = bsdf.sample(local.outgoing, draw.direction, draw.lobe) else {
+            return work.end(row);
+        };
+        let throughput = work.paths.throughput[place] * scatter.weight;
+        let survival = survival(self.job.settings.roulette, throughput, self.bounce);
+        if draw.roulette >= survival || throughput == Rgb::ZERO {
+            return work.end(row);
+        }
+        let unscattered = work.paths.arrival[place].unscattered && scatter.pdf.is_none();
+        let diffuse = B::DIFFUSE && scatter.pdf.is_some();
+        work.paths.throughput[place] = throughput / survival;
+        work.paths.arrival[place] = Arrival { pdf: scatter.pdf, diffuse, unscattered };
+        let direction = local.to_world(scatter.incoming);
+        work.go_on(self.job.world, row, direction, local.inside);
+    }
+}
+
+/// The probability with which Russian roulette lets a path go on after scattering number `bounce`,
+/// from 0.
+///
+/// By throughput, paths of a white furnace never end by chance: that picture has no noise at all.
+pub fn survival(roulette: Roulette, throughput: Rgb, bounce: u32) -> f32 {
+    match roulette {
+        Roulette::None => 1.0,
+        Roulette::Fixed(p) => p as f32,
+        Roulette::Throughput if bounce < 3 => 1.0,
+        Roulette::Throughput => throughput.max_element().clamp(0.05, 1.0),
+    }
+}
+
+/// Queues the shadow ray of a light sample; traces the queue when it is full.
+#[inline]
+pub fn cast_shadow(
+    job: &Job,
+    work: &mut Workspace,
+    row: usize,
+    (sample, light): (&LightSample, Rgb),
+    inside: bool,
+) {
+    if light.max_element() <= 0.0 {
+        return;
+    }
+    let own = work.hits.sphere[row];
+    // From inside a sphere, what lies behind its far side is hidden by it.
+    if inside
+        && own != GROUND
+        && chord(job.world, own, work.surface.normal[row], sample.direction) < sample.t
+    {
+        return;
+    }
+    let origin: Vec3 = work.surface.point[row];
+    work.shadows.push((origin, own), sample.direction, sample.t, (work.place[row], light));
+    if work.shadows.is_full() {
+        stages::occlude(job, work, Coherence::Coherent);
+    }
+}

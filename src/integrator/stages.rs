@@ -1,0 +1,187 @@
+//! The stages that integrators share, in the order of a path's life.
+
+use super::Job;
+use super::workspace::{Arrival, Workspace};
+use crate::film::Tile;
+use crate::ray::{ExactRay, GROUND, MISS};
+use crate::sampling;
+use crate::scene::Rgb;
+use crate::shade::{Bsdf, dielectric};
+use crate::trace::Coherence;
+use crate::world::{Kind, MaterialId, World};
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+
+/// Begins a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
+/// neighbors in the picture: packets are square.
+pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspace) {
+    work.clear();
+    for pixel in tile.pixels() {
+        for index in samples.clone() {
+            let sample = job.sampler.start(pixel.0, pixel.1, index);
+            let draw = job.sampler.camera(&sample);
+            let [dx, dy] = job.filter.offset(draw.pixel);
+            let lens =
+                job.world.features.lens.then(|| sampling::concentric_disk(draw.lens).to_array());
+            let x = f64::from(pixel.0) + 0.5 + f64::from(dx);
+            let y = f64::from(pixel.1) + 0.5 + f64::from(dy);
+            let (origin, direction) = job.world.camera.ray(x, y, lens);
+            let place = work.begin(origin, direction, sample);
+            enter_glass(job.world, work, place, origin, direction);
+        }
+    }
+    work.counters.camera_rays += work.len() as u64;
+}
+
+/// Notes the glass spheres in which a camera ray starts. On a surface, its direction decides.
+fn enter_glass(world: &World, work: &mut Workspace, place: usize, origin: Vec3, direction: Vec3) {
+    for &row in &world.features.glass_at_camera {
+        let offset = origin.as_dvec3() - world.spheres.center(row as usize).as_dvec3();
+        let radius = f64::from(world.spheres.radius[row as usize]);
+        let outside = offset.length_squared() - radius * radius;
+        let inward = offset.dot(direction.as_dvec3()) < 0.0;
+        if (outside < 0.0 || (outside == 0.0 && inward))
+            && !dielectric::insert(world, work.paths.inside(place), row)
+        {
+            work.counters.nesting_overflows += 1;
+        }
+    }
+}
+
+/// Finds what each path hits next, where, and sorts the rows by what it is.
+pub fn intersect(job: &Job, work: &mut Workspace, coherence: Coherence) {
+    job.tracer.closest(job.world, &work.rays, &mut work.hits, coherence);
+    for row in 0..work.len() {
+        let hit = work.hits.sphere[row];
+        if hit != MISS {
+            let (point, normal) = solve(job.world, work, row, hit);
+            work.surface.point[row] = point;
+            work.surface.normal[row] = normal;
+        }
+    }
+    let count = work.len();
+    work.bins.sort(job.world, &work.hits, count);
+}
+
+/// Point and outward normal of a hit, in double precision from the surface itself: the point is no
+/// farther off it than rounding takes it.
+fn solve(world: &World, work: &Workspace, row: usize, hit: u32) -> (Vec3, DVec3) {
+    let ray = work.rays.exact(row);
+    if hit == GROUND {
+        let normal = world.ground.map_or(DVec3::Z, |ground| ground.normal);
+        let height = world.ground.map_or(0.0, |ground| ground.height);
+        let point = ray.at(work.hits.t[row]);
+        let off = normal.dot(point) - height;
+        return ((point - normal * off).as_vec3(), normal);
+    }
+    let center = world.spheres.center(hit as usize).as_dvec3();
+    let radius = f64::from(world.spheres.radius[hit as usize]);
+    let normal = if work.rays.own[row] == hit {
+        exit_normal(&ray, work.surface.normal[row])
+    } else {
+        (ray.at(work.hits.t[row]) - center).normalize()
+    };
+    ((center + normal * radius).as_vec3(), normal)
+}
+
+/// Where a chord leaves a sphere, from where it entered: mirrored at the plane across the chord's
+/// middle. It does not use the origin, which was rounded.
+fn exit_normal(ray: &ExactRay, entry: DVec3) -> DVec3 {
+    let d = ray.direction;
+    (entry - d * (2.0 * entry.dot(d) / d.length_squared())).normalize()
+}
+
+/// The surface that a row has hit, as its material sees it.
+#[derive(Clone, Copy)]
+pub struct Local {
+    /// To world space and back; z is the normal on the side that is looked at.
+    pub frame: sampling::Frame,
+    /// Local unit vector toward where the path came from.
+    pub outgoing: Vec3,
+    /// Whether the sphere is seen from inside.
+    pub inside: bool,
+}
+
+impl Local {
+    /// The surface under row `row`.
+    #[inline]
+    pub fn new(work: &Workspace, row: usize) -> Self {
+        let direction = work.rays.direction.row(row);
+        let normal = work.surface.normal[row];
+        let inside = normal.dot(direction.as_dvec3()) > 0.0;
+        let facing = if inside { -normal } else { normal };
+        let frame = sampling::Frame::new(facing.as_vec3());
+        let mut outgoing = frame.to_local(-direction);
+        // At the limb, rounding may put the viewer below the horizon.
+        outgoing.z = outgoing.z.max(f32::MIN_POSITIVE);
+        Self { frame, outgoing, inside }
+    }
+
+    /// A sampled direction in world space, of unit length.
+    #[inline]
+    pub fn to_world(&self, incoming: Vec3) -> Vec3 {
+        self.frame.to_world(incoming).normalize()
+    }
+}
+
+/// Adds light to the path in `place`.
+#[inline]
+pub fn add_light(work: &mut Workspace, place: usize, light: Rgb) {
+    work.paths.radiance[place] += light;
+}
+
+/// Traces the shadow rays and gives their light to the paths that it reaches.
+pub fn occlude(job: &Job, work: &mut Workspace, coherence: Coherence) {
+    let shadows = &mut work.shadows;
+    job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits, coherence);
+    for row in 0..shadows.rays.len() {
+        if shadows.hits.sphere[row] == MISS {
+            work.paths.radiance[shadows.place[row] as usize] += shadows.light[row];
+        }
+    }
+    work.counters.shadow_rays += shadows.rays.len() as u64;
+    shadows.rays.truncate(0);
+}
+
+/// Sends every path that has hit glass through it or back.
+pub fn glass(job: &Job, work: &mut Workspace, bounce: u32) {
+    let rows = std::mem::take(&mut work.bins.kind[Kind::Dielectric as usize]);
+    for &row in &rows {
+        let row = row as usize;
+        let (place, hit) = (work.place[row] as usize, work.hits.sphere[row]);
+        let draw = job.sampler.scatter(&work.paths.sample[place], bounce);
+        let (passage, overflow) = dielectric::pass(
+            job.world,
+            hit,
+            (work.rays.direction.row(row).as_dvec3(), work.surface.normal[row]),
+            work.paths.inside(place),
+            draw.lobe,
+        );
+        work.counters.nesting_overflows += u64::from(overflow);
+        work.go_on(job.world, row, passage.direction.as_vec3(), passage.inward);
+        if passage.real {
+            let table = &job.world.materials.dielectric;
+            let color = table[job.world.material(hit).row()].color * job.world.color(hit);
+            let unscattered = work.paths.arrival[place].unscattered;
+            work.paths.throughput[place] *= color;
+            work.paths.arrival[place] = Arrival { unscattered, ..Arrival::CAMERA };
+        }
+    }
+    work.bins.kind[Kind::Dielectric as usize] = rows;
+}
+
+/// A system that shades the rows of one kind of material.
+pub trait ShadeKind {
+    /// Shades the rows whose materials `bsdf` finds.
+    fn shade<B: Bsdf>(&mut self, work: &mut Workspace, kind: Kind, bsdf: impl Fn(MaterialId) -> B);
+}
+
+/// Runs a system over every kind of material that was hit, but glass.
+pub fn by_kind(job: &Job, work: &mut Workspace, system: &mut impl ShadeKind) {
+    let tables = &job.world.materials;
+    system.shade(work, Kind::Lambertian, |id| tables.lambertian[id.row()]);
+    system.shade(work, Kind::Conductor, |id| tables.conductor[id.row()]);
+    system.shade(work, Kind::Plastic, |id| tables.plastic[id.row()]);
+    system.shade(work, Kind::Reflective, |id| tables.reflective[id.row()]);
+    system.shade(work, Kind::Emitter, |id| tables.emitter[id.row()].surface());
+}

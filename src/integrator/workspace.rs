@@ -1,0 +1,289 @@
+//! The columns that a task works on: allocated once, used for tile after tile.
+
+use crate::ray::{GROUND, Hits, MISS, Rays};
+use crate::sampling::{PathState, Sampler};
+use crate::scene::Rgb;
+use crate::world::{Kind, World};
+use glam::{DVec3, Vec3};
+
+/// Paths that are followed together: 16 samples of each pixel of a tile. The columns of that many
+/// stay in the second-level cache.
+pub const BATCH: usize = 4096;
+
+/// Shadow rays that are traced together.
+pub const SHADOWS: usize = 4096;
+
+/// How many glass spheres a path can be in at the same time.
+const NESTING: usize = 16;
+
+/// Everything that a task writes while it renders a tile.
+///
+/// Paths have a place, `0..BATCH`, that they keep from the camera to their end. Those that still go
+/// on have a row in `rays`, `hits`, `surface` and `place`; rows are compacted after each bounce.
+pub struct Workspace {
+    /// Rows: the next segment of each path.
+    pub rays: Rays,
+    /// Rows: what it hits.
+    pub hits: Hits,
+    /// Rows: where it hits.
+    pub surface: Surface,
+    /// Rows: which path it belongs to; [`MISS`] once the path has ended.
+    pub place: Vec<u32>,
+    /// Places: the paths.
+    pub paths: Paths,
+    /// Rows by what they hit.
+    pub bins: Bins,
+    /// Light that arrives if nothing is in between.
+    pub shadows: Shadows,
+    /// What was done.
+    pub counters: Counters,
+}
+
+/// Where rays hit.
+pub struct Surface {
+    /// The point, rounded to single precision.
+    pub point: Vec<Vec3>,
+    /// The outward unit normal.
+    pub normal: Vec<DVec3>,
+}
+
+/// Paths, by place.
+pub struct Paths {
+    /// Product of the weights so far.
+    pub throughput: Vec<Rgb>,
+    /// Light that has been found.
+    pub radiance: Vec<Rgb>,
+    /// Where in its sequence of samples the path is.
+    pub sample: Vec<PathState>,
+    /// How the path came to where it is.
+    pub arrival: Vec<Arrival>,
+    /// The glass spheres that the path is in: a fixed number of places for each path, none if there
+    /// is no glass.
+    inside: Vec<u32>,
+    nesting: usize,
+}
+
+/// How a path came to its last point, which decides how the light that it finds there counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// Density of the last direction by solid angle; `None` if no light sample could have found it:
+    /// from the camera, a mirror or glass.
+    pub pdf: Option<f32>,
+    /// Whether the last surface was diffuse, where light samples alone count for lights that are
+    /// not close.
+    pub diffuse: bool,
+    /// Whether there were only mirrors and glass since the camera.
+    pub unscattered: bool,
+}
+
+/// Rows by what they hit.
+#[derive(Default)]
+pub struct Bins {
+    /// Nothing.
+    pub escaped: Vec<u32>,
+    /// A surface of each kind.
+    pub kind: [Vec<u32>; Kind::COUNT],
+}
+
+/// Shadow rays and what they carry.
+pub struct Shadows {
+    /// From the surface toward the light.
+    pub rays: Rays,
+    /// Bounds on entry, occlusion on return.
+    pub hits: Hits,
+    /// Which path the light goes to.
+    pub place: Vec<u32>,
+    /// What arrives if nothing is in between.
+    pub light: Vec<Rgb>,
+}
+
+/// What was done, for statistics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Rays from surfaces, looking for what comes next.
+    pub bounce_rays: u64,
+    /// Rays from surfaces toward light.
+    pub shadow_rays: u64,
+    /// Paths that the depth limit ended.
+    pub cut_paths: u64,
+    /// Samples that were not finite, and count as black.
+    pub bad_samples: u64,
+    /// Times that a path was in more glass spheres than it can remember.
+    pub nesting_overflows: u64,
+}
+
+impl Counters {
+    /// All rays.
+    pub fn rays(&self) -> u64 {
+        self.camera_rays + self.bounce_rays + self.shadow_rays
+    }
+
+    /// Adds what another task did.
+    pub fn add(&mut self, other: &Self) {
+        self.camera_rays += other.camera_rays;
+        self.bounce_rays += other.bounce_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.cut_paths += other.cut_paths;
+        self.bad_samples += other.bad_samples;
+        self.nesting_overflows += other.nesting_overflows;
+    }
+}
+
+impl Arrival {
+    /// At the first hit.
+    pub const CAMERA: Self = Self { pdf: None, diffuse: false, unscattered: true };
+}
+
+impl Workspace {
+    /// Room for [`BATCH`] paths through `world`.
+    pub fn new(world: &World, sampler: &Sampler) -> Self {
+        let glass = world.features.spheres_by_kind[Kind::Dielectric as usize];
+        let nesting = NESTING.min(glass as usize);
+        Self {
+            rays: Rays::with_capacity(BATCH),
+            hits: Hits::with_capacity(BATCH),
+            surface: Surface { point: vec![Vec3::ZERO; BATCH], normal: vec![DVec3::ZERO; BATCH] },
+            place: vec![MISS; BATCH],
+            paths: Paths {
+                throughput: vec![Rgb::ZERO; BATCH],
+                radiance: vec![Rgb::ZERO; BATCH],
+                sample: vec![sampler.start(0, 0, 0); BATCH],
+                arrival: vec![Arrival::CAMERA; BATCH],
+                inside: vec![MISS; BATCH * nesting],
+                nesting,
+            },
+            bins: Bins::default(),
+            shadows: Shadows {
+                rays: Rays::with_capacity(SHADOWS),
+                hits: Hits::with_capacity(SHADOWS),
+                place: vec![MISS; SHADOWS],
+                light: vec![Rgb::ZERO; SHADOWS],
+            },
+            counters: Counters::default(),
+        }
+    }
+
+    /// Forgets all paths.
+    pub fn clear(&mut self) {
+        self.rays.truncate(0);
+    }
+
+    /// Number of paths that still go on, once compacted.
+    pub fn len(&self) -> usize {
+        self.rays.len()
+    }
+
+    /// Whether no path goes on.
+    pub fn is_empty(&self) -> bool {
+        self.rays.is_empty()
+    }
+
+    /// Begins a path at the next place.
+    #[inline]
+    pub fn begin(&mut self, origin: Vec3, direction: Vec3, sample: PathState) -> usize {
+        let place = self.rays.len();
+        self.rays.push(origin, direction, MISS);
+        self.hits.set(place, f64::INFINITY, MISS);
+        self.place[place] = place as u32;
+        self.paths.throughput[place] = Rgb::ONE;
+        self.paths.radiance[place] = Rgb::ZERO;
+        self.paths.sample[place] = sample;
+        self.paths.arrival[place] = Arrival::CAMERA;
+        self.paths.inside(place).fill(MISS);
+        place
+    }
+
+    /// Sends the path in `row` on from the surface it has hit. `direction` goes inside the sphere
+    /// if `inward`: then what it leaves through is known.
+    #[inline]
+    pub fn go_on(&mut self, world: &World, row: usize, direction: Vec3, inward: bool) {
+        let own = self.hits.sphere[row];
+        self.rays.set(row, self.surface.point[row], direction, own);
+        if inward && own != GROUND {
+            let t = chord(world, own, self.surface.normal[row], direction);
+            self.hits.set(row, t, own);
+        } else {
+            self.hits.set(row, f64::INFINITY, MISS);
+        }
+    }
+
+    /// Ends the path in `row`.
+    #[inline]
+    pub fn end(&mut self, row: usize) {
+        self.place[row] = MISS;
+    }
+
+    /// Closes the gaps that paths have left that ended, in order.
+    pub fn compact(&mut self) {
+        let mut kept = 0;
+        for row in 0..self.rays.len() {
+            if self.place[row] == MISS {
+                continue;
+            }
+            if kept != row {
+                self.rays.copy_row(row, kept);
+                self.hits.set(kept, self.hits.t[row], self.hits.sphere[row]);
+                self.surface.normal[kept] = self.surface.normal[row];
+                self.place[kept] = self.place[row];
+            }
+            kept += 1;
+        }
+        self.rays.truncate(kept);
+    }
+}
+
+/// Distance from a point of sphere `row`, with outward unit `normal`, through the inside to where
+/// `direction` leaves.
+#[inline]
+pub fn chord(world: &World, row: u32, normal: DVec3, direction: Vec3) -> f64 {
+    let direction = direction.as_dvec3();
+    let radius = f64::from(world.spheres.radius[row as usize]);
+    (-2.0 * radius * normal.dot(direction) / direction.length_squared()).max(0.0)
+}
+
+impl Paths {
+    /// The glass spheres that the path in `place` is in.
+    #[inline]
+    pub fn inside(&mut self, place: usize) -> &mut [u32] {
+        &mut self.inside[place * self.nesting..(place + 1) * self.nesting]
+    }
+}
+
+impl Bins {
+    /// How many rows hit something.
+    pub fn scattered(&self) -> u64 {
+        self.kind.iter().map(|rows| rows.len() as u64).sum()
+    }
+
+    /// Sorts rows `0..count` by what they hit.
+    pub fn sort(&mut self, world: &World, hits: &Hits, count: usize) {
+        self.escaped.clear();
+        self.kind.iter_mut().for_each(Vec::clear);
+        for row in 0..count {
+            let hit = hits.sphere[row];
+            if hit == MISS {
+                self.escaped.push(row as u32);
+            } else {
+                self.kind[world.material(hit).kind() as usize].push(row as u32);
+            }
+        }
+    }
+}
+
+impl Shadows {
+    /// Whether there is room for one more.
+    pub fn is_full(&self) -> bool {
+        self.rays.len() == SHADOWS
+    }
+
+    /// Appends a shadow ray.
+    #[inline]
+    pub fn push(&mut self, (origin, own): (Vec3, u32), direction: Vec3, t: f64, to: (u32, Rgb)) {
+        let row = self.rays.len();
+        self.rays.push(origin, direction, own);
+        self.hits.set(row, t, MISS);
+        (self.place[row], self.light[row]) = to;
+    }
+}

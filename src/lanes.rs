@@ -1,0 +1,312 @@
+//! One numeric type for every width.
+//!
+//! Kernels are written once, over `L: Lanes`. `f32` is the one-lane case: it is the scalar tracer,
+//! the fallback and the oracle that the wide ones are tested against. This is the only file that
+//! names `wide`.
+//!
+//! Everything here rounds each lane as IEEE 754 says, without horizontal operations, so a lane's
+//! result does not depend on how many lanes there are. `#[inline(always)]` is on everything that
+//! takes or returns lanes here and in the kernels, because a wide value that crosses a real call
+//! goes through memory.
+
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+pub use wide::{f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16};
+
+/// The widest packet there is; columns of rays are padded to a multiple of it.
+pub const MAX_LANES: usize = 16;
+
+/// One truth value per lane.
+pub trait Mask:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> + Send + Sync
+{
+    /// Bit `i` is set if lane `i` is true.
+    fn bits(self) -> u32;
+}
+
+/// A row of `f32` values, one per ray.
+pub trait Lanes:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Send
+    + Sync
+{
+    /// Number of lanes: 1, 4, 8 or 16.
+    const WIDTH: usize;
+    /// What comparisons return.
+    type Mask: Mask;
+
+    /// `x` in every lane.
+    fn splat(x: f32) -> Self;
+    /// The first `WIDTH` values of `column`.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    fn load(column: &[f32]) -> Self;
+    /// `self * factor + term`, rounded once where the target has fused multiply-add.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// Square root; NaN below 0.
+    fn sqrt(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// The lesser; `other` if either is NaN.
+    fn min(self, other: Self) -> Self;
+    /// The greater; `other` if either is NaN.
+    fn max(self, other: Self) -> Self;
+    /// `self < other`; false for NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`; false for NaN.
+    fn le(self, other: Self) -> Self::Mask;
+    /// Whether the sign bit is set: true for -0.
+    fn is_negative(self) -> Self::Mask;
+    /// `yes` where `mask` is true, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self)
+    }
+}
+
+impl Lanes for f32 {
+    const WIDTH: usize = 1;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn load(column: &[f32]) -> Self {
+        column[0]
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        // As `wide` does: without the instruction, the fused form would be a call into a library.
+        if cfg!(target_feature = "fma") {
+            Self::mul_add(self, factor, term)
+        } else {
+            self * factor + term
+        }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self::abs(self)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> bool {
+        self <= other
+    }
+    #[inline(always)]
+    fn is_negative(self) -> bool {
+        self.is_sign_negative()
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+}
+
+/// A comparison's result: all bits of a lane set, or none. A type of its own, so that masks cannot
+/// be added up by mistake.
+#[derive(Clone, Copy, Debug)]
+pub struct WideMask<W>(W);
+
+impl<W: BitAnd<Output = W>> BitAnd for WideMask<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl<W: BitOr<Output = W>> BitOr for WideMask<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl<W: Not<Output = W>> Not for WideMask<W> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0)
+    }
+}
+
+macro_rules! impl_lanes {
+    ($($wide:ident: $width:literal),+ $(,)?) => {$(
+        impl Mask for WideMask<wide::$wide> {
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                self.0.to_bitmask()
+            }
+        }
+
+        impl Lanes for wide::$wide {
+            const WIDTH: usize = $width;
+            type Mask = WideMask<Self>;
+
+            #[inline(always)]
+            fn splat(x: f32) -> Self {
+                Self::splat(x)
+            }
+            #[inline(always)]
+            fn load(column: &[f32]) -> Self {
+                let row: &[f32; $width] = column.first_chunk().expect("columns hold whole rows");
+                Self::new(*row)
+            }
+            #[inline(always)]
+            fn mul_add(self, factor: Self, term: Self) -> Self {
+                self.mul_add(factor, term)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                self.fast_min(other)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.fast_max(other)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self::Mask {
+                WideMask(self.simd_lt(other))
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Self::Mask {
+                WideMask(self.simd_le(other))
+            }
+            #[inline(always)]
+            fn is_negative(self) -> Self::Mask {
+                WideMask(self.is_sign_negative())
+            }
+            #[inline(always)]
+            fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+                wide::Select::select(mask.0, yes, no)
+            }
+        }
+    )+};
+}
+
+impl_lanes! { f32x4: 4, f32x8: 8, f32x16: 16 }
+
+/// The indices of the set bits, lowest first.
+#[inline(always)]
+pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros();
+        bits &= bits.wrapping_sub(1);
+        (lane < u32::BITS).then_some(lane as usize)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAN: f32 = f32::NAN;
+    const VALUES: [f32; 16] = [
+        1.0,
+        -0.0,
+        0.0,
+        NAN,
+        3.5,
+        -2.0,
+        1e-40,
+        f32::INFINITY,
+        -1.0,
+        2.0,
+        4.0,
+        9.0,
+        1e30,
+        -1e30,
+        0.1,
+        7.0,
+    ];
+    const OTHERS: [f32; 16] =
+        [2.0, 0.0, NAN, 1.0, 3.5, 2.0, 1e-41, 1.0, -1.5, NAN, 0.3, 1e-9, 1e30, 1.0, 0.7, -7.0];
+
+    /// Every operation on `L` agrees bit by bit with the same on `f32`.
+    fn agrees_with_scalar<L: Lanes>() {
+        for row in (0..16).step_by(L::WIDTH) {
+            let (a, b) = (L::load(&VALUES[row..]), L::load(&OTHERS[row..]));
+            let zero = L::splat(0.0);
+            let masks = [
+                a.lt(b),
+                a.le(b),
+                a.is_negative(),
+                a.min(b).le(a.max(b)),
+                zero.lt(a.mul_add(b, a)),
+                L::select(a.lt(b), a, b).le(a.abs().sqrt()),
+                !(a.lt(b)) & (a.le(b) | b.lt(zero)),
+                (a / b - b * a).lt(-(a + b)),
+            ];
+            for lane in 0..L::WIDTH {
+                let (x, y) = (VALUES[row + lane], OTHERS[row + lane]);
+                let expected = [
+                    x.lt(y),
+                    x.le(y),
+                    Lanes::is_negative(x),
+                    Lanes::min(x, y).le(Lanes::max(x, y)),
+                    0.0_f32.lt(Lanes::mul_add(x, y, x)),
+                    f32::select(x.lt(y), x, y).le(x.abs().sqrt()),
+                    !(x.lt(y)) & (x.le(y) | y.lt(0.0)),
+                    (x / y - y * x).lt(-(x + y)),
+                ];
+                let got = masks.map(|mask| mask.bits() >> lane & 1 == 1);
+                assert_eq!(got, expected, "width {} lane {lane}: {x} {y}", L::WIDTH);
+            }
+        }
+    }
+
+    #[test]
+    fn every_width_computes_what_one_lane_does() {
+        agrees_with_scalar::<wide::f32x4>();
+        agrees_with_scalar::<wide::f32x8>();
+        agrees_with_scalar::<wide::f32x16>();
+    }
+
+    #[test]
+    fn min_and_max_drop_a_nan_on_the_left() {
+        assert_eq!(Lanes::min(NAN, 2.0), 2.0);
+        assert_eq!(Lanes::max(NAN, 2.0), 2.0);
+    }
+
+    #[test]
+    fn set_bits_come_in_order() {
+        assert_eq!(set_bits(0b1010_0001).collect::<Vec<_>>(), [0, 5, 7]);
+        assert_eq!(set_bits(0).count(), 0);
+        assert_eq!(set_bits(u32::MAX).count(), 32);
+    }
+}

@@ -1,0 +1,169 @@
+//! Rays and hits in columns: row `i` of every column belongs to ray `i`.
+
+use crate::lanes::{Lanes, MAX_LANES};
+use crate::vec3::Vec3;
+use glam::{DVec3, Vec3 as Point};
+
+/// The row of [`Hits::sphere`] of a ray that hits nothing.
+pub const MISS: u32 = u32::MAX;
+
+/// The row of [`Hits::sphere`] of a ray that hits the ground plane.
+pub const GROUND: u32 = u32::MAX - 1;
+
+/// Rays in world space. Directions have length 1 up to rounding.
+#[derive(Clone, Debug, Default)]
+pub struct Rays {
+    /// Origins.
+    pub origin: Columns3,
+    /// Directions.
+    pub direction: Columns3,
+    /// What the ray starts on: a sphere's row, [`GROUND`], or [`MISS`] for the camera. It is never
+    /// hit: a convex body cannot hit itself from outside, and what a ray that goes inside leaves
+    /// through is known before it is traced.
+    pub own: Vec<u32>,
+    len: usize,
+}
+
+/// Three columns of coordinates, with room for a whole packet after the last row.
+#[derive(Clone, Debug, Default)]
+pub struct Columns3 {
+    /// Along the first axis.
+    pub x: Vec<f32>,
+    /// Along the second axis.
+    pub y: Vec<f32>,
+    /// Along the third axis.
+    pub z: Vec<f32>,
+}
+
+/// What each ray hits: on entry a bound, on return the answer.
+#[derive(Clone, Debug, Default)]
+pub struct Hits {
+    /// Distance in units of the direction's length. On entry, hits beyond it do not count.
+    pub t: Vec<f64>,
+    /// The sphere's row, [`GROUND`] or [`MISS`].
+    pub sphere: Vec<u32>,
+}
+
+impl Columns3 {
+    fn with_rows(rows: usize) -> Self {
+        let column = || vec![0.0; rows];
+        Self { x: column(), y: column(), z: column() }
+    }
+
+    /// Row `i`.
+    #[inline(always)]
+    pub fn row(&self, i: usize) -> Point {
+        Point::new(self.x[i], self.y[i], self.z[i])
+    }
+
+    /// Writes row `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, p: Point) {
+        (self.x[i], self.y[i], self.z[i]) = (p.x, p.y, p.z);
+    }
+
+    /// Rows `i..i + L::WIDTH`.
+    #[inline(always)]
+    pub fn load<L: Lanes>(&self, i: usize) -> Vec3<L> {
+        Vec3::new(L::load(&self.x[i..]), L::load(&self.y[i..]), L::load(&self.z[i..]))
+    }
+}
+
+impl Rays {
+    /// No ray, room for `capacity`.
+    pub fn with_capacity(capacity: usize) -> Self {
+        let rows = capacity.next_multiple_of(MAX_LANES) + MAX_LANES;
+        Self {
+            origin: Columns3::with_rows(rows),
+            direction: Columns3::with_rows(rows),
+            own: vec![MISS; rows],
+            len: 0,
+        }
+    }
+
+    /// Number of rays.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Forgets rays from `len` on.
+    pub fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
+    }
+
+    /// Appends a ray. The caller keeps to the capacity.
+    #[inline(always)]
+    pub fn push(&mut self, origin: Point, direction: Point, own: u32) {
+        let row = self.len;
+        self.len += 1;
+        self.set(row, origin, direction, own);
+    }
+
+    /// Writes row `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, origin: Point, direction: Point, own: u32) {
+        self.origin.set(i, origin);
+        self.direction.set(i, direction);
+        self.own[i] = own;
+    }
+
+    /// Copies row `from` over row `to`.
+    #[inline(always)]
+    pub fn copy_row(&mut self, from: usize, to: usize) {
+        self.set(to, self.origin.row(from), self.direction.row(from), self.own[from]);
+    }
+
+    /// Ray `i` for the exact test.
+    #[inline(always)]
+    pub fn exact(&self, i: usize) -> ExactRay {
+        ExactRay::new(self.origin.row(i), self.direction.row(i), self.own[i] != MISS)
+    }
+}
+
+impl Hits {
+    /// Misses, room for `capacity`.
+    pub fn with_capacity(capacity: usize) -> Self {
+        let rows = capacity.next_multiple_of(MAX_LANES) + MAX_LANES;
+        Self { t: vec![f64::INFINITY; rows], sphere: vec![MISS; rows] }
+    }
+
+    /// Writes row `i`.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, t: f64, sphere: u32) {
+        (self.t[i], self.sphere[i]) = (t, sphere);
+    }
+}
+
+/// A ray as the exact test sees it: the stored single-precision numbers, held in double precision.
+#[derive(Clone, Copy, Debug)]
+pub struct ExactRay {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes; any length.
+    pub direction: DVec3,
+    /// How far the origin may be from where it was before it was rounded to single precision: 0 for
+    /// an origin that is exact.
+    pub origin_error: f64,
+}
+
+impl ExactRay {
+    /// `on_surface`: the origin is a point of a surface, rounded to single precision.
+    #[inline(always)]
+    pub fn new(origin: Point, direction: Point, on_surface: bool) -> Self {
+        let origin = origin.as_dvec3();
+        // Rounding moves a coordinate by at most 2^-24 of itself; twice that is the band.
+        let origin_error =
+            if on_surface { f64::from(f32::EPSILON) * origin.abs().element_sum() } else { 0.0 };
+        Self { origin, direction: direction.as_dvec3(), origin_error }
+    }
+
+    /// The point at distance `t`.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+}

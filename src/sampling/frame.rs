@@ -1,0 +1,97 @@
+//! Right-handed orthonormal frames about a unit vector.
+
+use glam::Vec3;
+
+/// Three perpendicular unit vectors; local z is the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// World direction of local x.
+    pub tangent: Vec3,
+    /// World direction of local y: normal x tangent.
+    pub bitangent: Vec3,
+    /// World direction of local z.
+    pub normal: Vec3,
+}
+
+impl Frame {
+    /// The frame of a unit normal; any unit vector will do, poles and negative zeros included.
+    ///
+    /// Duff, Burgess, Christensen, Hery, Kensler, Liani & Villemin, "Building an Orthonormal Basis,
+    /// Revisited", JCGT 2017.
+    #[inline]
+    pub fn new(normal: Vec3) -> Self {
+        let Vec3 { x, y, z } = normal;
+        let sign = 1.0_f32.copysign(z);
+        let a = -1.0 / (sign + z);
+        let b = x * y * a;
+        Self {
+            tangent: Vec3::new(1.0 + sign * x * x * a, sign * b, -sign * x),
+            bitangent: Vec3::new(b, sign + y * y * a, -y),
+            normal,
+        }
+    }
+
+    /// A local direction in world axes.
+    #[inline]
+    pub fn to_world(&self, local: Vec3) -> Vec3 {
+        self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
+    }
+
+    /// A world direction in local axes: the inverse of [`Frame::to_world`].
+    #[inline]
+    pub fn to_local(&self, world: Vec3) -> Vec3 {
+        Vec3::new(world.dot(self.tangent), world.dot(self.bitangent), world.dot(self.normal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::warp::{tests::random_pairs, uniform_sphere};
+
+    /// Largest rounding error of products of unit vectors that is let pass.
+    const TOLERANCE: f32 = 4e-7;
+
+    fn check(normal: Vec3) {
+        let Frame { tangent, bitangent, normal: n } = Frame::new(normal);
+        assert_eq!(n, normal);
+        for vector in [tangent, bitangent] {
+            assert!((vector.length_squared() - 1.0).abs() < TOLERANCE, "{normal}: {vector}");
+        }
+        for dot in [tangent.dot(bitangent), tangent.dot(n), bitangent.dot(n)] {
+            assert!(dot.abs() < TOLERANCE, "{normal}: {dot}");
+        }
+        assert!((tangent.cross(bitangent) - n).length() < TOLERANCE, "{normal}: left-handed");
+    }
+
+    #[test]
+    fn random_normals() {
+        for u in random_pairs(10_000, 2) {
+            check(uniform_sphere(u));
+        }
+    }
+
+    #[test]
+    fn poles_equator_and_negative_zeros() {
+        let tiny = 1e-30;
+        for z in [1.0, -1.0] {
+            for side in [0.0, -0.0, tiny, -tiny] {
+                check(Vec3::new(side, 0.0, z));
+                check(Vec3::new(-0.0, side, z));
+                check(Vec3::new(z, side, side));
+                check(Vec3::new(side, z, side));
+            }
+            check(Vec3::new(3e-4, -2e-4, z).normalize());
+        }
+    }
+
+    #[test]
+    fn world_and_local_are_inverse() {
+        let frame = Frame::new(Vec3::new(0.3, -0.8, -0.1).normalize());
+        assert!((frame.to_world(Vec3::Z) - frame.normal).length() < TOLERANCE);
+        for u in random_pairs(1000, 9) {
+            let local = uniform_sphere(u);
+            assert!((frame.to_local(frame.to_world(local)) - local).length() < 2.0 * TOLERANCE);
+        }
+    }
+}

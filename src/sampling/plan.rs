@@ -1,0 +1,99 @@
+//! Which dimension serves which decision of a path.
+//!
+//! The table is in the [module's](super) documentation.
+
+use super::sampler::{PathState, Sampler};
+
+/// The numbers that make a camera ray; all in [0, 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraDraw {
+    /// Place in the picture, for [`PixelFilter::offset`](super::PixelFilter::offset).
+    pub pixel: [f32; 2],
+    /// Place on the lens.
+    pub lens: [f32; 2],
+}
+
+/// The numbers of one scattering; all in [0, 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScatterDraw {
+    /// The new direction.
+    pub direction: [f32; 2],
+    /// Which share of the material scatters: reflect or refract, coat or base.
+    pub lobe: f32,
+    /// Whether the path goes on.
+    pub roulette: f32,
+}
+
+/// The numbers of one choice of a light; all in [0, 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightDraw {
+    /// Place on the light.
+    pub point: [f32; 2],
+    /// Which light.
+    pub light: f32,
+}
+
+impl Sampler {
+    /// The numbers of the camera ray.
+    #[inline]
+    pub fn camera(&self, path: &PathState) -> CameraDraw {
+        let [_, _, x, y] = self.draw4(path, 0);
+        let [u, v, _, _] = self.draw4(path, 1);
+        CameraDraw { pixel: [x, y], lens: [u, v] }
+    }
+
+    /// The numbers of scattering number `bounce`, from 0 at the first hit.
+    #[inline]
+    pub fn scatter(&self, path: &PathState, bounce: u32) -> ScatterDraw {
+        let ([u, v, ..], [_, _, lobe, roulette]) = if bounce == 0 {
+            (self.draw4(path, 0), self.draw4(path, 1))
+        } else {
+            let draw = self.draw4(path, 1 + 2 * bounce);
+            (draw, draw)
+        };
+        ScatterDraw { direction: [u, v], lobe, roulette }
+    }
+
+    /// The numbers of the light that is sampled at scattering number `bounce`.
+    #[inline]
+    pub fn light(&self, path: &PathState, bounce: u32) -> LightDraw {
+        let [u, v, light, _] = self.draw4(path, 2 + 2 * bounce);
+        LightDraw { point: [u, v], light }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SamplerKind;
+
+    #[test]
+    fn no_number_serves_two_decisions() {
+        for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
+            let sampler = Sampler::new(kind, 4, 16);
+            let path = sampler.start(1, 2, 3);
+            let CameraDraw { pixel, lens } = sampler.camera(&path);
+            let mut numbers = [pixel, lens].concat();
+            for bounce in 0..100 {
+                let ScatterDraw { direction, lobe, roulette } = sampler.scatter(&path, bounce);
+                let LightDraw { point, light } = sampler.light(&path, bounce);
+                numbers.extend(direction.into_iter().chain(point).chain([lobe, roulette, light]));
+            }
+            let count = numbers.len();
+            assert_eq!(count, 704);
+            numbers.sort_unstable_by(f32::total_cmp);
+            numbers.dedup();
+            // Of 704 random multiples of 2^-23 or 2^-24, two may be equal by chance; not more.
+            assert!(numbers.len() + 2 >= count, "{kind:?}: {}", numbers.len());
+        }
+    }
+
+    #[test]
+    fn the_best_dimensions_go_to_pixel_and_first_direction() {
+        let sampler = Sampler::new(SamplerKind::Sobol, 4, 16);
+        let path = sampler.start(1, 2, 3);
+        let [u, v, x, y] = sampler.draw4(&path, 0);
+        assert_eq!(sampler.scatter(&path, 0).direction, [u, v]);
+        assert_eq!(sampler.camera(&path).pixel, [x, y]);
+    }
+}

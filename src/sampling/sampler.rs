@@ -1,0 +1,134 @@
+//! Where samples lie: the random numbers of every path.
+
+use super::hash::{mix, stream, unit};
+use super::sobol::{Shuffled, Sobol, block, shuffle};
+use super::stratified::{Strata, stratified_pair};
+use crate::scene::SamplerKind;
+use rand_xoshiro::Xoshiro128PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+/// Sets the keys of split events apart from those of draws.
+const SPLIT: u64 = 0x5851_f42d_4c95_7f2d;
+
+/// Sets the keys of numbers beyond the Sobol dimensions apart from both.
+const BEYOND: u64 = 0xd134_2543_de82_ef95;
+
+/// The source of all randomness of a picture, shared by all threads: it has no state.
+///
+/// A number is a pure function of (seed, pixel, sample index, dimension), so pictures do not depend on
+/// threads, tiles or the order in which anything is asked for. Numbers are at least 0 and less than 1.
+///
+/// * [`SamplerKind::Sobol`]: Burley, "Practical Hash-based Owen Scrambling", JCGT 2020, one sequence
+///   of 256 dimensions, scrambled and shuffled anew for every pixel and every 65 536 samples.
+///   Dimensions from the 257th on, some thirty bounces away, are independent random numbers.
+/// * [`SamplerKind::Stratified`]: both pairs of every set are jittered in `spp` cells, shuffled
+///   independently. Samples from `spp` on start another round.
+/// * [`SamplerKind::Independent`]: every set comes from a generator of its own, seeded by a hash of
+///   path and set.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler {
+    seed: u64,
+    points: Points,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Points {
+    Sobol(Sobol),
+    Stratified(Strata),
+    Independent,
+}
+
+/// What a path carries to draw its numbers: 16 bytes that never change on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathState {
+    /// Hash of seed, pixel and, by the kind, the samples that share one set of points.
+    key: u64,
+    /// The path's place among the samples that share `key`.
+    index: u32,
+    /// The same place in the Sobol sequence of `key`.
+    shuffled: Shuffled,
+}
+
+impl Sampler {
+    /// A sampler of `spp` samples per pixel; 0 counts as 1. Only stratified points depend on `spp`.
+    pub fn new(kind: SamplerKind, seed: u64, spp: u32) -> Self {
+        let points = match kind {
+            SamplerKind::Sobol => Points::Sobol(Sobol::new()),
+            SamplerKind::Stratified => Points::Stratified(Strata::new(spp)),
+            SamplerKind::Independent => Points::Independent,
+        };
+        // Mixed, so that the pixels' keys of neighboring seeds do not overlap.
+        Self { seed: mix(seed), points }
+    }
+
+    /// The state of the path of sample `index`, from 0, of the pixel in column `x` and row `y`.
+    #[inline]
+    pub fn start(&self, x: u32, y: u32, index: u32) -> PathState {
+        let pixel = stream(self.seed, u64::from(y) << 32 | u64::from(x));
+        let (block, index) = match &self.points {
+            Points::Sobol(_) => block(u64::from(index)),
+            Points::Stratified(strata) => {
+                (u64::from(index / strata.count()), index % strata.count())
+            }
+            Points::Independent => (u64::from(index), 0),
+        };
+        let key = stream(pixel, block);
+        PathState { key, index, shuffled: shuffle(index, key as u32) }
+    }
+
+    /// Four numbers in [0, 1): set number `set` of the path's dimensions, in any order of calls.
+    ///
+    /// The first two are well distributed together, as are the last two. Integrators draw through
+    /// [`Sampler::camera`], [`Sampler::scatter`] and [`Sampler::light`], which know which set is whose.
+    #[inline]
+    pub fn draw4(&self, path: &PathState, set: u32) -> [f32; 4] {
+        match &self.points {
+            Points::Sobol(sobol) => {
+                sobol.draw4(path.shuffled, set, path.key as u32).unwrap_or_else(|| {
+                    independent(stream(path.key ^ BEYOND, u64::from(path.index)), set)
+                })
+            }
+            Points::Stratified(strata) => {
+                let pair = |i| strata.point(path.index, stream(path.key, 2 * u64::from(set) + i));
+                let ([a, b], [c, d]) = (pair(0), pair(1));
+                [a, b, c, d]
+            }
+            Points::Independent => independent(path.key, set),
+        }
+    }
+
+    /// Point `index` of `count` in the unit square, for one event of a path that is sampled `count`
+    /// times: well distributed over the indices. `event` tells such events of one path apart.
+    ///
+    /// Sobol points of one event go on from sample to sample, so that all samples of a pixel together
+    /// are well distributed as well if they give an event the same `count`; best is a power of two.
+    #[inline]
+    pub fn split_pair(&self, path: &PathState, event: u32, index: u32, count: u32) -> [f32; 2] {
+        let key = stream(path.key ^ SPLIT, u64::from(event));
+        match &self.points {
+            Points::Sobol(sobol) => {
+                let position = u64::from(path.index) * u64::from(count) + u64::from(index);
+                let (block, position) = block(position);
+                sobol.pair(position, stream(key, block) as u32)
+            }
+            Points::Stratified(_) => {
+                stratified_pair(index, count, stream(key, u64::from(path.index)))
+            }
+            Points::Independent => {
+                let [u, v, ..] = independent(key, index);
+                [u, v]
+            }
+        }
+    }
+}
+
+/// Four numbers of the generator that belongs to (key, set): it lives as long as the call, and nobody
+/// shares it.
+#[inline]
+fn independent(key: u64, set: u32) -> [f32; 4] {
+    let mut generator = Xoshiro128PlusPlus::seed_from_u64(stream(key, u64::from(set)));
+    std::array::from_fn(|_| unit(generator.next_u32()))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,240 @@
+use super::*;
+use crate::sampling::statistics::assert_chi_squared;
+use std::collections::HashSet;
+
+const KINDS: [SamplerKind; 3] =
+    [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent];
+
+/// Sets among the Sobol dimensions, at their end and beyond.
+const SETS: [u32; 6] = [0, 1, 2, 63, 64, 8193];
+
+fn bits(numbers: [f32; 4]) -> [u32; 4] {
+    numbers.map(f32::to_bits)
+}
+
+#[test]
+fn a_state_is_small() {
+    assert!(size_of::<PathState>() <= 16);
+}
+
+#[test]
+fn every_number_is_in_the_unit_interval() {
+    for kind in KINDS {
+        for spp in [0, 1, 7, 16] {
+            let sampler = Sampler::new(kind, 1, spp);
+            for index in (0..40).chain([65_535, 65_536, u32::MAX]) {
+                let path = sampler.start(65_534, index, index);
+                let pair = sampler.split_pair(&path, u32::MAX, index, spp);
+                let numbers = SETS.into_iter().flat_map(|set| sampler.draw4(&path, set));
+                for number in numbers.chain(pair) {
+                    assert!((0.0..1.0).contains(&number), "{kind:?} {spp} {index}: {number}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_do_not_depend_on_the_order_of_calls() {
+    for kind in KINDS {
+        let sampler = Sampler::new(kind, 5, 12);
+        let path = sampler.start(3, 4, 5);
+        let forward: Vec<_> = SETS.iter().map(|&set| bits(sampler.draw4(&path, set))).collect();
+        sampler.split_pair(&path, 0, 0, 4);
+        let again = Sampler::new(kind, 5, 12);
+        let mut backward: Vec<_> =
+            SETS.iter().rev().map(|&set| bits(again.draw4(&again.start(3, 4, 5), set))).collect();
+        backward.reverse();
+        assert_eq!(forward, backward, "{kind:?}");
+    }
+}
+
+#[test]
+fn seeds_pixels_samples_and_sets_differ() {
+    for kind in KINDS {
+        let mut seen = HashSet::new();
+        for (seed, x, y, index) in
+            [(0, 0, 0, 0), (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)]
+        {
+            let sampler = Sampler::new(kind, seed, 16);
+            // Also the samples past the tables of Sobol points and past the strata.
+            for round in [0, 16, 65_536] {
+                let path = sampler.start(x, y, index + round);
+                assert!(SETS.iter().all(|&set| seen.insert(bits(sampler.draw4(&path, set)))));
+                for event in 0..2 {
+                    for i in 0..4 {
+                        let [u, v] = sampler.split_pair(&path, event, i, 4);
+                        assert!(seen.insert(bits([u, v, -1.0, -1.0])), "{kind:?} {event} {i}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn pixels_are_uniform_and_independent() {
+    for kind in KINDS {
+        let sampler = Sampler::new(kind, 9, 16);
+        // The last set lies beyond the Sobol dimensions.
+        for (set, index) in [(0, 0), (1, 3), (64, 15)] {
+            let mut observed = vec![0_u64; 1296];
+            for pixel in 0..40_000 {
+                let numbers = sampler.draw4(&sampler.start(pixel % 200, pixel / 200, index), set);
+                let cell =
+                    numbers.iter().fold(0, |cell, number| cell * 6 + (number * 6.0) as usize);
+                observed[cell] += 1;
+            }
+            assert_chi_squared(&observed, &[1.0 / 1296.0; 1296]);
+        }
+    }
+}
+
+#[test]
+fn mean_and_variance_are_those_of_uniform_numbers() {
+    const PIXELS: u32 = 20_000;
+    for kind in KINDS {
+        let sampler = Sampler::new(kind, 2, 4);
+        let numbers = (0..PIXELS).flat_map(|x| sampler.draw4(&sampler.start(x, 0, 1), 2));
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for number in numbers.map(f64::from) {
+            sum += number;
+            squares += (number - 0.5).powi(2);
+        }
+        let count = 4.0 * f64::from(PIXELS);
+        // Standard deviations of one number and of its squared deviation.
+        assert!((sum / count - 0.5).abs() < 5.0 * (1.0 / 12.0 / count).sqrt(), "{kind:?}");
+        assert!((squares / count - 1.0 / 12.0).abs() < 5.0 * (1.0 / 180.0 / count).sqrt());
+    }
+}
+
+fn is_stratified(points: impl Iterator<Item = [f32; 2]>, columns: u32, rows: u32) -> bool {
+    let mut cells: Vec<u32> = points
+        .map(|[u, v]| (u * columns as f32) as u32 * rows + (v * rows as f32) as u32)
+        .collect();
+    cells.sort_unstable();
+    cells.into_iter().eq(0..columns * rows)
+}
+
+#[test]
+fn stratified_pairs_have_one_sample_per_cell() {
+    for (columns, rows) in [(4, 4), (3, 4)] {
+        let spp = columns * rows;
+        let sampler = Sampler::new(SamplerKind::Stratified, 3, spp);
+        for set in SETS {
+            for first in [0, spp] {
+                let draws =
+                    || (0..spp).map(|i| sampler.draw4(&sampler.start(8, 9, first + i), set));
+                assert!(is_stratified(draws().map(|[u, v, _, _]| [u, v]), columns, rows));
+                assert!(is_stratified(draws().map(|[_, _, u, v]| [u, v]), columns, rows));
+            }
+        }
+    }
+}
+
+#[test]
+fn sobol_points_are_stratified_in_every_projection() {
+    let sampler = Sampler::new(SamplerKind::Sobol, 3, 0);
+    for first in [0, 64, 65_536 - 64, 65_536] {
+        for set in [0, 1, 7, 63] {
+            let points = |a: usize, b: usize| {
+                (0..64).map(move |i| {
+                    let numbers = sampler.draw4(&sampler.start(8, 9, first + i), set);
+                    [numbers[a], numbers[b]]
+                })
+            };
+            for dimension in 0..4 {
+                assert!(is_stratified(points(dimension, dimension).map(|[u, _]| [u, 0.0]), 64, 1));
+            }
+            if set == 0 {
+                // The first two dimensions are a (0, 2)-sequence: every elementary interval.
+                for bits in 0..=6 {
+                    assert!(is_stratified(points(0, 1), 1 << bits, 64 >> bits), "{bits}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn splits_are_stratified_within_a_path() {
+    for (kind, count, columns) in [
+        (SamplerKind::Sobol, 16, &[1, 2, 4, 8, 16][..]),
+        (SamplerKind::Stratified, 16, &[4]),
+        (SamplerKind::Stratified, 12, &[3]),
+    ] {
+        let sampler = Sampler::new(kind, 3, 4);
+        for index in [0, 3, 4095, 70_000] {
+            let path = sampler.start(8, 9, index);
+            for &columns in columns {
+                let points = (0..count).map(|i| sampler.split_pair(&path, 2, i, count));
+                assert!(is_stratified(points, columns, count / columns), "{kind:?} {index}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sobol_splits_are_stratified_over_the_pixel() {
+    let sampler = Sampler::new(SamplerKind::Sobol, 3, 8);
+    let points = || {
+        (0..8).flat_map(|index| {
+            let path = sampler.start(1, 2, index);
+            (0..8).map(move |i| sampler.split_pair(&path, 0, i, 8))
+        })
+    };
+    for bits in 0..=6 {
+        assert!(is_stratified(points(), 1 << bits, 64 >> bits), "{bits}");
+    }
+}
+
+/// A smooth integrand over the unit square, its mean and its variance.
+fn smooth([u, v]: [f32; 2]) -> f64 {
+    f64::from(u + v).exp()
+}
+
+/// Root mean square error of the mean of 256 samples, over pixels.
+fn error(kind: SamplerKind, pair: impl Fn(&Sampler, &PathState) -> [f32; 2]) -> f64 {
+    const PIXELS: u32 = 100;
+    let mean = (1.0_f64.exp() - 1.0).powi(2);
+    let sampler = Sampler::new(kind, 17, 256);
+    let squares = (0..PIXELS).map(|x| {
+        let values = (0..256).map(|index| smooth(pair(&sampler, &sampler.start(x, 7, index))));
+        (values.sum::<f64>() / 256.0 - mean).powi(2)
+    });
+    (squares.sum::<f64>() / f64::from(PIXELS)).sqrt()
+}
+
+#[test]
+fn well_distributed_points_beat_random_ones() {
+    let moment = |k: f64| ((k.exp() - 1.0) / k).powi(2);
+    let random = ((moment(2.0) - moment(1.0).powi(2)) / 256.0).sqrt();
+    let first = |sampler: &Sampler, path: &PathState| {
+        let [u, v, _, _] = sampler.draw4(path, 0);
+        [u, v]
+    };
+    let second = |sampler: &Sampler, path: &PathState| {
+        let [_, _, u, v] = sampler.draw4(path, 0);
+        [u, v]
+    };
+    let beyond = |sampler: &Sampler, path: &PathState| {
+        let [u, v, _, _] = sampler.draw4(path, 64);
+        [u, v]
+    };
+    // The error of independent samples is known to 7 % from 100 pixels.
+    for ratio in [
+        error(SamplerKind::Independent, first) / random,
+        error(SamplerKind::Independent, second) / random,
+        error(SamplerKind::Sobol, beyond) / random,
+    ] {
+        assert!((ratio - 1.0).abs() < 0.3, "{ratio}");
+    }
+    for ratio in [
+        random / error(SamplerKind::Sobol, first),
+        random / error(SamplerKind::Sobol, second),
+        random / error(SamplerKind::Stratified, first),
+        random / error(SamplerKind::Stratified, second),
+    ] {
+        assert!(ratio > 5.0, "{ratio}");
+    }
+}

@@ -1,0 +1,186 @@
+//! Jittered points: one at random in each cell of a grid, the cells visited in shuffled order.
+
+use super::hash::{ONE_BELOW, stream, unit_pair};
+
+/// The unit square cut into cells of equal area, as near to squares as their number allows.
+///
+/// There are as many columns as the root of the number, rounded down. A column has as many cells as
+/// an equal division gives, the first ones one more where it does not come out even, and is as wide
+/// as it has cells. So 16 cells are 4 x 4, 12 are 3 columns of 4, and 7 are a column of 4, 4/7
+/// wide, beside one of 3: every number of samples is stratified in both dimensions, primes too.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Strata {
+    count: u32,
+    /// Cells in a lower column; a taller one has one more.
+    rows: u32,
+    /// Number of taller columns, which come first.
+    taller: u32,
+}
+
+impl Strata {
+    /// `count` cells; 0 counts as 1.
+    pub(super) fn new(count: u32) -> Self {
+        let count = count.max(1);
+        let columns = count.isqrt();
+        Self { count, rows: count / columns, taller: count % columns }
+    }
+
+    /// Number of cells.
+    pub(super) fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Point `index`, below [`Strata::count`], of the set that belongs to a key: over all indices,
+    /// every cell has exactly one point.
+    #[inline]
+    pub(super) fn point(&self, index: u32, key: u64) -> [f32; 2] {
+        let cell = permute(index, self.count, key as u32);
+        self.jitter(cell, unit_pair(stream(key, u64::from(index))))
+    }
+
+    #[inline]
+    fn jitter(&self, cell: u32, [u, v]: [f32; 2]) -> [f32; 2] {
+        let in_taller = self.taller * (self.rows + 1);
+        let (first, rows) = if cell < in_taller {
+            (cell - cell % (self.rows + 1), self.rows + 1)
+        } else {
+            (cell - (cell - in_taller) % self.rows, self.rows)
+        };
+        let x = (first as f32 + rows as f32 * u) / self.count as f32;
+        let y = ((cell - first) as f32 + v) / rows as f32;
+        [x.min(ONE_BELOW), y.min(ONE_BELOW)]
+    }
+}
+
+/// Point `index` of `count` jittered points in the unit square that belong to a key.
+///
+/// For indices below `count`, each of `count` cells of equal area, near to squares, has exactly one
+/// point, in an order that looks random. Indices from `count` on start another such set. A `count`
+/// of 0 counts as 1. The key should be a hash.
+#[inline]
+pub fn stratified_pair(index: u32, count: u32, key: u64) -> [f32; 2] {
+    let strata = Strata::new(count);
+    let (set, index) = (index / strata.count(), index % strata.count());
+    strata.point(index, if set == 0 { key } else { stream(!key, u64::from(set)) })
+}
+
+/// A pseudo-random permutation of `0..length`, picked by `key`, evaluated at `index` without a
+/// table.
+///
+/// Kensler, "Correlated Multi-Jittered Sampling", Pixar Technical Memo 13-01, 2013: a hash that is
+/// one-to-one on the enclosing power of two, walked until it is back in range.
+#[inline]
+fn permute(mut index: u32, length: u32, key: u32) -> u32 {
+    let mask = length.next_power_of_two() - 1;
+    loop {
+        index = scramble(index, mask, key);
+        if index < length {
+            break;
+        }
+    }
+    ((u64::from(index) + u64::from(key)) % u64::from(length)) as u32
+}
+
+/// One round of Kensler's hash, one-to-one on `0..=mask`.
+#[inline]
+fn scramble(mut i: u32, mask: u32, key: u32) -> u32 {
+    i = (i ^ key).wrapping_mul(0xe170_893d);
+    i ^= key >> 16;
+    i ^= (i & mask) >> 4;
+    i = (i ^ (key >> 8)).wrapping_mul(0x0929_eb3f);
+    i ^= key >> 23;
+    i ^= (i & mask) >> 1;
+    i = i.wrapping_mul(1 | (key >> 27)).wrapping_mul(0x6935_fa69);
+    i ^= (i & mask) >> 11;
+    i = i.wrapping_mul(0x74dc_b303);
+    i ^= (i & mask) >> 2;
+    i = i.wrapping_mul(0x9e50_1cc3);
+    i ^= (i & mask) >> 2;
+    i = i.wrapping_mul(0xc860_a3df) & mask;
+    i ^ (i >> 5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::hash::mix;
+    use crate::sampling::statistics::assert_chi_squared;
+
+    #[test]
+    fn permutations_are_one_to_one() {
+        for length in [1, 2, 3, 7, 12, 16, 100, 257, 1024] {
+            for key in [0, 1, 0xdead_beef, u32::MAX] {
+                let mut images: Vec<u32> = (0..length).map(|i| permute(i, length, key)).collect();
+                images.sort_unstable();
+                assert!(images.into_iter().eq(0..length), "{length} {key}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_index_goes_everywhere() {
+        const LENGTH: u32 = 12;
+        for index in 0..LENGTH {
+            let mut observed = vec![0_u64; LENGTH as usize];
+            for key in 0..6000 {
+                observed[permute(index, LENGTH, mix(key) as u32) as usize] += 1;
+            }
+            assert_chi_squared(&observed, &[1.0 / f64::from(LENGTH); LENGTH as usize]);
+        }
+    }
+
+    #[test]
+    fn grids_of_products_have_one_point_per_cell() {
+        for (columns, rows) in [(4, 4), (3, 4), (1, 1), (1, 2), (4, 5), (16, 16)] {
+            let count = columns * rows;
+            let mut cells: Vec<u32> = (0..count)
+                .map(|index| stratified_pair(index, count, mix(u64::from(count))))
+                .map(|[u, v]| (u * columns as f32) as u32 * rows + (v * rows as f32) as u32)
+                .collect();
+            cells.sort_unstable();
+            assert!(cells.into_iter().eq(0..count), "{columns} x {rows}");
+        }
+    }
+
+    #[test]
+    fn primes_are_stratified_in_both_dimensions() {
+        // Seven cells: a column of four that is 4/7 wide, and one of three.
+        let points = (0..7).map(|index| stratified_pair(index, 7, mix(3)));
+        let (left, right): (Vec<_>, Vec<_>) = points.partition(|[u, _]| *u < 4.0 / 7.0);
+        for (column, rows) in [(left, 4), (right, 3)] {
+            let mut cells: Vec<u32> =
+                column.into_iter().map(|[_, v]| (v * rows as f32) as u32).collect();
+            cells.sort_unstable();
+            assert!(cells.into_iter().eq(0..rows));
+        }
+    }
+
+    #[test]
+    fn every_point_of_a_set_is_uniform_over_keys() {
+        for count in [7, 12] {
+            let mut observed = vec![0_u64; 49];
+            for key in 0..40_000 {
+                let [u, v] = stratified_pair(2, count, mix(key));
+                observed[(u * 7.0) as usize * 7 + (v * 7.0) as usize] += 1;
+            }
+            assert_chi_squared(&observed, &[1.0 / 49.0; 49]);
+        }
+    }
+
+    #[test]
+    fn corner_cells_stay_below_one() {
+        for count in [1, 3, 7, 16, 1_000_003] {
+            let strata = Strata::new(count);
+            let [u, v] = strata.jitter(count - 1, [ONE_BELOW; 2]);
+            assert!(u < 1.0 && v < 1.0, "{count}");
+        }
+    }
+
+    #[test]
+    fn further_indices_start_another_set() {
+        let key = mix(1);
+        assert_ne!(stratified_pair(16, 16, key), stratified_pair(0, 16, key));
+        let [u, v] = stratified_pair(u32::MAX, 0, key);
+        assert!((0.0..1.0).contains(&u) && (0.0..1.0).contains(&v));
+    }
+}

@@ -1,0 +1,188 @@
+//! Area-preserving maps from the unit square to the disk, the hemisphere and the sphere.
+//!
+//! All of them go through the concentric map, which keeps strata compact: neighbors in the square
+//! stay neighbors on the sphere, so low-discrepancy points keep their worth. Local directions have
+//! z along the axis; [`Frame`](super::Frame) turns them into the world's.
+
+use glam::{Vec2, Vec3};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_4};
+
+/// Density of [`uniform_sphere`] per steradian.
+pub const UNIFORM_SPHERE_PDF: f32 = FRAC_1_PI / 4.0;
+
+/// Maps `u` in [0, 1) to (-1, 1), odd about the middle of the grid of multiples of 2^-24.
+///
+/// Neither end is reached, and on that grid the result is exact and never 0.
+#[inline]
+pub(super) fn centered(u: f32) -> f32 {
+    2.0 * u - super::ONE_BELOW
+}
+
+/// A point in the unit disk, uniform by area, from two numbers in [0, 1).
+///
+/// Shirley & Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997.
+#[inline]
+pub fn concentric_disk(u: [f32; 2]) -> Vec2 {
+    concentric(u).0
+}
+
+/// The point of [`concentric_disk`] and its distance from the center, which is less than 1 even
+/// where the coordinates are rounded. `1 - distance^2` is uniform in (0, 1].
+#[inline]
+fn concentric([u, v]: [f32; 2]) -> (Vec2, f32) {
+    let (a, b) = (centered(u), centered(v));
+    let steep = b.abs() > a.abs();
+    let (longer, shorter) = if steep { (b, a) } else { (a, b) };
+    let ratio = if longer == 0.0 { 0.0 } else { shorter / longer };
+    let (sine, cosine) = octant_sine_cosine(FRAC_PI_4 * ratio);
+    let (along, across) = (longer * cosine, longer * sine);
+    let point = if steep { Vec2::new(across, along) } else { Vec2::new(along, across) };
+    (point, longer.abs())
+}
+
+/// Sine and cosine of an angle of at most 45 degrees, within 1e-7.
+///
+/// Polynomials of Moshier's Cephes library, 1992: pictures must not depend on the platform's own.
+#[inline]
+fn octant_sine_cosine(angle: f32) -> (f32, f32) {
+    let s = angle * angle;
+    let sine = ((-1.951_529_6e-4 * s + 8.332_161e-3) * s - 0.166_666_55) * s * angle + angle;
+    let cosine =
+        ((2.443_315_7e-5 * s - 1.388_731_6e-3) * s + 4.166_664_6e-2) * s * s - 0.5 * s + 1.0;
+    (sine, cosine)
+}
+
+/// A local direction on the upper hemisphere with the density of [`cosine_hemisphere_pdf`].
+///
+/// Its z is more than 0: no sample lies in the tangent plane.
+#[inline]
+pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
+    let (point, radius) = concentric(u);
+    point.extend(((1.0 - radius) * (1.0 + radius)).sqrt())
+}
+
+/// Density of [`cosine_hemisphere`] per steradian: cos / pi; 0 for a cosine of 0 or less.
+#[inline]
+pub fn cosine_hemisphere_pdf(cosine: f32) -> f32 {
+    cosine.max(0.0) * FRAC_1_PI
+}
+
+/// A direction on the whole sphere with the density [`UNIFORM_SPHERE_PDF`].
+#[inline]
+pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
+    cap(u, 2.0)
+}
+
+/// A direction uniform over the spherical cap about +z of height `height`, 0..=2: 1 - cos of its
+/// half-angle.
+///
+/// Lambert's azimuthal equal-area projection, inverted: the squared distance from the disk's center
+/// becomes 1 - cos.
+#[inline]
+pub(super) fn cap(u: [f32; 2], height: f32) -> Vec3 {
+    let (point, radius) = concentric(u);
+    let drop = height * radius * radius;
+    (point * (height * (2.0 - drop)).sqrt()).extend(1.0 - drop)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::sampling::hash::{ONE_BELOW, mix, stream, unit_pair};
+    use crate::sampling::statistics::assert_chi_squared;
+    use std::f64::consts::PI;
+
+    pub(in crate::sampling) fn random_pairs(
+        count: u64,
+        seed: u64,
+    ) -> impl Iterator<Item = [f32; 2]> {
+        (0..count).map(move |position| unit_pair(stream(mix(seed), position)))
+    }
+
+    /// Tests directions in the cap of height `height` against a density that depends on z only, in
+    /// 16 x 16 cells of equal solid angle; also that the density integrates to 1 over the cap.
+    pub(in crate::sampling) fn check_directions(
+        height: f64,
+        sample: impl Fn([f32; 2]) -> Vec3,
+        pdf: impl Fn(f32) -> f32,
+    ) {
+        const CELLS: usize = 16;
+        let mut observed = vec![0_u64; CELLS * CELLS];
+        for u in random_pairs(100_000, 3) {
+            let direction = sample(u).as_dvec3();
+            assert!((direction.length() - 1.0).abs() < 3e-7, "{direction}");
+            let lateral = direction.truncate().length_squared();
+            let z = direction.z;
+            let drop = if z > 0.0 { lateral / (1.0 + z) } else { 1.0 - z };
+            let ring = (drop / height * CELLS as f64) as usize;
+            let turn = (direction.y.atan2(direction.x) / (2.0 * PI) + 1.0).fract();
+            let sector = (turn * CELLS as f64) as usize % CELLS;
+            observed[ring.min(CELLS - 1) * CELLS + sector] += 1;
+        }
+        let probabilities: Vec<f64> = (0..CELLS * CELLS)
+            .map(|cell| ring_integral(cell / CELLS, CELLS, height, &pdf) / CELLS as f64)
+            .collect();
+        assert_chi_squared(&observed, &probabilities);
+    }
+
+    /// Integral of a density over one ring, by the midpoint rule.
+    fn ring_integral(ring: usize, rings: usize, height: f64, pdf: impl Fn(f32) -> f32) -> f64 {
+        const STEPS: usize = 64;
+        let step = height / (rings * STEPS) as f64;
+        (0..STEPS)
+            .map(|i| ((ring * STEPS + i) as f64 + 0.5) * step)
+            .map(|drop| f64::from(pdf((1.0 - drop) as f32)) * 2.0 * PI * step)
+            .sum()
+    }
+
+    #[test]
+    fn hemisphere_and_sphere_follow_their_densities() {
+        check_directions(1.0, cosine_hemisphere, cosine_hemisphere_pdf);
+        check_directions(2.0, cosine_hemisphere, cosine_hemisphere_pdf);
+        check_directions(2.0, uniform_sphere, |_| UNIFORM_SPHERE_PDF);
+    }
+
+    #[test]
+    fn disk_is_uniform() {
+        const CELLS: usize = 12;
+        let mut observed = vec![0_u64; CELLS * CELLS];
+        for u in random_pairs(100_000, 11) {
+            let point = concentric_disk(u).as_dvec2();
+            let turn = (point.y.atan2(point.x) / (2.0 * PI) + 1.0).fract();
+            let ring = (point.length_squared() * CELLS as f64) as usize;
+            observed[ring.min(CELLS - 1) * CELLS + (turn * CELLS as f64) as usize % CELLS] += 1;
+        }
+        assert_chi_squared(&observed, &[1.0 / (CELLS * CELLS) as f64; CELLS * CELLS]);
+    }
+
+    #[test]
+    fn corners_and_middle_of_the_square() {
+        let extremes = [0.0, f32::EPSILON / 2.0, 0.5 - f32::EPSILON / 4.0, 0.5, ONE_BELOW];
+        for u in extremes {
+            for v in extremes {
+                let direction = cosine_hemisphere([u, v]);
+                assert!(direction.z > 3e-4 && direction.is_normalized(), "{u} {v}: {direction}");
+                assert!(concentric([u, v]).1 < 1.0);
+                assert!(uniform_sphere([u, v]).is_normalized());
+            }
+        }
+    }
+
+    #[test]
+    fn the_disk_map_is_symmetric() {
+        for [u, v] in random_pairs(1000, 5) {
+            let mirrored = [ONE_BELOW - u, ONE_BELOW - v];
+            assert_eq!(concentric_disk([u, v]), -concentric_disk(mirrored));
+        }
+    }
+
+    #[test]
+    fn sine_and_cosine_agree_with_the_library() {
+        for i in -1000..=1000_i16 {
+            let angle = FRAC_PI_4 * f32::from(i) / 1000.0;
+            let (sine, cosine) = octant_sine_cosine(angle);
+            let (s, c) = f64::from(angle).sin_cos();
+            assert!((f64::from(sine) - s).abs() < 1e-7 && (f64::from(cosine) - c).abs() < 1e-7);
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! One section of a scene file: its keys are known, and each has a meaning for the section's kind.
+
+use super::schema::Schema;
+use super::value::Value;
+use crate::scene::SceneError;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The file that is being read.
+pub(super) struct Source<'a> {
+    /// For messages.
+    pub(super) path: &'a Path,
+    pub(super) text: &'a str,
+    /// What paths in the scene are relative to.
+    pub(super) folder: &'a Path,
+}
+
+impl Source<'_> {
+    /// An error at these bytes.
+    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneError {
+        SceneError::at(self.path, self.text, 1, span, message)
+    }
+}
+
+/// A table of the file whose keys are all in its schema.
+pub(super) struct Block<'a> {
+    source: &'a Source<'a>,
+    schema: &'static Schema,
+    span: Range<usize>,
+    table: &'a DeTable<'a>,
+}
+
+impl<'a> Block<'a> {
+    /// Opens a table and checks that its keys are known.
+    pub(super) fn open(
+        source: &'a Source<'a>,
+        schema: &'static Schema,
+        span: Range<usize>,
+        table: &'a DeTable<'a>,
+    ) -> Result<Self, SceneError> {
+        let block = Self { source, schema, span, table };
+        for key in table.keys() {
+            let name = key.get_ref();
+            if !schema.names().any(|known| known == name) {
+                let message = format!("unknown key `{name}` in {}", schema.section);
+                let error = source.error(key.span(), message);
+                return Err(error.with_help(suggest(name, schema.names(), "known keys")));
+            }
+        }
+        Ok(block)
+    }
+
+    /// The section's kind, after a look at whether every key has a meaning for it.
+    pub(super) fn kind(&self) -> Result<&'static str, SceneError> {
+        let kind = match (self.value(self.schema.selector), self.schema.default_kind) {
+            (Some(value), _) => value.choice(self.schema.kinds)?,
+            (None, Some(kind)) => kind,
+            (None, None) => return Err(self.without_kind()),
+        };
+        for &(name, kinds) in self.schema.keys {
+            if !kinds.is_empty() && !kinds.contains(&kind) {
+                self.forbid(name, &format!("{} = \"{kind}\"", self.schema.selector), || {
+                    let values = join(kinds.iter().map(|kind| format!("\"{kind}\"")), " or ");
+                    format!("it belongs to {} = {values}: remove it", self.schema.selector)
+                })?;
+            }
+        }
+        Ok(kind)
+    }
+
+    /// An error if the key is there, which makes no sense beside `reason`.
+    pub(super) fn forbid(
+        &self,
+        name: &str,
+        reason: &str,
+        help: impl Fn() -> String,
+    ) -> Result<(), SceneError> {
+        let Some((key, _)) = self.entry(name) else { return Ok(()) };
+        let message = format!("`{name}` has no meaning with {reason}");
+        Err(self.source.error(key.span(), message).with_help(help()))
+    }
+
+    /// The value of a key of the schema, if it is there.
+    pub(super) fn value(&self, name: &'static str) -> Option<Value<'a>> {
+        let (_, item) = self.entry(name)?;
+        Some(Value { source: self.source, name, span: item.span(), item: item.get_ref() })
+    }
+
+    /// The value of a key that must be there; `help` says what to write.
+    pub(super) fn need(&self, name: &'static str, help: &str) -> Result<Value<'a>, SceneError> {
+        self.value(name).ok_or_else(|| {
+            let message = format!("{} lacks `{name}`", self.schema.section);
+            self.error(message).with_help(format!("write {help}"))
+        })
+    }
+
+    /// An error that concerns the whole section.
+    pub(super) fn error(&self, message: impl Into<String>) -> SceneError {
+        self.source.error(self.span.clone(), message)
+    }
+
+    /// Whether the key is there.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.entry(name).is_some()
+    }
+
+    /// The tables under a key that a scene file writes as `[[name]]`.
+    pub(super) fn blocks(
+        &self,
+        name: &'static str,
+        schema: &'static Schema,
+    ) -> Result<Vec<Self>, SceneError> {
+        let Some(value) = self.value(name) else { return Ok(Vec::new()) };
+        let DeValue::Array(items) = value.item else {
+            let error = value.error(format!("`{name}` must be a list of tables"));
+            return Err(error.with_help(format!("write [[{name}]], once for each")));
+        };
+        items.iter().map(|item| self.open_item(schema, item.span(), item.get_ref())).collect()
+    }
+
+    /// The table under a key that a scene file writes as `[name]`.
+    pub(super) fn block(
+        &self,
+        name: &'static str,
+        schema: &'static Schema,
+    ) -> Result<Option<Self>, SceneError> {
+        let Some(value) = self.value(name) else { return Ok(None) };
+        self.open_item(schema, value.span.clone(), value.item).map(Some)
+    }
+
+    /// The tables under a key that a scene file writes as `[name.OWN]`, with their own names, in
+    /// the file's order.
+    pub(super) fn named_blocks(
+        &self,
+        name: &'static str,
+        schema: &'static Schema,
+    ) -> Result<Vec<(&'a str, Self)>, SceneError> {
+        let Some(value) = self.value(name) else { return Ok(Vec::new()) };
+        let mut entries: Vec<_> = value.table()?.iter().collect();
+        entries.sort_by_key(|(key, _)| key.span().start);
+        let open = |(key, item): (&'a Spanned<_>, &'a Spanned<DeValue<'a>>)| {
+            let name: &'a std::borrow::Cow<'a, str> = key.get_ref();
+            Ok((name.as_ref(), self.open_item(schema, key.span(), item.get_ref())?))
+        };
+        entries.into_iter().map(open).collect()
+    }
+
+    fn open_item(
+        &self,
+        schema: &'static Schema,
+        span: Range<usize>,
+        item: &'a DeValue<'a>,
+    ) -> Result<Self, SceneError> {
+        let value = Value { source: self.source, name: schema.section, span, item };
+        let table = value.table()?;
+        Self::open(self.source, schema, value.span, table)
+    }
+
+    fn entry(&self, name: &str) -> Option<(&'a Spanned<toml::de::DeString<'a>>, &'a Item<'a>)> {
+        self.table.get_key_value(name)
+    }
+
+    fn without_kind(&self) -> SceneError {
+        let Schema { section, selector, kinds, .. } = self.schema;
+        let kinds = join(kinds.iter().map(|kind| format!("\"{kind}\"")), ", ");
+        self.error(format!("{section} lacks `{selector}`"))
+            .with_help(format!("write {selector} = one of {kinds}"))
+    }
+}
+
+type Item<'a> = Spanned<DeValue<'a>>;
+
+/// The nearest of the known words, if one is near, or else all of them, which are `what`.
+pub(super) fn suggest<'w>(
+    word: &str,
+    known: impl Iterator<Item = &'w str> + Clone,
+    what: &str,
+) -> String {
+    // Two edits in five letters: a swap, a slip or two, but not another word.
+    let near = known
+        .clone()
+        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
+        .filter(|(edits, candidate)| {
+            let length = candidate.chars().count();
+            *edits < length && *edits * 10 <= length.max(3) * 4
+        })
+        .min_by_key(|(edits, _)| *edits);
+    match near {
+        Some((_, candidate)) => format!("did you mean `{candidate}`?"),
+        None => format!("{what}: {}", join(known.map(str::to_owned), ", ")),
+    }
+}
+
+fn join(words: impl Iterator<Item = String>, separator: &str) -> String {
+    words.collect::<Vec<_>>().join(separator)
+}

@@ -1,0 +1,151 @@
+//! `[material.NAME]` and `[ground]`: what things are made of.
+
+use super::block::{Block, suggest};
+use super::schema;
+use super::value::{Limits, Value};
+use crate::scene::{ConductorFresnel, Ground, Material, NamedMaterial, Rgb, SceneError};
+use glam::DVec3;
+
+/// The material where none is named.
+pub(super) const DEFAULT: &str = "default";
+
+/// What matte things reflect unless something else is said.
+const GRAY: Rgb = Rgb::splat(0.7);
+
+pub(super) fn read(root: &Block) -> Result<Vec<NamedMaterial>, SceneError> {
+    let blocks = root.named_blocks("material", &schema::MATERIAL)?;
+    let row = |(name, block): (&str, Block)| {
+        // A CSV cell trims its text, and an empty one names none.
+        if name.is_empty() || name.trim() != name {
+            let error = block.error("a material's name is empty, or framed by blanks");
+            return Err(error.with_help("write [material.NAME] with another name"));
+        }
+        Ok(NamedMaterial { name: name.to_owned(), material: material(&block)? })
+    };
+    blocks.into_iter().map(row).collect()
+}
+
+/// `[ground]`, if it is there.
+pub(super) fn read_ground(
+    root: &Block,
+    materials: &mut Vec<NamedMaterial>,
+) -> Result<Option<Ground>, SceneError> {
+    let Some(block) = root.block("ground", &schema::GROUND)? else { return Ok(None) };
+    let normal = block.value("normal").map_or(Ok(DVec3::Y), |value| value.direction())?;
+    let height = block.value("height").map_or(Ok(0.0), |value| value.number(Limits::Any))?;
+    let material = row(&block, materials)?;
+    let impossible = match materials[material as usize].material {
+        Material::Dielectric { .. } => Some("a dielectric"),
+        Material::Emitter { .. } => Some("an emitter"),
+        _ => None,
+    };
+    if let Some(kind) = impossible {
+        let message = format!("the ground cannot be {kind}");
+        let error = block.value("material").map(|value| value.error(message.as_str()));
+        let error = error.unwrap_or_else(|| block.error(message));
+        return Err(error.with_help("name a material of another kind, or use a sphere"));
+    }
+    Ok(Some(Ground { normal, height, material }))
+}
+
+/// The row of the material that the section names, or of the default one.
+pub(super) fn row(block: &Block, materials: &mut Vec<NamedMaterial>) -> Result<u32, SceneError> {
+    let Some(value) = block.value("material") else {
+        let material = Material::Lambertian { color: GRAY };
+        return Ok(row_or_add(materials, NamedMaterial { name: DEFAULT.to_owned(), material }));
+    };
+    let name = value.text()?;
+    position(materials, name).ok_or_else(|| unknown(&value, name, materials))
+}
+
+/// The row of the scene's own material of this name, or of this one, added to the scene's.
+pub(super) fn row_or_add(materials: &mut Vec<NamedMaterial>, material: NamedMaterial) -> u32 {
+    position(materials, &material.name).unwrap_or_else(|| {
+        materials.push(material);
+        materials.len() as u32 - 1
+    })
+}
+
+/// The row of the material of this name.
+pub(super) fn position(materials: &[NamedMaterial], name: &str) -> Option<u32> {
+    materials.iter().position(|row| row.name == name).map(|row| row as u32)
+}
+
+fn unknown(value: &Value, name: &str, materials: &[NamedMaterial]) -> SceneError {
+    value.error(format!("unknown material \"{name}\"")).with_help(known(name, materials))
+}
+
+/// What to write instead of a name that no material has.
+pub(super) fn known(name: &str, materials: &[NamedMaterial]) -> String {
+    if materials.is_empty() {
+        return format!("write a section [material.{name}]");
+    }
+    suggest(name, materials.iter().map(|row| row.name.as_str()), "the scene's materials")
+}
+
+fn material(block: &Block) -> Result<Material, SceneError> {
+    let kind = block.kind()?;
+    let color =
+        |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(Limits::Share));
+    Ok(match kind {
+        "lambertian" => Material::Lambertian { color: color("color", GRAY)? },
+        "conductor" => {
+            let roughness = block.value("roughness");
+            Material::Conductor {
+                fresnel: conductor(block)?,
+                roughness: roughness.map_or(Ok(0.0), |value| value.number(Limits::Share))?,
+            }
+        }
+        "dielectric" => Material::Dielectric {
+            ior: ior(block, Limits::Positive)?,
+            color: color("color", Rgb::ONE)?,
+        },
+        "plastic" => Material::Plastic {
+            color: color("color", GRAY)?,
+            ior: ior(block, Limits::AboveTo(1.0, f64::MAX))?,
+        },
+        "emitter" => {
+            let radiance = block.need("radiance", "radiance = [r, g, b], or a number for white")?;
+            let radiance = radiance.color(Limits::NotNegative)?;
+            Material::Emitter { radiance, albedo: color("albedo", Rgb::ZERO)? }
+        }
+        _ => reflective(block, color("color", GRAY)?)?,
+    })
+}
+
+fn ior(block: &Block, limits: Limits) -> Result<f64, SceneError> {
+    block.value("ior").map_or(Ok(1.5), |value| value.number(limits))
+}
+
+fn reflective(block: &Block, color: Rgb) -> Result<Material, SceneError> {
+    let share = |key| block.value(key).map_or(Ok(0.5), |value: Value| value.number(Limits::Share));
+    let (diffuse, mirror) = (share("diffuse")?, share("mirror")?);
+    if diffuse + mirror > 1.0 {
+        let message = format!("`diffuse` and `mirror` are {} together", diffuse + mirror);
+        let at = block.value("mirror").or_else(|| block.value("diffuse"));
+        let error = at.map_or_else(|| block.error(&*message), |value| value.error(&*message));
+        return Err(error.with_help("their sum must be at most 1; each is 0.5 where it is missing"));
+    }
+    Ok(Material::Reflective { color, diffuse, mirror })
+}
+
+fn conductor(block: &Block) -> Result<ConductorFresnel, SceneError> {
+    if !block.has("eta") && !block.has("k") {
+        let help = "color = what it reflects at normal incidence, or eta and k";
+        let color = block.need("color", help)?.color(Limits::Share)?;
+        let curve = block.value("fresnel");
+        let curve = curve.map_or(Ok("schlick"), |value| value.choice(&["schlick", "constant"]))?;
+        return Ok(if curve == "schlick" {
+            ConductorFresnel::Schlick(color)
+        } else {
+            ConductorFresnel::Constant(color)
+        });
+    }
+    for key in ["color", "fresnel"] {
+        let help = || "write either color, or eta and k".to_owned();
+        block.forbid(key, "eta and k", help)?;
+    }
+    let eta = block.need("eta", "eta = [r, g, b]: the real part of the index")?;
+    let k = block.need("k", "k = [r, g, b]: the imaginary part of the index")?;
+    Ok(ConductorFresnel::Exact { eta: eta.color(Limits::Positive)?, k: k.color(Limits::Positive)? })
+}

@@ -1,0 +1,130 @@
+//! The scene file: TOML, checked to the last value.
+//!
+//! Reading has two steps. `toml` makes tables that know where each key and value stands; then every
+//! section is read by one function that looks at every key, its kind and its range, so that
+//! whatever is wrong is told with its line and what to write instead. `scenes/README.md` describes
+//! every key.
+
+mod block;
+mod camera;
+mod environment;
+mod lights;
+mod materials;
+mod render;
+mod schema;
+mod spheres;
+mod value;
+
+use self::block::{Block, Source};
+use super::particles::{self, ReadOptions};
+use super::{
+    Camera, Environment, EnvironmentMap, Light, Material, NamedMaterial, Rgb, Scene, SceneError,
+    Settings, Spheres,
+};
+use std::path::Path;
+use toml::de::DeTable;
+
+impl Scene {
+    /// Reads a scene file, and the files it names, whose paths are relative to the scene file.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be read, or holds something that is no scene: the error says where and what to
+    /// write.
+    pub fn load(path: &Path) -> Result<Self, SceneError> {
+        let bytes = std::fs::read(path)
+            .map_err(|error| SceneError::whole_file(path, format!("cannot be read: {error}")))?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let at = error.utf8_error().valid_up_to();
+            SceneError::whole_file(path, format!("is not UTF-8 text (byte {at})"))
+                .with_help("a scene is a TOML file; for particles see Scene::from_particles")
+        })?;
+        Self::parse(&text, &path.to_string_lossy(), path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Reads a scene from text; `name` stands for it in messages, and paths in it are relative to
+    /// `folder`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Scene::load`].
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
+        let source = Source { path: Path::new(name), text, folder };
+        let document = DeTable::parse(text).map_err(|error| {
+            let end = text.len()..text.len();
+            source.error(error.span().unwrap_or(end), error.message())
+        })?;
+        let root = Block::open(&source, &schema::ROOT, 0..0, document.get_ref())?;
+        read(&source, &root)
+    }
+
+    /// A scene with the usual look for a file of particles: plastic in the file's colors under a
+    /// white sky, as near as all of them are in the picture.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or is not in a format that [`particles::read`] knows.
+    pub fn from_particles(path: &Path) -> Result<Self, SceneError> {
+        let particles = particles::read(path, &ReadOptions::default())?;
+        let material = Material::Plastic { color: Rgb::splat(0.8), ior: 1.5 };
+        let named =
+            |name: &str| NamedMaterial { name: name.to_owned(), material: material.clone() };
+        let mut materials = vec![named("particles")];
+        let mut rows = Vec::new();
+        for name in &particles.material_names {
+            let name = if name.is_empty() { "particles" } else { name };
+            rows.push(materials::row_or_add(&mut materials, named(name)));
+        }
+        let mut spheres = Spheres::default();
+        spheres.append(particles.spheres, &rows);
+        let title = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        Ok(Self {
+            title: title.unwrap_or_default(),
+            spheres,
+            materials,
+            warnings: particles.warnings,
+            ..Self::default()
+        })
+    }
+}
+
+/// Reads all sections, in an order in which each finds what it refers to.
+fn read(source: &Source, root: &Block) -> Result<Scene, SceneError> {
+    let title = root.value("title").map_or(Ok(""), |value| value.text())?;
+    let settings = root.block("render", &schema::RENDER)?;
+    let camera = root.block("camera", &schema::CAMERA)?;
+    let mut scene = Scene {
+        title: title.to_owned(),
+        settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
+        camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
+        lights: lights::read(root)?,
+        materials: materials::read(root)?,
+        ..Scene::default()
+    };
+    spheres::read(source, root, &mut scene)?;
+    scene.ground = materials::read_ground(root, &mut scene.materials)?;
+    let environment = root.block("environment", &schema::ENVIRONMENT)?;
+    scene.environment = match environment {
+        Some(block) => environment::read(source, &block)?,
+        None => usual_environment(&scene.lights, &scene.materials, &scene.spheres),
+    };
+    Ok(scene)
+}
+
+/// White where nothing else gives light, or else black.
+fn usual_environment(
+    lights: &[Light],
+    materials: &[NamedMaterial],
+    spheres: &Spheres,
+) -> Environment {
+    let emits = |row: usize| {
+        let row = spheres.material_of(row) as usize;
+        matches!(materials.get(row), Some(NamedMaterial { material: Material::Emitter { .. }, .. }))
+    };
+    let dark = lights.is_empty() && !(0..spheres.len()).any(emits);
+    let color = if dark { Rgb::ONE } else { Rgb::ZERO };
+    Environment { map: EnvironmentMap::Constant(color), illuminates: true }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,174 @@
+//! `[[sphere]]`, `[[generate]]` and `[[file]]`: the spheres, in this order.
+
+use super::block::{Block, Source};
+use super::value::{Limits, Value};
+use super::{materials, schema};
+use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
+use crate::scene::particles::{self, Format, ReadOptions};
+use crate::scene::{Rgb, Scene, SceneError, Spheres};
+
+pub(super) fn read(source: &Source, root: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+    for block in root.blocks("sphere", &schema::SPHERE)? {
+        read_sphere(&block, scene)?;
+    }
+    for block in root.blocks("generate", &schema::GENERATE)? {
+        read_generate(&block, scene)?;
+    }
+    for block in root.blocks("file", &schema::FILE)? {
+        read_file(source, &block, scene)?;
+    }
+    Ok(())
+}
+
+fn read_sphere(block: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+    let center = block.need("center", "center = [x, y, z]")?.point()?;
+    let radius = block.need("radius", "radius = a number of more than 0")?;
+    let radius = radius.number(Limits::Positive)?;
+    let color = block.value("color").map_or(Ok(Rgb::ONE), |value| value.color(Limits::Share))?;
+    let material = materials::row(block, &mut scene.materials)?;
+    scene.spheres.push(center, radius, material, color);
+    Ok(())
+}
+
+fn read_generate(block: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+    let generator = generator(block)?;
+    let seed = block.value("seed").map_or(Ok(0), |value| value.whole(0, u64::MAX))?;
+    let own = block.has("material").then(|| materials::row(block, &mut scene.materials));
+    check_total(scene.spheres.len(), generator.count()).map_err(|message| {
+        let count = block.value("count").or_else(|| block.value("level"));
+        count.map_or_else(|| block.error(message.as_str()), |value| value.error(message.as_str()))
+    })?;
+    let group = generator.generate(seed).map_err(|error| {
+        let message = format!("`{}` {}", error.parameter, error.message);
+        let value = block.value(error.parameter);
+        value.map_or_else(|| block.error(message.as_str()), |value| value.error(message.as_str()))
+    })?;
+    let rows = match own {
+        _ if !group.materials.is_empty() => {
+            let add = |own| materials::row_or_add(&mut scene.materials, own);
+            group.materials.into_iter().map(add).collect()
+        }
+        Some(row) => vec![row?],
+        None => vec![materials::row(block, &mut scene.materials)?],
+    };
+    scene.spheres.append(group.spheres, &rows);
+    Ok(())
+}
+
+fn generator(block: &Block) -> Result<Generator, SceneError> {
+    let count = |usual| block.value("count").map_or(Ok(usual), |value| value.whole(1, u64::MAX));
+    let number = |key, usual| {
+        block.value(key).map_or(Ok(usual), |value: Value| value.number(Limits::Positive))
+    };
+    let radii =
+        || block.value("radius").map(|value| value.numbers::<2>(Limits::Positive)).transpose();
+    let colors = |usual| block.value("colors").map_or(Ok(usual), |value| value.flag());
+    Ok(match block.kind()? {
+        "grid" => {
+            let usual = Grid::default();
+            Generator::Grid(Grid {
+                count: count(usual.count)?,
+                spacing: number("spacing", usual.spacing)?,
+                radius: number("radius", usual.radius)?,
+            })
+        }
+        "field" => Generator::Field(field(block)?),
+        "volume" => Generator::Volume(Volume {
+            count: count(Volume::default().count)?,
+            size: block.value("size").map(|value| value.number(Limits::Positive)).transpose()?,
+            radius: radii()?,
+            colors: colors(false)?,
+        }),
+        "lattice" => {
+            let usual = Lattice::default();
+            let jitter = block.value("jitter");
+            Generator::Lattice(Lattice {
+                count: count(usual.count)?,
+                radius: number("radius", usual.radius)?,
+                jitter: jitter.map_or(Ok(0.0), |value| value.number(Limits::NotNegative))?,
+            })
+        }
+        "sphereflake" => {
+            let usual = Sphereflake::default();
+            let level = block.value("level");
+            let level = level
+                .map_or(Ok(u64::from(usual.level)), |value| value.whole(0, u64::from(u32::MAX)))?;
+            let radius = number("radius", usual.radius)?;
+            Generator::Sphereflake(Sphereflake { level: level as u32, radius })
+        }
+        _ => Generator::Weekend(Weekend),
+    })
+}
+
+fn field(block: &Block) -> Result<Field, SceneError> {
+    let usual = Field::default();
+    let mix =
+        block.value("mix").map(|value| value.numbers::<3>(Limits::NotNegative)).transpose()?;
+    if mix.is_some() {
+        block.forbid("material", "mix", || {
+            "mixes have the materials diffuse, metal and glass, which the scene may define"
+                .to_owned()
+        })?;
+    }
+    let count = block.value("count");
+    let radius = block.value("radius");
+    let colors = block.value("colors");
+    Ok(Field {
+        count: count.map_or(Ok(usual.count), |value| value.whole(1, u64::MAX))?,
+        radius: radius.map_or(Ok(usual.radius), |value| value.numbers(Limits::Positive))?,
+        colors: colors.map_or(Ok(usual.colors), |value| value.flag())?,
+        mix,
+    })
+}
+
+fn read_file(source: &Source, block: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+    let file = block.need("path", "path = \"particles.csv\"")?;
+    let format = block.value("format").map(|value| format(&value)).transpose()?;
+    let scale = block.value("scale");
+    let options = ReadOptions {
+        format,
+        radius: block.value("radius").map(|value| value.number(Limits::Positive)).transpose()?,
+        scale: scale.map_or(Ok(1.0), |value| value.number(Limits::Positive))?,
+    };
+    let path = source.folder.join(file.text()?);
+    if !path.is_file() {
+        let error = file.error(format!("there is no file {}", path.display()));
+        return Err(error.with_help("paths are relative to the folder of the scene file"));
+    }
+    let particles = particles::read(&path, &options)?;
+    check_total(scene.spheres.len(), particles.spheres.len() as u64)
+        .map_err(|message| file.error(message))?;
+    let mut rows = Vec::new();
+    for name in &particles.material_names {
+        rows.push(if name.is_empty() {
+            materials::row(block, &mut scene.materials)?
+        } else {
+            materials::position(&scene.materials, name).ok_or_else(|| {
+                let message = format!("{} names an unknown material \"{name}\"", path.display());
+                file.error(message).with_help(materials::known(name, &scene.materials))
+            })?
+        });
+    }
+    scene.spheres.append(particles.spheres, &rows);
+    scene.warnings.extend(particles.warnings);
+    Ok(())
+}
+
+fn format(value: &Value) -> Result<Format, SceneError> {
+    Ok(match value.choice(&["xyzr", "csv", "xyz"])? {
+        "csv" => Format::Csv,
+        "xyz" => Format::Xyz,
+        _ => Format::Xyzr,
+    })
+}
+
+/// What is wrong with so many spheres, if anything is.
+fn check_total(before: usize, added: u64) -> Result<(), String> {
+    let total = (before as u64).saturating_add(added);
+    if total <= Spheres::MAX {
+        return Ok(());
+    }
+    let most = Spheres::MAX;
+    let amount = if added == u64::MAX { "more than 1e19".to_owned() } else { added.to_string() };
+    Err(format!("asks for {amount} spheres; a scene holds at most {most} in all"))
+}

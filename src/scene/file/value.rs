@@ -1,0 +1,246 @@
+//! One value of a scene file: of the right type, finite, in its range; said once for every section.
+
+use super::block::{Source, suggest};
+use crate::scene::{Rgb, SceneError};
+use glam::DVec3;
+use std::ops::Range;
+use std::str::FromStr;
+use toml::de::{DeTable, DeValue};
+
+/// The numbers that a key takes. Infinities and NaN never are.
+#[derive(Clone, Copy)]
+pub(super) enum Limits {
+    /// Every finite number.
+    Any,
+    /// More than 0.
+    Positive,
+    /// 0 or more.
+    NotNegative,
+    /// 0..=1.
+    Share,
+    /// At least the first, at most the second.
+    Within(f64, f64),
+    /// At least the first, less than the second.
+    Below(f64, f64),
+    /// More than the first, at most the second.
+    AboveTo(f64, f64),
+    /// Strictly between the two.
+    Between(f64, f64),
+}
+
+impl Limits {
+    fn contain(self, number: f64) -> bool {
+        number.is_finite()
+            && match self {
+                Self::Any => true,
+                Self::Positive => number > 0.0,
+                Self::NotNegative => number >= 0.0,
+                Self::Share => (0.0..=1.0).contains(&number),
+                Self::Within(low, high) => (low..=high).contains(&number),
+                Self::Below(low, high) => (low..high).contains(&number),
+                Self::AboveTo(low, high) => low < number && number <= high,
+                Self::Between(low, high) => low < number && number < high,
+            }
+    }
+
+    fn describe(self) -> String {
+        match self {
+            Self::Any => "a finite number".to_owned(),
+            Self::Positive => "finite and more than 0".to_owned(),
+            Self::NotNegative => "finite and 0 or more".to_owned(),
+            Self::Share => "from 0 to 1".to_owned(),
+            Self::Within(low, high) => format!("from {low} to {high}"),
+            Self::Below(low, high) => format!("{low} or more and less than {high}"),
+            Self::AboveTo(low, high) => format!("more than {low} and at most {high}"),
+            Self::Between(low, high) => format!("more than {low} and less than {high}"),
+        }
+    }
+}
+
+/// A value, the key it belongs to and where it stands.
+#[derive(Clone)]
+pub(super) struct Value<'a> {
+    pub(super) source: &'a Source<'a>,
+    pub(super) name: &'static str,
+    pub(super) span: Range<usize>,
+    pub(super) item: &'a DeValue<'a>,
+}
+
+impl<'a> Value<'a> {
+    /// An error at this value.
+    pub(super) fn error(&self, message: impl Into<String>) -> SceneError {
+        self.source.error(self.span.clone(), message)
+    }
+
+    /// An error that says what the value must be.
+    pub(super) fn must_be(&self, what: impl AsRef<str>) -> SceneError {
+        let given = self.source.text.get(self.span.clone()).unwrap_or_default();
+        let given = match self.item {
+            DeValue::Table(_) => "a table".to_owned(),
+            _ if given.len() > 40 || given.contains('\n') => format!("a {}", self.item.type_str()),
+            _ => given.to_owned(),
+        };
+        self.error(format!("`{}` is {given}, but must be {}", self.name, what.as_ref()))
+    }
+
+    /// A number within limits.
+    pub(super) fn number(&self, limits: Limits) -> Result<f64, SceneError> {
+        let number: f64 = self.parse().ok_or_else(|| self.must_be("a number"))?;
+        if limits.contain(number) { Ok(number) } else { Err(self.must_be(limits.describe())) }
+    }
+
+    /// A whole number within a range.
+    pub(super) fn whole(&self, low: u64, high: u64) -> Result<u64, SceneError> {
+        let what = || format!("a whole number from {low} to {high}");
+        let DeValue::Integer(integer) = self.item else { return Err(self.must_be(what())) };
+        u64::from_str_radix(integer.as_str(), integer.radix())
+            .ok()
+            .filter(|number| (low..=high).contains(number))
+            .ok_or_else(|| self.must_be(what()))
+    }
+
+    /// True or false.
+    pub(super) fn flag(&self) -> Result<bool, SceneError> {
+        self.item.as_bool().ok_or_else(|| self.must_be("true or false"))
+    }
+
+    /// A text.
+    pub(super) fn text(&self) -> Result<&'a str, SceneError> {
+        self.item.as_str().ok_or_else(|| self.must_be("a text in quotes"))
+    }
+
+    /// One of several words.
+    pub(super) fn choice(&self, words: &[&'static str]) -> Result<&'static str, SceneError> {
+        let text = self.text()?;
+        words.iter().copied().find(|&word| word == text).ok_or_else(|| {
+            let help = suggest(text, words.iter().copied(), "possible values");
+            self.error(format!("unknown {} \"{text}\"", self.name)).with_help(help)
+        })
+    }
+
+    /// As many values as `N`.
+    pub(super) fn list<const N: usize>(&self) -> Result<[Self; N], SceneError> {
+        let items = self.item.as_array().filter(|items| items.len() == N);
+        let items = items.ok_or_else(|| self.must_be(format!("a list of {N} numbers")))?;
+        let entry = |index: usize| {
+            let item: &'a toml::Spanned<DeValue<'a>> = &items[index];
+            Self { span: item.span(), item: item.get_ref(), ..self.clone() }
+        };
+        Ok(std::array::from_fn(entry))
+    }
+
+    /// As many numbers as `N`, each within limits.
+    pub(super) fn numbers<const N: usize>(&self, limits: Limits) -> Result<[f64; N], SceneError> {
+        let mut numbers = [0.0; N];
+        for (number, value) in numbers.iter_mut().zip(self.list::<N>()?) {
+            *number = value.number(limits)?;
+        }
+        Ok(numbers)
+    }
+
+    /// A point, or a vector of any length.
+    pub(super) fn point(&self) -> Result<DVec3, SceneError> {
+        self.numbers(Limits::Any).map(DVec3::from_array)
+    }
+
+    /// A vector that is not zero, as it was written.
+    pub(super) fn vector(&self) -> Result<DVec3, SceneError> {
+        let vector = self.point()?;
+        if vector == DVec3::ZERO {
+            Err(self.must_be("a vector that is not zero"))
+        } else {
+            Ok(vector)
+        }
+    }
+
+    /// A direction: a vector that is not zero, made one of unit length.
+    pub(super) fn direction(&self) -> Result<DVec3, SceneError> {
+        self.vector().map(unit)
+    }
+
+    /// A color: three linear values, one for gray, or `"#rrggbb"` in sRGB; each value within
+    /// limits.
+    pub(super) fn color(&self, limits: Limits) -> Result<Rgb, SceneError> {
+        match self.item {
+            DeValue::Array(_) => {
+                let [red, green, blue] = self.list()?;
+                Ok(Rgb::new(red.single(limits)?, green.single(limits)?, blue.single(limits)?))
+            }
+            DeValue::String(text) => crate::scene::color::parse_hex(text)
+                .ok_or_else(|| self.must_be("\"#rrggbb\" where it is a text")),
+            DeValue::Integer(_) | DeValue::Float(_) => self.single(limits).map(Rgb::splat),
+            _ => Err(self.must_be("[red, green, blue], one number for gray, or \"#rrggbb\"")),
+        }
+    }
+
+    /// A number in single precision: read as such, so that what was written from an `f32` is the
+    /// same again.
+    pub(super) fn single(&self, limits: Limits) -> Result<f32, SceneError> {
+        self.number(limits)?;
+        let number: f32 = self.parse().ok_or_else(|| self.must_be("a number"))?;
+        if limits.contain(f64::from(number)) {
+            Ok(number)
+        } else {
+            Err(self.must_be(format!("{} in single precision", limits.describe())))
+        }
+    }
+
+    /// A table.
+    pub(super) fn table(&self) -> Result<&'a DeTable<'a>, SceneError> {
+        self.item.as_table().ok_or_else(|| self.must_be("a table"))
+    }
+
+    fn parse<T: FromStr>(&self) -> Option<T> {
+        match self.item {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+            _ => None,
+        }
+    }
+}
+
+/// The vector at length 1; one that has it up to rounding stays as it is, so that writing and
+/// reading a scene changes nothing. `vector` is finite and not zero.
+fn unit(vector: DVec3) -> DVec3 {
+    if (vector.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        return vector;
+    }
+    // Squares of components could overflow or vanish.
+    (vector / vector.abs().max_element()).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_vectors_are_fixed_points_at_any_scale() {
+        for vector in
+            [DVec3::new(1e-300, 2e-300, 0.0), DVec3::new(-1e300, 3e299, 1e300), DVec3::ONE]
+        {
+            let once = unit(vector);
+            assert!((once.length() - 1.0).abs() < 1e-15, "{vector}");
+            assert_eq!(unit(once), once);
+        }
+    }
+
+    #[test]
+    fn limits_hold_at_their_ends() {
+        let cases = [
+            (Limits::Positive, 0.0, false),
+            (Limits::NotNegative, 0.0, true),
+            (Limits::Share, 1.0, true),
+            (Limits::Share, 1.000_000_1, false),
+            (Limits::Below(0.0, 90.0), 90.0, false),
+            (Limits::AboveTo(0.0, 1.0), 1.0, true),
+            (Limits::AboveTo(0.0, 1.0), 0.0, false),
+            (Limits::Between(0.0, 180.0), 180.0, false),
+            (Limits::Within(-1.0, 1.0), -1.0, true),
+            (Limits::Any, f64::NAN, false),
+            (Limits::Any, f64::INFINITY, false),
+        ];
+        for (limits, number, inside) in cases {
+            assert_eq!(limits.contain(number), inside, "{number} {}", limits.describe());
+        }
+    }
+}

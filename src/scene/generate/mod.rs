@@ -1,0 +1,209 @@
+//! Scenes made by rule or by chance: the paper's grids and fields, random volumes, crystals, and
+//! the standard scenes of the field. The same parameters and seed give the same spheres.
+
+mod field;
+mod grid;
+mod lattice;
+mod random;
+mod show;
+mod sphereflake;
+mod volume;
+mod weekend;
+
+pub use field::Field;
+pub use grid::Grid;
+pub use lattice::Lattice;
+pub use show::{DEFAULT_MIX, default_scene};
+pub use sphereflake::Sphereflake;
+pub use volume::Volume;
+pub use weekend::Weekend;
+
+use super::{NamedMaterial, Spheres};
+use thiserror::Error;
+
+/// Spheres, and the materials they bring along.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Group {
+    /// The spheres; materials are rows of `materials`.
+    pub spheres: Spheres,
+    /// Empty if all spheres are of one material that the scene chooses.
+    pub materials: Vec<NamedMaterial>,
+}
+
+/// Any of the generators, with its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Generator {
+    /// Equal spheres in rows on a plane: the paper's.
+    Grid(Grid),
+    /// Random spheres that rest on a plane: the paper's.
+    Field(Field),
+    /// Random spheres in a cube.
+    Volume(Volume),
+    /// A crystal of touching spheres.
+    Lattice(Lattice),
+    /// Haines' sphereflake.
+    Sphereflake(Sphereflake),
+    /// The last scene of "Ray Tracing in One Weekend".
+    Weekend(Weekend),
+}
+
+/// A parameter that is out of its range, or asks for more spheres than there can be.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{parameter}: {message}")]
+pub struct GenerateError {
+    /// The field of the generator's parameters.
+    pub parameter: &'static str,
+    /// What it must be.
+    pub message: String,
+}
+
+impl Generator {
+    /// How many spheres it makes, `u64::MAX` for more than that; [`Weekend`] at most so many.
+    pub fn count(&self) -> u64 {
+        match self {
+            Self::Grid(grid) => grid.len(),
+            Self::Field(field) => field.len(),
+            Self::Volume(volume) => volume.count,
+            Self::Lattice(lattice) => lattice.len(),
+            Self::Sphereflake(flake) => flake.len(),
+            Self::Weekend(_) => Weekend::MOST,
+        }
+    }
+
+    /// Makes the spheres. Generators without chance take no notice of the seed.
+    ///
+    /// # Errors
+    ///
+    /// A parameter is out of its range, or the spheres are more than [`Spheres::MAX`] or than
+    /// memory holds: this is found before anything is made.
+    pub fn generate(&self, seed: u64) -> Result<Group, GenerateError> {
+        match self {
+            Self::Grid(grid) => grid.generate(),
+            Self::Field(field) => field.generate(seed),
+            Self::Volume(volume) => volume.generate(seed),
+            Self::Lattice(lattice) => lattice.generate(seed),
+            Self::Sphereflake(flake) => flake.generate(),
+            Self::Weekend(Weekend) => Ok(Weekend::generate(seed)),
+        }
+    }
+}
+
+/// An error unless the condition holds.
+fn require(
+    condition: bool,
+    parameter: &'static str,
+    message: impl Into<String>,
+) -> Result<(), GenerateError> {
+    if condition { Ok(()) } else { Err(GenerateError { parameter, message: message.into() }) }
+}
+
+/// An error unless the radius is finite and more than 0.
+fn require_radius(radius: f64) -> Result<(), GenerateError> {
+    require(radius.is_finite() && radius > 0.0, "radius", "must be finite and more than 0")
+}
+
+/// An error unless the pair is a range of radii.
+fn require_radii([least, greatest]: [f64; 2]) -> Result<(), GenerateError> {
+    let message = "must be [least, greatest], finite, more than 0 and in this order";
+    require(least > 0.0 && least <= greatest && greatest.is_finite(), "radius", message)
+}
+
+/// Room for `count` spheres, after a look at whether there can be so many.
+fn room(count: u64, parameter: &'static str) -> Result<Spheres, GenerateError> {
+    let most = Spheres::MAX;
+    let message = if count == u64::MAX {
+        format!("asks for more than 1e19 spheres; a scene holds at most {most}")
+    } else {
+        format!("asks for {count} spheres; a scene holds 1 to {most}")
+    };
+    require((1..=most).contains(&count), parameter, message)?;
+    let mut spheres = Spheres::default();
+    let reserved = usize::try_from(count).is_ok_and(|count| spheres.try_reserve(count).is_ok());
+    require(reserved, parameter, format!("asks for {count} spheres, more than memory holds"))?;
+    Ok(spheres)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn small() -> [Generator; 6] {
+        [
+            Generator::Grid(Grid { count: 7, ..Grid::default() }),
+            Generator::Field(Field { count: 7, ..Field::default() }),
+            Generator::Volume(Volume { count: 300, colors: true, ..Volume::default() }),
+            Generator::Lattice(Lattice { count: 4, jitter: 0.03, ..Lattice::default() }),
+            Generator::Sphereflake(Sphereflake { level: 3, ..Sphereflake::default() }),
+            Generator::Weekend(Weekend),
+        ]
+    }
+
+    #[test]
+    fn counts_are_kept_and_rows_are_sound() {
+        for generator in small() {
+            let Group { spheres, materials } = generator.generate(1).unwrap_or_default();
+            let count = spheres.len() as u64;
+            match generator {
+                Generator::Weekend(_) => assert!((400..=Weekend::MOST).contains(&count)),
+                _ => assert_eq!(count, generator.count(), "{generator:?}"),
+            }
+            for row in 0..spheres.len() {
+                assert!(spheres.center(row).is_finite() && spheres.radius[row] > 0.0);
+                assert!((spheres.material_of(row) as usize) < materials.len().max(1));
+                let color = spheres.color_of(row);
+                assert!(color.min_element() >= 0.0 && color.max_element() <= 1.0);
+            }
+            assert!(spheres.material.is_empty() || spheres.material.len() == spheres.len());
+            assert!(spheres.color.is_empty() || spheres.color.len() == spheres.len());
+        }
+    }
+
+    #[test]
+    fn seeds_decide_alone() {
+        for generator in small() {
+            let same = generator.generate(5) == generator.generate(5);
+            let other = generator.generate(5) == generator.generate(6);
+            let random = !matches!(generator, Generator::Grid(_) | Generator::Sphereflake(_));
+            assert!(same && other != random, "{generator:?}");
+        }
+    }
+
+    #[test]
+    fn impossible_counts_are_refused_at_once() {
+        let huge = [
+            Generator::Grid(Grid { count: 1_000_000, ..Grid::default() }),
+            Generator::Field(Field { count: u64::MAX, ..Field::default() }),
+            Generator::Volume(Volume { count: 1_000_000_000_000, ..Volume::default() }),
+            Generator::Lattice(Lattice { count: 1 << 40, ..Lattice::default() }),
+        ];
+        for generator in huge {
+            assert!(generator.generate(0).is_err_and(|error| error.parameter == "count"));
+        }
+        for level in [11, 60, u32::MAX] {
+            let flake = Generator::Sphereflake(Sphereflake { level, ..Sphereflake::default() });
+            assert!(flake.generate(0).is_err_and(|error| error.parameter == "level"));
+        }
+        let none = Generator::Volume(Volume { count: 0, ..Volume::default() });
+        assert!(none.generate(0).is_err());
+    }
+
+    #[test]
+    fn parameters_out_of_range_are_named() {
+        let bad = [
+            (Generator::Grid(Grid { radius: 0.0, ..Grid::default() }), "radius"),
+            (Generator::Grid(Grid { spacing: f64::NAN, ..Grid::default() }), "spacing"),
+            (Generator::Field(Field { radius: [0.2, 0.6], ..Field::default() }), "radius"),
+            (Generator::Field(Field { radius: [0.3, 0.2], ..Field::default() }), "radius"),
+            (Generator::Field(Field { mix: Some([0.0; 3]), ..Field::default() }), "mix"),
+            (Generator::Field(Field { mix: Some([2.0, -1.0, 0.0]), ..Field::default() }), "mix"),
+            (Generator::Volume(Volume { size: Some(-1.0), ..Volume::default() }), "size"),
+            (Generator::Volume(Volume { radius: Some([0.0, 1.0]), ..Volume::default() }), "radius"),
+            (Generator::Lattice(Lattice { jitter: -0.1, ..Lattice::default() }), "jitter"),
+            (Generator::Lattice(Lattice { radius: -1.0, ..Lattice::default() }), "radius"),
+        ];
+        for (generator, parameter) in bad {
+            let error = generator.generate(0);
+            assert!(error.is_err_and(|error| error.parameter == parameter), "{generator:?}");
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! What shines on the scene without being one of its spheres.
+
+use super::Rgb;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A light that is not a sphere of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Light {
+    /// A disc at infinity.
+    Sun {
+        /// Unit vector from the scene to the middle of the sun.
+        direction: DVec3,
+        /// Irradiance on a plane that faces the sun.
+        irradiance: Rgb,
+        /// Degrees, 0..90; 0 gives sharp shadows (and cannot be seen in a mirror).
+        angular_radius: f64,
+    },
+    /// A point.
+    Point {
+        /// Where it is.
+        position: DVec3,
+        /// Radiant intensity, per steradian; the irradiance at any distance if there is no
+        /// fall-off.
+        intensity: Rgb,
+        /// True: by the square of the distance, as in nature. False: none, as in Haines' NFF files.
+        falloff: bool,
+    },
+}
+
+/// What rays see that leave the scene.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    /// Radiance by direction.
+    pub map: EnvironmentMap,
+    /// Whether it lights the scene, or is only a backdrop for the camera, mirrors and glass.
+    pub illuminates: bool,
+}
+
+/// Radiance of the environment by direction.
+#[derive(Clone, Debug)]
+pub enum EnvironmentMap {
+    /// The same everywhere; black for none.
+    Constant(Rgb),
+    /// `bottom` to `top`, linear in the cosine of the angle to `up`.
+    Gradient {
+        /// Radiance seen along `-up`.
+        bottom: Rgb,
+        /// Radiance seen along `up`.
+        top: Rgb,
+        /// Unit vector.
+        up: DVec3,
+    },
+    /// A latitude-longitude picture, row 0 at `up`.
+    Picture {
+        /// Linear radiance, every value finite and 0 or more.
+        image: Arc<crate::image::Image>,
+        /// Unit vector toward the picture's top row.
+        up: DVec3,
+        /// Degrees, turns the picture about `up`.
+        rotation: f64,
+        /// Factor on the picture's values.
+        scale: f32,
+    },
+}
+
+impl Default for Environment {
+    fn default() -> Self {
+        Self { map: EnvironmentMap::Constant(Rgb::ONE), illuminates: true }
+    }
+}

@@ -1,0 +1,58 @@
+//! What a user writes: a scene in double precision, validated, in the user's own units.
+//!
+//! A [`Scene`] comes from a [file](mod@file), from a [generator](generate), from a [particle
+//! file](particles) or from code; [`crate::World`] is built from it. Distances are in the scene's
+//! own unit, angles in degrees, colors linear RGB with the primaries of sRGB. [`write`](write())
+//! puts a scene into files that load as the same scene.
+
+mod camera;
+mod color;
+mod error;
+pub mod file;
+pub mod generate;
+mod light;
+mod material;
+pub mod particles;
+mod settings;
+mod spheres;
+mod write;
+
+pub use camera::{Camera, Lens, Pose, Projection};
+pub use color::{linear_from_srgb, srgb};
+pub use error::{Place, SceneError};
+pub use light::{Environment, EnvironmentMap, Light};
+pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
+pub use settings::{Filter, Integrator, Roulette, SamplerKind, Settings, Tone};
+pub use spheres::Spheres;
+pub use write::write;
+
+use glam::Vec3;
+
+/// A linear RGB triple with the primaries of sRGB: a reflectance in 0..=1, or a radiance of 0 or
+/// more.
+pub type Rgb = Vec3;
+
+/// A whole scene: what there is, how it is lit, who looks at it and with which settings.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// One line that says what the scene is; empty if there is nothing to say.
+    pub title: String,
+    /// The spheres, in columns.
+    pub spheres: Spheres,
+    /// What spheres and ground are made of; `Spheres::material` and `Ground::material` are rows
+    /// here.
+    pub materials: Vec<NamedMaterial>,
+    /// The infinite ground plane, if there is one.
+    pub ground: Option<Ground>,
+    /// Lights that are not spheres.
+    pub lights: Vec<Light>,
+    /// What a ray sees that hits nothing.
+    pub environment: Environment,
+    /// Who looks.
+    pub camera: Camera,
+    /// How the picture is made.
+    pub settings: Settings,
+    /// What the user should hear of though it is no error: one sentence each, such as how many rows
+    /// of a particle file were dropped and why.
+    pub warnings: Vec<String>,
+}

@@ -1,0 +1,114 @@
+//! How the picture is made.
+
+/// How the picture is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Pixels, 1..=65535 each way.
+    pub width: u32,
+    /// Pixels, 1..=65535 each way.
+    pub height: u32,
+    /// Samples per pixel, 1 or more.
+    pub spp: u32,
+    /// Most scatterings on a path: 0 sees only what emits. `None`: no limit but
+    /// [`Settings::HARD_DEPTH`].
+    pub depth: Option<u32>,
+    /// Seed of every random number.
+    pub seed: u64,
+    /// How light is gathered.
+    pub integrator: Integrator,
+    /// Where samples lie.
+    pub sampler: SamplerKind,
+    /// How samples become pixels.
+    pub filter: Filter,
+    /// How paths end before `depth`.
+    pub roulette: Roulette,
+    /// Stops: radiance is multiplied by 2 to this power when it becomes a picture of 8 or 16 bits.
+    pub exposure: f64,
+    /// From radiance to a displayable value, before the sRGB curve.
+    pub tone: Tone,
+}
+
+/// How light is gathered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// Path tracing with next-event estimation and multiple importance sampling.
+    Path,
+    /// Direct light with stratified shadow samples, mirror and glass bounces: the paper's.
+    Whitted {
+        /// Shadow samples per light and hit, 1 or more.
+        shadow_samples: u32,
+    },
+    /// Ambient occlusion: the cosine-weighted share of directions that see the sky.
+    Ao {
+        /// What is farther does not occlude; more than 0, `f64::INFINITY` for no limit.
+        distance: f64,
+    },
+}
+
+/// Where samples lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Owen-scrambled Sobol points.
+    Sobol,
+    /// One jittered sample in each of `spp` strata, shuffled between dimensions: the paper's.
+    Stratified,
+    /// Independent random numbers.
+    Independent,
+}
+
+/// The pixel reconstruction filter, applied by filter importance sampling: every sample has weight
+/// 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// The pixel's own square.
+    Box,
+    /// Gaussian of standard deviation 0.5 pixel, cut at 2 pixels.
+    Gaussian,
+    /// Blackman-Harris window, 4 pixels wide.
+    BlackmanHarris,
+}
+
+/// Russian roulette.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Roulette {
+    /// Paths end by depth only.
+    None,
+    /// From the fourth scattering on, a path goes on with the probability of its largest
+    /// throughput.
+    Throughput,
+    /// Every bounce survives with this probability, more than 0, at most 1: the paper's.
+    Fixed(f64),
+}
+
+/// From linear radiance to display-linear 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Clip at 1.
+    Linear,
+    /// A filmic curve that rolls highlights off.
+    Filmic,
+}
+
+impl Settings {
+    /// The most scatterings of a path whose depth is not limited. Paths cut here are counted, and
+    /// reported.
+    pub const HARD_DEPTH: u32 = 4096;
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            width: 800,
+            height: 600,
+            spp: 16,
+            depth: None,
+            seed: 0,
+            integrator: Integrator::Path,
+            sampler: SamplerKind::Sobol,
+            filter: Filter::BlackmanHarris,
+            roulette: Roulette::Throughput,
+            exposure: 0.0,
+            tone: Tone::Linear,
+        }
+    }
+}

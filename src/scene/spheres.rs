@@ -1,0 +1,137 @@
+//! The spheres of a scene, in columns.
+
+use super::Rgb;
+use glam::DVec3;
+use std::collections::TryReserveError;
+
+/// Spheres in columns: row `i` of every column belongs to sphere `i`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spheres {
+    /// Centers, x.
+    pub x: Vec<f64>,
+    /// Centers, y.
+    pub y: Vec<f64>,
+    /// Centers, z.
+    pub z: Vec<f64>,
+    /// Radii, more than 0.
+    pub radius: Vec<f64>,
+    /// Rows of [`Scene::materials`](super::Scene::materials); empty if every sphere has material 0.
+    pub material: Vec<u32>,
+    /// Factors on the material's color; empty if every one is white.
+    pub color: Vec<Rgb>,
+}
+
+impl Spheres {
+    /// The most spheres a scene may hold: row numbers are `u32`, and a few of them are reserved.
+    pub const MAX: u64 = (1 << 32) - 17;
+
+    /// Number of spheres.
+    pub fn len(&self) -> usize {
+        self.radius.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.radius.is_empty()
+    }
+
+    /// Center of sphere `row`, which is less than [`Spheres::len`].
+    pub fn center(&self, row: usize) -> DVec3 {
+        DVec3::new(self.x[row], self.y[row], self.z[row])
+    }
+
+    /// Material of sphere `row`, whether or not the column is there.
+    pub fn material_of(&self, row: usize) -> u32 {
+        self.material.get(row).copied().unwrap_or(0)
+    }
+
+    /// Color of sphere `row`, whether or not the column is there.
+    pub fn color_of(&self, row: usize) -> Rgb {
+        self.color.get(row).copied().unwrap_or(Rgb::ONE)
+    }
+
+    /// Appends one sphere; the columns of materials and colors stay empty for as long as they may.
+    pub fn push(&mut self, center: DVec3, radius: f64, material: u32, color: Rgb) {
+        extend(&mut self.material, self.radius.len(), 0, [material].into_iter());
+        extend(&mut self.color, self.radius.len(), Rgb::ONE, [color].into_iter());
+        self.x.push(center.x);
+        self.y.push(center.y);
+        self.z.push(center.z);
+        self.radius.push(radius);
+    }
+
+    /// Appends all of `other`; its material `i` becomes `rows[i]` here, and what `rows` lacks
+    /// becomes 0.
+    pub fn append(&mut self, mut other: Self, rows: &[u32]) {
+        let row = |material: u32| rows.get(material as usize).copied().unwrap_or(0);
+        let (before, added) = (self.len(), other.len());
+        let materials = (0..added).map(|sphere| row(other.material_of(sphere)));
+        extend(&mut self.material, before, 0, materials);
+        extend(&mut self.color, before, Rgb::ONE, (0..added).map(|sphere| other.color_of(sphere)));
+        append_or_take(&mut self.x, &mut other.x);
+        append_or_take(&mut self.y, &mut other.y);
+        append_or_take(&mut self.z, &mut other.z);
+        append_or_take(&mut self.radius, &mut other.radius);
+    }
+
+    /// Makes room for `additional` spheres without materials and colors.
+    ///
+    /// # Errors
+    ///
+    /// There is not that much memory.
+    pub fn try_reserve(&mut self, additional: usize) -> Result<(), TryReserveError> {
+        [&mut self.x, &mut self.y, &mut self.z, &mut self.radius]
+            .into_iter()
+            .try_for_each(|column| column.try_reserve_exact(additional))
+    }
+}
+
+/// Appends `values` to a column that may be empty where all of its `before` values are `usual`.
+fn extend<T, I>(column: &mut Vec<T>, before: usize, usual: T, values: I)
+where
+    T: Clone + PartialEq,
+    I: Iterator<Item = T> + Clone,
+{
+    if column.is_empty() {
+        if values.clone().all(|value| value == usual) {
+            return;
+        }
+        column.resize(before, usual);
+    }
+    column.extend(values);
+}
+
+/// Appends without a copy where there is nothing to append to: columns can be gigabytes.
+fn append_or_take(column: &mut Vec<f64>, other: &mut Vec<f64>) {
+    if column.is_empty() { std::mem::swap(column, other) } else { column.append(other) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_stay_empty_until_something_unusual_comes() {
+        let mut spheres = Spheres::default();
+        spheres.push(DVec3::X, 1.0, 0, Rgb::ONE);
+        assert!(spheres.material.is_empty() && spheres.color.is_empty());
+        spheres.push(DVec3::Y, 2.0, 3, Rgb::ONE);
+        spheres.push(DVec3::Z, 3.0, 0, Rgb::X);
+        assert_eq!(spheres.material, [0, 3, 0]);
+        assert_eq!(spheres.color, [Rgb::ONE, Rgb::ONE, Rgb::X]);
+        assert_eq!(spheres.center(1), DVec3::Y);
+    }
+
+    #[test]
+    fn appending_renames_materials() {
+        let mut first = Spheres::default();
+        first.push(DVec3::ZERO, 1.0, 0, Rgb::ONE);
+        let mut second = Spheres::default();
+        second.push(DVec3::X, 1.0, 1, Rgb::ONE);
+        second.push(DVec3::Y, 1.0, 0, Rgb::Y);
+        first.append(second, &[5, 7]);
+        assert_eq!(first.material, [0, 7, 5]);
+        assert_eq!(first.color, [Rgb::ONE, Rgb::ONE, Rgb::Y]);
+        assert_eq!(first.x, [0.0, 1.0, 0.0]);
+    }
+}

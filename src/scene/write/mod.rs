@@ -1,0 +1,227 @@
+//! From a scene to files that load as the same scene: a TOML file, and its spheres in a CSV file
+//! beside it.
+
+mod sections;
+
+use self::sections::{camera, environment, light, material, quoted, render, vector};
+use super::{NamedMaterial, Rgb, Scene, SceneError, Spheres};
+use crate::atomic::write_atomically;
+use std::collections::HashSet;
+use std::fmt::Write as _;
+use std::io;
+use std::path::Path;
+
+/// Writes a scene to `path`, and its spheres to a file of the same name that ends in `.csv`.
+/// Loading it gives the same scene to the last bit, but for its warnings.
+///
+/// # Errors
+///
+/// A file cannot be written, or the scene has what a scene file cannot say: a picture for an
+/// environment, materials whose names are empty, framed by blanks or not unique, or rows of
+/// materials that are not there.
+pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+    let columns = path.with_extension("csv");
+    if columns == path {
+        let error = SceneError::whole_file(path, "a scene cannot be written to a .csv file");
+        return Err(error.with_help("name it .toml: the spheres go to a .csv file beside it"));
+    }
+    check(scene).map_err(|message| SceneError::whole_file(path, message))?;
+    let text =
+        document(scene, &columns).map_err(|message| SceneError::whole_file(path, message))?;
+    if !scene.spheres.is_empty() {
+        write_atomically(&columns, |file| write_columns(scene, file))
+            .map_err(|error| failed(&columns, &error))?;
+    }
+    write_atomically(path, |file| file.write_all(text.as_bytes()))
+        .map_err(|error| failed(path, &error))
+}
+
+fn failed(path: &Path, error: &dyn std::error::Error) -> SceneError {
+    SceneError::whole_file(path, format!("cannot be written: {error}"))
+}
+
+/// What a scene from code may have, but not one from a file.
+fn check(scene: &Scene) -> Result<(), String> {
+    let mut names = HashSet::new();
+    for NamedMaterial { name, .. } in &scene.materials {
+        if name.is_empty() || name.trim() != name || !names.insert(name) {
+            return Err(format!(
+                "a material is named \"{name}\": empty, framed by blanks, or twice"
+            ));
+        }
+    }
+    let spheres = &scene.spheres;
+    let used = (0..spheres.len()).map(|sphere| spheres.material_of(sphere));
+    let used = used.chain(scene.ground.iter().map(|ground| ground.material));
+    match used.max() {
+        Some(row) if row as usize >= scene.materials.len() => {
+            Err(format!("row {row} of the materials is used, but not there"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The whole TOML file.
+fn document(scene: &Scene, columns: &Path) -> Result<String, String> {
+    let mut text = format!("title = {}\n\n", quoted(&scene.title));
+    text += &render(&scene.settings);
+    text += &camera(&scene.camera);
+    text += &environment(&scene.environment)?;
+    for NamedMaterial { name, material: surface } in &scene.materials {
+        let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
+    }
+    if let Some(ground) = &scene.ground {
+        let normal = vector(ground.normal);
+        let material = quoted(&scene.materials[ground.material as usize].name);
+        let height = ground.height;
+        let _ = write!(
+            text,
+            "[ground]\nnormal = {normal}\nheight = {height:?}\nmaterial = {material}\n\n"
+        );
+    }
+    scene.lights.iter().for_each(|row| text += &light(row));
+    if !scene.spheres.is_empty() {
+        let name = columns.file_name().unwrap_or_default().to_string_lossy();
+        let _ = write!(text, "[[file]]\npath = {}\nformat = \"csv\"\n", quoted(&name));
+    }
+    Ok(text)
+}
+
+/// Every sphere's row; the columns of colors only where there are colors.
+fn write_columns(scene: &Scene, file: &mut dyn io::Write) -> io::Result<()> {
+    let spheres: &Spheres = &scene.spheres;
+    let mut rows = csv::Writer::from_writer(file);
+    let names = ["x", "y", "z", "radius", "material", "red", "green", "blue"];
+    let width = if spheres.color.is_empty() { 5 } else { 8 };
+    rows.write_record(&names[..width])?;
+    // Materials are found by the check that comes first.
+    let name = |sphere| scene.materials.get(spheres.material_of(sphere) as usize);
+    for sphere in 0..spheres.len() {
+        let center = spheres.center(sphere);
+        for number in [center.x, center.y, center.z, spheres.radius[sphere]] {
+            rows.write_field(format!("{number:?}"))?;
+        }
+        rows.write_field(name(sphere).map_or("", |material| &material.name))?;
+        for value in spheres.color.get(sphere).map(Rgb::to_array).iter().flatten() {
+            rows.write_field(format!("{value:?}"))?;
+        }
+        rows.write_record(None::<&[u8]>)?;
+    }
+    rows.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::generate::default_scene;
+    use crate::scene::{
+        ConductorFresnel, Filter, Ground, Integrator, Lens, Light, Material, Projection, Roulette,
+        SamplerKind,
+    };
+    use glam::DVec3;
+
+    fn same(first: &Scene, second: &Scene) -> bool {
+        // Floats print as what they are to the last bit, but for the payloads of NaN, which no
+        // scene has.
+        format!("{first:?}") == format!("{second:?}")
+    }
+
+    fn round_trip(scene: &Scene) -> Scene {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("scene.toml");
+        write(scene, &path).expect("the scene can be written");
+        Scene::load(&path).expect("what was written can be read")
+    }
+
+    fn material_of_each_kind() -> Vec<NamedMaterial> {
+        let odd = Rgb::new(0.1, 1.0 / 3.0, 0.999_999_94);
+        let exact = ConductorFresnel::Exact { eta: odd, k: odd * 3e10 };
+        let materials = [
+            Material::Lambertian { color: odd },
+            Material::Conductor { fresnel: ConductorFresnel::Schlick(odd), roughness: 1.0 / 3.0 },
+            Material::Conductor { fresnel: ConductorFresnel::Constant(odd), roughness: 0.0 },
+            Material::Conductor { fresnel: exact, roughness: 1e-300 },
+            Material::Dielectric { ior: 1.0 / 3.0, color: odd },
+            Material::Plastic { color: odd, ior: 1.0 + f64::EPSILON },
+            Material::Reflective { color: odd, diffuse: 0.3, mirror: 0.7 },
+            Material::Emitter { radiance: odd * 1e30, albedo: odd },
+        ];
+        let names = ["plain", "gold, rough", "z", "a \"b\"", "ä\\", "t", "line\nbreak", "d.e"];
+        let named = |(name, material): (&str, _)| NamedMaterial { name: name.to_owned(), material };
+        names.into_iter().zip(materials).map(named).collect()
+    }
+
+    fn everything() -> Scene {
+        let mut scene = default_scene(7);
+        scene.title = "quotes \" and \\ and\nlines".to_owned();
+        scene.materials = material_of_each_kind();
+        scene.ground = Some(Ground {
+            normal: DVec3::new(0.3, -0.4, 0.1).normalize(),
+            height: -1e-300,
+            material: 6,
+        });
+        scene.lights.push(Light::Point {
+            position: DVec3::new(1e300, -0.1, 5e-324),
+            intensity: Rgb::new(f32::MAX, 1e-45, 0.0),
+            falloff: false,
+        });
+        for (row, material) in scene.spheres.material.iter_mut().enumerate() {
+            *material = row as u32 % 8;
+        }
+        scene
+    }
+
+    #[test]
+    fn whole_scenes_come_back_to_the_last_bit() {
+        for scene in [default_scene(3), everything()] {
+            let again = round_trip(&scene);
+            assert!(same(&scene, &again), "{scene:?}\n{again:?}");
+        }
+    }
+
+    #[test]
+    fn settings_and_cameras_come_back() {
+        let mut scene = Scene::default();
+        let integrators = [
+            Integrator::Path,
+            Integrator::Whitted { shadow_samples: 3 },
+            Integrator::Ao { distance: 0.1 },
+            Integrator::Ao { distance: f64::INFINITY },
+        ];
+        let roulettes = [Roulette::None, Roulette::Throughput, Roulette::Fixed(1.0 / 3.0)];
+        let samplers = [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent];
+        let filters = [Filter::Box, Filter::Gaussian, Filter::BlackmanHarris];
+        let projections = [
+            Projection::Perspective { fov: 179.999 },
+            Projection::Orthographic { height: None },
+            Projection::Orthographic { height: Some(1e-9) },
+        ];
+        for choice in 0..4 {
+            scene.settings.integrator = integrators[choice];
+            scene.settings.roulette = roulettes[choice % 3];
+            scene.settings.sampler = samplers[choice % 3];
+            scene.settings.filter = filters[choice % 3];
+            scene.settings.depth = Some(choice as u32).filter(|depth| *depth > 0);
+            scene.settings.seed = u64::MAX;
+            scene.camera.projection = projections[choice % 3];
+            let focus = Some(choice as f64).filter(|focus| *focus > 0.0);
+            scene.camera.lens = Some(Lens { aperture: choice as f64 / 3.0, focus });
+            let again = round_trip(&scene);
+            assert!(same(&scene, &again), "{scene:?}\n{again:?}");
+        }
+    }
+
+    #[test]
+    fn scenes_that_no_file_can_say_are_refused() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let refused = |scene: &Scene| write(scene, &folder.path().join("scene.toml")).is_err();
+        let mut scene = default_scene(0);
+        scene.materials[1].name = scene.materials[0].name.clone();
+        assert!(refused(&scene));
+        let mut scene = default_scene(0);
+        scene.materials.truncate(1);
+        assert!(refused(&scene));
+        assert!(write(&default_scene(0), &folder.path().join("scene.csv")).is_err());
+        assert!(write(&default_scene(0), &folder.path().join("nowhere/scene.toml")).is_err());
+    }
+}

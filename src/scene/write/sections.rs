@@ -1,0 +1,163 @@
+//! The sections of a scene file as text.
+
+use crate::scene::{
+    Camera, ConductorFresnel, Environment, EnvironmentMap, Filter, Integrator, Lens, Light,
+    Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings, Tone,
+};
+use glam::DVec3;
+
+pub(super) fn render(settings: &Settings) -> String {
+    let Settings { width, height, spp, seed, exposure, .. } = settings;
+    let depth = settings.depth.map_or("\"unlimited\"".to_owned(), |depth| depth.to_string());
+    let integrator = match settings.integrator {
+        Integrator::Path => "\"path\"".to_owned(),
+        Integrator::Whitted { shadow_samples } => {
+            format!("\"whitted\"\nshadow_samples = {shadow_samples}")
+        }
+        Integrator::Ao { distance } if distance.is_finite() => {
+            format!("\"ao\"\nao_distance = {distance:?}")
+        }
+        Integrator::Ao { .. } => "\"ao\"".to_owned(),
+    };
+    let sampler = match settings.sampler {
+        SamplerKind::Sobol => "sobol",
+        SamplerKind::Stratified => "stratified",
+        SamplerKind::Independent => "independent",
+    };
+    let filter = match settings.filter {
+        Filter::Box => "box",
+        Filter::Gaussian => "gaussian",
+        Filter::BlackmanHarris => "blackman-harris",
+    };
+    let roulette = match settings.roulette {
+        Roulette::None => "\"none\"".to_owned(),
+        Roulette::Throughput => "\"throughput\"".to_owned(),
+        Roulette::Fixed(probability) => format!("{probability:?}"),
+    };
+    let tone = match settings.tone {
+        Tone::Linear => "linear",
+        Tone::Filmic => "filmic",
+    };
+    format!(
+        "[render]\nsize = [{width}, {height}]\nspp = {spp}\ndepth = {depth}\nseed = {seed}\n\
+         integrator = {integrator}\nsampler = \"{sampler}\"\nfilter = \"{filter}\"\n\
+         roulette = {roulette}\nexposure = {exposure:?}\ntone = \"{tone}\"\n\n"
+    )
+}
+
+pub(super) fn camera(camera: &Camera) -> String {
+    let projection = match camera.projection {
+        Projection::Perspective { fov } => format!("\"perspective\"\nfov = {fov:?}"),
+        Projection::Orthographic { height: Some(height) } => {
+            format!("\"orthographic\"\nheight = {height:?}")
+        }
+        Projection::Orthographic { height: None } => "\"orthographic\"".to_owned(),
+    };
+    let pose = match camera.pose {
+        Pose::LookAt { eye, target } => {
+            format!("eye = {}\ntarget = {}", vector(eye), vector(target))
+        }
+        Pose::Fit { direction, margin } => {
+            format!("fit = true\ndirection = {}\nmargin = {margin:?}", vector(direction))
+        }
+    };
+    let lens = match camera.lens {
+        Some(Lens { aperture, focus: Some(focus) }) => {
+            format!("aperture = {aperture:?}\nfocus = {focus:?}\n")
+        }
+        Some(Lens { aperture, focus: None }) => format!("aperture = {aperture:?}\n"),
+        None => String::new(),
+    };
+    let (up, near) = (vector(camera.up), camera.near);
+    format!("[camera]\nprojection = {projection}\n{pose}\nup = {up}\nnear = {near:?}\n{lens}\n")
+}
+
+pub(super) fn environment(environment: &Environment) -> Result<String, String> {
+    let map = match &environment.map {
+        EnvironmentMap::Constant(color) => format!("kind = \"constant\"\ncolor = {}", rgb(*color)),
+        EnvironmentMap::Gradient { bottom, top, up } => {
+            let (bottom, top, up) = (rgb(*bottom), rgb(*top), vector(*up));
+            format!("kind = \"gradient\"\nbottom = {bottom}\ntop = {top}\nup = {up}")
+        }
+        EnvironmentMap::Picture { .. } => {
+            return Err("the environment is a picture, which is not written".to_owned());
+        }
+    };
+    let illuminates = environment.illuminates;
+    Ok(format!("[environment]\n{map}\nilluminates = {illuminates}\n\n"))
+}
+
+pub(super) fn material(material: &Material) -> String {
+    match material {
+        Material::Lambertian { color } => {
+            format!("kind = \"lambertian\"\ncolor = {}\n", rgb(*color))
+        }
+        Material::Conductor { fresnel, roughness } => {
+            let fresnel = match fresnel {
+                ConductorFresnel::Schlick(color) => {
+                    format!("color = {}\nfresnel = \"schlick\"", rgb(*color))
+                }
+                ConductorFresnel::Constant(color) => {
+                    format!("color = {}\nfresnel = \"constant\"", rgb(*color))
+                }
+                ConductorFresnel::Exact { eta, k } => {
+                    format!("eta = {}\nk = {}", rgb(*eta), rgb(*k))
+                }
+            };
+            format!("kind = \"conductor\"\n{fresnel}\nroughness = {roughness:?}\n")
+        }
+        Material::Dielectric { ior, color } => {
+            format!("kind = \"dielectric\"\nior = {ior:?}\ncolor = {}\n", rgb(*color))
+        }
+        Material::Plastic { color, ior } => {
+            format!("kind = \"plastic\"\ncolor = {}\nior = {ior:?}\n", rgb(*color))
+        }
+        Material::Reflective { color, diffuse, mirror } => {
+            let shares = format!("diffuse = {diffuse:?}\nmirror = {mirror:?}");
+            format!("kind = \"reflective\"\ncolor = {}\n{shares}\n", rgb(*color))
+        }
+        Material::Emitter { radiance, albedo } => {
+            let (radiance, albedo) = (rgb(*radiance), rgb(*albedo));
+            format!("kind = \"emitter\"\nradiance = {radiance}\nalbedo = {albedo}\n")
+        }
+    }
+}
+
+pub(super) fn light(light: &Light) -> String {
+    match light {
+        Light::Sun { direction, irradiance, angular_radius } => {
+            let (direction, irradiance) = (vector(*direction), rgb(*irradiance));
+            format!(
+                "[[light]]\nkind = \"sun\"\ndirection = {direction}\nirradiance = {irradiance}\n\
+                 angular_radius = {angular_radius:?}\n\n"
+            )
+        }
+        Light::Point { position, intensity, falloff } => {
+            let (position, intensity) = (vector(*position), rgb(*intensity));
+            let falloff = if *falloff { "square" } else { "none" };
+            format!(
+                "[[light]]\nkind = \"point\"\nposition = {position}\nintensity = {intensity}\n\
+                 falloff = \"{falloff}\"\n\n"
+            )
+        }
+    }
+}
+
+/// A text as a basic string of TOML, which serves as a key too: `toml` itself would write some
+/// texts in several lines, which no key may have.
+pub(super) fn quoted(text: &str) -> String {
+    let escape = |letter: char| match letter {
+        '"' | '\\' => format!("\\{letter}"),
+        _ if letter.is_control() => format!("\\u{:04X}", u32::from(letter)),
+        _ => letter.to_string(),
+    };
+    format!("\"{}\"", text.chars().map(escape).collect::<String>())
+}
+
+pub(super) fn vector(vector: DVec3) -> String {
+    format!("{:?}", vector.to_array())
+}
+
+fn rgb(color: Rgb) -> String {
+    format!("{:?}", color.to_array())
+}

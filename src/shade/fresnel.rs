@@ -1,0 +1,128 @@
+//! Fresnel's equations.
+
+use crate::scene::Rgb;
+
+/// Share of unpolarised light that a smooth interface reflects, and the cosine of the refracted
+/// direction.
+///
+/// `cosine` of the incident direction is in 0..=1; `eta` is the index of refraction on the incident
+/// side over that on the other. Total internal reflection gives 1 and 0.
+pub fn dielectric(cosine: f64, eta: f64) -> (f64, f64) {
+    let sine2 = eta * eta * ((1.0 - cosine) * (1.0 + cosine));
+    if sine2 >= 1.0 {
+        return (1.0, 0.0);
+    }
+    let refracted = (1.0 - sine2).sqrt();
+    let s = (eta * cosine - refracted) / (eta * cosine + refracted);
+    let p = (cosine - eta * refracted) / (cosine + eta * refracted);
+    (0.5 * (s * s + p * p), refracted)
+}
+
+/// Schlick's curve from the reflectance at normal incidence (Schlick, "An Inexpensive BRDF Model
+/// for Physically-based Rendering", Computer Graphics Forum 1994).
+pub fn schlick(cosine: f32, normal_incidence: Rgb) -> Rgb {
+    normal_incidence + (Rgb::ONE - normal_incidence) * (1.0 - cosine).clamp(0.0, 1.0).powi(5)
+}
+
+/// Share of unpolarised light that a metal of complex index `eta + i k`, relative to the outside,
+/// reflects.
+pub fn conductor(cosine: f32, eta: f32, k: f32) -> f32 {
+    let (c, eta, k) = (f64::from(cosine), f64::from(eta), f64::from(k));
+    let (c2, s2) = (c * c, 1.0 - c * c);
+    let difference = eta * eta - k * k - s2;
+    let a2_plus_b2 = (difference * difference + 4.0 * eta * eta * k * k).sqrt();
+    let a = (0.5 * (a2_plus_b2 + difference)).max(0.0).sqrt();
+    let s = (a2_plus_b2 + c2 - 2.0 * a * c) / (a2_plus_b2 + c2 + 2.0 * a * c);
+    let along = c2 * a2_plus_b2 + s2 * s2;
+    let across = 2.0 * a * c * s2;
+    let p = s * (along - across) / (along + across);
+    (0.5 * (s + p)) as f32
+}
+
+/// Share of diffuse light from outside that an interface to index `ior` reflects: the
+/// cosine-weighted mean of [`dielectric`].
+pub fn external_diffuse_reflectance(ior: f64) -> f64 {
+    // Midpoints in the squared sine, by which the cosine weight is uniform. The integrand has the
+    // shape of a square root at grazing angles; this many points leave an error of about 1e-6.
+    const STEPS: u32 = 4096;
+    let reflected = |i: u32| {
+        let sine2 = (f64::from(i) + 0.5) / f64::from(STEPS);
+        dielectric((1.0 - sine2).sqrt(), 1.0 / ior).0
+    };
+    (0..STEPS).map(reflected).sum::<f64>() / f64::from(STEPS)
+}
+
+/// Share of diffuse light from inside that an interface reflects back: what enters is `1 -
+/// external`, and by reciprocity what leaves is that over `ior^2`.
+pub fn internal_diffuse_reflectance(ior: f64) -> f64 {
+    1.0 - (1.0 - external_diffuse_reflectance(ior)) / (ior * ior)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Computed from the equations with 50 digits.
+    #[test]
+    fn glass_reflects_what_the_equations_say() {
+        let known = [
+            (0.0, 0.04),
+            (30.0, 0.041_522_626_0),
+            (45.0, 0.050_239_911_0),
+            // Brewster's angle.
+            (1.5_f64.atan().to_degrees(), 0.073_964_497_0),
+            (60.0, 0.089_186_712_8),
+            (75.0, 0.253_060_563_0),
+            (85.0, 0.612_799_645_3),
+            (89.0, 0.904_184_949_8),
+        ];
+        for (degrees, expected) in known {
+            let cosine = f64::to_radians(degrees).cos();
+            let (reflected, refracted) = dielectric(cosine, 1.0 / 1.5);
+            assert!((reflected - expected).abs() < 1e-10, "{degrees}: {reflected}");
+            // The way back reflects the same share.
+            let (back, incident) = dielectric(refracted, 1.5);
+            assert!((back - reflected).abs() < 1e-12 && (incident - cosine).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn beyond_the_critical_angle_all_is_reflected() {
+        let critical = (1.0 / 1.5_f64).asin();
+        assert_eq!(dielectric((critical + 1e-3).cos(), 1.5), (1.0, 0.0));
+        assert!(dielectric((critical - 1e-3).cos(), 1.5).0 < 1.0);
+        assert_eq!(dielectric(0.0, 1.5), (1.0, 0.0));
+        assert_eq!(dielectric(0.0, 1.0 / 1.5).0, 1.0);
+    }
+
+    #[test]
+    fn no_interface_reflects_nothing() {
+        for cosine in [1.0, 0.5, 0.01] {
+            assert!(dielectric(cosine, 1.0).0 < 1e-24);
+        }
+    }
+
+    #[test]
+    fn mean_reflectance_of_a_diffuse_environment() {
+        let known = [(1.33, 0.065_930_849_3), (1.5, 0.091_777_959_3), (2.4, 0.210_181_302_0)];
+        for (ior, expected) in known {
+            assert!((external_diffuse_reflectance(ior) - expected).abs() < 2e-6);
+        }
+    }
+
+    #[test]
+    fn a_conductor_without_absorption_is_a_dielectric() {
+        for cosine in [1.0, 0.7, 0.3, 0.05] {
+            let difference =
+                f64::from(conductor(cosine as f32, 1.5, 0.0)) - dielectric(cosine, 1.0 / 1.5).0;
+            assert!(difference.abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn gold_is_golden() {
+        let [r, g, b] =
+            [(0.143, 3.983), (0.375, 2.386), (1.442, 1.603)].map(|(eta, k)| conductor(1.0, eta, k));
+        assert!(r > 0.96 && g > 0.75 && g < 0.85 && b < 0.4, "{r} {g} {b}");
+    }
+}

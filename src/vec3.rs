@@ -1,0 +1,67 @@
+//! Three coordinates, each one value or a row of lanes.
+
+use crate::lanes::Lanes;
+use std::ops::Sub;
+
+/// A point or a direction; `T` is a number or a row of [`Lanes`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vec3<T> {
+    /// Along the first axis.
+    pub x: T,
+    /// Along the second axis.
+    pub y: T,
+    /// Along the third axis.
+    pub z: T,
+}
+
+impl<T> Vec3<T> {
+    /// From its coordinates.
+    #[inline(always)]
+    pub const fn new(x: T, y: T, z: T) -> Self {
+        Self { x, y, z }
+    }
+
+    /// `f` of each coordinate.
+    #[inline(always)]
+    pub fn map<U>(self, f: impl Fn(T) -> U) -> Vec3<U> {
+        Vec3 { x: f(self.x), y: f(self.y), z: f(self.z) }
+    }
+}
+
+impl<L: Lanes> Vec3<L> {
+    /// The same three numbers in every lane.
+    #[inline(always)]
+    pub fn splat(x: f32, y: f32, z: f32) -> Self {
+        Self { x: L::splat(x), y: L::splat(y), z: L::splat(z) }
+    }
+
+    /// Scalar product plus `term`: three fused multiply-adds.
+    #[inline(always)]
+    pub fn dot_add(self, other: Self, term: L) -> L {
+        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z.mul_add(other.z, term)))
+    }
+
+    /// Scalar product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> L {
+        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
+    }
+
+    /// `self + direction * t`, each coordinate fused.
+    #[inline(always)]
+    pub fn along(self, direction: Self, t: L) -> Self {
+        Self {
+            x: direction.x.mul_add(t, self.x),
+            y: direction.y.mul_add(t, self.y),
+            z: direction.z.mul_add(t, self.z),
+        }
+    }
+}
+
+impl<L: Sub<Output = L>> Sub for Vec3<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}

@@ -1,0 +1,96 @@
+//! From a point of the picture, and a point of the lens, to a ray.
+
+use super::Frame;
+use super::fit::Placement;
+use crate::scene::{Projection, Scene};
+use glam::{DVec3, Vec3};
+
+/// A camera in world space.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// Where rays start, but for `near` and the lens.
+    pub eye: DVec3,
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    /// Half the picture's size: tangents in perspective, lengths in parallel projection.
+    half_width: f64,
+    half_height: f64,
+    orthographic: bool,
+    lens_radius: f64,
+    focus: f64,
+    near: f64,
+}
+
+impl Camera {
+    pub(super) fn build(scene: &Scene, at: &Placement, frame: &Frame) -> Self {
+        let orthographic = matches!(scene.camera.projection, Projection::Orthographic { .. });
+        let size = if orthographic { frame.scale } else { 1.0 };
+        let focus = scene.camera.lens.and_then(|lens| lens.focus).unwrap_or(at.distance);
+        Self {
+            width: scene.settings.width,
+            height: scene.settings.height,
+            eye: frame.point(at.eye),
+            right: at.axes.right,
+            up: at.axes.up,
+            forward: at.axes.forward,
+            half_width: at.half_width * size,
+            half_height: at.half_height * size,
+            orthographic,
+            lens_radius: scene.camera.lens.map_or(0.0, |lens| frame.length(lens.aperture / 2.0)),
+            focus: frame.length(focus),
+            near: frame.length(scene.camera.near),
+        }
+    }
+
+    /// Whether rays start on a lens: if not, the lens's two dimensions are not drawn.
+    pub fn has_lens(&self) -> bool {
+        self.lens_radius > 0.0
+    }
+
+    /// Whether rays are parallel, but for the lens.
+    pub fn is_orthographic(&self) -> bool {
+        self.orthographic
+    }
+
+    /// A ball that holds every ray's origin: its center and radius.
+    pub fn origins(&self) -> (DVec3, f64) {
+        let (across, along) = if self.orthographic {
+            (self.half_width.hypot(self.half_height), self.near)
+        } else {
+            let slant = (1.0 + self.half_width.powi(2) + self.half_height.powi(2)).sqrt();
+            (0.0, self.near * slant)
+        };
+        (self.eye, across + along + self.lens_radius)
+    }
+
+    /// Origin and unit direction of the ray through a point of the picture, in pixels from its top
+    /// left corner, and a point of the unit disk, which becomes the lens.
+    ///
+    /// A lens refracts the rays of a picture point so that they meet where the ray through its
+    /// middle crosses the plane in focus, in parallel projection too.
+    #[inline]
+    pub fn ray(&self, x: f64, y: f64, lens: Option<[f32; 2]>) -> (Vec3, Vec3) {
+        let across = (2.0 * x / f64::from(self.width) - 1.0) * self.half_width;
+        let upward = (1.0 - 2.0 * y / f64::from(self.height)) * self.half_height;
+        let offset = self.right * across + self.up * upward;
+        // `direction` goes one unit along the view axis.
+        let (mut origin, mut direction) = if self.orthographic {
+            (self.eye + offset, self.forward)
+        } else {
+            (self.eye, self.forward + offset)
+        };
+        if let Some([u, v]) = lens {
+            let shift = self.right * (f64::from(u) * self.lens_radius)
+                + self.up * (f64::from(v) * self.lens_radius);
+            origin += shift;
+            direction -= shift / self.focus;
+        }
+        origin += direction * self.near;
+        (origin.as_vec3(), direction.normalize().as_vec3())
+    }
+}

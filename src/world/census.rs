@@ -1,0 +1,92 @@
+//! What a world contains, and so which stages of a render exist.
+
+use super::World;
+use super::materials::Kind;
+use crate::scene::Scene;
+
+/// What there is in a world. What is not, is not run.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is one independent fact of the census")]
+pub struct Features {
+    /// Spheres of each kind of material, in the order of [`Kind::ALL`].
+    pub spheres_by_kind: [u64; Kind::COUNT],
+    /// Spheres too small for single precision beside the largest coordinate, left out.
+    pub vanished: u64,
+    /// The ground's kind of material; `None` if there is no ground, and rays are not tested against
+    /// it.
+    pub ground_kind: Option<Kind>,
+    /// Whether spheres have their own colors.
+    pub colors: bool,
+    /// Whether there is anything to sample for light: if not, there are no shadow rays.
+    pub lights: bool,
+    /// Whether rays start on a lens.
+    pub lens: bool,
+    /// Whether rays that escape see anything.
+    pub environment: bool,
+    /// Glass spheres that a camera ray may start in; empty if there are none, and then every ray
+    /// starts outside.
+    pub glass_at_camera: Vec<u32>,
+}
+
+impl Features {
+    pub(super) fn census(world: &World, scene: &Scene) -> Self {
+        let mut spheres_by_kind = [0; Kind::COUNT];
+        for row in 0..world.spheres.len() {
+            spheres_by_kind[world.spheres.material.row(row).kind() as usize] += 1;
+        }
+        Self {
+            spheres_by_kind,
+            vanished: (scene.spheres.len() - world.spheres.len()) as u64,
+            ground_kind: world.ground.map(|ground| ground.material.kind()),
+            colors: world.spheres.color.is_some(),
+            lights: !world.lights.is_empty(),
+            lens: world.camera.has_lens(),
+            environment: !world.environment.is_black(),
+            glass_at_camera: glass_at_camera(world),
+        }
+    }
+
+    /// Whether anything is made of this kind of material.
+    pub fn has(&self, kind: Kind) -> bool {
+        self.spheres_by_kind[kind as usize] > 0 || self.ground_kind == Some(kind)
+    }
+
+    /// What the render will do without, in words.
+    pub fn skipped(&self) -> Vec<String> {
+        let mut skipped = Vec::new();
+        let mut skip = |absent: bool, what: &str| {
+            if absent {
+                skipped.push(what.to_owned());
+            }
+        };
+        skip(self.ground_kind.is_none(), "no ground: no plane test");
+        skip(!self.lights, "no lights to sample: no shadow rays");
+        skip(!self.lens, "no lens: no lens samples");
+        skip(!self.colors, "no colors of single spheres: no color column");
+        skip(!self.environment, "black environment: rays that escape end without a look-up");
+        skip(
+            self.glass_at_camera.is_empty(),
+            "no glass around the camera: every ray starts outside",
+        );
+        for kind in Kind::ALL {
+            skip(!self.has(kind), &format!("no {}: its shading stage does not run", kind.name()));
+        }
+        skipped
+    }
+}
+
+/// Glass spheres that touch the ball in which camera rays start.
+fn glass_at_camera(world: &World) -> Vec<u32> {
+    if world.materials.dielectric.is_empty() {
+        return Vec::new();
+    }
+    let (center, reach) = world.camera.origins();
+    (0..world.spheres.len() as u32)
+        .filter(|&row| {
+            let row = row as usize;
+            let distance = world.spheres.center(row).as_dvec3().distance(center);
+            world.spheres.material.row(row).kind() == Kind::Dielectric
+                && distance <= (f64::from(world.spheres.radius[row]) + reach) * (1.0 + 1e-6)
+        })
+        .collect()
+}

@@ -1,0 +1,187 @@
+//! What rays see that hit nothing.
+
+use crate::sampling::{Distribution2d, ONE_BELOW};
+use crate::scene::{self, EnvironmentMap, Rgb};
+use glam::{DQuat, DVec3, Mat3, Vec3};
+use std::f32::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// The environment: radiance by direction, and whether it lights the scene.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    /// Radiance by direction.
+    pub radiance: Radiance,
+    /// Whether diffuse surfaces see it: if not it is a backdrop for the camera, mirrors and glass.
+    pub illuminates: bool,
+}
+
+/// Radiance by direction.
+#[derive(Clone, Debug)]
+pub enum Radiance {
+    /// The same everywhere.
+    Constant(Rgb),
+    /// Linear in the cosine of the angle to `up`.
+    Gradient {
+        /// Mean of bottom and top.
+        middle: Rgb,
+        /// Half of top minus bottom.
+        slope: Rgb,
+        /// Unit vector.
+        up: Vec3,
+    },
+    /// A latitude-longitude picture.
+    Picture(Arc<Picture>),
+}
+
+/// A latitude-longitude picture and the distribution of its light.
+#[derive(Debug)]
+pub struct Picture {
+    image: Arc<crate::image::Image>,
+    scale: f32,
+    /// From world space to the picture's, whose axis is z.
+    from_world: Mat3,
+    to_world: Mat3,
+    /// In proportion to luminance times the row's sine; `None` if all is black.
+    distribution: Option<Distribution2d>,
+    mean_luminance: f32,
+}
+
+impl Environment {
+    pub(super) fn build(scene: &scene::Environment) -> Self {
+        let radiance = match &scene.map {
+            EnvironmentMap::Constant(color) => Radiance::Constant(*color),
+            EnvironmentMap::Gradient { bottom, top, up } => Radiance::Gradient {
+                middle: (*bottom + *top) / 2.0,
+                slope: (*top - *bottom) / 2.0,
+                up: up.as_vec3(),
+            },
+            EnvironmentMap::Picture { image, up, rotation, scale } => Radiance::Picture(Arc::new(
+                Picture::new(image.clone(), *up, rotation.to_radians(), *scale),
+            )),
+        };
+        Self { radiance, illuminates: scene.illuminates }
+    }
+
+    /// Radiance that comes from unit direction `toward`.
+    #[inline]
+    pub fn radiance(&self, toward: Vec3) -> Rgb {
+        match &self.radiance {
+            Radiance::Constant(color) => *color,
+            // Not below 0 where rounding takes the cosine past 1.
+            Radiance::Gradient { middle, slope, up } => {
+                (*middle + *slope * up.dot(toward)).max(Rgb::ZERO)
+            }
+            Radiance::Picture(picture) => picture.radiance(toward),
+        }
+    }
+
+    /// Whether no direction has any light.
+    pub fn is_black(&self) -> bool {
+        match &self.radiance {
+            Radiance::Constant(color) => *color == Rgb::ZERO,
+            Radiance::Gradient { middle, slope, .. } => *middle == Rgb::ZERO && *slope == Rgb::ZERO,
+            Radiance::Picture(picture) => picture.distribution.is_none(),
+        }
+    }
+
+    /// The picture, where light is worth looking for: a constant or a gradient is found well enough
+    /// by the surface's own sampling, at half the rays.
+    pub fn picture(&self) -> Option<&Picture> {
+        match &self.radiance {
+            Radiance::Picture(picture) if picture.distribution.is_some() => Some(picture),
+            _ => None,
+        }
+    }
+}
+
+/// A direction sampled toward the environment.
+#[derive(Clone, Copy, Debug)]
+pub struct SkySample {
+    /// Unit vector.
+    pub direction: Vec3,
+    /// Radiance from there.
+    pub radiance: Rgb,
+    /// Density by solid angle; more than 0.
+    pub pdf: f32,
+}
+
+impl Picture {
+    fn new(image: Arc<crate::image::Image>, up: DVec3, rotation: f64, scale: f32) -> Self {
+        let (width, height) = (image.width as usize, image.height as usize);
+        let sine = |row: usize| (std::f64::consts::PI * (row as f64 + 0.5) / height as f64).sin();
+        let weight = |column: usize, row: usize| {
+            f64::from(luminance(Rgb::from(image.pixels[row * width + column]))) * sine(row)
+        };
+        let sum: f64 = (0..width * height).map(|i| weight(i % width, i / width)).sum();
+        let sines: f64 = (0..height).map(sine).sum::<f64>() * width as f64;
+        let distribution = Distribution2d::new(width, height, weight).filter(|_| scale > 0.0);
+        // The picture's axis is z, and its middle column faces -y where up is z.
+        let turn = DQuat::from_rotation_arc(DVec3::Z, up) * DQuat::from_rotation_z(rotation);
+        let to_world = glam::DMat3::from_quat(turn).as_mat3();
+        Self {
+            scale,
+            from_world: to_world.transpose(),
+            to_world,
+            distribution,
+            mean_luminance: scale * (sum / sines) as f32,
+            image,
+        }
+    }
+
+    /// Mean luminance over the sphere of directions.
+    pub fn mean_luminance(&self) -> f32 {
+        self.mean_luminance
+    }
+
+    /// Radiance from unit direction `toward`, bilinear between the pixels' middles.
+    fn radiance(&self, toward: Vec3) -> Rgb {
+        let (u, v) = to_square(self.from_world * toward);
+        let (width, height) = (self.image.width as usize, self.image.height as usize);
+        let x = u * width as f32 - 0.5;
+        let y = (v * height as f32 - 0.5).clamp(0.0, (height - 1) as f32);
+        let (fx, fy) = (x - x.floor(), y - y.floor());
+        let column = |dx: usize| (x.floor() as i64 + dx as i64).rem_euclid(width as i64) as usize;
+        let row = |dy: usize| (y.floor() as usize + dy).min(height - 1);
+        let pixel = |dx, dy| Rgb::from(self.image.pixels[row(dy) * width + column(dx)]);
+        let top = pixel(0, 0).lerp(pixel(1, 0), fx);
+        let bottom = pixel(0, 1).lerp(pixel(1, 1), fx);
+        top.lerp(bottom, fy) * self.scale
+    }
+
+    /// A direction in proportion to the picture's luminance.
+    pub fn sample(&self, u: [f32; 2]) -> Option<SkySample> {
+        let ([x, y], density) = self.distribution.as_ref()?.sample(u);
+        let (sin, cos) = (PI * y).sin_cos();
+        let (sin_phi, cos_phi) = (TAU * x).sin_cos();
+        let direction = self.to_world * Vec3::new(sin * cos_phi, sin * sin_phi, cos);
+        let pdf = density / (2.0 * PI * PI * sin);
+        (pdf > 0.0 && pdf.is_finite()).then(|| SkySample {
+            direction,
+            radiance: self.radiance(direction),
+            pdf,
+        })
+    }
+
+    /// Density of [`Picture::sample`] at unit direction `toward`, by solid angle.
+    pub fn pdf(&self, toward: Vec3) -> f32 {
+        let local = self.from_world * toward;
+        let (u, v) = to_square(local);
+        let sin = (PI * v).sin();
+        match &self.distribution {
+            Some(distribution) if sin > 0.0 => distribution.pdf([u, v]) / (2.0 * PI * PI * sin),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Longitude and latitude, each in 0..1, of a unit vector.
+fn to_square(d: Vec3) -> (f32, f32) {
+    let u = d.y.atan2(d.x) / TAU;
+    let v = d.x.hypot(d.y).atan2(d.z) / PI;
+    ((if u < 0.0 { u + 1.0 } else { u }).min(ONE_BELOW), v.min(ONE_BELOW))
+}
+
+/// Relative luminance of linear sRGB (Rec. 709).
+pub(super) fn luminance(color: Rgb) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}

@@ -1,0 +1,131 @@
+//! From the user's coordinates to the world's: a shift and a power of two.
+
+use crate::scene::Spheres;
+use crate::world::fit::Placement;
+use glam::DVec3;
+
+/// How many spheres at most are looked at to find where the scene is.
+const SAMPLES: usize = 1 << 16;
+
+/// Maps the user's coordinates to the world's: `world = (user - shift) * scale`.
+///
+/// Single precision is finest near the origin, so the scene's middle goes there. The middle is a
+/// median: a ground-like sphere of radius 1e7 does not drag it away from the small ones. The shift
+/// is a multiple of a power of two of about the scene's extent; subtracting it from coordinates
+/// that were single precision is exact, and a scene that is near its origin is not shifted at all.
+/// The scale is a power of two too, so a scene scaled by one renders to the same bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// In the user's coordinates.
+    pub shift: DVec3,
+    /// A power of two, after which the largest coordinate is in 0.5..=1.
+    pub scale: f64,
+}
+
+impl Frame {
+    pub(super) fn of(spheres: &Spheres, camera: &Placement) -> Self {
+        let shift = if spheres.is_empty() { DVec3::ZERO } else { middle(spheres) };
+        let reach = (0..spheres.len())
+            .map(|i| (center(spheres, i) - shift).abs().max_element() + spheres.radius[i])
+            .fold((camera.eye - shift).abs().max_element() + camera.reach, f64::max);
+        let scale = power_of_two_above(reach).recip();
+        Self { shift, scale: if scale.is_finite() && scale > 0.0 { scale } else { 1.0 } }
+    }
+
+    /// A point.
+    pub fn point(&self, user: DVec3) -> DVec3 {
+        (user - self.shift) * self.scale
+    }
+
+    /// A length.
+    pub fn length(&self, user: f64) -> f64 {
+        user * self.scale
+    }
+}
+
+fn center(spheres: &Spheres, i: usize) -> DVec3 {
+    DVec3::new(spheres.x[i], spheres.y[i], spheres.z[i])
+}
+
+/// The median center, rounded to a multiple of a power of two not below the median distance from
+/// it.
+fn middle(spheres: &Spheres) -> DVec3 {
+    let rows = || (0..spheres.len()).step_by(spheres.len().div_ceil(SAMPLES));
+    let median_of = |f: &dyn Fn(usize) -> f64| median(rows().map(f).collect());
+    let columns = [&spheres.x, &spheres.y, &spheres.z];
+    let middle = columns.map(|column| median_of(&|i| column[i]));
+    let spread = |axis: usize| median_of(&|i| (columns[axis][i] - middle[axis]).abs());
+    let extent = spread(0).max(spread(1)).max(spread(2)) + median_of(&|i| spheres.radius[i]);
+    let quantum = power_of_two_above(extent);
+    DVec3::from(middle.map(|m| (m / quantum).round() * quantum))
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    let half = values.len() / 2;
+    *values.select_nth_unstable_by(half, f64::total_cmp).1
+}
+
+/// The least power of two that is not below `x`; 1 for 0.
+fn power_of_two_above(x: f64) -> f64 {
+    if x > 0.0 { x.log2().ceil().clamp(-1020.0, 1020.0).exp2() } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(centers: &[[f64; 3]], radius: &[f64]) -> Frame {
+        let spheres = Spheres {
+            x: centers.iter().map(|c| c[0]).collect(),
+            y: centers.iter().map(|c| c[1]).collect(),
+            z: centers.iter().map(|c| c[2]).collect(),
+            radius: radius.to_vec(),
+            ..Spheres::default()
+        };
+        Frame::of(
+            &spheres,
+            &Placement { eye: DVec3::from(centers[0]), reach: 0.0, ..Placement::default() },
+        )
+    }
+
+    #[test]
+    fn a_scene_near_its_origin_is_not_moved() {
+        let frame = frame(&[[0.2, 0.1, 0.0], [-3.0, 1.0, 2.0], [1.0, -1.0, 0.5]], &[1.0, 1.0, 0.5]);
+        assert_eq!(frame.shift, DVec3::ZERO);
+        assert_eq!(frame.scale, 0.25);
+    }
+
+    #[test]
+    fn a_far_scene_is_moved_exactly() {
+        let near = [[0.25, 0.5, 0.0], [-0.75, 0.5, 2.0], [1.0, -1.0, 0.5]];
+        let far = near.map(|c| c.map(|x| x + 1e6));
+        let (a, b) = (frame(&near, &[0.5; 3]), frame(&far, &[0.5; 3]));
+        assert_ne!(b.shift, DVec3::ZERO);
+        for (p, q) in near.iter().zip(&far) {
+            let (p, q) = (a.point(DVec3::from(*p)), b.point(DVec3::from(*q)));
+            assert_eq!((p - q) / a.scale % 1.0, DVec3::ZERO, "moved by whole units only");
+        }
+    }
+
+    #[test]
+    fn a_giant_does_not_drag_the_middle_away() {
+        let frame = frame(
+            &[[0.0, -1e7, 0.0], [0.0, 0.1, 0.0], [0.3, 0.1, 0.1], [0.6, 0.1, 0.0]],
+            &[1e7, 0.1, 0.1, 0.1],
+        );
+        assert!(frame.shift.abs().max_element() <= 0.5, "{}", frame.shift);
+    }
+
+    #[test]
+    fn scaling_the_scene_by_a_power_of_two_changes_nothing_but_the_scale() {
+        let centers = [[3.1, 0.1, -2.0], [5.2, 1.0, 0.4], [4.4, 0.9, 1.7]];
+        for exponent in [-60, 60] {
+            let factor = f64::from(exponent).exp2();
+            let scaled = centers.map(|c| c.map(|x| x * factor));
+            let (a, b) = (frame(&centers, &[0.3; 3]), frame(&scaled, &[0.3 * factor; 3]));
+            for (p, q) in centers.iter().zip(&scaled) {
+                assert_eq!(a.point(DVec3::from(*p)), b.point(DVec3::from(*q)));
+            }
+        }
+    }
+}

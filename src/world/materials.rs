@@ -1,0 +1,231 @@
+//! Materials: one table for each kind, and ids that say kind and row.
+
+use crate::scene::{ConductorFresnel, Material, NamedMaterial, Rgb};
+use crate::shade::fresnel;
+
+/// The kinds of material, in the order in which they are shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Kind {
+    /// Ideally diffuse.
+    Lambertian,
+    /// Metal.
+    Conductor,
+    /// Clear glass.
+    Dielectric,
+    /// Diffuse under a coat.
+    Plastic,
+    /// A diffuse and a mirror share.
+    Reflective,
+    /// Emits light.
+    Emitter,
+}
+
+impl Kind {
+    /// How many there are.
+    pub const COUNT: usize = 6;
+
+    /// All of them, in order.
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::Lambertian,
+        Self::Conductor,
+        Self::Dielectric,
+        Self::Plastic,
+        Self::Reflective,
+        Self::Emitter,
+    ];
+
+    /// The kind of a scene's material.
+    pub fn of(material: &Material) -> Self {
+        match material {
+            Material::Lambertian { .. } => Self::Lambertian,
+            Material::Conductor { .. } => Self::Conductor,
+            Material::Dielectric { .. } => Self::Dielectric,
+            Material::Plastic { .. } => Self::Plastic,
+            Material::Reflective { .. } => Self::Reflective,
+            Material::Emitter { .. } => Self::Emitter,
+        }
+    }
+
+    /// The name that scene files use.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lambertian => "lambertian",
+            Self::Conductor => "conductor",
+            Self::Dielectric => "dielectric",
+            Self::Plastic => "plastic",
+            Self::Reflective => "reflective",
+            Self::Emitter => "emitter",
+        }
+    }
+}
+
+/// Which material: the kind in the upper bits, the row of the kind's table in the lower ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct MaterialId(u32);
+
+impl MaterialId {
+    const ROW_BITS: u32 = 29;
+
+    fn new(kind: Kind, row: usize) -> Self {
+        Self((kind as u32) << Self::ROW_BITS | row as u32)
+    }
+
+    /// Which table.
+    #[inline(always)]
+    pub fn kind(self) -> Kind {
+        Kind::ALL[(self.0 >> Self::ROW_BITS) as usize]
+    }
+
+    /// Which row of it.
+    #[inline(always)]
+    pub fn row(self) -> usize {
+        (self.0 & ((1 << Self::ROW_BITS) - 1)) as usize
+    }
+}
+
+/// A row of the table of diffuse materials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lambertian {
+    /// Albedo.
+    pub color: Rgb,
+}
+
+/// A row of the table of metals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conductor {
+    /// What it reflects.
+    pub fresnel: ConductorFresnel,
+    /// Factor on the color.
+    pub tint: Rgb,
+    /// GGX alpha; 0 is a smooth mirror.
+    pub roughness: f32,
+}
+
+/// A row of the table of glasses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// Index of refraction.
+    pub ior: f32,
+    /// Factor on what passes.
+    pub color: Rgb,
+}
+
+/// A row of the table of coated materials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plastic {
+    /// Albedo of the base.
+    pub color: Rgb,
+    /// Index of refraction of the coat.
+    pub ior: f32,
+    /// Share of diffuse light from below that the coat reflects back down.
+    pub internal_reflectance: f32,
+}
+
+/// A row of the table of the paper's materials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reflective {
+    /// Factor on both shares.
+    pub color: Rgb,
+    /// Diffuse share.
+    pub diffuse: f32,
+    /// Mirror share.
+    pub mirror: f32,
+}
+
+/// A row of the table of emitters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emitter {
+    /// Emitted radiance.
+    pub radiance: Rgb,
+    /// What it reflects diffusely.
+    pub albedo: Rgb,
+}
+
+/// One table for each kind of material.
+#[derive(Clone, Debug, Default)]
+pub struct Materials {
+    /// Diffuse ones.
+    pub lambertian: Vec<Lambertian>,
+    /// Metals.
+    pub conductor: Vec<Conductor>,
+    /// Glasses.
+    pub dielectric: Vec<Dielectric>,
+    /// Coated ones.
+    pub plastic: Vec<Plastic>,
+    /// The paper's.
+    pub reflective: Vec<Reflective>,
+    /// Emitters.
+    pub emitter: Vec<Emitter>,
+    /// From the scene's rows.
+    ids: Vec<MaterialId>,
+}
+
+impl Materials {
+    pub(super) fn build(scene: &[NamedMaterial]) -> Self {
+        let mut tables = Self::default();
+        for named in scene {
+            let id = tables.add(&named.material);
+            tables.ids.push(id);
+        }
+        tables
+    }
+
+    /// The material in row `row` of the scene's list.
+    pub(super) fn id(&self, row: u32) -> MaterialId {
+        self.ids.get(row as usize).copied().unwrap_or_default()
+    }
+
+    fn add(&mut self, material: &Material) -> MaterialId {
+        match *material {
+            Material::Lambertian { color } => {
+                push(&mut self.lambertian, Kind::Lambertian, Lambertian { color })
+            }
+            Material::Conductor { fresnel, roughness } => push(
+                &mut self.conductor,
+                Kind::Conductor,
+                Conductor { fresnel, tint: Rgb::ONE, roughness: roughness as f32 },
+            ),
+            Material::Dielectric { ior, color } => {
+                push(&mut self.dielectric, Kind::Dielectric, Dielectric { ior: ior as f32, color })
+            }
+            Material::Plastic { color, ior } => push(
+                &mut self.plastic,
+                Kind::Plastic,
+                Plastic {
+                    color,
+                    ior: ior as f32,
+                    internal_reflectance: fresnel::internal_diffuse_reflectance(ior) as f32,
+                },
+            ),
+            Material::Reflective { color, diffuse, mirror } => push(
+                &mut self.reflective,
+                Kind::Reflective,
+                Reflective { color, diffuse: diffuse as f32, mirror: mirror as f32 },
+            ),
+            Material::Emitter { radiance, albedo } => {
+                push(&mut self.emitter, Kind::Emitter, Emitter { radiance, albedo })
+            }
+        }
+    }
+}
+
+fn push<T>(table: &mut Vec<T>, kind: Kind, row: T) -> MaterialId {
+    table.push(row);
+    MaterialId::new(kind, table.len() - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_hold_kind_and_row() {
+        for kind in Kind::ALL {
+            for row in [0, 1, (1 << 29) - 1] {
+                let id = MaterialId::new(kind, row);
+                assert_eq!((id.kind(), id.row()), (kind, row));
+            }
+        }
+    }
+}

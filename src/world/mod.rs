@@ -1,0 +1,134 @@
+//! The scene as the kernels want it: columns, tables, and a census of what there is.
+//!
+//! [`World::build`] takes a [`Scene`] and moves it by a multiple of a power of two to the origin,
+//! scales it by an exact power of two so that its largest coordinate is about 1 ([`Frame`]), stores
+//! it in single precision, builds the tree and permutes the spheres' columns so that a leaf is a
+//! slice. Everything that can be wrong with a scene is found here or before; past it nothing can
+//! fail.
+
+mod camera;
+mod census;
+mod environment;
+mod fit;
+mod frame;
+mod ground;
+mod lights;
+mod materials;
+mod spheres;
+
+pub use camera::Camera;
+pub use census::Features;
+pub use environment::{Environment, Picture, Radiance, SkySample};
+pub use frame::Frame;
+pub use ground::Ground;
+pub use lights::{Aim, Disc, LightSample, Lights, Point, Sun};
+pub use materials::{
+    Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
+};
+pub use spheres::{Column, Spheres};
+
+use crate::bvh::{self, Bvh};
+use crate::ray::GROUND;
+use crate::scene::{Rgb, Scene};
+use glam::Vec3;
+
+/// Everything that a render reads, immutable.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// From the user's coordinates to the world's.
+    pub frame: Frame,
+    /// The spheres, in the order of the tree's leaves.
+    pub spheres: Spheres,
+    /// The tree over them.
+    pub bvh: Bvh,
+    /// The ground plane, if there is one.
+    pub ground: Option<Ground>,
+    /// One table for each kind of material.
+    pub materials: Materials,
+    /// What can be sampled to find light.
+    pub lights: Lights,
+    /// What rays see that hit nothing.
+    pub environment: Environment,
+    /// Who looks.
+    pub camera: Camera,
+    /// What there is, and so which stages run.
+    pub features: Features,
+}
+
+/// Why a scene cannot be rendered.
+#[derive(Debug, thiserror::Error)]
+pub enum WorldError {
+    /// Rows are 32-bit numbers, a few of which mean something else.
+    #[error("{0} spheres are too many: at most {max} fit; render a part of them", max = Spheres::MAX)]
+    TooManySpheres(usize),
+    /// `fit` without spheres.
+    #[error(
+        "the camera has nothing to frame: the scene has no spheres; give it spheres, or give the camera `eye` and `target`"
+    )]
+    NothingToFit,
+    /// The camera is closer to its target than double precision resolves, or similar.
+    #[error("the camera at {eye:?} sees nothing: {why}")]
+    Camera {
+        /// Where it stands, in the scene's coordinates.
+        eye: [f64; 3],
+        /// What is wrong, and the mend.
+        why: &'static str,
+    },
+    /// A row of a column is invalid; scenes from files are checked before.
+    #[error("{0}")]
+    Invalid(String),
+}
+
+impl World {
+    /// Builds the world and its tree.
+    ///
+    /// Spheres that vanish in single precision beside the largest coordinate (a radius below about
+    /// 1e-45 of it) are left out; [`Features::vanished`] counts them.
+    ///
+    /// # Errors
+    /// Too many spheres, a camera that frames nothing, or rows that no scene file could hold:
+    /// columns of different lengths, values that are not finite, materials that do not exist.
+    pub fn build(scene: &Scene) -> Result<Self, WorldError> {
+        spheres::validate(scene)?;
+        let pose = fit::pose(scene)?;
+        let frame = Frame::of(&scene.spheres, &pose);
+        let materials = Materials::build(&scene.materials);
+        let mut spheres = Spheres::build(scene, &frame, &materials);
+        let bvh = bvh::build::build(&mut spheres);
+        let camera = Camera::build(scene, &pose, &frame);
+        let environment = Environment::build(&scene.environment);
+        let ground = scene.ground.as_ref().map(|ground| Ground::build(ground, &frame, &materials));
+        let lights = Lights::build(scene, &frame, &spheres, &materials, &environment);
+        let mut world = Self {
+            frame,
+            spheres,
+            bvh,
+            ground,
+            materials,
+            lights,
+            environment,
+            camera,
+            features: Features::default(),
+        };
+        world.features = Features::census(&world, scene);
+        Ok(world)
+    }
+
+    /// The material of what was hit: a sphere's row or [`GROUND`].
+    #[inline(always)]
+    pub fn material(&self, hit: u32) -> MaterialId {
+        match &self.ground {
+            Some(ground) if hit == GROUND => ground.material,
+            _ => self.spheres.material.row(hit as usize),
+        }
+    }
+
+    /// The factor on the material's color of what was hit.
+    #[inline(always)]
+    pub fn color(&self, hit: u32) -> Rgb {
+        match &self.spheres.color {
+            Some(colors) if hit != GROUND => Vec3::from(colors[hit as usize]),
+            _ => Rgb::ONE,
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! A folder for a test to work in.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use tempfile::TempDir;
+
+/// A small picture of plastic, metal and glass.
+pub(crate) const SMALL: [&str; 6] = ["render", "--size", "40x24", "--spp", "4", "--quiet"];
+
+/// A folder that goes away with the test.
+pub(crate) struct Folder(TempDir);
+
+impl Folder {
+    pub(crate) fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    /// Runs the program in the folder.
+    pub(crate) fn run(&self, args: &[&str]) -> Output {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
+        program.args(args).current_dir(&self.0).output().expect("a program that runs")
+    }
+
+    /// What the program prints, once it has done what it should.
+    pub(crate) fn succeed(&self, args: &[&str]) -> String {
+        let output = self.run(args);
+        assert!(output.status.success(), "{args:?}: {}", text(&output.stderr));
+        text(&output.stdout)
+    }
+
+    /// What the program prints, as JSON.
+    pub(crate) fn json(&self, args: &[&str]) -> Value {
+        serde_json::from_str(&self.succeed(args)).expect("one JSON object")
+    }
+
+    /// The bytes of a small picture.
+    pub(crate) fn picture(&self, name: &str, args: &[&str]) -> Vec<u8> {
+        let output = self.succeed(&[&SMALL, &["-o", name][..], args].concat());
+        assert!(output.is_empty(), "{output}");
+        self.read(name)
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).expect("a file that is there")
+    }
+
+    pub(crate) fn write(&self, name: &str, content: &str) {
+        fs::write(self.path(name), content).expect("a folder that takes files");
+    }
+
+    /// The path of a file in the folder.
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn root(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+pub(crate) fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}

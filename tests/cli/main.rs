@@ -1,0 +1,8 @@
+//! The program as its users meet it: commands, messages, exit codes and files.
+#![cfg(feature = "cli")]
+
+mod folder;
+mod pictures;
+mod processes;
+mod refusals;
+mod reports;

@@ -1,0 +1,86 @@
+//! Wrong input: an exit code, a message in words, and no harm done.
+
+use crate::folder::{Folder, text};
+use std::fs;
+
+#[test]
+fn bad_input_is_refused_in_words() {
+    let folder = Folder::new();
+    folder.write("key.toml", "[render]\nsppp = 3\n");
+    folder.write("fov.toml", "[camera]\nfov = 180\n");
+    folder.write("empty.toml", "");
+    folder.write("bad.xyz", "0 0 0 1\n1 2 x 1\n");
+    let cases: &[(&str, i32, &[&str])] = &[
+        ("render --size 0x5", 2, &["--size", "1 to 65535"]),
+        ("render --size 70000x1", 2, &["--size", "1 to 65535"]),
+        ("render --size -4x4", 2, &["--size", "1 to 65535"]),
+        ("render --spp 0", 2, &["--spp", "1..=16777216"]),
+        ("render --spp -3", 2, &["--spp"]),
+        ("render --depth -1", 2, &["--depth", "unlimited"]),
+        ("render --seed -1", 2, &["--seed"]),
+        ("render --threads 0", 2, &["--threads", "1..=4096"]),
+        ("render --exposure NaN", 2, &["--exposure", "-100 to 100"]),
+        ("render --roulette 0", 2, &["--roulette", "more than 0"]),
+        ("render --roulette 1.5", 2, &["--roulette", "at most 1"]),
+        ("render --shadow-samples 0", 2, &["--shadow-samples"]),
+        ("render --ao-distance 0", 2, &["--ao-distance", "more than 0"]),
+        ("render --lanes 3", 2, &["--lanes", "1, 4, 8, 16"]),
+        ("render --traversal quick", 2, &["--traversal", "brute, scalar, packet"]),
+        ("render --region 1,2,0x4", 2, &["--region", "1 or more"]),
+        ("render --region 900,0,100x10", 2, &["--region", "960x540"]),
+        ("render --region 4294967295,0,1x1", 2, &["--region", "960x540"]),
+        ("render --quiet --verbose", 2, &["--quiet", "--verbose"]),
+        ("render missing.toml", 1, &["missing.toml", "cannot be read"]),
+        ("render missing.csv", 1, &["missing.csv", "cannot be read"]),
+        ("render key.toml", 1, &["key.toml:2:1", "sppp", "spp`?"]),
+        ("render fov.toml", 1, &["fov.toml:2", "180"]),
+        ("render empty.toml", 1, &["empty.toml", "no spheres"]),
+        ("render bad.xyz", 1, &["bad.xyz:2:5", "not a number"]),
+        ("info empty.toml", 1, &["no spheres"]),
+        ("info .", 1, &["cannot be read"]),
+        ("render -o missing/a.png", 1, &["missing", "folder"]),
+        ("render -o a.jpg", 1, &["a.jpg", ".png"]),
+        ("compare missing.png missing.png", 1, &["missing.png"]),
+        ("compare key.toml key.toml", 1, &["not a picture"]),
+        ("field", 2, &["--output"]),
+        ("field -o a.csv", 2, &[".toml"]),
+        ("field -o missing/a.toml", 1, &["missing"]),
+        ("field grid --level 3 -o a.toml", 2, &["--level", "sphereflake"]),
+        ("field grid --radius 1,2 -o a.toml", 2, &["--radius", "one radius"]),
+        ("field volume --size -1 -o a.toml", 1, &["--size", "more than 0"]),
+        ("field sphereflake --level 60 -o a.toml", 1, &["--level", "spheres"]),
+        ("completions cobol", 2, &["cobol", "bash"]),
+        ("paint", 2, &["paint"]),
+    ];
+    for (line, code, words) in cases {
+        let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(*code), "{line}: {message}");
+        assert!(!message.contains("panicked"), "{line}: {message}");
+        assert!(output.stdout.is_empty(), "{line}");
+        for word in *words {
+            assert!(message.contains(word), "{line} lacks `{word}`: {message}");
+        }
+    }
+    assert!(!folder.path("spherule.png").exists() && !folder.path("a.toml").exists());
+}
+
+#[test]
+fn failures_leave_old_files_alone() {
+    let folder = Folder::new();
+    folder.write("old.png", "old");
+    folder.write("empty.toml", "");
+    fs::create_dir(folder.path("folder.png")).unwrap();
+    for args in [
+        &["render", "empty.toml", "-o", "old.png"][..],
+        &["render", "--region", "0,0,9999x1", "-o", "old.png"],
+        &["render", "-o", "folder.png"],
+        &["render", "-o", "old.png/a.png"],
+    ] {
+        let output = folder.run(args);
+        assert!(!output.status.success(), "{args:?}");
+        assert!(!text(&output.stderr).contains("panicked"));
+    }
+    assert_eq!(folder.read("old.png"), b"old");
+    assert_eq!(fs::read_dir(folder.path("folder.png")).unwrap().count(), 0);
+}

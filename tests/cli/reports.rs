@@ -1,0 +1,95 @@
+//! What the program tells: statistics, notes, comparisons, help.
+
+use crate::folder::{Folder, SMALL, text};
+use spherule::image::{Image, WriteOptions};
+
+#[test]
+fn statistics_are_one_json_object() {
+    let folder = Folder::new();
+    let report = folder.json(&[&SMALL[..], &["--json", "--depth", "1"]].concat());
+    let statistics = &report["statistics"];
+    assert_eq!(statistics["spheres"], 400);
+    assert_eq!(statistics["samples"], 40 * 24 * 4);
+    assert_eq!(statistics["non_finite_samples"], 0);
+    let rays = |class: &str| statistics[class].as_u64().unwrap();
+    assert_eq!(rays("rays"), rays("camera_rays") + rays("bounce_rays") + rays("shadow_rays"));
+    assert!(rays("cut_paths") > 0);
+    assert!(report["warnings"][0].as_str().unwrap().contains("too dark"));
+    assert_eq!(report["settings"]["width"], 40);
+    assert_eq!(report["settings"]["depth"], 1);
+    assert_eq!(report["complete"], true);
+}
+
+#[test]
+fn settings_without_effect_are_said_so() {
+    let folder = Folder::new();
+    folder.write("dark.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
+    let cases = [
+        ("--shadow-samples 4", "--shadow-samples has no effect"),
+        ("--ao-distance 4", "--ao-distance has no effect"),
+        ("--integrator ao --depth 4", "--depth has no effect"),
+        ("--integrator ao --roulette none", "--roulette has no effect"),
+        ("--depth 2 --roulette throughput", "--roulette throughput has no effect"),
+        ("--traversal scalar --lanes 8", "--lanes has no effect"),
+        ("-o a.exr --exposure 1", "exposure has no effect"),
+        ("-o a.pfm --tone filmic", "tone has no effect"),
+        ("-o a.pfm --bits 16", "--bits has no effect"),
+        ("--ppm plain", "--ppm has no effect"),
+        ("dark.toml --integrator whitted --shadow-samples 4", "no lights to sample"),
+    ];
+    for (line, words) in cases {
+        let args: Vec<&str> =
+            ["render", "--size", "4x4", "--spp", "1"].into_iter().chain(line.split(' ')).collect();
+        let message = text(&folder.run(&args).stderr);
+        assert!(message.contains(words), "{line}: {message}");
+        let useful = &args[..5];
+        assert!(!text(&folder.run(useful).stderr).contains("no effect"));
+    }
+}
+
+#[test]
+fn comparisons_measure() {
+    let folder = Folder::new();
+    let gray = |value: f32| Image::filled(4, 2, [value; 3]).unwrap();
+    gray(0.75).write(folder.path("a.pfm"), &WriteOptions::default()).unwrap();
+    gray(0.5).write(folder.path("b.pfm"), &WriteOptions::default()).unwrap();
+    let report = folder.json(&["compare", "a.pfm", "b.pfm", "--json"]);
+    let close = |name: &str, value: f64| (report[name].as_f64().unwrap() - value).abs() < 1e-12;
+    assert!(close("rmse", 0.25) && close("bias", 0.25) && close("relative_mse", 0.0625 / 0.26));
+    assert!(close("psnr", 20.0 * 4.0_f64.log10()) && close("bias_standard_error", 0.0));
+    assert_eq!(report["differing_pixels"], 8);
+    assert_eq!(report["max_difference"]["value"], 0.25);
+    let same = folder.json(&["compare", "a.pfm", "a.pfm", "--json"]);
+    assert!(same["psnr"].is_null() && same["differing_pixels"] == 0);
+    assert!(folder.succeed(&["compare", "a.pfm", "b.pfm"]).contains("2.500000e-1"));
+    let wide = Image::filled(5, 2, [0.0; 3]).unwrap();
+    wide.write(folder.path("wide.pfm"), &WriteOptions::default()).unwrap();
+    let output = folder.run(&["compare", "a.pfm", "wide.pfm"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("differ in size"));
+}
+
+#[test]
+fn every_command_has_help_with_examples() {
+    let folder = Folder::new();
+    for command in ["render", "field", "info", "compare", "completions"] {
+        let help = folder.succeed(&[command, "--help"]);
+        assert!(help.contains("Examples:") && help.contains(&format!("spherule {command}")));
+    }
+    assert!(folder.succeed(&["--help"]).contains("Exit codes"));
+    assert!(folder.succeed(&["--version"]).contains(env!("CARGO_PKG_VERSION")));
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(folder.succeed(&["completions", shell]).contains("spp"), "{shell}");
+    }
+}
+
+#[test]
+fn quiet_is_quiet_and_verbose_is_not() {
+    let folder = Folder::new();
+    let quiet = folder.run(&SMALL);
+    assert!(quiet.status.success() && quiet.stdout.is_empty() && quiet.stderr.is_empty());
+    let verbose = folder.run(&["render", "--size", "4x4", "--spp", "1", "--verbose"]);
+    let message = text(&verbose.stderr);
+    assert!(message.contains("found: ") && message.contains("skipped: "), "{message}");
+    assert!(text(&verbose.stdout).contains("spherule.png"));
+}

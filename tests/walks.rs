@@ -1,0 +1,227 @@
+//! Every walk gives the answer of the exact test over all spheres, to the bit: any lane count, with
+//! the tree or without, closest or any hit, on scenes that are nasty on purpose.
+
+use glam::Vec3;
+use spherule::bvh::Bvh;
+use spherule::bvh::build::build;
+use spherule::bvh::walk::{Any, Closest, Method, trace};
+use spherule::intersect;
+use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
+use spherule::ray::{Hits, MISS, Rays};
+use spherule::sampling::{stream, uniform_sphere, unit};
+use spherule::world::Spheres;
+
+/// Random numbers of a test.
+struct Numbers(u64);
+
+impl Numbers {
+    fn unit(&mut self) -> f32 {
+        self.0 += 1;
+        unit(stream(0x5eed, self.0) as u32)
+    }
+    fn signed(&mut self) -> f32 {
+        2.0 * self.unit() - 1.0
+    }
+    fn point(&mut self) -> Vec3 {
+        Vec3::new(self.signed(), self.signed(), self.signed())
+    }
+    fn direction(&mut self) -> Vec3 {
+        uniform_sphere([self.unit(), self.unit()])
+    }
+    fn power(&mut self, low: f32, high: f32) -> f32 {
+        (low + (high - low) * self.unit()).exp2()
+    }
+}
+
+fn spheres(rows: impl IntoIterator<Item = (Vec3, f32)>) -> Spheres {
+    let rows: Vec<_> = rows.into_iter().collect();
+    let column = |f: fn(&(Vec3, f32)) -> f32| rows.iter().map(f).collect();
+    Spheres::from_columns(column(|s| s.0.x), column(|s| s.0.y), column(|s| s.0.z), column(|s| s.1))
+}
+
+/// Scenes with what breaks tracers; the largest coordinate is about 1, as in every world.
+fn scenes() -> Vec<(&'static str, Spheres)> {
+    let n = &mut Numbers(1);
+    let mut scenes = vec![
+        ("none", spheres([])),
+        ("one", spheres([(Vec3::new(0.1, 0.2, 0.3), 0.4)])),
+        ("nine", spheres((0..9).map(|_| (n.point() * 0.7, 0.2)))),
+        ("random", spheres((0..900).map(|_| (n.point(), 0.02 + 0.05 * n.unit())))),
+        ("tiny", spheres((0..900).map(|_| (n.point(), n.power(-40.0, -4.0))))),
+        ("twins", spheres((0..600).map(|i| (Vec3::splat((i % 40) as f32 / 40.0), 0.05)))),
+        ("equal", spheres((0..500).map(|_| (Vec3::splat(0.25), 0.5)))),
+        ("shells", spheres((0..500).map(|i| (Vec3::ZERO, 0.5 + 4e-5 * i as f32)))),
+        ("line", spheres((0..500).map(|i| (Vec3::new(i as f32 / 500.0, 0.0, 0.0), 0.01)))),
+        ("lattice", {
+            let cell = |i: i32| (i as f32 - 4.0) / 8.0;
+            spheres(
+                (0..729).map(|i| (Vec3::new(cell(i % 9), cell(i / 9 % 9), cell(i / 81)), 0.0625)),
+            )
+        }),
+    ];
+    let dust = (0..700).map(|_| (n.point() * 1e-6, 1e-8 * (1.0 + n.unit())));
+    let giant = [(Vec3::new(0.0, -0.5, 0.0), 0.5)];
+    scenes.push(("giant and dust", spheres(dust.chain(giant).collect::<Vec<_>>())));
+    scenes
+}
+
+/// Rays of every kind that a scene can meet; `bound` of each is where its search ends.
+fn rays(spheres: &Spheres, count: usize) -> (Rays, Vec<f64>) {
+    let n = &mut Numbers(77);
+    let mut rays = Rays::with_capacity(count);
+    let mut bounds = Vec::new();
+    for i in 0..count {
+        let some = |n: &mut Numbers| (n.unit() * spheres.len() as f32) as usize;
+        let (origin, direction, own) = match i % 7 {
+            _ if spheres.is_empty() => (n.point(), n.direction(), MISS),
+            // From outside, at random and at a sphere's limb.
+            0 => (n.direction() * 2.0, n.direction(), MISS),
+            1 | 2 => {
+                let target = some(n);
+                let origin = n.direction() * n.power(-1.0, 6.0);
+                let to_center = spheres.center(target) - origin;
+                let side = to_center.cross(n.direction()).normalize_or(Vec3::X);
+                let limb = if i % 7 == 1 { n.unit() } else { 1.0 + n.signed() * 1e-6 };
+                let aim = to_center + side * (spheres.radius[target] * limb);
+                (origin, aim.normalize_or(Vec3::Y), MISS)
+            }
+            // Along an axis, through centers and tangent.
+            3 => {
+                let target = some(n);
+                let shift = if n.unit() < 0.5 { 0.0 } else { spheres.radius[target] };
+                let center = spheres.center(target);
+                let along =
+                    [Vec3::X, Vec3::NEG_Y, Vec3::new(-0.0, 0.0, 1.0)][(n.unit() * 3.0) as usize];
+                (
+                    center - along * 2.0 + Vec3::new(along.y.abs(), along.z.abs(), along.x) * shift,
+                    along,
+                    MISS,
+                )
+            }
+            // From inside.
+            4 => (spheres.center(some(n)), n.direction(), MISS),
+            // From a surface outward, with and without its id.
+            _ => {
+                let from = some(n);
+                let normal = n.direction();
+                let mut direction = n.direction();
+                direction *= direction.dot(normal).signum();
+                let own = if i % 7 == 5 { from as u32 } else { MISS - 1 };
+                (spheres.center(from) + normal * spheres.radius[from], direction, own)
+            }
+        };
+        rays.push(origin, direction, own);
+        bounds.push(if n.unit() < 0.3 { f64::from(n.power(-8.0, 3.0)) } else { f64::INFINITY });
+    }
+    (rays, bounds)
+}
+
+fn fresh(bounds: &[f64]) -> Hits {
+    let mut hits = Hits::with_capacity(bounds.len());
+    hits.t[..bounds.len()].copy_from_slice(bounds);
+    hits
+}
+
+/// The definition: the nearest of all spheres, of equals the first of the scene.
+fn oracle(spheres: &Spheres, rays: &Rays, row: usize, bound: f64) -> (f64, u32) {
+    let ray = rays.exact(row);
+    let mut best = (bound, MISS);
+    for sphere in 0..spheres.len() as u32 {
+        let i = sphere as usize;
+        if rays.own[row] == sphere {
+            continue;
+        }
+        let radius = f64::from(spheres.radius[i]);
+        let t = intersect::confirm(&ray, spheres.center(i).as_dvec3(), radius);
+        let first = |other: u32| other != MISS && spheres.id[i] < spheres.id[other as usize];
+        if t.is_some_and(|t| t < best.0 || (t == best.0 && first(best.1))) {
+            best = (t.unwrap_or(bound), sphere);
+        }
+    }
+    best
+}
+
+fn agrees<L: Lanes>(name: &str, bvh: &Bvh, spheres: &Spheres, rays: &Rays, bounds: &[f64]) {
+    let expected: Vec<_> =
+        (0..rays.len()).map(|row| oracle(spheres, rays, row, bounds[row])).collect();
+    for method in [Method::Brute, Method::Tree] {
+        let what = |row| format!("{name}, {method:?}, {} lanes, ray {row}", L::WIDTH);
+        let mut hits = fresh(bounds);
+        trace::<L, Closest>(method, bvh, spheres, rays, &mut hits);
+        for (row, &(t, sphere)) in expected.iter().enumerate() {
+            assert_eq!(
+                (hits.t[row].to_bits(), hits.sphere[row]),
+                (t.to_bits(), sphere),
+                "{}",
+                what(row)
+            );
+        }
+        let mut hits = fresh(bounds);
+        trace::<L, Any>(method, bvh, spheres, rays, &mut hits);
+        for (row, &(_, sphere)) in expected.iter().enumerate() {
+            assert_eq!(hits.sphere[row] != MISS, sphere != MISS, "any hit: {}", what(row));
+        }
+    }
+}
+
+#[test]
+fn every_walk_is_exact() {
+    for (name, mut spheres) in scenes() {
+        let bvh = build(&mut spheres);
+        // Not a multiple of any width.
+        let (rays, bounds) = rays(&spheres, 1403);
+        agrees::<f32>(name, &bvh, &spheres, &rays, &bounds);
+        agrees::<F32x4>(name, &bvh, &spheres, &rays, &bounds);
+        agrees::<F32x8>(name, &bvh, &spheres, &rays, &bounds);
+        agrees::<F32x16>(name, &bvh, &spheres, &rays, &bounds);
+    }
+}
+
+#[test]
+fn outward_rays_never_hit_their_own_sphere_and_inward_ones_never_miss_its_far_side() {
+    let n = &mut Numbers(5);
+    for _ in 0..20_000 {
+        let (center, radius) = (n.point(), n.power(-20.0, 0.0));
+        let (normal, direction) = (n.direction(), n.direction());
+        let mut rays = Rays::with_capacity(1);
+        // No id: the band around the surface alone decides.
+        let point = center.as_dvec3() + normal.as_dvec3().normalize() * f64::from(radius);
+        rays.push(point.as_vec3(), direction, MISS - 1);
+        let t = intersect::confirm(&rays.exact(0), center.as_dvec3(), f64::from(radius));
+        let cosine = normal.dot(direction);
+        // Within the rounding of the origin the side is not known, nor whether a tangent ray
+        // touches.
+        if cosine.abs() > (1e-6 / radius).sqrt() {
+            assert_eq!(t.is_some(), cosine < 0.0, "{center} {radius} {cosine}");
+        }
+    }
+}
+
+#[test]
+fn the_tree_holds_every_sphere_and_is_shallow() {
+    for (name, mut spheres) in scenes() {
+        let before = spheres.len();
+        let bvh = build(&mut spheres);
+        let mut ids = spheres.id.clone();
+        ids.sort_unstable();
+        assert_eq!(ids, (0..before as u32).collect::<Vec<_>>(), "{name}");
+        bvh.validate(&spheres).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}
+
+/// The tree is a function of the spheres, not of the threads that build it.
+#[test]
+fn one_thread_and_many_build_the_same_tree() {
+    let n = &mut Numbers(9);
+    let rows: Vec<_> = (0..60_000).map(|_| (n.point(), 0.01)).collect();
+    let built = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut spheres = spheres(rows.iter().copied());
+        let bvh = pool.install(|| build(&mut spheres));
+        (bvh.nodes().to_vec(), spheres.id)
+    };
+    let one = built(1);
+    for threads in [2, 7] {
+        assert!(one == built(threads), "{threads} threads");
+    }
+}
