@@ -10,7 +10,7 @@ use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
 use spherule::ray::{Hits, MISS, Rays};
 use spherule::sampling::{Frame, cosine_hemisphere, stream, unit_pair};
 use spherule::scene::generate::{Field, Generator, Volume};
-use spherule::world::Spheres;
+use spherule::spheres::Spheres;
 use std::hint::black_box;
 use std::time::Duration;
 

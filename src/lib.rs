@@ -81,6 +81,7 @@ pub mod vec3;
 pub mod intersect;
 pub mod ray;
 pub mod sampling;
+pub mod spheres;
 
 // The pipeline, in order.
 pub mod scene;

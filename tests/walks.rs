@@ -9,7 +9,7 @@ use spherule::intersect;
 use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
 use spherule::ray::{Hits, MISS, Rays};
 use spherule::sampling::{stream, uniform_sphere, unit};
-use spherule::world::Spheres;
+use spherule::spheres::Spheres;
 
 /// Random numbers of a test.
 struct Numbers(u64);

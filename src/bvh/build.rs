@@ -9,7 +9,7 @@
 //! slices known in advance, in parallel.
 
 use super::{Bvh, Node};
-use crate::world::Spheres;
+use crate::spheres::Spheres;
 
 /// Spheres per leaf (`cargo bench --bench walk`: 4 beats 2 and 8 for packets and single rays).
 pub const LEAF: usize = 4;

@@ -8,7 +8,7 @@
 pub mod build;
 pub mod walk;
 
-use crate::world::Spheres;
+use crate::spheres::Spheres;
 
 /// A node: a box and either two children or a slice of the spheres' columns.
 #[repr(C)]

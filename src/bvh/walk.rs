@@ -12,8 +12,8 @@ use super::{Bvh, Content, Node};
 use crate::intersect::{self, FilterRay, SlabRay};
 use crate::lanes::{Lanes, Mask, set_bits};
 use crate::ray::{Hits, MISS, Rays};
+use crate::spheres::Spheres;
 use crate::vec3::Vec3;
-use crate::world::Spheres;
 use std::marker::PhantomData;
 
 /// Room for the nodes still to visit: a tree over 2^32 spheres is at most 31 levels deep.

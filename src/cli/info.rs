@@ -175,7 +175,8 @@ impl CameraInfo {
 
 impl MemoryInfo {
     fn new(world: &World) -> Self {
-        let (sphere_bytes, tree_bytes) = (world.spheres.bytes(), world.bvh.bytes());
+        let (sphere_bytes, tree_bytes) =
+            (world.spheres.bytes() + world.appearance.bytes(), world.bvh.bytes());
         let total = (sphere_bytes + tree_bytes) as f64;
         Self {
             sphere_bytes,

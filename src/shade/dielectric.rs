@@ -68,7 +68,7 @@ fn refract(direction: DVec3, facing: DVec3, eta: f64, choice: f64) -> (DVec3, bo
 }
 
 fn ior(world: &World, row: u32) -> f64 {
-    let material = world.spheres.material.row(row as usize);
+    let material = world.appearance.material.row(row as usize);
     f64::from(world.materials.dielectric[material.row()].ior)
 }
 

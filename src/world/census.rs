@@ -32,13 +32,13 @@ impl Features {
     pub(super) fn census(world: &World, scene: &Scene) -> Self {
         let mut spheres_by_kind = [0; Kind::COUNT];
         for row in 0..world.spheres.len() {
-            spheres_by_kind[world.spheres.material.row(row).kind() as usize] += 1;
+            spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
         }
         Self {
             spheres_by_kind,
             vanished: (scene.spheres.len() - world.spheres.len()) as u64,
             ground_kind: world.ground.map(|ground| ground.material.kind()),
-            colors: world.spheres.color.is_some(),
+            colors: world.appearance.color.is_some(),
             lights: !world.lights.is_empty(),
             lens: world.camera.has_lens(),
             environment: !world.environment.is_black(),
@@ -85,7 +85,7 @@ fn glass_at_camera(world: &World) -> Vec<u32> {
         .filter(|&row| {
             let row = row as usize;
             let distance = world.spheres.center(row).as_dvec3().distance(center);
-            world.spheres.material.row(row).kind() == Kind::Dielectric
+            world.appearance.material.row(row).kind() == Kind::Dielectric
                 && distance <= (f64::from(world.spheres.radius[row]) + reach) * (1.0 + 1e-6)
         })
         .collect()

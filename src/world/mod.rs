@@ -6,6 +6,7 @@
 //! slice. Everything that can be wrong with a scene is found here or before; past it nothing can
 //! fail.
 
+mod appearance;
 mod camera;
 mod census;
 mod environment;
@@ -16,6 +17,7 @@ mod lights;
 mod materials;
 mod spheres;
 
+pub use appearance::{Appearance, Column};
 pub use camera::Camera;
 pub use census::Features;
 pub use environment::{Environment, Picture, Radiance, SkySample};
@@ -25,11 +27,11 @@ pub use lights::{Aim, Disc, LightSample, Lights, Point, Sun};
 pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };
-pub use spheres::{Column, Spheres};
 
 use crate::bvh::{self, Bvh};
 use crate::ray::GROUND;
 use crate::scene::{Rgb, Scene};
+use crate::spheres::Spheres;
 use glam::Vec3;
 
 /// Everything that a render reads, immutable.
@@ -39,6 +41,8 @@ pub struct World {
     pub frame: Frame,
     /// The spheres, in the order of the tree's leaves.
     pub spheres: Spheres,
+    /// What they look like.
+    pub appearance: Appearance,
     /// The tree over them.
     pub bvh: Bvh,
     /// The ground plane, if there is one.
@@ -93,15 +97,18 @@ impl World {
         let pose = fit::pose(scene)?;
         let frame = Frame::of(&scene.spheres, &pose);
         let materials = Materials::build(&scene.materials);
-        let mut spheres = Spheres::build(scene, &frame, &materials);
+        let mut spheres = spheres::build(&scene.spheres, &frame);
         let bvh = bvh::build::build(&mut spheres);
+        let appearance = Appearance::build(&scene.spheres, &spheres.id, &materials);
         let camera = Camera::build(scene, &pose, &frame);
         let environment = Environment::build(&scene.environment);
         let ground = scene.ground.as_ref().map(|ground| Ground::build(ground, &frame, &materials));
-        let lights = Lights::build(scene, &frame, &spheres, &materials, &environment);
+        let lights =
+            Lights::build(scene, &frame, (&spheres, &appearance), &materials, &environment);
         let mut world = Self {
             frame,
             spheres,
+            appearance,
             bvh,
             ground,
             materials,
@@ -119,14 +126,14 @@ impl World {
     pub fn material(&self, hit: u32) -> MaterialId {
         match &self.ground {
             Some(ground) if hit == GROUND => ground.material,
-            _ => self.spheres.material.row(hit as usize),
+            _ => self.appearance.material.row(hit as usize),
         }
     }
 
     /// The factor on the material's color of what was hit.
     #[inline(always)]
     pub fn color(&self, hit: u32) -> Rgb {
-        match &self.spheres.color {
+        match &self.appearance.color {
             Some(colors) if hit != GROUND => Vec3::from(colors[hit as usize]),
             _ => Rgb::ONE,
         }

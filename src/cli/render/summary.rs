@@ -151,7 +151,7 @@ impl Statistics {
         Self {
             spheres: world.spheres.len() as u64,
             dropped_spheres: world.features.vanished,
-            sphere_bytes: world.spheres.bytes(),
+            sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),
             load_seconds: prepared.load.as_secs_f64(),
             build_seconds: prepared.build.as_secs_f64(),

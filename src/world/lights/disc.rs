@@ -1,0 +1,78 @@
+//! Emissive spheres, as seen from a point: discs that fill a cone.
+
+use super::LightSample;
+use crate::intersect;
+use crate::ray::ExactRay;
+use crate::sampling::{Cone, Frame};
+use crate::scene::Rgb;
+use crate::spheres::Spheres;
+use glam::{DVec3, Vec3};
+
+/// An emissive sphere as seen from a point: what fills a cone.
+pub struct Disc {
+    frame: Frame,
+    cone: Cone,
+    origin: Vec3,
+    center: DVec3,
+    radius: f64,
+    weight: Rgb,
+    close: bool,
+}
+
+/// Direction to the center of sphere `row`, the cone that it fills as seen from `origin`, and
+/// whether it is close; `None` from inside.
+///
+/// Close is nearer than 1.15 radii from the center: there, a diffuse surface looks for the sphere by
+/// its own sampling as well, and farther off the cone alone has the least variance. In the box of
+/// `scenes/smallpt.toml`, whose lamp is all close and nearly all hidden, the error at equal samples
+/// is 0.81 of what it is without (`spherule compare` of pictures of two seeds).
+pub(super) fn toward_sphere(
+    spheres: &Spheres,
+    row: usize,
+    origin: Vec3,
+) -> Option<(DVec3, Cone, bool)> {
+    const CLOSE: f64 = 1.15;
+    let toward = spheres.center(row).as_dvec3() - origin.as_dvec3();
+    let radius = f64::from(spheres.radius[row]);
+    let distance2 = toward.length_squared();
+    let cone = Cone::toward_sphere(distance2, radius)?;
+    Some((toward, cone, distance2 < (CLOSE * radius).powi(2)))
+}
+
+impl Disc {
+    /// Sphere `row`, of this radiance, as seen from `origin`; `None` from inside it.
+    pub(super) fn new(spheres: &Spheres, row: usize, radiance: Rgb, origin: Vec3) -> Option<Self> {
+        let (toward, cone, close) = toward_sphere(spheres, row, origin)?;
+        Some(Self {
+            frame: Frame::new(toward.normalize().as_vec3()),
+            origin,
+            center: spheres.center(row).as_dvec3(),
+            radius: f64::from(spheres.radius[row]),
+            weight: radiance / cone.pdf(),
+            cone,
+            close,
+        })
+    }
+
+    /// Light from a point of it.
+    #[inline]
+    pub(super) fn sample(&self, u: [f32; 2]) -> LightSample {
+        let direction = self.frame.to_world(self.cone.sample(u));
+        LightSample {
+            direction,
+            t: self.distance(direction),
+            weight: self.weight,
+            pdf: Some(self.cone.pdf()),
+            close: self.close,
+        }
+    }
+
+    /// Distance to the sphere. At the edge of its disc rounding may take the ray past it: then, to
+    /// the point where it is nearest.
+    fn distance(&self, direction: Vec3) -> f64 {
+        let ray = ExactRay::new(self.origin, direction, true);
+        intersect::confirm(&ray, self.center, self.radius).unwrap_or_else(|| {
+            (self.center - ray.origin).dot(ray.direction) / ray.direction.length_squared()
+        })
+    }
+}

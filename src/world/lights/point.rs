@@ -1,0 +1,34 @@
+//! Point lights.
+
+use super::LightSample;
+use crate::scene::Rgb;
+use glam::{DVec3, Vec3};
+
+/// A point light in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    pub(super) position: DVec3,
+    /// Radiant intensity; irradiance if there is no fall-off.
+    pub(super) intensity: Rgb,
+    /// World units per unit of the user, by whose distance light falls off; `None` if it does not.
+    pub(super) falloff: Option<f64>,
+}
+
+impl Point {
+    /// Light at a point; `None` at the light itself.
+    pub(super) fn sample(&self, origin: Vec3) -> Option<LightSample> {
+        let toward = self.position - origin.as_dvec3();
+        let distance = toward.length();
+        if distance == 0.0 {
+            return None;
+        }
+        let falloff = self.falloff.map_or(1.0, |scale| (scale / distance).powi(2) as f32);
+        Some(LightSample {
+            direction: (toward / distance).as_vec3(),
+            t: distance,
+            weight: self.intensity * falloff,
+            pdf: None,
+            close: false,
+        })
+    }
+}
