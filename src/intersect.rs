@@ -16,7 +16,28 @@
 //! multiply-add rounds `p` itself once. `|f| <= |t||d| + |p|`, and near a tangent `|p|` is about
 //! `r`; the band `r (1 + K) + K |t||d|` with `K = 4u` covers it with a factor of about 3 to spare
 //! over the widest wrong decision that was measured (1.25 u).
+//!
+//! # The decision's bounds
+//!
+//! With `E` = 2^-53, `F` from the center to the origin, of length `f`, `a = d.d`, `b = -F.d`, and
+//! `p` the length of the perpendicular `P = F + d b/a`:
+//!
+//! - `F` is off by `E f`, and each product and sum adds `E` of itself. So `b` is off by at most
+//!   `4 E sum |F_i d_i|`, and `F.F - r^2` by at most `8 E (f^2 + r^2)`.
+//! - `b/a` is off by at most `8 E f / |d|`, which moves `P` by `8 E f` along the ray; rounding `F`,
+//!   the products and the sums moves it by at most `E (2 f + p)` in any direction. What is along the
+//!   ray is at a right angle to `P` and counts in second order only, so `P.P` is off by at most
+//!   `2 p E (2 f + p) + (E (2 f + p) + 8 E f)^2`.
+//! - With the sum of three squares, `r^2` and the last difference, `r^2 - P.P` is off by at most
+//!   `E (4 f p + 6 p^2 + 2 r^2) + (11 E f)^2`. The code's bound,
+//!   `8 E (f p + p^2 + r^2) + (16 E f)^2`, leaves room for third order and for its own rounding.
+//! - The root of `x (1 + e)` is off by less than `e` of itself, and errors of products and quotients
+//!   add up, in first order; 1 % on top covers the second.
+//!
+//! A sign is taken from double precision only where the value is beyond its bound. Underflow does
+//! not matter: the least product of four single-precision numbers is 1e-180.
 
+use crate::exact;
 use crate::lanes::Lanes;
 use crate::ray::ExactRay;
 use crate::vec3::Vec3;
@@ -24,6 +45,9 @@ use glam::DVec3;
 
 /// Unit roundoff of `f32`.
 const U: f32 = f32::EPSILON / 2.0;
+
+/// Unit roundoff of `f64`.
+const E: f64 = f64::EPSILON / 2.0;
 
 /// Relative width of the filter's band.
 const K: f32 = 4.0 * U;
@@ -78,36 +102,168 @@ pub fn filter<L: Lanes>(ray: &FilterRay<L>, center: Vec3<L>, radius: L, t_max: L
     !(chord2.lt(zero)) & !(t_max.lt(t - half)) & !((t + half).lt(zero))
 }
 
-/// Distance, in units of the direction's length, at which a ray hits a sphere; `None` if it does
-/// not.
+/// Where a ray hits a sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Root {
+    /// Distance in units of the direction's length, more than 0.
+    pub t: f64,
+    /// The true distance is no farther from `t` than this; 0 where `t` is so by definition.
+    pub error: f64,
+    /// Whether it took arithmetic without rounding to decide that there is a hit.
+    pub exact: bool,
+}
+
+/// Whether and where a ray hits a sphere; the answer is that of arithmetic without rounding.
 ///
-/// Outside, that is the near root; inside, the far one. Where the origin is on the surface, within
-/// its own rounding, the direction decides: a ray that leaves misses, a ray that enters hits the
-/// far side. The arithmetic is that of Haines et al. 2019 in double precision, which decides
-/// rightly unless the ray's distance from being tangent is below about 2^-50 of its distance from
-/// the center. Zero directions, and anything infinite or NaN, miss.
+/// Outside, that is the near root; inside, the far one; a tangent hits. Where the origin is on the
+/// surface the direction decides: a ray that leaves misses, a ray that enters hits the far side. On
+/// the surface is exactly so, or for an origin that was rounded itself ([`ExactRay::origin_error`])
+/// within that rounding; then `inside` says whether the ray is inside nevertheless, as on a sphere that
+/// touches this one from within, and if it is not, a ray that enters hits at once. Zero directions, and anything infinite or NaN, miss.
+///
+/// The form is that of Haines et al. 2019 in double precision, with the bounds of the [module's
+/// documentation](self); where they cannot decide, [`exact::hit`] does.
 #[inline(always)]
-pub fn confirm(ray: &ExactRay, center: DVec3, radius: f64) -> Option<f64> {
-    let from_center = ray.origin - center;
-    let a = ray.direction.length_squared();
-    let b = -from_center.dot(ray.direction);
-    let perpendicular = from_center + ray.direction * (b / a);
-    let chord2 = radius * radius - perpendicular.length_squared();
-    // NaN compares false.
-    let line_hits = chord2 >= 0.0 && a > 0.0 && a < f64::INFINITY;
-    if !line_hits {
+pub fn confirm(
+    ray: &ExactRay,
+    center: DVec3,
+    radius: f64,
+    inside: impl FnOnce() -> bool,
+) -> Option<Root> {
+    let terms = Terms::new(ray, center, radius);
+    // NaN compares false, here and below.
+    let clear = terms.are_clear() && terms.a > 0.0 && terms.a < f64::INFINITY;
+    let band = ray.origin_error * (2.0 * radius + ray.origin_error);
+    if clear && terms.outside.abs() > band {
+        let t = terms.distance(terms.chord2)?;
+        return Some(Root { t, error: t * CLEAR, exact: false });
+    }
+    confirm_closely(ray, center, radius, inside)
+}
+
+/// Bound of a [`Terms::distance`]'s relative error if the terms are clear.
+const CLEAR: f64 = 1.0 / (1 << 18) as f64;
+
+/// What the decision about a ray and a sphere is made of, rounded.
+struct Terms {
+    /// Squared length of the direction.
+    a: f64,
+    /// Way to the middle of the chord, times `a`.
+    b: f64,
+    /// Sum of the magnitudes of the products in `b`.
+    b_magnitude: f64,
+    /// Squared distance of the origin from the center.
+    distance2: f64,
+    /// Squared distance of the line from the center.
+    p2: f64,
+    r2: f64,
+    /// Squared half of the chord; negative where the line misses.
+    chord2: f64,
+    /// Negative inside, 0 on the surface, positive outside.
+    outside: f64,
+}
+
+impl Terms {
+    #[inline(always)]
+    fn new(ray: &ExactRay, center: DVec3, radius: f64) -> Self {
+        let from_center = ray.origin - center;
+        let distance2 = from_center.length_squared();
+        let a = ray.direction.length_squared();
+        let products = from_center * ray.direction;
+        let b = -products.element_sum();
+        let p2 = (from_center + ray.direction * (b / a)).length_squared();
+        let r2 = radius * radius;
+        let b_magnitude = products.abs().element_sum();
+        Self { a, b, b_magnitude, distance2, p2, r2, chord2: r2 - p2, outside: distance2 - r2 }
+    }
+
+    /// Whether chord and side are at least 2^20 times their bounds, without a root: so the relative
+    /// error of the distance is below 2 x 2^-20 and a little, for that of `b` is at most 2^-36
+    /// then. A line that certainly misses is clear as well.
+    #[inline(always)]
+    fn are_clear(&self) -> bool {
+        // 2 x 2^20 x 8 E, and its square for the mixed product.
+        const PART: f64 = 1.0 / (1_u64 << 28) as f64;
+        let chord2 = self.chord2.abs();
+        chord2 > PART * (self.p2 + self.r2)
+            && chord2 * chord2 > PART * PART * self.distance2 * self.p2
+            && chord2 > PART * PART * self.distance2
+            && self.outside.abs() > PART * (self.distance2 + self.r2)
+    }
+
+    /// The distance for signs that are certain; `None` for a miss.
+    #[inline(always)]
+    fn distance(&self, chord2: f64) -> Option<f64> {
+        let outside = self.outside > 0.0;
+        if chord2 < 0.0 || (outside && self.b <= 0.0) {
+            return None;
+        }
+        let root = (self.a * chord2).sqrt();
+        // The form of the two in which nothing cancels.
+        let sum = self.b.abs() + root;
+        let far = !outside && self.b >= 0.0;
+        Some(if far { sum / self.a } else { self.outside.abs() / sum })
+    }
+
+    fn chord2_error(&self) -> f64 {
+        let mixed = (self.distance2 * self.p2).sqrt();
+        8.0 * E * (mixed + self.p2 + self.r2) + (16.0 * E).powi(2) * self.distance2
+    }
+
+    fn outside_error(&self) -> f64 {
+        8.0 * E * (self.distance2 + self.r2)
+    }
+
+    /// Bound of the error of [`Terms::distance`], relative.
+    fn distance_error(&self) -> f64 {
+        let root = (self.a * self.chord2).sqrt();
+        let root_error = root * (self.chord2_error() / self.chord2 + 4.0 * E);
+        let sum = self.b.abs() + root;
+        let side = self.outside_error() / self.outside.abs();
+        1.01 * (side + (4.0 * E * self.b_magnitude + root_error) / sum) + 8.0 * E
+    }
+}
+
+/// [`confirm`] where something is close: bounds in full, and arithmetic without rounding if they
+/// are not enough.
+#[inline(never)]
+pub fn confirm_closely(
+    ray: &ExactRay,
+    center: DVec3,
+    radius: f64,
+    inside: impl FnOnce() -> bool,
+) -> Option<Root> {
+    let terms = Terms::new(ray, center, radius);
+    let chord2_error = terms.chord2_error();
+    if !(terms.chord2 >= -chord2_error && terms.a > 0.0 && terms.a < f64::INFINITY) {
         return None;
     }
-    let outside = from_center.length_squared() - radius * radius;
     let band = ray.origin_error * (2.0 * radius + ray.origin_error);
-    let root = (a * chord2).sqrt();
-    if outside > band {
-        (b > 0.0).then(|| outside / (b + root))
-    } else if outside < -band {
-        Some(if b >= 0.0 { (b + root) / a } else { outside / (b - root) })
-    } else {
-        (b > 0.0).then(|| 2.0 * b / a)
+    if ray.origin_error > 0.0 && terms.outside.abs() <= band && terms.chord2 >= 0.0 {
+        let through = || 2.0 * terms.b / terms.a;
+        let at_once = || terms.outside / (terms.b + (terms.a * terms.chord2).sqrt());
+        return (terms.b > 0.0).then(|| {
+            let t = if inside() { through() } else { at_once().max(0.0) };
+            Root { t, error: 0.0, exact: false }
+        });
     }
+    if terms.chord2 <= chord2_error || terms.outside.abs() <= terms.outside_error() {
+        let away = terms.outside > terms.outside_error() && terms.b < -4.0 * E * terms.b_magnitude;
+        return decide(ray, center, radius, away);
+    }
+    let t = terms.distance(terms.chord2)?;
+    Some(Root { t, error: t * terms.distance_error(), exact: false })
+}
+
+/// What double precision cannot, but for rays that start outside and head away, which need not be
+/// looked at twice.
+fn decide(ray: &ExactRay, center: DVec3, radius: f64, away: bool) -> Option<Root> {
+    let finite = ray.origin.is_finite() && center.is_finite() && radius.is_finite();
+    if away || !finite {
+        return None;
+    }
+    let t = exact::hit(ray, center, radius)?;
+    Some(Root { t, error: 16.0 * E * t, exact: true })
 }
 
 /// Rays as the box test wants them.

@@ -78,6 +78,7 @@
 pub mod lanes;
 pub mod vec3;
 
+pub mod exact;
 pub mod intersect;
 pub mod ray;
 pub mod sampling;
@@ -88,6 +89,7 @@ pub mod scene;
 pub mod world;
 
 pub mod bvh;
+pub mod query;
 pub mod trace;
 
 pub mod integrator;
@@ -100,5 +102,6 @@ pub mod atomic;
 pub mod image;
 
 pub use image::Image;
+pub use query::SphereTree;
 pub use scene::Scene;
 pub use world::World;

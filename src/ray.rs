@@ -21,6 +21,10 @@ pub struct Rays {
     /// hit: a convex body cannot hit itself from outside, and what a ray that goes inside leaves
     /// through is known before it is traced.
     pub own: Vec<u32>,
+    /// What the ray is aimed at: a light, which does not occlude itself; else [`MISS`].
+    pub target: Vec<u32>,
+    /// What the rays are exactly, if the columns could not hold it; empty otherwise.
+    pub(crate) precise: Vec<ExactRay>,
     len: usize,
 }
 
@@ -77,6 +81,8 @@ impl Rays {
             origin: Columns3::with_rows(rows),
             direction: Columns3::with_rows(rows),
             own: vec![MISS; rows],
+            target: vec![MISS; rows],
+            precise: Vec::new(),
             len: 0,
         }
     }
@@ -110,6 +116,7 @@ impl Rays {
         self.origin.set(i, origin);
         self.direction.set(i, direction);
         self.own[i] = own;
+        self.target[i] = MISS;
     }
 
     /// Copies row `from` over row `to`.
@@ -121,7 +128,10 @@ impl Rays {
     /// Ray `i` for the exact test.
     #[inline(always)]
     pub fn exact(&self, i: usize) -> ExactRay {
-        ExactRay::new(self.origin.row(i), self.direction.row(i), self.own[i] != MISS)
+        match self.precise.get(i) {
+            Some(ray) => *ray,
+            None => ExactRay::new(self.origin.row(i), self.direction.row(i), self.own[i] != MISS),
+        }
     }
 }
 
@@ -160,6 +170,12 @@ impl ExactRay {
         let origin_error =
             if on_surface { f64::from(f32::EPSILON) * origin.abs().element_sum() } else { 0.0 };
         Self { origin, direction: direction.as_dvec3(), origin_error }
+    }
+
+    /// The point at distance `t`, seen from `center`. Taking the difference first loses nothing where
+    /// both are far from the coordinates' origin.
+    pub fn at_from(&self, center: DVec3, t: f64) -> DVec3 {
+        (self.origin - center) + self.direction * t
     }
 
     /// The point at distance `t`.

@@ -42,7 +42,7 @@ pub enum Coherence {
 impl Tracer {
     /// Finds what each ray hits first. On entry `hits.t` bounds the search, and `hits.sphere` is
     /// what is at that bound, if anything; on return both tell of the hit.
-    pub fn closest(self, world: &World, rays: &Rays, hits: &mut Hits, coherence: Coherence) {
+    pub fn closest(self, world: &World, rays: &Rays, hits: &mut Hits, coherence: Coherence) -> u64 {
         if let Some(ground) = &world.ground {
             for row in 0..rays.len() {
                 if rays.own[row] == GROUND {
@@ -54,12 +54,18 @@ impl Tracer {
                 }
             }
         }
-        self.walk::<Closest>(world, rays, hits, coherence);
+        self.walk::<Closest>(world, rays, hits, coherence)
     }
 
     /// Finds whether anything is nearer than `hits.t`: on return `hits.sphere` is [`MISS`] where
     /// nothing is. On entry it is `MISS` for every ray that is to be traced.
-    pub fn occluded(self, world: &World, rays: &Rays, hits: &mut Hits, coherence: Coherence) {
+    pub fn occluded(
+        self,
+        world: &World,
+        rays: &Rays,
+        hits: &mut Hits,
+        coherence: Coherence,
+    ) -> u64 {
         if let Some(ground) = &world.ground {
             for row in 0..rays.len() {
                 if rays.own[row] == GROUND || hits.sphere[row] != MISS {
@@ -71,10 +77,16 @@ impl Tracer {
                 }
             }
         }
-        self.walk::<Any>(world, rays, hits, coherence);
+        self.walk::<Any>(world, rays, hits, coherence)
     }
 
-    fn walk<Q: Query>(self, world: &World, rays: &Rays, hits: &mut Hits, coherence: Coherence) {
+    fn walk<Q: Query>(
+        self,
+        world: &World,
+        rays: &Rays,
+        hits: &mut Hits,
+        coherence: Coherence,
+    ) -> u64 {
         let width = match coherence {
             Coherence::Coherent => self.coherent,
             Coherence::Incoherent => self.incoherent,
@@ -87,7 +99,7 @@ impl Tracer {
         }
     }
 
-    fn run<L: Lanes, Q: Query>(self, world: &World, rays: &Rays, hits: &mut Hits) {
-        walk::trace::<L, Q>(self.method, &world.bvh, &world.spheres, rays, hits);
+    fn run<L: Lanes, Q: Query>(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+        walk::trace::<L, Q>(self.method, &world.bvh, &world.spheres, rays, hits)
     }
 }

@@ -17,6 +17,11 @@ pub const LEAF: usize = 4;
 /// Below this many spheres a subtree is built by one task: splitting costs more than it saves.
 const PARALLEL: usize = 4096;
 
+/// Every box is wider than its spheres by this, a part of the largest coordinate, which is about 1. So
+/// no ray touches a sphere where it enters a box, and a direction whose reciprocal is not finite does
+/// no harm: it takes such a ray longer than any scene is wide to cross the margin.
+const MARGIN: f32 = 1.0 / (1_u64 << 56) as f32;
+
 /// A sphere while the tree is built.
 #[derive(Clone, Copy)]
 struct Item {
@@ -107,8 +112,8 @@ fn bounds(items: &[Item]) -> ([f32; 3], [f32; 3]) {
     let mut high = [f32::NEG_INFINITY; 3];
     for item in items {
         for axis in 0..3 {
-            low[axis] = low[axis].min((item.center[axis] - item.radius).next_down());
-            high[axis] = high[axis].max((item.center[axis] + item.radius).next_up());
+            low[axis] = low[axis].min((item.center[axis] - item.radius - MARGIN).next_down());
+            high[axis] = high[axis].max((item.center[axis] + item.radius + MARGIN).next_up());
         }
     }
     (low, high)

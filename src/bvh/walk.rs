@@ -9,11 +9,14 @@
 //! answer is found, never which it is.
 
 use super::{Bvh, Content, Node};
-use crate::intersect::{self, FilterRay, SlabRay};
-use crate::lanes::{Lanes, Mask, set_bits};
-use crate::ray::{Hits, MISS, Rays};
+use crate::exact::{self, Distance};
+use crate::intersect::{self, FilterRay, Root, SlabRay};
+use crate::lanes::{Lanes, MAX_LANES, Mask, set_bits};
+use crate::ray::{ExactRay, Hits, MISS, Rays};
 use crate::spheres::Spheres;
 use crate::vec3::Vec3;
+use glam::DVec3;
+use std::cmp::Ordering;
 use std::marker::PhantomData;
 
 /// Room for the nodes still to visit: a tree over 2^32 spheres is at most 31 levels deep.
@@ -49,20 +52,25 @@ pub enum Method {
 }
 
 /// Traces all rays in packets of `L::WIDTH`; `hits` holds bounds on entry, answers on return.
+///
+/// Returns how many decisions took arithmetic without rounding.
 pub fn trace<L: Lanes, Q: Query>(
     method: Method,
     bvh: &Bvh,
     spheres: &Spheres,
     rays: &Rays,
     hits: &mut Hits,
-) {
+) -> u64 {
+    let mut exact = 0;
     for row in (0..rays.len()).step_by(L::WIDTH) {
         let mut packet = Packet::<L, Q>::new(spheres, rays, hits, row);
         match method {
             Method::Brute => packet.leaf(0, spheres.len()),
             Method::Tree => packet.walk(bvh.nodes()),
         }
+        exact += packet.exact;
     }
+    exact
 }
 
 /// Rays `row..row + L::WIDTH` on their way through the tree.
@@ -75,6 +83,10 @@ struct Packet<'a, L: Lanes, Q> {
     slab: SlabRay<L>,
     /// Upper bounds of the distances that still count, rounded up; below 0 for a lane that is done.
     t_max: L,
+    /// By how much each lane's distance may be off.
+    error: [f64; MAX_LANES],
+    /// How often arithmetic without rounding was needed.
+    exact: u64,
     query: PhantomData<Q>,
 }
 
@@ -91,6 +103,8 @@ impl<'a, L: Lanes, Q: Query> Packet<'a, L, Q> {
             filter: FilterRay::new(origin, direction),
             slab: SlabRay::new(origin, direction),
             t_max: L::splat(0.0),
+            error: [0.0; MAX_LANES],
+            exact: 0,
             query: PhantomData,
         };
         packet.refresh();
@@ -100,12 +114,12 @@ impl<'a, L: Lanes, Q: Query> Packet<'a, L, Q> {
     /// Takes the lanes' bounds from the hits.
     #[inline(always)]
     fn refresh(&mut self) {
-        let mut t_max = [DONE; crate::lanes::MAX_LANES];
+        let mut t_max = [DONE; MAX_LANES];
         let lanes = L::WIDTH.min(self.rays.len() - self.row);
         for (lane, bound) in t_max[..lanes].iter_mut().enumerate() {
             let row = self.row + lane;
             if !(Q::ANY && self.hits.sphere[row] != MISS) {
-                *bound = (self.hits.t[row] as f32).next_up();
+                *bound = ((self.hits.t[row] + self.error[lane]) as f32).next_up();
             }
         }
         self.t_max = L::load(&t_max);
@@ -179,30 +193,102 @@ impl<'a, L: Lanes, Q: Query> Packet<'a, L, Q> {
     /// Decides the lanes that passed the filter, and keeps what is nearer.
     #[inline(never)]
     fn confirm(&mut self, sphere: usize, lanes: u32) {
-        let center = self.spheres.center(sphere).as_dvec3();
-        let radius = f64::from(self.spheres.radius[sphere]);
+        let (center, radius) = self.spheres.exact(sphere);
         for lane in set_bits(lanes) {
             let row = self.row + lane;
-            if self.rays.own[row] == sphere as u32 {
+            if self.is(sphere, self.rays.own[row]) || self.is(sphere, self.rays.target[row]) {
                 continue;
             }
-            let Some(t) = intersect::confirm(&self.rays.exact(row), center, radius) else {
-                continue;
-            };
-            let best = self.hits.t[row];
-            if t < best || (!Q::ANY && t == best && self.precedes(sphere, self.hits.sphere[row])) {
+            let ray = self.rays.exact(row);
+            let inside = || self.starts_within(&ray, row, center, radius);
+            let Some(root) = intersect::confirm(&ray, center, radius, inside) else { continue };
+            self.exact += u64::from(root.exact);
+            if self.is_nearer(&ray, sphere, &root, lane) {
                 self.hits.sphere[row] = sphere as u32;
                 if !Q::ANY {
-                    self.hits.t[row] = t;
+                    self.hits.t[row] = root.t;
+                    self.error[lane] = root.error;
                 }
             }
         }
         self.refresh();
     }
 
-    /// Whether `sphere` comes before `other` in the user's scene; the ground and a miss come last.
+    /// Whether `sphere` is sphere `known` of the ray, or coincides with it. What coincides comes later
+    /// in the scene, or it would be known in its stead.
+    #[inline(always)]
+    fn is(&self, sphere: usize, known: u32) -> bool {
+        known == sphere as u32
+            || ((known as usize) < self.spheres.len()
+                && self.spheres.exact(known as usize) == self.spheres.exact(sphere))
+    }
+
+    /// Whether a ray that starts on the surface of this sphere, as far as rounding tells, starts on one
+    /// that touches it from within.
+    fn starts_within(&self, ray: &ExactRay, row: usize, center: DVec3, radius: f64) -> bool {
+        let own = self.rays.own[row] as usize;
+        if own >= self.spheres.len() {
+            return false;
+        }
+        let (own_center, own_radius) = self.spheres.exact(own);
+        own_radius < radius && (ray.origin - own_center).dot(ray.origin - center) > 0.0
+    }
+
+    /// Whether a hit replaces what its lane has so far.
+    #[inline(always)]
+    fn is_nearer(&mut self, ray: &ExactRay, sphere: usize, root: &Root, lane: usize) -> bool {
+        let row = self.row + lane;
+        let (best, error) = (self.hits.t[row], self.error[lane]);
+        if root.t + root.error < best - error {
+            return true;
+        }
+        if root.t - root.error > best + error {
+            return false;
+        }
+        match self.compare(ray, sphere, root, lane) {
+            Ordering::Less => true,
+            Ordering::Equal => !Q::ANY && self.precedes(sphere, self.hits.sphere[row]),
+            Ordering::Greater => false,
+        }
+    }
+
+    /// Compares distances that are closer than their errors: by closer bounds, then without
+    /// rounding.
+    #[cold]
+    fn compare(&mut self, ray: &ExactRay, sphere: usize, root: &Root, lane: usize) -> Ordering {
+        let row = self.row + lane;
+        let (best, other) = (self.hits.t[row], self.hits.sphere[row] as usize);
+        let twins = || self.spheres.exact(sphere) == self.spheres.exact(other);
+        if self.error[lane] != 0.0 && twins() {
+            return Ordering::Equal;
+        }
+        let first = self.candidate(ray, sphere, root.t, root.error);
+        let second = self.candidate(ray, other, best, self.error[lane]);
+        let gap = first.0.t - second.0.t;
+        if gap.abs() > first.0.error + second.0.error {
+            return gap.total_cmp(&0.0);
+        }
+        self.exact += 1;
+        exact::compare(ray, &first.1, &second.1)
+    }
+
+    /// A distance with its closest bound, and what it is. An error of 0 says that it is no hit, or
+    /// by definition so.
+    fn candidate(&self, ray: &ExactRay, sphere: usize, t: f64, error: f64) -> (Root, Distance) {
+        let number = Root { t, error: 0.0, exact: false };
+        if error == 0.0 {
+            return (number, Distance::Number(t));
+        }
+        let (center, radius) = self.spheres.exact(sphere);
+        let root = intersect::confirm_closely(ray, center, radius, || false);
+        (root.unwrap_or(number), Distance::Hit(center, radius))
+    }
+
+    /// Whether `sphere` comes before `other` in the user's scene; the ground comes last, and a bound is
+    /// no hit.
     fn precedes(&self, sphere: usize, other: u32) -> bool {
-        self.spheres.id.get(other as usize).is_none_or(|&id| self.spheres.id[sphere] < id)
+        other != MISS
+            && self.spheres.id.get(other as usize).is_none_or(|&id| self.spheres.id[sphere] < id)
     }
 }
 

@@ -8,6 +8,7 @@ use super::Job;
 use super::path::cast_shadow;
 use super::stages::{self, Local};
 use super::workspace::Workspace;
+use crate::ray::MISS;
 use crate::sampling::cosine_hemisphere;
 use crate::scene::Rgb;
 use crate::trace::Coherence;
@@ -32,8 +33,14 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
             let direction = local.to_world(cosine_hemisphere(draw.direction));
             let hit = work.hits.sphere[row];
             let color = albedo(job.world, job.world.material(hit)) * job.world.color(hit);
-            let sky =
-                LightSample { direction, t: distance, weight: color, pdf: None, close: false };
+            let sky = LightSample {
+                direction,
+                t: distance,
+                target: MISS,
+                weight: color,
+                pdf: None,
+                close: false,
+            };
             cast_shadow(job, work, row, (&sky, color), local.inside);
         }
         work.bins.kind[kind as usize] = rows;

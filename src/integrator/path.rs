@@ -204,7 +204,7 @@ pub fn cast_shadow(
         return;
     }
     let origin: Vec3 = work.surface.point[row];
-    work.shadows.push((origin, own), sample.direction, sample.t, (work.place[row], light));
+    work.shadows.push((origin, own), sample, (work.place[row], light));
     if work.shadows.is_full() {
         stages::occlude(job, work, Coherence::Coherent);
     }

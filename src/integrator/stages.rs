@@ -5,7 +5,6 @@ use super::workspace::{Arrival, Workspace};
 use crate::film::Tile;
 use crate::ray::{ExactRay, GROUND, MISS};
 use crate::sampling;
-use crate::scene::Rgb;
 use crate::shade::{Bsdf, dielectric};
 use crate::trace::Coherence;
 use crate::world::{Kind, MaterialId, World};
@@ -50,7 +49,8 @@ fn enter_glass(world: &World, work: &mut Workspace, place: usize, origin: Vec3, 
 
 /// Finds what each path hits next, where, and sorts the rows by what it is.
 pub fn intersect(job: &Job, work: &mut Workspace, coherence: Coherence) {
-    job.tracer.closest(job.world, &work.rays, &mut work.hits, coherence);
+    work.counters.exact_decisions +=
+        job.tracer.closest(job.world, &work.rays, &mut work.hits, coherence);
     for row in 0..work.len() {
         let hit = work.hits.sphere[row];
         if hit != MISS {
@@ -79,7 +79,8 @@ fn solve(world: &World, work: &Workspace, row: usize, hit: u32) -> (Vec3, DVec3)
     let normal = if work.rays.own[row] == hit {
         exit_normal(&ray, work.surface.normal[row])
     } else {
-        (ray.at(work.hits.t[row]) - center).normalize()
+        // Of a sphere that is smaller than rounding, the ray is all that is known.
+        ray.at_from(center, work.hits.t[row]).normalize_or(-ray.direction.normalize())
     };
     ((center + normal * radius).as_vec3(), normal)
 }
@@ -113,7 +114,7 @@ impl Local {
         let frame = sampling::Frame::new(facing.as_vec3());
         let mut outgoing = frame.to_local(-direction);
         // At the limb, rounding may put the viewer below the horizon.
-        outgoing.z = outgoing.z.max(f32::MIN_POSITIVE);
+        outgoing.z = outgoing.z.max(f32::EPSILON);
         Self { frame, outgoing, inside }
     }
 
@@ -124,16 +125,11 @@ impl Local {
     }
 }
 
-/// Adds light to the path in `place`.
-#[inline]
-pub fn add_light(work: &mut Workspace, place: usize, light: Rgb) {
-    work.paths.radiance[place] += light;
-}
-
 /// Traces the shadow rays and gives their light to the paths that it reaches.
 pub fn occlude(job: &Job, work: &mut Workspace, coherence: Coherence) {
     let shadows = &mut work.shadows;
-    job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits, coherence);
+    work.counters.exact_decisions +=
+        job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits, coherence);
     for row in 0..shadows.rays.len() {
         if shadows.hits.sphere[row] == MISS {
             work.paths.radiance[shadows.place[row] as usize] += shadows.light[row];

@@ -150,6 +150,7 @@ impl Shade<'_> {
             let sample = LightSample {
                 direction,
                 t: f64::INFINITY,
+                target: MISS,
                 weight: radiance * (PI / incoming.z.max(f32::MIN_POSITIVE)),
                 pdf: None,
                 close: false,

@@ -3,7 +3,7 @@
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{PathState, Sampler};
 use crate::scene::Rgb;
-use crate::world::{Kind, World};
+use crate::world::{Kind, LightSample, World};
 use glam::{DVec3, Vec3};
 
 /// Paths that are followed together: 16 samples of each pixel of a tile. The columns of that many
@@ -106,6 +106,8 @@ pub struct Counters {
     pub bounce_rays: u64,
     /// Rays from surfaces toward light.
     pub shadow_rays: u64,
+    /// Decisions about hits that took arithmetic without rounding.
+    pub exact_decisions: u64,
     /// Paths that the depth limit ended.
     pub cut_paths: u64,
     /// Samples that were not finite, and count as black.
@@ -125,6 +127,7 @@ impl Counters {
         self.camera_rays += other.camera_rays;
         self.bounce_rays += other.bounce_rays;
         self.shadow_rays += other.shadow_rays;
+        self.exact_decisions += other.exact_decisions;
         self.cut_paths += other.cut_paths;
         self.bad_samples += other.bad_samples;
         self.nesting_overflows += other.nesting_overflows;
@@ -278,12 +281,13 @@ impl Shadows {
         self.rays.len() == SHADOWS
     }
 
-    /// Appends a shadow ray.
+    /// Appends a shadow ray toward a light, for the path and with the light given.
     #[inline]
-    pub fn push(&mut self, (origin, own): (Vec3, u32), direction: Vec3, t: f64, to: (u32, Rgb)) {
+    pub fn push(&mut self, (origin, own): (Vec3, u32), sample: &LightSample, to: (u32, Rgb)) {
         let row = self.rays.len();
-        self.rays.push(origin, direction, own);
-        self.hits.set(row, t, MISS);
+        self.rays.push(origin, sample.direction, own);
+        self.rays.target[row] = sample.target;
+        self.hits.set(row, sample.t, MISS);
         (self.place[row], self.light[row]) = to;
     }
 }

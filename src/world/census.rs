@@ -81,12 +81,14 @@ fn glass_at_camera(world: &World) -> Vec<u32> {
         return Vec::new();
     }
     let (center, reach) = world.camera.origins();
-    (0..world.spheres.len() as u32)
-        .filter(|&row| {
-            let row = row as usize;
-            let distance = world.spheres.center(row).as_dvec3().distance(center);
-            world.appearance.material.row(row).kind() == Kind::Dielectric
-                && distance <= (f64::from(world.spheres.radius[row]) + reach) * (1.0 + 1e-6)
-        })
-        .collect()
+    let is_glass =
+        |row: &u32| world.appearance.material.row(*row as usize).kind() == Kind::Dielectric;
+    let near = |row: &u32| {
+        let (at, radius) = world.spheres.exact(*row as usize);
+        at.distance(center) <= (radius + reach) * (1.0 + 1e-6)
+    };
+    let rows = (0..world.spheres.len() as u32).filter(|row| is_glass(row) && near(row));
+    let mut rows = world.spheres.first_of_equals(rows);
+    rows.retain(is_glass);
+    rows
 }

@@ -109,9 +109,10 @@ impl Picture {
     fn new(image: Arc<crate::image::Image>, up: DVec3, rotation: f64, scale: f32) -> Self {
         let (width, height) = (image.width as usize, image.height as usize);
         let sine = |row: usize| (std::f64::consts::PI * (row as f64 + 0.5) / height as f64).sin();
-        let weight = |column: usize, row: usize| {
-            f64::from(luminance(Rgb::from(image.pixels[row * width + column]))) * sine(row)
-        };
+        let luminances: Vec<_> =
+            image.pixels.iter().map(|&pixel| f64::from(luminance(Rgb::from(pixel)))).collect();
+        let weight =
+            |column, row| mean_in_cell(&luminances, (width, height), (column, row)) * sine(row);
         let sum: f64 = (0..width * height).map(|i| weight(i % width, i / width)).sum();
         let sines: f64 = (0..height).map(sine).sum::<f64>() * width as f64;
         let distribution = Distribution2d::new(width, height, weight).filter(|_| scale > 0.0);
@@ -172,6 +173,23 @@ impl Picture {
             _ => 0.0,
         }
     }
+}
+
+/// Mean of the bilinear interpolation over the cell of a pixel: the pixel and its eight neighbors, by the shares 1 : 6 : 1
+/// of each axis. So no cell counts as black that a neighbor shines into.
+fn mean_in_cell(
+    luminances: &[f64],
+    (width, height): (usize, usize),
+    (column, row): (usize, usize),
+) -> f64 {
+    let columns = [(column + width - 1) % width, column, (column + 1) % width];
+    let rows = [row.saturating_sub(1), row, (row + 1).min(height - 1)];
+    let across = |row: usize| {
+        let [left, middle, right] = columns.map(|column| luminances[row * width + column]);
+        (left + 6.0 * middle + right) / 8.0
+    };
+    let [above, here, below] = rows.map(across);
+    (above + 6.0 * here + below) / 8.0
 }
 
 /// Longitude and latitude, each in 0..1, of a unit vector.

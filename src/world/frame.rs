@@ -56,7 +56,9 @@ fn middle(spheres: &Spheres) -> DVec3 {
     let middle = columns.map(|column| median_of(&|i| column[i]));
     let spread = |axis: usize| median_of(&|i| (columns[axis][i] - middle[axis]).abs());
     let extent = spread(0).max(spread(1)).max(spread(2)) + median_of(&|i| spheres.radius[i]);
-    let quantum = power_of_two_above(extent);
+    // Not for a few extents: a scene that stands on a giant ball about the origin would lose the
+    // digits of that ball's center for one or two of its own.
+    let quantum = power_of_two_above(8.0 * extent);
     DVec3::from(middle.map(|m| (m / quantum).round() * quantum))
 }
 

@@ -184,7 +184,7 @@ impl Materials {
             Material::Conductor { fresnel, roughness } => push(
                 &mut self.conductor,
                 Kind::Conductor,
-                Conductor { fresnel, tint: Rgb::ONE, roughness: roughness as f32 },
+                Conductor { fresnel, tint: Rgb::ONE, roughness: smooth_below(roughness) },
             ),
             Material::Dielectric { ior, color } => {
                 push(&mut self.dielectric, Kind::Dielectric, Dielectric { ior: ior as f32, color })
@@ -208,6 +208,11 @@ impl Materials {
             }
         }
     }
+}
+
+/// A mirror, where the density of its facets would overflow single precision.
+fn smooth_below(roughness: f64) -> f32 {
+    if roughness < (-60.0_f64).exp2() { 0.0 } else { roughness as f32 }
 }
 
 fn push<T>(table: &mut Vec<T>, kind: Kind, row: T) -> MaterialId {

@@ -9,6 +9,7 @@
 mod appearance;
 mod camera;
 mod census;
+mod check;
 mod environment;
 mod fit;
 mod frame;
@@ -94,6 +95,7 @@ impl World {
     /// columns of different lengths, values that are not finite, materials that do not exist.
     pub fn build(scene: &Scene) -> Result<Self, WorldError> {
         spheres::validate(scene)?;
+        check::check(scene)?;
         let pose = fit::pose(scene)?;
         let frame = Frame::of(&scene.spheres, &pose);
         let materials = Materials::build(&scene.materials);

@@ -65,6 +65,7 @@ struct Statistics {
     cut_paths: u64,
     non_finite_samples: u64,
     nesting_overflows: u64,
+    exact_decisions: u64,
 }
 
 impl<'a> Summary<'a> {
@@ -165,6 +166,7 @@ impl Statistics {
             cut_paths: counters.cut_paths,
             non_finite_samples: counters.bad_samples,
             nesting_overflows: counters.nesting_overflows,
+            exact_decisions: counters.exact_decisions,
         }
     }
 }

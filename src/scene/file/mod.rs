@@ -37,7 +37,7 @@ impl Scene {
         let text = String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
             SceneError::whole_file(path, format!("is not UTF-8 text (byte {at})"))
-                .with_help("a scene is a TOML file; for particles see Scene::from_particles")
+                .with_help("a scene is a TOML file; a file of particles must not be named .toml")
         })?;
         Self::parse(&text, &path.to_string_lossy(), path.parent().unwrap_or(Path::new("")))
     }

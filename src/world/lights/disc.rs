@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 
 /// An emissive sphere as seen from a point: what fills a cone.
 pub struct Disc {
+    row: u32,
     frame: Frame,
     cone: Cone,
     origin: Vec3,
@@ -44,6 +45,7 @@ impl Disc {
     pub(super) fn new(spheres: &Spheres, row: usize, radiance: Rgb, origin: Vec3) -> Option<Self> {
         let (toward, cone, close) = toward_sphere(spheres, row, origin)?;
         Some(Self {
+            row: row as u32,
             frame: Frame::new(toward.normalize().as_vec3()),
             origin,
             center: spheres.center(row).as_dvec3(),
@@ -61,6 +63,7 @@ impl Disc {
         LightSample {
             direction,
             t: self.distance(direction),
+            target: self.row,
             weight: self.weight,
             pdf: Some(self.cone.pdf()),
             close: self.close,
@@ -71,8 +74,9 @@ impl Disc {
     /// the point where it is nearest.
     fn distance(&self, direction: Vec3) -> f64 {
         let ray = ExactRay::new(self.origin, direction, true);
-        intersect::confirm(&ray, self.center, self.radius).unwrap_or_else(|| {
-            (self.center - ray.origin).dot(ray.direction) / ray.direction.length_squared()
-        })
+        match intersect::confirm(&ray, self.center, self.radius, || false) {
+            Some(root) => root.t,
+            None => (self.center - ray.origin).dot(ray.direction) / ray.direction.length_squared(),
+        }
     }
 }

@@ -12,12 +12,13 @@ use super::appearance::Appearance;
 use super::environment::{Environment, Picture, luminance};
 use super::materials::{Kind, Materials};
 use super::{Frame, World};
+use crate::ray::MISS;
 use crate::sampling::Distribution;
 use crate::scene::{self, Rgb, Scene};
 use crate::spheres::Spheres;
 use disc::toward_sphere;
 use glam::Vec3;
-use std::f32::consts::PI;
+use std::f64::consts::PI;
 
 /// The lights, each with a share of the samples in proportion to its power.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +44,8 @@ pub struct LightSample {
     pub direction: Vec3,
     /// Distance of the light; infinite for suns and sky.
     pub t: f64,
+    /// The light's row if it is a sphere, which does not occlude itself; otherwise [`MISS`].
+    pub target: u32,
     /// Radiance over density: what to multiply with the surface's response.
     pub weight: Rgb,
     /// Density by solid angle, without the choice of the light; `None` if the light has no extent.
@@ -105,16 +108,17 @@ impl Lights {
     /// the scene's size, which is about 1.
     fn powers(&self, spheres: &Spheres, sky: &Environment) -> Vec<f64> {
         let emitters = self.emitters.iter().zip(&self.radiance).map(|(&row, &radiance)| {
-            luminance(radiance) * (2.0 * PI * spheres.radius[row as usize]).powi(2)
+            f64::from(luminance(radiance))
+                * (2.0 * PI * f64::from(spheres.radius[row as usize])).powi(2)
         });
         let points = self.points.iter().map(|point| {
-            let falloff = point.falloff.map_or(1.0, |scale| (scale * scale) as f32);
-            luminance(point.intensity) * falloff * 4.0 * PI
+            let falloff = point.falloff.map_or(1.0, |scale| scale * scale);
+            f64::from(luminance(point.intensity)) * falloff * 4.0 * PI
         });
-        let suns = self.suns.iter().map(|sun| luminance(sun.irradiance) * PI);
+        let suns = self.suns.iter().map(|sun| f64::from(luminance(sun.irradiance)) * PI);
         let sky = sky.picture().filter(|_| self.sky);
-        let sky = sky.map(|picture| picture.mean_luminance() * (2.0 * PI).powi(2));
-        emitters.chain(points).chain(suns).chain(sky).map(f64::from).collect()
+        let sky = sky.map(|picture| f64::from(picture.mean_luminance()) * (2.0 * PI).powi(2));
+        emitters.chain(points).chain(suns).chain(sky).collect()
     }
 
     /// How many there are.
@@ -237,7 +241,8 @@ fn emitters(
         (id.kind() == Kind::Emitter).then(|| materials.emitter[id.row()].radiance)
     };
     let emits = |row: u32| Some((row, radiance(row).filter(|&radiance| radiance != Rgb::ZERO)?));
-    (0..spheres.len() as u32).filter_map(emits).unzip()
+    let emitters = (0..spheres.len() as u32).filter(|&row| emits(row).is_some());
+    spheres.first_of_equals(emitters).into_iter().filter_map(emits).unzip()
 }
 
 impl Aim<'_> {
@@ -252,6 +257,7 @@ impl Aim<'_> {
             Self::Sky(picture) => picture.sample(u).map(|sample| LightSample {
                 direction: sample.direction,
                 t: f64::INFINITY,
+                target: MISS,
                 weight: sample.radiance / sample.pdf,
                 pdf: Some(sample.pdf),
                 close: true,

@@ -1,6 +1,7 @@
 //! Point lights.
 
 use super::LightSample;
+use crate::ray::MISS;
 use crate::scene::Rgb;
 use glam::{DVec3, Vec3};
 
@@ -22,11 +23,14 @@ impl Point {
         if distance == 0.0 {
             return None;
         }
-        let falloff = self.falloff.map_or(1.0, |scale| (scale / distance).powi(2) as f32);
+        // In double precision: in units far from 1, intensity and fall-off may each leave single
+        // precision.
+        let falloff = self.falloff.map_or(1.0, |scale| (scale / distance).powi(2));
         Some(LightSample {
             direction: (toward / distance).as_vec3(),
             t: distance,
-            weight: self.intensity * falloff,
+            target: MISS,
+            weight: (self.intensity.as_dvec3() * falloff).as_vec3(),
             pdf: None,
             close: false,
         })

@@ -1,10 +1,15 @@
 //! Suns: discs at infinity.
 
 use super::LightSample;
+use crate::ray::MISS;
 use crate::sampling::{Cone, Frame};
 use crate::scene::Rgb;
 use glam::{DVec3, Vec3};
 use std::f32::consts::PI;
+
+/// Degrees: a sun that is smaller has no extent, lest its radiance overflow. Single precision does
+/// not tell directions as close as that.
+const NO_DISC: f64 = 1e-6;
 
 /// A disc at infinity.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +28,7 @@ impl Sun {
             frame: Frame::new(direction.as_vec3()),
             direction: direction.as_vec3(),
             irradiance,
-            disc: (angular_radius > 0.0)
+            disc: (angular_radius > NO_DISC)
                 .then(|| Cone::from_half_angle(angular_radius.to_radians())),
         }
     }
@@ -40,6 +45,7 @@ impl Sun {
         let sample = |direction, weight, pdf| LightSample {
             direction,
             t: f64::INFINITY,
+            target: MISS,
             weight,
             pdf,
             close: false,

@@ -1,0 +1,423 @@
+//! Exact queries for other programs: columns of spheres in, hits out.
+//!
+//! A [`SphereTree`] takes spheres and rays bit by bit as they are, of any scale, directions of any
+//! length, and answers which sphere a ray hits first, or whether it hits any, as arithmetic without
+//! rounding would. To keep the single-precision filter within its range it multiplies coordinates
+//! by a power of two, which is exact, and nothing else is done to them.
+//!
+//! ```
+//! use spherule::query::{Hits, RayColumns, SphereTree};
+//!
+//! let tree = SphereTree::from_columns(&[0.0, 3.0], &[0.0; 2], &[0.0; 2], &[1.0, 0.5])?;
+//! let hit = tree.intersect([-5.0, 0.0, 0.0], [2.0, 0.0, 0.0]).expect("straight on");
+//! assert_eq!((hit.sphere, hit.t), (0, 2.0));
+//! assert!(!tree.occluded([-5.0, 0.0, 0.0], [2.0, 0.0, 0.0], 2.0));
+//!
+//! let rays = RayColumns {
+//!     origin: [&[-5.0, 9.0], &[0.0, 0.0], &[0.0, 0.0]],
+//!     direction: [&[2.0, -1.0], &[0.0, 0.0], &[0.0, 0.0]],
+//! };
+//! let (mut t, mut sphere) = ([f64::INFINITY; 2], [0; 2]);
+//! tree.intersect_columns(&rays, Hits { t: &mut t, sphere: &mut sphere, surface: None })?;
+//! assert_eq!((t, sphere), ([2.0, 5.5], [0, 1]));
+//! assert_eq!(hit.normal, [-1.0, 0.0, 0.0]);
+//! # Ok::<(), spherule::query::QueryError>(())
+//! ```
+
+use crate::bvh::walk::{Any, Closest, Method, Query, trace};
+use crate::bvh::{Bvh, build::build};
+use crate::exact::{self, Distance};
+use crate::intersect;
+use crate::lanes::F32x16;
+use crate::ray::{self, ExactRay, MISS, Rays};
+use crate::spheres::Spheres;
+use glam::{DVec3, Vec3};
+use std::cmp::Ordering;
+
+/// The sphere of a ray that hits nothing.
+pub const NOTHING: u32 = MISS;
+
+/// Rays that are traced together.
+const CHUNK: usize = 1024;
+
+/// Origins farther than this many times the largest coordinate are beyond what single precision can
+/// filter: such rays are tested against every sphere.
+const REACH: f64 = (1 << 20) as f64;
+
+/// Spheres, ready for exact queries.
+#[derive(Clone, Debug)]
+pub struct SphereTree {
+    spheres: Spheres,
+    bvh: Bvh,
+    /// A power of two, which makes the largest coordinate about 1.
+    scale: f64,
+    invalid: usize,
+}
+
+/// Rays in columns: coordinate by coordinate, all of one length.
+#[derive(Clone, Copy, Debug)]
+pub struct RayColumns<'a> {
+    /// Where rays start: x, y, z.
+    pub origin: [&'a [f32]; 3],
+    /// Where they go: x, y, z, of any length but 0.
+    pub direction: [&'a [f32]; 3],
+}
+
+/// Where answers about rays go, and where their search ends: columns as long as those of the rays.
+#[derive(Debug)]
+pub struct Hits<'a> {
+    /// On entry, hits not nearer than this do not count; infinity for no bound. On return the
+    /// distance of the hit, in units of the direction's length, or unchanged.
+    pub t: &'a mut [f64],
+    /// On return the sphere's row in the columns that the tree was built from, or [`NOTHING`].
+    pub sphere: &'a mut [u32],
+    /// On return point and normal; unchanged where nothing is hit. `None` if nobody wants to know.
+    pub surface: Option<&'a mut [Surface]>,
+}
+
+/// What a ray hits first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Row of the sphere in the columns that the tree was built from.
+    pub sphere: u32,
+    /// Distance in units of the direction's length, more than 0.
+    pub t: f64,
+    /// The point of the sphere, in the user's coordinates.
+    pub point: [f64; 3],
+    /// The outward unit normal.
+    pub normal: [f64; 3],
+}
+
+/// Where a ray hits. Both are solved in double precision from the sphere itself, so the point is on
+/// it up to the last bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// The point, in the user's coordinates.
+    pub point: [f64; 3],
+    /// The outward unit normal.
+    pub normal: [f64; 3],
+}
+
+/// What was noticed on the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Rays that are no rays: something is not finite, the direction is zero, or the bound is NaN. They
+    /// hit nothing.
+    pub invalid: u64,
+    /// Decisions that took arithmetic without rounding.
+    pub exact: u64,
+}
+
+/// Why a tree cannot be built, or columns cannot be traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum QueryError {
+    /// Columns differ in length.
+    #[error("the columns differ in length: one has {expected} rows and another {found}")]
+    Lengths {
+        /// Of the first column.
+        expected: usize,
+        /// Of another.
+        found: usize,
+    },
+    /// Rows are numbers of 32 bits.
+    #[error("{0} spheres are too many: at most {max} fit", max = Spheres::MAX)]
+    TooMany(usize),
+}
+
+impl SphereTree {
+    /// Builds the tree over spheres in columns.
+    ///
+    /// Spheres with a radius that is not more than 0, or with anything that is not finite, are
+    /// never hit; [`SphereTree::invalid_spheres`] counts them.
+    ///
+    /// # Errors
+    /// Columns of different lengths, or more than [`Spheres::MAX`] spheres.
+    pub fn from_columns(
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        radius: &[f32],
+    ) -> Result<Self, QueryError> {
+        same_length(radius.len(), &[x.len(), y.len(), z.len()])?;
+        Self::build(radius.len(), |i| [x[i], y[i], z[i], radius[i]])
+    }
+
+    /// Builds the tree over spheres in rows of x, y, z and radius; otherwise as
+    /// [`SphereTree::from_columns`].
+    ///
+    /// # Errors
+    /// More than [`Spheres::MAX`] spheres.
+    pub fn from_rows(rows: &[[f32; 4]]) -> Result<Self, QueryError> {
+        Self::build(rows.len(), |i| rows[i])
+    }
+
+    fn build(count: usize, row: impl Fn(usize) -> [f32; 4]) -> Result<Self, QueryError> {
+        if count > Spheres::MAX {
+            return Err(QueryError::TooMany(count));
+        }
+        let valid = |i: usize| {
+            let [x, y, z, radius] = row(i);
+            x.is_finite()
+                && y.is_finite()
+                && z.is_finite()
+                && radius > 0.0
+                && radius < f32::INFINITY
+        };
+        let wide = |i: usize| row(i).map(f64::from);
+        let largest = (0..count).filter(|&i| valid(i)).fold(0.0, |largest: f64, i| {
+            let [x, y, z, radius] = wide(i);
+            largest.max(DVec3::new(x, y, z).abs().max_element() + radius)
+        });
+        let scale = if largest > 0.0 { (-largest.log2().ceil()).exp2() } else { 1.0 };
+        let scaled = |i: usize| wide(i).map(|value| value * scale);
+        let mut spheres = Spheres::default();
+        let mut rounded = false;
+        for i in (0..count).filter(|&i| valid(i)) {
+            let single = scaled(i).map(|value| value as f32);
+            rounded |= single.map(f64::from) != scaled(i);
+            spheres.x.push(single[0]);
+            spheres.y.push(single[1]);
+            spheres.z.push(single[2]);
+            spheres.radius.push(single[3]);
+            spheres.id.push(i as u32);
+        }
+        if rounded {
+            // Scales so far apart that the smallest numbers leave single precision.
+            spheres.precise = spheres.id.iter().map(|&i| split(scaled(i as usize))).collect();
+        }
+        let invalid = count - spheres.len();
+        let bvh = build(&mut spheres);
+        Ok(Self { spheres, bvh, scale, invalid })
+    }
+
+    /// Number of spheres that can be hit.
+    pub fn len(&self) -> usize {
+        self.spheres.len()
+    }
+
+    /// Whether nothing can be hit.
+    pub fn is_empty(&self) -> bool {
+        self.spheres.is_empty()
+    }
+
+    /// Spheres that were left out because they are invalid.
+    pub fn invalid_spheres(&self) -> usize {
+        self.invalid
+    }
+
+    /// Bytes of tree and spheres.
+    pub fn bytes(&self) -> usize {
+        self.spheres.bytes() + self.bvh.bytes()
+    }
+
+    /// What a ray hits first: of spheres at equal distances, the one of the lowest row. `None` if
+    /// nothing, or if the ray is invalid.
+    pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
+        let mut hit = None;
+        self.run::<Closest>(
+            1,
+            |_| (origin, direction, f64::INFINITY),
+            |_, found| {
+                let Surface { point, normal } = found.surface(self);
+                hit = Some(Hit { sphere: found.id, t: found.t * found.scaled.unit, point, normal });
+            },
+        );
+        hit
+    }
+
+    /// Whether a ray hits anything at a distance less than `t_max`, in units of the direction's
+    /// length.
+    pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> bool {
+        let mut hit = false;
+        self.run::<Any>(1, |_| (origin, direction, t_max), |_, _| hit = true);
+        hit
+    }
+
+    /// What each ray hits first: of spheres at equal distances, the one of the lowest row.
+    ///
+    /// # Errors
+    /// Columns of different lengths.
+    pub fn intersect_columns(&self, rays: &RayColumns, hits: Hits) -> Result<Tally, QueryError> {
+        let Hits { t, sphere, mut surface } = hits;
+        let surfaces = surface.as_ref().map_or(t.len(), |column| column.len());
+        let count = rays.check(&[t.len(), sphere.len(), surfaces])?;
+        sphere.fill(NOTHING);
+        let bounds = t.to_vec();
+        let ray = |i: usize| rays.row(i, bounds[i]);
+        Ok(self.run::<Closest>(count, ray, |i, found| {
+            (t[i], sphere[i]) = (found.t * found.scaled.unit, found.id);
+            if let Some(surface) = &mut surface {
+                surface[i] = found.surface(self);
+            }
+        }))
+    }
+
+    /// Whether each ray hits anything nearer than `t`.
+    ///
+    /// # Errors
+    /// Columns of different lengths.
+    pub fn occluded_columns(
+        &self,
+        rays: &RayColumns,
+        t: &[f64],
+        occluded: &mut [bool],
+    ) -> Result<Tally, QueryError> {
+        let count = rays.check(&[t.len(), occluded.len()])?;
+        occluded.fill(false);
+        Ok(self.run::<Any>(count, |i| rays.row(i, t[i]), |i, _| occluded[i] = true))
+    }
+
+    /// Traces rays in chunks that stay in the first-level cache. A ray is its origin, its direction
+    /// and where its search ends.
+    fn run<Q: Query>(
+        &self,
+        count: usize,
+        ray: impl Fn(usize) -> ([f32; 3], [f32; 3], f64),
+        mut found: impl FnMut(usize, &Found),
+    ) -> Tally {
+        let mut tally = Tally::default();
+        let chunk = CHUNK.min(count);
+        let (mut rays, mut hits) = (Rays::with_capacity(chunk), ray::Hits::with_capacity(chunk));
+        let mut rows = Vec::with_capacity(chunk);
+        for first in (0..count).step_by(CHUNK) {
+            rays.truncate(0);
+            rays.precise.clear();
+            rows.clear();
+            for i in first..count.min(first + CHUNK) {
+                let (origin, direction, bound) = ray(i);
+                let scaled = self.scaled(origin, direction).filter(|_| !bound.is_nan());
+                let Some(scaled) = scaled else {
+                    tally.invalid += 1;
+                    continue;
+                };
+                let bound = bound / scaled.unit;
+                if scaled.is_far() {
+                    tally.exact += 1;
+                    self.test_all(&scaled, bound).iter().for_each(|hit| found(i, hit));
+                    continue;
+                }
+                hits.set(rays.len(), bound, MISS);
+                rays.push(scaled.ray.origin.as_vec3(), scaled.ray.direction.as_vec3(), MISS);
+                rays.precise.push(scaled.ray);
+                rows.push((i, scaled));
+            }
+            if rows.iter().all(|(_, scaled)| scaled.is_single()) {
+                rays.precise.clear();
+            }
+            tally.exact +=
+                trace::<F32x16, Q>(Method::Tree, &self.bvh, &self.spheres, &rays, &mut hits);
+            for (at, &(i, scaled)) in rows.iter().enumerate() {
+                if let Some(&id) = self.spheres.id.get(hits.sphere[at] as usize) {
+                    found(i, &Found { scaled, row: hits.sphere[at] as usize, id, t: hits.t[at] });
+                }
+            }
+        }
+        tally
+    }
+
+    /// A ray in the tree's units; `None` if it is no ray.
+    fn scaled(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Scaled> {
+        let (origin, direction) = (Vec3::from(origin).as_dvec3(), Vec3::from(direction).as_dvec3());
+        let longest = direction.abs().max_element();
+        if !(origin.is_finite() && direction.is_finite() && longest > 0.0) {
+            return None;
+        }
+        let shrink = (-longest.log2().floor()).exp2();
+        let (origin, direction) = (origin * self.scale, direction * shrink);
+        let ray = ExactRay { origin, direction, origin_error: 0.0 };
+        Some(Scaled { ray, unit: shrink / self.scale })
+    }
+
+    /// Tests every sphere: for rays from so far away that the filter cannot tell anything.
+    fn test_all(&self, scaled: &Scaled, bound: f64) -> Option<Found> {
+        let mut best: Option<Found> = None;
+        let mut nearest = Distance::Number(bound);
+        for row in 0..self.spheres.len() {
+            let (center, radius) = self.spheres.exact(row);
+            let root = intersect::confirm_closely(&scaled.ray, center, radius, || true);
+            let Some(root) = root else { continue };
+            let distance = Distance::Hit(center, radius);
+            let order = match nearest {
+                Distance::Number(f64::INFINITY) => Ordering::Less,
+                _ => exact::compare(&scaled.ray, &distance, &nearest),
+            };
+            let id = self.spheres.id[row];
+            let first = best.as_ref().is_some_and(|best| id < best.id);
+            if order.is_lt() || (order.is_eq() && first) {
+                nearest = distance;
+                best = Some(Found { scaled: *scaled, row, id, t: root.t });
+            }
+        }
+        best
+    }
+}
+
+/// A ray in a tree's units.
+#[derive(Clone, Copy)]
+struct Scaled {
+    ray: ExactRay,
+    /// What one unit of the scaled ray's distance is in units of the user's direction.
+    unit: f64,
+}
+
+/// A hit in a tree's units.
+struct Found {
+    scaled: Scaled,
+    row: usize,
+    id: u32,
+    t: f64,
+}
+
+impl Found {
+    fn surface(&self, tree: &SphereTree) -> Surface {
+        /// Beyond this many radii, double precision shows its limits.
+        const FAR: f64 = (1 << 20) as f64;
+        let (center, radius) = tree.spheres.exact(self.row);
+        let ray = &self.scaled.ray;
+        let normal = if ray.origin.distance(center) > FAR * radius {
+            exact::normal(ray, center, radius)
+        } else {
+            ray.at_from(center, self.t).normalize_or(-ray.direction.normalize())
+        };
+        let point = (center + normal * radius) / tree.scale;
+        Surface { point: point.to_array(), normal: normal.to_array() }
+    }
+}
+
+impl Scaled {
+    fn is_far(&self) -> bool {
+        self.ray.origin.abs().max_element() > REACH
+    }
+
+    /// Whether single precision holds the ray.
+    fn is_single(&self) -> bool {
+        let single = |v: DVec3| v.as_vec3().as_dvec3() == v;
+        single(self.ray.origin) && single(self.ray.direction)
+    }
+}
+
+impl RayColumns<'_> {
+    /// Number of rays, if all columns agree.
+    fn check(&self, others: &[usize]) -> Result<usize, QueryError> {
+        let [count, ..] = self.origin.map(<[f32]>::len);
+        same_length(count, &self.origin.map(<[f32]>::len))?;
+        same_length(count, &self.direction.map(<[f32]>::len))?;
+        same_length(count, others)?;
+        Ok(count)
+    }
+
+    fn row(&self, i: usize, bound: f64) -> ([f32; 3], [f32; 3], f64) {
+        (self.origin.map(|column| column[i]), self.direction.map(|column| column[i]), bound)
+    }
+}
+
+fn same_length(expected: usize, lengths: &[usize]) -> Result<(), QueryError> {
+    match lengths.iter().find(|&&found| found != expected) {
+        Some(&found) => Err(QueryError::Lengths { expected, found }),
+        None => Ok(()),
+    }
+}
+
+fn split([x, y, z, radius]: [f64; 4]) -> (DVec3, f64) {
+    (DVec3::new(x, y, z), radius)
+}

@@ -1,0 +1,128 @@
+//! One picture: whatever the threads, the packets, the tree and the part that is asked for.
+
+use crate::common::*;
+use spherule::bvh::walk::Method;
+use spherule::film::Region;
+use spherule::image::Image;
+use spherule::integrator::workspace::Counters;
+use spherule::render::Options;
+use spherule::scene::{Integrator, SamplerKind, Scene};
+use spherule::trace::{Tracer, Width};
+
+const INTEGRATORS: [Integrator; 3] =
+    [Integrator::Path, Integrator::Whitted { shadow_samples: 3 }, Integrator::Ao { distance: 2.0 }];
+
+/// Everything there is, in a picture whose sides are no multiples of a tile, with a part of a pass.
+fn everything(integrator: Integrator) -> Scene {
+    let mut scene = menagerie();
+    (scene.settings.width, scene.settings.height, scene.settings.spp) = (37, 21, 19);
+    scene.settings.integrator = integrator;
+    scene
+}
+
+#[test]
+fn every_tracer_makes_the_same_picture() {
+    const WIDTHS: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
+    for integrator in INTEGRATORS {
+        let scene = everything(integrator);
+        let picture = shoot(&scene);
+        for method in [Method::Brute, Method::Tree] {
+            for (i, coherent) in WIDTHS.into_iter().enumerate() {
+                // Each width once on either side.
+                let tracer = Tracer { method, coherent, incoherent: WIDTHS[(i + 1) % 4] };
+                let other = shoot_with(&scene, &Options { tracer, ..Options::default() });
+                assert!(other.image == picture.image, "{integrator:?} {tracer:?}");
+                let work = |counters: &Counters| (counters.rays(), counters.cut_paths);
+                let (expected, got) = (work(&picture.counters), work(&other.counters));
+                assert_eq!(got, expected, "{integrator:?} {tracer:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_number_of_threads_makes_the_same_picture() {
+    for sampler in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
+        let mut scene = everything(Integrator::Path);
+        scene.settings.sampler = sampler;
+        let picture = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            pool.expect("threads can be started").install(|| shoot(&scene).image)
+        };
+        let one = picture(1);
+        for threads in [2, 5] {
+            assert!(picture(threads) == one, "{threads} threads, {sampler:?}");
+        }
+    }
+}
+
+fn crop(image: &Image, region: Region) -> Vec<[f32; 3]> {
+    (region.y..region.y + region.height)
+        .flat_map(|y| (region.x..region.x + region.width).map(move |x| (x, y)))
+        .map(|(x, y)| image.pixel(x, y).expect("the region is inside"))
+        .collect()
+}
+
+#[test]
+fn a_region_is_a_part_of_the_whole() {
+    for integrator in INTEGRATORS {
+        let scene = everything(integrator);
+        let whole = shoot(&scene).image;
+        for (x, y, width, height) in
+            [(0, 0, 37, 21), (5, 3, 20, 17), (36, 20, 1, 1), (16, 0, 16, 21)]
+        {
+            let region = Region { x, y, width, height };
+            let part = shoot_with(&scene, &Options { region: Some(region), ..Options::default() });
+            assert_eq!((part.image.width, part.image.height), (width, height));
+            assert!(part.image.pixels == crop(&whole, region), "{integrator:?} {region:?}");
+        }
+    }
+}
+
+/// Independent numbers do not depend on how many samples there are, nor on the passes that they come in: the first 16
+/// of 32 samples are those of a picture of 16, so what the others add is not negative.
+#[test]
+fn samples_do_not_depend_on_their_number() {
+    let mut scene = everything(Integrator::Path);
+    scene.settings.sampler = SamplerKind::Independent;
+    let mut mean = |spp: u32| {
+        scene.settings.spp = spp;
+        shoot(&scene).image
+    };
+    let (first, both) = (mean(16), mean(32));
+    for (half, all) in first.pixels.iter().flatten().zip(both.pixels.iter().flatten()) {
+        let rest = 2.0 * f64::from(*all) - f64::from(*half);
+        assert!(rest >= -2.0 * f64::from(f32::EPSILON) * f64::from(*half), "{half} {all}");
+    }
+}
+
+/// The order of the spheres in the scene does not matter where none coincide: they, and the lights among them, are in
+/// the order of the tree.
+#[test]
+fn shuffled_spheres_make_the_same_picture() {
+    let scene = everything(Integrator::Path);
+    let mut shuffled = scene.clone();
+    shuffled.spheres = spherule::scene::Spheres::default();
+    let count = scene.spheres.len();
+    for i in 0..count {
+        // One-to-one as 7 and the number of spheres have no common factor.
+        let row = (7 * i + 3) % count;
+        let spheres = &scene.spheres;
+        shuffled.spheres.push(
+            spheres.center(row),
+            spheres.radius[row],
+            spheres.material_of(row),
+            spheres.color_of(row),
+        );
+    }
+    assert_ne!(count % 7, 0);
+    assert!(shoot(&shuffled).image == shoot(&scene).image);
+}
+
+#[test]
+fn the_seed_changes_the_picture() {
+    let mut scene = everything(Integrator::Path);
+    let zero = shoot(&scene).image;
+    scene.settings.seed = 1;
+    assert!(shoot(&scene).image != zero);
+}

@@ -1,0 +1,11 @@
+//! Scenes made to break a renderer: degenerate, gigantic, tiny, far away, nested, empty, endless.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod degenerate;
+mod equality;
+mod invalid;
+mod limits;
+mod surfaces;
+mod transforms;

@@ -1,0 +1,116 @@
+//! The same scene elsewhere and in other units.
+
+use crate::common::*;
+use glam::DVec3;
+use spherule::scene::{Camera, Light, Pose, Projection, Scene};
+
+/// Everything of a scene that has a place or a length: moved, then scaled. Light that falls off grows with the square.
+fn transformed(scene: &Scene, shift: DVec3, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    let place = |p: DVec3| (p + shift) * factor;
+    let spheres = &mut scene.spheres;
+    for i in 0..spheres.len() {
+        let center = place(spheres.center(i));
+        (spheres.x[i], spheres.y[i], spheres.z[i]) = center.into();
+        spheres.radius[i] *= factor;
+    }
+    for light in &mut scene.lights {
+        if let Light::Point { position, intensity, falloff } = light {
+            *position = place(*position);
+            if *falloff {
+                *intensity *= (factor * factor) as f32;
+            }
+        }
+    }
+    if let Some(ground) = &mut scene.ground {
+        ground.height = (ground.height + ground.normal.dot(shift)) * factor;
+    }
+    scene.camera = camera(&scene.camera, place, factor);
+    scene
+}
+
+fn camera(camera: &Camera, place: impl Fn(DVec3) -> DVec3, factor: f64) -> Camera {
+    let mut camera = camera.clone();
+    if let Pose::LookAt { eye, target } = camera.pose {
+        camera.pose = Pose::LookAt { eye: place(eye), target: place(target) };
+    }
+    if let Projection::Orthographic { height: Some(height) } = &mut camera.projection {
+        *height *= factor;
+    }
+    if let Some(lens) = &mut camera.lens {
+        lens.aperture *= factor;
+        lens.focus = lens.focus.map(|focus| focus * factor);
+    }
+    camera.near *= factor;
+    camera
+}
+
+#[test]
+fn scaling_by_a_power_of_two_changes_nothing() {
+    for exponent in [-60, -1, 1, 60] {
+        let scene = menagerie();
+        let scaled = transformed(&scene, DVec3::ZERO, f64::from(exponent).exp2());
+        assert!(shoot(&scaled).image == shoot(&scene).image, "2^{exponent}");
+    }
+}
+
+/// No light in these that falls off: single precision cannot hold an intensity of 1e60.
+#[test]
+fn scaling_by_any_number_changes_nothing_but_rounding() {
+    for factor in [1e-30, 1e-3, 1e30, 1e38] {
+        let mut scene = menagerie();
+        scene.lights.retain(|light| !matches!(light, Light::Point { falloff: true, .. }));
+        let scaled = transformed(&scene, DVec3::ZERO, factor);
+        assert_agree(over_seeds(&scaled, mean), over_seeds(&scene, mean), &format!("{factor}"));
+    }
+}
+
+/// Where coordinates stay exact, and the shift is a multiple of what the world moves scenes by, the picture is the
+/// same to the byte.
+#[test]
+fn a_scene_far_away_is_the_same() {
+    let scene = menagerie();
+    let far = DVec3::new(1.0, -3.0, 2.0) * 20.0_f64.exp2();
+    assert!(shoot(&transformed(&scene, far, 1.0)).image == shoot(&scene).image);
+    // Elsewhere the scene's middle comes to lie at another fraction of a unit.
+    let moved = transformed(&scene, DVec3::new(1e6, -1e6, 1.7e6), 1.0);
+    assert_agree(over_seeds(&moved, mean), over_seeds(&scene, mean), "1e6");
+}
+
+#[test]
+fn a_furnace_far_away_is_a_furnace() {
+    let mut scene = furnace();
+    sphere(&mut scene, [0.0; 3], 1.0, lambertian(1.0));
+    sphere(&mut scene, [2.0, 0.0, 0.0], 1.0, glass(1.5));
+    sphere(&mut scene, [0.0, 2.0, 0.0], 1.0, mirror());
+    look(&mut scene, DVec3::new(4.0, 5.0, 6.0), DVec3::ZERO, 40.0);
+    for shift in [1e3, 1e6, 1e9] {
+        let moved = transformed(&scene, DVec3::splat(shift), 1.0);
+        assert_every_pixel(&shoot(&moved).image, 1.0, &format!("{shift}"));
+    }
+}
+
+#[test]
+fn radii_from_denormal_to_the_largest() {
+    let mut scene = furnace();
+    sphere(&mut scene, [0.0; 3], 1e38, emitter(0.5, 0.0));
+    sphere(&mut scene, [3.0, 0.0, 0.0], 1.0, lambertian(0.0));
+    look(&mut scene, DVec3::ZERO, DVec3::NEG_X, 90.0);
+    assert_every_pixel(&shoot(&scene).image, 0.5, "inside 1e38");
+    look(&mut scene, DVec3::ZERO, DVec3::X, 20.0);
+    assert_every_pixel(&shoot(&scene).image, 0.0, "a sphere of 1 inside 1e38");
+
+    for radius in [1e-38, 1e-44, 1e-300] {
+        let mut scene = furnace();
+        scene.environment.map = gradient();
+        sphere(&mut scene, [0.25, 0.5, 0.0], radius, mirror());
+        sphere(&mut scene, [0.25, 0.5, -2.0], 1.0, lambertian(0.0));
+        look(&mut scene, DVec3::new(0.25, 0.5, 4.0), DVec3::new(0.25, 0.5, 0.0), 10.0);
+        assert_every_pixel(&shoot(&scene).image, 0.0, &format!("{radius}"));
+        // So narrow a view that every ray goes through the middle, where the sphere, if it is left, is hit.
+        look_parallel(&mut scene, DVec3::new(0.25, 0.5, 4.0), DVec3::new(0.25, 0.5, 0.0), 1e-60);
+        let image = shoot(&scene).image;
+        let hit = if radius < 1e-45 { 0.0 } else { 1.0 };
+        assert_every_pixel(&image, hit, &format!("{radius}, in the middle"));
+    }
+}

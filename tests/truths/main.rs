@@ -1,0 +1,13 @@
+//! Pictures whose radiance is known in closed form, or by a quadrature that shares nothing with the renderer.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod camera;
+mod diffuse;
+mod furnace;
+mod glass;
+mod lights;
+mod occlusion;
+mod sky;
+mod specular;
