@@ -37,7 +37,7 @@ fn hits_by_filter<L: Lanes>(spheres: &[(Point, f32)], rays: &Rays) -> u32 {
         let ray = FilterRay::new(rays.origin.load::<L>(row), rays.direction.load::<L>(row));
         for &(c, radius) in spheres {
             let center = Vec3::splat(c.x, c.y, c.z);
-            let mask = filter(&ray, center, L::splat(radius), L::splat(f32::INFINITY));
+            let (mask, _) = filter(&ray, center, L::splat(radius), L::splat(f32::INFINITY));
             hits += mask.bits().count_ones();
         }
     }

@@ -1,11 +1,12 @@
 //! Tracing alone: brute force, the scalar walk and packets of 4, 8 and 16 rays, for four classes of
-//! rays. Rays are made beforehand; each run's hits are compared with those of the scalar walk.
+//! rays; and the scalar walk and packets of 16 without the exact decision, to show what it costs. Rays
+//! are made beforehand; each run's hits are compared with those of the scalar walk.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use spherule::bvh::Bvh;
 use spherule::bvh::build::build;
-use spherule::bvh::walk::{Any, Closest, Method, Query, trace};
+use spherule::bvh::walk::{Any, Closest, Method, Query, Rough, trace};
 use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
 use spherule::ray::{Hits, MISS, Rays};
 use spherule::sampling::{Frame, cosine_hemisphere, stream, unit_pair};
@@ -16,6 +17,9 @@ use std::time::Duration;
 
 /// Pixels along the side of the picture whose rays are traced.
 const SIDE: u32 = 256;
+
+/// One way to trace rays.
+type Walk = fn(&Case, Method, &Rays) -> Hits;
 
 struct Case {
     name: &'static str,
@@ -97,7 +101,7 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
     group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(10);
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
     let expected = run::<f32, Q>(case, Method::Tree, rays);
-    let mut bench = |name: &str, walk: fn(&Case, Method, &Rays) -> Hits, method| {
+    let mut bench = |name: &str, walk: Walk, method| {
         let missed = |hits: &Hits, row: usize| hits.sphere[row] == MISS;
         let same = |hits: &Hits| {
             if Q::ANY {
@@ -118,6 +122,19 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
     bench("packet-4", run::<F32x4, Q>, Method::Tree);
     bench("packet-8", run::<F32x8, Q>, Method::Tree);
     bench("packet-16", run::<F32x16, Q>, Method::Tree);
+    // What exactness costs: the same walks without it. Few answers differ in scenes so tame.
+    let rough: [(&str, Walk); 2] =
+        [("rough-1", run::<f32, Rough<Q>>), ("rough-16", run::<F32x16, Rough<Q>>)];
+    for (name, walk) in rough {
+        let hits = walk(case, Method::Tree, rays);
+        let differ = (0..rays.len())
+            .filter(|&row| (hits.sphere[row] == MISS) != (expected.sphere[row] == MISS))
+            .count();
+        assert!(differ * 1000 <= rays.len(), "{name} differs for {differ} rays");
+        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+            bencher.iter(|| walk(black_box(case), Method::Tree, black_box(rays)));
+        });
+    }
 }
 
 fn walks(criterion: &mut Criterion) {

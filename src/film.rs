@@ -94,14 +94,15 @@ impl Tile {
     }
 
     /// Adds `count` samples to every pixel: `radiance` holds those of the first pixel, then those
-    /// of the next. Returns how many were not finite: these count as black, and are told of in the
-    /// statistics.
+    /// of the next. Returns how many were negative or not finite: these count as black, and are
+    /// told of in the statistics.
     pub fn add(&mut self, radiance: &[Rgb], count: u32) -> u64 {
         let mut bad = 0;
         for (sum, samples) in self.sums.iter_mut().zip(radiance.chunks_exact(count as usize)) {
             for sample in samples {
-                debug_assert!(sample.is_finite() && sample.min_element() >= 0.0, "{sample}");
-                if sample.is_finite() {
+                let sound = sample.is_finite() && sample.min_element() >= 0.0;
+                debug_assert!(sound, "{sample}");
+                if sound {
                     for (sum, channel) in sum.iter_mut().zip(sample.to_array()) {
                         *sum += f64::from(channel);
                     }

@@ -81,14 +81,15 @@ impl<L: Lanes> FilterRay<L> {
     }
 }
 
-/// The lanes whose ray may hit the sphere at a distance in `0..=t_max`.
+/// The lanes whose ray may hit the sphere at a distance in `0..=t_max`, and a bound below which it does
+/// not.
 ///
 /// Never false where [`confirm`] finds a hit not beyond `t_max`; comparisons are arranged so that
 /// NaN passes. The form is Embree's: the chord's middle, relative to the center, so that the
 /// discriminant does not cancel for spheres that are small or far (Haines, Günther, Akenine-Möller,
 /// "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems 2019).
 #[inline(always)]
-pub fn filter<L: Lanes>(ray: &FilterRay<L>, center: Vec3<L>, radius: L, t_max: L) -> L::Mask {
+pub fn filter<L: Lanes>(ray: &FilterRay<L>, center: Vec3<L>, radius: L, t_max: L) -> (L::Mask, L) {
     let to_center = center - ray.origin;
     let t = to_center.dot(ray.direction) * ray.inverse_length2;
     let perpendicular = to_center.along(ray.direction, -t);
@@ -98,8 +99,8 @@ pub fn filter<L: Lanes>(ray: &FilterRay<L>, center: Vec3<L>, radius: L, t_max: L
     let chord2 = reach * reach - distance2;
     let slack = t.abs() * L::splat(K);
     let half = (chord2 * ray.inverse_length2).sqrt().mul_add(L::splat(1.0 + 2.0 * K), slack);
-    let zero = L::splat(0.0);
-    !(chord2.lt(zero)) & !(t_max.lt(t - half)) & !((t + half).lt(zero))
+    let (zero, near) = (L::splat(0.0), t - half);
+    (!(chord2.lt(zero)) & !(t_max.lt(near)) & !((t + half).lt(zero)), near)
 }
 
 /// Where a ray hits a sphere.

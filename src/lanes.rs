@@ -46,6 +46,11 @@ pub trait Lanes:
     /// # Panics
     /// If there are fewer.
     fn load(column: &[f32]) -> Self;
+    /// Writes the lanes to the first `WIDTH` places of `row`.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    fn store(self, row: &mut [f32]);
     /// `self * factor + term`, rounded once where the target has fused multiply-add.
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// Square root; NaN below 0.
@@ -84,6 +89,10 @@ impl Lanes for f32 {
     #[inline(always)]
     fn load(column: &[f32]) -> Self {
         column[0]
+    }
+    #[inline(always)]
+    fn store(self, row: &mut [f32]) {
+        row[0] = self;
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
@@ -178,6 +187,10 @@ macro_rules! impl_lanes {
             fn load(column: &[f32]) -> Self {
                 let row: &[f32; $width] = column.first_chunk().expect("columns hold whole rows");
                 Self::new(*row)
+            }
+            #[inline(always)]
+            fn store(self, row: &mut [f32]) {
+                row[..$width].copy_from_slice(&self.to_array());
             }
             #[inline(always)]
             fn mul_add(self, factor: Self, term: Self) -> Self {

@@ -26,6 +26,8 @@ pub(super) const STACK: usize = 40;
 pub trait Query {
     /// Whether any hit ends a ray's walk.
     const ANY: bool;
+    /// Whether hits are decided exactly.
+    const EXACT: bool = true;
 }
 
 /// Which sphere is hit first: leaves `t` and `sphere` of the hit.
@@ -33,6 +35,15 @@ pub struct Closest;
 
 /// Whether anything is hit nearer than `t`: leaves some sphere, or what was there.
 pub struct Any;
+
+/// A query that takes the filter's word for hits and distances, in single precision. For benches
+/// alone: what it saves is what exactness costs.
+pub struct Rough<Q>(PhantomData<Q>);
+
+impl<Q: Query> Query for Rough<Q> {
+    const ANY: bool = Q::ANY;
+    const EXACT: bool = false;
+}
 
 impl Query for Closest {
     const ANY: bool = false;
@@ -177,7 +188,7 @@ impl<'a, L: Lanes, Q: Query> Packet<'a, L, Q> {
     fn leaf(&mut self, first: usize, count: usize) {
         for sphere in first..first + count {
             let center = self.spheres.center(sphere);
-            let lanes = intersect::filter(
+            let (lanes, near) = intersect::filter(
                 &self.filter,
                 Vec3::splat(center.x, center.y, center.z),
                 L::splat(self.spheres.radius[sphere]),
@@ -185,7 +196,11 @@ impl<'a, L: Lanes, Q: Query> Packet<'a, L, Q> {
             );
             let lanes = (lanes & L::splat(0.0).le(self.t_max)).bits();
             if lanes != 0 {
-                self.confirm(sphere, lanes);
+                if Q::EXACT {
+                    self.confirm(sphere, lanes);
+                } else {
+                    self.believe(sphere, lanes, near);
+                }
             }
         }
     }
@@ -209,6 +224,20 @@ impl<'a, L: Lanes, Q: Query> Packet<'a, L, Q> {
                     self.hits.t[row] = root.t;
                     self.error[lane] = root.error;
                 }
+            }
+        }
+        self.refresh();
+    }
+
+    /// Takes the lanes that passed the filter for hits.
+    #[inline(never)]
+    fn believe(&mut self, sphere: usize, lanes: u32, near: L) {
+        let mut distances = [0.0; MAX_LANES];
+        near.store(&mut distances);
+        for lane in set_bits(lanes) {
+            let (row, t) = (self.row + lane, f64::from(distances[lane]));
+            if self.rays.own[row] != sphere as u32 && t >= 0.0 && t < self.hits.t[row] {
+                self.hits.set(row, t, sphere as u32);
             }
         }
         self.refresh();

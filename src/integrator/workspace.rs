@@ -110,7 +110,7 @@ pub struct Counters {
     pub exact_decisions: u64,
     /// Paths that the depth limit ended.
     pub cut_paths: u64,
-    /// Samples that were not finite, and count as black.
+    /// Samples that were negative or not finite, and count as black.
     pub bad_samples: u64,
     /// Times that a path was in more glass spheres than it can remember.
     pub nesting_overflows: u64,

@@ -201,7 +201,7 @@ fn warnings(counters: &Counters, settings: &Settings) -> Vec<String> {
     });
     warn(counters.bad_samples, &|count| {
         format!(
-            "{count} samples were not finite and count as black: this is a fault of the program"
+            "{count} samples were negative or not finite and count as black: this is a fault of the program"
         )
     });
     warn(counters.nesting_overflows, &|count| {
