@@ -171,7 +171,7 @@ fn oracle(spheres: &Spheres, rays: &Rays, row: usize, bound: f64) -> (f64, u32) 
 fn agrees<L: Lanes>(name: &str, bvh: &Bvh, spheres: &Spheres, rays: &Rays, bounds: &[f64]) {
     let expected: Vec<_> =
         (0..rays.len()).map(|row| oracle(spheres, rays, row, bounds[row])).collect();
-    for method in [Method::Brute, Method::Tree] {
+    for method in [Method::Brute, Method::Tree, Method::Mixed] {
         let what = |row| format!("{name}, {method:?}, {} lanes, ray {row}", L::WIDTH);
         let mut hits = fresh(bounds);
         trace::<L, Closest>(method, bvh, spheres, rays, &mut hits);

@@ -60,6 +60,9 @@ pub enum Method {
     Brute,
     /// Walk the tree.
     Tree,
+    /// Walk the tree, in packets where all rays go into one octant and one by one elsewhere: for rays
+    /// that have been scattered, in a tree that is larger than what a packet would visit anyway.
+    Mixed,
 }
 
 /// Traces all rays in packets of `L::WIDTH`; `hits` holds bounds on entry, answers on return.
@@ -74,14 +77,34 @@ pub fn trace<L: Lanes, Q: Query>(
 ) -> u64 {
     let mut exact = 0;
     for row in (0..rays.len()).step_by(L::WIDTH) {
+        if method == Method::Mixed && !go_alike::<L>(rays, row) {
+            for single in row..rays.len().min(row + L::WIDTH) {
+                let mut ray = Packet::<f32, Q>::new(spheres, rays, hits, single);
+                ray.walk(bvh.nodes());
+                exact += ray.exact;
+            }
+            continue;
+        }
         let mut packet = Packet::<L, Q>::new(spheres, rays, hits, row);
         match method {
             Method::Brute => packet.leaf(0, spheres.len()),
-            Method::Tree => packet.walk(bvh.nodes()),
+            Method::Tree | Method::Mixed => packet.walk(bvh.nodes()),
         }
         exact += packet.exact;
     }
     exact
+}
+
+/// Whether the rays of a packet all go into one octant.
+#[inline(always)]
+fn go_alike<L: Lanes>(rays: &Rays, row: usize) -> bool {
+    let lanes = L::WIDTH.min(rays.len() - row);
+    let all = u32::MAX >> (u32::BITS as usize - lanes);
+    let direction = rays.direction.load::<L>(row);
+    [direction.x, direction.y, direction.z].iter().all(|axis| {
+        let negative = axis.is_negative().bits() & all;
+        negative == 0 || negative == all
+    })
 }
 
 /// Rays `row..row + L::WIDTH` on their way through the tree.

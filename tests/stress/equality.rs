@@ -1,13 +1,12 @@
 //! One picture: whatever the threads, the packets, the tree and the part that is asked for.
 
 use crate::common::*;
-use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Image;
 use spherule::integrator::workspace::Counters;
 use spherule::render::Options;
 use spherule::scene::{Integrator, SamplerKind, Scene};
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{Tracer, Traversal, Width};
 
 const INTEGRATORS: [Integrator; 3] =
     [Integrator::Path, Integrator::Whitted { shadow_samples: 3 }, Integrator::Ao { distance: 2.0 }];
@@ -26,10 +25,9 @@ fn every_tracer_makes_the_same_picture() {
     for integrator in INTEGRATORS {
         let scene = everything(integrator);
         let picture = shoot(&scene);
-        for method in [Method::Brute, Method::Tree] {
-            for (i, coherent) in WIDTHS.into_iter().enumerate() {
-                // Each width once on either side.
-                let tracer = Tracer { method, coherent, incoherent: WIDTHS[(i + 1) % 4] };
+        for traversal in [Traversal::Brute, Traversal::Tree, Traversal::Auto] {
+            for width in WIDTHS {
+                let tracer = Tracer { traversal, width };
                 let other = shoot_with(&scene, &Options { tracer, ..Options::default() });
                 assert!(other.image == picture.image, "{integrator:?} {tracer:?}");
                 let work = |counters: &Counters| (counters.rays(), counters.cut_paths);

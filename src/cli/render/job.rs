@@ -2,14 +2,13 @@
 
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
-use crate::cli::names::Traversal;
+use crate::cli::names;
 use crate::cli::settings::region_text;
 use crate::cli::source::Source;
-use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::Settings;
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{Tracer, Traversal, Width};
 use std::path::PathBuf;
 use std::thread::available_parallelism;
 
@@ -76,16 +75,15 @@ fn usual_threads() -> usize {
     available_parallelism().map_or(1, usize::from)
 }
 
-fn tracer(traversal: Traversal, lanes: Option<Width>) -> Tracer {
-    let usual = Tracer::default();
-    let width = lanes.unwrap_or(Width::Sixteen);
-    let packets = |method, width| Tracer { method, coherent: width, incoherent: width };
-    match traversal {
-        Traversal::Auto => Tracer { coherent: lanes.unwrap_or(usual.coherent), ..usual },
-        Traversal::Brute => packets(Method::Brute, width),
-        Traversal::Scalar => packets(Method::Tree, Width::One),
-        Traversal::Packet => packets(Method::Tree, width),
-    }
+fn tracer(typed: names::Traversal, lanes: Option<Width>) -> Tracer {
+    let width = lanes.unwrap_or(Tracer::default().width);
+    let (traversal, width) = match typed {
+        names::Traversal::Auto => (Traversal::Auto, width),
+        names::Traversal::Brute => (Traversal::Brute, width),
+        names::Traversal::Scalar => (Traversal::Tree, Width::One),
+        names::Traversal::Packet => (Traversal::Tree, width),
+    };
+    Tracer { traversal, width }
 }
 
 #[cfg(test)]
@@ -94,12 +92,12 @@ mod tests {
 
     #[test]
     fn traversals_are_what_they_are_called() {
-        assert_eq!(tracer(Traversal::Auto, None), Tracer::default());
-        assert_eq!(tracer(Traversal::Auto, Some(Width::Four)).coherent, Width::Four);
-        let scalar = tracer(Traversal::Scalar, Some(Width::Eight));
-        assert_eq!((scalar.coherent, scalar.incoherent), (Width::One, Width::One));
-        let packet = tracer(Traversal::Packet, Some(Width::Eight));
-        assert_eq!((packet.method, packet.incoherent), (Method::Tree, Width::Eight));
-        assert_eq!(tracer(Traversal::Brute, None).method, Method::Brute);
+        assert_eq!(tracer(names::Traversal::Auto, None), Tracer::default());
+        assert_eq!(tracer(names::Traversal::Auto, Some(Width::Four)).width, Width::Four);
+        let scalar = tracer(names::Traversal::Scalar, Some(Width::Eight));
+        assert_eq!(scalar, Tracer { traversal: Traversal::Tree, width: Width::One });
+        let packet = tracer(names::Traversal::Packet, Some(Width::Eight));
+        assert_eq!(packet, Tracer { traversal: Traversal::Tree, width: Width::Eight });
+        assert_eq!(tracer(names::Traversal::Brute, None).traversal, Traversal::Brute);
     }
 }

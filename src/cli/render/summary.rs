@@ -9,12 +9,11 @@ use crate::cli::output;
 use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
-use spherule::bvh::walk::Method;
 use spherule::image::WriteOptions;
 use spherule::integrator::workspace::Counters;
 use spherule::render::Render;
 use spherule::scene::Settings;
-use spherule::trace::Width;
+use spherule::trace::{Traversal, Width};
 use std::time::Duration;
 
 /// How a render went.
@@ -41,9 +40,8 @@ pub(super) struct Summary<'a> {
 #[derive(Serialize)]
 struct TracerSummary {
     threads: usize,
-    method: &'static str,
-    coherent_lanes: u32,
-    incoherent_lanes: u32,
+    traversal: &'static str,
+    lanes: u32,
 }
 
 /// Counts and times.
@@ -135,12 +133,12 @@ impl TracerSummary {
     fn new(job: &Job) -> Self {
         Self {
             threads: job.threads,
-            method: match job.tracer.method {
-                Method::Brute => "brute",
-                Method::Tree => "tree",
+            traversal: match job.tracer.traversal {
+                Traversal::Auto => "auto",
+                Traversal::Tree => "tree",
+                Traversal::Brute => "brute",
             },
-            coherent_lanes: lanes(job.tracer.coherent),
-            incoherent_lanes: lanes(job.tracer.incoherent),
+            lanes: lanes(job.tracer.width),
         }
     }
 }
