@@ -1,12 +1,12 @@
 //! Ray against sphere in arithmetic without any rounding, for what double precision cannot decide.
 //!
 //! Coordinates in single or double precision are whole multiples of powers of two, and so is every
-//! sum, difference and product of them: [`Dyadic`] holds such numbers with as many bits as they
+//! sum, difference and product of them: `Dyadic` holds such numbers with as many bits as they
 //! need. With `F` from the center to the origin, `a = d.d`, `b = -F.d`, `c = F.F - r^2` and `D =
 //! b^2 - a c`, all exact, a ray hits if it starts outside (`c > 0`), heads for the sphere (`b > 0`)
 //! and its line meets it (`D >= 0`; a tangent hits), or starts inside, or starts on the surface and
 //! heads in. It does so at `t = (b -+ sqrt(D)) / a`. Which of two such numbers is less needs no
-//! root either: [`sign_of_sum`] squares both sides.
+//! root either: `sign_of_sum` squares both sides.
 //!
 //! It takes microseconds, and is needed about never: [`crate::intersect::confirm`] says when.
 

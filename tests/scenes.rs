@@ -1,0 +1,59 @@
+//! Every scene of `scenes/` renders, and those with closed forms give them.
+
+use spherule::render::{Options, Render, render};
+use spherule::scene::Scene;
+use spherule::world::World;
+use std::path::{Path, PathBuf};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
+}
+
+/// A scene of the folder as a small picture.
+fn picture(path: &Path, (width, height): (u32, u32), spp: u32) -> Render {
+    let mut scene = Scene::load(path).unwrap_or_else(|error| panic!("{error}"));
+    (scene.settings.width, scene.settings.height) = (width, height);
+    scene.settings.spp = spp;
+    let world = World::build(&scene).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    render(&world, &scene.settings, &Options::default())
+}
+
+#[test]
+fn every_scene_renders_and_shows_something() {
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder()).expect("the folder is there").flatten() {
+        let path = entry.path();
+        if path.extension().is_some_and(|suffix| suffix == "toml") {
+            let Render { image, counters, .. } = picture(&path, (40, 30), 2);
+            assert_eq!(counters.bad_samples, 0, "{}", path.display());
+            let values = || image.pixels.iter().flatten();
+            assert!(values().all(|v| v.is_finite() && *v >= 0.0), "{}", path.display());
+            assert!(values().any(|v| *v > 0.01), "{} is black", path.display());
+            count += 1;
+        }
+    }
+    assert!(count >= 12, "{count} scenes");
+}
+
+#[test]
+fn furnaces_give_their_closed_forms_exactly() {
+    let outside = picture(&folder().join("furnace.toml"), (33, 33), 4).image;
+    assert_eq!(outside.pixels[33 * 16 + 16], [0.8; 3], "the sphere's albedo");
+    assert_eq!(outside.pixels[0], [1.0; 3], "the environment");
+    let inside = picture(&folder().join("furnace-inside.toml"), (33, 33), 4).image;
+    assert!(inside.pixels.iter().all(|pixel| *pixel == [1.0; 3]));
+}
+
+#[test]
+fn a_mirror_in_a_gradient_sky_matches_its_closed_form() {
+    let Render { image, .. } = picture(&folder().join("mirror-sky.toml"), (65, 65), 64);
+    let middle = image.pixels[65 * 32 + 32];
+    // Straight back: the horizon.
+    assert!((middle[1] - 0.5).abs() < 1e-3, "{middle:?}");
+    // Above and below the middle the sky is mirrored alike.
+    for row in 0..32 {
+        let (above, below) =
+            (image.pixels[65 * row + 32][1], image.pixels[65 * (64 - row) + 32][1]);
+        assert!((above + below - 1.0).abs() < 5e-3, "row {row}: {above} {below}");
+    }
+}
