@@ -42,13 +42,15 @@ pub(super) fn plural(count: u64, noun: &str) -> String {
     format!("{} {noun}{ending}", HumanCount(count))
 }
 
-/// What the world had to leave out, if anything.
-pub(super) fn dropped(world: &World) -> Option<String> {
-    let count = world.features.vanished;
-    (count > 0).then(|| {
-        format!(
-            "{} left out: too small for single precision beside the scene's extent",
-            spheres(count)
-        )
-    })
+/// Which spheres are left out, and why.
+pub(super) fn dropped(world: &World) -> Vec<String> {
+    let left_out =
+        |count: u64, why: &str| (count > 0).then(|| format!("{} left out: {why}", spheres(count)));
+    let vanished = "too small for single precision beside the scene's extent";
+    let hidden = "each coincides with an earlier one, which hides it";
+    let features = &world.features;
+    [left_out(features.vanished, vanished), left_out(features.hidden, hidden)]
+        .into_iter()
+        .flatten()
+        .collect()
 }

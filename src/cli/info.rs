@@ -90,7 +90,7 @@ impl Info {
             file: source.name().into_owned(),
             title: source.title(scene).into_owned(),
             spheres: scene.spheres.len(),
-            dropped_spheres: world.features.vanished,
+            dropped_spheres: world.features.vanished + world.features.hidden,
             bounds: bounds(scene),
             radius: radii(scene),
             materials: materials(scene),

@@ -12,6 +12,8 @@ pub struct Features {
     pub spheres_by_kind: [u64; Kind::COUNT],
     /// Spheres too small for single precision beside the largest coordinate, left out.
     pub vanished: u64,
+    /// Spheres that coincide with an earlier one, in a crowd about one center, left out.
+    pub hidden: u64,
     /// The ground's kind of material; `None` if there is no ground, and rays are not tested against
     /// it.
     pub ground_kind: Option<Kind>,
@@ -29,14 +31,15 @@ pub struct Features {
 }
 
 impl Features {
-    pub(super) fn census(world: &World, scene: &Scene) -> Self {
+    pub(super) fn census(world: &World, scene: &Scene, placed: usize) -> Self {
         let mut spheres_by_kind = [0; Kind::COUNT];
         for row in 0..world.spheres.len() {
             spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
         }
         Self {
             spheres_by_kind,
-            vanished: (scene.spheres.len() - world.spheres.len()) as u64,
+            vanished: (scene.spheres.len() - placed) as u64,
+            hidden: (placed - world.spheres.len()) as u64,
             ground_kind: world.ground.map(|ground| ground.material.kind()),
             colors: world.appearance.color.is_some(),
             lights: !world.lights.is_empty(),

@@ -100,6 +100,7 @@ impl World {
         let frame = Frame::of(&scene.spheres, &pose);
         let materials = Materials::build(&scene.materials);
         let mut spheres = spheres::build(&scene.spheres, &frame);
+        let placed = spheres.len();
         let bvh = bvh::build::build(&mut spheres);
         let appearance = Appearance::build(&scene.spheres, &spheres.id, &materials);
         let camera = Camera::build(scene, &pose, &frame);
@@ -119,7 +120,7 @@ impl World {
             camera,
             features: Features::default(),
         };
-        world.features = Features::census(&world, scene);
+        world.features = Features::census(&world, scene, placed);
         Ok(world)
     }
 

@@ -149,7 +149,7 @@ impl Statistics {
         let seconds = render.elapsed.as_secs_f64();
         Self {
             spheres: world.spheres.len() as u64,
-            dropped_spheres: world.features.vanished,
+            dropped_spheres: world.features.vanished + world.features.hidden,
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),
             load_seconds: prepared.load.as_secs_f64(),
