@@ -101,6 +101,9 @@ pub mod render;
 pub mod atomic;
 pub mod image;
 
+// Judges what is above.
+pub mod stress;
+
 pub use image::Image;
 pub use query::SphereTree;
 pub use scene::Scene;

@@ -1,6 +1,7 @@
 //! The command line as typed.
 
 use super::names::{BITS, FILTERS, INTEGRATORS, LANES, PPM, SAMPLERS, TONES, Traversal};
+use super::stress;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
@@ -31,6 +32,9 @@ pub(super) enum Command {
     /// Measure how far a picture is from a reference
     #[command(after_help = COMPARE_EXAMPLES)]
     Compare(CompareArgs),
+    /// Count wrong decisions of this program, and of usual forms, where rounding is at its worst
+    #[command(after_help = stress::EXAMPLES)]
+    Stress(stress::Args),
     /// Print a completion script for a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions(CompletionsArgs),

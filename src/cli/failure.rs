@@ -14,6 +14,8 @@ use spherule::scene::generate::GenerateError;
 use spherule::scene::{Place, SceneError};
 use spherule::world::WorldError;
 use std::fmt;
+use std::io;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Why a command failed.
@@ -33,6 +35,10 @@ pub(crate) enum Failure {
     Generate(#[from] GenerateError),
     #[error("cannot start {0} threads: {1}; give --threads a smaller number")]
     Threads(usize, rayon::ThreadPoolBuildError),
+    #[error("{}: cannot be written: {}", .0.display(), .1)]
+    Write(PathBuf, io::Error),
+    #[error("the plot cannot be drawn: {0}; leave out --plot, --csv has the same numbers")]
+    Plot(String),
     #[error("there is no memory for {0} x {1} pixels; give --size or --region smaller numbers")]
     Memory(u32, u32),
     #[error(

@@ -12,9 +12,12 @@ mod info;
 mod names;
 mod output;
 mod processor;
+mod progress;
 mod render;
 mod settings;
 mod source;
+mod stress;
+mod threads;
 mod values;
 
 use self::args::{Args, Command};
@@ -29,6 +32,7 @@ pub(crate) fn run() -> Result<ExitCode, Failure> {
         Command::Field(args) => field::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Stress(args) => stress::run(&args),
         Command::Completions(args) => Ok(completions::run(&args)),
     }
 }

@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule::image::{Depth, PpmEncoding};
 use spherule::scene::{Filter, Integrator, SamplerKind, Tone};
+use spherule::stress::{REGIMES, Regime};
 use spherule::trace::Width;
 use std::mem::discriminant;
 
@@ -79,6 +80,13 @@ pub(super) const LANES: Names<Width> = Names(&[
     ("8", Width::Eight, "Packets of eight"),
     ("16", Width::Sixteen, "Packets of sixteen"),
 ]);
+
+/// Reads the name of a regime.
+pub(super) fn regime() -> impl TypedValueParser<Value = &'static Regime> {
+    let names = REGIMES.iter().map(|regime| PossibleValue::new(regime.name).help(regime.about));
+    PossibleValuesParser::new(names)
+        .try_map(|name| Regime::named(&name).ok_or("not one of the names"))
+}
 
 /// How rays find spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

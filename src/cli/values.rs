@@ -15,6 +15,9 @@ pub(super) const SAMPLES: RangeInclusive<i64> = 1..=1 << 24;
 /// Threads: far more than any processor has gains nothing and costs memory.
 pub(super) const THREADS: RangeInclusive<i64> = 1..=4096;
 
+/// Rays of a stress run: a thousand years of them at most.
+pub(super) const RAYS: RangeInclusive<u64> = 1..=1 << 52;
+
 /// Most scatterings on a path; `None` for no limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DepthLimit(pub(super) Option<u32>);

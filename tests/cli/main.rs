@@ -6,3 +6,4 @@ mod pictures;
 mod processes;
 mod refusals;
 mod reports;
+mod stress;

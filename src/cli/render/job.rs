@@ -5,12 +5,12 @@ use crate::cli::failure::Failure;
 use crate::cli::names;
 use crate::cli::settings::region_text;
 use crate::cli::source::Source;
+use crate::cli::threads;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::Settings;
 use spherule::trace::{Tracer, Traversal, Width};
 use std::path::PathBuf;
-use std::thread::available_parallelism;
 
 /// A render to be done.
 pub(super) struct Job<'a> {
@@ -38,15 +38,14 @@ impl<'a> Job<'a> {
             encoding: &args.encoding,
             speed: &args.speed,
             tracer: tracer(args.speed.traversal, args.speed.lanes),
-            threads: args.speed.threads.map_or_else(usual_threads, usize::from),
+            threads: threads::count(args.speed.threads),
             report: args.report,
         })
     }
 
     /// The threads that do it.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
-        let builder = rayon::ThreadPoolBuilder::new().num_threads(self.threads);
-        builder.build().map_err(|error| Failure::Threads(self.threads, error))
+        threads::pool(self.threads)
     }
 
     /// The part of the picture that is rendered, once its size is known.
@@ -68,11 +67,6 @@ impl<'a> Job<'a> {
         );
         Err(Failure::usage("render", message))
     }
-}
-
-/// What the affinity mask and the control group's quota allow; 1 where the system does not tell.
-fn usual_threads() -> usize {
-    available_parallelism().map_or(1, usize::from)
 }
 
 fn tracer(typed: names::Traversal, lanes: Option<Width>) -> Tracer {

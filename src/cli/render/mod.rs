@@ -5,14 +5,13 @@ mod job;
 mod metadata;
 mod notes;
 mod prepare;
-mod progress;
 mod summary;
 
 use self::job::Job;
 use self::prepare::Prepared;
-use self::progress::Meter;
 use self::summary::Summary;
 use super::args::RenderArgs;
+use super::progress::Meter;
 use super::{Failure, output};
 use spherule::image::check_writable;
 use spherule::render::{Options, Render, render};

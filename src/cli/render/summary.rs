@@ -2,10 +2,10 @@
 
 use super::job::Job;
 use super::prepare::Prepared;
-use super::progress::rate;
 use crate::cli::args::ReportArgs;
 use crate::cli::contents::{found, plural, spheres};
 use crate::cli::output;
+use crate::cli::progress::rate;
 use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;

@@ -1,6 +1,6 @@
-//! How far the render is: a bar on a terminal, a line now and then elsewhere.
+//! How far the work is: a bar on a terminal, a line now and then elsewhere.
 
-use crate::cli::output;
+use super::output;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use spherule::render::Progress;
 use std::io::{IsTerminal, stderr};
@@ -49,7 +49,7 @@ impl Meter {
         }
     }
 
-    /// Shows how far the render is; from any thread.
+    /// Shows how far the work is; from any thread.
     pub(super) fn show(&self, progress: Progress) {
         match self {
             Self::Bar { bar, step } => {

@@ -1,0 +1,122 @@
+//! `spherule stress`: the precision ladder, on the user's own machine.
+
+mod args;
+mod plot;
+mod table;
+
+pub(super) use self::args::{Args, EXAMPLES};
+use self::plot::Format;
+use super::progress::{Meter, rate};
+use super::{Failure, output, threads};
+use indicatif::HumanCount;
+use serde::Serialize;
+use spherule::atomic::{check_destination, write_atomically};
+use spherule::render::Progress;
+use spherule::stress::{self, Form, Options, REGIMES, Regime, Report};
+use std::io;
+use std::path::Path;
+use std::process::ExitCode;
+use std::ptr;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Summary<'a> {
+    /// Wrong decisions of this program, of every kind.
+    wrong: u64,
+    surface_rays: u64,
+    #[serde(flatten)]
+    report: &'a Report,
+}
+
+/// Runs, tells, and fails if this program was wrong anywhere.
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let format = args.plot.as_deref().map(Format::of_suffix).transpose()?;
+    for path in args.csv.iter().chain(&args.plot) {
+        check_destination(path).map_err(|error| Failure::Write(path.clone(), error))?;
+    }
+    let report = measure(args)?;
+    if let Some(path) = &args.csv {
+        write(path, |writer| report.write_csv(writer).map_err(io::Error::from))?;
+    }
+    if let (Some(path), Some(format)) = (&args.plot, format) {
+        let picture = plot::draw(&report, format)?;
+        write(path, |writer| writer.write_all(&picture))?;
+    }
+    let wrong = report.wrong(Form::Spherule);
+    if args.json {
+        let surface_rays = report.surface_rays();
+        output::print_json(&Summary { wrong, surface_rays, report: &report });
+    } else {
+        if !args.quiet {
+            output::print(table::text(&report));
+        }
+        output::print(closing(&report));
+    }
+    Ok(if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn measure(args: &Args) -> Result<Report, Failure> {
+    let options = Options { rays: args.rays, seed: args.seed, regimes: regimes(&args.regime) };
+    let meter = Meter::new(args.quiet);
+    let (start, traced) = (Instant::now(), AtomicU64::new(0));
+    let show = |more: u64| {
+        let rays = traced.fetch_add(more, Ordering::Relaxed) + more;
+        let done = rays as f64 / options.rays as f64;
+        meter.show(Progress { done, rays, elapsed: start.elapsed() });
+    };
+    let pool = threads::pool(threads::count(args.threads))?;
+    let report = pool.install(|| stress::run(&options, &show));
+    meter.finish();
+    if !args.quiet {
+        let (elapsed, rays) = (start.elapsed(), HumanCount(report.rays));
+        let (seconds, rate) = (elapsed.as_secs_f64(), rate(report.rays, elapsed));
+        output::note(format_args!("{rays} rays in {seconds:.1} s, {rate}"));
+    }
+    Ok(report)
+}
+
+/// Those chosen, in the usual order; all if none is.
+fn regimes(chosen: &[&'static Regime]) -> Vec<&'static Regime> {
+    let is_chosen = |regime: &&Regime| chosen.iter().any(|other| ptr::eq(*other, *regime));
+    REGIMES.iter().filter(|regime| chosen.is_empty() || is_chosen(regime)).collect()
+}
+
+fn write(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+) -> Result<(), Failure> {
+    write_atomically(path, fill).map_err(|error| Failure::Write(path.to_owned(), error))
+}
+
+/// The verdict.
+fn closing(report: &Report) -> String {
+    let (wrong, rays) = (report.wrong(Form::Spherule), report.rays + report.surface_rays());
+    let counted = format!("{} wrong decisions in {} rays", HumanCount(wrong), HumanCount(rays));
+    let at_fault = report.regimes.iter().filter(|regime| regime.form(Form::Spherule).wrong() > 0);
+    let names: Vec<_> = at_fault.map(|regime| regime.name).collect();
+    if names.is_empty() { counted } else { format!("{counted}, in {}", names.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regimes_keep_their_order() {
+        assert_eq!(regimes(&[]).len(), REGIMES.len());
+        let chosen = [&REGIMES[5], &REGIMES[2], &REGIMES[5]];
+        let names: Vec<_> = regimes(&chosen).iter().map(|regime| regime.name).collect();
+        assert_eq!(names, [REGIMES[2].name, REGIMES[5].name]);
+    }
+
+    #[test]
+    fn the_verdict_names_the_regimes_at_fault() {
+        let regimes = REGIMES[..2].iter().collect();
+        let mut report = stress::run(&Options { rays: 64, seed: 0, regimes }, &|_| ());
+        assert_eq!(closing(&report), "0 wrong decisions in 80 rays");
+        report.regimes[1].forms[Form::Spherule as usize].wrong_spheres = 1234;
+        assert_eq!(closing(&report), "1,234 wrong decisions in 80 rays, in inside");
+    }
+}
