@@ -112,7 +112,8 @@ impl<'a> Summary<'a> {
              load    {:.3} s, {}\n\
              build   {:.3} s, tree of {}\n\
              render  {:.3} s on {}, {}\n\
-             rays    {} camera, {} bounce, {} shadow",
+             rays    {} camera, {} bounce, {} shadow\n\
+             exact   {} without rounding",
             self.output,
             plural(statistics.samples, "sample"),
             statistics.load_seconds,
@@ -125,6 +126,7 @@ impl<'a> Summary<'a> {
             HumanCount(statistics.camera_rays),
             HumanCount(statistics.bounce_rays),
             HumanCount(statistics.shadow_rays),
+            plural(statistics.exact_decisions, "decision"),
         ));
     }
 }
