@@ -1,6 +1,6 @@
 //! Forms of the ray-sphere intersection in single precision, to compare with.
 
-use super::scenes::Ray;
+use super::rays::Ray;
 use glam::Vec3;
 
 /// A way to answer what a ray hits.

@@ -12,7 +12,7 @@
 //! Computable Separation Bound for Arithmetic Expressions Involving Radicals", Algorithmica 2000).
 //! Evaluating it to `3 m + 3` binary places decides.
 
-use super::scenes::Ray;
+use super::rays::Ray;
 use num_bigint::{BigInt, Sign};
 use std::cmp::Ordering;
 

@@ -20,11 +20,12 @@ pub mod forms;
 mod integers;
 mod interval;
 mod random;
+pub mod rays;
 pub mod reference;
 pub mod regimes;
 pub mod report;
 pub mod run;
-pub mod scenes;
+mod scenes;
 mod surface;
 
 pub use forms::Form;

@@ -13,7 +13,7 @@
 pub use super::integers::Twofold;
 use super::integers::{Encounter, Units};
 use super::interval::Interval;
-use super::scenes::Ray;
+use super::rays::Ray;
 use glam::{DVec3, Vec3};
 use std::cmp::Ordering;
 
@@ -152,6 +152,7 @@ fn length2(v: [Interval; 3]) -> Interval {
 #[cfg(test)]
 mod tests {
     use super::super::random::Random;
+    use super::super::rays;
     use super::super::regimes::REGIMES;
     use super::super::scenes;
     use super::*;
@@ -256,7 +257,7 @@ mod tests {
             for _ in 0..40 {
                 let spheres = scenes::scene(&regime.recipe, &mut random);
                 for _ in 0..5 {
-                    let ray = scenes::ray(&regime.recipe, &spheres, &mut random);
+                    let ray = rays::ray(&regime.recipe, &spheres, &mut random);
                     let found = closest(&spheres, &ray).sphere;
                     assert_eq!(found, other(&spheres, &ray), "{} {ray:?}", regime.name);
                     let everything = (0..spheres.len())

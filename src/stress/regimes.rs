@@ -65,7 +65,7 @@ const ABOVE: Origin = Origin::Above([-4.0, 1.0]);
 const AROUND: Origin = Origin::Away([0.1, 1.5]);
 
 /// All regimes, in the order in which they are shown.
-pub static REGIMES: [Regime; 33] = [
+pub static REGIMES: [Regime; 34] = [
     regime("near_unit", "radii 0.2 to 1, rays from 2 to 30 radii", NEAR),
     regime("inside", "rays that start in a sphere", Recipe { origin: Origin::Inside, ..NEAR }),
     regime("far_1e3", "radius / distance 1e-3", far(3.0)),
@@ -88,6 +88,11 @@ pub static REGIMES: [Regime; 33] = [
         "axis_tangent",
         "tangents along axes, exact or off by one number",
         arranged(Arrangement::Lattice, AROUND, Aim::AxisTangent),
+    ),
+    regime(
+        "hair",
+        "tangents and equal distances but for 1e-30 to 1e-8",
+        arranged(Arrangement::Pencil, Origin::Zero, Aim::Hair([-30.0, -8.0])),
     ),
     regime("offset_1e4", "the scene 1e4 from the origin of coordinates", moved(1e4)),
     regime("offset_1e6", "the scene 1e6 from the origin of coordinates", moved(1e6)),
@@ -132,7 +137,8 @@ pub static REGIMES: [Regime; 33] = [
 #[cfg(test)]
 mod tests {
     use super::super::random::Random;
-    use super::super::scenes::{parts, ray, scene};
+    use super::super::rays::ray;
+    use super::super::scenes::{parts, scene};
     use super::*;
     use glam::Vec3;
 

@@ -2,10 +2,11 @@
 
 use super::forms::{self, Answer, Form};
 use super::random::Random;
+use super::rays::{self, Ray};
 use super::reference::{self, Decision, Twofold};
 use super::regimes::Regime;
 use super::report::{FormReport, RegimeReport, Report};
-use super::scenes::{self, Ray};
+use super::scenes;
 use super::surface;
 use crate::query::{Hits, NOTHING, QueryError, RayColumns, SphereTree, Surface};
 use crate::sampling::{mix, stream};
@@ -71,7 +72,7 @@ fn run_scene(regime: &Regime, count: usize, seed: u64) -> RegimeReport {
     let mut random = Random::new(seed);
     let spheres = scenes::scene(&regime.recipe, &mut random);
     let rays: Vec<Ray> =
-        (0..count).map(|_| scenes::ray(&regime.recipe, &spheres, &mut random)).collect();
+        (0..count).map(|_| rays::ray(&regime.recipe, &spheres, &mut random)).collect();
     let mut report = RegimeReport::new(regime);
     report.rays = count as u64;
     // Columns made here are of one length, and few.

@@ -1,4 +1,4 @@
-//! Random scenes and rays after a recipe.
+//! Random scenes after a recipe.
 //!
 //! Everything is laid out in double precision and then rounded to single: what is decided about is
 //! the rounded numbers, which every form gets bit by bit.
@@ -14,15 +14,6 @@ const GAP: f64 = 4e-5;
 
 /// How far from the top of a giant ball things stand on it.
 const FIELD: f64 = 10.0;
-
-/// A ray: single-precision numbers, taken exactly.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    /// Where it starts.
-    pub origin: [f32; 3],
-    /// Where it goes, of any length but 0.
-    pub direction: [f32; 3],
-}
 
 /// How scenes and rays are made.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +36,8 @@ pub(super) enum Arrangement {
     Cluster,
     /// In a cube, all numbers multiples of 1/16.
     Lattice,
+    /// All touch the origin of coordinates, from either side of one plane.
+    Pencil,
     /// Small ones on a giant of this radius.
     Ground(f64),
     /// Each touches the one before; every second time exactly.
@@ -87,6 +80,8 @@ pub(super) enum Aim {
     SphereOrTangent,
     /// Along an axis, a tangent exactly or one number beside it.
     AxisTangent,
+    /// Through the origin of coordinates, but for a hair, in decades.
+    Hair([f64; 2]),
     /// Away from a sphere.
     Away,
     /// Anywhere.
@@ -101,6 +96,7 @@ pub(super) fn scene(recipe: &Recipe, random: &mut Random) -> Vec<[f32; 4]> {
     let spheres = match recipe.arrangement {
         Arrangement::Cluster => (0..count).map(|_| anywhere(random)).collect(),
         Arrangement::Lattice => (0..count).map(|_| on_lattice(random)).collect(),
+        Arrangement::Pencil => pencil(count, random),
         Arrangement::Ground(radius) => ground(radius, count, random),
         Arrangement::Chain => chain(count, random),
         Arrangement::Shells => shells(count, random),
@@ -124,6 +120,20 @@ fn on_lattice(random: &mut Random) -> (DVec3, f64) {
     (center, (1.0 + random.index(16) as f64) / 16.0)
 }
 
+/// The normals of pencils, and their lengths, all of them whole: so tangents are exact.
+pub(super) const NORMALS: [(DVec3, f64); 2] = [(DVec3::Y, 1.0), (DVec3::new(2.0, 3.0, 6.0), 7.0)];
+
+fn pencil(count: usize, random: &mut Random) -> Vec<(DVec3, f64)> {
+    /// Few enough bits for seven times as much to fit single precision.
+    const STEPS: f64 = (1 << 20) as f64;
+    let (normal, length) = NORMALS[random.index(NORMALS.len())];
+    let sphere = |_| {
+        let part = (random.between([0.2, 1.0]) * STEPS).round() / STEPS;
+        (normal * (random.sign() * part), length * part)
+    };
+    (0..count).map(sphere).collect()
+}
+
 /// A giant whose surface passes near the origin of coordinates, and small spheres that stand on it.
 fn ground(radius: f64, count: usize, random: &mut Random) -> Vec<(DVec3, f64)> {
     // As it is once it is rounded, for the others to stand on.
@@ -137,7 +147,7 @@ fn ground(radius: f64, count: usize, random: &mut Random) -> Vec<(DVec3, f64)> {
 }
 
 /// The direction from a giant's center to a place near the origin of coordinates.
-fn above(center: DVec3, random: &mut Random) -> DVec3 {
+pub(super) fn above(center: DVec3, random: &mut Random) -> DVec3 {
     (random.in_cube() * FIELD - center).normalize()
 }
 
@@ -172,112 +182,8 @@ fn of_any_size(random: &mut Random) -> (DVec3, f64) {
     (random.direction() * random.decades([-6.0, 6.0]), random.decades([-6.0, 6.0]))
 }
 
-fn axis(random: &mut Random) -> DVec3 {
+pub(super) fn axis(random: &mut Random) -> DVec3 {
     DVec3::AXES[random.index(3)] * random.sign()
-}
-
-/// A ray after a recipe, toward a scene of it.
-pub(super) fn ray(recipe: &Recipe, spheres: &[[f32; 4]], random: &mut Random) -> Ray {
-    let (target, radius) = parts(spheres[random.index(spheres.len())]);
-    let (origin, direction) = if let Aim::AxisTangent = recipe.aim {
-        axis_tangent(target, radius, random)
-    } else {
-        let origin = start(recipe, (target, radius), spheres, random);
-        // As it will be.
-        let origin = origin.as_vec3().as_dvec3();
-        (origin, direction(recipe.aim, origin, spheres, (target, radius), random))
-    };
-    let direction = direction * (random.between([0.5, 1.0]) * random.decades(recipe.length));
-    Ray { origin: origin.as_vec3().to_array(), direction: direction.as_vec3().to_array() }
-}
-
-fn start(
-    recipe: &Recipe,
-    (center, radius): (DVec3, f64),
-    spheres: &[[f32; 4]],
-    random: &mut Random,
-) -> DVec3 {
-    let (giant, giant_radius) = parts(spheres[0]);
-    match recipe.origin {
-        Origin::Away(decades) => center + random.direction() * (radius * random.decades(decades)),
-        Origin::Zero => DVec3::ZERO,
-        Origin::Inside => center + random.direction() * (radius * random.unit()),
-        Origin::Surface => center + random.direction() * radius,
-        Origin::Above(decades) => {
-            giant + above(giant, random) * (giant_radius + random.decades(decades))
-        }
-        Origin::Ground => giant + above(giant, random) * giant_radius,
-        Origin::Somewhere(decades) => random.direction() * random.decades(decades),
-    }
-}
-
-fn direction(
-    aim: Aim,
-    origin: DVec3,
-    spheres: &[[f32; 4]],
-    (center, radius): (DVec3, f64),
-    random: &mut Random,
-) -> DVec3 {
-    let toward = center - origin;
-    let within = |random: &mut Random| 1.2 * random.unit().sqrt();
-    let beside = |decades, random: &mut Random| 1.0 + random.sign() * random.decades(decades);
-    match aim {
-        Aim::Tangent(decades) => pass(toward, radius * beside(decades, random), random),
-        Aim::SphereOrTangent if random.coin() => pass(toward, radius * within(random), random),
-        Aim::SphereOrTangent => pass(toward, radius * beside([-8.0, -1.0], random), random),
-        Aim::Away => -pass(toward, radius * within(random), random),
-        Aim::Contact if spheres.len() > 1 && random.coin() => {
-            let at = random.index(spheres.len() - 1);
-            let ((first, near), (second, _)) = (parts(spheres[at]), parts(spheres[at + 1]));
-            let contact = first + (second - first).normalize() * near;
-            pass(contact - origin, near * random.decades([-9.0, -2.0]), random)
-        }
-        Aim::Sphere | Aim::Contact => pass(toward, radius * within(random), random),
-        Aim::AxisTangent | Aim::Anywhere => random.direction(),
-    }
-}
-
-/// The unit direction of a line that passes a point at a distance; any direction if none does.
-fn pass(toward: DVec3, distance: f64, random: &mut Random) -> DVec3 {
-    let length = toward.length();
-    let sine = distance / length;
-    if sine.is_nan() || sine >= 1.0 {
-        return random.direction();
-    }
-    let forward = toward / length;
-    forward * (1.0 - sine * sine).sqrt() + random.perpendicular(forward) * sine
-}
-
-/// A ray along an axis that is a tangent exactly, or misses by one unit in the last place, or is
-/// within by one.
-fn axis_tangent(center: DVec3, radius: f64, random: &mut Random) -> (DVec3, DVec3) {
-    let first = random.index(3);
-    let (along, aside) = (DVec3::AXES[first], DVec3::AXES[(first + 1 + random.index(2)) % 3]);
-    let touch = (center + aside * (random.sign() * radius)).as_vec3();
-    let touch = match random.index(3) {
-        0 => touch,
-        1 => touch.map_along(aside, f32::next_up),
-        _ => touch.map_along(aside, f32::next_down),
-    };
-    let direction = along * random.sign();
-    (touch.as_dvec3() - direction * (1.0 + random.index(64) as f64 / 16.0), direction)
-}
-
-/// Changing one coordinate.
-trait MapAlong {
-    /// The point with the coordinate along `axis` changed.
-    fn map_along(self, axis: DVec3, change: impl Fn(f32) -> f32) -> Self;
-}
-
-impl MapAlong for Vec3 {
-    fn map_along(mut self, axis: DVec3, change: impl Fn(f32) -> f32) -> Self {
-        for i in 0..3 {
-            if axis[i] != 0.0 {
-                self[i] = change(self[i]);
-            }
-        }
-        self
-    }
 }
 
 /// Center and radius.

@@ -7,8 +7,9 @@
 
 use super::forms::{self, Form, Intersect};
 use super::random::Random;
+use super::rays::Ray;
 use super::report::RegimeReport;
-use super::scenes::{Ray, parts};
+use super::scenes::parts;
 use crate::bvh::walk::{Closest, Method, trace};
 use crate::integrator::workspace::chord;
 use crate::lanes::F32x16;
