@@ -142,6 +142,9 @@ pub fn confirm(
     confirm_closely(ray, center, radius, inside)
 }
 
+/// Relative errors of distances above this are not put up with.
+const COARSE: f64 = 1.0 / (1 << 30) as f64;
+
 /// Bound of a [`Terms::distance`]'s relative error if the terms are clear.
 const CLEAR: f64 = 1.0 / (1 << 18) as f64;
 
@@ -253,7 +256,12 @@ pub fn confirm_closely(
         return decide(ray, center, radius, away);
     }
     let t = terms.distance(terms.chord2)?;
-    Some(Root { t, error: t * terms.distance_error(), exact: false })
+    let error = terms.distance_error();
+    if error > COARSE {
+        // That there is a hit is certain, but so close to the surface little is left of the distance.
+        return decide(ray, center, radius, false);
+    }
+    Some(Root { t, error: t * error, exact: false })
 }
 
 /// What double precision cannot, but for rays that start outside and head away, which need not be
