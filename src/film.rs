@@ -45,6 +45,12 @@ pub struct Tile {
 }
 
 impl Film {
+    /// Bytes that a film of so many pixels takes, and the picture that it becomes.
+    pub fn bytes(region: Region) -> u64 {
+        let pixel = size_of::<([f64; 3], [f32; 3])>() as u64;
+        u64::from(region.width) * u64::from(region.height) * pixel
+    }
+
     /// A black film.
     pub fn new(region: Region) -> Self {
         let steps = |first: u32, count: u32| {
@@ -136,6 +142,15 @@ mod tests {
             }
             assert!(seen.iter().all(|&count| count == 1), "{width} x {height}");
         }
+    }
+
+    #[test]
+    fn films_of_any_size_are_measured() {
+        let side = u32::from(u16::MAX);
+        let region = Region { x: 0, y: 0, width: side, height: side };
+        assert!(Film::bytes(region) > 150_000_000_000);
+        let region = Region { width: u32::MAX, height: u32::MAX >> 6, ..region };
+        assert!(Film::bytes(region) > 1 << 62);
     }
 
     #[test]

@@ -100,6 +100,7 @@ pub mod render;
 
 pub mod atomic;
 pub mod image;
+pub mod memory;
 
 // Judges what is above.
 pub mod stress;

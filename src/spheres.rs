@@ -30,6 +30,13 @@ impl Spheres {
         Self { x, y, z, radius, id, precise: Vec::new() }
     }
 
+    /// No spheres, with room for as many.
+    pub(crate) fn with_capacity(count: usize) -> Self {
+        let column = || Vec::with_capacity(count);
+        let id = Vec::with_capacity(count);
+        Self { x: column(), y: column(), z: column(), radius: column(), id, precise: Vec::new() }
+    }
+
     /// Number of spheres.
     pub fn len(&self) -> usize {
         self.radius.len()

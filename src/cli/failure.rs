@@ -9,7 +9,9 @@ use miette::{
     LabeledSpan, MietteError, MietteHandlerOpts, MietteSpanContents, SourceCode, SourceSpan,
     SpanContents,
 };
+use spherule::film::Region;
 use spherule::image::{CompareError, ImageError};
+use spherule::memory::Shortage;
 use spherule::scene::generate::GenerateError;
 use spherule::scene::{Place, SceneError};
 use spherule::world::WorldError;
@@ -39,8 +41,10 @@ pub(crate) enum Failure {
     Write(PathBuf, io::Error),
     #[error("the plot cannot be drawn: {0}; leave out --plot, --csv has the same numbers")]
     Plot(String),
-    #[error("there is no memory for {0} x {1} pixels; give --size or --region smaller numbers")]
-    Memory(u32, u32),
+    #[error(
+        "{} x {} pixels need {}; give --size or --region smaller numbers", .0.width, .0.height, .1
+    )]
+    Film(Region, Shortage),
     #[error(
         "this program was compiled for a processor with {0}, which this one does not have; build \
          it on this machine: cargo build --release"

@@ -4,6 +4,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
+/// Most characters of a message, and of a help.
+const LONGEST: usize = 600;
+
 /// A file that is not a scene, or not particles. Prints as `path:line:column: message` and, on a
 /// second line, the help.
 #[derive(Clone, Debug, Error)]
@@ -37,7 +40,7 @@ pub struct Place {
 impl SceneError {
     /// An error that concerns a whole file.
     pub fn whole_file(path: &Path, message: impl Into<String>) -> Self {
-        Self { path: path.to_path_buf(), message: message.into(), help: None, place: None }
+        Self { path: path.to_path_buf(), message: clipped(message), help: None, place: None }
     }
 
     /// An error at the bytes `span` of `text`, which begins with line `first_line` of the file.
@@ -55,7 +58,7 @@ impl SceneError {
     /// The same error with what to write instead.
     #[must_use]
     pub fn with_help(self, help: impl Into<String>) -> Self {
-        Self { help: Some(help.into()), ..self }
+        Self { help: Some(clipped(help)), ..self }
     }
 
     /// Line of the fault, from 1; `None` if the whole file is meant.
@@ -78,6 +81,16 @@ impl SceneError {
     fn advice(&self) -> String {
         self.help.as_ref().map_or_else(String::new, |help| format!("\nhelp: {help}"))
     }
+}
+
+/// The text, or its beginning: what a damaged file calls a name can be all of it.
+fn clipped(text: impl Into<String>) -> String {
+    let mut text = text.into();
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        text.truncate(end);
+        text.push_str("...");
+    }
+    text
 }
 
 impl Place {
@@ -107,6 +120,14 @@ mod tests {
         assert_eq!(error.to_string(), "a.toml:2:3: bad");
         let helped = SceneError::whole_file(Path::new("b"), "bad").with_help("do");
         assert_eq!(helped.to_string(), "b: bad\nhelp: do");
+    }
+
+    #[test]
+    fn messages_are_never_as_long_as_files() {
+        let error = SceneError::whole_file(Path::new("a"), "\u{e4}".repeat(1_000_000));
+        let error = error.with_help("b".repeat(LONGEST));
+        assert_eq!(error.message.chars().count(), LONGEST + 3);
+        assert_eq!(error.help.map(|help| help.len()), Some(LONGEST));
     }
 
     #[test]

@@ -25,6 +25,9 @@ impl Spheres {
     /// The most spheres a scene may hold: row numbers are `u32`, and a few of them are reserved.
     pub const MAX: u64 = (1 << 32) - 17;
 
+    /// Bytes that a sphere takes in all columns together.
+    pub const BYTES: u64 = (4 * size_of::<f64>() + size_of::<u32>() + size_of::<Rgb>()) as u64;
+
     /// Number of spheres.
     pub fn len(&self) -> usize {
         self.radius.len()

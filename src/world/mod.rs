@@ -30,10 +30,17 @@ pub use materials::{
 };
 
 use crate::bvh::{self, Bvh};
+use crate::memory::{self, Shortage};
 use crate::ray::GROUND;
-use crate::scene::{Rgb, Scene};
+use crate::scene::{Material, NamedMaterial, Rgb, Scene};
 use crate::spheres::Spheres;
 use glam::Vec3;
+
+/// Bytes that a sphere takes while a world is built, at most.
+const SPHERE_BYTES: u64 = 80;
+
+/// The same where every sphere may be a light.
+const EMITTER_BYTES: u64 = 120;
 
 /// Everything that a render reads, immutable.
 #[derive(Clone, Debug)]
@@ -66,6 +73,9 @@ pub enum WorldError {
     /// Rows are 32-bit numbers, a few of which mean something else.
     #[error("{0} spheres are too many: at most {max} fit; render a part of them", max = Spheres::MAX)]
     TooManySpheres(usize),
+    /// The columns, and what it takes to build the tree.
+    #[error("{0} spheres need {1}; render fewer of them")]
+    Memory(usize, Shortage),
     /// `fit` without spheres.
     #[error(
         "the camera has nothing to frame: the scene has no spheres; give it spheres, or give the camera `eye` and `target`"
@@ -91,9 +101,13 @@ impl World {
     /// 1e-45 of it) are left out; [`Features::vanished`] counts them.
     ///
     /// # Errors
-    /// Too many spheres, a camera that frames nothing, or rows that no scene file could hold:
-    /// columns of different lengths, values that are not finite, materials that do not exist.
+    /// Too many spheres, or too many for the memory that is left; a camera that frames nothing, or
+    /// rows that no scene file could hold: columns of different lengths, values that are not
+    /// finite, materials that do not exist.
     pub fn build(scene: &Scene) -> Result<Self, WorldError> {
+        let count = scene.spheres.len();
+        memory::check(Self::bytes(count as u64, &scene.materials))
+            .map_err(|shortage| WorldError::Memory(count, shortage))?;
         spheres::validate(scene)?;
         check::check(scene)?;
         let pose = fit::pose(scene)?;
@@ -122,6 +136,14 @@ impl World {
         };
         world.features = Features::census(&world, scene, placed);
         Ok(world)
+    }
+
+    /// Bytes that the world of so many spheres takes while it is built, at most: columns, and the
+    /// rows that the tree is made of.
+    pub fn bytes(spheres: u64, materials: &[NamedMaterial]) -> u64 {
+        let emits = |row: &NamedMaterial| matches!(row.material, Material::Emitter { .. });
+        let each = if materials.iter().any(emits) { EMITTER_BYTES } else { SPHERE_BYTES };
+        spheres.saturating_mul(each)
     }
 
     /// The material of what was hit: a sphere's row or [`GROUND`].

@@ -6,7 +6,7 @@ use crate::spheres::Spheres;
 
 /// The spheres in world space, in the user's order, without those that vanish in single precision.
 pub(super) fn build(from: &scene::Spheres, frame: &Frame) -> Spheres {
-    let mut spheres = Spheres::default();
+    let mut spheres = Spheres::with_capacity(from.len());
     for row in 0..from.len() {
         let radius = frame.length(from.radius[row]) as f32;
         if radius > 0.0 {

@@ -6,7 +6,8 @@ use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use spherule::World;
-use spherule::film::Region;
+use spherule::film::{Film, Region};
+use spherule::memory;
 use spherule::render::Render;
 use spherule::scene::{Scene, Spheres};
 use std::time::{Duration, Instant};
@@ -37,7 +38,7 @@ impl Prepared {
         let load = start.elapsed();
         job.picture.replace(&mut scene.settings);
         let region = job.region(&scene.settings)?;
-        check_memory(region)?;
+        memory::check(Film::bytes(region)).map_err(|shortage| Failure::Film(region, shortage))?;
         let start = Instant::now();
         let world = World::build(&scene)
             .map_err(|error| Failure::World(job.source.name().into_owned(), error))?;
@@ -83,13 +84,4 @@ impl Prepared {
     pub(super) fn share(&self, render: &Render) -> f64 {
         render.counters.camera_rays as f64 / self.samples() as f64
     }
-}
-
-/// Finds out whether there is memory for the sums and the picture, before an allocation ends the
-/// program.
-fn check_memory(region: Region) -> Result<(), Failure> {
-    type Pixel = ([f64; 3], [f32; 3]);
-    let pixels = region.width as usize * region.height as usize;
-    let reserved = Vec::<Pixel>::new().try_reserve_exact(pixels);
-    reserved.map_err(|_| Failure::Memory(region.width, region.height))
 }

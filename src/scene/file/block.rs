@@ -170,6 +170,11 @@ impl<'a> Block<'a> {
     }
 }
 
+/// Longest word, in bytes, that is compared with others: that takes the product of their lengths.
+const COMPARED: usize = 64;
+/// Most words that an error lists.
+const LISTED: usize = 32;
+
 type Item<'a> = Spanned<DeValue<'a>>;
 
 /// The nearest of the known words, if one is near, or else all of them, which are `what`.
@@ -178,9 +183,11 @@ pub(super) fn suggest<'w>(
     known: impl Iterator<Item = &'w str> + Clone,
     what: &str,
 ) -> String {
+    let comparable = |word: &str| word.len() <= COMPARED;
     // Two edits in five letters: a swap, a slip or two, but not another word.
     let near = known
         .clone()
+        .filter(|candidate| comparable(word) && comparable(candidate))
         .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
         .filter(|(edits, candidate)| {
             let length = candidate.chars().count();
@@ -189,7 +196,7 @@ pub(super) fn suggest<'w>(
         .min_by_key(|(edits, _)| *edits);
     match near {
         Some((_, candidate)) => format!("did you mean `{candidate}`?"),
-        None => format!("{what}: {}", join(known.map(str::to_owned), ", ")),
+        None => format!("{what}: {}", join(known.take(LISTED).map(str::to_owned), ", ")),
     }
 }
 

@@ -5,6 +5,7 @@ use super::schema;
 use super::value::{Limits, Value};
 use crate::scene::{ConductorFresnel, Ground, Material, NamedMaterial, Rgb, SceneError};
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// The material where none is named.
 pub(super) const DEFAULT: &str = "default";
@@ -12,29 +13,72 @@ pub(super) const DEFAULT: &str = "default";
 /// What matte things reflect unless something else is said.
 const GRAY: Rgb = Rgb::splat(0.7);
 
-pub(super) fn read(root: &Block) -> Result<Vec<NamedMaterial>, SceneError> {
-    let blocks = root.named_blocks("material", &schema::MATERIAL)?;
-    let row = |(name, block): (&str, Block)| {
+/// The materials of a scene that is being read, found by name however many there are.
+#[derive(Default)]
+pub(super) struct Materials {
+    rows: Vec<NamedMaterial>,
+    row_of: HashMap<String, u32>,
+}
+
+impl Materials {
+    /// The row of the material of this name.
+    pub(super) fn position(&self, name: &str) -> Option<u32> {
+        self.row_of.get(name).copied()
+    }
+
+    /// The row of the scene's own material of this name, or of this one, added to the scene's.
+    pub(super) fn row_or_add(&mut self, material: NamedMaterial) -> u32 {
+        self.position(&material.name).unwrap_or_else(|| {
+            let row = self.rows.len() as u32;
+            self.row_of.insert(material.name.clone(), row);
+            self.rows.push(material);
+            row
+        })
+    }
+
+    /// What to write instead of a name that no material has.
+    pub(super) fn known(&self, name: &str) -> String {
+        if self.rows.is_empty() {
+            return format!("write a section [material.{name}]");
+        }
+        suggest(name, self.rows.iter().map(|row| row.name.as_str()), "the scene's materials")
+    }
+
+    /// All rows.
+    pub(super) fn rows(&self) -> &[NamedMaterial] {
+        &self.rows
+    }
+
+    /// All rows, for the scene.
+    pub(super) fn into_rows(self) -> Vec<NamedMaterial> {
+        self.rows
+    }
+}
+
+pub(super) fn read(root: &Block) -> Result<Materials, SceneError> {
+    let mut materials = Materials::default();
+    for (name, block) in root.named_blocks("material", &schema::MATERIAL)? {
         // A CSV cell trims its text, and an empty one names none.
         if name.is_empty() || name.trim() != name {
             let error = block.error("a material's name is empty, or framed by blanks");
             return Err(error.with_help("write [material.NAME] with another name"));
         }
-        Ok(NamedMaterial { name: name.to_owned(), material: material(&block)? })
-    };
-    blocks.into_iter().map(row).collect()
+        let material = material(&block)?;
+        materials.row_or_add(NamedMaterial { name: name.to_owned(), material });
+    }
+    Ok(materials)
 }
 
 /// `[ground]`, if it is there.
 pub(super) fn read_ground(
     root: &Block,
-    materials: &mut Vec<NamedMaterial>,
+    materials: &mut Materials,
 ) -> Result<Option<Ground>, SceneError> {
     let Some(block) = root.block("ground", &schema::GROUND)? else { return Ok(None) };
     let normal = block.value("normal").map_or(Ok(DVec3::Y), |value| value.direction())?;
     let height = block.value("height").map_or(Ok(0.0), |value| value.number(Limits::Any))?;
     let material = row(&block, materials)?;
-    let impossible = match materials[material as usize].material {
+    let impossible = match materials.rows[material as usize].material {
         Material::Dielectric { .. } => Some("a dielectric"),
         Material::Emitter { .. } => Some("an emitter"),
         _ => None,
@@ -49,38 +93,15 @@ pub(super) fn read_ground(
 }
 
 /// The row of the material that the section names, or of the default one.
-pub(super) fn row(block: &Block, materials: &mut Vec<NamedMaterial>) -> Result<u32, SceneError> {
+pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, SceneError> {
     let Some(value) = block.value("material") else {
         let material = Material::Lambertian { color: GRAY };
-        return Ok(row_or_add(materials, NamedMaterial { name: DEFAULT.to_owned(), material }));
+        return Ok(materials.row_or_add(NamedMaterial { name: DEFAULT.to_owned(), material }));
     };
     let name = value.text()?;
-    position(materials, name).ok_or_else(|| unknown(&value, name, materials))
-}
-
-/// The row of the scene's own material of this name, or of this one, added to the scene's.
-pub(super) fn row_or_add(materials: &mut Vec<NamedMaterial>, material: NamedMaterial) -> u32 {
-    position(materials, &material.name).unwrap_or_else(|| {
-        materials.push(material);
-        materials.len() as u32 - 1
+    materials.position(name).ok_or_else(|| {
+        value.error(format!("unknown material \"{name}\"")).with_help(materials.known(name))
     })
-}
-
-/// The row of the material of this name.
-pub(super) fn position(materials: &[NamedMaterial], name: &str) -> Option<u32> {
-    materials.iter().position(|row| row.name == name).map(|row| row as u32)
-}
-
-fn unknown(value: &Value, name: &str, materials: &[NamedMaterial]) -> SceneError {
-    value.error(format!("unknown material \"{name}\"")).with_help(known(name, materials))
-}
-
-/// What to write instead of a name that no material has.
-pub(super) fn known(name: &str, materials: &[NamedMaterial]) -> String {
-    if materials.is_empty() {
-        return format!("write a section [material.{name}]");
-    }
-    suggest(name, materials.iter().map(|row| row.name.as_str()), "the scene's materials")
 }
 
 fn material(block: &Block) -> Result<Material, SceneError> {

@@ -16,13 +16,22 @@ mod spheres;
 mod value;
 
 use self::block::{Block, Source};
+use self::materials::Materials;
 use super::particles::{self, ReadOptions};
 use super::{
     Camera, Environment, EnvironmentMap, Light, Material, NamedMaterial, Rgb, Scene, SceneError,
     Settings, Spheres,
 };
+use crate::memory::{self, read_at_most};
+use std::fs::File;
 use std::path::Path;
 use toml::de::DeTable;
+
+/// Longest scene file, in bytes: a million spheres in words. More belong in a file of particles.
+const LONGEST: u64 = 1 << 26;
+
+/// Bytes that a byte of a file becomes while it is read, at most: lists of short values.
+const TREE_BYTES: u64 = 100;
 
 impl Scene {
     /// Reads a scene file, and the files it names, whose paths are relative to the scene file.
@@ -32,7 +41,8 @@ impl Scene {
     /// A file cannot be read, or holds something that is no scene: the error says where and what to
     /// write.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let bytes = std::fs::read(path)
+        let bytes = File::open(path)
+            .and_then(|file| read_at_most(file, LONGEST))
             .map_err(|error| SceneError::whole_file(path, format!("cannot be read: {error}")))?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
@@ -50,6 +60,8 @@ impl Scene {
     /// As [`Scene::load`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
         let source = Source { path: Path::new(name), text, folder };
+        memory::check(text.len() as u64 * TREE_BYTES)
+            .map_err(|shortage| SceneError::whole_file(source.path, format!("needs {shortage}")))?;
         let document = DeTable::parse(text).map_err(|error| {
             let end = text.len()..text.len();
             source.error(error.span().unwrap_or(end), error.message())
@@ -69,11 +81,12 @@ impl Scene {
         let material = Material::Plastic { color: Rgb::splat(0.8), ior: 1.5 };
         let named =
             |name: &str| NamedMaterial { name: name.to_owned(), material: material.clone() };
-        let mut materials = vec![named("particles")];
+        let mut materials = Materials::default();
+        materials.row_or_add(named("particles"));
         let mut rows = Vec::new();
         for name in &particles.material_names {
             let name = if name.is_empty() { "particles" } else { name };
-            rows.push(materials::row_or_add(&mut materials, named(name)));
+            rows.push(materials.row_or_add(named(name)));
         }
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);
@@ -81,7 +94,7 @@ impl Scene {
         Ok(Self {
             title: title.unwrap_or_default(),
             spheres,
-            materials,
+            materials: materials.into_rows(),
             warnings: particles.warnings,
             ..Self::default()
         })
@@ -98,11 +111,12 @@ fn read(source: &Source, root: &Block) -> Result<Scene, SceneError> {
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
         camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
         lights: lights::read(root)?,
-        materials: materials::read(root)?,
         ..Scene::default()
     };
-    spheres::read(source, root, &mut scene)?;
-    scene.ground = materials::read_ground(root, &mut scene.materials)?;
+    let mut materials = materials::read(root)?;
+    spheres::read(source, root, (&mut scene, &mut materials))?;
+    scene.ground = materials::read_ground(root, &mut materials)?;
+    scene.materials = materials.into_rows();
     let environment = root.block("environment", &schema::ENVIRONMENT)?;
     scene.environment = match environment {
         Some(block) => environment::read(source, &block)?,

@@ -1,40 +1,54 @@
 //! `[[sphere]]`, `[[generate]]` and `[[file]]`: the spheres, in this order.
 
 use super::block::{Block, Source};
+use super::materials::{self, Materials};
+use super::schema;
 use super::value::{Limits, Value};
-use super::{materials, schema};
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
 use crate::scene::particles::{self, Format, ReadOptions};
 use crate::scene::{Rgb, Scene, SceneError, Spheres};
+use crate::{memory, world::World};
 
-pub(super) fn read(source: &Source, root: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+pub(super) fn read(
+    source: &Source,
+    root: &Block,
+    (scene, materials): (&mut Scene, &mut Materials),
+) -> Result<(), SceneError> {
     for block in root.blocks("sphere", &schema::SPHERE)? {
-        read_sphere(&block, scene)?;
+        read_sphere(&block, &mut scene.spheres, materials)?;
     }
     for block in root.blocks("generate", &schema::GENERATE)? {
-        read_generate(&block, scene)?;
+        read_generate(&block, &mut scene.spheres, materials)?;
     }
     for block in root.blocks("file", &schema::FILE)? {
-        read_file(source, &block, scene)?;
+        read_file(source, &block, (scene, materials))?;
     }
     Ok(())
 }
 
-fn read_sphere(block: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+fn read_sphere(
+    block: &Block,
+    spheres: &mut Spheres,
+    materials: &mut Materials,
+) -> Result<(), SceneError> {
     let center = block.need("center", "center = [x, y, z]")?.point()?;
     let radius = block.need("radius", "radius = a number of more than 0")?;
     let radius = radius.number(Limits::Positive)?;
     let color = block.value("color").map_or(Ok(Rgb::ONE), |value| value.color(Limits::Share))?;
-    let material = materials::row(block, &mut scene.materials)?;
-    scene.spheres.push(center, radius, material, color);
+    let material = materials::row(block, materials)?;
+    spheres.push(center, radius, material, color);
     Ok(())
 }
 
-fn read_generate(block: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+fn read_generate(
+    block: &Block,
+    spheres: &mut Spheres,
+    materials: &mut Materials,
+) -> Result<(), SceneError> {
     let generator = generator(block)?;
     let seed = block.value("seed").map_or(Ok(0), |value| value.whole(0, u64::MAX))?;
-    let own = block.has("material").then(|| materials::row(block, &mut scene.materials));
-    check_total(scene.spheres.len(), generator.count()).map_err(|message| {
+    let own = block.has("material").then(|| materials::row(block, materials));
+    check_room(spheres.len(), generator.count(), materials).map_err(|message| {
         let count = block.value("count").or_else(|| block.value("level"));
         count.map_or_else(|| block.error(message.as_str()), |value| value.error(message.as_str()))
     })?;
@@ -45,13 +59,13 @@ fn read_generate(block: &Block, scene: &mut Scene) -> Result<(), SceneError> {
     })?;
     let rows = match own {
         _ if !group.materials.is_empty() => {
-            let add = |own| materials::row_or_add(&mut scene.materials, own);
+            let add = |own| materials.row_or_add(own);
             group.materials.into_iter().map(add).collect()
         }
         Some(row) => vec![row?],
-        None => vec![materials::row(block, &mut scene.materials)?],
+        None => vec![materials::row(block, materials)?],
     };
-    scene.spheres.append(group.spheres, &rows);
+    spheres.append(group.spheres, &rows);
     Ok(())
 }
 
@@ -121,7 +135,11 @@ fn field(block: &Block) -> Result<Field, SceneError> {
     })
 }
 
-fn read_file(source: &Source, block: &Block, scene: &mut Scene) -> Result<(), SceneError> {
+fn read_file(
+    source: &Source,
+    block: &Block,
+    (scene, materials): (&mut Scene, &mut Materials),
+) -> Result<(), SceneError> {
     let file = block.need("path", "path = \"particles.csv\"")?;
     let format = block.value("format").map(|value| format(&value)).transpose()?;
     let scale = block.value("scale");
@@ -136,16 +154,16 @@ fn read_file(source: &Source, block: &Block, scene: &mut Scene) -> Result<(), Sc
         return Err(error.with_help("paths are relative to the folder of the scene file"));
     }
     let particles = particles::read(&path, &options)?;
-    check_total(scene.spheres.len(), particles.spheres.len() as u64)
+    check_room(scene.spheres.len(), particles.spheres.len() as u64, materials)
         .map_err(|message| file.error(message))?;
     let mut rows = Vec::new();
     for name in &particles.material_names {
         rows.push(if name.is_empty() {
-            materials::row(block, &mut scene.materials)?
+            materials::row(block, materials)?
         } else {
-            materials::position(&scene.materials, name).ok_or_else(|| {
+            materials.position(name).ok_or_else(|| {
                 let message = format!("{} names an unknown material \"{name}\"", path.display());
-                file.error(message).with_help(materials::known(name, &scene.materials))
+                file.error(message).with_help(materials.known(name))
             })?
         });
     }
@@ -163,10 +181,13 @@ fn format(value: &Value) -> Result<Format, SceneError> {
 }
 
 /// What is wrong with so many spheres, if anything is.
-fn check_total(before: usize, added: u64) -> Result<(), String> {
+fn check_room(before: usize, added: u64, materials: &Materials) -> Result<(), String> {
     let total = (before as u64).saturating_add(added);
     if total <= Spheres::MAX {
-        return Ok(());
+        // The columns here, and then the world's: too few even for these need no long wait.
+        let need = added * Spheres::BYTES + World::bytes(total, materials.rows());
+        return memory::check(need)
+            .map_err(|shortage| format!("asks for {added} spheres, which need {shortage}"));
     }
     let most = Spheres::MAX;
     let amount = if added == u64::MAX { "more than 1e19".to_owned() } else { added.to_string() };

@@ -19,6 +19,7 @@ pub use volume::Volume;
 pub use weekend::Weekend;
 
 use super::{NamedMaterial, Spheres};
+use crate::memory;
 use thiserror::Error;
 
 /// Spheres, and the materials they bring along.
@@ -117,6 +118,10 @@ fn room(count: u64, parameter: &'static str) -> Result<Spheres, GenerateError> {
         format!("asks for {count} spheres; a scene holds 1 to {most}")
     };
     require((1..=most).contains(&count), parameter, message)?;
+    let enough = memory::check(count * Spheres::BYTES);
+    enough.or_else(|shortage| {
+        require(false, parameter, format!("asks for {count} spheres: {shortage}"))
+    })?;
     let mut spheres = Spheres::default();
     let reserved = usize::try_from(count).is_ok_and(|count| spheres.try_reserve(count).is_ok());
     require(reserved, parameter, format!("asks for {count} spheres, more than memory holds"))?;
