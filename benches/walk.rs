@@ -78,7 +78,7 @@ fn camera(case: &Case) -> Rays {
 /// From what the camera sees: toward a light, or anywhere above the surface.
 fn secondary(case: &Case, toward: Option<Vec3>) -> Rays {
     let primary = camera(case);
-    let hits = closest::<f32>(case, Method::Tree, &primary);
+    let hits = closest::<f32>(case, Method::Single, &primary);
     let mut rays = Rays::with_capacity(primary.len());
     for row in (0..primary.len()).filter(|&row| hits.sphere[row] != MISS) {
         let sphere = hits.sphere[row] as usize;
@@ -100,7 +100,7 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
     let mut group = criterion.benchmark_group(format!("{}/{class}", case.name));
     group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(10);
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
-    let expected = run::<f32, Q>(case, Method::Tree, rays);
+    let expected = run::<f32, Q>(case, Method::Single, rays);
     let mut bench = |name: &str, walk: Walk, method| {
         let missed = |hits: &Hits, row: usize| hits.sphere[row] == MISS;
         let same = |hits: &Hits| {
@@ -118,21 +118,21 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
     if case.spheres.len() <= 1000 {
         bench("brute-16", run::<F32x16, Q>, Method::Brute);
     }
-    bench("scalar", run::<f32, Q>, Method::Tree);
-    bench("packet-4", run::<F32x4, Q>, Method::Tree);
-    bench("packet-8", run::<F32x8, Q>, Method::Tree);
-    bench("packet-16", run::<F32x16, Q>, Method::Tree);
+    bench("scalar", run::<f32, Q>, Method::Single);
+    bench("packet-4", run::<F32x4, Q>, Method::Single);
+    bench("packet-8", run::<F32x8, Q>, Method::Single);
+    bench("packet-16", run::<F32x16, Q>, Method::Single);
     // What exactness costs: the same walks without it. Few answers differ in scenes so tame.
     let rough: [(&str, Walk); 2] =
         [("rough-1", run::<f32, Rough<Q>>), ("rough-16", run::<F32x16, Rough<Q>>)];
     for (name, walk) in rough {
-        let hits = walk(case, Method::Tree, rays);
+        let hits = walk(case, Method::Single, rays);
         let differ = (0..rays.len())
             .filter(|&row| (hits.sphere[row] == MISS) != (expected.sphere[row] == MISS))
             .count();
         assert!(differ * 1000 <= rays.len(), "{name} differs for {differ} rays");
         group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-            bencher.iter(|| walk(black_box(case), Method::Tree, black_box(rays)));
+            bencher.iter(|| walk(black_box(case), Method::Single, black_box(rays)));
         });
     }
 }

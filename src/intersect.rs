@@ -1,21 +1,12 @@
-//! The three tests everything rests on: ray against sphere in single precision as a filter, ray
-//! against sphere in double precision as the decision, ray against box.
+//! Ray against sphere in double precision: the decision.
 //!
 //! # Exact visibility without an epsilon
 //!
-//! [`filter`] runs in lanes. It may let a miss pass; it never rejects what [`confirm`] accepts.
-//! `confirm` alone decides whether and where a sphere is hit, and depends on nothing but that ray
-//! and that sphere: so every walk, width and tree gives the answer of brute force, to the bit.
-//! [`SlabRay::enters`] errs on the same safe side for boxes.
-//!
-//! # The filter's bound
-//!
-//! With `u` = 2^-24, `f` the center as seen from the origin and `p` the perpendicular from the
-//! center to the ray, rounding moves `|p|` by at most `2u (|f| + 3|p|)` in first order: the error
-//! of `t` displaces `p` along the ray, which counts in second order only, and the fused
-//! multiply-add rounds `p` itself once. `|f| <= |t||d| + |p|`, and near a tangent `|p|` is about
-//! `r`; the band `r (1 + K) + K |t||d|` with `K = 4u` covers it with a factor of about 3 to spare
-//! over the widest wrong decision that was measured (1.25 u).
+//! The [filter](crate::filter) runs in lanes of single precision. It may let a miss pass; it never
+//! rejects what [`confirm`] accepts, and calls certain only what `confirm` says too. `confirm` alone
+//! decides whether and where a sphere is hit, and depends on nothing but that ray and that sphere: so
+//! every walk, width and tree gives the answer of brute force, to the bit.
+//! [`Slabs::enters`](crate::slabs::Slabs::enters) errs on the same safe side for boxes.
 //!
 //! # The decision's bounds
 //!
@@ -38,70 +29,13 @@
 //! not matter: the least product of four single-precision numbers is 1e-180.
 
 use crate::exact;
-use crate::lanes::Lanes;
+use crate::lanes::{Doubles, Mask};
 use crate::ray::ExactRay;
 use crate::vec3::Vec3;
 use glam::DVec3;
 
-/// Unit roundoff of `f32`.
-const U: f32 = f32::EPSILON / 2.0;
-
 /// Unit roundoff of `f64`.
 const E: f64 = f64::EPSILON / 2.0;
-
-/// Relative width of the filter's band.
-const K: f32 = 4.0 * U;
-
-/// Above every absolute error that underflow can cause in the filter, and far below the square of
-/// any radius that counts: worlds are scaled so that their largest coordinate is about 1.
-const UNDERFLOW: f32 = 1.0 / (1_u128 << 120) as f32;
-
-/// Rays as [`filter`] wants them.
-#[derive(Clone, Copy, Debug)]
-pub struct FilterRay<L> {
-    origin: Vec3<L>,
-    direction: Vec3<L>,
-    /// `1 / |direction|^2`.
-    inverse_length2: L,
-    /// `K |direction|`.
-    band: L,
-}
-
-impl<L: Lanes> FilterRay<L> {
-    /// `direction` is neither zero nor so long or short that its square overflows or underflows.
-    #[inline(always)]
-    pub fn new(origin: Vec3<L>, direction: Vec3<L>) -> Self {
-        let length2 = direction.dot(direction);
-        Self {
-            origin,
-            direction,
-            inverse_length2: L::splat(1.0) / length2,
-            band: length2.sqrt() * L::splat(K),
-        }
-    }
-}
-
-/// The lanes whose ray may hit the sphere at a distance in `0..=t_max`, and a bound below which it does
-/// not.
-///
-/// Never false where [`confirm`] finds a hit not beyond `t_max`; comparisons are arranged so that
-/// NaN passes. The form is Embree's: the chord's middle, relative to the center, so that the
-/// discriminant does not cancel for spheres that are small or far (Haines, Günther, Akenine-Möller,
-/// "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems 2019).
-#[inline(always)]
-pub fn filter<L: Lanes>(ray: &FilterRay<L>, center: Vec3<L>, radius: L, t_max: L) -> (L::Mask, L) {
-    let to_center = center - ray.origin;
-    let t = to_center.dot(ray.direction) * ray.inverse_length2;
-    let perpendicular = to_center.along(ray.direction, -t);
-    let distance2 = perpendicular.dot_add(perpendicular, L::splat(-UNDERFLOW));
-    let reach = t.abs().mul_add(ray.band, radius * L::splat(1.0 + K));
-    // Not fused: where both squares overflow, inf - inf is NaN, which passes.
-    let chord2 = reach * reach - distance2;
-    let slack = t.abs() * L::splat(K);
-    let half = (chord2 * ray.inverse_length2).sqrt().mul_add(L::splat(1.0 + 2.0 * K), slack);
-    let (zero, near) = (L::splat(0.0), t - half);
-    (!(chord2.lt(zero)) & !(t_max.lt(near)) & !((t + half).lt(zero)), near)
-}
 
 /// Where a ray hits a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,82 +65,121 @@ pub fn confirm(
     radius: f64,
     inside: impl FnOnce() -> bool,
 ) -> Option<Root> {
-    let terms = Terms::new(ray, center, radius);
-    // NaN compares false, here and below.
-    let clear = terms.are_clear() && terms.a > 0.0 && terms.a < f64::INFINITY;
+    let terms = Terms::of(ray, center, radius);
     let band = ray.origin_error * (2.0 * radius + ray.origin_error);
-    if clear && terms.outside.abs() > band {
-        let t = terms.distance(terms.chord2)?;
+    if terms.are_clear() && terms.outside.abs() > band {
+        let t = terms.distance()?;
         return Some(Root { t, error: t * CLEAR, exact: false });
     }
     confirm_closely(ray, center, radius, inside)
 }
 
+/// Rays and spheres in a row: ray `i` and sphere `i` belong together.
+#[derive(Clone, Copy, Debug)]
+pub struct Pairs<D> {
+    /// Where rays start.
+    pub origin: Vec3<D>,
+    /// Where they go.
+    pub direction: Vec3<D>,
+    /// As [`ExactRay::origin_error`].
+    pub origin_error: D,
+    /// Of the spheres.
+    pub center: Vec3<D>,
+    /// Of the spheres.
+    pub radius: D,
+}
+
+/// [`confirm`] for pairs that are plain: the lanes whose ray enters the sphere from outside and that are
+/// far from any doubt, and the distances; the error of each is at most [`CLEAR`] of it.
+#[inline(always)]
+pub fn confirm_plain<D: Doubles>(pairs: &Pairs<D>) -> (u32, D) {
+    let terms = Terms::new(pairs.origin, pairs.direction, pairs.center, pairs.radius);
+    let zero = D::splat(0.0);
+    let band = pairs.origin_error * (D::splat(2.0) * pairs.radius + pairs.origin_error);
+    let plain = terms.are_clear()
+        & zero.lt(terms.chord2)
+        & band.lt(terms.outside)
+        & zero.lt(terms.outside)
+        & zero.lt(terms.b);
+    (plain.bits(), terms.near())
+}
+
 /// Relative errors of distances above this are not put up with.
 const COARSE: f64 = 1.0 / (1 << 30) as f64;
 
-/// Bound of a [`Terms::distance`]'s relative error if the terms are clear.
-const CLEAR: f64 = 1.0 / (1 << 18) as f64;
+/// Bound of the relative error of a distance that is far from any doubt.
+pub const CLEAR: f64 = 1.0 / (1 << 18) as f64;
 
-/// What the decision about a ray and a sphere is made of, rounded.
-struct Terms {
+/// What the decision about a ray and a sphere is made of, rounded. One ray and one sphere, or a row of
+/// each.
+struct Terms<D> {
     /// Squared length of the direction.
-    a: f64,
+    a: D,
     /// Way to the middle of the chord, times `a`.
-    b: f64,
-    /// Sum of the magnitudes of the products in `b`.
-    b_magnitude: f64,
+    b: D,
     /// Squared distance of the origin from the center.
-    distance2: f64,
+    distance2: D,
     /// Squared distance of the line from the center.
-    p2: f64,
-    r2: f64,
+    p2: D,
+    r2: D,
     /// Squared half of the chord; negative where the line misses.
-    chord2: f64,
+    chord2: D,
     /// Negative inside, 0 on the surface, positive outside.
-    outside: f64,
+    outside: D,
 }
 
-impl Terms {
+impl<D: Doubles> Terms<D> {
     #[inline(always)]
-    fn new(ray: &ExactRay, center: DVec3, radius: f64) -> Self {
-        let from_center = ray.origin - center;
-        let distance2 = from_center.length_squared();
-        let a = ray.direction.length_squared();
-        let products = from_center * ray.direction;
-        let b = -products.element_sum();
-        let p2 = (from_center + ray.direction * (b / a)).length_squared();
+    fn new(origin: Vec3<D>, direction: Vec3<D>, center: Vec3<D>, radius: D) -> Self {
+        let from_center = origin - center;
+        let distance2 = from_center.dot_unfused(from_center);
+        let a = direction.dot_unfused(direction);
+        let b = -from_center.dot_unfused(direction);
+        let perpendicular = from_center + direction * (b / a);
+        let p2 = perpendicular.dot_unfused(perpendicular);
         let r2 = radius * radius;
-        let b_magnitude = products.abs().element_sum();
-        Self { a, b, b_magnitude, distance2, p2, r2, chord2: r2 - p2, outside: distance2 - r2 }
+        Self { a, b, distance2, p2, r2, chord2: r2 - p2, outside: distance2 - r2 }
     }
 
-    /// Whether chord and side are at least 2^20 times their bounds, without a root: so the relative
+    /// Where chord and side are at least 2^20 times their bounds, without a root: so the relative
     /// error of the distance is below 2 x 2^-20 and a little, for that of `b` is at most 2^-36
     /// then. A line that certainly misses is clear as well.
     #[inline(always)]
-    fn are_clear(&self) -> bool {
+    fn are_clear(&self) -> D::Mask {
         // 2 x 2^20 x 8 E, and its square for the mixed product.
         const PART: f64 = 1.0 / (1_u64 << 28) as f64;
+        let (part, part2) = (D::splat(PART), D::splat(PART * PART));
         let chord2 = self.chord2.abs();
-        chord2 > PART * (self.p2 + self.r2)
-            && chord2 * chord2 > PART * PART * self.distance2 * self.p2
-            && chord2 > PART * PART * self.distance2
-            && self.outside.abs() > PART * (self.distance2 + self.r2)
+        (part * (self.p2 + self.r2)).lt(chord2)
+            & (part2 * self.distance2 * self.p2).lt(chord2 * chord2)
+            & (part2 * self.distance2).lt(chord2)
+            & (part * (self.distance2 + self.r2)).lt(self.outside.abs())
+            & D::splat(0.0).lt(self.a)
+            & self.a.lt(D::splat(f64::INFINITY))
+    }
+
+    /// Distance to the near hit of a line that meets the sphere from outside.
+    #[inline(always)]
+    fn near(&self) -> D {
+        self.outside.abs() / (self.b.abs() + (self.a * self.chord2).sqrt())
+    }
+}
+
+impl Terms<f64> {
+    fn of(ray: &ExactRay, center: DVec3, radius: f64) -> Self {
+        Self::new(ray.origin.into(), ray.direction.into(), center.into(), radius)
     }
 
     /// The distance for signs that are certain; `None` for a miss.
     #[inline(always)]
-    fn distance(&self, chord2: f64) -> Option<f64> {
+    fn distance(&self) -> Option<f64> {
         let outside = self.outside > 0.0;
-        if chord2 < 0.0 || (outside && self.b <= 0.0) {
+        if self.chord2 < 0.0 || (outside && self.b <= 0.0) {
             return None;
         }
-        let root = (self.a * chord2).sqrt();
         // The form of the two in which nothing cancels.
-        let sum = self.b.abs() + root;
         let far = !outside && self.b >= 0.0;
-        Some(if far { sum / self.a } else { self.outside.abs() / sum })
+        Some(if far { (self.b + (self.a * self.chord2).sqrt()) / self.a } else { self.near() })
     }
 
     fn chord2_error(&self) -> f64 {
@@ -219,12 +192,12 @@ impl Terms {
     }
 
     /// Bound of the error of [`Terms::distance`], relative.
-    fn distance_error(&self) -> f64 {
+    fn distance_error(&self, b_magnitude: f64) -> f64 {
         let root = (self.a * self.chord2).sqrt();
         let root_error = root * (self.chord2_error() / self.chord2 + 4.0 * E);
         let sum = self.b.abs() + root;
         let side = self.outside_error() / self.outside.abs();
-        1.01 * (side + (4.0 * E * self.b_magnitude + root_error) / sum) + 8.0 * E
+        1.01 * (side + (4.0 * E * b_magnitude + root_error) / sum) + 8.0 * E
     }
 }
 
@@ -237,7 +210,8 @@ pub fn confirm_closely(
     radius: f64,
     inside: impl FnOnce() -> bool,
 ) -> Option<Root> {
-    let terms = Terms::new(ray, center, radius);
+    let terms = Terms::of(ray, center, radius);
+    let b_magnitude = ((ray.origin - center) * ray.direction).abs().element_sum();
     let chord2_error = terms.chord2_error();
     if !(terms.chord2 >= -chord2_error && terms.a > 0.0 && terms.a < f64::INFINITY) {
         return None;
@@ -252,11 +226,11 @@ pub fn confirm_closely(
         });
     }
     if terms.chord2 <= chord2_error || terms.outside.abs() <= terms.outside_error() {
-        let away = terms.outside > terms.outside_error() && terms.b < -4.0 * E * terms.b_magnitude;
+        let away = terms.outside > terms.outside_error() && terms.b < -4.0 * E * b_magnitude;
         return decide(ray, center, radius, away);
     }
-    let t = terms.distance(terms.chord2)?;
-    let error = terms.distance_error();
+    let t = terms.distance()?;
+    let error = terms.distance_error(b_magnitude);
     if error > COARSE {
         // That there is a hit is certain, but so close to the surface little is left of the distance.
         return decide(ray, center, radius, false);
@@ -273,49 +247,6 @@ fn decide(ray: &ExactRay, center: DVec3, radius: f64, away: bool) -> Option<Root
     }
     let t = exact::hit(ray, center, radius)?;
     Some(Root { t, error: 16.0 * E * t, exact: true })
-}
-
-/// Rays as the box test wants them.
-#[derive(Clone, Copy, Debug)]
-pub struct SlabRay<L: Lanes> {
-    origin: Vec3<L>,
-    inverse: Vec3<L>,
-    negative: Vec3<L::Mask>,
-}
-
-impl<L: Lanes> SlabRay<L> {
-    /// A zero in the direction is welcome, of either sign.
-    #[inline(always)]
-    pub fn new(origin: Vec3<L>, direction: Vec3<L>) -> Self {
-        let inverse = direction.map(|d| L::splat(1.0) / d);
-        Self { origin, inverse, negative: inverse.map(L::is_negative) }
-    }
-
-    /// The lanes whose ray may meet the box at a distance in `0..=t_max`.
-    ///
-    /// Never false where a point of the box lies on the ray: each distance is off by at most 3 u of
-    /// itself (one subtraction, one reciprocal, one product), which the factor on the far side
-    /// outweighs (Ize, "Robust BVH Ray Traversal", JCGT 2013). A ray that lies in a face's plane
-    /// makes 0 x inf = NaN, which the operand order of `min` and `max` drops, so that slab does not
-    /// bound it.
-    #[inline(always)]
-    pub fn enters(&self, low: [f32; 3], high: [f32; 3], t_max: L) -> L::Mask {
-        let (near_x, far_x) = slab(low[0], high[0], self.origin.x, self.inverse.x, self.negative.x);
-        let (near_y, far_y) = slab(low[1], high[1], self.origin.y, self.inverse.y, self.negative.y);
-        let (near_z, far_z) = slab(low[2], high[2], self.origin.z, self.inverse.z, self.negative.z);
-        let near = near_x.max(near_y.max(near_z.max(L::splat(0.0))));
-        let far = far_x.min(far_y.min(far_z.min(t_max)));
-        near.le(far * L::splat(1.0 + 6.0 * U))
-    }
-}
-
-/// Where rays cross the two planes of one axis, in their own order.
-#[inline(always)]
-fn slab<L: Lanes>(low: f32, high: f32, origin: L, inverse: L, negative: L::Mask) -> (L, L) {
-    let (low, high) = (L::splat(low), L::splat(high));
-    let near = L::select(negative, high, low);
-    let far = L::select(negative, low, high);
-    ((near - origin) * inverse, (far - origin) * inverse)
 }
 
 /// Distance at which a ray crosses the plane `normal . p = height`; `None` if it does not.

@@ -10,7 +10,7 @@
 //! goes through memory.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
-pub use wide::{f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16};
+pub use wide::{f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8};
 
 /// The widest packet there is; columns of rays are padded to a multiple of it.
 pub const MAX_LANES: usize = 16;
@@ -67,6 +67,10 @@ pub trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
     /// Whether the sign bit is set: true for -0.
     fn is_negative(self) -> Self::Mask;
+    /// The greatest lane.
+    fn greatest(self) -> f32;
+    /// Whether all bits are the same: of numbers that are no floats.
+    fn has_bits_of(self, other: Self) -> Self::Mask;
     /// `yes` where `mask` is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 }
@@ -132,6 +136,14 @@ impl Lanes for f32 {
         self.is_sign_negative()
     }
     #[inline(always)]
+    fn greatest(self) -> f32 {
+        self
+    }
+    #[inline(always)]
+    fn has_bits_of(self, other: Self) -> bool {
+        self.to_bits() == other.to_bits()
+    }
+    #[inline(always)]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
@@ -167,7 +179,7 @@ impl<W: Not<Output = W>> Not for WideMask<W> {
 }
 
 macro_rules! impl_lanes {
-    ($($wide:ident: $width:literal),+ $(,)?) => {$(
+    ($($wide:ident, $integers:ident: $width:literal),+ $(,)?) => {$(
         impl Mask for WideMask<wide::$wide> {
             #[inline(always)]
             fn bits(self) -> u32 {
@@ -225,6 +237,23 @@ macro_rules! impl_lanes {
                 WideMask(self.is_sign_negative())
             }
             #[inline(always)]
+            fn has_bits_of(self, other: Self) -> Self::Mask {
+                let bits = |lanes: Self| -> wide::$integers { bytemuck::cast(lanes) };
+                WideMask(bytemuck::cast(bits(self).simd_eq(bits(other))))
+            }
+            #[inline(always)]
+            fn greatest(self) -> f32 {
+                let mut lanes = self.to_array();
+                let mut half = $width / 2;
+                while half > 0 {
+                    for lane in 0..half {
+                        lanes[lane] = Lanes::max(lanes[lane], lanes[lane + half]);
+                    }
+                    half /= 2;
+                }
+                lanes[0]
+            }
+            #[inline(always)]
             fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
                 wide::Select::select(mask.0, yes, no)
             }
@@ -232,7 +261,93 @@ macro_rules! impl_lanes {
     )+};
 }
 
-impl_lanes! { f32x4: 4, f32x8: 8, f32x16: 16 }
+impl_lanes! { f32x4, i32x4: 4, f32x8, i32x8: 8, f32x16, i32x16: 16 }
+
+/// A row of `f64` values, as little as the decision about hits needs.
+pub trait Doubles:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// What comparisons return.
+    type Mask: Mask;
+
+    /// `x` in every lane.
+    fn splat(x: f64) -> Self;
+    /// Square root; NaN below 0.
+    fn sqrt(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// `self < other`; false for NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+}
+
+impl Doubles for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+}
+
+impl Mask for WideMask<F64x8> {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0.to_bitmask()
+    }
+}
+
+impl Doubles for F64x8 {
+    type Mask = WideMask<Self>;
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self::splat(x)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Self::Mask {
+        WideMask(self.simd_lt(other))
+    }
+}
+
+/// Puts number `order >> 4 i & 7` of a row in place `i`.
+#[inline(always)]
+pub fn shuffle_numbers(row: &[u32; 8], order: u32) -> [u32; 8] {
+    const PLACES: wide::u32x8 = wide::u32x8::new([0, 4, 8, 12, 16, 20, 24, 28]);
+    let order = wide::u32x8::splat(order) >> PLACES;
+    wide::u32x8::new(*row).shuffle_wrapping(order).to_array()
+}
+
+/// Puts lane `order >> 4 i & 7` in lane `i`.
+#[inline(always)]
+pub fn shuffle(row: F32x8, order: u32) -> F32x8 {
+    let row: [u32; 8] = bytemuck::cast(row);
+    bytemuck::cast(shuffle_numbers(&row, order))
+}
 
 /// The indices of the set bits, lowest first.
 #[inline(always)]

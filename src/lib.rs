@@ -79,6 +79,7 @@ pub mod lanes;
 pub mod vec3;
 
 pub mod exact;
+pub mod filter;
 pub mod intersect;
 pub mod ray;
 pub mod sampling;
@@ -86,6 +87,7 @@ pub mod spheres;
 
 // The pipeline, in order.
 pub mod scene;
+pub mod slabs;
 pub mod world;
 
 pub mod bvh;

@@ -175,11 +175,8 @@ impl SphereTree {
         for i in (0..count).filter(|&i| valid(i)) {
             let single = scaled(i).map(|value| value as f32);
             rounded |= single.map(f64::from) != scaled(i);
-            spheres.x.push(single[0]);
-            spheres.y.push(single[1]);
-            spheres.z.push(single[2]);
-            spheres.radius.push(single[3]);
-            spheres.id.push(i as u32);
+            let [x, y, z, radius] = single;
+            spheres.push(Vec3::new(x, y, z), radius, i as u32);
         }
         if rounded {
             // Scales so far apart that the smallest numbers leave single precision.
@@ -305,7 +302,7 @@ impl SphereTree {
                 rays.precise.clear();
             }
             tally.exact +=
-                trace::<F32x16, Q>(Method::Tree, &self.bvh, &self.spheres, &rays, &mut hits);
+                trace::<F32x16, Q>(Method::Auto, &self.bvh, &self.spheres, &rays, &mut hits);
             for (at, &(i, scaled)) in rows.iter().enumerate() {
                 if let Some(&id) = self.spheres.id.get(hits.sphere[at] as usize) {
                     found(i, &Found { scaled, row: hits.sphere[at] as usize, id, t: hits.t[at] });

@@ -46,6 +46,8 @@ pub struct Hits {
     pub t: Vec<f64>,
     /// The sphere's row, [`GROUND`] or [`MISS`].
     pub sphere: Vec<u32>,
+    /// By how much a distance may be off; 0 where it is so by definition.
+    pub(crate) error: Vec<f64>,
 }
 
 impl Columns3 {
@@ -139,7 +141,7 @@ impl Hits {
     /// Misses, room for `capacity`.
     pub fn with_capacity(capacity: usize) -> Self {
         let rows = capacity.next_multiple_of(MAX_LANES) + MAX_LANES;
-        Self { t: vec![f64::INFINITY; rows], sphere: vec![MISS; rows] }
+        Self { t: vec![f64::INFINITY; rows], sphere: vec![MISS; rows], error: vec![0.0; rows] }
     }
 
     /// Writes row `i`.

@@ -1,18 +1,35 @@
-//! Spheres as rays meet them: columns of centers and radii, single precision.
+//! Spheres as rays meet them: columns of centers and radii, single precision, in blocks of
+//! [`LEAF`] rows.
 
 use glam::{DVec3, Vec3};
 
-/// The spheres. All columns have the same length, and row `i` of each belongs to sphere `i`.
+/// Spheres of a block, which is a leaf of the tree: one row of lanes for each column.
+pub const LEAF: usize = 8;
+
+/// The columns of [`LEAF`] spheres side by side, so that a leaf is two lines of cache.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug)]
+pub struct Block {
+    /// Centers, x.
+    pub x: [f32; LEAF],
+    /// Centers, y.
+    pub y: [f32; LEAF],
+    /// Centers, z.
+    pub z: [f32; LEAF],
+    /// Radii, more than 0; NaN where there is no sphere, which no ray hits.
+    pub radius: [f32; LEAF],
+}
+
+impl Block {
+    const EMPTY: Self =
+        Self { x: [0.0; LEAF], y: [0.0; LEAF], z: [0.0; LEAF], radius: [f32::NAN; LEAF] };
+}
+
+/// The spheres: row `i` is lane `i % LEAF` of block `i / LEAF`, and row `i` of the other columns.
 #[derive(Clone, Debug, Default)]
 pub struct Spheres {
-    /// Centers, x.
-    pub x: Vec<f32>,
-    /// Centers, y.
-    pub y: Vec<f32>,
-    /// Centers, z.
-    pub z: Vec<f32>,
-    /// Radii, more than 0.
-    pub radius: Vec<f32>,
+    /// Centers and radii. The last block may have room left.
+    blocks: Vec<Block>,
     /// Place in the user's order, which the rows leave when the tree is built; of two spheres at
     /// the same distance the one with the lower id is hit.
     pub id: Vec<u32>,
@@ -25,32 +42,67 @@ impl Spheres {
     pub const MAX: usize = (u32::MAX - 16) as usize;
 
     /// Spheres in the order given, which becomes their id.
-    pub fn from_columns(x: Vec<f32>, y: Vec<f32>, z: Vec<f32>, radius: Vec<f32>) -> Self {
-        let id = (0..radius.len() as u32).collect();
-        Self { x, y, z, radius, id, precise: Vec::new() }
+    ///
+    /// # Panics
+    /// If the columns differ in length.
+    pub fn from_columns(x: &[f32], y: &[f32], z: &[f32], radius: &[f32]) -> Self {
+        let mut spheres = Self::with_capacity(radius.len());
+        for i in 0..radius.len() {
+            spheres.push(Vec3::new(x[i], y[i], z[i]), radius[i], i as u32);
+        }
+        spheres
     }
 
     /// No spheres, with room for as many.
     pub(crate) fn with_capacity(count: usize) -> Self {
-        let column = || Vec::with_capacity(count);
-        let id = Vec::with_capacity(count);
-        Self { x: column(), y: column(), z: column(), radius: column(), id, precise: Vec::new() }
+        Self {
+            blocks: Vec::with_capacity(count.div_ceil(LEAF)),
+            id: Vec::with_capacity(count),
+            precise: Vec::new(),
+        }
+    }
+
+    /// Appends a sphere.
+    #[inline]
+    pub(crate) fn push(&mut self, center: Vec3, radius: f32, id: u32) {
+        let lane = self.id.len() % LEAF;
+        if lane == 0 {
+            self.blocks.push(Block::EMPTY);
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            (block.x[lane], block.y[lane], block.z[lane]) = center.into();
+            block.radius[lane] = radius;
+        }
+        self.id.push(id);
     }
 
     /// Number of spheres.
     pub fn len(&self) -> usize {
-        self.radius.len()
+        self.id.len()
     }
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.radius.is_empty()
+        self.id.is_empty()
+    }
+
+    /// The blocks.
+    #[inline(always)]
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
     }
 
     /// The center of sphere `i`.
     #[inline(always)]
     pub fn center(&self, i: usize) -> Vec3 {
-        Vec3::new(self.x[i], self.y[i], self.z[i])
+        let (block, lane) = (&self.blocks[i / LEAF], i % LEAF);
+        Vec3::new(block.x[lane], block.y[lane], block.z[lane])
+    }
+
+    /// The radius of sphere `i`.
+    #[inline(always)]
+    pub fn radius(&self, i: usize) -> f32 {
+        self.blocks[i / LEAF].radius[i % LEAF]
     }
 
     /// Center and radius of sphere `i` for the exact test.
@@ -58,14 +110,15 @@ impl Spheres {
     pub fn exact(&self, i: usize) -> (DVec3, f64) {
         match self.precise.get(i) {
             Some(&sphere) => sphere,
-            None => (self.center(i).as_dvec3(), f64::from(self.radius[i])),
+            None => (self.center(i).as_dvec3(), f64::from(self.radius(i))),
         }
     }
 
     /// For each of some spheres the one that is hit in its place: of those that coincide the first
     /// of the user's. Ascending, without repetition; not all are of the rows given.
     pub fn first_of_equals(&self, rows: impl Iterator<Item = u32>) -> Vec<u32> {
-        let key = |i: usize| [self.x[i], self.y[i], self.z[i], self.radius[i]].map(f32::to_bits);
+        let key =
+            |i: usize| (self.center(i).to_array().map(f32::to_bits), self.radius(i).to_bits());
         let mut firsts: Vec<_> = rows.map(|row| (key(row as usize), row)).collect();
         if firsts.is_empty() {
             return Vec::new();
@@ -86,22 +139,8 @@ impl Spheres {
 
     /// Bytes that the columns occupy.
     pub fn bytes(&self) -> usize {
-        self.len() * (4 * size_of::<f32>() + size_of::<u32>())
+        size_of_val(self.blocks.as_slice())
+            + size_of_val(self.id.as_slice())
             + size_of_val(self.precise.as_slice())
     }
-
-    /// Puts row `order[i]` in row `i` of every column.
-    pub(crate) fn permute(&mut self, order: &[u32]) {
-        for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.radius] {
-            permute(column, order);
-        }
-        permute(&mut self.id, order);
-        if !self.precise.is_empty() {
-            permute(&mut self.precise, order);
-        }
-    }
-}
-
-fn permute<T: Copy>(rows: &mut Vec<T>, order: &[u32]) {
-    *rows = order.iter().map(|&row| rows[row as usize]).collect();
 }

@@ -26,12 +26,6 @@ pub enum Traversal {
     Brute,
 }
 
-/// In trees over more spheres than this a packet of scattered rays visits so much more than each of
-/// them that single rays are faster; in smaller ones they visit nearly all of it anyway. By
-/// `spherule render --traversal`, packets against single rays: 1.6 times as fast on the 7 381 spheres
-/// of a sphereflake, half as fast on a million in a cube.
-const MIXED: usize = 16_384;
-
 /// Rays in a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
@@ -104,13 +98,10 @@ impl Tracer {
     ) -> u64 {
         let method = match self.traversal {
             Traversal::Brute => Method::Brute,
-            Traversal::Auto
-                if coherence == Coherence::Incoherent && world.spheres.len() > MIXED =>
-            {
-                Method::Mixed
-            }
-            Traversal::Auto | Traversal::Tree => Method::Tree,
+            Traversal::Auto => Method::Auto,
+            Traversal::Tree => Method::Packet,
         };
+        let _ = coherence;
         let (bvh, spheres) = (&world.bvh, &world.spheres);
         match self.width {
             Width::One => walk::trace::<f32, Q>(method, bvh, spheres, rays, hits),

@@ -1,7 +1,8 @@
 //! Three coordinates, each one value or a row of lanes.
 
-use crate::lanes::Lanes;
-use std::ops::Sub;
+use crate::lanes::{Doubles, Lanes};
+use glam::DVec3;
+use std::ops::{Add, Mul, Sub};
 
 /// A point or a direction; `T` is a number or a row of [`Lanes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +56,37 @@ impl<L: Lanes> Vec3<L> {
             y: direction.y.mul_add(t, self.y),
             z: direction.z.mul_add(t, self.z),
         }
+    }
+}
+
+impl<D: Doubles> Vec3<D> {
+    /// Scalar product, each operation rounded: the same on every processor.
+    #[inline(always)]
+    pub fn dot_unfused(self, other: Self) -> D {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+}
+
+impl From<DVec3> for Vec3<f64> {
+    #[inline(always)]
+    fn from(v: DVec3) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
+impl<T: Add<Output = T>> Add for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl<T: Copy + Mul<Output = T>> Mul<T> for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
 }
 

@@ -37,8 +37,9 @@ impl Numbers {
 
 fn spheres(rows: impl IntoIterator<Item = (Vec3, f32)>) -> Spheres {
     let rows: Vec<_> = rows.into_iter().collect();
-    let column = |f: fn(&(Vec3, f32)) -> f32| rows.iter().map(f).collect();
-    Spheres::from_columns(column(|s| s.0.x), column(|s| s.0.y), column(|s| s.0.z), column(|s| s.1))
+    let column = |f: fn(&(Vec3, f32)) -> f32| rows.iter().map(f).collect::<Vec<_>>();
+    let [x, y, z] = [column(|s| s.0.x), column(|s| s.0.y), column(|s| s.0.z)];
+    Spheres::from_columns(&x, &y, &z, &column(|s| s.1))
 }
 
 /// Scenes with what breaks tracers; the largest coordinate is about 1, as in every world.
@@ -84,13 +85,13 @@ fn rays(spheres: &Spheres, count: usize) -> (Rays, Vec<f64>) {
                 let to_center = spheres.center(target) - origin;
                 let side = to_center.cross(n.direction()).normalize_or(Vec3::X);
                 let limb = if i % 7 == 1 { n.unit() } else { 1.0 + n.signed() * 1e-6 };
-                let aim = to_center + side * (spheres.radius[target] * limb);
+                let aim = to_center + side * (spheres.radius(target) * limb);
                 (origin, aim.normalize_or(Vec3::Y), MISS)
             }
             // Along an axis, through centers and tangent.
             3 => {
                 let target = some(n);
-                let shift = if n.unit() < 0.5 { 0.0 } else { spheres.radius[target] };
+                let shift = if n.unit() < 0.5 { 0.0 } else { spheres.radius(target) };
                 let center = spheres.center(target);
                 let along =
                     [Vec3::X, Vec3::NEG_Y, Vec3::new(-0.0, 0.0, 1.0)][(n.unit() * 3.0) as usize];
@@ -109,7 +110,7 @@ fn rays(spheres: &Spheres, count: usize) -> (Rays, Vec<f64>) {
                 let mut direction = n.direction();
                 direction *= direction.dot(normal).signum();
                 let own = if i % 7 == 5 { from as u32 } else { MISS - 1 };
-                (spheres.center(from) + normal * spheres.radius[from], direction, own)
+                (spheres.center(from) + normal * spheres.radius(from), direction, own)
             }
         };
         rays.push(origin, direction, own);
@@ -171,7 +172,7 @@ fn oracle(spheres: &Spheres, rays: &Rays, row: usize, bound: f64) -> (f64, u32) 
 fn agrees<L: Lanes>(name: &str, bvh: &Bvh, spheres: &Spheres, rays: &Rays, bounds: &[f64]) {
     let expected: Vec<_> =
         (0..rays.len()).map(|row| oracle(spheres, rays, row, bounds[row])).collect();
-    for method in [Method::Brute, Method::Tree, Method::Mixed] {
+    for method in [Method::Brute, Method::Single, Method::Stream, Method::Packet, Method::Auto] {
         let what = |row| format!("{name}, {method:?}, {} lanes, ray {row}", L::WIDTH);
         let mut hits = fresh(bounds);
         trace::<L, Closest>(method, bvh, spheres, rays, &mut hits);
@@ -247,7 +248,7 @@ fn one_thread_and_many_build_the_same_tree() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut spheres = spheres(rows.iter().copied());
         let bvh = pool.install(|| build(&mut spheres));
-        (bvh.nodes().to_vec(), spheres.id)
+        (bvh, spheres.id)
     };
     let one = built(1);
     for threads in [2, 7] {

@@ -1,120 +1,199 @@
-//! The bounding volume hierarchy: one flattened binary tree over the spheres' columns.
+//! The bounding volume hierarchy: one tree, eight wide, over the spheres' blocks.
 //!
 //! [`build`](build::build) makes the tree and the order of the spheres in one go; [`walk`] answers
-//! which sphere a ray hits first ([`walk::Closest`]) and whether it hits any ([`walk::Any`]), for
-//! every lane count, with the tree or by brute force. The tree knows nothing of materials, the rest
-//! of the program nothing of nodes.
+//! which sphere a ray hits first ([`walk::Closest`]) and whether it hits any ([`walk::Any`]), with
+//! rays one by one, many in flight, in packets of every lane count, or by brute force. The tree
+//! knows nothing of materials, the rest of the program nothing of nodes.
 
 pub mod build;
+mod decide;
+mod order;
+mod packet;
+mod single;
+mod stream;
 pub mod walk;
 
-use crate::spheres::Spheres;
+use crate::spheres::{LEAF, Spheres};
+use glam::Vec3;
 
-/// A node: a box and either two children or a slice of the spheres' columns.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+/// Children of a node: one row of lanes for each of their boxes' planes.
+pub const WIDTH: usize = 8;
+
+/// The deepest that a tree gets, counted in nodes.
+pub const DEPTH: usize = 24;
+
+/// A node: the boxes of its children in columns, and what is in them.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
-    /// Lower corner, rounded down.
-    pub low: [f32; 3],
-    /// Upper corner, rounded up.
-    pub high: [f32; 3],
-    /// Leaf: the first sphere's row. Inner node: the second child; the first one follows its
-    /// parent.
-    pub first: u32,
-    /// Leaf: the number of spheres. Inner node: [`Node::INNER`] plus the axis of the split.
-    kind: u32,
+    /// By axis and side, lower first: where that plane of each child's box is, rounded outward. An
+    /// inverted box, which no ray meets, where there is no child.
+    planes: [[[f32; WIDTH]; 2]; 3],
+    /// What is in the boxes.
+    child: [Child; WIDTH],
 }
 
-impl Node {
-    /// Marks an inner node: no leaf has as many spheres.
-    const INNER: u32 = u32::MAX - 2;
+/// A child: a node's index, or a block's with [`Child::LEAF`] set.
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Child(u32);
 
-    /// The spheres of a leaf, or the axis on which an inner node is split.
+impl Child {
+    /// Set in blocks: there are fewer than 2^30 nodes, and fewer blocks.
+    const LEAF: u32 = 1 << 30;
+    /// No child.
+    const NONE: Self = Self(1 << 31);
+    /// The kind of a node.
+    const NODE: u32 = 0;
+    /// The kind of a block.
+    const BLOCK: u32 = 1;
+
+    fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    fn leaf(block: usize) -> Self {
+        Self(block as u32 | Self::LEAF)
+    }
+
+    /// [`Child::NODE`] or [`Child::BLOCK`], if there is one.
     #[inline(always)]
-    fn content(&self) -> Content {
-        if self.kind >= Self::INNER {
-            Content::Split { axis: self.kind - Self::INNER }
-        } else {
-            Content::Spheres { count: self.kind }
-        }
+    fn kind(self) -> u32 {
+        self.0 >> 30
+    }
+
+    /// Of the node or the block.
+    #[inline(always)]
+    fn index(self) -> usize {
+        (self.0 & (Self::LEAF - 1)) as usize
     }
 }
 
-/// What is in a [`Node`].
-enum Content {
-    Split { axis: u32 },
-    Spheres { count: u32 },
+impl Node {
+    const EMPTY: Self = Self {
+        planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
+        child: [Child::NONE; WIDTH],
+    };
+
+    /// The box of child `i`.
+    fn bounds(&self, i: usize) -> Bounds {
+        let corner = |side: usize| Vec3::from_array(self.planes.map(|axis| axis[side][i]));
+        Bounds { low: corner(0), high: corner(1) }
+    }
+
+    fn set(&mut self, i: usize, child: Child, bounds: &Bounds) {
+        self.child[i] = child;
+        for axis in 0..3 {
+            self.planes[axis][0][i] = bounds.low[axis];
+            self.planes[axis][1][i] = bounds.high[axis];
+        }
+    }
+
+    /// The children that there are.
+    fn children(&self) -> impl Iterator<Item = (Child, Bounds)> {
+        let there = |&i: &usize| self.child[i] != Child::NONE;
+        (0..WIDTH).filter(there).map(|i| (self.child[i], self.bounds(i)))
+    }
 }
 
-/// The tree, flattened depth first: `nodes[0]` is the root; a node's first child follows it.
-#[derive(Clone, Debug, Default)]
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Lower corner.
+    pub low: Vec3,
+    /// Upper corner.
+    pub high: Vec3,
+}
+
+impl Bounds {
+    /// The box of nothing.
+    pub const EMPTY: Self =
+        Self { low: Vec3::splat(f32::INFINITY), high: Vec3::splat(f32::NEG_INFINITY) };
+
+    /// The least box that holds both.
+    #[inline(always)]
+    pub fn union(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    fn holds(&self, other: &Self) -> bool {
+        self.low.cmple(other.low).all() && self.high.cmpge(other.high).all()
+    }
+}
+
+/// The tree, flattened depth first: `nodes[0]` is the root.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,
 }
 
 impl Bvh {
     /// The nodes, root first; empty if there is no sphere.
-    pub fn nodes(&self) -> &[Node] {
+    fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there is no sphere.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
     }
 
     /// Bytes that the tree occupies, without the spheres.
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<Node>()
+        size_of_val(self.nodes.as_slice())
     }
 
-    /// Checks what the walks rely on: every row is in one leaf, every box holds its children's and
-    /// its spheres', and no path is longer than the walks' stack.
+    /// The box of everything; `None` if there is no sphere.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let boxes = self.nodes.first()?.children().map(|child| child.1);
+        boxes.reduce(|all, bounds| all.union(&bounds))
+    }
+
+    /// Checks what the walks rely on: every block is in one leaf, every box holds what is below it,
+    /// and no path is longer than [`DEPTH`].
     ///
     /// # Errors
     /// Says which node is wrong, and how.
     pub fn validate(&self, spheres: &Spheres) -> Result<(), String> {
-        let mut next_row = 0;
-        let mut next_node = 0;
-        let mut open = vec![(0_usize, 0_usize)];
+        let mut seen = vec![false; spheres.blocks().len()];
+        let mut open = vec![(0_usize, 1_usize)];
         if self.nodes.is_empty() {
             open.clear();
         }
+        let mut visited = 0;
         while let Some((index, depth)) = open.pop() {
-            let node = &self.nodes[index];
-            if index != next_node || depth > walk::STACK {
-                return Err(format!("node {index} is out of order or too deep, at {depth}"));
+            visited += 1;
+            let node = self.nodes.get(index).ok_or(format!("there is no node {index}"))?;
+            if depth > DEPTH || visited > self.nodes.len() {
+                return Err(format!("node {index} is too deep, at {depth}, or not the only one"));
             }
-            next_node += 1;
-            let holds = |low: [f32; 3], high: [f32; 3]| {
-                (0..3).all(|axis| node.low[axis] <= low[axis] && node.high[axis] >= high[axis])
-            };
-            let sound = match node.content() {
-                Content::Split { .. } => {
-                    let children = [node.first as usize, index + 1];
-                    open.extend(children.map(|child| (child, depth + 1)));
-                    children.iter().all(|&child| {
-                        self.nodes.get(child).is_some_and(|child| holds(child.low, child.high))
-                    })
-                }
-                Content::Spheres { count } => {
-                    let rows = node.first as usize..(node.first + count) as usize;
-                    let in_order = rows.start == next_row && rows.end <= spheres.len();
-                    next_row = rows.end;
-                    in_order
-                        && rows.clone().all(|row| {
-                            let (center, radius) = (spheres.center(row), spheres.radius[row]);
-                            holds((center - radius).to_array(), (center + radius).to_array())
+            for (child, bounds) in node.children() {
+                let inside = if child.kind() == Child::NODE {
+                    open.push((child.index(), depth + 1));
+                    let below = self.nodes.get(child.index());
+                    below.is_some_and(|below| below.children().all(|(_, b)| bounds.holds(&b)))
+                } else {
+                    let first = child.index() * LEAF;
+                    let once = seen.get_mut(child.index());
+                    once.is_some_and(|seen| !std::mem::replace(seen, true))
+                        && (first..spheres.len().min(first + LEAF)).all(|row| {
+                            let (center, radius) = (spheres.center(row), spheres.radius(row));
+                            bounds.holds(&Bounds { low: center - radius, high: center + radius })
                         })
+                };
+                if !inside {
+                    return Err(format!("node {index} does not hold what is below it"));
                 }
-            };
-            if !sound {
-                return Err(format!("node {index} does not hold what is below it"));
             }
         }
-        if next_row == spheres.len() && next_node == self.nodes.len() {
+        if seen.iter().all(|&seen| seen) && visited == self.nodes.len() {
             return Ok(());
         }
-        Err(format!("{next_row} of {} spheres are in leaves", spheres.len()))
-    }
-
-    /// The box of everything: its lower and its upper corner. `None` if there is no sphere.
-    pub fn bounds(&self) -> Option<([f32; 3], [f32; 3])> {
-        self.nodes.first().map(|root| (root.low, root.high))
+        Err(format!("{visited} of {} nodes are in the tree, or a block is not", self.nodes.len()))
     }
 }

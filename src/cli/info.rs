@@ -181,7 +181,7 @@ impl MemoryInfo {
         Self {
             sphere_bytes,
             tree_bytes,
-            tree_nodes: world.bvh.nodes().len(),
+            tree_nodes: world.bvh.len(),
             bytes_per_sphere: total / world.spheres.len().max(1) as f64,
         }
     }

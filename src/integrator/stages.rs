@@ -36,7 +36,7 @@ pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspac
 fn enter_glass(world: &World, work: &mut Workspace, place: usize, origin: Vec3, direction: Vec3) {
     for &row in &world.features.glass_at_camera {
         let offset = origin.as_dvec3() - world.spheres.center(row as usize).as_dvec3();
-        let radius = f64::from(world.spheres.radius[row as usize]);
+        let radius = f64::from(world.spheres.radius(row as usize));
         let outside = offset.length_squared() - radius * radius;
         let inward = offset.dot(direction.as_dvec3()) < 0.0;
         if (outside < 0.0 || (outside == 0.0 && inward))
@@ -75,7 +75,7 @@ fn solve(world: &World, work: &Workspace, row: usize, hit: u32) -> (Vec3, DVec3)
         return ((point - normal * off).as_vec3(), normal);
     }
     let center = world.spheres.center(hit as usize).as_dvec3();
-    let radius = f64::from(world.spheres.radius[hit as usize]);
+    let radius = f64::from(world.spheres.radius(hit as usize));
     let normal = if work.rays.own[row] == hit {
         exit_normal(&ray, work.surface.normal[row])
     } else {

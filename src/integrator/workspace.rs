@@ -242,7 +242,7 @@ impl Workspace {
 #[inline]
 pub fn chord(world: &World, row: u32, normal: DVec3, direction: Vec3) -> f64 {
     let direction = direction.as_dvec3();
-    let radius = f64::from(world.spheres.radius[row as usize]);
+    let radius = f64::from(world.spheres.radius(row as usize));
     (-2.0 * radius * normal.dot(direction) / direction.length_squared()).max(0.0)
 }
 

@@ -74,7 +74,7 @@ fn ior(world: &World, row: u32) -> f64 {
 
 /// Whether sphere `a` decides the medium where it overlaps sphere `b`.
 fn precedes(world: &World, a: u32, b: u32) -> bool {
-    let key = |row: u32| (world.spheres.radius[row as usize], world.spheres.id[row as usize]);
+    let key = |row: u32| (world.spheres.radius(row as usize), world.spheres.id[row as usize]);
     key(a) < key(b)
 }
 

@@ -73,7 +73,7 @@ fn count_spherule(world: &World, starts: &[Start], report: &mut RegimeReport) {
         rays.push(point, start.direction, own as u32);
         traced.push((start, own, exit));
     }
-    trace::<F32x16, Closest>(Method::Tree, &world.bvh, &world.spheres, &rays, &mut hits);
+    trace::<F32x16, Closest>(Method::Packet, &world.bvh, &world.spheres, &rays, &mut hits);
     for (row, (start, own, exit)) in traced.into_iter().enumerate() {
         let hit = hits.sphere[row];
         let is_own = hit != MISS && world.spheres.exact(hit as usize) == world.spheres.exact(own);

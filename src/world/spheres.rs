@@ -11,11 +11,7 @@ pub(super) fn build(from: &scene::Spheres, frame: &Frame) -> Spheres {
         let radius = frame.length(from.radius[row]) as f32;
         if radius > 0.0 {
             let center = frame.point(from.center(row)).as_vec3();
-            spheres.x.push(center.x);
-            spheres.y.push(center.y);
-            spheres.z.push(center.z);
-            spheres.radius.push(radius);
-            spheres.id.push(row as u32);
+            spheres.push(center, radius, row as u32);
         }
     }
     spheres

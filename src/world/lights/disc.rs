@@ -34,7 +34,7 @@ pub(super) fn toward_sphere(
 ) -> Option<(DVec3, Cone, bool)> {
     const CLOSE: f64 = 1.15;
     let toward = spheres.center(row).as_dvec3() - origin.as_dvec3();
-    let radius = f64::from(spheres.radius[row]);
+    let radius = f64::from(spheres.radius(row));
     let distance2 = toward.length_squared();
     let cone = Cone::toward_sphere(distance2, radius)?;
     Some((toward, cone, distance2 < (CLOSE * radius).powi(2)))
@@ -49,7 +49,7 @@ impl Disc {
             frame: Frame::new(toward.normalize().as_vec3()),
             origin,
             center: spheres.center(row).as_dvec3(),
-            radius: f64::from(spheres.radius[row]),
+            radius: f64::from(spheres.radius(row)),
             weight: radiance / cone.pdf(),
             cone,
             close,

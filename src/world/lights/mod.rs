@@ -109,7 +109,7 @@ impl Lights {
     fn powers(&self, spheres: &Spheres, sky: &Environment) -> Vec<f64> {
         let emitters = self.emitters.iter().zip(&self.radiance).map(|(&row, &radiance)| {
             f64::from(luminance(radiance))
-                * (2.0 * PI * f64::from(spheres.radius[row as usize])).powi(2)
+                * (2.0 * PI * f64::from(spheres.radius(row as usize))).powi(2)
         });
         let points = self.points.iter().map(|point| {
             let falloff = point.falloff.map_or(1.0, |scale| scale * scale);

@@ -1,0 +1,186 @@
+//! Rays that go alike walk through the tree together.
+//!
+//! A packet of `L::WIDTH` rays is bounded on each axis, and the bounds are tested against the boxes of
+//! eight children at once; so are the boxes of a leaf's spheres, and each that is left is tested
+//! against all rays at once. `L = f32` is a single ray.
+//!
+//! Where the bounds of single precision tell which of two hits is nearer, nothing else is asked; the
+//! nearest one's distance is computed in the end. Where they overlap, or cannot tell a hit from a miss,
+//! [`Decider`] is asked at once.
+
+use super::decide::{DONE, Decider};
+use super::stream::Bundle;
+use super::walk::Query;
+use crate::filter::{Chord, FilterRay};
+use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, set_bits};
+use crate::ray::MISS;
+use crate::slabs::{MARGIN, Planes, Slabs};
+use crate::spheres::{Block, LEAF};
+use crate::vec3::Vec3;
+
+/// Rays `row..row + L::WIDTH`, or as many as there are.
+#[derive(Clone, Copy)]
+pub(super) struct Packet<L: Lanes> {
+    row: u32,
+    filter: FilterRay<L>,
+    /// By how much origins may be off, if they are on a surface.
+    origin_error: L,
+    /// The bits of the spheres that the rays start on, and of those that they are aimed at.
+    known: [L; 2],
+    /// Bounds of the distance of what is hit so far, or of the search; [`DONE`] for a lane without a
+    /// ray, or done.
+    t_min: L,
+    t_max: L,
+    /// The bits of the sphere that is hit for certain, if the hits do not know of it yet; else
+    /// [`MISS`].
+    candidate: L,
+}
+
+#[inline(always)]
+fn bits<L: Lanes>(number: u32) -> L {
+    L::splat(f32::from_bits(number))
+}
+
+/// The same, one for each lane.
+#[inline(always)]
+fn bits_of<L: Lanes>(numbers: &[u32]) -> L {
+    L::load(bytemuck::cast_slice(numbers))
+}
+
+impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
+    #[inline(always)]
+    fn none() -> Self {
+        Self {
+            row: 0,
+            filter: FilterRay::IDLE.splat(),
+            origin_error: L::splat(0.0),
+            known: [bits(MISS); 2],
+            t_min: L::splat(DONE),
+            t_max: L::splat(DONE),
+            candidate: bits(MISS),
+        }
+    }
+
+    #[inline(always)]
+    fn new(decider: &Decider<Q>, row: usize) -> (Self, f32) {
+        let packet = Self::begin(decider, row);
+        (packet, packet.t_max.greatest())
+    }
+
+    #[inline(always)]
+    fn meets(&self, slabs: &Slabs, t_far: f32, _: usize, block: &Block) -> u32 {
+        slabs.enters(&boxes(block), t_far).0
+    }
+
+    #[inline(always)]
+    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) -> Option<f32> {
+        let block = &decider.spheres.blocks()[sphere / LEAF];
+        let lane = sphere % LEAF;
+        let center = Vec3::splat(block.x[lane], block.y[lane], block.z[lane]);
+        let radius = L::splat(block.radius[lane]);
+        let chord = Chord::new(&self.filter, center, radius);
+        let met = chord.may_hit(self.t_max);
+        if met.bits() == 0 {
+            return None;
+        }
+        let [own, target] = self.known.map(|known| known.has_bits_of(bits(sphere as u32)));
+        self.take(decider, sphere, (met & !(own | target), &chord, radius));
+        Some(self.t_max.greatest())
+    }
+
+    /// Computes the distances of what is hit for certain.
+    #[inline(always)]
+    fn settle(&self, decider: &mut Decider<Q>) {
+        let mut candidates = [0.0; MAX_LANES];
+        self.candidate.store(&mut candidates);
+        let candidates: [u32; MAX_LANES] = bytemuck::cast(candidates);
+        decider.settle(self.row as usize, &candidates[..L::WIDTH]);
+    }
+}
+
+impl<L: Lanes> Packet<L> {
+    #[inline(always)]
+    fn begin<Q: Query>(decider: &Decider<Q>, row: usize) -> Self {
+        let rays = decider.rays;
+        let origin: Vec3<L> = rays.origin.load(row);
+        let span = origin.x.abs() + origin.y.abs() + origin.z.abs();
+        let (t_min, t_max) = decider.bounds(row);
+        Self {
+            row: row as u32,
+            filter: FilterRay::new(origin, rays.direction.load(row)),
+            origin_error: span * L::splat(f32::EPSILON * (1.0 + 4.0 * f32::EPSILON)),
+            known: [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])],
+            t_min,
+            t_max,
+            candidate: bits(MISS),
+        }
+    }
+
+    /// Tests every sphere there is, for the rays from `row` on.
+    #[inline(always)]
+    pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, row: usize) {
+        let mut packet = Self::begin(decider, row);
+        for sphere in 0..decider.spheres.len() {
+            packet.test(decider, sphere);
+        }
+        packet.settle(decider);
+    }
+
+    /// Takes the lanes whose hit is certain and nearer than what they have, asks about the others.
+    #[inline(always)]
+    fn take<Q: Query>(
+        &mut self,
+        decider: &mut Decider<Q>,
+        sphere: usize,
+        (met, chord, radius): (L::Mask, &Chord<L>, L),
+    ) {
+        let near = chord.near();
+        let (certain, far) = chord.enters(&self.filter, radius, self.origin_error);
+        let nearer = if Q::EXACT { met & certain & far.lt(self.t_min) } else { met };
+        self.candidate = L::select(nearer, bits(sphere as u32), self.candidate);
+        if Q::ANY {
+            self.t_max = L::select(nearer, L::splat(DONE), self.t_max);
+        } else {
+            self.t_min = L::select(nearer, near, self.t_min);
+            self.t_max = L::select(nearer, far, self.t_max);
+        }
+        let open = met & !nearer;
+        if open.bits() != 0 {
+            self.ask(decider, sphere, open.bits());
+        }
+    }
+
+    /// Has the lanes in `open` decided.
+    #[cold]
+    fn ask<Q: Query>(&mut self, decider: &mut Decider<Q>, sphere: usize, open: u32) {
+        let mut candidates = [0.0; MAX_LANES];
+        self.candidate.store(&mut candidates);
+        let (mut t_min, mut t_max) = ([DONE; MAX_LANES], [DONE; MAX_LANES]);
+        self.t_min.store(&mut t_min);
+        self.t_max.store(&mut t_max);
+        for lane in set_bits(open) {
+            let (row, candidate) = (self.row as usize + lane, candidates[lane].to_bits());
+            if candidate != MISS {
+                decider.consider(row, candidate as usize);
+                candidates[lane] = f32::from_bits(MISS);
+            }
+            decider.consider(row, sphere);
+            (t_min[lane], t_max[lane]) = decider.bounds::<f32>(row);
+        }
+        self.candidate = L::load(&candidates);
+        (self.t_min, self.t_max) = (L::load(&t_min), L::load(&t_max));
+    }
+}
+
+/// Boxes about the spheres of a block, as those of the tree are about theirs.
+#[inline(always)]
+fn boxes(block: &Block) -> Planes {
+    let widen = F32x8::splat(1.0 + 2.0 * f32::EPSILON);
+    let radius = Lanes::mul_add(F32x8::load(&block.radius), widen, F32x8::splat(MARGIN));
+    let slab = |center: &[f32; LEAF]| {
+        let center = F32x8::load(center);
+        let reach = Lanes::mul_add(Lanes::abs(center), F32x8::splat(f32::EPSILON), radius);
+        [(center - reach).to_array(), (center + reach).to_array()]
+    };
+    [slab(&block.x), slab(&block.y), slab(&block.z)]
+}

@@ -1,0 +1,56 @@
+//! A ray on its own: eight spheres of a leaf are tested at once.
+
+use super::decide::Decider;
+use super::stream::Bundle;
+use super::walk::Query;
+use crate::filter::{Chord, FilterRay};
+use crate::lanes::{F32x8, Lanes, Mask};
+use crate::ray::MISS;
+use crate::slabs::Slabs;
+use crate::spheres::{Block, LEAF};
+use crate::vec3::Vec3;
+
+/// One ray.
+#[derive(Clone, Copy)]
+pub(super) struct Single {
+    row: u32,
+    /// The block of the sphere that the ray starts on, and the lanes of that block but the sphere's.
+    own: (u32, u32),
+    filter: FilterRay<f32>,
+}
+
+impl<Q: Query> Bundle<Q> for Single {
+    #[inline(always)]
+    fn none() -> Self {
+        Self { row: 0, own: (MISS, 0), filter: FilterRay::IDLE }
+    }
+
+    #[inline(always)]
+    fn new(decider: &Decider<Q>, row: usize) -> (Self, f32) {
+        let rays = decider.rays;
+        let own = rays.own[row];
+        let ray = Self {
+            row: row as u32,
+            own: (own / LEAF as u32, !(1 << (own % LEAF as u32))),
+            filter: FilterRay::new(rays.origin.load(row), rays.direction.load(row)),
+        };
+        (ray, decider.bounds::<f32>(row).1)
+    }
+
+    #[inline(always)]
+    fn meets(&self, _: &Slabs, t_far: f32, index: usize, block: &Block) -> u32 {
+        let center = Vec3::new(F32x8::load(&block.x), F32x8::load(&block.y), F32x8::load(&block.z));
+        let chord = Chord::new(&self.filter.splat(), center, F32x8::load(&block.radius));
+        let but_own = if self.own.0 == index as u32 { self.own.1 } else { u32::MAX };
+        chord.may_hit(F32x8::splat(t_far)).bits() & but_own
+    }
+
+    #[inline(always)]
+    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) -> Option<f32> {
+        let row = self.row as usize;
+        decider.consider(row, sphere).then(|| decider.bounds::<f32>(row).1)
+    }
+
+    #[inline(always)]
+    fn settle(&self, _: &mut Decider<Q>) {}
+}

@@ -1,0 +1,272 @@
+//! The walk: many rays, or packets of rays, on their way through the tree at once.
+//!
+//! A walk is a chain of steps that wait for each other: for the loads, for the order of the
+//! children, for what is on top of the stack. So some walks take turns: all that are at a node take
+//! one step, then all that are at a leaf, then all spheres that those may hit are tested. The steps
+//! of a turn do not depend on each other, and what comes next is appended to a queue without a
+//! branch that could be mispredicted: so the processor overlaps them.
+
+use super::decide::{DONE, Decider};
+use super::walk::Query;
+use super::{Bvh, Child, DEPTH, Node, WIDTH, order};
+use crate::lanes::{F32x8, Lanes, Mask, set_bits, shuffle, shuffle_numbers};
+use crate::slabs::Slabs;
+use crate::spheres::{Block, LEAF};
+
+/// Room for the children still to visit, and for a whole row of them after the last.
+const STACK: usize = 8 + DEPTH * (WIDTH - 1) + WIDTH;
+
+/// What goes through the tree together: one ray, or a packet.
+pub(super) trait Bundle<Q: Query>: Copy {
+    /// In place of a bundle where there is none.
+    fn none() -> Self;
+
+    /// The bundle that begins with ray `row`, and the distance beyond which it needs no answers;
+    /// below 0 if it needs none.
+    fn new(decider: &Decider<Q>, row: usize) -> (Self, f32);
+
+    /// Which spheres of a block may be hit at a distance of at most `t_far`. The bundle is within
+    /// the slabs.
+    fn meets(&self, slabs: &Slabs, t_far: f32, index: usize, block: &Block) -> u32;
+
+    /// Finds out about a sphere that may be hit; returns the new `t_far` if it is nearer.
+    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) -> Option<f32>;
+
+    /// Leaves all answers in the hits.
+    fn settle(&self, decider: &mut Decider<Q>);
+}
+
+/// A bundle on its way.
+#[derive(Clone, Copy)]
+struct Flight<B> {
+    slabs: Slabs,
+    bundle: B,
+    /// Beyond this nothing counts; below 0 nothing does.
+    t_far: f32,
+    /// Whether `t_far` is less than it was when the stack was filled.
+    nearer: bool,
+    /// What is visited next.
+    child: Child,
+    /// How many children are on the stack, a sentinel included.
+    top: u32,
+    stack: Stack,
+}
+
+/// What is still to visit: children, and distances before which their boxes are not met.
+#[derive(Clone, Copy)]
+struct Stack {
+    child: [Child; STACK],
+    near: [f32; STACK],
+}
+
+/// Places of flights, one after another.
+#[derive(Clone, Copy)]
+struct Queue<const FLIGHTS: usize> {
+    place: [u8; FLIGHTS],
+    len: usize,
+}
+
+impl<const FLIGHTS: usize> Queue<FLIGHTS> {
+    const EMPTY: Self = Self { place: [0; FLIGHTS], len: 0 };
+
+    /// Appends a place if it is `wanted`.
+    #[inline(always)]
+    fn push_if(&mut self, wanted: bool, place: u8) {
+        self.place[self.len % FLIGHTS] = place;
+        self.len += usize::from(wanted);
+    }
+
+    #[inline(always)]
+    fn places(&self) -> &[u8] {
+        &self.place[..self.len.min(FLIGHTS)]
+    }
+}
+
+/// Flights by what they visit next.
+#[derive(Clone, Copy)]
+struct Queues<const FLIGHTS: usize> {
+    nodes: Queue<FLIGHTS>,
+    leaves: Queue<FLIGHTS>,
+    arrived: Queue<FLIGHTS>,
+}
+
+impl<const FLIGHTS: usize> Queues<FLIGHTS> {
+    const EMPTY: Self = Self { nodes: Queue::EMPTY, leaves: Queue::EMPTY, arrived: Queue::EMPTY };
+
+    #[inline(always)]
+    fn push(&mut self, child: Child, place: u8) {
+        self.nodes.push_if(child.kind() == Child::NODE, place);
+        self.leaves.push_if(child.kind() == Child::BLOCK, place);
+        self.arrived.push_if(child == Child::NONE, place);
+    }
+}
+
+/// Walks and what waits for them: `FLIGHTS`, a power of two, at once.
+pub(super) struct Stream<B, const FLIGHTS: usize> {
+    flights: [Flight<B>; FLIGHTS],
+    queues: Queues<FLIGHTS>,
+}
+
+impl<B: Copy, const FLIGHTS: usize> Stream<B, FLIGHTS> {
+    /// Sends bundles on their way: each is the row that it begins with, and what bounds its rays.
+    pub(super) fn trace<Q: Query>(
+        bvh: &Bvh,
+        decider: &mut Decider<Q>,
+        mut bundles: impl Iterator<Item = (usize, Slabs)>,
+    ) where
+        B: Bundle<Q>,
+    {
+        if bvh.is_empty() {
+            return;
+        }
+        let mut stream = Self { flights: [Flight::idle(B::none()); FLIGHTS], queues: Queues::EMPTY };
+        for place in 0..FLIGHTS {
+            stream.queues.push(Child::NONE, place as u8);
+        }
+        loop {
+            let now = std::mem::replace(&mut stream.queues, Queues::EMPTY);
+            stream.land(now.arrived.places(), decider, &mut bundles);
+            if now.nodes.len + now.leaves.len + stream.queues.nodes.len == 0 {
+                return;
+            }
+            stream.visit_nodes(now.nodes.places(), bvh);
+            stream.visit_leaves(now.leaves.places(), decider);
+        }
+    }
+
+    /// Puts new flights in place of those that have arrived.
+    #[inline(always)]
+    fn land<Q: Query>(
+        &mut self,
+        places: &[u8],
+        decider: &mut Decider<Q>,
+        bundles: &mut impl Iterator<Item = (usize, Slabs)>,
+    ) where
+        B: Bundle<Q>,
+    {
+        for &place in places {
+            let flight = &mut self.flights[place as usize % FLIGHTS];
+            flight.bundle.settle(decider);
+            flight.bundle = B::none();
+            if let Some((row, slabs)) = bundles.next() {
+                flight.slabs = slabs;
+                (flight.bundle, flight.t_far) = B::new(decider, row);
+                flight.child = Child::node(0);
+                flight.top = 1;
+                self.queues.nodes.push_if(true, place);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn visit_nodes<Q: Query>(&mut self, places: &[u8], bvh: &Bvh)
+    where
+        B: Bundle<Q>,
+    {
+        for &place in places {
+            let flight = &mut self.flights[place as usize % FLIGHTS];
+            let child = flight.step::<Q>(&bvh.nodes()[flight.child.index()]);
+            self.queues.push(child, place);
+        }
+    }
+
+    #[inline(always)]
+    fn visit_leaves<Q: Query>(&mut self, places: &[u8], decider: &mut Decider<Q>)
+    where
+        B: Bundle<Q>,
+    {
+        let mut candidates = [(0_u8, 0_u8); FLIGHTS];
+        let mut count = 0;
+        for &place in places {
+            let flight = &self.flights[place as usize % FLIGHTS];
+            let index = flight.child.index();
+            let block = &decider.spheres.blocks()[index];
+            let met = flight.bundle.meets(&flight.slabs, flight.t_far, index, block);
+            candidates[count % FLIGHTS] = (place, met as u8);
+            count += usize::from(met != 0);
+        }
+        for &(place, met) in &candidates[..count.min(FLIGHTS)] {
+            let flight = &mut self.flights[place as usize % FLIGHTS];
+            let first = flight.child.index() * LEAF;
+            for lane in set_bits(u32::from(met)) {
+                if let Some(t_far) = flight.bundle.test(decider, first + lane) {
+                    flight.t_far = t_far;
+                    flight.nearer = true;
+                }
+            }
+        }
+        for &place in places {
+            let flight = &mut self.flights[place as usize % FLIGHTS];
+            if flight.nearer {
+                flight.forget::<Q>();
+            }
+            self.queues.push(flight.pop(), place);
+        }
+    }
+}
+
+impl<B: Copy> Flight<B> {
+    fn idle(bundle: B) -> Self {
+        Self {
+            slabs: Slabs::IDLE,
+            bundle,
+            t_far: DONE,
+            nearer: false,
+            child: Child::NONE,
+            top: 1,
+            stack: Stack { child: [Child::NONE; STACK], near: [0.0; STACK] },
+        }
+    }
+
+    /// Visits a node: what may be met goes on the stack, the nearest last, and is taken from there.
+    #[inline(always)]
+    fn step<Q: Query>(&mut self, node: &Node) -> Child {
+        let (hit, near) = self.slabs.enters(&node.planes, self.t_far);
+        let order = order::farthest_first(self.slabs.octant, hit);
+        self.stack.put(self.top as usize, bytemuck::cast_ref(&node.child), order);
+        if !Q::ANY {
+            let top = self.top as usize;
+            shuffle(near, order).store(&mut self.stack.near[top..top + WIDTH]);
+        }
+        self.top += hit.count_ones();
+        self.pop()
+    }
+
+    /// Takes what is visited next off the stack.
+    #[inline(always)]
+    fn pop(&mut self) -> Child {
+        self.top -= 1;
+        self.child = self.stack.child[self.top as usize];
+        self.child
+    }
+
+    /// Takes what is too far off the stack.
+    #[inline(always)]
+    fn forget<Q: Query>(&mut self) {
+        self.nearer = false;
+        let full = std::mem::replace(&mut self.top, 1);
+        if self.t_far < 0.0 || Q::ANY {
+            self.top = if self.t_far < 0.0 { 1 } else { full };
+            return;
+        }
+        for first in (1..full).step_by(WIDTH) {
+            let near = F32x8::load(&self.stack.near[first as usize..]);
+            let row: [u32; WIDTH] =
+                std::array::from_fn(|i| self.stack.child[first as usize + i].0);
+            let there = !(u32::MAX << (full - first).min(WIDTH as u32));
+            let kept = near.le(F32x8::splat(self.t_far)).bits() & there;
+            let (order, top) = (order::in_order(kept), self.top as usize);
+            self.stack.put(top, &row, order);
+            shuffle(near, order).store(&mut self.stack.near[top..top + WIDTH]);
+            self.top += kept.count_ones();
+        }
+    }
+}
+
+impl Stack {
+    #[inline(always)]
+    fn put(&mut self, top: usize, row: &[u32; WIDTH], order: u32) {
+        let row: [Child; WIDTH] = bytemuck::cast(shuffle_numbers(row, order));
+        self.child[top..top + WIDTH].copy_from_slice(&row);
+    }
+}

@@ -1,0 +1,160 @@
+//! Ray against sphere in single precision, in lanes: what cannot be hit, what is hit for certain,
+//! and bounds of the distance. What is left is for [`intersect`](crate::intersect).
+//!
+//! The form is Embree's: the chord's middle, relative to the center, so that the discriminant does
+//! not cancel for spheres that are small or far (Haines, Günther, Akenine-Möller, "Precision
+//! Improvements for Ray/Sphere Intersection", Ray Tracing Gems 2019).
+//!
+//! # Bounds
+//!
+//! With `u` = 2^-24: `f` is the center as seen from the origin, `d` the direction, `t = f.d / d.d`
+//! the way to the middle of the chord and `T = |t||d|` its length, `p = |f - t d|` the line's distance
+//! from the center, `r` the radius. So `|f| <= T + p`. All bounds are sums of magnitudes, by the
+//! standard model of rounding (Higham, "Accuracy and Stability of Numerical Algorithms", 2002).
+//!
+//! - `f` is off by `u |f|`, `f.d` thereby and by its three roundings by `4 u |f||d|`, `1 / d.d` by
+//!   `4 u` of itself and its product by `u`: `t` is off by at most `4 u |f| / |d| + 5 u |t|`.
+//! - `f - t d` is off along the ray by at most `u |f|`, the error of `t` times `|d|`, and `u p` of its
+//!   own rounding; at a right angle to it by `u (|f| + p)`. For `p <= r` that is together no more than
+//!   `11 u T + 8 u r`, which moves `p` by no more.
+//! - Squares, sums and the product with `K` add `5 u` of what they are. So if the line meets the
+//!   sphere, the computed `p` is at most the `reach` `r (1 + K) + K T` with `K = 16 u`: no hit is
+//!   rejected.
+//! - Half the chord from that reach is too long by at least `8 u r + 5 u T`, as `reach^2 - p^2` grows by
+//!   `2 r` times that and the chord is no longer than `2 r`. With `K |t|` and `2 K` of itself on top it
+//!   outweighs the error of `t`, `9 u |t| + 4 u r / |d|`, and its own: the hit is not before
+//!   `t - half` nor beyond `t + half`.
+//! - With `r (1 - K) - K T` for the reach, if that is positive, all signs turn around: the line meets
+//!   the sphere for certain, the near hit is not beyond `t - half` and the far one not before `t +
+//!   half`. Squared errors help: `(r - x)^2 - (p - y)^2 <= r^2 - p^2` for `p <= r`, `0 <= y <= x <=
+//!   r`.
+//!
+//! Underflow: worlds are scaled so that their largest coordinate is about 1, and origins are no
+//! farther than 2^20, so nothing overflows, and what underflows is less than 2^-120 in squares.
+
+use crate::lanes::Lanes;
+use crate::vec3::Vec3;
+
+/// Unit roundoff of `f32`.
+const U: f32 = f32::EPSILON / 2.0;
+
+/// Relative width of the band in which single precision cannot tell.
+const K: f32 = 16.0 * U;
+
+/// Above every absolute error of a square that underflow can cause, and far below the square of any
+/// radius that counts.
+const UNDERFLOW: f32 = 1.0 / (1_u128 << 120) as f32;
+
+/// Rays as the filter wants them.
+#[derive(Clone, Copy, Debug)]
+pub struct FilterRay<L> {
+    origin: Vec3<L>,
+    direction: Vec3<L>,
+    /// `1 / |direction|^2`.
+    inverse_length2: L,
+    /// `K |direction|`.
+    band: L,
+}
+
+impl<L: Lanes> FilterRay<L> {
+    /// `direction` is neither zero nor so long or short that its square overflows or underflows.
+    #[inline(always)]
+    pub fn new(origin: Vec3<L>, direction: Vec3<L>) -> Self {
+        let length2 = direction.dot(direction);
+        Self {
+            origin,
+            direction,
+            inverse_length2: L::splat(1.0) / length2,
+            band: length2.sqrt() * L::splat(K),
+        }
+    }
+}
+
+impl FilterRay<f32> {
+    /// In place of a ray where there is none.
+    pub const IDLE: Self = Self {
+        origin: Vec3::new(0.0, 0.0, 0.0),
+        direction: Vec3::new(1.0, 0.0, 0.0),
+        inverse_length2: 1.0,
+        band: K,
+    };
+
+    /// The same ray in every lane.
+    #[inline(always)]
+    pub fn splat<L: Lanes>(&self) -> FilterRay<L> {
+        FilterRay {
+            origin: Vec3::splat(self.origin.x, self.origin.y, self.origin.z),
+            direction: Vec3::splat(self.direction.x, self.direction.y, self.direction.z),
+            inverse_length2: L::splat(self.inverse_length2),
+            band: L::splat(self.band),
+        }
+    }
+}
+
+/// What a ray's line cuts out of a sphere, if anything.
+#[derive(Clone, Copy, Debug)]
+pub struct Chord<L> {
+    /// Distance to the chord's middle.
+    middle: L,
+    /// Squared distance of the line from the center, no larger than it is.
+    distance2: L,
+    /// Square of the half chord, times that of the direction's length, no smaller than it is.
+    chord2: L,
+    /// Half the chord, no shorter than it is, by which also `middle` is bounded.
+    half: L,
+}
+
+impl<L: Lanes> Chord<L> {
+    /// The chord of a ray, in units of its direction's length; useless for a radius that is NaN.
+    #[inline(always)]
+    pub fn new(ray: &FilterRay<L>, center: Vec3<L>, radius: L) -> Self {
+        let to_center = center - ray.origin;
+        let middle = to_center.dot(ray.direction) * ray.inverse_length2;
+        let perpendicular = to_center.along(ray.direction, -middle);
+        let distance2 = perpendicular.dot_add(perpendicular, L::splat(-UNDERFLOW));
+        let reach = middle.abs().mul_add(ray.band, radius * L::splat(1.0 + K));
+        let chord2 = reach.mul_add(reach, -distance2);
+        let slack = middle.abs() * L::splat(K);
+        let half = (chord2 * ray.inverse_length2).sqrt().mul_add(L::splat(1.0 + 2.0 * K), slack);
+        Self { middle, distance2, chord2, half }
+    }
+
+    /// The lanes whose ray may hit the sphere at a distance in `0..=t_max`: never without one that
+    /// does.
+    #[inline(always)]
+    pub fn may_hit(&self, t_max: L) -> L::Mask {
+        let zero = L::splat(0.0);
+        zero.le(self.chord2) & self.near().le(t_max) & zero.le(self.middle + self.half)
+    }
+
+    /// A distance before which the line does not enter the sphere.
+    #[inline(always)]
+    pub fn near(&self) -> L {
+        self.middle - self.half
+    }
+
+    /// The lanes whose ray starts outside the sphere and enters it, for certain, and a distance
+    /// beyond which it does not do so.
+    ///
+    /// Outside is also beyond the band about the surface in which a ray that starts on a surface,
+    /// and whose origin was rounded, may be on this one: `origin_error` is the rounding's bound. The
+    /// product of the distances to near and far hit, times the direction's length squared, is
+    /// that of the origin to the center less that of the radius.
+    #[inline(always)]
+    pub fn enters(&self, ray: &FilterRay<L>, radius: L, origin_error: L) -> (L::Mask, L) {
+        let zero = L::splat(0.0);
+        let reach = radius * L::splat(1.0 - K) - self.middle.abs() * ray.band;
+        let chord2 = reach.mul_add(reach, -(self.distance2 + L::splat(2.0 * UNDERFLOW)));
+        let slack = self.middle.abs() * L::splat(K);
+        let root = (chord2 * ray.inverse_length2).sqrt();
+        let half = root * L::splat(1.0 - 2.0 * K) - slack;
+        let band = (radius + radius + origin_error) * origin_error * L::splat(1.0 + 16.0 * K);
+        let outside = self.near() * (self.middle + half);
+        let certain = zero.lt(reach)
+            & zero.lt(chord2)
+            & zero.lt(self.near())
+            & zero.lt(half)
+            & (band * ray.inverse_length2).lt(outside);
+        (certain, self.middle - half)
+    }
+}
