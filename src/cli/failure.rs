@@ -20,6 +20,9 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// Most bytes of a file that are drawn: a damaged one may be a single line.
+const DRAWN: usize = 600;
+
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
@@ -84,7 +87,7 @@ impl Failure {
 }
 
 fn report_scene(mut error: SceneError) {
-    let Some(place) = error.place.take() else {
+    let Some(place) = error.place.take_if(|place| is_short(place)) else {
         return output::error(error);
     };
     // Long lines are left to the terminal, so that messages can be searched for. That the hook is
@@ -94,6 +97,12 @@ fn report_scene(mut error: SceneError) {
     }));
     let report = miette::Report::new(Drawn { error, place: *place });
     output::tell_plain(format_args!("{report:?}"));
+}
+
+/// Whether the faulty lines, with one above and one below, help more than they hide.
+fn is_short(place: &Place) -> bool {
+    let drawn = place.source_text.as_str().read_span(&place.span.clone().into(), 1, 1);
+    drawn.is_ok_and(|lines| lines.data().len() <= DRAWN)
 }
 
 /// A fault in a scene, for drawing.

@@ -1,6 +1,7 @@
 //! File formats: how they are told apart, and the way to their codecs.
 
 use super::{Image, ImageError, WriteOptions, exr, pfm, png, ppm, radiance};
+use crate::memory;
 use std::{
     fmt,
     fs::File,
@@ -10,7 +11,10 @@ use std::{
 };
 
 /// The most pixels a header may claim where the file's length does not bound them: 3 GiB of floats.
-pub(super) const MAXIMUM_PIXELS: u64 = 1 << 28;
+const MAXIMUM_PIXELS: u64 = 1 << 28;
+
+/// Longest file that is read, in bytes: more than a picture of so many pixels takes in any format.
+const LONGEST: u64 = 1 << 33;
 
 /// No magic number is longer.
 const MAGIC_LENGTH: u64 = 16;
@@ -105,7 +109,8 @@ impl fmt::Display for Format {
     }
 }
 
-/// The format and the content of a file. Content of no known format is not read to its end.
+/// The format and the content of a file. Content of no known format is not read to its end, nor is
+/// what is longer than any picture or than the memory that is left.
 pub(super) fn read_file(path: &Path) -> Result<(Format, Vec<u8>), ImageError> {
     let unreadable = |reason: io::Error| ImageError::Read { path: path.to_owned(), reason };
     let mut file = File::open(path).map_err(unreadable)?;
@@ -113,7 +118,9 @@ pub(super) fn read_file(path: &Path) -> Result<(Format, Vec<u8>), ImageError> {
     file.by_ref().take(MAGIC_LENGTH).read_to_end(&mut bytes).map_err(unreadable)?;
     let format = Format::of_content(&bytes)
         .ok_or_else(|| ImageError::UnknownContent { path: path.to_owned() })?;
-    file.read_to_end(&mut bytes).map_err(unreadable)?;
+    // While it is read it moves to twice as much memory.
+    let limit = memory::left().map_or(LONGEST, |left| LONGEST.min(left / 3));
+    bytes.append(&mut memory::read_at_most(file, limit).map_err(unreadable)?);
     Ok((format, bytes))
 }
 
@@ -127,6 +134,19 @@ pub(super) fn checked_area(width: u64, height: u64, limit: u64) -> Result<usize,
              cut off or damaged, or the picture too large: write it anew, or smaller"
         )),
     }
+}
+
+/// The number of pixels a header claims where the file's length does not bound them, once it is
+/// known that there is memory for them: `bytes` for each while they are decoded.
+pub(super) fn claimed_area(width: u64, height: u64, bytes: u64) -> Result<usize, String> {
+    let area = checked_area(width, height, MAXIMUM_PIXELS)?;
+    memory::check(bytes.saturating_mul(area as u64)).map_err(|shortage| {
+        format!(
+            "its header claims {width} x {height} pixels, which need {shortage}; the file is \
+             damaged, or the picture too large: write it anew, or smaller"
+        )
+    })?;
+    Ok(area)
 }
 
 /// What a decoder of another crate says, and the mend.
@@ -215,6 +235,9 @@ mod tests {
         assert!(checked_area(0, 5, 15).is_err());
         assert!(checked_area(4, 4, 15).is_err());
         assert!(checked_area(u64::MAX, 2, u64::MAX).is_err());
+        assert_eq!(claimed_area(3, 5, 12), Ok(15));
+        let message = claimed_area(1 << 14, 1 << 14, 1 << 40).unwrap_err();
+        assert!(message.contains("16384 x 16384 pixels, which need"), "{message}");
     }
 
     proptest! {

@@ -2,7 +2,7 @@
 
 use super::{
     Depth, Image, Metadata, WriteOptions,
-    format::{MAXIMUM_PIXELS, checked_area, damaged},
+    format::{claimed_area, damaged},
     tone,
 };
 use ::png::{
@@ -14,6 +14,9 @@ use std::io::Cursor;
 /// Deflate turns a byte into no more than this (its longest match is 258 bytes in 2 bits).
 const MAXIMUM_DEFLATE_RATIO: usize = 1032;
 
+/// Bytes that a pixel takes while it is decoded, at most: its samples twice, and three floats.
+const PIXEL_BYTES: u64 = 8 + 8 + 12;
+
 type MemoryReader<'a> = Reader<Cursor<&'a [u8]>>;
 
 /// Decodes any color type and depth; the first picture if there are several.
@@ -23,7 +26,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
     let mut reader = open(bytes)?;
     let info = reader.info();
     let (width, height) = info.size();
-    let area = checked_area(width.into(), height.into(), MAXIMUM_PIXELS)?;
+    let area = claimed_area(width.into(), height.into(), PIXEL_BYTES)?;
     if info.raw_bytes() / MAXIMUM_DEFLATE_RATIO > bytes.len() {
         return Err("it is far too short for its size; the file is cut off: write it anew".into());
     }

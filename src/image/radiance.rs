@@ -2,7 +2,7 @@
 
 use super::{
     Image,
-    format::{MAXIMUM_PIXELS, checked_area, damaged},
+    format::{claimed_area, damaged},
 };
 use image::{ImageDecoder, codecs::hdr::HdrDecoder};
 
@@ -11,7 +11,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
     // Not strict: accepts the signature `#?RGBE` and unknown lines, as other readers do.
     let decoder = HdrDecoder::new_nonstrict(bytes).map_err(|error| damaged(&error))?;
     let (width, height) = decoder.dimensions();
-    let area = checked_area(width.into(), height.into(), MAXIMUM_PIXELS)?;
+    let area = claimed_area(width.into(), height.into(), size_of::<[f32; 3]>() as u64)?;
     let exposure = decoder.metadata().exposure.filter(|factor| factor.is_normal() && *factor > 0.0);
     let mut pixels = vec![[0.0_f32; 3]; area];
     decoder.read_image(bytemuck::cast_slice_mut(&mut pixels)).map_err(|error| damaged(&error))?;

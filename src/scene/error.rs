@@ -84,7 +84,7 @@ impl SceneError {
 }
 
 /// The text, or its beginning: what a damaged file calls a name can be all of it.
-fn clipped(text: impl Into<String>) -> String {
+pub(super) fn clipped(text: impl Into<String>) -> String {
     let mut text = text.into();
     if let Some((end, _)) = text.char_indices().nth(LONGEST) {
         text.truncate(end);

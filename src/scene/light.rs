@@ -4,6 +4,15 @@ use super::Rgb;
 use glam::DVec3;
 use std::sync::Arc;
 
+/// The greatest radiance and irradiance, in each channel: where light adds up over bounces, it fits
+/// single precision still.
+pub const BRIGHTEST: f32 = 1e30;
+
+/// Whether a value of a picture, finite and 0 or more itself, is a radiance once it is scaled.
+pub(crate) fn is_radiance(value: f32, scale: f32) -> bool {
+    value >= 0.0 && value * scale <= BRIGHTEST
+}
+
 /// A light that is not a sphere of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Light {
@@ -11,7 +20,7 @@ pub enum Light {
     Sun {
         /// Unit vector from the scene to the middle of the sun.
         direction: DVec3,
-        /// Irradiance on a plane that faces the sun.
+        /// Irradiance on a plane that faces the sun, at most [`BRIGHTEST`].
         irradiance: Rgb,
         /// Degrees, 0..90; 0 gives sharp shadows (and cannot be seen in a mirror).
         angular_radius: f64,
@@ -21,7 +30,7 @@ pub enum Light {
         /// Where it is.
         position: DVec3,
         /// Radiant intensity, per steradian; the irradiance at any distance if there is no
-        /// fall-off.
+        /// fall-off. No point is lit by more than [`BRIGHTEST`].
         intensity: Rgb,
         /// True: by the square of the distance, as in nature. False: none, as in Haines' NFF files.
         falloff: bool,
@@ -31,7 +40,7 @@ pub enum Light {
 /// What rays see that leave the scene.
 #[derive(Clone, Debug)]
 pub struct Environment {
-    /// Radiance by direction.
+    /// Radiance by direction, at most [`BRIGHTEST`].
     pub map: EnvironmentMap,
     /// Whether it lights the scene, or is only a backdrop for the camera, mirrors and glass.
     pub illuminates: bool,
@@ -53,7 +62,7 @@ pub enum EnvironmentMap {
     },
     /// A latitude-longitude picture, row 0 at `up`.
     Picture {
-        /// Linear radiance, every value finite and 0 or more.
+        /// Linear radiance; every value times `scale` is 0 to [`BRIGHTEST`].
         image: Arc<crate::image::Image>,
         /// Unit vector toward the picture's top row.
         up: DVec3,

@@ -3,8 +3,8 @@
 use super::WorldError;
 use crate::image::Image;
 use crate::scene::{
-    Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Integrator, Light, Material,
-    NamedMaterial, Pose, Projection, Rgb, Roulette, Scene, Settings,
+    BRIGHTEST, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Integrator, Light,
+    Material, NamedMaterial, Pose, Projection, Rgb, Roulette, Scene, Settings, is_radiance,
 };
 use glam::DVec3;
 
@@ -48,9 +48,12 @@ fn share(color: Rgb) -> bool {
     (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]))
 }
 
+fn bright(color: Rgb) -> bool {
+    (0..3).all(|channel| (0.0..=BRIGHTEST).contains(&color[channel]))
+}
+
 fn radiance(name: &str, color: Rgb) -> Result<(), WorldError> {
-    let holds = color.is_finite() && color.min_element() >= 0.0;
-    demand(holds, || format!("{name} is {color}, but must be finite and 0 or more"))
+    demand(bright(color), || format!("{name} is {color}, but must be 0 to {BRIGHTEST:e}"))
 }
 
 fn settings(settings: &Settings) -> Result<(), WorldError> {
@@ -123,9 +126,7 @@ fn material(named: &NamedMaterial) -> Result<(), WorldError> {
         Material::Reflective { color, diffuse, mirror } => {
             share(*color) && *diffuse >= 0.0 && *mirror >= 0.0 && diffuse + mirror <= 1.0
         }
-        Material::Emitter { radiance, albedo } => {
-            radiance.is_finite() && radiance.min_element() >= 0.0 && share(*albedo)
-        }
+        Material::Emitter { radiance, albedo } => bright(*radiance) && share(*albedo),
     };
     demand(sound, || format!("material \"{}\" is out of range: {:?}", named.name, named.material))
 }
@@ -142,7 +143,10 @@ fn light(light: &Light) -> Result<(), WorldError> {
             demand(position.is_finite(), || {
                 format!("a point light is at {position}, but must be somewhere finite")
             })?;
-            radiance("the intensity of a point light", intensity)
+            let sound = intensity.is_finite() && intensity.min_element() >= 0.0;
+            demand(sound, || {
+                format!("the intensity of a point light is {intensity}, but must be 0 or more")
+            })
         }
     }
 }
@@ -156,7 +160,7 @@ fn environment(environment: &Environment) -> Result<(), WorldError> {
             unit("the environment's `up`", *up)
         }
         EnvironmentMap::Picture { image, up, rotation, scale } => {
-            picture(image)?;
+            picture(image, *scale)?;
             unit("the environment's `up`", *up)?;
             number(rotation.is_finite(), "the environment's rotation", *rotation, "finite")?;
             at_least_0("the environment's scale", f64::from(*scale))
@@ -164,13 +168,15 @@ fn environment(environment: &Environment) -> Result<(), WorldError> {
     }
 }
 
-fn picture(image: &Image) -> Result<(), WorldError> {
+fn picture(image: &Image, scale: f32) -> Result<(), WorldError> {
     let pixels = u64::from(image.width) * u64::from(image.height);
     let shape = pixels > 0 && pixels == image.pixels.len() as u64;
-    let sound = |value: &f32| value.is_finite() && *value >= 0.0;
+    let sound = |value: &f32| is_radiance(*value, scale);
     demand(shape && image.pixels.iter().flatten().all(sound), || {
-        "the environment's picture must hold width x height radiances, finite and 0 or more"
-            .to_owned()
+        format!(
+            "the environment's picture must hold width x height radiances that, times its scale, \
+             are 0 to {BRIGHTEST:e}"
+        )
     })
 }
 

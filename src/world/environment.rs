@@ -46,7 +46,18 @@ pub struct Picture {
     mean_luminance: f32,
 }
 
+/// Bytes that a pixel takes in the distribution of light while it is built, at most.
+const PIXEL_BYTES: u64 = 20;
+
 impl Environment {
+    /// Bytes that the environment takes while it is built, at most, without the picture itself.
+    pub(super) fn bytes(scene: &scene::Environment) -> u64 {
+        match &scene.map {
+            EnvironmentMap::Picture { image, .. } => image.pixels.len() as u64 * PIXEL_BYTES,
+            EnvironmentMap::Constant(_) | EnvironmentMap::Gradient { .. } => 0,
+        }
+    }
+
     pub(super) fn build(scene: &scene::Environment) -> Self {
         let radiance = match &scene.map {
             EnvironmentMap::Constant(color) => Radiance::Constant(*color),

@@ -76,6 +76,9 @@ pub enum WorldError {
     /// The columns, and what it takes to build the tree.
     #[error("{0} spheres need {1}; render fewer of them")]
     Memory(usize, Shortage),
+    /// The distribution of the light of a picture of the sky.
+    #[error("the environment's picture needs {0}; use a smaller one")]
+    Environment(Shortage),
     /// `fit` without spheres.
     #[error(
         "the camera has nothing to frame: the scene has no spheres; give it spheres, or give the camera `eye` and `target`"
@@ -108,6 +111,7 @@ impl World {
         let count = scene.spheres.len();
         memory::check(Self::bytes(count as u64, &scene.materials))
             .map_err(|shortage| WorldError::Memory(count, shortage))?;
+        memory::check(Environment::bytes(&scene.environment)).map_err(WorldError::Environment)?;
         spheres::validate(scene)?;
         check::check(scene)?;
         let pose = fit::pose(scene)?;

@@ -2,11 +2,12 @@
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::World;
 use spherule::scene::{
-    EnvironmentMap, Ground, Integrator, Lens, Light, Material, Pose, Projection, Rgb, Roulette,
-    Scene,
+    BRIGHTEST, EnvironmentMap, Ground, Integrator, Lens, Light, Material, Pose, Projection, Rgb,
+    Roulette, Scene,
 };
+use spherule::{Image, World};
+use std::sync::Arc;
 
 /// Fails unless the world of a scene that was spoiled is an error that speaks of `what`.
 #[track_caller]
@@ -86,7 +87,7 @@ fn settings_out_of_range() {
 }
 
 #[test]
-fn lights_and_skies_that_are_not_finite() {
+fn lights_and_skies_that_are_not_finite_or_too_bright() {
     for bad in [f32::NAN, f32::INFINITY, -1.0] {
         let bad = Rgb::new(1.0, bad, 1.0);
         assert_refused("sun", |scene| {
@@ -104,6 +105,16 @@ fn lights_and_skies_that_are_not_finite() {
             sphere(scene, [3.0; 3], 1.0, Material::Emitter { radiance: bad, albedo: Rgb::ZERO });
         });
     }
+    let bright = Rgb::splat(BRIGHTEST * 2.0);
+    assert_refused("environment", |scene| scene.environment.map = EnvironmentMap::Constant(bright));
+    assert_refused("material", |scene| {
+        sphere(scene, [3.0; 3], 1.0, Material::Emitter { radiance: bright, albedo: Rgb::ZERO });
+    });
+    assert_refused("picture", |scene| {
+        let image = Arc::new(Image { width: 1, height: 1, pixels: vec![[BRIGHTEST, 0.0, 0.0]] });
+        let up = DVec3::Z;
+        scene.environment.map = EnvironmentMap::Picture { image, up, rotation: 0.0, scale: 2.0 };
+    });
     assert_refused("length 1", |scene| {
         let (direction, irradiance) = (DVec3::Z * 2.0, Rgb::ONE);
         scene.lights = vec![Light::Sun { direction, irradiance, angular_radius: 1.0 }];

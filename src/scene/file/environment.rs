@@ -3,14 +3,13 @@
 use super::block::{Block, Source};
 use super::value::{Limits, Value};
 use crate::image::Image;
-use crate::scene::{Environment, EnvironmentMap, Rgb, SceneError};
+use crate::scene::{BRIGHTEST, Environment, EnvironmentMap, Rgb, SceneError, is_radiance};
 use glam::DVec3;
 use std::sync::Arc;
 
 pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, SceneError> {
-    let color = |key, usual| {
-        block.value(key).map_or(Ok(usual), |value: Value| value.color(Limits::NotNegative))
-    };
+    let color =
+        |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(Limits::Light));
     let up = || block.value("up").map_or(Ok(DVec3::Y), |value| value.direction());
     let map = match block.kind()? {
         "gradient" => EnvironmentMap::Gradient {
@@ -22,11 +21,12 @@ pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, SceneE
             let file = block.need("file", "file = \"sky.hdr\": a latitude-longitude picture")?;
             let rotation = block.value("rotation");
             let scale = block.value("scale");
+            let scale = scale.map_or(Ok(1.0), |value| value.single(Limits::NotNegative))?;
             EnvironmentMap::Picture {
-                image: Arc::new(picture(source, &file)?),
+                image: Arc::new(picture(source, &file, scale)?),
                 up: up()?,
                 rotation: rotation.map_or(Ok(0.0), |value| value.number(Limits::Any))?,
-                scale: scale.map_or(Ok(1.0), |value| value.single(Limits::NotNegative))?,
+                scale,
             }
         }
         _ => EnvironmentMap::Constant(color("color", Rgb::ONE)?),
@@ -35,14 +35,16 @@ pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, SceneE
     Ok(Environment { map, illuminates })
 }
 
-fn picture(source: &Source, file: &Value) -> Result<Image, SceneError> {
+fn picture(source: &Source, file: &Value, scale: f32) -> Result<Image, SceneError> {
     let path = source.folder.join(file.text()?);
     let image = Image::read(&path).map_err(|error| file.error(error.to_string()))?;
-    let sound = |value: &f32| value.is_finite() && *value >= 0.0;
+    let sound = |value: &f32| is_radiance(*value, scale);
     if image.pixels.iter().flatten().all(sound) {
-        Ok(image)
-    } else {
-        let message = format!("{} holds radiances that are negative or not finite", path.display());
-        Err(file.error(message).with_help("a picture of the sky holds finite values of 0 or more"))
+        return Ok(image);
     }
+    let most = format!("{BRIGHTEST:e}");
+    let message =
+        format!("{} holds radiances that are negative, or more than {most}", path.display());
+    let help = format!("a picture of the sky holds values that, times `scale`, are 0 to {most}");
+    Err(file.error(message).with_help(help))
 }

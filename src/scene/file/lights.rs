@@ -22,7 +22,7 @@ fn sun(block: &Block) -> Result<Light, SceneError> {
     let angular_radius = block.value("angular_radius");
     Ok(Light::Sun {
         direction: direction.direction()?,
-        irradiance: irradiance.color(Limits::NotNegative)?,
+        irradiance: irradiance.color(Limits::Light)?,
         angular_radius: angular_radius
             .map_or(Ok(SUN), |value| value.number(Limits::Below(0.0, 90.0)))?,
     })

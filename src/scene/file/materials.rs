@@ -127,7 +127,7 @@ fn material(block: &Block) -> Result<Material, SceneError> {
         },
         "emitter" => {
             let radiance = block.need("radiance", "radiance = [r, g, b], or a number for white")?;
-            let radiance = radiance.color(Limits::NotNegative)?;
+            let radiance = radiance.color(Limits::Light)?;
             Material::Emitter { radiance, albedo: color("albedo", Rgb::ZERO)? }
         }
         _ => reflective(block, color("color", GRAY)?)?,

@@ -1,7 +1,7 @@
 //! One value of a scene file: of the right type, finite, in its range; said once for every section.
 
 use super::block::{Source, suggest};
-use crate::scene::{Rgb, SceneError};
+use crate::scene::{BRIGHTEST, Rgb, SceneError};
 use glam::DVec3;
 use std::ops::Range;
 use std::str::FromStr;
@@ -18,6 +18,8 @@ pub(super) enum Limits {
     NotNegative,
     /// 0..=1.
     Share,
+    /// A radiance: 0..=[`BRIGHTEST`].
+    Light,
     /// At least the first, at most the second.
     Within(f64, f64),
     /// At least the first, less than the second.
@@ -36,6 +38,7 @@ impl Limits {
                 Self::Positive => number > 0.0,
                 Self::NotNegative => number >= 0.0,
                 Self::Share => (0.0..=1.0).contains(&number),
+                Self::Light => (0.0..=f64::from(BRIGHTEST)).contains(&number),
                 Self::Within(low, high) => (low..=high).contains(&number),
                 Self::Below(low, high) => (low..high).contains(&number),
                 Self::AboveTo(low, high) => low < number && number <= high,
@@ -49,6 +52,7 @@ impl Limits {
             Self::Positive => "finite and more than 0".to_owned(),
             Self::NotNegative => "finite and 0 or more".to_owned(),
             Self::Share => "from 0 to 1".to_owned(),
+            Self::Light => format!("from 0 to {BRIGHTEST:e}"),
             Self::Within(low, high) => format!("from {low} to {high}"),
             Self::Below(low, high) => format!("{low} or more and less than {high}"),
             Self::AboveTo(low, high) => format!("more than {low} and at most {high}"),

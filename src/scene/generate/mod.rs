@@ -76,15 +76,30 @@ impl Generator {
     /// # Errors
     ///
     /// A parameter is out of its range, or the spheres are more than [`Spheres::MAX`] or than
-    /// memory holds: this is found before anything is made.
+    /// memory holds: this is found before anything is made. Or some of them are beyond double
+    /// precision.
     pub fn generate(&self, seed: u64) -> Result<Group, GenerateError> {
-        match self {
+        let group = match self {
             Self::Grid(grid) => grid.generate(),
             Self::Field(field) => field.generate(seed),
             Self::Volume(volume) => volume.generate(seed),
             Self::Lattice(lattice) => lattice.generate(seed),
             Self::Sphereflake(flake) => flake.generate(),
             Self::Weekend(Weekend) => Ok(Weekend::generate(seed)),
+        }?;
+        let spheres = &group.spheres;
+        let sound = |row| spheres.center(row).is_finite() && spheres.radius[row] > 0.0;
+        let message = "is too large or too small: double precision does not hold all spheres";
+        require((0..spheres.len()).all(sound), self.measure(), message)?;
+        Ok(group)
+    }
+
+    /// The parameter that scales it.
+    fn measure(&self) -> &'static str {
+        match self {
+            Self::Grid(_) => "spacing",
+            Self::Volume(_) => "size",
+            Self::Field(_) | Self::Lattice(_) | Self::Sphereflake(_) | Self::Weekend(_) => "radius",
         }
     }
 }
@@ -205,6 +220,10 @@ mod tests {
             (Generator::Volume(Volume { radius: Some([0.0, 1.0]), ..Volume::default() }), "radius"),
             (Generator::Lattice(Lattice { jitter: -0.1, ..Lattice::default() }), "jitter"),
             (Generator::Lattice(Lattice { radius: -1.0, ..Lattice::default() }), "radius"),
+            (Generator::Lattice(Lattice { radius: 1e308, ..Lattice::default() }), "radius"),
+            (Generator::Grid(Grid { spacing: 1e308, ..Grid::default() }), "spacing"),
+            (Generator::Sphereflake(Sphereflake { radius: 1e308, level: 4 }), "radius"),
+            (Generator::Sphereflake(Sphereflake { radius: 5e-324, level: 4 }), "radius"),
         ];
         for (generator, parameter) in bad {
             let error = generator.generate(0);

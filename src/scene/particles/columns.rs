@@ -6,10 +6,13 @@ use crate::scene::{Rgb, SceneError};
 use csv::{ErrorKind, Position, ReaderBuilder, StringRecord, Trim};
 use glam::DVec3;
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
+
+/// Longest row in bytes.
+const LONGEST_ROW: u64 = 1 << 20;
 
 /// Longest part of a line that an error shows, in bytes.
 const LONGEST: u64 = 1 << 12;
@@ -25,8 +28,10 @@ pub(super) fn read(
         .delimiter(delimiter)
         .comment(Some(b'#'))
         .trim(Trim::All)
-        .from_reader(reader);
-    let names = reader.headers().map_err(|error| broken(path, &error))?.clone();
+        .has_headers(false)
+        .from_reader(reader.take(0));
+    let mut names = StringRecord::new();
+    next(path, &mut reader, &mut names)?;
     let header = Header::new(&names).map_err(|message| {
         let record = Record { path, names: &names, fields: &names, delimiter };
         let help = "the header names x, y and z, and may name radius (or r, or diameter), \
@@ -34,11 +39,28 @@ pub(super) fn read(
         record.error(0, message).with_help(help)
     })?;
     let mut fields = StringRecord::new();
-    while reader.read_record(&mut fields).map_err(|error| broken(path, &error))? {
+    while next(path, &mut reader, &mut fields)? {
         row(&Record { path, names: &names, fields: &fields, delimiter }, &header, sink)?;
     }
     sink.warn_of("columns that are not used", &header.unused);
     Ok(())
+}
+
+/// Reads the next row, if there is one; not one without end, where a quote is not closed.
+fn next(
+    path: &Path,
+    reader: &mut csv::Reader<io::Take<impl Read>>,
+    fields: &mut StringRecord,
+) -> Result<bool, SceneError> {
+    let line = reader.position().line();
+    reader.get_mut().set_limit(LONGEST_ROW);
+    let more = reader.read_record(fields);
+    if reader.get_ref().limit() == 0 {
+        let message = format!("a row, from line {line} on, is longer than {LONGEST_ROW} bytes");
+        let help = "a row ends with its line; perhaps a quote is not closed";
+        return Err(SceneError::whole_file(path, message).with_help(help));
+    }
+    more.map_err(|error| broken(path, &error))
 }
 
 /// A line of the file.
@@ -118,9 +140,13 @@ fn broken(path: &Path, error: &csv::Error) -> SceneError {
 }
 
 /// Number and text of the line where a record begins. A record's position is where its search
-/// began: before blank lines and comments, so they are passed over here.
+/// began: before blank lines and comments, so they are passed over here. There is no text where the
+/// file can be read but once: to open a pipe anew may take for ever.
 fn line_at(path: &Path, position: Option<&Position>) -> (usize, String) {
     let (mut line, byte) = position.map_or((1, 0), |at| (at.line() as usize, at.byte()));
+    if !path.is_file() {
+        return (line, String::new());
+    }
     let opened = File::open(path).and_then(|mut file| {
         file.seek(SeekFrom::Start(byte))?;
         Ok(BufReader::new(file))

@@ -1,6 +1,8 @@
 //! Where readers put particles: it scales, drops what is no sphere, and counts what it dropped.
 
 use super::{Particles, ReadOptions};
+use crate::memory;
+use crate::scene::error::clipped;
 use crate::scene::{Rgb, SceneError, Spheres};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -65,6 +67,7 @@ impl<'a> Sink<'a> {
             let message = format!("holds more than {} particles", Spheres::MAX);
             return Err(SceneError::whole_file(self.path, message));
         } else {
+            self.check_room()?;
             let material = self.material(row.material);
             self.particles.spheres.push(center, radius, material, row.color);
         }
@@ -73,6 +76,7 @@ impl<'a> Sink<'a> {
 
     /// Adds a warning.
     pub(super) fn warn(&mut self, message: &str) {
+        let message = clipped(message);
         self.particles.warnings.push(format!("{}: {message}", self.path.display()));
     }
 
@@ -113,6 +117,18 @@ impl<'a> Sink<'a> {
             ));
         }
         Ok(self.particles)
+    }
+
+    /// Before columns grow, which take twice the memory then: whether there is so much.
+    fn check_room(&self) -> Result<(), SceneError> {
+        let count = self.particles.spheres.len() as u64;
+        if !count.is_power_of_two() {
+            return Ok(());
+        }
+        memory::check(2 * count * Spheres::BYTES).map_err(|shortage| {
+            let message = format!("holds more than {count} particles, which need {shortage}");
+            SceneError::whole_file(self.path, message)
+        })
     }
 
     fn material(&mut self, name: &str) -> u32 {

@@ -158,6 +158,14 @@ fn missing_radii_are_guessed_with_a_warning() {
 }
 
 #[test]
+fn rows_without_end_are_faults_and_long_names_short_warnings() {
+    let (_, _, message) = fault(format!("x,y,z\n1,2,3\n\n1,2,\"{}", "3,4,5\n".repeat(400_000)));
+    assert_eq!(message, "a row, from line 3 on, is longer than 1048576 bytes");
+    let read = particles(format!("x,y,z,{}\n1,2,3,4\n", "n".repeat(100_000)));
+    assert!(read.warnings.iter().all(|warning| warning.len() < 1000));
+}
+
+#[test]
 fn a_format_that_is_asked_for_is_the_format() {
     let options = |format| ReadOptions { format: Some(format), ..ReadOptions::default() };
     assert!(read_with("5 6 7\n", &options(Format::Csv)).is_err());

@@ -115,8 +115,8 @@ mod tests {
     use super::*;
     use crate::scene::generate::default_scene;
     use crate::scene::{
-        ConductorFresnel, Filter, Ground, Integrator, Lens, Light, Material, Projection, Roulette,
-        SamplerKind,
+        BRIGHTEST, ConductorFresnel, Filter, Ground, Integrator, Lens, Light, Material, Projection,
+        Roulette, SamplerKind,
     };
     use glam::DVec3;
 
@@ -144,7 +144,7 @@ mod tests {
             Material::Dielectric { ior: 1.0 / 3.0, color: odd },
             Material::Plastic { color: odd, ior: 1.0 + f64::EPSILON },
             Material::Reflective { color: odd, diffuse: 0.3, mirror: 0.7 },
-            Material::Emitter { radiance: odd * 1e30, albedo: odd },
+            Material::Emitter { radiance: odd * BRIGHTEST, albedo: odd },
         ];
         let names = ["plain", "gold, rough", "z", "a \"b\"", "ä\\", "t", "line\nbreak", "d.e"];
         let named = |(name, material): (&str, _)| NamedMaterial { name: name.to_owned(), material };

@@ -2,7 +2,7 @@
 
 use super::LightSample;
 use crate::ray::MISS;
-use crate::scene::Rgb;
+use crate::scene::{BRIGHTEST, Rgb};
 use glam::{DVec3, Vec3};
 
 /// A point light in world space.
@@ -24,13 +24,14 @@ impl Point {
             return None;
         }
         // In double precision: in units far from 1, intensity and fall-off may each leave single
-        // precision.
+        // precision. Next to a surface, light has no bound but this.
         let falloff = self.falloff.map_or(1.0, |scale| (scale / distance).powi(2));
+        let most = DVec3::splat(f64::from(BRIGHTEST));
         Some(LightSample {
             direction: (toward / distance).as_vec3(),
             t: distance,
             target: MISS,
-            weight: (self.intensity.as_dvec3() * falloff).as_vec3(),
+            weight: (self.intensity.as_dvec3() * falloff).min(most).as_vec3(),
             pdf: None,
             close: false,
         })

@@ -3,7 +3,7 @@
 use super::LightSample;
 use crate::ray::MISS;
 use crate::sampling::{Cone, Frame};
-use crate::scene::Rgb;
+use crate::scene::{BRIGHTEST, Rgb};
 use glam::{DVec3, Vec3};
 use std::f32::consts::PI;
 
@@ -37,7 +37,8 @@ impl Sun {
     pub(super) fn radiance(&self, cone: Cone) -> Rgb {
         // Irradiance on a facing plane is radiance times pi sin^2; sin^2 = h (2 - h) with h = 1 -
         // cos.
-        self.irradiance / (PI * cone.height() * (2.0 - cone.height()))
+        let radiance = self.irradiance / (PI * cone.height() * (2.0 - cone.height()));
+        radiance.min(Rgb::splat(BRIGHTEST))
     }
 
     /// Light from a point of it.
