@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod folder;
+mod inputs;
 mod pictures;
 mod processes;
 mod refusals;

@@ -1,0 +1,197 @@
+//! Inputs that are no ordinary files, or hardly so: folders, devices, pipes, absurd lengths and
+//! names.
+#![cfg(unix)]
+
+use crate::folder::{Folder, text};
+use assert_cmd::Command;
+use std::ffi::OsStr;
+use std::fs::{self, File, Permissions};
+use std::io::Write;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::process::Output;
+use std::time::Duration;
+
+/// More than any of these takes, on a machine that does much else.
+const TIME: Duration = Duration::from_secs(60);
+
+/// Most bytes that a refusal takes to tell.
+const LONGEST: usize = 4000;
+
+fn run<'a>(folder: &Folder, args: impl IntoIterator<Item = &'a OsStr>) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
+    program.args(args).current_dir(folder.root()).timeout(TIME);
+    program.output().expect("a program that runs")
+}
+
+/// Runs a command that must fail soon, in words, of which `word` is one.
+#[track_caller]
+fn refuse(folder: &Folder, line: &str, word: &str) {
+    let output = run(folder, line.split(' ').map(OsStr::new));
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{line}: {message}");
+    assert!(message.contains(word) && !message.contains("panicked"), "{line}: {message}");
+    assert!(message.len() <= LONGEST, "{line}: {} bytes", message.len());
+}
+
+#[test]
+fn folders_are_refused() {
+    let folder = Folder::new();
+    for name in ["a.toml", "a.xyz", "a.png"] {
+        fs::create_dir(folder.path(name)).unwrap();
+    }
+    folder.write("file.toml", "[[file]]\npath = \"a.xyz\"\n");
+    folder.write("sky.toml", "[environment]\nkind = \"picture\"\nfile = \"a.png\"\n");
+    for (line, word) in [
+        ("render a.toml", "a.toml: cannot be read"),
+        ("render a.xyz", "a.xyz: cannot be read"),
+        ("compare a.png a.png", "cannot read the picture \"a.png\""),
+        ("info file.toml", "there is no file a.xyz"),
+        ("info sky.toml", "cannot read the picture \"a.png\""),
+    ] {
+        refuse(&folder, line, word);
+    }
+}
+
+#[test]
+fn files_without_content_hold_nothing() {
+    let folder = Folder::new();
+    folder.write("empty.xyz", "");
+    folder.write("empty.png", "");
+    symlink("/dev/null", folder.path("null.toml")).unwrap();
+    for (line, word) in [
+        ("info empty.xyz", "holds no particles"),
+        ("compare empty.png empty.png", "not a picture"),
+        ("render /dev/null", "holds no particles"),
+        ("render null.toml", "no spheres"),
+        ("compare /dev/null /dev/null", "not a picture"),
+    ] {
+        refuse(&folder, line, word);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn files_without_end_are_refused() {
+    let folder = Folder::new();
+    symlink("/dev/zero", folder.path("zero.toml")).unwrap();
+    refuse(&folder, "info zero.toml", "longer than 67.1 MB");
+    refuse(&folder, "info /dev/zero", "not a text file");
+    refuse(&folder, "compare /dev/zero /dev/zero", "not a picture");
+}
+
+#[test]
+fn scenes_have_a_greatest_length() {
+    let folder = Folder::new();
+    // Of holes: it takes no room on the disk.
+    File::create(folder.path("long.toml")).unwrap().set_len((1 << 26) + 1).unwrap();
+    refuse(&folder, "render long.toml", "cannot be read: it is longer than 67.1 MB");
+}
+
+#[test]
+fn refusals_are_short_where_lines_are_long() {
+    let folder = Folder::new();
+    let long = "9 ".repeat(20_000);
+    folder.write("rows.txt", &format!("{long}x\n"));
+    folder.write("quote.csv", &format!("x,y,z\n1,2,\"{}", "3,4,5\n".repeat(200_000)));
+    folder.write("list.toml", &format!("[camera]\neye = [{}]\n", long.replace(' ', ", ")));
+    folder.write("name.toml", &format!("[camera]\n\"{long}\" = 1\n"));
+    folder.write("syntax.toml", &format!("title = \"{long}\" \"\n"));
+    refuse(&folder, "info rows.txt", "columns");
+    refuse(&folder, "info quote.csv", "a quote is not closed");
+    refuse(&folder, "info list.toml", "a list of 3 numbers");
+    refuse(&folder, "info name.toml", "unknown key");
+    refuse(&folder, "info syntax.toml", "syntax.toml:1");
+}
+
+/// Runs a command while `content` goes into the pipe `name`, whose writer goes away then.
+fn run_with_pipe(line: &str, name: &str, content: &'static [u8]) -> Output {
+    let folder = Folder::new();
+    let path = folder.path(name);
+    let made = std::process::Command::new("mkfifo").arg(&path).status();
+    assert!(made.is_ok_and(|status| status.success()), "no pipe");
+    // Waits for a reader; whether that reads everything is its own business.
+    let writer = std::thread::spawn(move || {
+        let _ = File::create(path).and_then(|mut pipe| pipe.write_all(content));
+    });
+    let output = run(&folder, line.split(' ').map(OsStr::new));
+    writer.join().expect("a writer that ends");
+    output
+}
+
+#[test]
+fn pipes_are_read_once() {
+    for (name, content) in [
+        ("pipe.csv", &b"x,y,z,r\n0,0,0,1\n"[..]),
+        ("pipe.toml", b"[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n"),
+    ] {
+        let output = run_with_pipe(&format!("info {name}"), name, content);
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn pipes_that_end_early_are_refused() {
+    for (name, content, word) in [
+        ("pipe.csv", &b"x,y,z,r\n0,0,0,1\n0,0"[..], "2 columns, but the header has 4"),
+        ("pipe.csv", b"x,y", "no column is named `z`"),
+        ("pipe.xyz", b"3\nwater\nO 0 0 0\n", "ends after 1 of 3 atoms"),
+        ("pipe.txt", b"0 0 0 1\n0 0", "2 columns"),
+        ("pipe.toml", b"[[sphere]]\ncenter = [0, 0", "pipe.toml:2"),
+        ("pipe.txt", b"", "holds no particles"),
+    ] {
+        let output = run_with_pipe(&format!("info {name}"), name, content);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{name}: {message}");
+        assert!(message.contains(word), "{name}: {message}");
+    }
+    let output = run_with_pipe("compare pipe.png pipe.png", "pipe.png", b"\x89PNG\r\n\x1a\n\0\0");
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+}
+
+#[test]
+fn files_that_must_not_be_read_are_refused() {
+    let folder = Folder::new();
+    for name in ["secret.toml", "secret.xyz", "secret.png"] {
+        folder.write(name, "");
+        fs::set_permissions(folder.path(name), Permissions::from_mode(0o000)).unwrap();
+    }
+    if File::open(folder.path("secret.toml")).is_ok() {
+        // The superuser may read everything.
+        return;
+    }
+    refuse(&folder, "info secret.toml", "secret.toml: cannot be read");
+    refuse(&folder, "info secret.xyz", "secret.xyz: cannot be read");
+    refuse(&folder, "compare secret.png secret.png", "cannot read the picture");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn names_need_not_be_text() {
+    let folder = Folder::new();
+    let [scene, rows, picture] =
+        [&b"a\xff.toml"[..], b"b\xff.csv", b"c\xff.png"].map(OsStr::from_bytes);
+    fs::write(folder.root().join(scene), "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n").unwrap();
+    fs::write(folder.root().join(rows), "x,y,z,r\n0,0,0,1\n").unwrap();
+    for input in [scene, rows] {
+        let small = ["--size", "4x4", "--spp", "1", "--quiet", "-o"].map(OsStr::new);
+        let args = [&[OsStr::new("render"), input][..], &small, &[picture]].concat();
+        let output = run(&folder, args);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        assert!(folder.root().join(picture).exists());
+        let output = run(&folder, [OsStr::new("compare"), picture, picture]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+    }
+    fs::write(folder.root().join(rows), "x,y,z,r\n0,0,0,one\n").unwrap();
+    let output = run(&folder, [OsStr::new("info"), rows]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("not a number"));
+}
+
+#[test]
+fn a_dash_is_a_name_like_any_other() {
+    let folder = Folder::new();
+    refuse(&folder, "render -", "-: cannot be read");
+    folder.write("-", "0 0 0 1\n");
+    assert!(folder.run(&["info", "-"]).status.success());
+}

@@ -1,0 +1,124 @@
+//! Every reader on damaged files: cut, spliced, nested, with absurd numbers. Whatever the bytes, it
+//! ends soon, in little memory, without a panic, with something sound or a short error.
+//!
+//! Each file of `corpus/`, among them all that once did harm, is read as it is; then so are mutants
+//! of them: some in every run of the tests, always the same, and any others for as long as one
+//! likes:
+//!
+//! ```sh
+//! SPHERULE_FUZZ_SECONDS=600 SPHERULE_FUZZ_SEED=7 cargo test --release --test fuzz
+//! ```
+//!
+//! (so many seconds for each of the targets). The cases run in a process of their own ([`worker`]),
+//! so that those that end it, by too much memory, time or stack, are told like the others: with the
+//! name of a file in `target/tmp` that holds the input, reduced. Mend the reader, and put the input
+//! into the corpus.
+
+mod mutate;
+mod png;
+mod process;
+mod reduce;
+mod targets;
+mod worker;
+
+use mutate::Mutator;
+use process::Process;
+use reduce::reduce;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Mutants of each target in an ordinary run, and the time after which it is content with fewer.
+const MUTANTS: usize = 2000;
+const PATIENCE: Duration = Duration::from_secs(7);
+
+/// Different faults after which a run ends.
+const FAULTS: usize = 10;
+
+#[test]
+fn scenes() {
+    let others = [files("tests/fuzz/corpus/particles"), files("tests/fuzz/corpus/pictures")];
+    fuzz("scenes", &files("scenes"), &others.concat());
+}
+
+#[test]
+fn particles() {
+    fuzz("particles", &[], &[]);
+}
+
+#[test]
+fn pictures() {
+    fuzz("pictures", &[], &[]);
+}
+
+/// Runs a target on every seed, those of its corpus and `more`, and on mutants of them; the files
+/// `beside` are in the folder of each case.
+fn fuzz(target: &str, more: &[PathBuf], beside: &[PathBuf]) {
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let seconds = number("SPHERULE_FUZZ_SECONDS").map(Duration::from_secs);
+    let mut mutator = Mutator::new(number("SPHERULE_FUZZ_SEED").unwrap_or(0));
+    let paths = [more, &files(&format!("tests/fuzz/corpus/{target}"))].concat();
+    let read = |path: &PathBuf| fs::read(path).expect("a seed that can be read");
+    let seeds: Vec<Vec<u8>> = paths.iter().map(read).collect();
+    assert!(!seeds.is_empty(), "there is no corpus of {target}");
+    let mut faults = Faults { process: Process::new(target, beside), found: Vec::new() };
+    for (seed, path) in seeds.iter().zip(&paths) {
+        faults.look(seed, &path.to_string_lossy());
+    }
+    let start = Instant::now();
+    let mut done = 0;
+    while seconds.map_or(done < MUTANTS, |seconds| start.elapsed() < seconds)
+        && start.elapsed() < seconds.unwrap_or(PATIENCE)
+        && faults.found.len() < FAULTS
+    {
+        faults.look(&mutator.mutant(&seeds), &format!("mutant {done}"));
+        done += 1;
+    }
+    let messages: Vec<_> = faults.found.iter().map(|fault| fault.message.as_str()).collect();
+    let summary = format!("{target}: {} seeds and {done} mutants", seeds.len());
+    assert!(messages.is_empty(), "{summary}\n{}", messages.join("\n"));
+}
+
+/// What one way to fail is told by, and a message about its first case.
+struct Fault {
+    kind: String,
+    message: String,
+}
+
+/// The different faults of a target.
+struct Faults<'t> {
+    process: Process<'t>,
+    found: Vec<Fault>,
+}
+
+impl Faults<'_> {
+    /// Runs a case; if it fails in a new way, reduces its input and keeps that.
+    fn look(&mut self, bytes: &[u8], name: &str) {
+        let Err(fault) = self.process.run(bytes) else { return };
+        let kind = kind(&fault);
+        if self.found.iter().any(|found| found.kind == kind) {
+            return;
+        }
+        let reduced = reduce(bytes, |fewer| {
+            self.process.run(fewer).is_err_and(|fault| self::kind(&fault) == kind)
+        });
+        let kept = self.process.keep(&reduced, self.found.len());
+        let message = format!("{name}, kept as {}: {fault}", kept.display());
+        self.found.push(Fault { kind, message });
+    }
+}
+
+/// Faults that differ in numbers alone are one.
+fn kind(fault: &str) -> String {
+    fault.chars().filter(|letter| letter.is_alphabetic()).take(150).collect()
+}
+
+/// The files of a folder of the project, in the order of their names.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = fs::read_dir(folder).expect("a folder of the project");
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    paths.retain(|path| path.is_file() && path.extension().is_none_or(|suffix| suffix != "md"));
+    paths.sort();
+    paths
+}

@@ -1,0 +1,118 @@
+//! The process that runs a target's cases, as seen from outside: it may answer, end or hang.
+
+use crate::worker;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Time that a case may take, also on a machine that does much else.
+const TIME: Duration = Duration::from_secs(20);
+
+/// Most bytes of what an ended process said that are told.
+const TOLD: usize = 1000;
+
+/// A folder for a target's cases, and the process that runs them, once there is one.
+pub(crate) struct Process<'t> {
+    target: &'t str,
+    folder: TempDir,
+    running: Option<Running>,
+}
+
+struct Running {
+    child: Child,
+    input: ChildStdin,
+    answers: Receiver<String>,
+}
+
+impl<'t> Process<'t> {
+    /// Copies the files `beside` into a new folder.
+    pub(crate) fn new(target: &'t str, beside: &[PathBuf]) -> Self {
+        let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
+        for path in beside {
+            let name = path.file_name().expect("a file has a name");
+            fs::copy(path, folder.path().join(name)).expect("a folder that takes files");
+        }
+        Self { target, folder, running: None }
+    }
+
+    /// Runs one case; the error says how it failed.
+    pub(crate) fn run(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let path = self.folder.path().join("case");
+        fs::write(&path, bytes).expect("a folder that takes files");
+        let said = self.said();
+        let running = self.running.get_or_insert_with(|| Running::start(self.target, &said));
+        let asked = writeln!(running.input, "{}", path.display());
+        let answer = match asked {
+            Ok(()) => running.answers.recv_timeout(TIME),
+            Err(_) => Err(RecvTimeoutError::Disconnected),
+        };
+        match answer {
+            Ok(answer) if answer.is_empty() => return Ok(()),
+            Ok(answer) => return Err(answer),
+            Err(_) => self.running = None,
+        }
+        match answer {
+            Err(RecvTimeoutError::Timeout) => Err(format!("takes more than {TIME:?}")),
+            _ => Err(format!("ends the process: {}", self.last_words())),
+        }
+    }
+
+    /// Puts an input where it stays.
+    pub(crate) fn keep(&self, bytes: &[u8], number: usize) -> PathBuf {
+        let name = format!("failed-{}-{}-{number}", self.target, std::process::id());
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        fs::write(&path, bytes).expect("a folder that takes files");
+        path
+    }
+
+    fn said(&self) -> PathBuf {
+        self.folder.path().join("said")
+    }
+
+    fn last_words(&self) -> String {
+        let said = fs::read(self.said()).unwrap_or_default();
+        let told = String::from_utf8_lossy(&said[said.len().saturating_sub(TOLD)..]).into_owned();
+        told.trim().to_owned()
+    }
+}
+
+impl Running {
+    /// Starts this very program as a [`worker`], whose standard error goes to the file `said`.
+    fn start(target: &str, said: &Path) -> Self {
+        let mut child = Command::new(std::env::current_exe().expect("a program with a path"))
+            .args(["worker::answers", "--exact", "--ignored", "--test-threads=1"])
+            .env(worker::TARGET, target)
+            .env("RUST_BACKTRACE", "0")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(File::create(said).expect("a folder that takes files"))
+            .spawn()
+            .expect("a program that runs");
+        let input = child.stdin.take().expect("a pipe");
+        let output = BufReader::new(child.stdout.take().expect("a pipe"));
+        let (send, answers) = channel();
+        std::thread::spawn(move || {
+            // What the test harness says is no answer.
+            let lines = output.lines().map_while(Result::ok);
+            for line in lines {
+                let sent = line.split_once(worker::ANSWER).map(|(_, to)| send.send(to.to_owned()));
+                if sent.is_some_and(|sent| sent.is_err()) {
+                    break;
+                }
+            }
+        });
+        Self { child, input, answers }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // One that has ended by itself cannot be killed.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

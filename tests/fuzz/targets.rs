@@ -1,0 +1,111 @@
+//! What is done with an input, and what must be true of the outcome.
+
+use spherule::image::{Image, compare, read_metadata};
+use spherule::render::{Options, render};
+use spherule::scene::particles::{Format, ReadOptions, read};
+use spherule::scene::{Integrator, Scene, Spheres};
+use spherule::trace::{Tracer, Traversal, Width};
+use spherule::world::World;
+use std::error::Error;
+use std::path::Path;
+
+/// Scenes of more spheres are read, but not rendered.
+const RENDERED: usize = 5000;
+
+/// Scenes of more spheres are rendered, but not without the tree.
+const COMPARED: usize = 200;
+
+/// Most bytes of a message.
+const LONGEST: usize = 5000;
+
+/// Reads a scene, and renders it if it is small.
+pub(crate) fn scene(path: &Path) {
+    look_at(told(Scene::load(path)));
+}
+
+/// Reads particles in every format, and renders them as those that they seem to have.
+pub(crate) fn particles(path: &Path) {
+    let options = |format, radius, scale| ReadOptions { format, radius, scale };
+    for options in [
+        options(None, Some(1e-300), 1e300),
+        options(Some(Format::Xyzr), None, 1e-300),
+        options(Some(Format::Csv), None, 1.0),
+        options(Some(Format::Xyz), None, 1.0),
+    ] {
+        if let Some(particles) = told(read(path, &options)) {
+            assert!(!particles.spheres.is_empty());
+            check_spheres(&particles.spheres, particles.material_names.len());
+        }
+    }
+    look_at(told(Scene::from_particles(path)));
+}
+
+/// Reads a picture and what it says about itself, compares it and renders a sphere under it.
+pub(crate) fn picture(path: &Path) {
+    told(read_metadata(path));
+    if let Some(image) = told(Image::read(path)) {
+        assert_eq!(image.pixels.len() as u64, u64::from(image.width) * u64::from(image.height));
+        assert!(!image.pixels.is_empty());
+        told(compare(&image, &image));
+    }
+    let text = "environment = { kind = \"picture\", file = \"case\" }\n\
+                sphere = [{ center = [0, 0, 0], radius = 1 }]";
+    let folder = path.parent().unwrap_or(Path::new(""));
+    look_at(told(Scene::parse(text, "sky", folder)));
+}
+
+/// What there is, or nothing after a look at the message.
+fn told<T, E: Error>(outcome: Result<T, E>) -> Option<T> {
+    outcome
+        .map_err(|error| {
+            let message = error.to_string();
+            assert!(message.len() <= LONGEST, "a message of {} bytes", message.len());
+            assert!(!message.is_empty());
+        })
+        .ok()
+}
+
+/// Checks a scene, and renders it if it is small.
+fn look_at(scene: Option<Scene>) {
+    let Some(mut scene) = scene else { return };
+    check_spheres(&scene.spheres, scene.materials.len());
+    assert!(scene.warnings.iter().all(|warning| warning.len() <= LONGEST), "a long warning");
+    if scene.spheres.len() > RENDERED {
+        return;
+    }
+    let settings = &mut scene.settings;
+    (settings.width, settings.height) = (settings.width.min(8), settings.height.min(8));
+    (settings.spp, settings.depth) = (1, Some(settings.depth.unwrap_or(4).min(4)));
+    if let Integrator::Whitted { shadow_samples } = &mut settings.integrator {
+        *shadow_samples = (*shadow_samples).min(4);
+    }
+    if let Some(world) = told(World::build(&scene)) {
+        draw(&scene, &world);
+    }
+}
+
+/// Renders a world, and, if it is tiny, without its tree.
+fn draw(scene: &Scene, world: &World) {
+    world.bvh.validate(&world.spheres).expect("a sound tree");
+    let picture = render(world, &scene.settings, &Options::default());
+    assert_eq!(picture.counters.bad_samples, 0, "samples that are no radiance");
+    let sound = |value: &f32| value.is_finite() && *value >= 0.0;
+    assert!(picture.image.pixels.iter().flatten().all(sound), "a radiance that is none");
+    if scene.spheres.len() <= COMPARED {
+        let tracer = Tracer { traversal: Traversal::Brute, width: Width::One };
+        let plain = render(world, &scene.settings, &Options { tracer, ..Options::default() });
+        assert!(plain.image == picture.image, "another picture without the tree");
+    }
+}
+
+fn check_spheres(spheres: &Spheres, materials: usize) {
+    let count = spheres.len();
+    assert_eq!([spheres.x.len(), spheres.y.len(), spheres.z.len()], [count; 3]);
+    for row in 0..count {
+        assert!(spheres.center(row).is_finite());
+        assert!(spheres.radius[row] > 0.0 && spheres.radius[row].is_finite());
+        assert!((spheres.material_of(row) as usize) < materials);
+        let color = spheres.color_of(row);
+        assert!(color.min_element() >= 0.0 && color.max_element() <= 1.0);
+    }
+}
