@@ -51,6 +51,21 @@ fn pictures() {
     fuzz("pictures", &[], &[]);
 }
 
+#[test]
+fn faults_are_told_and_overcome() {
+    let mut process = Process::new("faults", &[]);
+    for (input, told) in [
+        ("panic", "as told"),
+        ("memory", "allocation of 1073741824"),
+        ("stack", "stack"),
+        ("end", ""),
+    ] {
+        let fault = process.run(input.as_bytes());
+        assert!(fault.as_ref().is_err_and(|fault| fault.contains(told)), "{input}: {fault:?}");
+        assert_eq!(process.run(b"nothing"), Ok(()), "after {input}");
+    }
+}
+
 /// Runs a target on every seed, those of its corpus and `more`, and on mutants of them; the files
 /// `beside` are in the folder of each case.
 fn fuzz(target: &str, more: &[PathBuf], beside: &[PathBuf]) {

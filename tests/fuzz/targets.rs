@@ -7,6 +7,8 @@ use spherule::scene::{Integrator, Scene, Spheres};
 use spherule::trace::{Tracer, Traversal, Width};
 use spherule::world::World;
 use std::error::Error;
+use std::fs;
+use std::hint::black_box;
 use std::path::Path;
 
 /// Scenes of more spheres are read, but not rendered.
@@ -52,6 +54,23 @@ pub(crate) fn picture(path: &Path) {
                 sphere = [{ center = [0, 0, 0], radius = 1 }]";
     let folder = path.parent().unwrap_or(Path::new(""));
     look_at(told(Scene::parse(text, "sky", folder)));
+}
+
+/// Fails as the input says, to find out whether that is noticed.
+pub(crate) fn fault(path: &Path) {
+    match fs::read(path).expect("a case").as_slice() {
+        b"panic" => panic!("as told"),
+        b"memory" => drop(black_box(vec![1_u8; 1 << 30])),
+        b"stack" => drop(endless(0)),
+        b"end" => std::process::exit(0),
+        _ => (),
+    }
+}
+
+#[expect(unconditional_recursion, reason = "to overflow the stack")]
+fn endless(depth: u64) -> [u64; 64] {
+    let below = endless(black_box(depth) + 1);
+    black_box(below.map(|value| value + depth))
 }
 
 /// What there is, or nothing after a look at the message.

@@ -45,7 +45,8 @@ fn run(target: &str, path: &Path) -> Result<(), String> {
     let outcome = catch_unwind(AssertUnwindSafe(|| match target {
         "scenes" => targets::scene(path),
         "particles" => targets::particles(path),
-        _ => targets::picture(path),
+        "pictures" => targets::picture(path),
+        _ => targets::fault(path),
     }));
     let _ = ALLOCATOR.set_limit(usize::MAX);
     outcome.map_err(|_| last_panic().clone())
