@@ -1,0 +1,86 @@
+//! Time and memory of builds.
+
+use crate::contest::median;
+use crate::embree::Device;
+use crate::options::Options;
+use crate::scenes::{Columns, SceneName};
+use peak_alloc::PeakAlloc;
+use serde::Serialize;
+use spherule::SphereTree;
+use std::error::Error;
+use std::time::Instant;
+
+/// Counts what Rust code allocates, and so what Spherule does; Embree counts its own.
+#[global_allocator]
+static ALLOCATED: PeakAlloc = PeakAlloc;
+
+/// What a system's build took.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Cost {
+    /// Seconds with one thread and with two.
+    pub seconds: [f64; 2],
+    /// Bytes for each sphere once built, spheres included.
+    pub bytes: f64,
+    /// The most bytes for each sphere during the build, its input not counted.
+    pub peak: f64,
+}
+
+/// Builds over one scene, in the file's order.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Builds {
+    pub scene: SceneName,
+    pub spheres: usize,
+    pub embree: Cost,
+    pub spherule: Cost,
+}
+
+/// Small scenes are built until so many spheres are.
+const ENOUGH: usize = 200_000;
+
+/// Measures builds with one thread and two.
+///
+/// # Errors
+/// Embree or a thread does not start, or spheres cannot be built over.
+pub fn measure(
+    options: &Options,
+    scene: SceneName,
+    spheres: &Columns,
+) -> Result<Builds, Box<dyn Error>> {
+    let rows: Vec<_> = (0..spheres.len()).map(|row| spheres.row(row)).collect();
+    let times = ENOUGH.div_ceil(rows.len()).min(50);
+    let (mut embree, mut spherule) = (Cost::default(), Cost::default());
+    for threads in [2, 1] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let (mut seconds, mut spherule_seconds) = (Vec::new(), Vec::new());
+        for _ in 0..times {
+            let device = Device::new(&options.embree, &options.configuration(threads))?;
+            let start = Instant::now();
+            let built = device.build(&rows, options.build())?;
+            seconds.push(start.elapsed().as_secs_f64());
+            let (bytes, peak) = device.bytes();
+            drop(built);
+            embree.keep(rows.len(), bytes, peak);
+
+            ALLOCATED.reset_peak_usage();
+            let before = ALLOCATED.current_usage();
+            let start = Instant::now();
+            let tree = pool.install(|| {
+                let Columns { x, y, z, radius } = spheres;
+                SphereTree::from_columns(x, y, z, radius)
+            })?;
+            spherule_seconds.push(start.elapsed().as_secs_f64());
+            let peak = ALLOCATED.peak_usage().saturating_sub(before);
+            spherule.keep(rows.len(), tree.bytes(), peak);
+        }
+        embree.seconds[threads - 1] = median(&mut seconds);
+        spherule.seconds[threads - 1] = median(&mut spherule_seconds);
+    }
+    Ok(Builds { scene, spheres: rows.len(), embree, spherule })
+}
+
+impl Cost {
+    fn keep(&mut self, spheres: usize, bytes: usize, peak: usize) {
+        self.bytes = bytes as f64 / spheres as f64;
+        self.peak = peak as f64 / spheres as f64;
+    }
+}

@@ -1,0 +1,249 @@
+//! Both systems on the same rays, by turns.
+
+use crate::embree::{Call, Scene};
+use crate::rays::{Class, Rays};
+use crate::referee::{Referee, Verdicts};
+use crate::scenes::{Columns, SceneName};
+use serde::Serialize;
+use spherule::SphereTree;
+use spherule::query::{Hits, NOTHING, QueryError};
+use std::time::{Duration, Instant};
+
+/// One way to ask Embree.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Entry {
+    /// Rays in each call.
+    pub width: usize,
+    /// Whether they are said to go alike.
+    pub coherent: bool,
+    /// Whether the spheres come along a Morton curve, not as in the file.
+    pub sorted: bool,
+}
+
+/// What was measured for one class of rays in one scene; rates in million rays per second.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    pub scene: SceneName,
+    pub class: Class,
+    pub rays: usize,
+    /// Share of the rays that hit something.
+    pub hits: f64,
+    /// The way that made Embree fastest.
+    pub fastest: Entry,
+    pub embree: f64,
+    pub spherule: f64,
+    /// Rays that Spherule decided in arithmetic without rounding.
+    pub exact: u64,
+    pub verdicts: Verdicts,
+    /// One run of each way to ask Embree.
+    pub heat: Vec<(Entry, f64)>,
+}
+
+/// Who competes in a scene.
+pub struct Contest<'a> {
+    pub scene: SceneName,
+    pub spheres: &'a Columns,
+    pub tree: &'a SphereTree,
+    /// Over the spheres as in the file.
+    pub filed: &'a Scene<'a>,
+    /// Over the spheres along a Morton curve, and each one's row in the file.
+    pub sorted: (&'a Scene<'a>, &'a [u32]),
+}
+
+/// Room for answers.
+struct Answers {
+    spheres: Vec<u32>,
+    embree_t: Vec<f32>,
+    spherule_t: Vec<f64>,
+    occluded: Vec<bool>,
+}
+
+impl Entry {
+    /// All ways to ask with packets of these widths.
+    pub fn all(widths: &[usize]) -> Vec<Self> {
+        let ways = [(false, false), (false, true), (true, false), (true, true)];
+        let of = |&width: &usize| ways.map(|(coherent, sorted)| Self { width, coherent, sorted });
+        widths.iter().flat_map(of).collect()
+    }
+
+    fn call(self) -> Call {
+        Call { width: self.width, coherent: self.coherent }
+    }
+}
+
+impl Answers {
+    fn new(count: usize) -> Self {
+        Self {
+            spheres: vec![NOTHING; count],
+            embree_t: vec![0.0; count],
+            spherule_t: vec![f64::INFINITY; count],
+            occluded: vec![false; count],
+        }
+    }
+}
+
+impl Contest<'_> {
+    /// Measures one class of rays: a heat of all ways to ask Embree, then rounds of the fastest
+    /// `finalists` and Spherule by turns.
+    ///
+    /// # Errors
+    /// Columns of different lengths.
+    pub fn run(
+        &self,
+        (class, rays): (Class, &Rays),
+        entries: &[Entry],
+        (rounds, finalists): (u32, u32),
+    ) -> Result<Outcome, QueryError> {
+        let mut answers = Answers::new(rays.len());
+        let rate = |seconds: f64| rays.len() as f64 / seconds / 1e6;
+        let mut heat: Vec<(Entry, f64)> = Vec::new();
+        for &entry in entries {
+            heat.push((entry, rate(self.embree(class, rays, entry, &mut answers))));
+        }
+        heat.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let (_, exact) = self.spherule(class, rays, &mut answers)?;
+        let finalists = &heat[..heat.len().min(finalists as usize)];
+        let mut embree = vec![Vec::new(); finalists.len()];
+        let mut spherule = Vec::new();
+        for _ in 0..rounds {
+            for ((entry, _), seconds) in finalists.iter().zip(&mut embree) {
+                seconds.push(self.embree(class, rays, *entry, &mut answers));
+            }
+            spherule.push(self.spherule(class, rays, &mut answers)?.0);
+        }
+        let medians = embree.iter_mut().map(|seconds| median(seconds));
+        let mut order: Vec<_> = finalists.iter().map(|(entry, _)| *entry).zip(medians).collect();
+        order.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let (fastest, seconds) = order[0];
+        let (verdicts, hits) = self.judge(class, rays, fastest)?;
+        Ok(Outcome {
+            scene: self.scene,
+            class,
+            rays: rays.len(),
+            hits,
+            fastest,
+            embree: rate(seconds),
+            spherule: rate(median(&mut spherule)),
+            exact,
+            verdicts,
+            heat,
+        })
+    }
+
+    /// Seconds that Embree takes.
+    fn embree(&self, class: Class, rays: &Rays, entry: Entry, answers: &mut Answers) -> f64 {
+        let scene = if entry.sorted { self.sorted.0 } else { self.filed };
+        let (columns, call) = (rays.columns(), entry.call());
+        let mut clock = Clock::default();
+        while clock.goes_on() {
+            clock.time(|| {
+                if class.is_any() {
+                    scene.occluded(&columns, call, &mut answers.occluded);
+                } else {
+                    scene.intersect(&columns, call, &mut answers.spheres, &mut answers.embree_t);
+                }
+            });
+        }
+        clock.mean()
+    }
+
+    /// Seconds that Spherule takes, and rays that needed arithmetic without rounding.
+    fn spherule(
+        &self,
+        class: Class,
+        rays: &Rays,
+        answers: &mut Answers,
+    ) -> Result<(f64, u64), QueryError> {
+        let columns = rays.columns();
+        let Answers { spherule_t: t, spheres: sphere, occluded, .. } = answers;
+        let (mut clock, mut exact) = (Clock::default(), 0);
+        while clock.goes_on() {
+            t.fill(f64::INFINITY);
+            let tally = clock.time(|| {
+                if class.is_any() {
+                    self.tree.occluded_columns(&columns, t, occluded)
+                } else {
+                    self.tree.intersect_columns(&columns, Hits { t, sphere, surface: None })
+                }
+            })?;
+            exact = tally.exact;
+        }
+        Ok((clock.mean(), exact))
+    }
+
+    /// Where the systems differ, and the share of rays that hit something.
+    fn judge(
+        &self,
+        class: Class,
+        rays: &Rays,
+        entry: Entry,
+    ) -> Result<(Verdicts, f64), QueryError> {
+        let (mut embree, mut spherule) = (Answers::new(rays.len()), Answers::new(rays.len()));
+        self.embree(class, rays, entry, &mut embree);
+        self.spherule(class, rays, &mut spherule)?;
+        let referee = Referee { rays, spheres: self.spheres };
+        let (verdicts, hits) = if class.is_any() {
+            let named = |ray| self.named(rays, ray);
+            let verdicts = referee.any(&embree.occluded, &spherule.occluded, named);
+            (verdicts, spherule.occluded.iter().filter(|hit| **hit).count())
+        } else {
+            self.as_filed(entry, &mut embree.spheres);
+            let verdicts = referee.closest(&embree.spheres, &spherule.spheres);
+            (verdicts, spherule.spheres.iter().filter(|sphere| **sphere != NOTHING).count())
+        };
+        Ok((verdicts, hits as f64 / rays.len().max(1) as f64))
+    }
+
+    /// What the systems say that a ray hits first.
+    fn named(&self, rays: &Rays, ray: usize) -> [u32; 2] {
+        let (origin, direction) = rays.row(ray);
+        let spherule = self.tree.intersect(origin.into(), direction.into());
+        let mut one = Rays::default();
+        one.push(origin, direction);
+        let (mut embree, mut t) = ([NOTHING], [0.0]);
+        let call = Call { width: 1, coherent: false };
+        self.filed.intersect(&one.columns(), call, &mut embree, &mut t);
+        [embree[0], spherule.map_or(NOTHING, |hit| hit.sphere)]
+    }
+
+    /// Rows of the file instead of those along the curve.
+    fn as_filed(&self, entry: Entry, spheres: &mut [u32]) {
+        if entry.sorted {
+            for sphere in spheres.iter_mut().filter(|sphere| **sphere != NOTHING) {
+                *sphere = self.sorted.1[*sphere as usize];
+            }
+        }
+    }
+}
+
+/// Adds up runs until they can be told from the clock's grain.
+#[derive(Default)]
+struct Clock {
+    total: Duration,
+    runs: u32,
+}
+
+impl Clock {
+    fn goes_on(&self) -> bool {
+        self.runs == 0 || self.total < Duration::from_millis(20)
+    }
+
+    fn time<T>(&mut self, run: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = run();
+        self.total += start.elapsed();
+        self.runs += 1;
+        result
+    }
+
+    /// Seconds of a run.
+    fn mean(&self) -> f64 {
+        self.total.as_secs_f64() / f64::from(self.runs)
+    }
+}
+
+/// The middle of the values, the greater one if there are two.
+pub fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}

@@ -1,0 +1,100 @@
+//! Measures Embree beside Spherule: the same spheres and rays, in one run, by turns, one thread.
+
+mod builds;
+mod contest;
+mod embree;
+mod options;
+mod rays;
+mod referee;
+mod report;
+mod scenes;
+
+use builds::Builds;
+use clap::Parser;
+use contest::{Contest, Entry, Outcome};
+use embree::Device;
+use options::Options;
+use rays::Seen;
+use scenes::{Columns, SceneName};
+use spherule::SphereTree;
+use std::error::Error;
+use std::fs;
+use std::io::{Write, stderr, stdout};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // There is nobody left to tell if this fails.
+            let _ = writeln!(stderr(), "error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let (mut outcomes, mut builds) = (Vec::new(), Vec::new());
+    for &scene in &options.scenes {
+        let spheres = scene.spheres()?;
+        if !options.no_builds {
+            writeln!(stderr(), "{}: builds", report::name(&scene))?;
+            builds.push(builds::measure(options, scene, &spheres)?);
+        }
+        trace(options, scene, &spheres, &mut outcomes)?;
+    }
+    report::write(&mut stdout().lock(), &outcomes, &builds)?;
+    if let Some(path) = &options.json {
+        fs::write(path, json(options, &outcomes, &builds)?)?;
+    }
+    Ok(())
+}
+
+/// Measures all classes of rays in a scene.
+fn trace(
+    options: &Options,
+    scene: SceneName,
+    spheres: &Columns,
+    outcomes: &mut Vec<Outcome>,
+) -> Result<(), Box<dyn Error>> {
+    let Columns { x, y, z, radius } = spheres;
+    let tree = SphereTree::from_columns(x, y, z, radius)?;
+    let device = Device::new(&options.embree, &options.configuration(1))?;
+    let build = |order: &mut dyn Iterator<Item = u32>| {
+        let rows: Vec<_> = order.map(|row| spheres.row(row as usize)).collect();
+        device.build(&rows, options.build())
+    };
+    let order = spheres.morton_order();
+    let filed = build(&mut (0..order.len() as u32))?;
+    let sorted = build(&mut order.iter().copied())?;
+    let contest = Contest { scene, spheres, tree: &tree, filed: &filed, sorted: (&sorted, &order) };
+    let picture = (options.side.next_multiple_of(4), options.order);
+    let seen = Seen::new(scene, spheres, &tree, picture)?;
+    for &class in &options.classes {
+        writeln!(stderr(), "{}: {} rays", report::name(&scene), report::name(&class))?;
+        let rays = seen.rays(class);
+        if rays.len() == 0 {
+            continue;
+        }
+        let (entries, limits) = (Entry::all(&options.calls), (options.rounds, options.finalists));
+        outcomes.push(contest.run((class, &rays), &entries, limits)?);
+    }
+    Ok(())
+}
+
+fn json(
+    options: &Options,
+    outcomes: &[Outcome],
+    builds: &[Builds],
+) -> Result<String, serde_json::Error> {
+    serde_json::to_string_pretty(&serde_json::json!({
+        "side": options.side.next_multiple_of(4),
+        "order": options.order,
+        "rounds": options.rounds,
+        "configuration": options.configuration(1),
+        "quality": options.quality,
+        "robust": options.robust,
+        "outcomes": outcomes,
+        "builds": builds,
+    }))
+}

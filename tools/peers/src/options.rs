@@ -1,0 +1,86 @@
+//! The command line.
+
+use crate::embree::Build;
+use crate::rays::{Class, Order};
+use crate::scenes::SceneName;
+use clap::{Parser, ValueEnum};
+use std::path::PathBuf;
+
+/// Measures Embree beside Spherule: the same rays, one run, one thread.
+#[derive(Debug, Parser)]
+#[command(version, about)]
+pub struct Options {
+    /// Embree's library, 4.4 or later 4.x: `libembree4.so` or the like.
+    #[arg(long, value_name = "FILE")]
+    pub embree: PathBuf,
+
+    /// Scenes, separated by commas; all by default.
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = SceneName::value_variants().to_vec())]
+    pub scenes: Vec<SceneName>,
+
+    /// Classes of rays, separated by commas; all by default.
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = Class::value_variants().to_vec())]
+    pub classes: Vec<Class>,
+
+    /// Rays in each of Embree's calls, separated by commas.
+    #[arg(long, value_delimiter = ',', default_value = "1,4,8,16", value_parser = width)]
+    pub calls: Vec<usize>,
+
+    /// Pixels along the side of the picture, made a multiple of 4.
+    #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=8192))]
+    pub side: u32,
+
+    /// Order of the pixels, and so of all rays; the same for both systems.
+    #[arg(long, value_enum, default_value_t = Order::Blocks)]
+    pub order: Order,
+
+    /// Rounds in which all that are compared run once, by turns; medians count.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    pub rounds: u32,
+
+    /// How many of Embree's calls, the fastest of a first heat, run in the rounds.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
+    pub finalists: u32,
+
+    /// Embree's configuration, but for threads.
+    #[arg(long, default_value = "frequency_level=simd256")]
+    pub configuration: String,
+
+    /// Embree's build quality: 0 low, 1 medium, 2 high.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=2))]
+    pub quality: u32,
+
+    /// Lets Embree test boxes so that rounding loses nothing.
+    #[arg(long)]
+    pub robust: bool,
+
+    /// Does not measure builds.
+    #[arg(long)]
+    pub no_builds: bool,
+
+    /// Writes everything measured to a file.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+impl Options {
+    /// How Embree builds.
+    pub fn build(&self) -> Build {
+        Build { robust: self.robust, quality: self.quality }
+    }
+
+    /// Embree's configuration with so many threads.
+    pub fn configuration(&self, threads: usize) -> String {
+        format!("threads={threads},{}", self.configuration)
+    }
+}
+
+fn width(text: &str) -> Result<usize, String> {
+    match text {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        "8" => Ok(8),
+        "16" => Ok(16),
+        _ => Err("Embree takes 1, 4, 8 or 16 rays at a time".to_owned()),
+    }
+}

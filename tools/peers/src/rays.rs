@@ -1,0 +1,217 @@
+//! The rays, made beforehand, from what the camera sees.
+
+use crate::scenes::{Columns, SceneName};
+use clap::ValueEnum;
+use glam::{DVec3, Vec2, Vec3};
+use serde::Serialize;
+use spherule::SphereTree;
+use spherule::query::{Hits, NOTHING, QueryError, RayColumns, Surface};
+use spherule::sampling::{Frame, cosine_hemisphere, mix, stream, unit_pair};
+use std::borrow::Cow;
+
+/// A class of rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Class {
+    /// From a pinhole through every pixel: what is hit first.
+    Primary,
+    /// From what the camera sees toward one far light: whether anything is hit.
+    Shadow,
+    /// Four from what the camera sees, cosine-distributed: whether anything is hit.
+    Ao,
+    /// One from what the camera sees, cosine-distributed: what is hit first.
+    Diffuse,
+}
+
+/// Order of pixels, and with them of all rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Order {
+    /// Blocks of 4 x 4 pixels, row by row; within each, row by row.
+    Blocks,
+    /// Row by row.
+    Rows,
+}
+
+/// Rays in columns.
+#[derive(Clone, Debug, Default)]
+pub struct Rays {
+    origin: [Vec<f32>; 3],
+    direction: [Vec<f32>; 3],
+}
+
+/// What the camera sees.
+#[derive(Debug)]
+pub struct Seen {
+    primary: Rays,
+    points: Vec<Point>,
+}
+
+/// A point that is seen, and where rays start from it.
+#[derive(Debug)]
+struct Point {
+    normal: DVec3,
+    origin: Vec3,
+}
+
+impl Class {
+    /// Whether it is only asked whether anything is hit.
+    pub fn is_any(self) -> bool {
+        matches!(self, Self::Shadow | Self::Ao)
+    }
+}
+
+impl Rays {
+    pub fn len(&self) -> usize {
+        self.origin[0].len()
+    }
+
+    pub fn columns(&self) -> RayColumns<'_> {
+        RayColumns {
+            origin: self.origin.each_ref().map(Vec::as_slice),
+            direction: self.direction.each_ref().map(Vec::as_slice),
+        }
+    }
+
+    /// Ray `i`: origin and direction.
+    pub fn row(&self, i: usize) -> (Vec3, Vec3) {
+        let row = |columns: &[Vec<f32>; 3]| columns.each_ref().map(|column| column[i]).into();
+        (row(&self.origin), row(&self.direction))
+    }
+
+    /// Appends a ray.
+    pub fn push(&mut self, origin: Vec3, direction: Vec3) {
+        for axis in 0..3 {
+            self.origin[axis].push(origin[axis]);
+            self.direction[axis].push(direction[axis]);
+        }
+    }
+}
+
+impl Seen {
+    /// Looks at a scene with `side` x `side` pixels.
+    ///
+    /// # Errors
+    /// Columns of different lengths.
+    pub fn new(
+        scene: SceneName,
+        spheres: &Columns,
+        tree: &SphereTree,
+        (side, order): (u32, Order),
+    ) -> Result<Self, QueryError> {
+        let primary = camera(scene, spheres, side, order);
+        let count = primary.len();
+        let (mut t, mut sphere) = (vec![f64::INFINITY; count], vec![NOTHING; count]);
+        let mut surfaces = vec![Surface::default(); count];
+        let hits = Hits { t: &mut t, sphere: &mut sphere, surface: Some(&mut surfaces) };
+        tree.intersect_columns(&primary.columns(), hits)?;
+        let hits = sphere.iter().zip(&surfaces).filter(|(sphere, _)| **sphere != NOTHING);
+        let points = hits.map(|(&sphere, at)| Point::new(at, spheres.row(sphere as usize)));
+        let points = points.collect();
+        Ok(Self { primary, points })
+    }
+
+    /// The rays of a class.
+    pub fn rays(&self, class: Class) -> Cow<'_, Rays> {
+        match class {
+            Class::Primary => Cow::Borrowed(&self.primary),
+            Class::Shadow => Cow::Owned(self.toward(Vec3::new(0.5, 1.0, 0.3).normalize())),
+            Class::Ao => Cow::Owned(self.scattered(2, 4)),
+            Class::Diffuse => Cow::Owned(self.scattered(3, 1)),
+        }
+    }
+
+    /// One ray from each point above whose horizon the light is.
+    fn toward(&self, light: Vec3) -> Rays {
+        let mut rays = Rays::default();
+        let lit = |point: &&Point| point.normal.dot(light.as_dvec3()) > 0.0;
+        for point in self.points.iter().filter(lit) {
+            rays.push(point.origin, light);
+        }
+        rays
+    }
+
+    /// Some cosine-distributed rays from each point.
+    fn scattered(&self, seed: u64, count: usize) -> Rays {
+        let mut rays = Rays::default();
+        for row in 0..self.points.len() * count {
+            let point = &self.points[row / count];
+            let u = unit_pair(stream(mix(seed), row as u64));
+            let frame = Frame::new(point.normal.as_vec3());
+            rays.push(point.origin, frame.to_world(cosine_hemisphere(u)).normalize());
+        }
+        rays
+    }
+}
+
+impl Point {
+    /// Rays start a ten-thousandth of the radius above the surface, and far enough that single
+    /// precision keeps the origin outside: neither system is to hit what it starts from.
+    fn new(at: &Surface, [x, y, z, radius]: [f32; 4]) -> Self {
+        let (center, radius) = (Vec3::new(x, y, z).as_dvec3(), f64::from(radius));
+        let (point, normal) = (DVec3::from(at.point), DVec3::from(at.normal));
+        let rounding = point.abs().max_element() * f64::from(f32::EPSILON);
+        let mut offset = (1e-4 * radius).max(2.0 * rounding);
+        loop {
+            let origin = (point + normal * offset).as_vec3();
+            if origin.as_dvec3().distance(center) > radius {
+                return Self { normal, origin };
+            }
+            offset *= 2.0;
+        }
+    }
+}
+
+/// Rays of a pinhole camera to which the whole scene is as large as fits, from a corner or from
+/// above.
+fn camera(scene: SceneName, spheres: &Columns, side: u32, order: Order) -> Rays {
+    let (low, high) = extent(spheres);
+    let (middle, size) = ((low + high) / 2.0, (high - low).length());
+    let toward = if scene.is_flat() { [0.0, -1.0, -0.4] } else { [-0.5, -0.6, -0.6] };
+    let forward = Vec3::from(toward).normalize();
+    let right = forward.cross(Vec3::Y).normalize();
+    let up = right.cross(forward);
+    let eye = middle - forward * (1.5 * size);
+    let corners = (0..8).map(|corner| {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        let to = Vec3::new(pick(0), pick(1), pick(2)) - eye;
+        Vec2::new(to.dot(right), to.dot(up)) / to.dot(forward)
+    });
+    let (least, greatest) = corners
+        .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+    let (center, half) = ((least + greatest) / 2.0, (greatest - least).max_element() / 2.0);
+    let mut rays = Rays::default();
+    for (x, y) in (0..side * side).map(|i| order.pixel(i, side)) {
+        let across = |pixel: u32| (pixel as f32 + 0.5) / side as f32 * 2.0 - 1.0;
+        let at = center + Vec2::new(across(x), -across(y)) * half;
+        rays.push(eye, (forward + right * at.x + up * at.y).normalize());
+    }
+    rays
+}
+
+impl Order {
+    /// Column and row of pixel `i`; `side` is a multiple of 4.
+    fn pixel(self, i: u32, side: u32) -> (u32, u32) {
+        let blocks = side / 4;
+        let (block, inside) = (i / 16, i % 16);
+        match self {
+            Self::Rows => (i % side, i / side),
+            Self::Blocks => (block % blocks * 4 + inside % 4, block / blocks * 4 + inside / 4),
+        }
+    }
+}
+
+/// Corners of the box that holds the middle 98 percent of the centers on each axis, made larger by
+/// 5 percent and the median radius: all of a scene but the strays of a cloud.
+fn extent(spheres: &Columns) -> (Vec3, Vec3) {
+    let percentile = |column: &[f32], share: f64| {
+        let mut values = column.to_vec();
+        let at = ((values.len() - 1) as f64 * share) as usize;
+        *values.select_nth_unstable_by(at, f32::total_cmp).1
+    };
+    let columns = [&spheres.x, &spheres.y, &spheres.z];
+    let low = Vec3::from(columns.map(|column| percentile(column, 0.01)));
+    let high = Vec3::from(columns.map(|column| percentile(column, 0.99)));
+    let margin = (high - low) * 0.025 + percentile(&spheres.radius, 0.5);
+    (low - margin, high + margin)
+}

@@ -1,0 +1,109 @@
+//! Tables in Markdown.
+
+use crate::builds::Builds;
+use crate::contest::{Entry, Outcome};
+use crate::rays::Class;
+use clap::ValueEnum;
+use std::io::{self, Write};
+
+/// Writes the tables.
+///
+/// # Errors
+/// What the writer says.
+pub fn write(out: &mut impl Write, outcomes: &[Outcome], builds: &[Builds]) -> io::Result<()> {
+    rates(out, outcomes)?;
+    means(out, outcomes)?;
+    if !builds.is_empty() {
+        costs(out, builds)?;
+    }
+    differences(out, outcomes)
+}
+
+fn rates(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
+    writeln!(
+        out,
+        "\n| scene, rays | count | hit | Embree, Mrays/s | its call | Spherule, Mrays/s | ratio |"
+    )?;
+    writeln!(out, "|---|--:|--:|--:|---|--:|--:|")?;
+    for outcome in outcomes {
+        writeln!(
+            out,
+            "| {}, {} | {} | {:.0} % | {:.2} | {} | {:.2} | {:.2} |",
+            name(&outcome.scene),
+            name(&outcome.class),
+            outcome.rays,
+            outcome.hits * 100.0,
+            outcome.embree,
+            call(outcome.fastest),
+            outcome.spherule,
+            outcome.spherule / outcome.embree
+        )?;
+    }
+    Ok(())
+}
+
+fn means(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
+    writeln!(out, "\n| geometric means | Embree, Mrays/s | Spherule, Mrays/s | ratio |")?;
+    writeln!(out, "|---|--:|--:|--:|")?;
+    let mut row = |name: String, of: Vec<&Outcome>| {
+        if of.is_empty() {
+            return Ok(());
+        }
+        let embree = geometric_mean(of.iter().map(|outcome| outcome.embree));
+        let spherule = geometric_mean(of.iter().map(|outcome| outcome.spherule));
+        writeln!(out, "| {name} | {embree:.2} | {spherule:.2} | {:.2} |", spherule / embree)
+    };
+    for &class in Class::value_variants() {
+        row(name(&class), outcomes.iter().filter(|outcome| outcome.class == class).collect())?;
+    }
+    row("all".to_owned(), outcomes.iter().collect())
+}
+
+fn costs(out: &mut impl Write, builds: &[Builds]) -> io::Result<()> {
+    writeln!(out, "\n| build | system | 1 thread, s | 2 threads, s | bytes/sphere | at most |")?;
+    writeln!(out, "|---|---|--:|--:|--:|--:|")?;
+    for build in builds {
+        for (system, cost) in [("Embree", build.embree), ("Spherule", build.spherule)] {
+            let ([one, two], scene) = (cost.seconds, name(&build.scene));
+            let (bytes, peak) = (cost.bytes, cost.peak);
+            writeln!(out, "| {scene} | {system} | {one:.4} | {two:.4} | {bytes:.1} | {peak:.1} |")?;
+        }
+    }
+    Ok(())
+}
+
+fn differences(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
+    writeln!(out, "\n| scene, rays | differ | Embree wrong | Spherule wrong | ties | exact |")?;
+    writeln!(out, "|---|--:|--:|--:|--:|--:|")?;
+    for outcome in outcomes {
+        let verdicts = outcome.verdicts;
+        writeln!(
+            out,
+            "| {}, {} | {} | {} | {} | {} | {} |",
+            name(&outcome.scene),
+            name(&outcome.class),
+            verdicts.differ,
+            verdicts.embree_wrong,
+            verdicts.spherule_wrong,
+            verdicts.ties,
+            outcome.exact
+        )?;
+    }
+    Ok(())
+}
+
+fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    (values.map(f64::ln).sum::<f64>() / count).exp()
+}
+
+/// Such as `8 coherent, sorted`.
+pub fn call(entry: Entry) -> String {
+    let flag = if entry.coherent { "coherent" } else { "incoherent" };
+    format!("{} {flag}{}", entry.width, if entry.sorted { ", sorted" } else { "" })
+}
+
+/// As on the command line.
+pub fn name(value: &impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
