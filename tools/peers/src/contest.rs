@@ -4,14 +4,17 @@ use crate::embree::{Call, Scene};
 use crate::rays::{Class, Rays};
 use crate::referee::{Referee, Verdicts};
 use crate::scenes::{Columns, SceneName};
+use cpu_time::ThreadTime;
 use serde::Serialize;
 use spherule::SphereTree;
 use spherule::query::{Hits, NOTHING, QueryError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// One way to ask Embree.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Entry {
+    /// Which of Embree's configurations.
+    pub configuration: usize,
     /// Rays in each call.
     pub width: usize,
     /// Whether they are said to go alike.
@@ -44,10 +47,10 @@ pub struct Contest<'a> {
     pub scene: SceneName,
     pub spheres: &'a Columns,
     pub tree: &'a SphereTree,
-    /// Over the spheres as in the file.
-    pub filed: &'a Scene<'a>,
-    /// Over the spheres along a Morton curve, and each one's row in the file.
-    pub sorted: (&'a Scene<'a>, &'a [u32]),
+    /// The rows of spheres along a Morton curve.
+    pub order: &'a [u32],
+    /// For each of Embree's configurations: spheres as in the file, and along the curve.
+    pub embree: &'a [[Scene<'a>; 2]],
 }
 
 /// Room for answers.
@@ -59,11 +62,19 @@ struct Answers {
 }
 
 impl Entry {
-    /// All ways to ask with packets of these widths.
-    pub fn all(widths: &[usize]) -> Vec<Self> {
-        let ways = [(false, false), (false, true), (true, false), (true, true)];
-        let of = |&width: &usize| ways.map(|(coherent, sorted)| Self { width, coherent, sorted });
-        widths.iter().flat_map(of).collect()
+    /// All ways to ask so many configurations with packets of these widths.
+    pub fn all(configurations: usize, widths: &[usize]) -> Vec<Self> {
+        let mut entries = Vec::new();
+        for configuration in 0..configurations {
+            for &width in widths {
+                for (coherent, sorted) in
+                    [(false, false), (false, true), (true, false), (true, true)]
+                {
+                    entries.push(Self { configuration, width, coherent, sorted });
+                }
+            }
+        }
+        entries
     }
 
     fn call(self) -> Call {
@@ -132,7 +143,7 @@ impl Contest<'_> {
 
     /// Seconds that Embree takes.
     fn embree(&self, class: Class, rays: &Rays, entry: Entry, answers: &mut Answers) -> f64 {
-        let scene = if entry.sorted { self.sorted.0 } else { self.filed };
+        let scene = &self.embree[entry.configuration][usize::from(entry.sorted)];
         let (columns, call) = (rays.columns(), entry.call());
         let mut clock = Clock::default();
         while clock.goes_on() {
@@ -202,7 +213,7 @@ impl Contest<'_> {
         one.push(origin, direction);
         let (mut embree, mut t) = ([NOTHING], [0.0]);
         let call = Call { width: 1, coherent: false };
-        self.filed.intersect(&one.columns(), call, &mut embree, &mut t);
+        self.embree[0][0].intersect(&one.columns(), call, &mut embree, &mut t);
         [embree[0], spherule.map_or(NOTHING, |hit| hit.sphere)]
     }
 
@@ -210,13 +221,14 @@ impl Contest<'_> {
     fn as_filed(&self, entry: Entry, spheres: &mut [u32]) {
         if entry.sorted {
             for sphere in spheres.iter_mut().filter(|sphere| **sphere != NOTHING) {
-                *sphere = self.sorted.1[*sphere as usize];
+                *sphere = self.order[*sphere as usize];
             }
         }
     }
 }
 
-/// Adds up runs until they can be told from the clock's grain.
+/// Adds up runs until they can be told from the clock's grain: in time of the processor, which other
+/// processes disturb less.
 #[derive(Default)]
 struct Clock {
     total: Duration,
@@ -229,7 +241,7 @@ impl Clock {
     }
 
     fn time<T>(&mut self, run: impl FnOnce() -> T) -> T {
-        let start = Instant::now();
+        let start = ThreadTime::now();
         let result = run();
         self.total += start.elapsed();
         self.runs += 1;
@@ -243,7 +255,7 @@ impl Clock {
 }
 
 /// The middle of the values, the greater one if there are two.
-pub fn median(values: &mut [f64]) -> f64 {
+fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

@@ -7,6 +7,7 @@
 mod packet;
 
 use libloading::Library;
+pub use packet::Call;
 use packet::{Answers, Any, Arguments, Closest, Packet, Valid};
 use spherule::query::RayColumns;
 use std::ffi::{CString, c_char, c_void};
@@ -19,7 +20,7 @@ use std::sync::atomic::{AtomicIsize, Ordering};
 #[derive(Debug, thiserror::Error)]
 pub enum EmbreeError {
     /// The library is not there, or lacks a function.
-    #[error("cannot load Embree: {0}; `tools/peers/run` fetches a library that fits")]
+    #[error("cannot load Embree; `tools/peers/run` fetches a library that fits")]
     Load(#[from] libloading::Error),
     /// The library is of another major version, whose structures differ.
     #[error("this is Embree {0}; give `--embree` a library of version 4.4 or later 4.x")]
@@ -31,8 +32,10 @@ pub enum EmbreeError {
 
 type Handle = *mut c_void;
 type Monitor = unsafe extern "C" fn(*mut c_void, isize, bool) -> bool;
-type Single = unsafe extern "C" fn(Handle, *mut c_void, *mut Arguments);
-type Several = unsafe extern "C" fn(*const i32, Handle, *mut c_void, *mut Arguments);
+/// A packet of rays of any width.
+type Rows = *mut c_void;
+type Single = unsafe extern "C" fn(Handle, Rows, *mut Arguments);
+type Several = unsafe extern "C" fn(*const i32, Handle, Rows, *mut Arguments);
 
 const SPHERE_POINT: u32 = 50;
 const VERTEX_BUFFER: u32 = 1;
@@ -46,10 +49,6 @@ macro_rules! calls {
         /// Embree's functions.
         struct Calls {
             $($field: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
-            intersect1: Single,
-            occluded1: Single,
-            intersect: [Several; 3],
-            occluded: [Several; 3],
         }
 
         impl Calls {
@@ -58,18 +57,6 @@ macro_rules! calls {
                 unsafe {
                     Ok(Self {
                         $($field: *library.get($symbol)?,)*
-                        intersect1: *library.get("rtcIntersect1")?,
-                        occluded1: *library.get("rtcOccluded1")?,
-                        intersect: [
-                            *library.get("rtcIntersect4")?,
-                            *library.get("rtcIntersect8")?,
-                            *library.get("rtcIntersect16")?,
-                        ],
-                        occluded: [
-                            *library.get("rtcOccluded4")?,
-                            *library.get("rtcOccluded8")?,
-                            *library.get("rtcOccluded16")?,
-                        ],
                     })
                 }
             }
@@ -93,6 +80,14 @@ calls! {
     commit_geometry "rtcCommitGeometry": fn(Handle);
     attach_geometry "rtcAttachGeometry": fn(Handle, Handle) -> u32;
     commit_scene "rtcCommitScene": fn(Handle);
+    intersect1 "rtcIntersect1": fn(Handle, Rows, *mut Arguments);
+    intersect4 "rtcIntersect4": fn(*const i32, Handle, Rows, *mut Arguments);
+    intersect8 "rtcIntersect8": fn(*const i32, Handle, Rows, *mut Arguments);
+    intersect16 "rtcIntersect16": fn(*const i32, Handle, Rows, *mut Arguments);
+    occluded1 "rtcOccluded1": fn(Handle, Rows, *mut Arguments);
+    occluded4 "rtcOccluded4": fn(*const i32, Handle, Rows, *mut Arguments);
+    occluded8 "rtcOccluded8": fn(*const i32, Handle, Rows, *mut Arguments);
+    occluded16 "rtcOccluded16": fn(*const i32, Handle, Rows, *mut Arguments);
 }
 
 /// Bytes that Embree holds, as it tells.
@@ -118,15 +113,6 @@ pub struct Build {
     pub robust: bool,
     /// Embree's build quality: 0 low, 1 medium, 2 high.
     pub quality: u32,
-}
-
-/// How rays are handed over.
-#[derive(Clone, Copy, Debug)]
-pub struct Call {
-    /// Rays in each call: 1, 4, 8 or 16.
-    pub width: usize,
-    /// Whether the rays are said to go alike.
-    pub coherent: bool,
 }
 
 /// Embree with its threads.
@@ -252,13 +238,15 @@ impl Scene<'_> {
     /// distance; `spheres` and `t` are as long as the columns of rays.
     pub fn intersect(&self, rays: &RayColumns, call: Call, spheres: &mut [u32], t: &mut [f32]) {
         let calls = &self.device.calls;
-        self.dispatch(rays, call, (calls.intersect1, calls.intersect), Closest { spheres, t });
+        let several = [calls.intersect4, calls.intersect8, calls.intersect16];
+        self.dispatch(rays, call, (calls.intersect1, several), Closest { spheres, t });
     }
 
     /// Whether each ray hits anything; `occluded` is as long as the columns of rays.
     pub fn occluded(&self, rays: &RayColumns, call: Call, occluded: &mut [bool]) {
         let calls = &self.device.calls;
-        self.dispatch(rays, call, (calls.occluded1, calls.occluded), Any(occluded));
+        let several = [calls.occluded4, calls.occluded8, calls.occluded16];
+        self.dispatch(rays, call, (calls.occluded1, several), Any(occluded));
     }
 
     fn dispatch(

@@ -12,7 +12,7 @@ mod scenes;
 use builds::Builds;
 use clap::Parser;
 use contest::{Contest, Entry, Outcome};
-use embree::Device;
+use embree::{Device, EmbreeError, Scene};
 use options::Options;
 use rays::Seen;
 use scenes::{Columns, SceneName};
@@ -28,6 +28,11 @@ fn main() -> ExitCode {
         Err(error) => {
             // There is nobody left to tell if this fails.
             let _ = writeln!(stderr(), "error: {error}");
+            let mut cause = error.source();
+            while let Some(error) = cause {
+                let _ = writeln!(stderr(), "because: {error}");
+                cause = error.source();
+            }
             ExitCode::FAILURE
         }
     }
@@ -43,9 +48,10 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         }
         trace(options, scene, &spheres, &mut outcomes)?;
     }
-    report::write(&mut stdout().lock(), &outcomes, &builds)?;
+    report::write(&mut stdout().lock(), options, &outcomes, &builds)?;
     if let Some(path) = &options.json {
-        fs::write(path, json(options, &outcomes, &builds)?)?;
+        let written = fs::write(path, json(options, &outcomes, &builds)?);
+        written.map_err(|error| format!("cannot write {}: {error}", path.display()))?;
     }
     Ok(())
 }
@@ -59,15 +65,20 @@ fn trace(
 ) -> Result<(), Box<dyn Error>> {
     let Columns { x, y, z, radius } = spheres;
     let tree = SphereTree::from_columns(x, y, z, radius)?;
-    let device = Device::new(&options.embree, &options.configuration(1))?;
-    let build = |order: &mut dyn Iterator<Item = u32>| {
-        let rows: Vec<_> = order.map(|row| spheres.row(row as usize)).collect();
-        device.build(&rows, options.build())
-    };
     let order = spheres.morton_order();
-    let filed = build(&mut (0..order.len() as u32))?;
-    let sorted = build(&mut order.iter().copied())?;
-    let contest = Contest { scene, spheres, tree: &tree, filed: &filed, sorted: (&sorted, &order) };
+    let rows = |order: &mut dyn Iterator<Item = u32>| -> Vec<_> {
+        order.map(|row| spheres.row(row as usize)).collect()
+    };
+    let (filed, sorted) = (rows(&mut (0..order.len() as u32)), rows(&mut order.iter().copied()));
+    let devices = options.configuration.iter().map(|text| options.device(text, 1));
+    let devices = devices.collect::<Result<Vec<_>, _>>()?;
+    let build = |device| -> Result<[Scene<'_>; 2], EmbreeError> {
+        let build = |rows: &[_]| Device::build(device, rows, options.build());
+        Ok([build(&filed)?, build(&sorted)?])
+    };
+    let embree = devices.iter().map(build).collect::<Result<Vec<_>, _>>()?;
+    let contest = Contest { scene, spheres, tree: &tree, order: &order, embree: &embree };
+    let entries = Entry::all(embree.len(), &options.calls);
     let picture = (options.side.next_multiple_of(4), options.order);
     let seen = Seen::new(scene, spheres, &tree, picture)?;
     for &class in &options.classes {
@@ -76,7 +87,7 @@ fn trace(
         if rays.len() == 0 {
             continue;
         }
-        let (entries, limits) = (Entry::all(&options.calls), (options.rounds, options.finalists));
+        let limits = (options.rounds, options.finalists);
         outcomes.push(contest.run((class, &rays), &entries, limits)?);
     }
     Ok(())
@@ -91,7 +102,7 @@ fn json(
         "side": options.side.next_multiple_of(4),
         "order": options.order,
         "rounds": options.rounds,
-        "configuration": options.configuration(1),
+        "configuration": options.configuration,
         "quality": options.quality,
         "robust": options.robust,
         "outcomes": outcomes,

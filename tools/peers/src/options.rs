@@ -1,6 +1,6 @@
 //! The command line.
 
-use crate::embree::Build;
+use crate::embree::{Build, Device, EmbreeError};
 use crate::rays::{Class, Order};
 use crate::scenes::SceneName;
 use clap::{Parser, ValueEnum};
@@ -39,12 +39,16 @@ pub struct Options {
     pub rounds: u32,
 
     /// How many of Embree's calls, the fastest of a first heat, run in the rounds.
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..))]
     pub finalists: u32,
 
-    /// Embree's configuration, but for threads.
-    #[arg(long, default_value = "frequency_level=simd256")]
-    pub configuration: String,
+    /// Embree's configuration, but for threads; may be given several times, and the fastest counts.
+    #[arg(
+        long,
+        value_name = "TEXT",
+        default_values = ["frequency_level=simd256", "frequency_level=simd512"]
+    )]
+    pub configuration: Vec<String>,
 
     /// Embree's build quality: 0 low, 1 medium, 2 high.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=2))]
@@ -69,9 +73,12 @@ impl Options {
         Build { robust: self.robust, quality: self.quality }
     }
 
-    /// Embree's configuration with so many threads.
-    pub fn configuration(&self, threads: usize) -> String {
-        format!("threads={threads},{}", self.configuration)
+    /// Starts Embree with a configuration and so many threads.
+    ///
+    /// # Errors
+    /// As [`Device::new`].
+    pub fn device(&self, configuration: &str, threads: usize) -> Result<Device, EmbreeError> {
+        Device::new(&self.embree, &format!("threads={threads},{configuration}"))
     }
 }
 

@@ -215,3 +215,36 @@ fn extent(spheres: &Columns) -> (Vec3, Vec3) {
     let margin = (high - low) * 0.025 + percentile(&spheres.radius, 0.5);
     (low - margin, high + margin)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_order_has_every_pixel() {
+        for order in [Order::Blocks, Order::Rows] {
+            let mut pixels: Vec<_> = (0..144).map(|i| order.pixel(i, 12)).collect();
+            pixels.sort_unstable();
+            pixels.dedup();
+            assert_eq!(pixels.len(), 144);
+        }
+    }
+
+    #[test]
+    fn rays_leave_what_they_start_from() {
+        let spheres = SceneName::Paper400.spheres().unwrap();
+        let Columns { x, y, z, radius } = &spheres;
+        let tree = SphereTree::from_columns(x, y, z, radius).unwrap();
+        let seen = Seen::new(SceneName::Paper400, &spheres, &tree, (64, Order::Blocks)).unwrap();
+        assert!(seen.points.len() > 400);
+        assert_eq!(seen.rays(Class::Ao).len(), 4 * seen.points.len());
+        let rays = seen.rays(Class::Diffuse);
+        for (i, point) in seen.points.iter().enumerate() {
+            let (origin, direction) = rays.row(i);
+            assert!(direction.as_dvec3().dot(point.normal) > 0.0);
+            // Straight back down there is the surface, at once.
+            let down = tree.intersect(origin.into(), (-point.normal.as_vec3()).into()).unwrap();
+            assert!(down.t < 1e-4);
+        }
+    }
+}

@@ -101,3 +101,40 @@ impl Referee<'_> {
         (Vec3::new(x, y, z).as_dvec3(), f64::from(radius))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A near sphere, one behind it, one beside both, and the near one's mirror image.
+    fn spheres() -> Columns {
+        Columns {
+            x: vec![3.0, 9.0, 3.0, 3.0],
+            y: vec![0.5, 0.0, 5.0, -0.5],
+            z: vec![0.0; 4],
+            radius: vec![1.0; 4],
+        }
+    }
+
+    #[test]
+    fn the_one_that_is_wrong_is_named() {
+        let (mut rays, spheres) = (Rays::default(), spheres());
+        (0..6).for_each(|_| rays.push(Vec3::ZERO, Vec3::X));
+        let referee = Referee { rays: &rays, spheres: &spheres };
+        let embree = [0, 1, 0, 2, NOTHING, 0];
+        let spherule = [0, 0, 1, NOTHING, 1, 3];
+        let verdicts = referee.closest(&embree, &spherule);
+        assert_eq!((verdicts.differ, verdicts.ties), (5, 1));
+        assert_eq!((verdicts.embree_wrong, verdicts.spherule_wrong), (3, 1));
+    }
+
+    #[test]
+    fn occlusion_is_what_a_named_sphere_does() {
+        let (mut rays, spheres) = (Rays::default(), spheres());
+        (0..3).for_each(|_| rays.push(Vec3::ZERO, Vec3::X));
+        let referee = Referee { rays: &rays, spheres: &spheres };
+        let named = |ray: usize| [[0, NOTHING], [2, NOTHING], [NOTHING, 1]][ray];
+        let verdicts = referee.any(&[false, true, true], &[true, false, true], named);
+        assert_eq!((verdicts.differ, verdicts.embree_wrong, verdicts.spherule_wrong), (2, 2, 0));
+    }
+}

@@ -2,6 +2,7 @@
 
 use crate::builds::Builds;
 use crate::contest::{Entry, Outcome};
+use crate::options::Options;
 use crate::rays::Class;
 use clap::ValueEnum;
 use std::io::{self, Write};
@@ -10,8 +11,13 @@ use std::io::{self, Write};
 ///
 /// # Errors
 /// What the writer says.
-pub fn write(out: &mut impl Write, outcomes: &[Outcome], builds: &[Builds]) -> io::Result<()> {
-    rates(out, outcomes)?;
+pub fn write(
+    out: &mut impl Write,
+    options: &Options,
+    outcomes: &[Outcome],
+    builds: &[Builds],
+) -> io::Result<()> {
+    rates(out, options, outcomes)?;
     means(out, outcomes)?;
     if !builds.is_empty() {
         costs(out, builds)?;
@@ -19,7 +25,7 @@ pub fn write(out: &mut impl Write, outcomes: &[Outcome], builds: &[Builds]) -> i
     differences(out, outcomes)
 }
 
-fn rates(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
+fn rates(out: &mut impl Write, options: &Options, outcomes: &[Outcome]) -> io::Result<()> {
     writeln!(
         out,
         "\n| scene, rays | count | hit | Embree, Mrays/s | its call | Spherule, Mrays/s | ratio |"
@@ -34,7 +40,7 @@ fn rates(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
             outcome.rays,
             outcome.hits * 100.0,
             outcome.embree,
-            call(outcome.fastest),
+            call(options, outcome.fastest),
             outcome.spherule,
             outcome.spherule / outcome.embree
         )?;
@@ -60,13 +66,13 @@ fn means(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
 }
 
 fn costs(out: &mut impl Write, builds: &[Builds]) -> io::Result<()> {
-    writeln!(out, "\n| build | system | 1 thread, s | 2 threads, s | bytes/sphere | at most |")?;
+    writeln!(out, "\n| build | system | 1 thread, ms | 2 threads, ms | bytes/sphere | at most |")?;
     writeln!(out, "|---|---|--:|--:|--:|--:|")?;
     for build in builds {
         for (system, cost) in [("Embree", build.embree), ("Spherule", build.spherule)] {
-            let ([one, two], scene) = (cost.seconds, name(&build.scene));
+            let ([one, two], scene) = (cost.seconds.map(|s| s * 1e3), name(&build.scene));
             let (bytes, peak) = (cost.bytes, cost.peak);
-            writeln!(out, "| {scene} | {system} | {one:.4} | {two:.4} | {bytes:.1} | {peak:.1} |")?;
+            writeln!(out, "| {scene} | {system} | {one:.2} | {two:.2} | {bytes:.1} | {peak:.1} |")?;
         }
     }
     Ok(())
@@ -97,10 +103,12 @@ fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     (values.map(f64::ln).sum::<f64>() / count).exp()
 }
 
-/// Such as `8 coherent, sorted`.
-pub fn call(entry: Entry) -> String {
+/// Such as `8 coherent, sorted, simd256`.
+fn call(options: &Options, entry: Entry) -> String {
     let flag = if entry.coherent { "coherent" } else { "incoherent" };
-    format!("{} {flag}{}", entry.width, if entry.sorted { ", sorted" } else { "" })
+    let configuration = options.configuration.get(entry.configuration);
+    let value = configuration.and_then(|text| text.rsplit('=').next()).unwrap_or_default();
+    format!("{} {flag}{}, {value}", entry.width, if entry.sorted { ", sorted" } else { "" })
 }
 
 /// As on the command line.

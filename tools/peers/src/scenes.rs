@@ -131,3 +131,22 @@ const STEPS: f64 = ((1_u64 << 21) - 1) as f64;
 fn spread(bits: u64) -> u64 {
     (0..21).fold(0, |spread, i| spread | (bits >> i & 1) << (3 * i))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_visits_the_octants_of_a_cube_in_order() {
+        let mut columns = Columns::default();
+        for corner in [6, 1, 7, 0, 3, 2, 5, 4] {
+            columns.x.push((corner & 1) as f32);
+            columns.y.push((corner >> 1 & 1) as f32);
+            columns.z.push((corner >> 2) as f32);
+            columns.radius.push(corner as f32);
+        }
+        let order = columns.morton_order();
+        let corners: Vec<f32> = order.iter().map(|&row| columns.radius[row as usize]).collect();
+        assert_eq!(corners, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+    }
+}

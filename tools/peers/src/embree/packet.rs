@@ -1,12 +1,20 @@
 //! Rays as Embree takes them, filled from columns, and what it answers, put into columns.
 
-use super::Call;
 use spherule::query::RayColumns;
 use std::ffi::c_void;
 use std::ptr;
 
 const FLAG_COHERENT: u32 = 1 << 16;
 const INVALID: u32 = u32::MAX;
+
+/// How rays are handed over.
+#[derive(Clone, Copy, Debug)]
+pub struct Call {
+    /// Rays in each call: 1, 4, 8 or 16.
+    pub width: usize,
+    /// Whether the rays are said to go alike.
+    pub coherent: bool,
+}
 
 /// `RTCIntersectArguments`, and `RTCOccludedArguments`, which is the same.
 #[repr(C)]
@@ -132,5 +140,44 @@ impl Answers for Any<'_> {
         for (occluded, far) in self.0[first..].iter_mut().zip(&packet.far[..count]) {
             *occluded = *far < 0.0;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::offset_of;
+
+    /// Every column of Embree's structures has `N` numbers of 32 bits; the hit starts after twelve.
+    fn columns_follow<const N: usize>() {
+        let column = |offset: usize| offset / (4 * N);
+        assert_eq!(column(offset_of!(Packet<N>, far)), 8);
+        assert_eq!(column(offset_of!(Packet<N>, normal)), 12);
+        assert_eq!(column(offset_of!(Packet<N>, primitive)), 17);
+        assert_eq!(column(offset_of!(Packet<N>, instance_primitive)), 20);
+    }
+
+    #[test]
+    fn packets_are_laid_out_as_in_the_headers() {
+        columns_follow::<1>();
+        columns_follow::<4>();
+        columns_follow::<8>();
+        columns_follow::<16>();
+        // With instance arrays and without padding, RTCRayHit is 84 bytes, in 16s 96.
+        assert!(size_of::<Packet<1>>() >= 96);
+    }
+
+    #[test]
+    fn the_last_packet_takes_what_is_left() {
+        let numbers: Vec<f32> = (0..6_u8).map(f32::from).collect();
+        let rays = RayColumns { origin: [&numbers; 3], direction: [&numbers; 3] };
+        let mut packet = Packet::<4>::new();
+        packet.fill(&rays, 4, 2);
+        assert_eq!(packet.origin_y[..2], [4.0, 5.0]);
+        assert_eq!(Valid::<4>::first(2).0, [-1, -1, 0, 0]);
+        packet.primitive[..2].copy_from_slice(&[7, INVALID]);
+        let (mut spheres, mut t) = ([0; 6], [0.0; 6]);
+        Closest { spheres: &mut spheres, t: &mut t }.take(&packet, 4, 2);
+        assert_eq!(spheres, [0, 0, 0, 0, 7, INVALID]);
     }
 }
