@@ -68,6 +68,14 @@ impl<L: Lanes> FilterRay<L> {
             band: length2.sqrt() * L::splat(K),
         }
     }
+
+    /// By how much the origin may be off if it is a point of a surface, rounded: as
+    /// [`ExactRay::origin_error`](crate::ray::ExactRay::origin_error), and no less.
+    #[inline(always)]
+    pub fn origin_error(&self) -> L {
+        let span = self.origin.x.abs() + self.origin.y.abs() + self.origin.z.abs();
+        span * L::splat(f32::EPSILON * (1.0 + 4.0 * f32::EPSILON))
+    }
 }
 
 impl FilterRay<f32> {

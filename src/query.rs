@@ -28,17 +28,33 @@ use crate::bvh::walk::{Any, Closest, Method, Query, trace};
 use crate::bvh::{Bvh, build::build};
 use crate::exact::{self, Distance};
 use crate::intersect;
-use crate::lanes::F32x16;
+use crate::lanes::{F32x16, Lanes, Mask};
 use crate::ray::{self, ExactRay, MISS, Rays};
 use crate::spheres::Spheres;
 use glam::{DVec3, Vec3};
+use std::cell::Cell;
 use std::cmp::Ordering;
+use std::ops::Range;
 
 /// The sphere of a ray that hits nothing.
 pub const NOTHING: u32 = MISS;
 
 /// Rays that are traced together.
-const CHUNK: usize = 1024;
+const CHUNK: usize = 2048;
+
+/// Rays that are looked at together before.
+const PACKET: usize = F32x16::WIDTH;
+
+/// No direction with a larger coordinate than this, or none larger than its reciprocal, is plain.
+const LONGEST: f32 = (1_u128 << 100) as f32;
+
+/// Rays that need no special care.
+struct Plain {
+    /// By packet, whether its rays are plain.
+    packets: [bool; CHUNK / PACKET],
+    /// By ray, what its direction was multiplied by: a power of two.
+    shrink: [f32; CHUNK],
+}
 
 /// Origins farther than this many times the largest coordinate are beyond what single precision can
 /// filter: such rays are tested against every sphere.
@@ -212,11 +228,11 @@ impl SphereTree {
     pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
         let mut hit = None;
         self.run::<Closest>(
-            1,
-            |_| (origin, direction, f64::INFINITY),
+            &one(&origin, &direction),
+            |_| f64::INFINITY,
             |_, found| {
-                let Surface { point, normal } = found.surface(self);
-                hit = Some(Hit { sphere: found.id, t: found.t * found.scaled.unit, point, normal });
+                let Surface { point, normal } = self.surface((origin, direction), found);
+                hit = Some(Hit { sphere: found.id, t: found.t, point, normal });
             },
         );
         hit
@@ -226,7 +242,7 @@ impl SphereTree {
     /// length.
     pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> bool {
         let mut hit = false;
-        self.run::<Any>(1, |_| (origin, direction, t_max), |_, _| hit = true);
+        self.run::<Any>(&one(&origin, &direction), |_| t_max, |_, _| hit = true);
         hit
     }
 
@@ -237,16 +253,20 @@ impl SphereTree {
     pub fn intersect_columns(&self, rays: &RayColumns, hits: Hits) -> Result<Tally, QueryError> {
         let Hits { t, sphere, mut surface } = hits;
         let surfaces = surface.as_ref().map_or(t.len(), |column| column.len());
-        let count = rays.check(&[t.len(), sphere.len(), surfaces])?;
+        rays.check(&[t.len(), sphere.len(), surfaces])?;
         sphere.fill(NOTHING);
-        let bounds = t.to_vec();
-        let ray = |i: usize| rays.row(i, bounds[i]);
-        Ok(self.run::<Closest>(count, ray, |i, found| {
-            (t[i], sphere[i]) = (found.t * found.scaled.unit, found.id);
-            if let Some(surface) = &mut surface {
-                surface[i] = found.surface(self);
-            }
-        }))
+        let t = Cell::from_mut(t).as_slice_of_cells();
+        Ok(self.run::<Closest>(
+            rays,
+            |i| t[i].get(),
+            |i, found| {
+                t[i].set(found.t);
+                sphere[i] = found.id;
+                if let Some(surface) = &mut surface {
+                    surface[i] = self.surface(rays.row(i), found);
+                }
+            },
+        ))
     }
 
     /// Whether each ray hits anything nearer than `t`.
@@ -259,57 +279,128 @@ impl SphereTree {
         t: &[f64],
         occluded: &mut [bool],
     ) -> Result<Tally, QueryError> {
-        let count = rays.check(&[t.len(), occluded.len()])?;
+        rays.check(&[t.len(), occluded.len()])?;
         occluded.fill(false);
-        Ok(self.run::<Any>(count, |i| rays.row(i, t[i]), |i, _| occluded[i] = true))
+        Ok(self.run::<Any>(rays, |i| t[i], |i, _| occluded[i] = true))
     }
 
-    /// Traces rays in chunks that stay in the first-level cache. A ray is its origin, its direction
-    /// and where its search ends.
+    /// Traces rays in chunks that stay in the second-level cache; `bound` is where the search for each
+    /// ends.
     fn run<Q: Query>(
         &self,
-        count: usize,
-        ray: impl Fn(usize) -> ([f32; 3], [f32; 3], f64),
+        columns: &RayColumns,
+        bound: impl Fn(usize) -> f64,
         mut found: impl FnMut(usize, &Found),
     ) -> Tally {
         let mut tally = Tally::default();
-        let chunk = CHUNK.min(count);
-        let (mut rays, mut hits) = (Rays::with_capacity(chunk), ray::Hits::with_capacity(chunk));
-        let mut rows = Vec::with_capacity(chunk);
+        let count = columns.origin[0].len();
+        let mut rays = Rays::with_capacity(CHUNK.min(count));
+        let mut hits = ray::Hits::with_capacity(CHUNK.min(count));
         for first in (0..count).step_by(CHUNK) {
+            let rows = first..count.min(first + CHUNK);
             rays.truncate(0);
-            rays.precise.clear();
-            rows.clear();
-            for i in first..count.min(first + CHUNK) {
-                let (origin, direction, bound) = ray(i);
-                let scaled = self.scaled(origin, direction).filter(|_| !bound.is_nan());
-                let Some(scaled) = scaled else {
-                    tally.invalid += 1;
-                    continue;
-                };
-                let bound = bound / scaled.unit;
-                if scaled.is_far() {
-                    tally.exact += 1;
-                    self.test_all(&scaled, bound).iter().for_each(|hit| found(i, hit));
-                    continue;
-                }
-                hits.set(rays.len(), bound, MISS);
-                rays.push(scaled.ray.origin.as_vec3(), scaled.ray.direction.as_vec3(), MISS);
-                rays.precise.push(scaled.ray);
-                rows.push((i, scaled));
-            }
-            if rows.iter().all(|(_, scaled)| scaled.is_single()) {
-                rays.precise.clear();
+            let plain = self.load(columns, rows.clone(), &mut rays);
+            let unit = |row: usize| f64::from(plain.shrink[row]) / self.scale;
+            let is_plain = |row: usize| plain.packets[row / PACKET] && !bound(first + row).is_nan();
+            for (row, i) in rows.clone().enumerate() {
+                // Nothing counts below 0: what is not plain is not traced here.
+                let bound = if is_plain(row) { bound(i) / unit(row) } else { -1.0 };
+                hits.set(row, bound, MISS);
             }
             tally.exact +=
                 trace::<F32x16, Q>(Method::Auto, &self.bvh, &self.spheres, &rays, &mut hits);
-            for (at, &(i, scaled)) in rows.iter().enumerate() {
-                if let Some(&id) = self.spheres.id.get(hits.sphere[at] as usize) {
-                    found(i, &Found { scaled, row: hits.sphere[at] as usize, id, t: hits.t[at] });
+            for (row, i) in rows.enumerate() {
+                if !is_plain(row) {
+                    let hit = self.trace_alone::<Q>(columns.row(i), bound(i), &mut tally);
+                    hit.iter().for_each(|hit| found(i, hit));
+                } else if hits.sphere[row] != MISS {
+                    let sphere = hits.sphere[row] as usize;
+                    let t = hits.t[row] * unit(row);
+                    found(i, &Found { sphere, id: self.spheres.id[sphere], t });
                 }
             }
         }
         tally
+    }
+
+    /// Appends some rays in the tree's units, and tells which are plain: all that they are fits single
+    /// precision, and they start no farther than [`REACH`].
+    fn load(&self, columns: &RayColumns, rows: Range<usize>, rays: &mut Rays) -> Plain {
+        let mut plain = Plain { packets: [false; CHUNK / PACKET], shrink: [1.0; CHUNK] };
+        let scale = self.scale as f32;
+        let scalable = f64::from(scale) == self.scale && scale.is_normal();
+        for (packet, first) in rows.clone().step_by(PACKET).enumerate() {
+            let lanes = PACKET.min(rows.end - first);
+            let column = |x: &[f32], rest: f32| {
+                let mut row = [rest; PACKET];
+                row[..lanes].copy_from_slice(&x[first..first + lanes]);
+                F32x16::new(row)
+            };
+            let origin = columns.origin.map(|x| column(x, 0.0));
+            let direction = columns.direction.map(|x| column(x, 1.0));
+            let [x, y, z] = direction.map(Lanes::abs);
+            let longest = Lanes::max(Lanes::max(x, y), z);
+            let shrink = longest.to_array().map(reciprocal_power);
+            plain.shrink[packet * PACKET..][..PACKET].copy_from_slice(&shrink);
+            let moved = origin.map(|x| x * F32x16::splat(scale));
+            let turned = direction.map(|x| x * F32x16::new(shrink));
+            let mut all =
+                F32x16::splat(LONGEST.recip()).le(longest) & longest.le(F32x16::splat(LONGEST));
+            for axis in 0..3 {
+                all = all & is_exact(moved[axis], origin[axis]);
+                all = all & is_exact(turned[axis], direction[axis]);
+                all = all & Lanes::abs(moved[axis]).le(F32x16::splat(REACH as f32));
+            }
+            plain.packets[packet] = scalable && all.bits() == u32::from(u16::MAX);
+            rays.append(lanes, &moved, &turned);
+        }
+        plain
+    }
+
+    /// Traces a ray that is not plain.
+    fn trace_alone<Q: Query>(
+        &self,
+        (origin, direction): ([f32; 3], [f32; 3]),
+        bound: f64,
+        tally: &mut Tally,
+    ) -> Option<Found> {
+        let scaled = self.scaled(origin, direction).filter(|_| !bound.is_nan());
+        let Some(scaled) = scaled else {
+            tally.invalid += 1;
+            return None;
+        };
+        let bound = bound / scaled.unit;
+        if scaled.is_far() {
+            tally.exact += 1;
+            return self.test_all(&scaled, bound);
+        }
+        let (mut rays, mut hits) = (Rays::with_capacity(1), ray::Hits::with_capacity(1));
+        hits.set(0, bound, MISS);
+        rays.push(scaled.ray.origin.as_vec3(), scaled.ray.direction.as_vec3(), MISS);
+        if !scaled.is_single() {
+            rays.precise.push(scaled.ray);
+        }
+        tally.exact +=
+            trace::<F32x16, Q>(Method::Single, &self.bvh, &self.spheres, &rays, &mut hits);
+        let sphere = hits.sphere[0] as usize;
+        let id = *self.spheres.id.get(sphere)?;
+        Some(Found { sphere, id, t: hits.t[0] * scaled.unit })
+    }
+
+    fn surface(&self, (origin, direction): ([f32; 3], [f32; 3]), found: &Found) -> Surface {
+        /// Beyond this many radii, double precision shows its limits.
+        const FAR: f64 = (1 << 20) as f64;
+        let Some(Scaled { ray, unit }) = self.scaled(origin, direction) else {
+            return Surface::default();
+        };
+        let (center, radius) = self.spheres.exact(found.sphere);
+        let normal = if ray.origin.distance(center) > FAR * radius {
+            exact::normal(&ray, center, radius)
+        } else {
+            ray.at_from(center, found.t / unit).normalize_or(-ray.direction.normalize())
+        };
+        let point = (center + normal * radius) / self.scale;
+        Surface { point: point.to_array(), normal: normal.to_array() }
     }
 
     /// A ray in the tree's units; `None` if it is no ray.
@@ -342,7 +433,7 @@ impl SphereTree {
             let first = best.as_ref().is_some_and(|best| id < best.id);
             if order.is_lt() || (order.is_eq() && first) {
                 nearest = distance;
-                best = Some(Found { scaled: *scaled, row, id, t: root.t });
+                best = Some(Found { sphere: row, id, t: root.t * scaled.unit });
             }
         }
         best
@@ -357,28 +448,14 @@ struct Scaled {
     unit: f64,
 }
 
-/// A hit in a tree's units.
+/// A hit.
 struct Found {
-    scaled: Scaled,
-    row: usize,
+    /// The sphere's row in the tree.
+    sphere: usize,
+    /// The sphere's row in the user's columns.
     id: u32,
+    /// In units of the user's direction.
     t: f64,
-}
-
-impl Found {
-    fn surface(&self, tree: &SphereTree) -> Surface {
-        /// Beyond this many radii, double precision shows its limits.
-        const FAR: f64 = (1 << 20) as f64;
-        let (center, radius) = tree.spheres.exact(self.row);
-        let ray = &self.scaled.ray;
-        let normal = if ray.origin.distance(center) > FAR * radius {
-            exact::normal(ray, center, radius)
-        } else {
-            ray.at_from(center, self.t).normalize_or(-ray.direction.normalize())
-        };
-        let point = (center + normal * radius) / tree.scale;
-        Surface { point: point.to_array(), normal: normal.to_array() }
-    }
 }
 
 impl Scaled {
@@ -394,18 +471,35 @@ impl Scaled {
 }
 
 impl RayColumns<'_> {
-    /// Number of rays, if all columns agree.
-    fn check(&self, others: &[usize]) -> Result<usize, QueryError> {
+    /// Whether all columns agree in length.
+    fn check(&self, others: &[usize]) -> Result<(), QueryError> {
         let [count, ..] = self.origin.map(<[f32]>::len);
         same_length(count, &self.origin.map(<[f32]>::len))?;
         same_length(count, &self.direction.map(<[f32]>::len))?;
-        same_length(count, others)?;
-        Ok(count)
+        same_length(count, others)
     }
 
-    fn row(&self, i: usize, bound: f64) -> ([f32; 3], [f32; 3], f64) {
-        (self.origin.map(|column| column[i]), self.direction.map(|column| column[i]), bound)
+    fn row(&self, i: usize) -> ([f32; 3], [f32; 3]) {
+        (self.origin.map(|column| column[i]), self.direction.map(|column| column[i]))
     }
+}
+
+/// The reciprocal of the largest power of two that is not above a number within [`LONGEST`].
+fn reciprocal_power(x: f32) -> f32 {
+    const EXPONENT: u32 = 0xff << 23;
+    f32::from_bits((254_u32 << 23).wrapping_sub(x.to_bits() & EXPONENT))
+}
+
+/// The lanes in which multiplication by a power of two has not underflowed.
+fn is_exact(product: F32x16, of: F32x16) -> <F32x16 as Lanes>::Mask {
+    let zero = F32x16::splat(0.0);
+    F32x16::splat(f32::MIN_POSITIVE).le(Lanes::abs(product)) | Lanes::abs(of).le(zero)
+}
+
+/// A single ray in columns.
+fn one<'a>(origin: &'a [f32; 3], direction: &'a [f32; 3]) -> RayColumns<'a> {
+    let columns = |v: &'a [f32; 3]| v.each_ref().map(std::slice::from_ref);
+    RayColumns { origin: columns(origin), direction: columns(direction) }
 }
 
 fn same_length(expected: usize, lengths: &[usize]) -> Result<(), QueryError> {

@@ -112,6 +112,22 @@ impl Rays {
         self.set(row, origin, direction, own);
     }
 
+    /// Appends the first `count` lanes, which start in empty space. The caller keeps to the capacity.
+    #[inline(always)]
+    pub(crate) fn append<L: Lanes>(&mut self, count: usize, origin: &[L; 3], direction: &[L; 3]) {
+        let row = self.len;
+        for (columns, lanes) in [(&mut self.origin, origin), (&mut self.direction, direction)] {
+            for (column, lanes) in
+                [&mut columns.x, &mut columns.y, &mut columns.z].into_iter().zip(lanes)
+            {
+                lanes.store(&mut column[row..]);
+            }
+        }
+        self.own[row..row + count].fill(MISS);
+        self.target[row..row + count].fill(MISS);
+        self.len += count;
+    }
+
     /// Writes row `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, origin: Point, direction: Point, own: u32) {

@@ -59,7 +59,7 @@ pub fn build(spheres: &mut Spheres) -> Bvh {
     for item in &items {
         spheres.push(Vec3::from_array(item.center), item.radius, item.id);
     }
-    Bvh { nodes }
+    Bvh::new(nodes)
 }
 
 /// The nodes over `items`, which are put into the order of the leaves, and whether there are crowds of

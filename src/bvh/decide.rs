@@ -35,15 +35,16 @@ impl<'a, Q: Query> Decider<'a, Q> {
         Self { spheres, rays, hits, exact: 0, query: PhantomData }
     }
 
-    /// Bounds of the distances that still count for the rays from `row` on; [`DONE`] where none does.
+    /// Bounds of the distances that still count for the rays from `row` on whose bits are set in
+    /// `lanes`; [`DONE`] where none does.
     #[inline(always)]
-    pub(super) fn bounds<L: Lanes>(&self, row: usize) -> (L, L) {
+    pub(super) fn bounds<L: Lanes>(&self, row: usize, lanes: u32) -> (L, L) {
         let rows = row..row + L::WIDTH;
         let (t, error) = (&self.hits.t[rows.clone()], &self.hits.error[rows.clone()]);
         let sphere = &self.hits.sphere[rows];
         let (mut low, mut high) = ([DONE; MAX_LANES], [DONE; MAX_LANES]);
         for lane in 0..L::WIDTH {
-            let done = row + lane >= self.rays.len() || (Q::ANY && sphere[lane] != MISS);
+            let done = lanes >> lane & 1 == 0 || (Q::ANY && sphere[lane] != MISS);
             low[lane] = if done { DONE } else { (t[lane] - error[lane]) as f32 };
             high[lane] = if done { DONE } else { (t[lane] + error[lane]) as f32 };
         }
@@ -144,7 +145,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
         let center = self.spheres.center(sphere);
         let center = Vec3::new(center.x, center.y, center.z);
         let near = Chord::<f32>::new(&ray, center, self.spheres.radius(sphere)).near();
-        let nearer = near >= 0.0 && near < self.bounds::<f32>(row).1;
+        let nearer = near >= 0.0 && near < self.bounds::<f32>(row, 1).1;
         if nearer {
             self.hits.set(row, f64::from(near), sphere as u32);
         }

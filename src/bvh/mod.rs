@@ -125,12 +125,27 @@ impl Bounds {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
     nodes: Vec<Node>,
+    /// How large leaves are, about: the geometric mean of the longest edges of some of their boxes.
+    grain: f32,
 }
 
 impl Bvh {
     /// The nodes, root first; empty if there is no sphere.
     fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// The tree of these nodes.
+    fn new(nodes: Vec<Node>) -> Self {
+        /// So many nodes are looked at.
+        const SAMPLES: usize = 1024;
+        let some = nodes.iter().step_by(nodes.len().div_ceil(SAMPLES).max(1));
+        let leaves =
+            some.flat_map(Node::children).filter(|(child, _)| child.kind() == Child::BLOCK);
+        let edges: Vec<f32> =
+            leaves.map(|(_, bounds)| (bounds.high - bounds.low).max_element().log2()).collect();
+        let grain = (edges.iter().sum::<f32>() / edges.len().max(1) as f32).exp2();
+        Self { nodes, grain }
     }
 
     /// Number of nodes.

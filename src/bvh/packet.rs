@@ -18,13 +18,11 @@ use crate::slabs::{MARGIN, Planes, Slabs};
 use crate::spheres::{Block, LEAF};
 use crate::vec3::Vec3;
 
-/// Rays `row..row + L::WIDTH`, or as many as there are.
+/// Some of the rays `row..row + L::WIDTH`.
 #[derive(Clone, Copy)]
 pub(super) struct Packet<L: Lanes> {
     row: u32,
     filter: FilterRay<L>,
-    /// By how much origins may be off, if they are on a surface.
-    origin_error: L,
     /// The bits of the spheres that the rays start on, and of those that they are aimed at.
     known: [L; 2],
     /// Bounds of the distance of what is hit so far, or of the search; [`DONE`] for a lane without a
@@ -53,7 +51,6 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
         Self {
             row: 0,
             filter: FilterRay::IDLE.splat(),
-            origin_error: L::splat(0.0),
             known: [bits(MISS); 2],
             t_min: L::splat(DONE),
             t_max: L::splat(DONE),
@@ -62,8 +59,8 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     }
 
     #[inline(always)]
-    fn new(decider: &Decider<Q>, row: usize) -> (Self, f32) {
-        let packet = Self::begin(decider, row);
+    fn new(decider: &Decider<Q>, rows: (usize, u32)) -> (Self, f32) {
+        let packet = Self::begin(decider, rows);
         (packet, packet.t_max.greatest())
     }
 
@@ -100,15 +97,13 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
 
 impl<L: Lanes> Packet<L> {
     #[inline(always)]
-    fn begin<Q: Query>(decider: &Decider<Q>, row: usize) -> Self {
+    fn begin<Q: Query>(decider: &Decider<Q>, (row, lanes): (usize, u32)) -> Self {
         let rays = decider.rays;
         let origin: Vec3<L> = rays.origin.load(row);
-        let span = origin.x.abs() + origin.y.abs() + origin.z.abs();
-        let (t_min, t_max) = decider.bounds(row);
+        let (t_min, t_max) = decider.bounds(row, lanes);
         Self {
             row: row as u32,
             filter: FilterRay::new(origin, rays.direction.load(row)),
-            origin_error: span * L::splat(f32::EPSILON * (1.0 + 4.0 * f32::EPSILON)),
             known: [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])],
             t_min,
             t_max,
@@ -116,10 +111,10 @@ impl<L: Lanes> Packet<L> {
         }
     }
 
-    /// Tests every sphere there is, for the rays from `row` on.
+    /// Tests every sphere there is, for some of the rays from a row on.
     #[inline(always)]
-    pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, row: usize) {
-        let mut packet = Self::begin(decider, row);
+    pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, rows: (usize, u32)) {
+        let mut packet = Self::begin(decider, rows);
         for sphere in 0..decider.spheres.len() {
             packet.test(decider, sphere);
         }
@@ -135,7 +130,7 @@ impl<L: Lanes> Packet<L> {
         (met, chord, radius): (L::Mask, &Chord<L>, L),
     ) {
         let near = chord.near();
-        let (certain, far) = chord.enters(&self.filter, radius, self.origin_error);
+        let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
         let nearer = if Q::EXACT { met & certain & far.lt(self.t_min) } else { met };
         self.candidate = L::select(nearer, bits(sphere as u32), self.candidate);
         if Q::ANY {
@@ -165,7 +160,7 @@ impl<L: Lanes> Packet<L> {
                 candidates[lane] = f32::from_bits(MISS);
             }
             decider.consider(row, sphere);
-            (t_min[lane], t_max[lane]) = decider.bounds::<f32>(row);
+            (t_min[lane], t_max[lane]) = decider.bounds::<f32>(row, 1);
         }
         self.candidate = L::load(&candidates);
         (self.t_min, self.t_max) = (L::load(&t_min), L::load(&t_max));

@@ -1,6 +1,6 @@
 //! A ray on its own: eight spheres of a leaf are tested at once.
 
-use super::decide::Decider;
+use super::decide::{DONE, Decider};
 use super::stream::Bundle;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay};
@@ -26,7 +26,7 @@ impl<Q: Query> Bundle<Q> for Single {
     }
 
     #[inline(always)]
-    fn new(decider: &Decider<Q>, row: usize) -> (Self, f32) {
+    fn new(decider: &Decider<Q>, (row, _): (usize, u32)) -> (Self, f32) {
         let rays = decider.rays;
         let own = rays.own[row];
         let ray = Self {
@@ -34,7 +34,7 @@ impl<Q: Query> Bundle<Q> for Single {
             own: (own / LEAF as u32, !(1 << (own % LEAF as u32))),
             filter: FilterRay::new(rays.origin.load(row), rays.direction.load(row)),
         };
-        (ray, decider.bounds::<f32>(row).1)
+        (ray, decider.bounds::<f32>(row, 1).1)
     }
 
     #[inline(always)]
@@ -48,9 +48,26 @@ impl<Q: Query> Bundle<Q> for Single {
     #[inline(always)]
     fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) -> Option<f32> {
         let row = self.row as usize;
-        decider.consider(row, sphere).then(|| decider.bounds::<f32>(row).1)
+        if Q::ANY && self.is_hit_for_certain(decider, sphere) {
+            decider.hits.sphere[row] = sphere as u32;
+            return Some(DONE);
+        }
+        decider.consider(row, sphere).then(|| decider.bounds::<f32>(row, 1).1)
     }
 
     #[inline(always)]
     fn settle(&self, _: &mut Decider<Q>) {}
+}
+
+impl Single {
+    /// Whether single precision can tell that the sphere occludes the ray.
+    #[inline(always)]
+    fn is_hit_for_certain<Q: Query>(&self, decider: &Decider<Q>, sphere: usize) -> bool {
+        let row = self.row as usize;
+        let (center, radius) = (decider.spheres.center(sphere), decider.spheres.radius(sphere));
+        let center = Vec3::new(center.x, center.y, center.z);
+        let chord = Chord::new(&self.filter, center, radius);
+        let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
+        certain && far < decider.bounds::<f32>(row, 1).0 && decider.rays.target[row] != sphere as u32
+    }
 }

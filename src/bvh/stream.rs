@@ -21,9 +21,9 @@ pub(super) trait Bundle<Q: Query>: Copy {
     /// In place of a bundle where there is none.
     fn none() -> Self;
 
-    /// The bundle that begins with ray `row`, and the distance beyond which it needs no answers;
-    /// below 0 if it needs none.
-    fn new(decider: &Decider<Q>, row: usize) -> (Self, f32);
+    /// The bundle of the rays from `row` on whose bits are set in `lanes`, and the distance beyond
+    /// which it needs no answers; below 0 if it needs none.
+    fn new(decider: &Decider<Q>, rows: (usize, u32)) -> (Self, f32);
 
     /// Which spheres of a block may be hit at a distance of at most `t_far`. The bundle is within
     /// the slabs.
@@ -108,18 +108,20 @@ pub(super) struct Stream<B, const FLIGHTS: usize> {
 }
 
 impl<B: Copy, const FLIGHTS: usize> Stream<B, FLIGHTS> {
-    /// Sends bundles on their way: each is the row that it begins with, and what bounds its rays.
+    /// Sends bundles on their way: each is a row, which lanes from there on belong to it, and what
+    /// bounds its rays.
     pub(super) fn trace<Q: Query>(
         bvh: &Bvh,
         decider: &mut Decider<Q>,
-        mut bundles: impl Iterator<Item = (usize, Slabs)>,
+        mut bundles: impl Iterator<Item = ((usize, u32), Slabs)>,
     ) where
         B: Bundle<Q>,
     {
         if bvh.is_empty() {
             return;
         }
-        let mut stream = Self { flights: [Flight::idle(B::none()); FLIGHTS], queues: Queues::EMPTY };
+        let mut stream =
+            Self { flights: [Flight::idle(B::none()); FLIGHTS], queues: Queues::EMPTY };
         for place in 0..FLIGHTS {
             stream.queues.push(Child::NONE, place as u8);
         }
@@ -140,7 +142,7 @@ impl<B: Copy, const FLIGHTS: usize> Stream<B, FLIGHTS> {
         &mut self,
         places: &[u8],
         decider: &mut Decider<Q>,
-        bundles: &mut impl Iterator<Item = (usize, Slabs)>,
+        bundles: &mut impl Iterator<Item = ((usize, u32), Slabs)>,
     ) where
         B: Bundle<Q>,
     {
@@ -148,9 +150,9 @@ impl<B: Copy, const FLIGHTS: usize> Stream<B, FLIGHTS> {
             let flight = &mut self.flights[place as usize % FLIGHTS];
             flight.bundle.settle(decider);
             flight.bundle = B::none();
-            if let Some((row, slabs)) = bundles.next() {
+            if let Some((rows, slabs)) = bundles.next() {
                 flight.slabs = slabs;
-                (flight.bundle, flight.t_far) = B::new(decider, row);
+                (flight.bundle, flight.t_far) = B::new(decider, rows);
                 flight.child = Child::node(0);
                 flight.top = 1;
                 self.queues.nodes.push_if(true, place);
@@ -251,8 +253,7 @@ impl<B: Copy> Flight<B> {
         }
         for first in (1..full).step_by(WIDTH) {
             let near = F32x8::load(&self.stack.near[first as usize..]);
-            let row: [u32; WIDTH] =
-                std::array::from_fn(|i| self.stack.child[first as usize + i].0);
+            let row: [u32; WIDTH] = std::array::from_fn(|i| self.stack.child[first as usize + i].0);
             let there = !(u32::MAX << (full - first).min(WIDTH as u32));
             let kept = near.le(F32x8::splat(self.t_far)).bits() & there;
             let (order, top) = (order::in_order(kept), self.top as usize);

@@ -4,15 +4,16 @@
 //! go in packets ([`packet`](super::packet)), others many at a time but each on its own
 //! ([`stream`](super::stream)). Brute force is a packet's leaf test over all spheres: the oracle.
 
-use super::decide::Decider;
 use super::Bvh;
+use super::decide::Decider;
 use super::packet::Packet;
 use super::single::Single;
 use super::stream::Stream;
-use crate::lanes::Lanes;
-use crate::ray::{Columns3, Hits, Rays};
+use crate::lanes::{Lanes, Mask, set_bits};
+use crate::ray::{Hits, Rays};
 use crate::slabs::Slabs;
 use crate::spheres::Spheres;
+use crate::vec3::Vec3;
 use glam::Vec3 as Point;
 use std::marker::PhantomData;
 
@@ -24,6 +25,15 @@ const RAYS: usize = 64;
 
 /// Packets on their way at once.
 const PACKETS: usize = 8;
+
+/// Rays of a packet start no farther apart than this many times the size of a leaf...
+const NEAR: f32 = 0.75;
+
+/// ... and have no more different directions than this many times that.
+const SPREAD: f32 = 0.5;
+
+/// A packet is no less than this part full.
+const FEW: usize = 2;
 
 /// What a walk wants to know.
 pub trait Query {
@@ -85,25 +95,28 @@ pub fn trace<'a, L: Lanes, Q: Query>(
     let decider = &mut Decider::<Q>::new(spheres, rays, hits);
     for first in (0..rays.len()).step_by(CHUNK) {
         let rows = first..rays.len().min(first + CHUNK);
-        let single = |row: usize| (row, Slabs::new(rays.origin.row(row), rays.direction.row(row)));
+        let single =
+            |row: usize| ((row, 1), Slabs::new(rays.origin.row(row), rays.direction.row(row)));
         match method {
             Method::Brute => {
-                rows.step_by(L::WIDTH).for_each(|row| Packet::<L>::brute(decider, row));
+                rows.step_by(L::WIDTH).for_each(|row| {
+                    let lanes = lanes_from(row, L::WIDTH, rays.len());
+                    Packet::<L>::brute(decider, (row, lanes));
+                });
             }
             Method::Single => Stream::<Single, 1>::trace(bvh, decider, rows.map(single)),
             Method::Stream => Stream::<Single, RAYS>::trace(bvh, decider, rows.map(single)),
             Method::Packet | Method::Auto => {
+                let grain = if method == Method::Auto { bvh.grain } else { f32::INFINITY };
                 let mut others = [0_u32; CHUNK];
                 let mut count = 0;
                 let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
-                    let slabs = alike::<L>(rays, row);
-                    if slabs.is_none() {
-                        for row in row..rows.end.min(row + L::WIDTH) {
-                            others[count] = row as u32;
-                            count += 1;
-                        }
+                    let (members, slabs) = alike::<L>(rays, row, grain);
+                    for lane in set_bits(!members & lanes_from(row, L::WIDTH, rows.end)) {
+                        others[count] = (row + lane) as u32;
+                        count += 1;
                     }
-                    Some((row, slabs?))
+                    (members != 0).then_some(((row, members), slabs))
                 });
                 Stream::<Packet<L>, PACKETS>::trace(bvh, decider, packets);
                 let others = others[..count].iter().map(|&row| single(row as usize));
@@ -114,21 +127,45 @@ pub fn trace<'a, L: Lanes, Q: Query>(
     decider.exact
 }
 
-/// The bounds of a packet's rays if all go into one octant.
+/// A bit for each row in `row..row + width` that is less than `end`.
 #[inline(always)]
-fn alike<L: Lanes>(rays: &Rays, row: usize) -> Option<Slabs> {
-    let column = |x: &[f32]| {
-        let lanes = L::load(&x[row..]);
-        (-(-lanes).greatest(), lanes.greatest())
+fn lanes_from(row: usize, width: usize, end: usize) -> u32 {
+    u32::MAX >> (u32::BITS as usize - width.min(end - row))
+}
+
+/// The rays of a row that go together with the one in its middle, if they are enough, and what bounds
+/// them.
+#[inline(always)]
+fn alike<L: Lanes>(rays: &Rays, row: usize, grain: f32) -> (u32, Slabs) {
+    let lanes = lanes_from(row, L::WIDTH, rays.len());
+    let middle = row + L::WIDTH.min(rays.len() - row) / 2;
+    let (origin, direction) = (rays.origin.load::<L>(row), rays.direction.load::<L>(row));
+    let (at, toward) = (rays.origin.row(middle), rays.direction.row(middle));
+    let close = |x: L, middle: f32, span: f32| (x - L::splat(middle)).abs().le(L::splat(span));
+    let same = |x: L, middle: f32| {
+        if middle.is_sign_negative() { x.is_negative() } else { !x.is_negative() }
     };
-    let bounds = |columns: &Columns3| {
-        let [x, y, z] = [column(&columns.x), column(&columns.y), column(&columns.z)];
+    let (near, spread) = (NEAR * grain, SPREAD * grain);
+    let members = close(origin.x, at.x, near)
+        & close(origin.y, at.y, near)
+        & close(origin.z, at.z, near)
+        & close(direction.x, toward.x, spread)
+        & close(direction.y, toward.y, spread)
+        & close(direction.z, toward.z, spread)
+        & same(direction.x, toward.x)
+        & same(direction.y, toward.y)
+        & same(direction.z, toward.z);
+    let bound = |x: L, middle: f32| {
+        let x = L::select(members, x, L::splat(middle));
+        (-(-x).greatest(), x.greatest())
+    };
+    let bounds = |v: Vec3<L>, middle: Point| {
+        let (x, y, z) = (bound(v.x, middle.x), bound(v.y, middle.y), bound(v.z, middle.z));
         (Point::new(x.0, y.0, z.0), Point::new(x.1, y.1, z.1))
     };
-    if row + L::WIDTH > rays.len() {
-        return None;
+    let bits = members.bits() & lanes;
+    if (bits.count_ones() as usize) * FEW < L::WIDTH {
+        return (0, Slabs::IDLE);
     }
-    let direction = bounds(&rays.direction);
-    let alike = direction.0.signum() == direction.1.signum();
-    alike.then(|| Slabs::between(bounds(&rays.origin), direction))
+    (bits, Slabs::between(bounds(origin, at), bounds(direction, toward)))
 }
