@@ -5,7 +5,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use spherule::bvh::Bvh;
-use spherule::bvh::build::build;
+use spherule::bvh::build::{Builder, build};
 use spherule::bvh::walk::{Any, Closest, Method, Query, Rough, trace};
 use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
 use spherule::ray::{Hits, MISS, Rays};
@@ -39,7 +39,7 @@ fn case(name: &'static str, generator: &Generator) -> Case {
         column(&from.z),
         column(&from.radius),
     );
-    let bvh = build(&mut spheres);
+    let bvh = build(&mut spheres, Builder::default());
     bvh.validate(&spheres).expect("the tree is sound");
     Case { name, spheres, bvh }
 }

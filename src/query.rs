@@ -24,8 +24,9 @@
 //! # Ok::<(), spherule::query::QueryError>(())
 //! ```
 
+use crate::bvh::Bvh;
+use crate::bvh::build::{Builder, build};
 use crate::bvh::walk::{Any, Closest, Method, Query, trace};
-use crate::bvh::{Bvh, build::build};
 use crate::exact::{self, Distance};
 use crate::intersect;
 use crate::lanes::{F32x16, Lanes, Mask};
@@ -199,7 +200,7 @@ impl SphereTree {
             spheres.precise = spheres.id.iter().map(|&i| split(scaled(i as usize))).collect();
         }
         let invalid = count - spheres.len();
-        let bvh = build(&mut spheres);
+        let bvh = build(&mut spheres, Builder::default());
         Ok(Self { spheres, bvh, scale, invalid })
     }
 

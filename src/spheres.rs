@@ -2,6 +2,7 @@
 //! [`LEAF`] rows.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 /// Spheres of a block, which is a leaf of the tree: one row of lanes for each column.
 pub const LEAF: usize = 8;
@@ -62,6 +63,24 @@ impl Spheres {
         }
     }
 
+    /// Of `count` rows: center and radius, and the id. `precise` is left empty.
+    pub(crate) fn from_rows(count: usize, row: impl Fn(usize) -> ([f32; 4], u32) + Sync) -> Self {
+        let block = |first: usize| {
+            let mut block = Block::EMPTY;
+            for lane in 0..LEAF.min(count - first * LEAF) {
+                let [x, y, z, radius] = row(first * LEAF + lane).0;
+                (block.x[lane], block.y[lane], block.z[lane]) = (x, y, z);
+                block.radius[lane] = radius;
+            }
+            block
+        };
+        Self {
+            blocks: (0..count.div_ceil(LEAF)).into_par_iter().map(block).collect(),
+            id: (0..count).into_par_iter().map(|i| row(i).1).collect(),
+            precise: Vec::new(),
+        }
+    }
+
     /// Appends a sphere.
     #[inline]
     pub(crate) fn push(&mut self, center: Vec3, radius: f32, id: u32) {
@@ -114,27 +133,30 @@ impl Spheres {
         }
     }
 
+    /// Center and radius of sphere `i` in bits: equal for spheres that coincide, and in an order that
+    /// does not depend on rows.
+    pub fn key(&self, i: usize) -> ([u32; 3], u32) {
+        (self.center(i).to_array().map(f32::to_bits), self.radius(i).to_bits())
+    }
+
     /// For each of some spheres the one that is hit in its place: of those that coincide the first
-    /// of the user's. Ascending, without repetition; not all are of the rows given.
+    /// of the user's. In the order of [`Spheres::key`], without repetition; not all are of the rows
+    /// given.
     pub fn first_of_equals(&self, rows: impl Iterator<Item = u32>) -> Vec<u32> {
-        let key =
-            |i: usize| (self.center(i).to_array().map(f32::to_bits), self.radius(i).to_bits());
-        let mut firsts: Vec<_> = rows.map(|row| (key(row as usize), row)).collect();
+        let mut firsts: Vec<_> = rows.map(|row| (self.key(row as usize), row)).collect();
         if firsts.is_empty() {
             return Vec::new();
         }
         firsts.sort_unstable();
         firsts.dedup_by_key(|first| first.0);
         for i in 0..self.len() {
-            if let Ok(place) = firsts.binary_search_by_key(&key(i), |first| first.0)
+            if let Ok(place) = firsts.binary_search_by_key(&self.key(i), |first| first.0)
                 && self.id[i] < self.id[firsts[place].1 as usize]
             {
                 firsts[place].1 = i as u32;
             }
         }
-        let mut firsts: Vec<_> = firsts.into_iter().map(|first| first.1).collect();
-        firsts.sort_unstable();
-        firsts
+        firsts.into_iter().map(|first| first.1).collect()
     }
 
     /// Bytes that the columns occupy.

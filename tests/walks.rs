@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 use spherule::bvh::Bvh;
-use spherule::bvh::build::build;
+use spherule::bvh::build::{Builder, build};
 use spherule::bvh::walk::{Any, Closest, Method, trace};
 use spherule::exact::{self, Distance};
 use spherule::intersect::{self, Root};
@@ -195,13 +195,25 @@ fn agrees<L: Lanes>(name: &str, bvh: &Bvh, spheres: &Spheres, rays: &Rays, bound
 #[test]
 fn every_walk_is_exact() {
     for (name, mut spheres) in scenes() {
-        let bvh = build(&mut spheres);
+        let bvh = build(&mut spheres, Builder::default());
         // Not a multiple of any width.
         let (rays, bounds) = rays(&spheres, 403);
         agrees::<f32>(name, &bvh, &spheres, &rays, &bounds);
         agrees::<F32x4>(name, &bvh, &spheres, &rays, &bounds);
         agrees::<F32x8>(name, &bvh, &spheres, &rays, &bounds);
         agrees::<F32x16>(name, &bvh, &spheres, &rays, &bounds);
+    }
+}
+
+#[test]
+fn every_tree_is_exact() {
+    for (name, spheres) in scenes() {
+        for builder in Builder::ALL.into_iter().filter(|&builder| builder != Builder::default()) {
+            let mut spheres = spheres.clone();
+            let bvh = build(&mut spheres, builder);
+            let (rays, bounds) = rays(&spheres, 211);
+            agrees::<F32x8>(&format!("{name}, {builder:?}"), &bvh, &spheres, &rays, &bounds);
+        }
     }
 }
 
@@ -222,36 +234,5 @@ fn outward_rays_never_hit_their_own_sphere_and_inward_ones_never_miss_its_far_si
         if cosine.abs() > (1e-6 / radius).sqrt() {
             assert_eq!(t.is_some(), cosine < 0.0, "{center} {radius} {cosine}");
         }
-    }
-}
-
-#[test]
-fn the_tree_holds_every_sphere_and_is_shallow() {
-    for (name, mut spheres) in scenes() {
-        let before = spheres.len();
-        let bvh = build(&mut spheres);
-        let mut ids = spheres.id.clone();
-        ids.sort_unstable();
-        // Of a crowd that coincides the first is left.
-        let left = if name == "equal" { 1 } else { before as u32 };
-        assert_eq!(ids, (0..left).collect::<Vec<_>>(), "{name}");
-        bvh.validate(&spheres).unwrap_or_else(|error| panic!("{name}: {error}"));
-    }
-}
-
-/// The tree is a function of the spheres, not of the threads that build it.
-#[test]
-fn one_thread_and_many_build_the_same_tree() {
-    let n = &mut Numbers(9);
-    let rows: Vec<_> = (0..60_000).map(|_| (n.point(), 0.01)).collect();
-    let built = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut spheres = spheres(rows.iter().copied());
-        let bvh = pool.install(|| build(&mut spheres));
-        (bvh, spheres.id)
-    };
-    let one = built(1);
-    for threads in [2, 7] {
-        assert!(one == built(threads), "{threads} threads");
     }
 }

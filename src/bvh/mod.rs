@@ -116,9 +116,25 @@ impl Bounds {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
+    /// Half of the surface.
+    fn half_area(&self) -> f64 {
+        let size = (self.high - self.low).as_dvec3();
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+
     fn holds(&self, other: &Self) -> bool {
         self.low.cmple(other.low).all() && self.high.cmpge(other.high).all()
     }
+}
+
+/// What a ray is expected to visit (`MacDonald` & Booth, "Heuristics for Ray Tracing Using Space
+/// Subdivision", The Visual Computer 1990).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Nodes, the root among them.
+    pub nodes: f64,
+    /// Spheres that are tested, whole blocks of them.
+    pub spheres: f64,
 }
 
 /// The tree, flattened depth first: `nodes[0]` is the root.
@@ -167,6 +183,19 @@ impl Bvh {
     pub fn bounds(&self) -> Option<Bounds> {
         let boxes = self.nodes.first()?.children().map(|child| child.1);
         boxes.reduce(|all, bounds| all.union(&bounds))
+    }
+
+    /// What a ray costs that passes through the box of everything at random, and hits nothing.
+    pub fn cost(&self) -> Cost {
+        let mut cost = Cost { nodes: 1.0, spheres: 0.0 };
+        let Some(all) = self.bounds() else { return Cost { nodes: 0.0, spheres: 0.0 } };
+        let whole = all.half_area();
+        for (child, bounds) in self.nodes.iter().flat_map(Node::children) {
+            let probability = bounds.half_area() / whole;
+            let of_kind = if child.kind() == 0 { &mut cost.nodes } else { &mut cost.spheres };
+            *of_kind += probability * if child.kind() == 0 { 1.0 } else { LEAF as f64 };
+        }
+        cost
     }
 
     /// Checks what the walks rely on: every block is in one leaf, every box holds what is below it,

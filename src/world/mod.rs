@@ -29,15 +29,19 @@ pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };
 
-use crate::bvh::{self, Bvh};
+use crate::bvh::Bvh;
+use crate::bvh::build::{Builder, build};
 use crate::memory::{self, Shortage};
 use crate::ray::GROUND;
-use crate::scene::{Material, NamedMaterial, Rgb, Scene};
+use crate::scene::{Material, NamedMaterial, Rgb, Scene, Settings};
 use crate::spheres::Spheres;
 use glam::Vec3;
 
 /// Bytes that a sphere takes while a world is built, at most.
 const SPHERE_BYTES: u64 = 80;
+
+/// Rays that a sample takes, with its bounces and its looks for light; about, for choosing the tree.
+const RAYS_PER_SAMPLE: u64 = 4;
 
 /// The same where every sphere may be a light.
 const EMITTER_BYTES: u64 = 120;
@@ -98,7 +102,7 @@ pub enum WorldError {
 }
 
 impl World {
-    /// Builds the world and its tree.
+    /// Builds the world and the tree that suits its settings.
     ///
     /// Spheres that vanish in single precision beside the largest coordinate (a radius below about
     /// 1e-45 of it) are left out; [`Features::vanished`] counts them.
@@ -108,6 +112,17 @@ impl World {
     /// rows that no scene file could hold: columns of different lengths, values that are not
     /// finite, materials that do not exist.
     pub fn build(scene: &Scene) -> Result<Self, WorldError> {
+        let Settings { width, height, spp, .. } = scene.settings;
+        let samples = u64::from(width) * u64::from(height) * u64::from(spp);
+        let rays = samples.saturating_mul(RAYS_PER_SAMPLE);
+        Self::build_with(scene, Builder::for_rays(scene.spheres.len(), rays))
+    }
+
+    /// Builds the world with a certain kind of tree, which changes nothing that is seen.
+    ///
+    /// # Errors
+    /// Those of [`World::build`].
+    pub fn build_with(scene: &Scene, builder: Builder) -> Result<Self, WorldError> {
         let count = scene.spheres.len();
         memory::check(Self::bytes(count as u64, &scene.materials))
             .map_err(|shortage| WorldError::Memory(count, shortage))?;
@@ -119,7 +134,7 @@ impl World {
         let materials = Materials::build(&scene.materials);
         let mut spheres = spheres::build(&scene.spheres, &frame);
         let placed = spheres.len();
-        let bvh = bvh::build::build(&mut spheres);
+        let bvh = build(&mut spheres, builder);
         let appearance = Appearance::build(&scene.spheres, &spheres.id, &materials);
         let camera = Camera::build(scene, &pose, &frame);
         let environment = Environment::build(&scene.environment);

@@ -1,11 +1,15 @@
 //! One picture: whatever the threads, the packets, the tree and the part that is asked for.
 
 use crate::common::*;
+use glam::DVec3;
+use spherule::World;
+use spherule::bvh::build::Builder;
 use spherule::film::Region;
 use spherule::image::Image;
 use spherule::integrator::workspace::Counters;
-use spherule::render::Options;
-use spherule::scene::{Integrator, SamplerKind, Scene};
+use spherule::render::{Options, render};
+use spherule::sampling::{stream, unit};
+use spherule::scene::{Integrator, Rgb, SamplerKind, Scene};
 use spherule::trace::{Tracer, Traversal, Width};
 
 const INTEGRATORS: [Integrator; 3] =
@@ -35,6 +39,36 @@ fn every_tracer_makes_the_same_picture() {
                 assert_eq!(got, expected, "{integrator:?} {tracer:?}");
             }
         }
+    }
+}
+
+#[test]
+fn every_builder_makes_the_same_picture() {
+    for integrator in INTEGRATORS {
+        let mut scene = everything(integrator);
+        add_dust(&mut scene);
+        let pictures = Builder::ALL.map(|builder| {
+            let world = World::build_with(&scene, builder).expect("the scene is sound");
+            (render(&world, &scene.settings, &Options::default()), world.spheres.id)
+        });
+        let [(picture, order), others @ ..] = &pictures;
+        for (other, other_order) in others {
+            assert!(other.image == picture.image, "{integrator:?}");
+            assert_eq!(other.counters.rays(), picture.counters.rays(), "{integrator:?}");
+            assert_ne!(other_order, order, "trees that differ put rows into different orders");
+        }
+    }
+}
+
+/// Small spheres of all materials, emitters among them, so that trees have something to differ in.
+fn add_dust(scene: &mut Scene) {
+    let center = |i: usize| {
+        let number = |k| f64::from(unit(stream(i as u64, k) as u32));
+        DVec3::new(number(1) - 0.5, number(2), number(3) - 0.5) * 4.0
+    };
+    for i in 0..300 {
+        let material = (i % scene.materials.len()) as u32;
+        scene.spheres.push(center(i), 0.04 + 1e-4 * i as f64, material, Rgb::ONE);
     }
 }
 

@@ -23,7 +23,8 @@ use std::f64::consts::PI;
 /// The lights, each with a share of the samples in proportion to its power.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
-    /// Rows of emissive spheres, ascending.
+    /// Rows of emissive spheres, in the order of [`Spheres::key`]: what is sampled does not depend on
+    /// the tree.
     pub emitters: Vec<u32>,
     /// What each of them emits.
     radiance: Vec<Rgb>,
@@ -196,7 +197,9 @@ impl Lights {
         row: u32,
         (origin, own): (Vec3, u32),
     ) -> (f32, bool) {
-        let Some(index) = self.emitters.binary_search(&row).ok().filter(|_| row != own) else {
+        let key = spheres.key(row as usize);
+        let found = self.emitters.binary_search_by_key(&key, |&other| spheres.key(other as usize));
+        let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != own) else {
             return (0.0, true);
         };
         match toward_sphere(spheres, row as usize, origin) {

@@ -1,0 +1,101 @@
+//! The tree while it is binary: what builders make, leaf by leaf, and what it costs to make it wide.
+//!
+//! A part of `n` leaves has `n - 1` branches in a row: its root's, those of the first half and those
+//! of the second. So every branch has its place before anything is known of the others, and threads
+//! need not wait for each other.
+
+use super::item::{Item, along, bounds};
+use super::{Cut, PARALLEL};
+use crate::bvh::{Bounds, DEPTH, WIDTH};
+use crate::spheres::LEAF;
+
+/// The most branches on a path. Eight parts of equal depth have at least three branches less than
+/// the whole, so a tree of this depth can be made one of [`DEPTH`] wide nodes.
+const HEIGHT: usize = 3 * DEPTH;
+
+/// A part of the tree, seen from above.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Top {
+    pub(super) bounds: Bounds,
+    /// What this part costs at least as one child of a wide node, as two at most, and so on, in
+    /// nodes that a ray visits, each weighed with half of its surface. The same for a leaf, 0.
+    pub(super) forest: [f32; WIDTH - 1],
+    /// Branches on the longest path.
+    pub(super) height: u8,
+}
+
+/// A branch: two parts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch {
+    pub(super) top: Top,
+    /// Leaves of the first part.
+    pub(super) first: u32,
+}
+
+impl Branch {
+    pub(super) const NONE: Self =
+        Self { top: Top { bounds: Bounds::EMPTY, forest: [0.0; WIDTH - 1], height: 0 }, first: 0 };
+}
+
+impl Top {
+    pub(super) fn leaf<'a>(items: impl Iterator<Item = &'a Item>) -> Self {
+        Self { bounds: bounds(items), ..Branch::NONE.top }
+    }
+
+    /// Of two parts.
+    pub(super) fn join(a: &Self, b: &Self) -> Self {
+        let bounds = a.bounds.union(&b.bounds);
+        let mut forest = [bounds.half_area() as f32 + best(a, b, WIDTH).1; WIDTH - 1];
+        for roots in 2..WIDTH {
+            forest[roots - 1] = forest[0].min(best(a, b, roots).1);
+        }
+        Self { bounds, forest, height: a.height.max(b.height) + 1 }
+    }
+}
+
+/// How to share `roots` children of a wide node among two parts: how many the first one gets, and
+/// what both cost then (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through
+/// Compressed Wide BVHs", HPG 2017).
+pub(super) fn best(a: &Top, b: &Top, roots: usize) -> (usize, f32) {
+    let mut best = (1, a.forest[0] + b.forest[roots - 2]);
+    for share in 2..roots {
+        let cost = a.forest[share - 1] + b.forest[roots - share - 1];
+        if cost < best.1 {
+            best = (share, cost);
+        }
+    }
+    best
+}
+
+/// Makes the branches over some items, which are put into the order of the leaves.
+pub(super) fn grow(
+    cut: &impl Cut,
+    items: &mut [Item],
+    branches: &mut [Branch],
+    depth: usize,
+) -> Top {
+    let leaves = items.len().div_ceil(LEAF);
+    if leaves <= 1 {
+        items.sort_unstable_by(|a, b| along(0, a, b));
+        return Top::leaf(items.iter());
+    }
+    if cut.finishes(items.len()) && depth + leaves <= HEIGHT {
+        return cut.finish(items, branches);
+    }
+    let least_height = (leaves - 1).ilog2() as usize + 1;
+    let place =
+        if depth + 1 + least_height <= HEIGHT { cut.cut(items) } else { cut.median().cut(items) };
+    let first = place / LEAF;
+    let (left, right) = items.split_at_mut(place);
+    let (root, rest) = branches.split_at_mut(1);
+    let (below_left, below_right) = rest.split_at_mut(first - 1);
+    let a = |items: &mut [Item], branches: &mut [Branch]| grow(cut, items, branches, depth + 1);
+    let (a, b) = if left.len() + right.len() >= PARALLEL {
+        rayon::join(|| a(left, below_left), || a(right, below_right))
+    } else {
+        (a(left, below_left), a(right, below_right))
+    };
+    let top = Top::join(&a, &b);
+    root[0] = Branch { top, first: first as u32 };
+    top
+}

@@ -1,0 +1,163 @@
+//! Building the tree.
+//!
+//! Spheres are cut in two parts, these again, and so on down to leaves of [`LEAF`] spheres. Parts are
+//! cut at multiples of a leaf, so all leaves but one are full and the spheres' order is the tree's.
+//! Where a part is cut is what builders differ in ([`Builder`]). The binary tree then becomes one of
+//! wide nodes ([`collapse`]).
+//!
+//! All of it is a function of the spheres alone, whatever the number of threads and the order of
+//! rows: no two spheres are equal on an axis, as what tells them apart is where they are on the
+//! others, then how large they are, and at last the user's order.
+
+mod branch;
+mod collapse;
+mod item;
+mod median;
+mod morton;
+mod partition;
+mod surface_area;
+mod sweep;
+
+use super::Bvh;
+use crate::spheres::{LEAF, Spheres};
+use branch::{Branch, Top};
+use glam::DVec3;
+use item::Item;
+use median::Median;
+use morton::Morton;
+use rayon::prelude::*;
+use surface_area::SurfaceArea;
+
+/// Below this many spheres a subtree is built by one task: splitting costs more than it saves.
+const PARALLEL: usize = 4096;
+
+/// So many spheres about one center are looked at for some that coincide.
+const CROWD: usize = 64;
+
+/// With fewer rays than this for each sphere the time to build the best tree does not come back.
+const RAYS_PER_SPHERE: u64 = 4;
+
+/// How the tree is made: never what is found in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Builder {
+    /// Halves on the longest axis.
+    Median,
+    /// The surface-area heuristic: the tree that rays pass through fastest.
+    #[default]
+    SurfaceArea,
+    /// Along a curve that fills space: built fastest.
+    Morton,
+}
+
+impl Builder {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Median, Self::SurfaceArea, Self::Morton];
+
+    /// What is fastest if so many rays are traced in all.
+    pub fn for_rays(spheres: usize, rays: u64) -> Self {
+        let few = (spheres as u64).saturating_mul(RAYS_PER_SPHERE);
+        if rays < few { Self::Morton } else { Self::SurfaceArea }
+    }
+}
+
+/// Where a part of the tree is cut.
+trait Cut: Sync {
+    /// Puts the spheres of the first part before those of the second; returns how many they are: a
+    /// multiple of [`LEAF`], neither 0 nor all. There is more than a leaf of `items`.
+    fn cut(&self, items: &mut [Item]) -> usize;
+
+    /// What cuts where the tree threatens to become too deep.
+    fn median(&self) -> &Median;
+
+    /// Whether [`Cut::finish`] makes all that is below so many items.
+    fn finishes(&self, _items: usize) -> bool {
+        false
+    }
+
+    /// Makes all branches over `items`.
+    fn finish(&self, items: &mut [Item], branches: &mut [Branch]) -> Top {
+        branch::grow(self.median(), items, branches, 0)
+    }
+}
+
+/// What spheres are exactly, by the user's order, if the columns do not hold it; empty otherwise.
+struct Precise {
+    id: Vec<u32>,
+    sphere: Vec<(DVec3, f64)>,
+}
+
+impl Precise {
+    fn of(&self, item: &Item) -> Option<(DVec3, f64)> {
+        self.sphere.get(self.id.partition_point(|&id| id < item.id)).copied()
+    }
+
+    /// What is equal of spheres that coincide.
+    fn key(&self, item: &Item) -> [u64; 4] {
+        let rounded = || {
+            let [x, y, z, radius] = item.sphere.map(f64::from);
+            (DVec3::new(x, y, z), radius)
+        };
+        let (center, radius) = self.of(item).unwrap_or_else(rounded);
+        // Adding 0 makes -0 the same as 0.
+        [center.x, center.y, center.z, radius].map(|value| (value + 0.0).to_bits())
+    }
+}
+
+/// Builds the tree and permutes `spheres` so that every leaf is a block.
+///
+/// Of spheres that coincide only the first of the user's is ever hit. Where there are crowds of them,
+/// in whose boxes a walk would have to look into every leaf, the others are left out.
+pub fn build(spheres: &mut Spheres, builder: Builder) -> Bvh {
+    let (mut items, precise) = taken(std::mem::take(spheres));
+    let (mut bvh, crowded) = tree(&mut items, builder);
+    if crowded {
+        let count = items.len();
+        leave_out_hidden(&mut items, &precise);
+        if items.len() < count {
+            bvh = tree(&mut items, builder).0;
+        }
+    }
+    *spheres = Spheres::from_rows(items.len(), |row| (items[row].sphere, items[row].id));
+    spheres.precise = items.iter().filter_map(|item| precise.of(item)).collect();
+    bvh
+}
+
+/// The spheres as items; their columns are not needed any more.
+fn taken(spheres: Spheres) -> (Vec<Item>, Precise) {
+    let item = |row: usize| {
+        let [x, y, z] = spheres.center(row).to_array();
+        Item { sphere: [x, y, z, spheres.radius(row)], id: spheres.id[row] }
+    };
+    let items = (0..spheres.len()).into_par_iter().map(item).collect();
+    let id = if spheres.precise.is_empty() { Vec::new() } else { spheres.id };
+    (items, Precise { id, sphere: spheres.precise })
+}
+
+/// Keeps the first of the user's spheres of all that coincide.
+fn leave_out_hidden(items: &mut Vec<Item>, precise: &Precise) {
+    items.par_sort_unstable_by_key(|item| (precise.key(item), item.id));
+    items.dedup_by_key(|item| precise.key(item));
+}
+
+/// The tree over `items`, which are put into the order of the leaves, and whether there are crowds of
+/// equal centers.
+fn tree(items: &mut Vec<Item>, builder: Builder) -> (Bvh, bool) {
+    match builder {
+        Builder::Median => cut(items, &Median::default()),
+        Builder::SurfaceArea => cut(items, &SurfaceArea::default()),
+        Builder::Morton => {
+            let morton = Morton::sort(items);
+            cut(items, &morton)
+        }
+    }
+}
+
+fn cut(items: &mut [Item], how: &impl Cut) -> (Bvh, bool) {
+    let mut nodes = Vec::new();
+    if !items.is_empty() {
+        let mut branches = vec![Branch::NONE; items.len().div_ceil(LEAF) - 1];
+        branch::grow(how, items, &mut branches, 0);
+        nodes = collapse::nodes(&branches, items);
+    }
+    (Bvh::new(nodes), how.median().crowded.load(std::sync::atomic::Ordering::Relaxed))
+}
