@@ -89,6 +89,20 @@ pub struct Pairs<D> {
     pub radius: D,
 }
 
+impl Pairs<f64> {
+    /// One of each.
+    #[inline(always)]
+    pub fn one(ray: &ExactRay, center: DVec3, radius: f64) -> Self {
+        Self {
+            origin: ray.origin.into(),
+            direction: ray.direction.into(),
+            origin_error: ray.origin_error,
+            center: center.into(),
+            radius,
+        }
+    }
+}
+
 /// [`confirm`] for pairs that are plain: the lanes whose ray enters the sphere from outside and that are
 /// far from any doubt, and the distances; the error of each is at most [`CLEAR`] of it.
 #[inline(always)]

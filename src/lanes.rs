@@ -67,12 +67,20 @@ pub trait Lanes:
     fn le(self, other: Self) -> Self::Mask;
     /// Whether the sign bit is set: true for -0.
     fn is_negative(self) -> Self::Mask;
+    /// The greatest lanes of four parts.
+    fn greatest_four(self) -> F32x4;
     /// The greatest lane.
-    fn greatest(self) -> f32;
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        let [a, b, c, d] = self.greatest_four().to_array();
+        Lanes::max(Lanes::max(a, b), Lanes::max(c, d))
+    }
     /// Whether all bits are the same: of numbers that are no floats.
     fn has_bits_of(self, other: Self) -> Self::Mask;
     /// `yes` where `mask` is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// True in lane `i` if bit `i` is set.
+    fn lanes(bits: u32) -> Self::Mask;
 }
 
 impl Mask for bool {
@@ -136,6 +144,10 @@ impl Lanes for f32 {
         self.is_sign_negative()
     }
     #[inline(always)]
+    fn greatest_four(self) -> F32x4 {
+        F32x4::splat(self)
+    }
+    #[inline(always)]
     fn greatest(self) -> f32 {
         self
     }
@@ -146,6 +158,10 @@ impl Lanes for f32 {
     #[inline(always)]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn lanes(bits: u32) -> bool {
+        bits & 1 == 1
     }
 }
 
@@ -242,20 +258,19 @@ macro_rules! impl_lanes {
                 WideMask(bytemuck::cast(bits(self).simd_eq(bits(other))))
             }
             #[inline(always)]
-            fn greatest(self) -> f32 {
-                let mut lanes = self.to_array();
-                let mut half = $width / 2;
-                while half > 0 {
-                    for lane in 0..half {
-                        lanes[lane] = Lanes::max(lanes[lane], lanes[lane + half]);
-                    }
-                    half /= 2;
-                }
-                lanes[0]
+            fn greatest_four(self) -> F32x4 {
+                let quarters: [F32x4; $width / 4] = bytemuck::cast(self);
+                quarters.into_iter().reduce(Lanes::max).unwrap_or(F32x4::splat(f32::NAN))
             }
             #[inline(always)]
             fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
                 wide::Select::select(mask.0, yes, no)
+            }
+            #[inline(always)]
+            fn lanes(bits: u32) -> Self::Mask {
+                let lane = |i: usize| if bits >> i & 1 == 1 { 1.0 } else { 0.0 };
+                let set = Self::new(std::array::from_fn(lane));
+                Lanes::lt(Self::splat(0.0), set)
             }
         }
     )+};
@@ -334,6 +349,15 @@ impl Doubles for F64x8 {
     }
 }
 
+/// In lane `i` the greatest lane of `row[i]`; anything in the last.
+#[inline(always)]
+pub fn greatest_of<L: Lanes>([x, y, z]: [L; 3]) -> F32x4 {
+    let z = z.greatest_four();
+    let columns = F32x4::transpose([x.greatest_four(), y.greatest_four(), z, z]);
+    let [a, b, c, d] = columns;
+    Lanes::max(Lanes::max(a, b), Lanes::max(c, d))
+}
+
 /// Puts number `order >> 4 i & 7` of a row in place `i`.
 #[inline(always)]
 pub fn shuffle_numbers(row: &[u32; 8], order: u32) -> [u32; 8] {
@@ -351,11 +375,12 @@ pub fn shuffle(row: F32x8, order: u32) -> F32x8 {
 
 /// The indices of the set bits, lowest first.
 #[inline(always)]
-pub fn set_bits(mut bits: u32) -> impl Iterator<Item = usize> {
+pub fn set_bits(bits: impl Into<u64>) -> impl Iterator<Item = usize> {
+    let mut bits = bits.into();
     std::iter::from_fn(move || {
         let lane = bits.trailing_zeros();
         bits &= bits.wrapping_sub(1);
-        (lane < u32::BITS).then_some(lane as usize)
+        (lane < u64::BITS).then_some(lane as usize)
     })
 }
 
@@ -433,8 +458,8 @@ mod tests {
 
     #[test]
     fn set_bits_come_in_order() {
-        assert_eq!(set_bits(0b1010_0001).collect::<Vec<_>>(), [0, 5, 7]);
-        assert_eq!(set_bits(0).count(), 0);
+        assert_eq!(set_bits(0b1010_0001_u32).collect::<Vec<_>>(), [0, 5, 7]);
+        assert_eq!(set_bits(0_u32).count(), 0);
         assert_eq!(set_bits(u32::MAX).count(), 32);
     }
 }

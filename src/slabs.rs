@@ -17,6 +17,9 @@ const U: f32 = f32::EPSILON / 2.0;
 /// How much products of origins are moved, relative to themselves.
 const SLACK: f32 = 4.0 * U;
 
+/// How much nearer near planes are taken to be.
+const SOONER: f32 = 1.0 - 8.0 * U;
+
 /// Directions are kept this far from 0, so that their reciprocals are finite: what moves a ray by
 /// less than boxes are wider than what is in them, over any distance that counts.
 const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
@@ -32,7 +35,7 @@ const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
 /// the two products by `u` of theirs (the first not at all where it is fused with the difference).
 /// Their magnitudes differ by the distance, so what cancellation leaves is at most `2 u |o i|`, which
 /// `o i` is moved by, and its own rounding, to the safe side; and `3 u` of the distance, on both
-/// sides, which `1 + 8 u` on the far one outweighs (after Ize, "Robust BVH Ray Traversal", JCGT
+/// sides, which [`SOONER`] on the near one outweighs (after Ize, "Robust BVH Ray Traversal", JCGT
 /// 2013). The slack is relative to the ray's own origin: large spheres elsewhere do not widen it.
 ///
 /// Of a packet, a near plane is met first by the steepest ray if it starts farthest ahead, a far one
@@ -45,6 +48,8 @@ pub struct Slabs {
     shift_near: [f32; 4],
     inverse_far: [f32; 4],
     shift_far: [f32; 4],
+    /// By axis, whether the direction is negative.
+    negative: [bool; 3],
     /// Bit `a` is set where the direction is negative on axis `a`.
     pub octant: usize,
 }
@@ -56,6 +61,7 @@ impl Slabs {
         shift_near: [0.0; 4],
         inverse_far: [1.0; 4],
         shift_far: [0.0; 4],
+        negative: [false; 3],
         octant: 0,
     };
 
@@ -64,32 +70,37 @@ impl Slabs {
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let (origin, direction) = (row(origin), row(direction));
         let inverse = inverse(direction);
-        let shift = origin * inverse;
-        Self::assemble(direction, (inverse, shift), (inverse, shift))
+        Self::assemble(direction, (inverse, origin), (inverse, origin))
     }
 
-    /// For rays whose origins and directions lie between two bounds, lower first.
+    /// For rays whose origins and directions lie between two bounds, lower first; in lanes 0 to 2 what is
+    /// on their axes.
     #[inline(always)]
-    pub fn between(origin: (Vec3, Vec3), direction: (Vec3, Vec3)) -> Self {
-        let (lower, upper) = (row(direction.0), row(direction.1));
+    pub fn between(origin: [F32x4; 2], direction: [F32x4; 2]) -> Self {
+        let [lower, upper] = direction;
         let negative = lower.is_negative();
         let steep = inverse(Lanes::select(negative, lower, upper));
         let flat = inverse(Lanes::select(negative, upper, lower));
-        let (low, high) = (row(origin.0), row(origin.1));
+        let [low, high] = origin;
         let (ahead, behind) =
             (Lanes::select(negative, low, high), Lanes::select(negative, high, low));
-        Self::assemble(lower, (steep, ahead * steep), (flat, behind * flat))
+        Self::assemble(lower, (steep, ahead), (flat, behind))
     }
 
+    /// From the reciprocal direction and the origin that bound near and far distances.
     #[inline(always)]
     fn assemble(direction: F32x4, near: (F32x4, F32x4), far: (F32x4, F32x4)) -> Self {
+        let sooner = near.0 * F32x4::splat(SOONER);
+        let (near, far) = ((sooner, near.1 * sooner), (far.0, far.1 * far.0));
         let slack = |shift: F32x4| Lanes::abs(shift) * F32x4::splat(SLACK);
+        let octant = direction.is_negative().bits() as usize & 7;
         Self {
             inverse_near: near.0.to_array(),
             shift_near: (-(near.1 + slack(near.1))).to_array(),
             inverse_far: far.0.to_array(),
             shift_far: (slack(far.1) - far.1).to_array(),
-            octant: direction.is_negative().bits() as usize & 7,
+            negative: [octant & 1 != 0, octant & 2 != 0, octant & 4 != 0],
+            octant,
         }
     }
 
@@ -102,16 +113,16 @@ impl Slabs {
         let mut near = F32x8::splat(0.0);
         let mut far = F32x8::splat(t_max);
         for axis in 0..3 {
-            let side = self.octant >> axis & 1;
+            let negative = self.negative[axis];
             let splat = |x: &[f32; 4]| F32x8::splat(x[axis]);
-            let first = F32x8::load(&planes[axis][side]);
-            let second = F32x8::load(&planes[axis][1 - side]);
+            let first = F32x8::load(&planes[axis][usize::from(negative)]);
+            let second = F32x8::load(&planes[axis][usize::from(!negative)]);
             let enter = Lanes::mul_add(first, splat(&self.inverse_near), splat(&self.shift_near));
             let leave = Lanes::mul_add(second, splat(&self.inverse_far), splat(&self.shift_far));
             near = Lanes::max(enter, near);
             far = Lanes::min(leave, far);
         }
-        (near.le(far * F32x8::splat(1.0 + 8.0 * U)).bits(), near)
+        (near.le(far).bits(), near)
     }
 }
 

@@ -10,8 +10,8 @@ use crate::exact::{self, Distance};
 use crate::filter::{Chord, FilterRay};
 use crate::intersect::{self, CLEAR, Pairs, Root};
 use crate::lanes::{F64x8, Lanes, MAX_LANES, set_bits};
-use crate::ray::{ExactRay, Hits, MISS, Rays};
-use crate::spheres::Spheres;
+use crate::ray::{Columns3, ExactRay, Hits, MISS, Rays};
+use crate::spheres::{Block, LEAF, Spheres};
 use crate::vec3::Vec3;
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -84,24 +84,26 @@ impl<'a, Q: Query> Decider<'a, Q> {
     /// [`Decider::settle`] for eight rays; returns those that it could.
     #[inline(always)]
     fn settle_plain(&mut self, first: usize, candidates: &[u32], there: u32) -> u32 {
-        let rays = self.rays;
-        let column = |f: &dyn Fn(usize) -> f64| F64x8::new(std::array::from_fn(f));
-        let sphere = |i: usize| if there >> i & 1 == 1 { candidates[i] as usize } else { 0 };
-        let spheres = self.spheres;
-        let exact: [_; 8] = std::array::from_fn(|i| {
-            let sphere = sphere(i);
-            (spheres.center(sphere).as_dvec3(), f64::from(spheres.radius(sphere)))
+        let (rays, blocks) = (self.rays, self.spheres.blocks());
+        let places: [_; 8] = std::array::from_fn(|i| {
+            let sphere = if there >> i & 1 == 1 { candidates[i] as usize } else { 0 };
+            (sphere / LEAF, sphere % LEAF)
         });
-        let ray: [_; 8] = std::array::from_fn(|i| rays.exact(first + i));
-        let vector = |f: &dyn Fn(usize) -> DVec3| {
-            Vec3::new(column(&|i| f(i).x), column(&|i| f(i).y), column(&|i| f(i).z))
+        let wide = |row: [f32; 8]| F64x8::new(row.map(f64::from));
+        let column = |x: &[f32]| wide(std::array::from_fn(|i| x[first..first + 8][i]));
+        let columns = |v: &Columns3| Vec3::new(column(&v.x), column(&v.y), column(&v.z));
+        let gather = |x: fn(&Block) -> &[f32; LEAF]| {
+            wide(places.map(|(block, lane)| x(&blocks[block])[lane]))
         };
+        let origin = columns(&rays.origin);
+        let span = origin.x.abs() + origin.y.abs() + origin.z.abs();
         let pairs = Pairs {
-            origin: vector(&|i| ray[i].origin),
-            direction: vector(&|i| ray[i].direction),
-            origin_error: column(&|i| ray[i].origin_error),
-            center: vector(&|i| exact[i].0),
-            radius: column(&|i| exact[i].1),
+            origin,
+            direction: columns(&rays.direction),
+            // As if all were on surfaces: no less.
+            origin_error: span * F64x8::splat(f64::from(f32::EPSILON)),
+            center: Vec3::new(gather(|b| &b.x), gather(|b| &b.y), gather(|b| &b.z)),
+            radius: gather(|b| &b.radius),
         };
         let (plain, t) = intersect::confirm_plain(&pairs);
         let t = t.to_array();
@@ -124,15 +126,37 @@ impl<'a, Q: Query> Decider<'a, Q> {
         }
         let (center, radius) = self.spheres.exact(sphere);
         let ray = self.rays.exact(row);
-        let inside = || self.starts_within(&ray, row, center, radius);
-        let Some(root) = intersect::confirm(&ray, center, radius, inside) else { return false };
+        let (plain, t) = intersect::confirm_plain(&Pairs::one(&ray, center, radius));
+        if plain == 0 {
+            return self.consider_closely(row, sphere, &ray);
+        }
+        self.keep_nearer(row, sphere, &ray, (t, t * CLEAR))
+    }
+
+    /// [`Decider::consider`] for hits that are not plain.
+    #[inline(never)]
+    fn consider_closely(&mut self, row: usize, sphere: usize, ray: &ExactRay) -> bool {
+        let (center, radius) = self.spheres.exact(sphere);
+        let inside = || self.starts_within(ray, row, center, radius);
+        let Some(root) = intersect::confirm(ray, center, radius, inside) else { return false };
         self.exact += u64::from(root.exact);
-        let nearer = self.is_nearer(&ray, row, sphere, &root);
+        self.keep_nearer(row, sphere, ray, (root.t, root.error))
+    }
+
+    /// Keeps a hit at distance `t`, give or take `error`, if it is nearer: then it is true.
+    #[inline(always)]
+    fn keep_nearer(
+        &mut self,
+        row: usize,
+        sphere: usize,
+        ray: &ExactRay,
+        (t, error): (f64, f64),
+    ) -> bool {
+        let nearer = self.is_nearer(row, sphere, ray, (t, error));
         if nearer {
             self.hits.sphere[row] = sphere as u32;
             if !Q::ANY {
-                self.hits.t[row] = root.t;
-                self.hits.error[row] = root.error;
+                (self.hits.t[row], self.hits.error[row]) = (t, error);
             }
         }
         nearer
@@ -174,15 +198,21 @@ impl<'a, Q: Query> Decider<'a, Q> {
 
     /// Whether a hit replaces what its ray has so far.
     #[inline(always)]
-    fn is_nearer(&mut self, ray: &ExactRay, row: usize, sphere: usize, root: &Root) -> bool {
-        let (best, error) = (self.hits.t[row], self.hits.error[row]);
-        if root.t + root.error < best - error {
+    fn is_nearer(
+        &mut self,
+        row: usize,
+        sphere: usize,
+        ray: &ExactRay,
+        (t, error): (f64, f64),
+    ) -> bool {
+        let (best, best_error) = (self.hits.t[row], self.hits.error[row]);
+        if t + error < best - best_error {
             return true;
         }
-        if root.t - root.error > best + error {
+        if t - error > best + best_error {
             return false;
         }
-        match self.compare(ray, row, sphere, root) {
+        match self.compare(row, sphere, ray, (t, error)) {
             Ordering::Less => true,
             Ordering::Equal => !Q::ANY && self.precedes(sphere, self.hits.sphere[row]),
             Ordering::Greater => false,
@@ -192,15 +222,21 @@ impl<'a, Q: Query> Decider<'a, Q> {
     /// Compares distances that are closer than their errors: by closer bounds, then without
     /// rounding.
     #[cold]
-    fn compare(&mut self, ray: &ExactRay, row: usize, sphere: usize, root: &Root) -> Ordering {
+    fn compare(
+        &mut self,
+        row: usize,
+        sphere: usize,
+        ray: &ExactRay,
+        (t, error): (f64, f64),
+    ) -> Ordering {
         let (best, other) = (self.hits.t[row], self.hits.sphere[row] as usize);
-        let error = self.hits.error[row];
+        let best_error = self.hits.error[row];
         let twins = || self.spheres.exact(sphere) == self.spheres.exact(other);
-        if error != 0.0 && twins() {
+        if best_error != 0.0 && twins() {
             return Ordering::Equal;
         }
-        let first = self.candidate(ray, sphere, root.t, root.error);
-        let second = self.candidate(ray, other, best, error);
+        let first = self.candidate(ray, sphere, t, error);
+        let second = self.candidate(ray, other, best, best_error);
         let gap = first.0.t - second.0.t;
         if gap.abs() > first.0.error + second.0.error {
             return gap.total_cmp(&0.0);

@@ -56,6 +56,13 @@ impl Child {
         Self(block as u32 | Self::LEAF)
     }
 
+    /// 1 for what it is: a node, a block, none.
+    #[inline(always)]
+    fn kinds(self) -> [u64; 3] {
+        let (block, none) = (u64::from(self.0 >> 30 & 1), u64::from(self.0 >> 31));
+        [1 - (block | none), block, none]
+    }
+
     /// [`Child::NODE`] or [`Child::BLOCK`], if there is one.
     #[inline(always)]
     fn kind(self) -> u32 {

@@ -12,8 +12,8 @@ use super::decide::{DONE, Decider};
 use super::stream::Bundle;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay};
-use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, set_bits};
-use crate::ray::MISS;
+use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, greatest_of, set_bits};
+use crate::ray::{Columns3, MISS, Rays};
 use crate::slabs::{MARGIN, Planes, Slabs};
 use crate::spheres::{Block, LEAF};
 use crate::vec3::Vec3;
@@ -46,6 +46,9 @@ fn bits_of<L: Lanes>(numbers: &[u32]) -> L {
 }
 
 impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
+    /// The first row, and a bit for each lane that belongs to the packet.
+    type Start = (usize, u32);
+
     #[inline(always)]
     fn none() -> Self {
         Self {
@@ -59,9 +62,15 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     }
 
     #[inline(always)]
-    fn new(decider: &Decider<Q>, rows: (usize, u32)) -> (Self, f32) {
-        let packet = Self::begin(decider, rows);
-        (packet, packet.t_max.greatest())
+    fn begin(
+        &mut self,
+        decider: &Decider<Q>,
+        (row, lanes): (usize, u32),
+        slabs: &mut Slabs,
+    ) -> f32 {
+        self.take_rays(decider, (row, lanes));
+        *slabs = bounds::<L>(decider.rays, row, lanes);
+        self.t_max.greatest()
     }
 
     #[inline(always)]
@@ -88,6 +97,9 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     /// Computes the distances of what is hit for certain.
     #[inline(always)]
     fn settle(&self, decider: &mut Decider<Q>) {
+        if self.candidate.has_bits_of(bits(MISS)).bits().count_ones() as usize == L::WIDTH {
+            return;
+        }
         let mut candidates = [0.0; MAX_LANES];
         self.candidate.store(&mut candidates);
         let candidates: [u32; MAX_LANES] = bytemuck::cast(candidates);
@@ -97,24 +109,25 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
 
 impl<L: Lanes> Packet<L> {
     #[inline(always)]
-    fn begin<Q: Query>(decider: &Decider<Q>, (row, lanes): (usize, u32)) -> Self {
+    fn take_rays<Q: Query>(&mut self, decider: &Decider<Q>, (row, lanes): (usize, u32)) {
         let rays = decider.rays;
         let origin: Vec3<L> = rays.origin.load(row);
         let (t_min, t_max) = decider.bounds(row, lanes);
-        Self {
+        *self = Self {
             row: row as u32,
             filter: FilterRay::new(origin, rays.direction.load(row)),
             known: [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])],
             t_min,
             t_max,
             candidate: bits(MISS),
-        }
+        };
     }
 
     /// Tests every sphere there is, for some of the rays from a row on.
     #[inline(always)]
     pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, rows: (usize, u32)) {
-        let mut packet = Self::begin(decider, rows);
+        let mut packet = <Self as Bundle<Q>>::none();
+        packet.take_rays(decider, rows);
         for sphere in 0..decider.spheres.len() {
             packet.test(decider, sphere);
         }
@@ -165,6 +178,20 @@ impl<L: Lanes> Packet<L> {
         self.candidate = L::load(&candidates);
         (self.t_min, self.t_max) = (L::load(&t_min), L::load(&t_max));
     }
+}
+
+/// What bounds the rays of a packet.
+#[inline(always)]
+fn bounds<L: Lanes>(rays: &Rays, row: usize, lanes: u32) -> Slabs {
+    let first = row + lanes.trailing_zeros() as usize;
+    let members = L::lanes(lanes);
+    let bounds = |v: &Columns3| {
+        // A lane that does not belong to the packet counts as the first that does.
+        let column = |x: &[f32]| L::select(members, L::load(&x[row..]), L::splat(x[first]));
+        let v = [column(&v.x), column(&v.y), column(&v.z)];
+        [-greatest_of(v.map(|x| -x)), greatest_of(v)]
+    };
+    Slabs::between(bounds(&rays.origin), bounds(&rays.direction))
 }
 
 /// Boxes about the spheres of a block, as those of the tree are about theirs.

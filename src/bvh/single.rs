@@ -20,21 +20,25 @@ pub(super) struct Single {
 }
 
 impl<Q: Query> Bundle<Q> for Single {
+    /// The ray's row.
+    type Start = usize;
+
     #[inline(always)]
     fn none() -> Self {
         Self { row: 0, own: (MISS, 0), filter: FilterRay::IDLE }
     }
 
     #[inline(always)]
-    fn new(decider: &Decider<Q>, (row, _): (usize, u32)) -> (Self, f32) {
+    fn begin(&mut self, decider: &Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
         let rays = decider.rays;
+        *slabs = Slabs::new(rays.origin.row(row), rays.direction.row(row));
         let own = rays.own[row];
-        let ray = Self {
+        *self = Self {
             row: row as u32,
             own: (own / LEAF as u32, !(1 << (own % LEAF as u32))),
             filter: FilterRay::new(rays.origin.load(row), rays.direction.load(row)),
         };
-        (ray, decider.bounds::<f32>(row, 1).1)
+        decider.bounds::<f32>(row, 1).1
     }
 
     #[inline(always)]
@@ -68,6 +72,8 @@ impl Single {
         let center = Vec3::new(center.x, center.y, center.z);
         let chord = Chord::new(&self.filter, center, radius);
         let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
-        certain && far < decider.bounds::<f32>(row, 1).0 && decider.rays.target[row] != sphere as u32
+        certain
+            && far < decider.bounds::<f32>(row, 1).0
+            && decider.rays.target[row] != sphere as u32
     }
 }

@@ -18,12 +18,15 @@ const STACK: usize = 8 + DEPTH * (WIDTH - 1) + WIDTH;
 
 /// What goes through the tree together: one ray, or a packet.
 pub(super) trait Bundle<Q: Query>: Copy {
+    /// What says which rays they are.
+    type Start;
+
     /// In place of a bundle where there is none.
     fn none() -> Self;
 
-    /// The bundle of the rays from `row` on whose bits are set in `lanes`, and the distance beyond
-    /// which it needs no answers; below 0 if it needs none.
-    fn new(decider: &Decider<Q>, rows: (usize, u32)) -> (Self, f32);
+    /// Becomes another bundle. Returns the distance beyond which it needs no answers; below 0 if it
+    /// needs none. In place, for what is put together in parts should not be copied as a whole.
+    fn begin(&mut self, decider: &Decider<Q>, start: Self::Start, slabs: &mut Slabs) -> f32;
 
     /// Which spheres of a block may be hit at a distance of at most `t_far`. The bundle is within
     /// the slabs.
@@ -59,150 +62,92 @@ struct Stack {
     near: [f32; STACK],
 }
 
-/// Places of flights, one after another.
-#[derive(Clone, Copy)]
-struct Queue<const FLIGHTS: usize> {
-    place: [u8; FLIGHTS],
-    len: usize,
+/// Flights by what they visit next: a bit for each.
+#[derive(Clone, Copy, Default)]
+struct Queues {
+    nodes: u64,
+    leaves: u64,
+    arrived: u64,
 }
 
-impl<const FLIGHTS: usize> Queue<FLIGHTS> {
-    const EMPTY: Self = Self { place: [0; FLIGHTS], len: 0 };
-
-    /// Appends a place if it is `wanted`.
+impl Queues {
     #[inline(always)]
-    fn push_if(&mut self, wanted: bool, place: u8) {
-        self.place[self.len % FLIGHTS] = place;
-        self.len += usize::from(wanted);
-    }
-
-    #[inline(always)]
-    fn places(&self) -> &[u8] {
-        &self.place[..self.len.min(FLIGHTS)]
+    fn push(&mut self, child: Child, place: usize) {
+        let [node, leaf, none] = child.kinds();
+        self.nodes |= node << place;
+        self.leaves |= leaf << place;
+        self.arrived |= none << place;
     }
 }
 
-/// Flights by what they visit next.
-#[derive(Clone, Copy)]
-struct Queues<const FLIGHTS: usize> {
-    nodes: Queue<FLIGHTS>,
-    leaves: Queue<FLIGHTS>,
-    arrived: Queue<FLIGHTS>,
-}
-
-impl<const FLIGHTS: usize> Queues<FLIGHTS> {
-    const EMPTY: Self = Self { nodes: Queue::EMPTY, leaves: Queue::EMPTY, arrived: Queue::EMPTY };
-
-    #[inline(always)]
-    fn push(&mut self, child: Child, place: u8) {
-        self.nodes.push_if(child.kind() == Child::NODE, place);
-        self.leaves.push_if(child.kind() == Child::BLOCK, place);
-        self.arrived.push_if(child == Child::NONE, place);
+/// Sends bundles on their way, `FLIGHTS` at once: a power of two of at most 64.
+pub(super) fn trace<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
+    bvh: &Bvh,
+    decider: &mut Decider<Q>,
+    mut bundles: impl Iterator<Item = B::Start>,
+) {
+    if bvh.is_empty() {
+        return;
     }
-}
-
-/// Walks and what waits for them: `FLIGHTS`, a power of two, at once.
-pub(super) struct Stream<B, const FLIGHTS: usize> {
-    flights: [Flight<B>; FLIGHTS],
-    queues: Queues<FLIGHTS>,
-}
-
-impl<B: Copy, const FLIGHTS: usize> Stream<B, FLIGHTS> {
-    /// Sends bundles on their way: each is a row, which lanes from there on belong to it, and what
-    /// bounds its rays.
-    pub(super) fn trace<Q: Query>(
-        bvh: &Bvh,
-        decider: &mut Decider<Q>,
-        mut bundles: impl Iterator<Item = ((usize, u32), Slabs)>,
-    ) where
-        B: Bundle<Q>,
-    {
-        if bvh.is_empty() {
-            return;
-        }
-        let mut stream =
-            Self { flights: [Flight::idle(B::none()); FLIGHTS], queues: Queues::EMPTY };
-        for place in 0..FLIGHTS {
-            stream.queues.push(Child::NONE, place as u8);
-        }
-        loop {
-            let now = std::mem::replace(&mut stream.queues, Queues::EMPTY);
-            stream.land(now.arrived.places(), decider, &mut bundles);
-            if now.nodes.len + now.leaves.len + stream.queues.nodes.len == 0 {
-                return;
-            }
-            stream.visit_nodes(now.nodes.places(), bvh);
-            stream.visit_leaves(now.leaves.places(), decider);
-        }
-    }
-
-    /// Puts new flights in place of those that have arrived.
-    #[inline(always)]
-    fn land<Q: Query>(
-        &mut self,
-        places: &[u8],
-        decider: &mut Decider<Q>,
-        bundles: &mut impl Iterator<Item = ((usize, u32), Slabs)>,
-    ) where
-        B: Bundle<Q>,
-    {
-        for &place in places {
-            let flight = &mut self.flights[place as usize % FLIGHTS];
+    let mut flights = [Flight::idle(B::none()); FLIGHTS];
+    let mut next =
+        Queues { arrived: u64::MAX >> (u64::BITS as usize - FLIGHTS), ..Queues::default() };
+    loop {
+        let now = std::mem::take(&mut next);
+        for place in set_bits(now.arrived) {
+            let flight = &mut flights[place % FLIGHTS];
             flight.bundle.settle(decider);
-            flight.bundle = B::none();
-            if let Some((rows, slabs)) = bundles.next() {
-                flight.slabs = slabs;
-                (flight.bundle, flight.t_far) = B::new(decider, rows);
+            if let Some(start) = bundles.next() {
+                flight.t_far = flight.bundle.begin(decider, start, &mut flight.slabs);
                 flight.child = Child::node(0);
                 flight.top = 1;
-                self.queues.nodes.push_if(true, place);
+                next.push(flight.child, place);
             }
         }
-    }
-
-    #[inline(always)]
-    fn visit_nodes<Q: Query>(&mut self, places: &[u8], bvh: &Bvh)
-    where
-        B: Bundle<Q>,
-    {
-        for &place in places {
-            let flight = &mut self.flights[place as usize % FLIGHTS];
+        if now.nodes | now.leaves | next.nodes == 0 {
+            return;
+        }
+        for place in set_bits(now.nodes) {
+            let flight = &mut flights[place % FLIGHTS];
             let child = flight.step::<Q>(&bvh.nodes()[flight.child.index()]);
-            self.queues.push(child, place);
+            next.push(child, place);
         }
-    }
-
-    #[inline(always)]
-    fn visit_leaves<Q: Query>(&mut self, places: &[u8], decider: &mut Decider<Q>)
-    where
-        B: Bundle<Q>,
-    {
-        let mut candidates = [(0_u8, 0_u8); FLIGHTS];
-        let mut count = 0;
-        for &place in places {
-            let flight = &self.flights[place as usize % FLIGHTS];
-            let index = flight.child.index();
-            let block = &decider.spheres.blocks()[index];
-            let met = flight.bundle.meets(&flight.slabs, flight.t_far, index, block);
-            candidates[count % FLIGHTS] = (place, met as u8);
-            count += usize::from(met != 0);
-        }
-        for &(place, met) in &candidates[..count.min(FLIGHTS)] {
-            let flight = &mut self.flights[place as usize % FLIGHTS];
-            let first = flight.child.index() * LEAF;
-            for lane in set_bits(u32::from(met)) {
-                if let Some(t_far) = flight.bundle.test(decider, first + lane) {
-                    flight.t_far = t_far;
-                    flight.nearer = true;
-                }
-            }
-        }
-        for &place in places {
-            let flight = &mut self.flights[place as usize % FLIGHTS];
+        visit_leaves(&mut flights, now.leaves, decider);
+        for place in set_bits(now.leaves) {
+            let flight = &mut flights[place % FLIGHTS];
             if flight.nearer {
                 flight.forget::<Q>();
             }
-            self.queues.push(flight.pop(), place);
+            next.push(flight.pop(), place);
+        }
+    }
+}
+
+/// Tests the spheres of the blocks that flights are at.
+#[inline(always)]
+fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
+    flights: &mut [Flight<B>; FLIGHTS],
+    places: u64,
+    decider: &mut Decider<Q>,
+) {
+    let mut candidates = [(0_u8, 0_u8); FLIGHTS];
+    let mut count = 0;
+    for place in set_bits(places) {
+        let flight = &flights[place % FLIGHTS];
+        let index = flight.child.index();
+        let block = &decider.spheres.blocks()[index];
+        let met = flight.bundle.meets(&flight.slabs, flight.t_far, index, block);
+        candidates[count % FLIGHTS] = (place as u8, met as u8);
+        count += usize::from(met != 0);
+    }
+    for &(place, met) in &candidates[..count.min(FLIGHTS)] {
+        let flight = &mut flights[place as usize % FLIGHTS];
+        let first = flight.child.index() * LEAF;
+        for lane in set_bits(u64::from(met)) {
+            if let Some(t_far) = flight.bundle.test(decider, first + lane) {
+                flight.t_far = t_far;
+                flight.nearer = true;
+            }
         }
     }
 }

@@ -4,17 +4,13 @@
 //! go in packets ([`packet`](super::packet)), others many at a time but each on its own
 //! ([`stream`](super::stream)). Brute force is a packet's leaf test over all spheres: the oracle.
 
-use super::Bvh;
 use super::decide::Decider;
 use super::packet::Packet;
 use super::single::Single;
-use super::stream::Stream;
+use super::{Bvh, stream};
 use crate::lanes::{Lanes, Mask, set_bits};
 use crate::ray::{Hits, Rays};
-use crate::slabs::Slabs;
 use crate::spheres::Spheres;
-use crate::vec3::Vec3;
-use glam::Vec3 as Point;
 use std::marker::PhantomData;
 
 /// Rays that are looked at together before they are traced.
@@ -95,8 +91,6 @@ pub fn trace<'a, L: Lanes, Q: Query>(
     let decider = &mut Decider::<Q>::new(spheres, rays, hits);
     for first in (0..rays.len()).step_by(CHUNK) {
         let rows = first..rays.len().min(first + CHUNK);
-        let single =
-            |row: usize| ((row, 1), Slabs::new(rays.origin.row(row), rays.direction.row(row)));
         match method {
             Method::Brute => {
                 rows.step_by(L::WIDTH).for_each(|row| {
@@ -104,23 +98,23 @@ pub fn trace<'a, L: Lanes, Q: Query>(
                     Packet::<L>::brute(decider, (row, lanes));
                 });
             }
-            Method::Single => Stream::<Single, 1>::trace(bvh, decider, rows.map(single)),
-            Method::Stream => Stream::<Single, RAYS>::trace(bvh, decider, rows.map(single)),
+            Method::Single => stream::trace::<_, Single, 1>(bvh, decider, rows),
+            Method::Stream => stream::trace::<_, Single, RAYS>(bvh, decider, rows),
             Method::Packet | Method::Auto => {
                 let grain = if method == Method::Auto { bvh.grain } else { f32::INFINITY };
                 let mut others = [0_u32; CHUNK];
                 let mut count = 0;
                 let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
-                    let (members, slabs) = alike::<L>(rays, row, grain);
+                    let members = alike::<L>(rays, row, grain);
                     for lane in set_bits(!members & lanes_from(row, L::WIDTH, rows.end)) {
                         others[count] = (row + lane) as u32;
                         count += 1;
                     }
-                    (members != 0).then_some(((row, members), slabs))
+                    (members != 0).then_some((row, members))
                 });
-                Stream::<Packet<L>, PACKETS>::trace(bvh, decider, packets);
-                let others = others[..count].iter().map(|&row| single(row as usize));
-                Stream::<Single, RAYS>::trace(bvh, decider, others);
+                stream::trace::<_, Packet<L>, PACKETS>(bvh, decider, packets);
+                let others = others[..count].iter().map(|&row| row as usize);
+                stream::trace::<_, Single, RAYS>(bvh, decider, others);
             }
         }
     }
@@ -133,10 +127,9 @@ fn lanes_from(row: usize, width: usize, end: usize) -> u32 {
     u32::MAX >> (u32::BITS as usize - width.min(end - row))
 }
 
-/// The rays of a row that go together with the one in its middle, if they are enough, and what bounds
-/// them.
+/// The rays of a row that go together with the one in its middle, if they are enough.
 #[inline(always)]
-fn alike<L: Lanes>(rays: &Rays, row: usize, grain: f32) -> (u32, Slabs) {
+fn alike<L: Lanes>(rays: &Rays, row: usize, grain: f32) -> u32 {
     let lanes = lanes_from(row, L::WIDTH, rays.len());
     let middle = row + L::WIDTH.min(rays.len() - row) / 2;
     let (origin, direction) = (rays.origin.load::<L>(row), rays.direction.load::<L>(row));
@@ -155,17 +148,6 @@ fn alike<L: Lanes>(rays: &Rays, row: usize, grain: f32) -> (u32, Slabs) {
         & same(direction.x, toward.x)
         & same(direction.y, toward.y)
         & same(direction.z, toward.z);
-    let bound = |x: L, middle: f32| {
-        let x = L::select(members, x, L::splat(middle));
-        (-(-x).greatest(), x.greatest())
-    };
-    let bounds = |v: Vec3<L>, middle: Point| {
-        let (x, y, z) = (bound(v.x, middle.x), bound(v.y, middle.y), bound(v.z, middle.z));
-        (Point::new(x.0, y.0, z.0), Point::new(x.1, y.1, z.1))
-    };
     let bits = members.bits() & lanes;
-    if (bits.count_ones() as usize) * FEW < L::WIDTH {
-        return (0, Slabs::IDLE);
-    }
-    (bits, Slabs::between(bounds(origin, at), bounds(direction, toward)))
+    if (bits.count_ones() as usize) * FEW < L::WIDTH { 0 } else { bits }
 }
