@@ -8,7 +8,6 @@
 //! the nearest last, where a stack is popped.
 
 use super::{Bounds, WIDTH};
-use glam::Vec3;
 
 /// By octant and by which slots are hit: their numbers, the farthest first, in four bits each.
 static FARTHEST_FIRST: [[u32; 1 << WIDTH]; 8] = table();
@@ -48,34 +47,47 @@ pub(super) fn in_order(mask: u32) -> u32 {
 /// A slot for each of at most [`WIDTH`] boxes: the pair that agrees best first, then the next.
 pub(super) fn slots(boxes: &[Bounds]) -> [usize; WIDTH] {
     let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
-    let from_middle: Vec<Vec3> =
-        boxes.iter().map(|b| (b.low - all.low) + (b.high - all.high)).collect();
-    let side = |slot: usize, axis: usize| if slot >> axis & 1 == 1 { 1.0 } else { -1.0 };
-    let agreement = |child: usize, slot: usize| {
-        from_middle[child].dot(Vec3::from_array(std::array::from_fn(|axis| side(slot, axis))))
-    };
+    let mut agreement = [[f32::NEG_INFINITY; WIDTH]; WIDTH];
+    for (row, bounds) in agreement.iter_mut().zip(boxes) {
+        let [x, y, z] = ((bounds.low - all.low) + (bounds.high - all.high)).to_array();
+        for (slot, agreement) in row.iter_mut().enumerate() {
+            let toward = |axis: usize, x: f32| if slot >> axis & 1 == 1 { x } else { -x };
+            // Where boxes are so large that nothing is finite, any slot does.
+            *agreement = (toward(0, x) + toward(1, y) + toward(2, z)).max(f32::MIN);
+        }
+    }
+    let mut best = agreement.map(|row| first_greatest(&row));
     let mut slots = [WIDTH; WIDTH];
-    let mut free = u32::MAX >> (u32::BITS as usize - WIDTH);
     for _ in boxes {
-        let mut best = (f32::NEG_INFINITY, 0, 0);
-        for child in (0..boxes.len()).filter(|&child| slots[child] == WIDTH) {
-            for slot in (0..WIDTH).filter(|slot| free >> slot & 1 == 1) {
-                let agreement = agreement(child, slot);
-                // Where boxes are so large that nothing is finite, any slot does.
-                if agreement > best.0 || best.0 == f32::NEG_INFINITY {
-                    best = (agreement.max(f32::MIN), child, slot);
-                }
+        let (child, _) = first_greatest(&best.map(|(_, agreement)| agreement));
+        let slot = best[child].0;
+        slots[child] = slot;
+        agreement[child] = [f32::NEG_INFINITY; WIDTH];
+        for (row, best) in agreement.iter_mut().zip(&mut best) {
+            row[slot] = f32::NEG_INFINITY;
+            if best.0 == slot {
+                *best = first_greatest(row);
             }
         }
-        slots[best.1] = best.2;
-        free &= !(1 << best.2);
     }
     slots
+}
+
+/// The first of the greatest values of a row, and where it is.
+fn first_greatest(row: &[f32; WIDTH]) -> (usize, f32) {
+    let mut best = (0, row[0]);
+    for (i, &x) in row.iter().enumerate() {
+        if x > best.1 {
+            best = (i, x);
+        }
+    }
+    best
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn what_is_hit_comes_once_and_the_nearest_last() {

@@ -67,35 +67,34 @@ pub(super) fn best(a: &Top, b: &Top, roots: usize) -> (usize, f32) {
     best
 }
 
-/// Makes the branches over some items, which are put into the order of the leaves.
+/// Makes the branches over some items, which are put into the order of the leaves, and where `first`
+/// come before them and `depth` branches above.
 pub(super) fn grow(
     cut: &impl Cut,
     items: &mut [Item],
     branches: &mut [Branch],
-    depth: usize,
+    (first, depth): (usize, usize),
 ) -> Top {
     let leaves = items.len().div_ceil(LEAF);
-    if leaves <= 1 {
-        items.sort_unstable_by(|a, b| along(0, a, b));
-        return Top::leaf(items.iter());
-    }
-    if cut.finishes(items.len()) && depth + leaves <= HEIGHT {
+    if leaves > 1 && cut.finishes(items.len()) && depth + leaves <= HEIGHT {
         return cut.finish(items, branches);
     }
-    let least_height = (leaves - 1).ilog2() as usize + 1;
-    let place =
-        if depth + 1 + least_height <= HEIGHT { cut.cut(items) } else { cut.median().cut(items) };
-    let first = place / LEAF;
-    let (left, right) = items.split_at_mut(place);
-    let (root, rest) = branches.split_at_mut(1);
-    let (below_left, below_right) = rest.split_at_mut(first - 1);
-    let a = |items: &mut [Item], branches: &mut [Branch]| grow(cut, items, branches, depth + 1);
-    let (a, b) = if left.len() + right.len() >= PARALLEL {
-        rayon::join(|| a(left, below_left), || a(right, below_right))
-    } else {
-        (a(left, below_left), a(right, below_right))
+    let Some((root, below)) = branches.split_first_mut() else {
+        items.sort_unstable_by(|a, b| along(0, a, b));
+        return Top::leaf(items.iter());
     };
-    let top = Top::join(&a, &b);
-    root[0] = Branch { top, first: first as u32 };
-    top
+    let least_height = (leaves - 1).ilog2() as usize + 1;
+    let place = if depth + 1 + least_height <= HEIGHT {
+        cut.cut(items, first)
+    } else {
+        cut.median().cut(items, first)
+    };
+    let (parallel, second) = (items.len() >= PARALLEL, (first + place, depth + 1));
+    let (left, right) = items.split_at_mut(place);
+    let (below_left, below_right) = below.split_at_mut(place / LEAF - 1);
+    let mut left = || grow(cut, left, below_left, (first, depth + 1));
+    let mut right = || grow(cut, right, below_right, second);
+    let (a, b) = if parallel { rayon::join(left, right) } else { (left(), right()) };
+    *root = Branch { top: Top::join(&a, &b), first: (place / LEAF) as u32 };
+    root.top
 }

@@ -17,7 +17,7 @@ pub(super) struct Median {
 }
 
 impl Cut for Median {
-    fn cut(&self, items: &mut [Item]) -> usize {
+    fn cut(&self, items: &mut [Item], _first: usize) -> usize {
         self.cut_on(items, &Grid::over(items))
     }
 

@@ -63,8 +63,9 @@ impl Builder {
 /// Where a part of the tree is cut.
 trait Cut: Sync {
     /// Puts the spheres of the first part before those of the second; returns how many they are: a
-    /// multiple of [`LEAF`], neither 0 nor all. There is more than a leaf of `items`.
-    fn cut(&self, items: &mut [Item]) -> usize;
+    /// multiple of [`LEAF`], neither 0 nor all. There is more than a leaf of `items`, and `first` come
+    /// before them.
+    fn cut(&self, items: &mut [Item], first: usize) -> usize;
 
     /// What cuts where the tree threatens to become too deep.
     fn median(&self) -> &Median;
@@ -76,8 +77,14 @@ trait Cut: Sync {
 
     /// Makes all branches over `items`.
     fn finish(&self, items: &mut [Item], branches: &mut [Branch]) -> Top {
-        branch::grow(self.median(), items, branches, 0)
+        branch::grow(self.median(), items, branches, (0, 0))
     }
+}
+
+/// The multiple of a leaf that is next to `place`, with something on both sides.
+fn snapped(place: usize, items: usize) -> usize {
+    let last = (items - 1) / LEAF;
+    ((place + LEAF / 2) / LEAF).clamp(1, last) * LEAF
 }
 
 /// What spheres are exactly, by the user's order, if the columns do not hold it; empty otherwise.
@@ -156,7 +163,7 @@ fn cut(items: &mut [Item], how: &impl Cut) -> (Bvh, bool) {
     let mut nodes = Vec::new();
     if !items.is_empty() {
         let mut branches = vec![Branch::NONE; items.len().div_ceil(LEAF) - 1];
-        branch::grow(how, items, &mut branches, 0);
+        branch::grow(how, items, &mut branches, (0, 0));
         nodes = collapse::nodes(&branches, items);
     }
     (Bvh::new(nodes), how.median().crowded.load(std::sync::atomic::Ordering::Relaxed))

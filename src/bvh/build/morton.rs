@@ -4,10 +4,9 @@
 //! (Lauterbach, Garland, Sengupta, Luebke, Manocha, "Fast BVH Construction on GPUs", Eurographics
 //! 2009), moved to the next multiple of a leaf. Where all are at one place it is halved.
 
-use super::Cut;
 use super::item::{Extent, Item, along, spread};
 use super::median::Median;
-use crate::spheres::LEAF;
+use super::{Cut, snapped};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -17,33 +16,59 @@ const BITS: u32 = 10;
 /// So many spheres are worth a task.
 const CHUNK: usize = 1 << 14;
 
-/// Cuts along the curve; the spheres are in its order.
+/// Cuts along the curve.
 pub(super) struct Morton {
-    low: Vec3,
-    scale: f32,
+    /// In the order on the curve: each sphere's place on it in the upper half, and in the lower one
+    /// the row that it had before.
+    keys: Vec<u64>,
     median: Median,
 }
 
 impl Morton {
     /// Puts spheres into the order on the curve.
     pub(super) fn sort(items: &mut Vec<Item>) -> Self {
-        let all = items.par_chunks(CHUNK).map(spread).reduce(|| Extent::EMPTY, |a, b| a.union(&b));
-        // All axes have one scale: cells are cubes, so flat scenes are not cut flatter.
-        let width = (all.high - all.low).truncate().max_element();
-        let scale = ((1 << BITS) as f32 / width).min(f32::MAX);
-        let morton = Self { low: all.low.truncate(), scale, median: Median::default() };
-        let key = |(row, item): (usize, &Item)| u64::from(morton.code(item)) << 32 | row as u64;
-        let mut keys: Vec<u64> =
-            items.par_iter().enumerate().map(|(i, item)| key((i, item))).collect();
+        let cells = Cells::over(items);
+        let key = |(row, item): (usize, &Item)| u64::from(cells.code(item)) << 32 | row as u64;
+        let mut keys: Vec<u64> = items.par_iter().enumerate().map(key).collect();
         keys.par_sort_unstable();
-        let mut sorted: Vec<_> = keys.par_iter().map(|&key| items[key as u32 as usize]).collect();
-        drop(keys);
+        let item = |key: u64| &items[key as u32 as usize];
         // What is at one place has been ordered by the row, which is to mean nothing.
-        let runs = sorted.par_chunk_by_mut(|a, b| morton.code(a) == morton.code(b));
-        runs.filter(|run| run.len() > 1)
-            .for_each(|run| run.sort_unstable_by(|a, b| along(0, a, b)));
-        *items = sorted;
-        morton
+        let runs = keys.par_chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|run| run.len() > 1);
+        runs.for_each(|run| run.sort_unstable_by(|&a, &b| along(0, item(a), item(b))));
+        *items = keys.par_iter().map(|&key| *item(key)).collect();
+        Self { keys, median: Median::default() }
+    }
+}
+
+impl Cut for Morton {
+    fn cut(&self, items: &mut [Item], first: usize) -> usize {
+        let keys = &self.keys[first..first + items.len()];
+        let differ = (keys[0] ^ keys[keys.len() - 1]) >> 32;
+        if differ == 0 {
+            return self.median.cut(items, first);
+        }
+        let bit = 1 << (32 + differ.ilog2());
+        let place = keys.partition_point(|key| key & bit == 0);
+        snapped(place, items.len())
+    }
+
+    fn median(&self) -> &Median {
+        &self.median
+    }
+}
+
+/// Cubes that hold the centers.
+struct Cells {
+    low: Vec3,
+    /// One for all axes, so flat scenes are not cut flatter.
+    scale: f32,
+}
+
+impl Cells {
+    fn over(items: &[Item]) -> Self {
+        let all = items.par_chunks(CHUNK).map(spread).reduce(|| Extent::EMPTY, |a, b| a.union(&b));
+        let width = (all.high - all.low).truncate().max_element();
+        Self { low: all.low.truncate(), scale: ((1 << BITS) as f32 / width).min(f32::MAX) }
     }
 
     /// The place on the curve of a sphere's center.
@@ -53,23 +78,6 @@ impl Morton {
         let last = ((1 << BITS) - 1) as f32;
         let [x, y, z] = place.to_array().map(|cell| spaced(cell.min(last) as u32));
         x | y << 1 | z << 2
-    }
-}
-
-impl Cut for Morton {
-    fn cut(&self, items: &mut [Item]) -> usize {
-        let (first, last) = (self.code(&items[0]), self.code(&items[items.len() - 1]));
-        if first == last {
-            return self.median.cut(items);
-        }
-        let bit = 1 << (first ^ last).ilog2();
-        let place = items.partition_point(|item| self.code(item) & bit == 0);
-        let whole = (items.len() - 1) / LEAF;
-        ((place + LEAF / 2) / LEAF).clamp(1, whole) * LEAF
-    }
-
-    fn median(&self) -> &Median {
-        &self.median
     }
 }
 

@@ -9,20 +9,19 @@
 //! Besides by where they are, spheres are parted by how large they are: a large one among many that
 //! are small would spoil the boxes of all parts that it is in.
 
-use super::Cut;
 use super::branch::{Branch, Top};
 use super::item::{AXES, Extent, Item};
 use super::median::Median;
 use super::partition::{BINS, Grid};
 use super::sweep::{self, SWEEP};
-use crate::spheres::LEAF;
+use super::{Cut, snapped};
 use rayon::prelude::*;
 
 /// So many spheres are worth a task.
 const CHUNK: usize = 1 << 14;
 
 /// Radii matter if the largest is more than this part of how widely the centers are spread.
-const LARGE: f32 = 1.0 / 16.0;
+const LARGE: f32 = 1.0 / 8.0;
 
 /// The surface-area heuristic.
 #[derive(Default)]
@@ -31,7 +30,7 @@ pub(super) struct SurfaceArea {
 }
 
 impl Cut for SurfaceArea {
-    fn cut(&self, items: &mut [Item]) -> usize {
+    fn cut(&self, items: &mut [Item], _first: usize) -> usize {
         let grid = Grid::over(items);
         let axes = axes(&grid.spread);
         let histogram = Histogram::of(items, &grid, axes);
@@ -132,10 +131,4 @@ impl Histogram {
         }
         best.1
     }
-}
-
-/// The multiple of a leaf that is next to `place`, with something on both sides.
-fn snapped(place: usize, items: usize) -> usize {
-    let last = (items - 1) / LEAF;
-    (place + LEAF / 2).div_euclid(LEAF).clamp(1, last) * LEAF
 }
