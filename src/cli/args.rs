@@ -1,6 +1,6 @@
 //! The command line as typed.
 
-use super::names::{BITS, FILTERS, INTEGRATORS, LANES, PPM, SAMPLERS, TONES, Traversal};
+use super::names::{BITS, Builder, FILTERS, INTEGRATORS, LANES, PPM, SAMPLERS, TONES, Traversal};
 use super::stress;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
@@ -125,6 +125,9 @@ pub(super) struct SpeedArgs {
     /// How rays find spheres
     #[arg(long, value_enum, default_value_t = Traversal::Auto)]
     pub(super) traversal: Traversal,
+    /// How the tree is built
+    #[arg(long, value_enum, default_value_t = Builder::Auto)]
+    pub(super) builder: Builder,
     /// Rays in a packet; with --traversal auto, of camera and shadow rays [default: 16]
     #[arg(long, value_parser = LANES.parser())]
     pub(super) lanes: Option<Width>,

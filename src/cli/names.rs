@@ -101,3 +101,16 @@ pub(super) enum Traversal {
     #[value(alias = "tree")]
     Packet,
 }
+
+/// How the tree over the spheres is built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Builder {
+    /// What is fastest in all, by the number of spheres and samples
+    Auto,
+    /// Halves on the longest axis
+    Median,
+    /// The surface-area heuristic: fastest to trace
+    SurfaceArea,
+    /// Along a curve that fills space: fastest to build
+    Morton,
+}

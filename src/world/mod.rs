@@ -114,8 +114,12 @@ impl World {
     pub fn build(scene: &Scene) -> Result<Self, WorldError> {
         let Settings { width, height, spp, .. } = scene.settings;
         let samples = u64::from(width) * u64::from(height) * u64::from(spp);
-        let rays = samples.saturating_mul(RAYS_PER_SAMPLE);
-        Self::build_with(scene, Builder::for_rays(scene.spheres.len(), rays))
+        Self::build_with(scene, Self::builder(scene.spheres.len(), samples))
+    }
+
+    /// The tree that suits a render of so many spheres and samples, all pixels taken together.
+    pub fn builder(spheres: usize, samples: u64) -> Builder {
+        Builder::for_rays(spheres, samples.saturating_mul(RAYS_PER_SAMPLE))
     }
 
     /// Builds the world with a certain kind of tree, which changes nothing that is seen.

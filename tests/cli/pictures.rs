@@ -9,6 +9,9 @@ fn speed_settings_never_change_the_file() {
     for name in ["a.png", "a.exr"] {
         let reference = folder.picture(name, &["--threads", "1"]);
         let mut speeds = vec![vec!["--threads", "2"], vec!["--traversal", "scalar"]];
+        for builder in ["median", "surface-area", "morton", "auto"] {
+            speeds.push(vec!["--builder", builder]);
+        }
         for lanes in ["1", "4", "8", "16"] {
             speeds.push(vec!["--lanes", lanes]);
             speeds.push(vec!["--lanes", lanes, "--traversal", "packet"]);

@@ -56,33 +56,44 @@ fn emit(part: Part, items: &[Item], levels: usize, nodes: &mut Vec<Node>) {
     let boxed: Vec<_> = parts.iter().map(|&part| (part, box_of(part, items))).collect();
     let index = nodes.len();
     nodes.push(Node::EMPTY);
-    let mut below = Vec::with_capacity(parts.len());
-    if part.branches.len() * LEAF >= PARALLEL {
-        let emitted = |&part: &Part| {
-            let mut nodes = Vec::new();
-            if !part.branches.is_empty() {
-                emit(part, items, levels - 1, &mut nodes);
-            }
-            nodes
-        };
-        let subtrees: Vec<_> = parts.par_iter().map(emitted).collect();
-        for subtree in subtrees {
-            let base = nodes.len();
-            below.push(base);
-            nodes.extend(subtree.into_iter().map(|node| moved(node, base)));
-        }
+    let below = if part.branches.len() * LEAF >= PARALLEL {
+        emit_in_parallel(&parts, items, levels - 1, nodes)
     } else {
-        for &part in &parts {
-            below.push(nodes.len());
-            if !part.branches.is_empty() {
-                emit(part, items, levels - 1, nodes);
-            }
-        }
-    }
+        parts.iter().map(|&part| emit_below(part, items, levels - 1, nodes)).collect()
+    };
     nodes[index] = node(&boxed, |i| match parts[i] {
         Part { branches: [], block } => Child::leaf(block),
         _ => Child::node(below[i]),
     });
+}
+
+/// Appends a part unless it is a leaf; returns where it begins.
+fn emit_below(part: Part, items: &[Item], levels: usize, nodes: &mut Vec<Node>) -> usize {
+    let base = nodes.len();
+    if !part.branches.is_empty() {
+        emit(part, items, levels, nodes);
+    }
+    base
+}
+
+fn emit_in_parallel(
+    parts: &[Part],
+    items: &[Item],
+    levels: usize,
+    nodes: &mut Vec<Node>,
+) -> Vec<usize> {
+    let subtree = |&part: &Part| {
+        let mut nodes = Vec::new();
+        emit_below(part, items, levels, &mut nodes);
+        nodes
+    };
+    let subtrees: Vec<_> = parts.par_iter().map(subtree).collect();
+    let append = |subtree: Vec<Node>| {
+        let base = nodes.len();
+        nodes.extend(subtree.into_iter().map(|node| moved(node, base)));
+        base
+    };
+    subtrees.into_iter().map(append).collect()
 }
 
 fn box_of(part: Part, items: &[Item]) -> Bounds {

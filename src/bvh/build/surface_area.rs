@@ -4,7 +4,7 @@
 //! surfaces (`MacDonald` & Booth, "Heuristics for Ray Tracing Using Space Subdivision", The Visual
 //! Computer 1990). Places to cut are the borders of a few intervals on each axis (Wald, "On Fast
 //! Construction of SAH-based Bounding Volume Hierarchies", RT 2007), moved to the next multiple of a
-//! leaf; where spheres are few, every multiple is tried ([`sweep`](super::sweep)).
+//! leaf; where spheres are few, every multiple is tried ([`sweep`]).
 //!
 //! Besides by where they are, spheres are parted by how large they are: a large one among many that
 //! are small would spoil the boxes of all parts that it is in.

@@ -6,6 +6,8 @@ use crate::cli::names;
 use crate::cli::settings::region_text;
 use crate::cli::source::Source;
 use crate::cli::threads;
+use spherule::World;
+use spherule::bvh::build::Builder;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::Settings;
@@ -46,6 +48,16 @@ impl<'a> Job<'a> {
     /// The threads that do it.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         threads::pool(self.threads)
+    }
+
+    /// The tree for a render of so many spheres and samples.
+    pub(super) fn builder(&self, spheres: usize, samples: u64) -> Builder {
+        match self.speed.builder {
+            names::Builder::Auto => World::builder(spheres, samples),
+            names::Builder::Median => Builder::Median,
+            names::Builder::SurfaceArea => Builder::SurfaceArea,
+            names::Builder::Morton => Builder::Morton,
+        }
     }
 
     /// The part of the picture that is rendered, once its size is known.

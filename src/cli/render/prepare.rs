@@ -6,10 +6,11 @@ use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use spherule::World;
+use spherule::bvh::build::Builder;
 use spherule::film::{Film, Region};
 use spherule::memory;
 use spherule::render::Render;
-use spherule::scene::{Scene, Spheres};
+use spherule::scene::{Scene, Settings, Spheres};
 use std::time::{Duration, Instant};
 
 /// A world that can be rendered, and how it came about.
@@ -20,6 +21,8 @@ pub(super) struct Prepared {
     pub(super) world: World,
     /// The part of the picture that is rendered.
     pub(super) region: Region,
+    /// How the tree was built.
+    pub(super) builder: Builder,
     /// Time for reading or generating.
     pub(super) load: Duration,
     /// Time for the columns and the tree.
@@ -40,7 +43,9 @@ impl Prepared {
         let region = job.region(&scene.settings)?;
         memory::check(Film::bytes(region)).map_err(|shortage| Failure::Film(region, shortage))?;
         let start = Instant::now();
-        let world = World::build(&scene)
+        let samples = samples(region, &scene.settings);
+        let builder = job.builder(scene.spheres.len(), samples);
+        let world = World::build_with(&scene, builder)
             .map_err(|error| Failure::World(job.source.name().into_owned(), error))?;
         let build = start.elapsed();
         // Gigabytes, in large scenes.
@@ -53,6 +58,7 @@ impl Prepared {
             scene,
             world,
             region,
+            builder,
             load,
             build,
             warnings,
@@ -76,12 +82,16 @@ impl Prepared {
 
     /// Samples that a complete render takes.
     pub(super) fn samples(&self) -> u64 {
-        let pixels = u64::from(self.region.width) * u64::from(self.region.height);
-        pixels * u64::from(self.scene.settings.spp)
+        samples(self.region, &self.scene.settings)
     }
 
     /// Share of the samples that a render has taken, 0..=1.
     pub(super) fn share(&self, render: &Render) -> f64 {
         render.counters.camera_rays as f64 / self.samples() as f64
     }
+}
+
+/// Samples of a part of the picture.
+fn samples(region: Region, settings: &Settings) -> u64 {
+    u64::from(region.width) * u64::from(region.height) * u64::from(settings.spp)
 }

@@ -9,6 +9,7 @@ use crate::cli::progress::rate;
 use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
+use spherule::bvh::build::Builder;
 use spherule::image::WriteOptions;
 use spherule::integrator::workspace::Counters;
 use spherule::render::Render;
@@ -41,6 +42,7 @@ pub(super) struct Summary<'a> {
 struct TracerSummary {
     threads: usize,
     traversal: &'static str,
+    builder: &'static str,
     lanes: u32,
 }
 
@@ -83,7 +85,7 @@ impl<'a> Summary<'a> {
             output: job.output.display().to_string(),
             complete: render.complete,
             settings: listed,
-            tracer: TracerSummary::new(job),
+            tracer: TracerSummary::new(job, prepared.builder),
             statistics: Statistics::new(prepared, render),
             found: found(&prepared.world),
             skipped: prepared.world.features.skipped(),
@@ -132,13 +134,18 @@ impl<'a> Summary<'a> {
 }
 
 impl TracerSummary {
-    fn new(job: &Job) -> Self {
+    fn new(job: &Job, builder: Builder) -> Self {
         Self {
             threads: job.threads,
             traversal: match job.tracer.traversal {
                 Traversal::Auto => "auto",
                 Traversal::Tree => "tree",
                 Traversal::Brute => "brute",
+            },
+            builder: match builder {
+                Builder::Median => "median",
+                Builder::SurfaceArea => "surface-area",
+                Builder::Morton => "morton",
             },
             lanes: lanes(job.tracer.width),
         }

@@ -1,0 +1,48 @@
+//! Building trees: million spheres per second for each builder, on all threads of the machine (set
+//! `RAYON_NUM_THREADS` for fewer), fields of the paper's kind and volumes.
+
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use spherule::bvh::build::{Builder, build};
+use spherule::scene::generate::{Field, Generator, Volume};
+use spherule::spheres::Spheres;
+use std::hint::black_box;
+use std::time::Duration;
+
+/// Spheres of a generator, scaled as a world is: by a power of two, to coordinates of about 1.
+fn spheres(generator: &Generator) -> Spheres {
+    let from = generator.generate(1).expect("parameters are valid").spheres;
+    let reach = (0..from.len()).map(|i| from.center(i).abs().max_element()).fold(0.0, f64::max);
+    let scale = (-reach.log2().ceil()).exp2();
+    let column = |values: &[f64]| values.iter().map(|x| (x * scale) as f32).collect::<Vec<_>>();
+    let [x, y, z] = [column(&from.x), column(&from.y), column(&from.z)];
+    Spheres::from_columns(&x, &y, &z, &column(&from.radius))
+}
+
+fn builders(criterion: &mut Criterion) {
+    let field = |count| Generator::Field(Field { count, ..Field::default() });
+    let volume = Generator::Volume(Volume { count: 1_000_000, ..Volume::default() });
+    let scenes = [
+        ("field400", field(20)),
+        ("field2500", field(50)),
+        ("field250k", field(500)),
+        ("volume1m", volume),
+    ];
+    for (name, generator) in scenes {
+        let spheres = spheres(&generator);
+        let mut group = criterion.benchmark_group(name);
+        group.sample_size(10).warm_up_time(Duration::from_millis(500));
+        group.throughput(Throughput::Elements(spheres.len() as u64));
+        for builder in Builder::ALL {
+            let id = BenchmarkId::from_parameter(format!("{builder:?}"));
+            group.bench_function(id, |bencher| {
+                let fresh = || spheres.clone();
+                let built = |mut spheres| black_box((build(&mut spheres, builder), spheres));
+                bencher.iter_batched(fresh, built, BatchSize::LargeInput);
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, builders);
+criterion_main!(benches);
