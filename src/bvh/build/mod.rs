@@ -26,6 +26,7 @@ use item::Item;
 use median::Median;
 use morton::Morton;
 use rayon::prelude::*;
+use std::sync::atomic::Ordering::Relaxed;
 use surface_area::SurfaceArea;
 
 /// Below this many spheres a subtree is built by one task: splitting costs more than it saves.
@@ -152,23 +153,27 @@ fn leave_out_hidden(items: &mut Vec<Item>, precise: &Precise) {
 /// equal centers.
 fn tree(items: &mut Vec<Item>, builder: Builder) -> (Bvh, bool) {
     match builder {
-        Builder::Median => cut(items, &Median::default()),
-        Builder::SurfaceArea => cut(items, &SurfaceArea::default()),
+        Builder::Median => cut(items, Median::default()),
+        Builder::SurfaceArea => cut(items, SurfaceArea::default()),
         Builder::Morton => {
             let morton = Morton::sort(items);
-            cut(items, &morton)
+            cut(items, morton)
         }
     }
 }
 
-fn cut(items: &mut [Item], how: &impl Cut) -> (Bvh, bool) {
+fn cut(items: &mut [Item], how: impl Cut) -> (Bvh, bool) {
     let mut nodes = Vec::new();
+    let mut crowded = false;
     if !items.is_empty() {
         let mut branches = vec![Branch::NONE; items.len().div_ceil(LEAF) - 1];
-        branch::grow(how, items, &mut branches, (0, 0));
+        branch::grow(&how, items, &mut branches, (0, 0));
+        crowded = how.median().crowded.load(Relaxed);
+        // Before more memory is taken.
+        drop(how);
         nodes = collapse::nodes(&branches, items);
     }
-    (Bvh::new(nodes), how.median().crowded.load(std::sync::atomic::Ordering::Relaxed))
+    (Bvh::new(nodes), crowded)
 }
 
 #[cfg(test)]
