@@ -1,12 +1,13 @@
-//! Tracing alone: brute force, the scalar walk and packets of 4, 8 and 16 rays, for four classes of
-//! rays; and the scalar walk and packets of 16 without the exact decision, to show what it costs. Rays
-//! are made beforehand; each run's hits are compared with those of the scalar walk.
+//! Tracing alone: brute force, single rays one after another and many at a time, packets of 4, 8 and 16
+//! rays, and the choice among them, for four classes of rays; and that without the exact decision, to
+//! show what it costs. Rays are made beforehand; each walk's hits are compared with those of single
+//! rays.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
-use spherule::bvh::Bvh;
 use spherule::bvh::build::{Builder, build};
 use spherule::bvh::walk::{Any, Closest, Method, Query, Rough, trace};
+use spherule::bvh::{Bounds, Bvh};
 use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
 use spherule::ray::{Hits, MISS, Rays};
 use spherule::sampling::{Frame, cosine_hemisphere, stream, unit_pair};
@@ -32,12 +33,12 @@ fn case(name: &'static str, generator: &Generator) -> Case {
     let from = generator.generate(1).expect("parameters are valid").spheres;
     let reach = (0..from.len()).map(|i| from.center(i).abs().max_element()).fold(0.0, f64::max);
     let scale = (-reach.log2().ceil()).exp2();
-    let column = |values: &[f64]| values.iter().map(|x| (x * scale) as f32).collect();
+    let column = |values: &[f64]| values.iter().map(|x| (x * scale) as f32).collect::<Vec<_>>();
     let mut spheres = Spheres::from_columns(
-        column(&from.x),
-        column(&from.y),
-        column(&from.z),
-        column(&from.radius),
+        &column(&from.x),
+        &column(&from.y),
+        &column(&from.z),
+        &column(&from.radius),
     );
     let bvh = build(&mut spheres, Builder::default());
     bvh.validate(&spheres).expect("the tree is sound");
@@ -56,8 +57,7 @@ fn run<L: Lanes, Q: Query>(case: &Case, method: Method, rays: &Rays) -> Hits {
 
 /// Camera rays from a corner, in blocks of 4 x 4 pixels.
 fn camera(case: &Case) -> Rays {
-    let (low, high) = case.bvh.bounds().expect("there are spheres");
-    let (low, high) = (Vec3::from(low), Vec3::from(high));
+    let Bounds { low, high } = case.bvh.bounds().expect("there are spheres");
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
     let forward = Vec3::new(-0.5, -0.6, -0.6).normalize();
     let eye = middle - forward * size;
@@ -84,7 +84,7 @@ fn secondary(case: &Case, toward: Option<Vec3>) -> Rays {
         let sphere = hits.sphere[row] as usize;
         let center = case.spheres.center(sphere).as_dvec3();
         let normal = (primary.exact(row).at(hits.t[row]) - center).normalize();
-        let point = (center + normal * f64::from(case.spheres.radius[sphere])).as_vec3();
+        let point = (center + normal * f64::from(case.spheres.radius(sphere))).as_vec3();
         let direction = toward.unwrap_or_else(|| {
             let u = unit_pair(stream(2, row as u64));
             Frame::new(normal.as_vec3()).to_world(cosine_hemisphere(u)).normalize()
@@ -110,7 +110,7 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
                 hits.sphere == expected.sphere && hits.t == expected.t
             }
         };
-        assert!(same(&walk(case, method, rays)), "{name} differs from the scalar walk");
+        assert!(same(&walk(case, method, rays)), "{name} differs from single rays");
         group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
             bencher.iter(|| walk(black_box(case), method, black_box(rays)));
         });
@@ -118,23 +118,22 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
     if case.spheres.len() <= 1000 {
         bench("brute-16", run::<F32x16, Q>, Method::Brute);
     }
-    bench("scalar", run::<f32, Q>, Method::Single);
-    bench("packet-4", run::<F32x4, Q>, Method::Single);
-    bench("packet-8", run::<F32x8, Q>, Method::Single);
-    bench("packet-16", run::<F32x16, Q>, Method::Single);
-    // What exactness costs: the same walks without it. Few answers differ in scenes so tame.
-    let rough: [(&str, Walk); 2] =
-        [("rough-1", run::<f32, Rough<Q>>), ("rough-16", run::<F32x16, Rough<Q>>)];
-    for (name, walk) in rough {
-        let hits = walk(case, Method::Single, rays);
-        let differ = (0..rays.len())
-            .filter(|&row| (hits.sphere[row] == MISS) != (expected.sphere[row] == MISS))
-            .count();
-        assert!(differ * 1000 <= rays.len(), "{name} differs for {differ} rays");
-        group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-            bencher.iter(|| walk(black_box(case), Method::Single, black_box(rays)));
-        });
-    }
+    bench("single", run::<f32, Q>, Method::Single);
+    bench("stream", run::<f32, Q>, Method::Stream);
+    bench("packet-4", run::<F32x4, Q>, Method::Packet);
+    bench("packet-8", run::<F32x8, Q>, Method::Packet);
+    bench("packet-16", run::<F32x16, Q>, Method::Packet);
+    bench("auto", run::<F32x16, Q>, Method::Auto);
+    // What exactness costs: the same walk without it. Few answers differ in scenes so tame.
+    let rough = run::<F32x16, Rough<Q>>;
+    let hits = rough(case, Method::Auto, rays);
+    let differ = (0..rays.len())
+        .filter(|&row| (hits.sphere[row] == MISS) != (expected.sphere[row] == MISS))
+        .count();
+    assert!(differ * 1000 <= rays.len(), "without exactness, {differ} rays differ");
+    group.bench_function(BenchmarkId::from_parameter("rough"), |bencher| {
+        bencher.iter(|| rough(black_box(case), Method::Auto, black_box(rays)));
+    });
 }
 
 fn walks(criterion: &mut Criterion) {

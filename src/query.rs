@@ -313,7 +313,9 @@ impl SphereTree {
             for (row, i) in rows.enumerate() {
                 if !is_plain(row) {
                     let hit = self.trace_alone::<Q>(columns.row(i), bound(i), &mut tally);
-                    hit.iter().for_each(|hit| found(i, hit));
+                    if let Some(hit) = hit {
+                        found(i, &hit);
+                    }
                 } else if hits.sphere[row] != MISS {
                     let sphere = hits.sphere[row] as usize;
                     let t = hits.t[row] * unit(row);

@@ -1,12 +1,13 @@
 //! A render: passes over tiles, tiles over threads.
 
+use crate::bvh::walk::Method;
 use crate::film::{Film, Region, Tile};
 use crate::image::Image;
 use crate::integrator::workspace::{Counters, Workspace};
 use crate::integrator::{Job, stages};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
-use crate::trace::{Tracer, Traversal, Width};
+use crate::trace::{Tracer, Width};
 use crate::world::World;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -33,7 +34,7 @@ pub struct Options<'a> {
 
 impl Default for Tracer {
     fn default() -> Self {
-        Self { traversal: Traversal::Auto, width: Width::Sixteen }
+        Self { method: Method::Auto, width: Width::Sixteen }
     }
 }
 

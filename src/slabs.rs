@@ -35,7 +35,7 @@ const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
 /// the two products by `u` of theirs (the first not at all where it is fused with the difference).
 /// Their magnitudes differ by the distance, so what cancellation leaves is at most `2 u |o i|`, which
 /// `o i` is moved by, and its own rounding, to the safe side; and `3 u` of the distance, on both
-/// sides, which [`SOONER`] on the near one outweighs (after Ize, "Robust BVH Ray Traversal", JCGT
+/// sides, which `SOONER` on the near one outweighs (after Ize, "Robust BVH Ray Traversal", JCGT
 /// 2013). The slack is relative to the ray's own origin: large spheres elsewhere do not widen it.
 ///
 /// Of a packet, a near plane is met first by the steepest ray if it starts farthest ahead, a far one

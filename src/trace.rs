@@ -9,27 +9,16 @@ use crate::world::World;
 /// How rays find spheres: never what they find.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tracer {
-    /// With the tree or without.
-    pub traversal: Traversal,
+    /// Which walk takes which rays.
+    pub method: Method,
     /// Rays in a packet.
     pub width: Width,
-}
-
-/// With the tree or without.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Traversal {
-    /// With the tree; rays that have been scattered go in packets where that pays.
-    Auto,
-    /// With the tree, all rays in packets.
-    Tree,
-    /// By testing every sphere.
-    Brute,
 }
 
 /// Rays in a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
-    /// One ray at a time: the scalar walk.
+    /// One: a packet of a single ray.
     One,
     /// Four.
     Four,
@@ -39,19 +28,10 @@ pub enum Width {
     Sixteen,
 }
 
-/// Whether neighbors in a column of rays go the same way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coherence {
-    /// They do.
-    Coherent,
-    /// They do not.
-    Incoherent,
-}
-
 impl Tracer {
     /// Finds what each ray hits first. On entry `hits.t` bounds the search, and `hits.sphere` is
     /// what is at that bound, if anything; on return both tell of the hit.
-    pub fn closest(self, world: &World, rays: &Rays, hits: &mut Hits, coherence: Coherence) -> u64 {
+    pub fn closest(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
         if let Some(ground) = &world.ground {
             for row in 0..rays.len() {
                 if rays.own[row] == GROUND {
@@ -63,18 +43,12 @@ impl Tracer {
                 }
             }
         }
-        self.walk::<Closest>(world, rays, hits, coherence)
+        self.walk::<Closest>(world, rays, hits)
     }
 
     /// Finds whether anything is nearer than `hits.t`: on return `hits.sphere` is [`MISS`] where
     /// nothing is. On entry it is `MISS` for every ray that is to be traced.
-    pub fn occluded(
-        self,
-        world: &World,
-        rays: &Rays,
-        hits: &mut Hits,
-        coherence: Coherence,
-    ) -> u64 {
+    pub fn occluded(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
         if let Some(ground) = &world.ground {
             for row in 0..rays.len() {
                 if rays.own[row] == GROUND || hits.sphere[row] != MISS {
@@ -86,28 +60,16 @@ impl Tracer {
                 }
             }
         }
-        self.walk::<Any>(world, rays, hits, coherence)
+        self.walk::<Any>(world, rays, hits)
     }
 
-    fn walk<Q: Query>(
-        self,
-        world: &World,
-        rays: &Rays,
-        hits: &mut Hits,
-        coherence: Coherence,
-    ) -> u64 {
-        let method = match self.traversal {
-            Traversal::Brute => Method::Brute,
-            Traversal::Auto => Method::Auto,
-            Traversal::Tree => Method::Packet,
-        };
-        let _ = coherence;
+    fn walk<Q: Query>(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
         let (bvh, spheres) = (&world.bvh, &world.spheres);
         match self.width {
-            Width::One => walk::trace::<f32, Q>(method, bvh, spheres, rays, hits),
-            Width::Four => walk::trace::<F32x4, Q>(method, bvh, spheres, rays, hits),
-            Width::Eight => walk::trace::<F32x8, Q>(method, bvh, spheres, rays, hits),
-            Width::Sixteen => walk::trace::<F32x16, Q>(method, bvh, spheres, rays, hits),
+            Width::One => walk::trace::<f32, Q>(self.method, bvh, spheres, rays, hits),
+            Width::Four => walk::trace::<F32x4, Q>(self.method, bvh, spheres, rays, hits),
+            Width::Eight => walk::trace::<F32x8, Q>(self.method, bvh, spheres, rays, hits),
+            Width::Sixteen => walk::trace::<F32x16, Q>(self.method, bvh, spheres, rays, hits),
         }
     }
 }

@@ -60,7 +60,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
     /// `candidates[i]`, or [`MISS`], for ray `first + i`.
     #[inline(always)]
     pub(super) fn settle(&mut self, first: usize, candidates: &[u32]) {
-        if Q::ANY || !Q::EXACT {
+        if Q::ANY {
             for (i, &candidate) in candidates.iter().enumerate() {
                 if candidate != MISS {
                     self.hits.sphere[first + i] = candidate;
@@ -160,6 +160,15 @@ impl<'a, Q: Query> Decider<'a, Q> {
             }
         }
         nearer
+    }
+
+    /// [`Decider::settle`] with distances of single precision.
+    pub(super) fn believe_all(&mut self, first: usize, candidates: &[u32], nears: &[f32]) {
+        for (i, (&candidate, &near)) in candidates.iter().zip(nears).enumerate() {
+            if candidate != MISS {
+                self.hits.set(first + i, f64::from(near), candidate);
+            }
+        }
     }
 
     /// Takes a sphere that passed the filter for a hit.

@@ -33,7 +33,7 @@ pub struct Node {
     child: [Child; WIDTH],
 }
 
-/// A child: a node's index, or a block's with [`Child::LEAF`] set.
+/// A child: a node's index, or a block's with a bit set.
 #[repr(transparent)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Child(u32);

@@ -103,7 +103,12 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
         let mut candidates = [0.0; MAX_LANES];
         self.candidate.store(&mut candidates);
         let candidates: [u32; MAX_LANES] = bytemuck::cast(candidates);
-        decider.settle(self.row as usize, &candidates[..L::WIDTH]);
+        if Q::EXACT {
+            return decider.settle(self.row as usize, &candidates[..L::WIDTH]);
+        }
+        let mut nears = [0.0; MAX_LANES];
+        self.t_min.store(&mut nears);
+        decider.believe_all(self.row as usize, &candidates[..L::WIDTH], &nears);
     }
 }
 

@@ -128,7 +128,7 @@ pub(super) struct SpeedArgs {
     /// How the tree is built
     #[arg(long, value_enum, default_value_t = Builder::Auto)]
     pub(super) builder: Builder,
-    /// Rays in a packet; with --traversal auto, of camera and shadow rays [default: 16]
+    /// Rays in a packet; [default: 16]
     #[arg(long, value_parser = LANES.parser())]
     pub(super) lanes: Option<Width>,
 }

@@ -91,13 +91,15 @@ pub(super) fn regime() -> impl TypedValueParser<Value = &'static Regime> {
 /// How rays find spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Traversal {
-    /// What is fastest: packets for camera and shadow rays, one ray at a time after a bounce
+    /// What is fastest: packets of rays that go alike, a stream of the others
     Auto,
     /// Test every sphere: slow, the reference
     Brute,
-    /// The tree, one ray at a time
+    /// The tree, one ray after another
     Scalar,
-    /// The tree, all rays in packets
+    /// The tree, many rays at a time but each on its own
+    Stream,
+    /// The tree, all rays of one octant in packets, others one after another
     #[value(alias = "tree")]
     Packet,
 }

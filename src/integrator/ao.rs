@@ -11,12 +11,11 @@ use super::workspace::Workspace;
 use crate::ray::MISS;
 use crate::sampling::cosine_hemisphere;
 use crate::scene::Rgb;
-use crate::trace::Coherence;
 use crate::world::{Kind, LightSample, MaterialId, World};
 
 /// One direction for each path; `distance` is in world units.
 pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
-    stages::intersect(job, work, Coherence::Coherent);
+    stages::intersect(job, work);
     for i in 0..work.bins.escaped.len() {
         let row = work.bins.escaped[i] as usize;
         let direction = work.rays.direction.row(row);
@@ -45,7 +44,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
         }
         work.bins.kind[kind as usize] = rows;
     }
-    stages::occlude(job, work, Coherence::Incoherent);
+    stages::occlude(job, work);
 }
 
 /// The color by which a material is told from others.

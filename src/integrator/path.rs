@@ -13,15 +13,13 @@ use super::workspace::{Arrival, Workspace, chord};
 use crate::ray::GROUND;
 use crate::scene::{Rgb, Roulette};
 use crate::shade::Bsdf;
-use crate::trace::Coherence;
 use crate::world::{Kind, LightSample, MaterialId};
 use glam::Vec3;
 
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace) {
-    let mut coherence = Coherence::Coherent;
     for bounce in 0.. {
-        stages::intersect(job, work, coherence);
+        stages::intersect(job, work);
         escape(job, work);
         emit(job, work);
         if bounce == job.depth() {
@@ -30,13 +28,12 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
         }
         stages::glass(job, work, bounce);
         stages::by_kind(job, work, &mut Shade { job, bounce });
-        stages::occlude(job, work, Coherence::Coherent);
+        stages::occlude(job, work);
         work.compact();
         if work.is_empty() {
             return;
         }
         work.counters.bounce_rays += work.len() as u64;
-        coherence = Coherence::Incoherent;
     }
 }
 
@@ -206,6 +203,6 @@ pub fn cast_shadow(
     let origin: Vec3 = work.surface.point[row];
     work.shadows.push((origin, own), sample, (work.place[row], light));
     if work.shadows.is_full() {
-        stages::occlude(job, work, Coherence::Coherent);
+        stages::occlude(job, work);
     }
 }

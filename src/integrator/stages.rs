@@ -6,7 +6,6 @@ use crate::film::Tile;
 use crate::ray::{ExactRay, GROUND, MISS};
 use crate::sampling;
 use crate::shade::{Bsdf, dielectric};
-use crate::trace::Coherence;
 use crate::world::{Kind, MaterialId, World};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -48,9 +47,8 @@ fn enter_glass(world: &World, work: &mut Workspace, place: usize, origin: Vec3, 
 }
 
 /// Finds what each path hits next, where, and sorts the rows by what it is.
-pub fn intersect(job: &Job, work: &mut Workspace, coherence: Coherence) {
-    work.counters.exact_decisions +=
-        job.tracer.closest(job.world, &work.rays, &mut work.hits, coherence);
+pub fn intersect(job: &Job, work: &mut Workspace) {
+    work.counters.exact_decisions += job.tracer.closest(job.world, &work.rays, &mut work.hits);
     for row in 0..work.len() {
         let hit = work.hits.sphere[row];
         if hit != MISS {
@@ -126,10 +124,10 @@ impl Local {
 }
 
 /// Traces the shadow rays and gives their light to the paths that it reaches.
-pub fn occlude(job: &Job, work: &mut Workspace, coherence: Coherence) {
+pub fn occlude(job: &Job, work: &mut Workspace) {
     let shadows = &mut work.shadows;
     work.counters.exact_decisions +=
-        job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits, coherence);
+        job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits);
     for row in 0..shadows.rays.len() {
         if shadows.hits.sphere[row] == MISS {
             work.paths.radiance[shadows.place[row] as usize] += shadows.light[row];

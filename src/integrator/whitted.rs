@@ -15,20 +15,18 @@ use crate::ray::MISS;
 use crate::sampling::cosine_hemisphere;
 use crate::scene::Rgb;
 use crate::shade::{Bsdf, mirror};
-use crate::trace::Coherence;
 use crate::world::{Kind, LightSample, MaterialId};
 use std::f32::consts::PI;
 
 /// Follows all paths to their ends, with `samples` shadow samples per light and hit.
 pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
-    let mut coherence = Coherence::Coherent;
     // The environment is one more light where it is seen by diffuse surfaces and has no light of
     // its own.
     let sky = job.world.environment.illuminates
         && !job.world.environment.is_black()
         && !job.world.lights.sky;
     for bounce in 0.. {
-        stages::intersect(job, work, coherence);
+        stages::intersect(job, work);
         escape(job, work);
         emit(job, work);
         if bounce == job.depth() {
@@ -37,13 +35,12 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
         }
         stages::glass(job, work, bounce);
         stages::by_kind(job, work, &mut Shade { job, bounce, samples, sky });
-        stages::occlude(job, work, Coherence::Coherent);
+        stages::occlude(job, work);
         work.compact();
         if work.is_empty() {
             return;
         }
         work.counters.bounce_rays += work.len() as u64;
-        coherence = Coherence::Incoherent;
     }
 }
 

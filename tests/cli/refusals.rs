@@ -25,7 +25,7 @@ fn bad_input_is_refused_in_words() {
         ("render --shadow-samples 0", 2, &["--shadow-samples"]),
         ("render --ao-distance 0", 2, &["--ao-distance", "more than 0"]),
         ("render --lanes 3", 2, &["--lanes", "1, 4, 8, 16"]),
-        ("render --traversal quick", 2, &["--traversal", "brute, scalar, packet"]),
+        ("render --traversal quick", 2, &["--traversal", "brute, scalar, stream, packet"]),
         ("render --builder best", 2, &["--builder", "median, surface-area, morton"]),
         ("render --region 1,2,0x4", 2, &["--region", "1 or more"]),
         ("render --region 900,0,100x10", 2, &["--region", "960x540"]),

@@ -4,13 +4,14 @@ use crate::common::*;
 use glam::DVec3;
 use spherule::World;
 use spherule::bvh::build::Builder;
+use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Image;
 use spherule::integrator::workspace::Counters;
 use spherule::render::{Options, render};
 use spherule::sampling::{stream, unit};
 use spherule::scene::{Integrator, Rgb, SamplerKind, Scene};
-use spherule::trace::{Tracer, Traversal, Width};
+use spherule::trace::{Tracer, Width};
 
 const INTEGRATORS: [Integrator; 3] =
     [Integrator::Path, Integrator::Whitted { shadow_samples: 3 }, Integrator::Ao { distance: 2.0 }];
@@ -26,12 +27,14 @@ fn everything(integrator: Integrator) -> Scene {
 #[test]
 fn every_tracer_makes_the_same_picture() {
     const WIDTHS: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
+    const METHODS: [Method; 5] =
+        [Method::Brute, Method::Single, Method::Stream, Method::Packet, Method::Auto];
     for integrator in INTEGRATORS {
         let scene = everything(integrator);
         let picture = shoot(&scene);
-        for traversal in [Traversal::Brute, Traversal::Tree, Traversal::Auto] {
+        for method in METHODS {
             for width in WIDTHS {
-                let tracer = Tracer { traversal, width };
+                let tracer = Tracer { method, width };
                 let other = shoot_with(&scene, &Options { tracer, ..Options::default() });
                 assert!(other.image == picture.image, "{integrator:?} {tracer:?}");
                 let work = |counters: &Counters| (counters.rays(), counters.cut_paths);

@@ -2,16 +2,17 @@
 
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
-use crate::cli::names;
+use crate::cli::names::{self, Traversal};
 use crate::cli::settings::region_text;
 use crate::cli::source::Source;
 use crate::cli::threads;
 use spherule::World;
 use spherule::bvh::build::Builder;
+use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::Settings;
-use spherule::trace::{Tracer, Traversal, Width};
+use spherule::trace::{Tracer, Width};
 use std::path::PathBuf;
 
 /// A render to be done.
@@ -81,15 +82,16 @@ impl<'a> Job<'a> {
     }
 }
 
-fn tracer(typed: names::Traversal, lanes: Option<Width>) -> Tracer {
+fn tracer(typed: Traversal, lanes: Option<Width>) -> Tracer {
     let width = lanes.unwrap_or(Tracer::default().width);
-    let (traversal, width) = match typed {
-        names::Traversal::Auto => (Traversal::Auto, width),
-        names::Traversal::Brute => (Traversal::Brute, width),
-        names::Traversal::Scalar => (Traversal::Tree, Width::One),
-        names::Traversal::Packet => (Traversal::Tree, width),
+    let method = match typed {
+        Traversal::Auto => Method::Auto,
+        Traversal::Brute => Method::Brute,
+        Traversal::Scalar => Method::Single,
+        Traversal::Stream => Method::Stream,
+        Traversal::Packet => Method::Packet,
     };
-    Tracer { traversal, width }
+    Tracer { method, width }
 }
 
 #[cfg(test)]
@@ -98,12 +100,11 @@ mod tests {
 
     #[test]
     fn traversals_are_what_they_are_called() {
-        assert_eq!(tracer(names::Traversal::Auto, None), Tracer::default());
-        assert_eq!(tracer(names::Traversal::Auto, Some(Width::Four)).width, Width::Four);
-        let scalar = tracer(names::Traversal::Scalar, Some(Width::Eight));
-        assert_eq!(scalar, Tracer { traversal: Traversal::Tree, width: Width::One });
-        let packet = tracer(names::Traversal::Packet, Some(Width::Eight));
-        assert_eq!(packet, Tracer { traversal: Traversal::Tree, width: Width::Eight });
-        assert_eq!(tracer(names::Traversal::Brute, None).traversal, Traversal::Brute);
+        assert_eq!(tracer(Traversal::Auto, None), Tracer::default());
+        assert_eq!(tracer(Traversal::Auto, Some(Width::Four)).width, Width::Four);
+        assert_eq!(tracer(Traversal::Scalar, Some(Width::Eight)).method, Method::Single);
+        let packet = tracer(Traversal::Packet, Some(Width::Eight));
+        assert_eq!(packet, Tracer { method: Method::Packet, width: Width::Eight });
+        assert_eq!(tracer(Traversal::Brute, None).method, Method::Brute);
     }
 }

@@ -32,12 +32,12 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);
     let late = !ao && short && picture.roulette == Some(Roulette::Throughput);
     note(late, true, "--roulette throughput", "it begins at the fourth scattering, past --depth");
-    let scalar = job.speed.traversal == Traversal::Scalar;
+    let alone = matches!(job.speed.traversal, Traversal::Scalar | Traversal::Stream);
     note(
         job.speed.lanes.is_some(),
-        scalar,
+        alone,
         "--lanes",
-        "--traversal scalar takes one ray at a time",
+        "--traversal scalar and stream have no packets",
     );
     let encoding = job.encoding;
     let linear = !shows(job.format);

@@ -10,11 +10,12 @@ use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule::bvh::build::Builder;
+use spherule::bvh::walk::Method;
 use spherule::image::WriteOptions;
 use spherule::integrator::workspace::Counters;
 use spherule::render::Render;
 use spherule::scene::Settings;
-use spherule::trace::{Traversal, Width};
+use spherule::trace::Width;
 use std::time::Duration;
 
 /// How a render went.
@@ -137,10 +138,12 @@ impl TracerSummary {
     fn new(job: &Job, builder: Builder) -> Self {
         Self {
             threads: job.threads,
-            traversal: match job.tracer.traversal {
-                Traversal::Auto => "auto",
-                Traversal::Tree => "tree",
-                Traversal::Brute => "brute",
+            traversal: match job.tracer.method {
+                Method::Auto => "auto",
+                Method::Packet => "packet",
+                Method::Stream => "stream",
+                Method::Single => "scalar",
+                Method::Brute => "brute",
             },
             builder: match builder {
                 Builder::Median => "median",
