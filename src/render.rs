@@ -3,6 +3,7 @@
 use crate::bvh::walk::Method;
 use crate::film::{Film, Region, Tile};
 use crate::image::Image;
+use crate::integrator::clock::{Stage, Times};
 use crate::integrator::workspace::{Counters, Workspace};
 use crate::integrator::{Job, stages};
 use crate::sampling::{PixelFilter, Sampler};
@@ -56,6 +57,8 @@ pub struct Render {
     pub image: Image,
     /// What was done.
     pub counters: Counters,
+    /// Time in each stage, of all threads together.
+    pub times: Times,
     /// Time that it took.
     pub elapsed: Duration,
     /// Whether all samples are in it; if not, it was cancelled.
@@ -84,15 +87,16 @@ pub fn render(world: &World, settings: &Settings, options: &Options) -> Render {
     let mut film = Film::new(options.region.unwrap_or(whole));
     let total = film.tiles.len() as u64 * u64::from(settings.spp);
     let (done, rays) = (AtomicU64::new(0), AtomicU64::new(0));
-    let counters = Mutex::new(Counters::default());
+    let totals = Mutex::new((Counters::default(), Times::default()));
     let cancelled = || options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
     let finish = |work: &mut Workspace, samples: u32| {
         let counted = std::mem::take(&mut work.counters);
         let rays = rays.fetch_add(counted.rays(), Ordering::Relaxed) + counted.rays();
         let samples = u64::from(samples);
         let done = done.fetch_add(samples, Ordering::Relaxed) + samples;
-        if let Ok(mut counters) = counters.lock() {
-            counters.add(&counted);
+        if let Ok(mut totals) = totals.lock() {
+            totals.0.add(&counted);
+            totals.1.add(&work.clock.take());
         }
         if let Some(progress) = options.progress {
             let done = done as f64 / total as f64;
@@ -110,9 +114,11 @@ pub fn render(world: &World, settings: &Settings, options: &Options) -> Render {
             },
         );
     }
+    let (counters, times) = totals.into_inner().unwrap_or_default();
     Render {
         image: film.resolve(),
-        counters: counters.into_inner().unwrap_or_default(),
+        counters,
+        times,
         elapsed: start.elapsed(),
         complete: done.into_inner() == total,
     }
@@ -135,8 +141,11 @@ fn passes(spp: u32) -> impl Iterator<Item = Range<u32>> {
 /// Adds samples to the pixels of a tile.
 fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
     let count = samples.end - samples.start;
+    work.clock.restart();
     stages::generate(job, tile, samples, work);
     let paths = work.len();
     job.integrate(work);
+    work.clock.end(Stage::Shade);
     work.counters.bad_samples += tile.add(&work.paths.radiance[..paths], count);
+    work.clock.end(Stage::Film);
 }

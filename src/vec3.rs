@@ -67,6 +67,13 @@ impl<D: Doubles> Vec3<D> {
     }
 }
 
+impl From<glam::Vec3> for Vec3<f32> {
+    #[inline(always)]
+    fn from(v: glam::Vec3) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
 impl From<DVec3> for Vec3<f64> {
     #[inline(always)]
     fn from(v: DVec3) -> Self {

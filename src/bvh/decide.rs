@@ -11,7 +11,7 @@ use crate::filter::{Chord, FilterRay};
 use crate::intersect::{self, CLEAR, Pairs, Root};
 use crate::lanes::{F64x8, Lanes, MAX_LANES, set_bits};
 use crate::ray::{Columns3, ExactRay, Hits, MISS, Rays};
-use crate::spheres::{Block, LEAF, Spheres};
+use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -92,9 +92,6 @@ impl<'a, Q: Query> Decider<'a, Q> {
         let wide = |row: [f32; 8]| F64x8::new(row.map(f64::from));
         let column = |x: &[f32]| wide(std::array::from_fn(|i| x[first..first + 8][i]));
         let columns = |v: &Columns3| Vec3::new(column(&v.x), column(&v.y), column(&v.z));
-        let gather = |x: fn(&Block) -> &[f32; LEAF]| {
-            wide(places.map(|(block, lane)| x(&blocks[block])[lane]))
-        };
         let origin = columns(&rays.origin);
         let span = origin.x.abs() + origin.y.abs() + origin.z.abs();
         let pairs = Pairs {
@@ -102,8 +99,12 @@ impl<'a, Q: Query> Decider<'a, Q> {
             direction: columns(&rays.direction),
             // As if all were on surfaces: no less.
             origin_error: span * F64x8::splat(f64::from(f32::EPSILON)),
-            center: Vec3::new(gather(|b| &b.x), gather(|b| &b.y), gather(|b| &b.z)),
-            radius: gather(|b| &b.radius),
+            center: Vec3::new(
+                wide(places.map(|(block, lane)| blocks[block].x[lane])),
+                wide(places.map(|(block, lane)| blocks[block].y[lane])),
+                wide(places.map(|(block, lane)| blocks[block].z[lane])),
+            ),
+            radius: wide(places.map(|(block, lane)| blocks[block].radius[lane])),
         };
         let (plain, t) = intersect::confirm_plain(&pairs);
         let t = t.to_array();
@@ -176,8 +177,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
     fn believe(&mut self, row: usize, sphere: usize) -> bool {
         let ray = FilterRay::new(self.rays.origin.load(row), self.rays.direction.load(row));
         let center = self.spheres.center(sphere);
-        let center = Vec3::new(center.x, center.y, center.z);
-        let near = Chord::<f32>::new(&ray, center, self.spheres.radius(sphere)).near();
+        let near = Chord::<f32>::new(&ray, center.into(), self.spheres.radius(sphere)).near();
         let nearer = near >= 0.0 && near < self.bounds::<f32>(row, 1).1;
         if nearer {
             self.hits.set(row, f64::from(near), sphere as u32);

@@ -31,12 +31,13 @@ impl<Q: Query> Bundle<Q> for Single {
     #[inline(always)]
     fn begin(&mut self, decider: &Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
         let rays = decider.rays;
-        *slabs = Slabs::new(rays.origin.row(row), rays.direction.row(row));
+        let (origin, direction) = (rays.origin.row(row), rays.direction.row(row));
+        *slabs = Slabs::new(origin, direction);
         let own = rays.own[row];
         *self = Self {
             row: row as u32,
             own: (own / LEAF as u32, !(1 << (own % LEAF as u32))),
-            filter: FilterRay::new(rays.origin.load(row), rays.direction.load(row)),
+            filter: FilterRay::new(origin.into(), direction.into()),
         };
         decider.bounds::<f32>(row, 1).1
     }
@@ -69,8 +70,7 @@ impl Single {
     fn is_hit_for_certain<Q: Query>(&self, decider: &Decider<Q>, sphere: usize) -> bool {
         let row = self.row as usize;
         let (center, radius) = (decider.spheres.center(sphere), decider.spheres.radius(sphere));
-        let center = Vec3::new(center.x, center.y, center.z);
-        let chord = Chord::new(&self.filter, center, radius);
+        let chord = Chord::new(&self.filter, center.into(), radius);
         let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
         certain
             && far < decider.bounds::<f32>(row, 1).0

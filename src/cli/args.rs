@@ -143,6 +143,9 @@ pub(super) struct ReportArgs {
     /// Also what the scene contains and what is skipped because it contains no such thing
     #[arg(short, long)]
     pub(super) verbose: bool,
+    /// Also which stage of the render took which share of the time
+    #[arg(long, conflicts_with = "quiet")]
+    pub(super) stats: bool,
     /// Statistics and settings as one JSON object on standard output
     #[arg(long)]
     pub(super) json: bool,

@@ -5,6 +5,7 @@
 //! in [`workspace::Paths`]. A stage whose column is empty does nothing.
 
 pub mod ao;
+pub mod clock;
 pub mod path;
 pub mod stages;
 pub mod whitted;

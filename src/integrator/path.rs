@@ -8,6 +8,7 @@
 //! environment is left to the material's samples alone.
 
 use super::Job;
+use super::clock::Stage;
 use super::stages::{self, Local, ShadeKind};
 use super::workspace::{Arrival, Workspace, chord};
 use crate::ray::GROUND;
@@ -30,6 +31,7 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
         stages::by_kind(job, work, &mut Shade { job, bounce });
         stages::occlude(job, work);
         work.compact();
+        work.clock.end(Stage::Shade);
         if work.is_empty() {
             return;
         }

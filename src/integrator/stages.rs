@@ -1,6 +1,7 @@
 //! The stages that integrators share, in the order of a path's life.
 
 use super::Job;
+use super::clock::Stage;
 use super::workspace::{Arrival, Workspace};
 use crate::film::Tile;
 use crate::ray::{ExactRay, GROUND, MISS};
@@ -29,6 +30,7 @@ pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspac
         }
     }
     work.counters.camera_rays += work.len() as u64;
+    work.clock.end(Stage::Generate);
 }
 
 /// Notes the glass spheres in which a camera ray starts. On a surface, its direction decides.
@@ -49,6 +51,7 @@ fn enter_glass(world: &World, work: &mut Workspace, place: usize, origin: Vec3, 
 /// Finds what each path hits next, where, and sorts the rows by what it is.
 pub fn intersect(job: &Job, work: &mut Workspace) {
     work.counters.exact_decisions += job.tracer.closest(job.world, &work.rays, &mut work.hits);
+    work.clock.end(Stage::Trace);
     for row in 0..work.len() {
         let hit = work.hits.sphere[row];
         if hit != MISS {
@@ -59,6 +62,7 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
     }
     let count = work.len();
     work.bins.sort(job.world, &work.hits, count);
+    work.clock.end(Stage::Surface);
 }
 
 /// Point and outward normal of a hit, in double precision from the surface itself: the point is no
@@ -125,6 +129,7 @@ impl Local {
 
 /// Traces the shadow rays and gives their light to the paths that it reaches.
 pub fn occlude(job: &Job, work: &mut Workspace) {
+    work.clock.end(Stage::Shade);
     let shadows = &mut work.shadows;
     work.counters.exact_decisions +=
         job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits);
@@ -135,6 +140,7 @@ pub fn occlude(job: &Job, work: &mut Workspace) {
     }
     work.counters.shadow_rays += shadows.rays.len() as u64;
     shadows.rays.truncate(0);
+    work.clock.end(Stage::Shadow);
 }
 
 /// Sends every path that has hit glass through it or back.

@@ -8,6 +8,7 @@
 //! rough metal choose one direction by chance.
 
 use super::Job;
+use super::clock::Stage;
 use super::path::{cast_shadow, survival};
 use super::stages::{self, Local, ShadeKind};
 use super::workspace::{Arrival, Workspace};
@@ -37,6 +38,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
         stages::by_kind(job, work, &mut Shade { job, bounce, samples, sky });
         stages::occlude(job, work);
         work.compact();
+        work.clock.end(Stage::Shade);
         if work.is_empty() {
             return;
         }
@@ -120,10 +122,9 @@ impl Shade<'_> {
         let share = work.paths.throughput[place] / count as f32;
         let origin = (work.surface.point[row], work.hits.sphere[row]);
         let Some(aim) = world.lights.aim(world, light, origin) else { return };
+        let points = self.job.sampler.split(&work.paths.sample[place], self.event(light), count);
         for i in 0..count {
-            let state = &work.paths.sample[place];
-            let u = self.job.sampler.split_pair(state, self.event(light), i, count);
-            let Some(sample) = aim.sample(u) else { continue };
+            let Some(sample) = aim.sample(points.pair(i)) else { continue };
             let incoming = local.frame.to_local(sample.direction);
             if incoming.z > 0.0 {
                 let response = bsdf.eval(local.outgoing, incoming);
@@ -138,10 +139,9 @@ impl Shade<'_> {
         let place = work.place[row] as usize;
         let share = work.paths.throughput[place] / self.samples as f32;
         let event = self.event(self.job.world.lights.len());
+        let points = self.job.sampler.split(&work.paths.sample[place], event, self.samples);
         for i in 0..self.samples {
-            let state = &work.paths.sample[place];
-            let u = self.job.sampler.split_pair(state, event, i, self.samples);
-            let incoming = cosine_hemisphere(u);
+            let incoming = cosine_hemisphere(points.pair(i));
             let direction = local.to_world(incoming);
             let radiance = self.job.world.environment.radiance(direction);
             let sample = LightSample {

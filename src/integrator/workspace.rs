@@ -1,5 +1,6 @@
 //! The columns that a task works on: allocated once, used for tile after tile.
 
+use super::clock::Clock;
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{PathState, Sampler};
 use crate::scene::Rgb;
@@ -37,6 +38,8 @@ pub struct Workspace {
     pub shadows: Shadows,
     /// What was done.
     pub counters: Counters,
+    /// How long it took.
+    pub clock: Clock,
 }
 
 /// Where rays hit.
@@ -165,6 +168,7 @@ impl Workspace {
                 light: vec![Rgb::ZERO; SHADOWS],
             },
             counters: Counters::default(),
+            clock: Clock::new(),
         }
     }
 

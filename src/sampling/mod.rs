@@ -19,7 +19,7 @@
 //! | 2 + 2 k | place on a light, seen from scattering k | which light, and one to spare     |
 //!
 //! The third row is for k of 1 or more, the last one for all. Events that are sampled several times
-//! on one path, such as stratified shadow rays, draw from [`Sampler::split_pair`] instead.
+//! on one path, such as stratified shadow rays, draw from [`Sampler::split`] instead.
 
 mod cone;
 mod distribution;
@@ -42,8 +42,7 @@ pub use filter::PixelFilter;
 pub use frame::Frame;
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
 pub use plan::{CameraDraw, LightDraw, ScatterDraw};
-pub use sampler::{PathState, Sampler};
-pub use stratified::stratified_pair;
+pub use sampler::{PathState, Sampler, Split};
 pub use warp::{
     UNIFORM_SPHERE_PDF, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf, uniform_sphere,
 };

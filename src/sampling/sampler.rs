@@ -2,7 +2,7 @@
 
 use super::hash::{mix, stream, unit};
 use super::sobol::{Shuffled, Sobol, block, shuffle};
-use super::stratified::{Strata, stratified_pair};
+use super::stratified::Strata;
 use crate::scene::SamplerKind;
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -97,25 +97,55 @@ impl Sampler {
         }
     }
 
-    /// Point `index` of `count` in the unit square, for one event of a path that is sampled `count`
-    /// times: well distributed over the indices. `event` tells such events of one path apart.
+    /// The points in the unit square of one event of a path that is sampled `count` times. `event`
+    /// tells such events of one path apart.
     ///
     /// Sobol points of one event go on from sample to sample, so that all samples of a pixel together
     /// are well distributed as well if they give an event the same `count`; best is a power of two.
     #[inline]
-    pub fn split_pair(&self, path: &PathState, event: u32, index: u32, count: u32) -> [f32; 2] {
+    pub fn split(&self, path: &PathState, event: u32, count: u32) -> Split {
         let key = stream(path.key ^ SPLIT, u64::from(event));
         match &self.points {
             Points::Sobol(sobol) => {
-                let position = u64::from(path.index) * u64::from(count) + u64::from(index);
-                let (block, position) = block(position);
-                sobol.pair(position, stream(key, block) as u32)
+                let first = u64::from(path.index) * u64::from(count);
+                Split { key, points: SplitPoints::Sobol(*sobol, first) }
             }
             Points::Stratified(_) => {
-                stratified_pair(index, count, stream(key, u64::from(path.index)))
+                let key = stream(key, u64::from(path.index));
+                Split { key, points: SplitPoints::Stratified(Strata::new(count)) }
             }
-            Points::Independent => {
-                let [u, v, ..] = independent(key, index);
+            Points::Independent => Split { key, points: SplitPoints::Independent },
+        }
+    }
+}
+
+/// Points in the unit square for one event, well distributed over their indices.
+#[derive(Clone, Copy, Debug)]
+pub struct Split {
+    key: u64,
+    points: SplitPoints,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum SplitPoints {
+    /// From this position of the sequence on.
+    Sobol(Sobol, u64),
+    Stratified(Strata),
+    Independent,
+}
+
+impl Split {
+    /// Point `index`, from 0; all of the event's together are what is well distributed.
+    #[inline]
+    pub fn pair(&self, index: u32) -> [f32; 2] {
+        match &self.points {
+            SplitPoints::Sobol(sobol, first) => {
+                let (block, position) = block(first + u64::from(index));
+                sobol.pair(position, stream(self.key, block) as u32)
+            }
+            SplitPoints::Stratified(strata) => strata.in_cell(index, self.key),
+            SplitPoints::Independent => {
+                let [u, v, ..] = independent(self.key, index);
                 [u, v]
             }
         }

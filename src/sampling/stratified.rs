@@ -38,6 +38,14 @@ impl Strata {
         self.jitter(cell, unit_pair(stream(key, u64::from(index))))
     }
 
+    /// A random point of cell `index`, from 0, of the set that belongs to a key; cells from
+    /// [`Strata::count`] on are those of further sets.
+    #[inline]
+    pub(super) fn in_cell(&self, index: u32, key: u64) -> [f32; 2] {
+        let key = stream(key, u64::from(index));
+        self.jitter(if index < self.count { index } else { index % self.count }, unit_pair(key))
+    }
+
     #[inline]
     fn jitter(&self, cell: u32, [u, v]: [f32; 2]) -> [f32; 2] {
         let in_taller = self.taller * (self.rows + 1);
@@ -50,18 +58,6 @@ impl Strata {
         let y = ((cell - first) as f32 + v) / rows as f32;
         [x.min(ONE_BELOW), y.min(ONE_BELOW)]
     }
-}
-
-/// Point `index` of `count` jittered points in the unit square that belong to a key.
-///
-/// For indices below `count`, each of `count` cells of equal area, near to squares, has exactly one
-/// point, in an order that looks random. Indices from `count` on start another such set. A `count`
-/// of 0 counts as 1. The key should be a hash.
-#[inline]
-pub fn stratified_pair(index: u32, count: u32, key: u64) -> [f32; 2] {
-    let strata = Strata::new(count);
-    let (set, index) = (index / strata.count(), index % strata.count());
-    strata.point(index, if set == 0 { key } else { stream(!key, u64::from(set)) })
 }
 
 /// A pseudo-random permutation of `0..length`, picked by `key`, evaluated at `index` without a
@@ -105,6 +101,10 @@ mod tests {
     use super::*;
     use crate::sampling::hash::mix;
     use crate::sampling::statistics::assert_chi_squared;
+
+    fn stratified_pair(index: u32, count: u32, key: u64) -> [f32; 2] {
+        Strata::new(count).point(index, key)
+    }
 
     #[test]
     fn permutations_are_one_to_one() {
@@ -177,10 +177,13 @@ mod tests {
     }
 
     #[test]
-    fn further_indices_start_another_set() {
-        let key = mix(1);
-        assert_ne!(stratified_pair(16, 16, key), stratified_pair(0, 16, key));
-        let [u, v] = stratified_pair(u32::MAX, 0, key);
+    fn further_cells_are_of_another_set() {
+        let strata = Strata::new(16);
+        let (first, further) = (strata.in_cell(3, mix(1)), strata.in_cell(19, mix(1)));
+        assert_ne!(first, further);
+        let cell = |[u, v]: [f32; 2]| ((u * 4.0) as u32, (v * 4.0) as u32);
+        assert_eq!(cell(first), cell(further));
+        let [u, v] = Strata::new(0).in_cell(u32::MAX, mix(1));
         assert!((0.0..1.0).contains(&u) && (0.0..1.0).contains(&v));
     }
 }

@@ -12,10 +12,12 @@ use serde::Serialize;
 use spherule::bvh::build::Builder;
 use spherule::bvh::walk::Method;
 use spherule::image::WriteOptions;
+use spherule::integrator::clock::{Stage, Times};
 use spherule::integrator::workspace::Counters;
 use spherule::render::Render;
 use spherule::scene::Settings;
 use spherule::trace::Width;
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// How a render went.
@@ -67,6 +69,8 @@ struct Statistics {
     non_finite_samples: u64,
     nesting_overflows: u64,
     exact_decisions: u64,
+    /// Share of each stage in the time of all threads, by name.
+    stage_shares: BTreeMap<&'static str, f64>,
 }
 
 impl<'a> Summary<'a> {
@@ -102,9 +106,19 @@ impl<'a> Summary<'a> {
             output::print_json(self);
         } else if !report.quiet {
             self.print();
+            if report.stats {
+                self.print_stages();
+            }
         }
         let old = self.warnings.len() - self.new_warnings;
         self.warnings[old..].iter().for_each(output::warn);
+    }
+
+    fn print_stages(&self) {
+        for stage in Stage::ALL {
+            let share = self.statistics.stage_shares.get(stage.name()).copied().unwrap_or(0.0);
+            output::print(format_args!("        {:<8} {:5.1} %", stage.name(), 100.0 * share));
+        }
     }
 
     fn print(&self) {
@@ -177,6 +191,9 @@ impl Statistics {
             non_finite_samples: counters.bad_samples,
             nesting_overflows: counters.nesting_overflows,
             exact_decisions: counters.exact_decisions,
+            stage_shares: Stage::ALL
+                .map(|stage| (stage.name(), share(&render.times, stage)))
+                .into(),
         }
     }
 }
@@ -218,4 +235,10 @@ fn warnings(counters: &Counters, settings: &Settings) -> Vec<String> {
         format!("{count} times a path was in more glass spheres at once than it can remember")
     });
     warnings
+}
+
+/// The part of all time that a stage took; 0 if there is none.
+fn share(times: &Times, stage: Stage) -> f64 {
+    let total = times.total().as_secs_f64();
+    if total > 0.0 { times.of(stage).as_secs_f64() / total } else { 0.0 }
 }

@@ -24,7 +24,7 @@ fn every_number_is_in_the_unit_interval() {
             let sampler = Sampler::new(kind, 1, spp);
             for index in (0..40).chain([65_535, 65_536, u32::MAX]) {
                 let path = sampler.start(65_534, index, index);
-                let pair = sampler.split_pair(&path, u32::MAX, index, spp);
+                let pair = sampler.split(&path, u32::MAX, spp).pair(index);
                 let numbers = SETS.into_iter().flat_map(|set| sampler.draw4(&path, set));
                 for number in numbers.chain(pair) {
                     assert!((0.0..1.0).contains(&number), "{kind:?} {spp} {index}: {number}");
@@ -40,7 +40,7 @@ fn numbers_do_not_depend_on_the_order_of_calls() {
         let sampler = Sampler::new(kind, 5, 12);
         let path = sampler.start(3, 4, 5);
         let forward: Vec<_> = SETS.iter().map(|&set| bits(sampler.draw4(&path, set))).collect();
-        sampler.split_pair(&path, 0, 0, 4);
+        sampler.split(&path, 0, 4).pair(0);
         let again = Sampler::new(kind, 5, 12);
         let mut backward: Vec<_> =
             SETS.iter().rev().map(|&set| bits(again.draw4(&again.start(3, 4, 5), set))).collect();
@@ -63,7 +63,7 @@ fn seeds_pixels_samples_and_sets_differ() {
                 assert!(SETS.iter().all(|&set| seen.insert(bits(sampler.draw4(&path, set)))));
                 for event in 0..2 {
                     for i in 0..4 {
-                        let [u, v] = sampler.split_pair(&path, event, i, 4);
+                        let [u, v] = sampler.split(&path, event, 4).pair(i);
                         assert!(seen.insert(bits([u, v, -1.0, -1.0])), "{kind:?} {event} {i}");
                     }
                 }
@@ -167,7 +167,7 @@ fn splits_are_stratified_within_a_path() {
         for index in [0, 3, 4095, 70_000] {
             let path = sampler.start(8, 9, index);
             for &columns in columns {
-                let points = (0..count).map(|i| sampler.split_pair(&path, 2, i, count));
+                let points = (0..count).map(|i| sampler.split(&path, 2, count).pair(i));
                 assert!(is_stratified(points, columns, count / columns), "{kind:?} {index}");
             }
         }
@@ -180,7 +180,7 @@ fn sobol_splits_are_stratified_over_the_pixel() {
     let points = || {
         (0..8).flat_map(|index| {
             let path = sampler.start(1, 2, index);
-            (0..8).map(move |i| sampler.split_pair(&path, 0, i, 8))
+            (0..8).map(move |i| sampler.split(&path, 0, 8).pair(i))
         })
     };
     for bits in 0..=6 {
