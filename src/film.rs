@@ -42,6 +42,17 @@ pub struct Tile {
     sums: Vec<[f64; 3]>,
     /// Samples in each of the sums.
     pub samples: u32,
+    /// What its camera rays may hit.
+    pub view: View,
+}
+
+/// What camera rays of a tile may hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// Anything.
+    Anything,
+    /// The ground and the environment, but no sphere.
+    Background,
 }
 
 impl Film {
@@ -86,7 +97,7 @@ impl Film {
 impl Tile {
     fn new(region: Region) -> Self {
         let pixels = region.width as usize * region.height as usize;
-        Self { region, sums: vec![[0.0; 3]; pixels], samples: 0 }
+        Self { region, sums: vec![[0.0; 3]; pixels], samples: 0, view: View::Anything }
     }
 
     /// The pixels as columns and rows of the picture, along a Morton curve: the first four are a
@@ -97,6 +108,17 @@ impl Tile {
             .map(|i| (even_bits(i), even_bits(i >> 1)))
             .filter(inside)
             .map(|(x, y)| (self.region.x + x, self.region.y + y))
+    }
+
+    /// Adds `count` samples of the same radiance, finite and not negative, to every pixel.
+    pub fn add_even(&mut self, radiance: Rgb, count: u32) {
+        for sum in &mut self.sums {
+            for (sum, channel) in sum.iter_mut().zip(radiance.to_array()) {
+                // Sums of so few equal numbers of single precision do not round.
+                *sum += f64::from(channel) * f64::from(count);
+            }
+        }
+        self.samples += count;
     }
 
     /// Adds `count` samples to every pixel: `radiance` holds those of the first pixel, then those

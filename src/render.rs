@@ -1,15 +1,16 @@
 //! A render: passes over tiles, tiles over threads.
 
 use crate::bvh::walk::Method;
-use crate::film::{Film, Region, Tile};
+use crate::film::{Film, Region, Tile, View};
 use crate::image::Image;
 use crate::integrator::clock::{Stage, Times};
 use crate::integrator::workspace::{Counters, Workspace};
 use crate::integrator::{Job, stages};
 use crate::sampling::{PixelFilter, Sampler};
-use crate::scene::{Integrator, Settings};
+use crate::scene::{Integrator, Rgb, Settings};
 use crate::trace::{Tracer, Width};
 use crate::world::World;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Mutex;
@@ -103,6 +104,9 @@ pub fn render(world: &World, settings: &Settings, options: &Options) -> Render {
             progress(Progress { done, rays, elapsed: start.elapsed() });
         }
     };
+    if options.tracer.method != Method::Brute {
+        film.tiles.par_iter_mut().for_each(|tile| tile.view = view(&job, tile));
+    }
     for samples in passes(settings.spp).take_while(|_| !cancelled()) {
         film.tiles.par_iter_mut().for_each_init(
             || Workspace::new(world, &sampler),
@@ -138,10 +142,35 @@ fn passes(spp: u32) -> impl Iterator<Item = Range<u32>> {
     (0..spp).step_by(PASS as usize).map(move |first| first..spp.min(first + PASS))
 }
 
+/// What camera rays of a tile may hit.
+fn view(job: &Job, tile: &Tile) -> View {
+    let world = job.world;
+    let reach = f64::from(job.filter.radius()) - 0.5;
+    let Region { x, y, width, height } = tile.region;
+    let low = DVec2::new(f64::from(x), f64::from(y)) - reach;
+    let high = DVec2::new(f64::from(x + width), f64::from(y + height)) + reach;
+    let [origin, direction] = world.camera.bounds(low, high);
+    let single = |v: [DVec3; 2]| v.map(DVec3::as_vec3);
+    let hit = world.bvh.may_be_hit(&world.spheres, single(origin), single(direction));
+    if hit { View::Anything } else { View::Background }
+}
+
+/// What all rays see that hit no sphere, if it is the same.
+fn even_background(world: &World) -> Option<Rgb> {
+    let only = world.ground.is_none() && world.lights.suns.is_empty();
+    world.environment.constant().filter(|_| only)
+}
+
 /// Adds samples to the pixels of a tile.
 fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
     let count = samples.end - samples.start;
     work.clock.restart();
+    if let Some(radiance) = even_background(job.world).filter(|_| tile.view == View::Background) {
+        tile.add_even(radiance, count);
+        work.counters.skipped_samples += u64::from(count) * tile.pixels().count() as u64;
+        return work.clock.end(Stage::Film);
+    }
+    work.view = tile.view;
     stages::generate(job, tile, samples, work);
     let paths = work.len();
     job.integrate(work);

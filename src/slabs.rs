@@ -126,8 +126,9 @@ impl Slabs {
     }
 }
 
+/// A vector in lanes.
 #[inline(always)]
-fn row(v: Vec3) -> F32x4 {
+pub(crate) fn row(v: Vec3) -> F32x4 {
     F32x4::new([v.x, v.y, v.z, 1.0])
 }
 

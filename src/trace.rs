@@ -32,6 +32,12 @@ impl Tracer {
     /// Finds what each ray hits first. On entry `hits.t` bounds the search, and `hits.sphere` is
     /// what is at that bound, if anything; on return both tell of the hit.
     pub fn closest(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+        self.ground(world, rays, hits);
+        self.walk::<Closest>(world, rays, hits)
+    }
+
+    /// [`Tracer::closest`] for rays that hit no sphere.
+    pub fn ground(self, world: &World, rays: &Rays, hits: &mut Hits) {
         if let Some(ground) = &world.ground {
             for row in 0..rays.len() {
                 if rays.own[row] == GROUND {
@@ -43,7 +49,6 @@ impl Tracer {
                 }
             }
         }
-        self.walk::<Closest>(world, rays, hits)
     }
 
     /// Finds whether anything is nearer than `hits.t`: on return `hits.sphere` is [`MISS`] where

@@ -201,7 +201,7 @@ fn bounds<L: Lanes>(rays: &Rays, row: usize, lanes: u32) -> Slabs {
 
 /// Boxes about the spheres of a block, as those of the tree are about theirs.
 #[inline(always)]
-fn boxes(block: &Block) -> Planes {
+pub(super) fn boxes(block: &Block) -> Planes {
     let widen = F32x8::splat(1.0 + 2.0 * f32::EPSILON);
     let radius = Lanes::mul_add(F32x8::load(&block.radius), widen, F32x8::splat(MARGIN));
     let slab = |center: &[f32; LEAF]| {

@@ -3,7 +3,7 @@
 use super::Job;
 use super::clock::Stage;
 use super::workspace::{Arrival, Workspace};
-use crate::film::Tile;
+use crate::film::{Tile, View};
 use crate::ray::{ExactRay, GROUND, MISS};
 use crate::sampling;
 use crate::shade::{Bsdf, dielectric};
@@ -50,7 +50,13 @@ fn enter_glass(world: &World, work: &mut Workspace, place: usize, origin: Vec3, 
 
 /// Finds what each path hits next, where, and sorts the rows by what it is.
 pub fn intersect(job: &Job, work: &mut Workspace) {
-    work.counters.exact_decisions += job.tracer.closest(job.world, &work.rays, &mut work.hits);
+    match std::mem::replace(&mut work.view, View::Anything) {
+        View::Background => job.tracer.ground(job.world, &work.rays, &mut work.hits),
+        View::Anything => {
+            work.counters.exact_decisions +=
+                job.tracer.closest(job.world, &work.rays, &mut work.hits);
+        }
+    }
     work.clock.end(Stage::Trace);
     for row in 0..work.len() {
         let hit = work.hits.sphere[row];

@@ -1,6 +1,7 @@
 //! The columns that a task works on: allocated once, used for tile after tile.
 
 use super::clock::Clock;
+use crate::film::View;
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{PathState, Sampler};
 use crate::scene::Rgb;
@@ -36,6 +37,8 @@ pub struct Workspace {
     pub bins: Bins,
     /// Light that arrives if nothing is in between.
     pub shadows: Shadows,
+    /// What the camera rays may hit.
+    pub view: View,
     /// What was done.
     pub counters: Counters,
     /// How long it took.
@@ -103,6 +106,8 @@ pub struct Shadows {
 /// What was done, for statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
+    /// Samples that need no ray, for nothing but an even background can be seen there.
+    pub skipped_samples: u64,
     /// Rays from the camera.
     pub camera_rays: u64,
     /// Rays from surfaces, looking for what comes next.
@@ -127,6 +132,7 @@ impl Counters {
 
     /// Adds what another task did.
     pub fn add(&mut self, other: &Self) {
+        self.skipped_samples += other.skipped_samples;
         self.camera_rays += other.camera_rays;
         self.bounce_rays += other.bounce_rays;
         self.shadow_rays += other.shadow_rays;
@@ -167,6 +173,7 @@ impl Workspace {
                 place: vec![MISS; SHADOWS],
                 light: vec![Rgb::ZERO; SHADOWS],
             },
+            view: View::Anything,
             counters: Counters::default(),
             clock: Clock::new(),
         }

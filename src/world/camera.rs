@@ -3,7 +3,7 @@
 use super::Frame;
 use super::fit::Placement;
 use crate::scene::{Projection, Scene};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// A camera in world space.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +66,35 @@ impl Camera {
             (0.0, self.near * slant)
         };
         (self.eye, across + along + self.lens_radius)
+    }
+
+    /// Boxes that hold the origins, and multiples of the directions, of all rays through a rectangle of
+    /// the picture: from `low` to `high` in pixels from its top left corner.
+    pub fn bounds(&self, low: DVec2, high: DVec2) -> [[DVec3; 2]; 2] {
+        /// More than rays are rounded by.
+        const ROUNDING: f64 = 1e-6;
+        let across = |x: f64| (2.0 * x / f64::from(self.width) - 1.0) * self.half_width;
+        let upward = |y: f64| (1.0 - 2.0 * y / f64::from(self.height)) * self.half_height;
+        let corner = |x: f64, y: f64| self.right * across(x) + self.up * upward(y);
+        let corners = [(low.x, low.y), (high.x, low.y), (low.x, high.y), (high.x, high.y)]
+            .map(|(x, y)| corner(x, y));
+        let least = corners.into_iter().reduce(DVec3::min).unwrap_or_default();
+        let most = corners.into_iter().reduce(DVec3::max).unwrap_or_default();
+        let shift = (self.right.abs() + self.up.abs()) * self.lens_radius;
+        let turn = if self.lens_radius > 0.0 { shift / self.focus } else { DVec3::ZERO };
+        let (eye, forward) = ([self.eye; 2], [self.forward - turn, self.forward + turn]);
+        let spread = |[a, b]: [DVec3; 2]| [a + least, b + most];
+        let (origin, direction) =
+            if self.orthographic { (spread(eye), forward) } else { (eye, spread(forward)) };
+        let origin = [
+            origin[0] - shift + direction[0] * self.near,
+            origin[1] + shift + direction[1] * self.near,
+        ];
+        let wider = |[a, b]: [DVec3; 2]| {
+            let margin = DVec3::splat(a.abs().max(b.abs()).max_element() * ROUNDING);
+            [a - margin, b + margin]
+        };
+        [wider(origin), wider(direction)]
     }
 
     /// Origin and unit direction of the ray through a point of the picture, in pixels from its top

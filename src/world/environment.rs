@@ -86,6 +86,14 @@ impl Environment {
         }
     }
 
+    /// The radiance of all directions, if it is the same.
+    pub fn constant(&self) -> Option<Rgb> {
+        match &self.radiance {
+            Radiance::Constant(color) => Some(*color),
+            _ => None,
+        }
+    }
+
     /// Whether no direction has any light.
     pub fn is_black(&self) -> bool {
         match &self.radiance {

@@ -10,7 +10,9 @@ use spherule::image::Image;
 use spherule::integrator::workspace::Counters;
 use spherule::render::{Options, render};
 use spherule::sampling::{stream, unit};
-use spherule::scene::{Integrator, Rgb, SamplerKind, Scene};
+use spherule::scene::{
+    EnvironmentMap, Integrator, Lens, Pose, Projection, Rgb, SamplerKind, Scene,
+};
 use spherule::trace::{Tracer, Width};
 
 const INTEGRATORS: [Integrator; 3] =
@@ -42,6 +44,35 @@ fn every_tracer_makes_the_same_picture() {
                 assert_eq!(got, expected, "{integrator:?} {tracer:?}");
             }
         }
+    }
+}
+
+/// Tiles in which no sphere can be seen are not traced; brute force traces them all.
+#[test]
+fn what_is_skipped_is_background() {
+    let projections =
+        [Projection::Perspective { fov: 70.0 }, Projection::Orthographic { height: Some(9.0) }];
+    let lenses = [None, Some(Lens { aperture: 0.4, focus: Some(5.0) })];
+    for (i, (projection, lens)) in
+        projections.into_iter().flat_map(|p| lenses.map(|lens| (p, lens))).enumerate()
+    {
+        let mut scene = dark();
+        material(&mut scene, lambertian(0.6));
+        let number = |k: u64| f64::from(unit(stream(31 + i as u64, k) as u32)) * 2.0 - 1.0;
+        for k in 0..12 {
+            let center = DVec3::new(number(3 * k), number(3 * k + 1), number(3 * k + 2));
+            scene.spheres.push(center * 2.0, 0.05 + 0.1 * number(100 + k).abs(), 0, Rgb::ONE);
+        }
+        scene.camera.pose = Pose::LookAt { eye: DVec3::new(3.0, 2.0, 4.0), target: DVec3::ZERO };
+        (scene.camera.projection, scene.camera.lens, scene.camera.near) = (projection, lens, 0.3);
+        (scene.settings.width, scene.settings.height, scene.settings.spp) = (150, 130, 5);
+        scene.environment.map = EnvironmentMap::Constant(Rgb::new(0.3, 0.7, 1.1));
+        let picture = shoot_with(&scene, &Options::default());
+        assert!(picture.counters.skipped_samples > 10_000, "{}", picture.counters.skipped_samples);
+        let tracer = Tracer { method: Method::Brute, ..Tracer::default() };
+        let brute = shoot_with(&scene, &Options { tracer, ..Options::default() });
+        assert_eq!(brute.counters.skipped_samples, 0);
+        assert!(brute.image == picture.image, "{projection:?} {lens:?}");
     }
 }
 
