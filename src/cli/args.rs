@@ -136,6 +136,7 @@ pub(super) struct SpeedArgs {
 /// What is told.
 #[derive(Clone, Copy, Debug, clap::Args)]
 #[command(next_help_heading = "Reports")]
+#[expect(clippy::struct_excessive_bools, reason = "one for each option")]
 pub(super) struct ReportArgs {
     /// Nothing but warnings and errors
     #[arg(short, long, conflicts_with = "verbose")]

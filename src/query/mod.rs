@@ -24,42 +24,25 @@
 //! # Ok::<(), spherule::query::QueryError>(())
 //! ```
 
+mod alone;
+mod plain;
+
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
 use crate::bvh::walk::{Any, Closest, Method, Query, trace};
-use crate::exact::{self, Distance};
-use crate::intersect;
-use crate::lanes::{F32x16, Lanes, Mask};
-use crate::ray::{self, ExactRay, MISS, Rays};
+use crate::exact;
+use crate::lanes::F32x16;
+use crate::ray::{self, MISS, Rays};
 use crate::spheres::Spheres;
+use alone::Scaled;
 use glam::{DVec3, Vec3};
 use std::cell::Cell;
-use std::cmp::Ordering;
-use std::ops::Range;
 
 /// The sphere of a ray that hits nothing.
 pub const NOTHING: u32 = MISS;
 
 /// Rays that are traced together.
 const CHUNK: usize = 2048;
-
-/// Rays that are looked at together before.
-const PACKET: usize = F32x16::WIDTH;
-
-/// No direction with a larger coordinate than this, or none larger than its reciprocal, is plain.
-const LONGEST: f32 = (1_u128 << 100) as f32;
-
-/// Rays that need no special care.
-struct Plain {
-    /// By packet, whether its rays are plain.
-    packets: [bool; CHUNK / PACKET],
-    /// By ray, what its direction was multiplied by: a power of two.
-    shrink: [f32; CHUNK],
-}
-
-/// Origins farther than this many times the largest coordinate are beyond what single precision can
-/// filter: such rays are tested against every sphere.
-const REACH: f64 = (1 << 20) as f64;
 
 /// Spheres, ready for exact queries.
 #[derive(Clone, Debug)]
@@ -302,7 +285,8 @@ impl SphereTree {
             rays.truncate(0);
             let plain = self.load(columns, rows.clone(), &mut rays);
             let unit = |row: usize| f64::from(plain.shrink[row]) / self.scale;
-            let is_plain = |row: usize| plain.packets[row / PACKET] && !bound(first + row).is_nan();
+            let is_plain =
+                |row: usize| plain.packets[row / plain::PACKET] && !bound(first + row).is_nan();
             for (row, i) in rows.clone().enumerate() {
                 // Nothing counts below 0: what is not plain is not traced here.
                 let bound = if is_plain(row) { bound(i) / unit(row) } else { -1.0 };
@@ -326,70 +310,6 @@ impl SphereTree {
         tally
     }
 
-    /// Appends some rays in the tree's units, and tells which are plain: all that they are fits single
-    /// precision, and they start no farther than [`REACH`].
-    fn load(&self, columns: &RayColumns, rows: Range<usize>, rays: &mut Rays) -> Plain {
-        let mut plain = Plain { packets: [false; CHUNK / PACKET], shrink: [1.0; CHUNK] };
-        let scale = self.scale as f32;
-        let scalable = f64::from(scale) == self.scale && scale.is_normal();
-        for (packet, first) in rows.clone().step_by(PACKET).enumerate() {
-            let lanes = PACKET.min(rows.end - first);
-            let column = |x: &[f32], rest: f32| {
-                let mut row = [rest; PACKET];
-                row[..lanes].copy_from_slice(&x[first..first + lanes]);
-                F32x16::new(row)
-            };
-            let origin = columns.origin.map(|x| column(x, 0.0));
-            let direction = columns.direction.map(|x| column(x, 1.0));
-            let [x, y, z] = direction.map(Lanes::abs);
-            let longest = Lanes::max(Lanes::max(x, y), z);
-            let shrink = longest.to_array().map(reciprocal_power);
-            plain.shrink[packet * PACKET..][..PACKET].copy_from_slice(&shrink);
-            let moved = origin.map(|x| x * F32x16::splat(scale));
-            let turned = direction.map(|x| x * F32x16::new(shrink));
-            let mut all =
-                F32x16::splat(LONGEST.recip()).le(longest) & longest.le(F32x16::splat(LONGEST));
-            for axis in 0..3 {
-                all = all & is_exact(moved[axis], origin[axis]);
-                all = all & is_exact(turned[axis], direction[axis]);
-                all = all & Lanes::abs(moved[axis]).le(F32x16::splat(REACH as f32));
-            }
-            plain.packets[packet] = scalable && all.bits() == u32::from(u16::MAX);
-            rays.append(lanes, &moved, &turned);
-        }
-        plain
-    }
-
-    /// Traces a ray that is not plain.
-    fn trace_alone<Q: Query>(
-        &self,
-        (origin, direction): ([f32; 3], [f32; 3]),
-        bound: f64,
-        tally: &mut Tally,
-    ) -> Option<Found> {
-        let scaled = self.scaled(origin, direction).filter(|_| !bound.is_nan());
-        let Some(scaled) = scaled else {
-            tally.invalid += 1;
-            return None;
-        };
-        let bound = bound / scaled.unit;
-        if scaled.is_far() {
-            tally.exact += 1;
-            return self.test_all(&scaled, bound);
-        }
-        let (mut rays, mut hits) = (Rays::with_capacity(1), ray::Hits::with_capacity(1));
-        hits.set(0, bound, MISS);
-        rays.push(scaled.ray.origin.as_vec3(), scaled.ray.direction.as_vec3(), MISS);
-        if !scaled.is_single() {
-            rays.precise.push(scaled.ray);
-        }
-        tally.exact +=
-            trace::<F32x16, Q>(Method::Single, &self.bvh, &self.spheres, &rays, &mut hits);
-        let sphere = hits.sphere[0] as usize;
-        let id = *self.spheres.id.get(sphere)?;
-        Some(Found { sphere, id, t: hits.t[0] * scaled.unit })
-    }
-
     fn surface(&self, (origin, direction): ([f32; 3], [f32; 3]), found: &Found) -> Surface {
         /// Beyond this many radii, double precision shows its limits.
         const FAR: f64 = (1 << 20) as f64;
@@ -405,50 +325,6 @@ impl SphereTree {
         let point = (center + normal * radius) / self.scale;
         Surface { point: point.to_array(), normal: normal.to_array() }
     }
-
-    /// A ray in the tree's units; `None` if it is no ray.
-    fn scaled(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Scaled> {
-        let (origin, direction) = (Vec3::from(origin).as_dvec3(), Vec3::from(direction).as_dvec3());
-        let longest = direction.abs().max_element();
-        if !(origin.is_finite() && direction.is_finite() && longest > 0.0) {
-            return None;
-        }
-        let shrink = (-longest.log2().floor()).exp2();
-        let (origin, direction) = (origin * self.scale, direction * shrink);
-        let ray = ExactRay { origin, direction, origin_error: 0.0 };
-        Some(Scaled { ray, unit: shrink / self.scale })
-    }
-
-    /// Tests every sphere: for rays from so far away that the filter cannot tell anything.
-    fn test_all(&self, scaled: &Scaled, bound: f64) -> Option<Found> {
-        let mut best: Option<Found> = None;
-        let mut nearest = Distance::Number(bound);
-        for row in 0..self.spheres.len() {
-            let (center, radius) = self.spheres.exact(row);
-            let root = intersect::confirm_closely(&scaled.ray, center, radius, || true);
-            let Some(root) = root else { continue };
-            let distance = Distance::Hit(center, radius);
-            let order = match nearest {
-                Distance::Number(f64::INFINITY) => Ordering::Less,
-                _ => exact::compare(&scaled.ray, &distance, &nearest),
-            };
-            let id = self.spheres.id[row];
-            let first = best.as_ref().is_some_and(|best| id < best.id);
-            if order.is_lt() || (order.is_eq() && first) {
-                nearest = distance;
-                best = Some(Found { sphere: row, id, t: root.t * scaled.unit });
-            }
-        }
-        best
-    }
-}
-
-/// A ray in a tree's units.
-#[derive(Clone, Copy)]
-struct Scaled {
-    ray: ExactRay,
-    /// What one unit of the scaled ray's distance is in units of the user's direction.
-    unit: f64,
 }
 
 /// A hit.
@@ -459,18 +335,6 @@ struct Found {
     id: u32,
     /// In units of the user's direction.
     t: f64,
-}
-
-impl Scaled {
-    fn is_far(&self) -> bool {
-        self.ray.origin.abs().max_element() > REACH
-    }
-
-    /// Whether single precision holds the ray.
-    fn is_single(&self) -> bool {
-        let single = |v: DVec3| v.as_vec3().as_dvec3() == v;
-        single(self.ray.origin) && single(self.ray.direction)
-    }
 }
 
 impl RayColumns<'_> {
@@ -485,18 +349,6 @@ impl RayColumns<'_> {
     fn row(&self, i: usize) -> ([f32; 3], [f32; 3]) {
         (self.origin.map(|column| column[i]), self.direction.map(|column| column[i]))
     }
-}
-
-/// The reciprocal of the largest power of two that is not above a number within [`LONGEST`].
-fn reciprocal_power(x: f32) -> f32 {
-    const EXPONENT: u32 = 0xff << 23;
-    f32::from_bits((254_u32 << 23).wrapping_sub(x.to_bits() & EXPONENT))
-}
-
-/// The lanes in which multiplication by a power of two has not underflowed.
-fn is_exact(product: F32x16, of: F32x16) -> <F32x16 as Lanes>::Mask {
-    let zero = F32x16::splat(0.0);
-    F32x16::splat(f32::MIN_POSITIVE).le(Lanes::abs(product)) | Lanes::abs(of).le(zero)
 }
 
 /// A single ray in columns.

@@ -1,14 +1,19 @@
 //! One numeric type for every width.
 //!
 //! Kernels are written once, over `L: Lanes`. `f32` is the one-lane case: it is the scalar tracer,
-//! the fallback and the oracle that the wide ones are tested against. This is the only file that
-//! names `wide`.
+//! the fallback and the oracle that the wide ones are tested against. This is the only module
+//! that names `wide`.
 //!
 //! Everything here rounds each lane as IEEE 754 says, without horizontal operations, so a lane's
 //! result does not depend on how many lanes there are. `#[inline(always)]` is on everything that
 //! takes or returns lanes here and in the kernels, because a wide value that crosses a real call
 //! goes through memory.
 
+mod across;
+mod doubles;
+
+pub use across::{greatest_of, shuffle, shuffle_numbers};
+pub use doubles::Doubles;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub use wide::{f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8};
 
@@ -277,101 +282,6 @@ macro_rules! impl_lanes {
 }
 
 impl_lanes! { f32x4, i32x4: 4, f32x8, i32x8: 8, f32x16, i32x16: 16 }
-
-/// A row of `f64` values, as little as the decision about hits needs.
-pub trait Doubles:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-{
-    /// What comparisons return.
-    type Mask: Mask;
-
-    /// `x` in every lane.
-    fn splat(x: f64) -> Self;
-    /// Square root; NaN below 0.
-    fn sqrt(self) -> Self;
-    /// Magnitude.
-    fn abs(self) -> Self;
-    /// `self < other`; false for NaN.
-    fn lt(self, other: Self) -> Self::Mask;
-}
-
-impl Doubles for f64 {
-    type Mask = bool;
-
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        x
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.abs()
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self < other
-    }
-}
-
-impl Mask for WideMask<F64x8> {
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        self.0.to_bitmask()
-    }
-}
-
-impl Doubles for F64x8 {
-    type Mask = WideMask<Self>;
-
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        Self::splat(x)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.abs()
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Self::Mask {
-        WideMask(self.simd_lt(other))
-    }
-}
-
-/// In lane `i` the greatest lane of `row[i]`; anything in the last.
-#[inline(always)]
-pub fn greatest_of<L: Lanes>([x, y, z]: [L; 3]) -> F32x4 {
-    let z = z.greatest_four();
-    let columns = F32x4::transpose([x.greatest_four(), y.greatest_four(), z, z]);
-    let [a, b, c, d] = columns;
-    Lanes::max(Lanes::max(a, b), Lanes::max(c, d))
-}
-
-/// Puts number `order >> 4 i & 7` of a row in place `i`.
-#[inline(always)]
-pub fn shuffle_numbers(row: &[u32; 8], order: u32) -> [u32; 8] {
-    const PLACES: wide::u32x8 = wide::u32x8::new([0, 4, 8, 12, 16, 20, 24, 28]);
-    let order = wide::u32x8::splat(order) >> PLACES;
-    wide::u32x8::new(*row).shuffle_wrapping(order).to_array()
-}
-
-/// Puts lane `order >> 4 i & 7` in lane `i`.
-#[inline(always)]
-pub fn shuffle(row: F32x8, order: u32) -> F32x8 {
-    let row: [u32; 8] = bytemuck::cast(row);
-    bytemuck::cast(shuffle_numbers(&row, order))
-}
 
 /// The indices of the set bits, lowest first.
 #[inline(always)]
