@@ -79,19 +79,20 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     }
 
     #[inline(always)]
-    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) -> Option<f32> {
+    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) {
         let block = &decider.spheres.blocks()[sphere / LEAF];
         let lane = sphere % LEAF;
         let center = Vec3::splat(block.x[lane], block.y[lane], block.z[lane]);
         let radius = L::splat(block.radius[lane]);
         let chord = Chord::new(&self.filter, center, radius);
         let met = chord.may_hit(self.t_max);
-        if met.bits() == 0 {
-            return None;
-        }
         let [own, target] = self.known.map(|known| known.has_bits_of(bits(sphere as u32)));
         self.take(decider, sphere, (met & !(own | target), &chord, radius));
-        Some(self.t_max.greatest())
+    }
+
+    #[inline(always)]
+    fn t_far(&self, _: &Decider<Q>) -> f32 {
+        self.t_max.greatest()
     }
 
     /// Computes the distances of what is hit for certain.

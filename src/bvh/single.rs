@@ -1,6 +1,6 @@
 //! A ray on its own: eight spheres of a leaf are tested at once.
 
-use super::decide::{DONE, Decider};
+use super::decide::Decider;
 use super::stream::Bundle;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay};
@@ -51,13 +51,18 @@ impl<Q: Query> Bundle<Q> for Single {
     }
 
     #[inline(always)]
-    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) -> Option<f32> {
+    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) {
         let row = self.row as usize;
         if Q::ANY && self.is_hit_for_certain(decider, sphere) {
             decider.hits.sphere[row] = sphere as u32;
-            return Some(DONE);
+        } else {
+            decider.consider(row, sphere);
         }
-        decider.consider(row, sphere).then(|| decider.bounds::<f32>(row, 1).1)
+    }
+
+    #[inline(always)]
+    fn t_far(&self, decider: &Decider<Q>) -> f32 {
+        decider.bounds::<f32>(self.row as usize, 1).1
     }
 
     #[inline(always)]

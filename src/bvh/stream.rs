@@ -32,8 +32,11 @@ pub(super) trait Bundle<Q: Query>: Copy {
     /// the slabs.
     fn meets(&self, slabs: &Slabs, t_far: f32, index: usize, block: &Block) -> u32;
 
-    /// Finds out about a sphere that may be hit; returns the new `t_far` if it is nearer.
-    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) -> Option<f32>;
+    /// Finds out about a sphere that may be hit.
+    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize);
+
+    /// The distance beyond which it needs no answers now; below 0 if it needs none.
+    fn t_far(&self, decider: &Decider<Q>) -> f32;
 
     /// Leaves all answers in the hits.
     fn settle(&self, decider: &mut Decider<Q>);
@@ -144,11 +147,11 @@ fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
         let flight = &mut flights[place as usize % FLIGHTS];
         let first = flight.child.index() * LEAF;
         for lane in set_bits(u64::from(met)) {
-            if let Some(t_far) = flight.bundle.test(decider, first + lane) {
-                flight.t_far = t_far;
-                flight.nearer = true;
-            }
+            flight.bundle.test(decider, first + lane);
         }
+        let t_far = flight.bundle.t_far(decider);
+        flight.nearer = t_far < flight.t_far;
+        flight.t_far = t_far;
     }
 }
 
