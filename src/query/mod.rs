@@ -170,7 +170,7 @@ impl SphereTree {
         });
         let scale = if largest > 0.0 { (-largest.log2().ceil()).exp2() } else { 1.0 };
         let scaled = |i: usize| wide(i).map(|value| value * scale);
-        let mut spheres = Spheres::default();
+        let mut spheres = Spheres::with_capacity(count);
         let mut rounded = false;
         for i in (0..count).filter(|&i| valid(i)) {
             let single = scaled(i).map(|value| value as f32);

@@ -38,13 +38,13 @@ use crate::spheres::Spheres;
 use glam::Vec3;
 
 /// Bytes that a sphere takes while a world is built, at most.
-const SPHERE_BYTES: u64 = 80;
+const SPHERE_BYTES: u64 = 64;
 
 /// Rays that a sample takes, with its bounces and its looks for light; about, for choosing the tree.
 const RAYS_PER_SAMPLE: u64 = 4;
 
 /// The same where every sphere may be a light.
-const EMITTER_BYTES: u64 = 120;
+const EMITTER_BYTES: u64 = 104;
 
 /// Everything that a render reads, immutable.
 #[derive(Clone, Debug)]
