@@ -15,15 +15,18 @@
 //! - `f` is off by `u |f|`, `f.d` thereby and by its three roundings by `4 u |f||d|`, `1 / d.d` by
 //!   `4 u` of itself and its product by `u`: `t` is off by at most `4 u |f| / |d| + 5 u |t|`.
 //! - `f - t d` is off along the ray by at most `u |f|`, the error of `t` times `|d|`, and `u p` of its
-//!   own rounding; at a right angle to it by `u (|f| + p)`. For `p <= r` that is together no more than
-//!   `11 u T + 8 u r`, which moves `p` by no more.
-//! - Squares, sums and the product with `K` add `5 u` of what they are. So if the line meets the
-//!   sphere, the computed `p` is at most the `reach` `r (1 + K) + K T` with `K = 16 u`: no hit is
+//!   own rounding; at a right angle to it by `u (|f| + p)`; and in any direction by `u T` where the
+//!   product is not fused with the difference. For `p <= r` that is together no more than
+//!   `12 u T + 8 u r`, which moves `p` by no more.
+//! - Squares, sums and the product with `K` add `5 u r`. So if the line meets the sphere, the computed
+//!   `p` is less than the `reach` `r (1 + K) + K T` with `K = 16 u`, by `3 u r + 4 u T`: no hit is
 //!   rejected.
-//! - Half the chord from that reach is too long by at least `8 u r + 5 u T`, as `reach^2 - p^2` grows by
-//!   `2 r` times that and the chord is no longer than `2 r`. With `K |t|` and `2 K` of itself on top it
-//!   outweighs the error of `t`, `9 u |t| + 4 u r / |d|`, and its own: the hit is not before
-//!   `t - half` nor beyond `t + half`.
+//! - `reach^2 - p^2` is thereby too large by at least `6 u r^2`: from `x >= y` and `p <= r` follows
+//!   `(r + x)^2 - (p + y)^2 >= r^2 - p^2 + 2 r (x - y)`. What the half chord `h` of the line has to
+//!   outweigh is the error of `t`, `9 u |t| + 4 u r / |d|`, its own roundings, `6 u` of itself, and
+//!   that of the difference, `u` of both. For the first `K |t|` is added, for the rest `2 K` of itself:
+//!   `(1 + 25 u) sqrt(h^2 + 6 u r^2) > h + 4 u r` for every `h`. So the hit is not before `t - half`
+//!   nor beyond `t + half`.
 //! - With `r (1 - K) - K T` for the reach, if that is positive, all signs turn around: the line meets
 //!   the sphere for certain, the near hit is not beyond `t - half` and the far one not before `t +
 //!   half`. Squared errors help: `(r - x)^2 - (p - y)^2 <= r^2 - p^2` for `p <= r`, `0 <= y <= x <=
@@ -166,3 +169,6 @@ impl<L: Lanes> Chord<L> {
         (certain, self.middle - half)
     }
 }
+
+#[cfg(test)]
+mod tests;

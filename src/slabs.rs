@@ -26,8 +26,8 @@ const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
 
 /// The rays between two bounds: one ray, or a packet.
 ///
-/// All of them are on the same side of 0 on each axis, or there the packet's bounds are useless and
-/// all boxes pass.
+/// On each axis all directions have the same sign, that of a zero included: with both signs, boxes that
+/// are met would be rejected.
 ///
 /// # The test's bound
 ///
@@ -73,8 +73,8 @@ impl Slabs {
         Self::assemble(direction, (inverse, origin), (inverse, origin))
     }
 
-    /// For rays whose origins and directions lie between two bounds, lower first; in lanes 0 to 2 what is
-    /// on their axes.
+    /// For rays whose origins and directions lie between two bounds, lower first, of which those of the
+    /// directions have the same signs; in lanes 0 to 2 what is on their axes.
     #[inline(always)]
     pub fn between(origin: [F32x4; 2], direction: [F32x4; 2]) -> Self {
         let [lower, upper] = direction;
@@ -139,3 +139,6 @@ fn inverse(direction: F32x4) -> F32x4 {
     let kept = Lanes::select(Lanes::abs(direction).lt(least.abs()), least, direction);
     F32x4::splat(1.0) / kept
 }
+
+#[cfg(test)]
+mod tests;

@@ -19,7 +19,7 @@
 pub mod forms;
 mod integers;
 mod interval;
-mod random;
+pub(crate) mod random;
 pub mod rays;
 pub mod reference;
 pub mod regimes;

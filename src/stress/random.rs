@@ -6,56 +6,56 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use std::f64::consts::TAU;
 
 /// A stream of random numbers.
-pub(super) struct Random(Xoshiro256PlusPlus);
+pub(crate) struct Random(Xoshiro256PlusPlus);
 
 impl Random {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(Xoshiro256PlusPlus::seed_from_u64(seed))
     }
 
     /// Uniform in `0..1`.
-    pub(super) fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Uniform between two numbers.
-    pub(super) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+    pub(crate) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// Ten to a power that is uniform between two numbers.
-    pub(super) fn decades(&mut self, range: [f64; 2]) -> f64 {
+    pub(crate) fn decades(&mut self, range: [f64; 2]) -> f64 {
         10_f64.powf(self.between(range))
     }
 
     /// Uniform in `0..count`; 0 for none.
-    pub(super) fn index(&mut self, count: usize) -> usize {
+    pub(crate) fn index(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize
     }
 
-    pub(super) fn coin(&mut self) -> bool {
+    pub(crate) fn coin(&mut self) -> bool {
         self.unit() < 0.5
     }
 
     /// 1 or -1.
-    pub(super) fn sign(&mut self) -> f64 {
+    pub(crate) fn sign(&mut self) -> f64 {
         if self.coin() { 1.0 } else { -1.0 }
     }
 
     /// Uniform in the cube from -1 to 1.
-    pub(super) fn in_cube(&mut self) -> DVec3 {
+    pub(crate) fn in_cube(&mut self) -> DVec3 {
         DVec3::from(std::array::from_fn(|_| self.between([-1.0, 1.0])))
     }
 
     /// Uniform on the unit sphere.
-    pub(super) fn direction(&mut self) -> DVec3 {
+    pub(crate) fn direction(&mut self) -> DVec3 {
         let (z, angle) = (self.between([-1.0, 1.0]), TAU * self.unit());
         let radius = (1.0 - z * z).sqrt();
         DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
     }
 
     /// Uniform on the unit circle at right angles to a unit vector.
-    pub(super) fn perpendicular(&mut self, to: DVec3) -> DVec3 {
+    pub(crate) fn perpendicular(&mut self, to: DVec3) -> DVec3 {
         let (side, other) = to.any_orthonormal_pair();
         let angle = TAU * self.unit();
         side * angle.cos() + other * angle.sin()

@@ -78,7 +78,7 @@ fn direction(
 }
 
 /// The unit direction of a line that passes a point at a distance; any direction if none does.
-fn pass(toward: DVec3, distance: f64, random: &mut Random) -> DVec3 {
+pub(crate) fn pass(toward: DVec3, distance: f64, random: &mut Random) -> DVec3 {
     let length = toward.length();
     let sine = distance / length;
     if sine.is_nan() || sine >= 1.0 {
