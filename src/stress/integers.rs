@@ -98,6 +98,19 @@ impl Encounter {
         Ordering::Equal
     }
 
+    /// Compares the distance with a finite number, exactly: `root sqrt(q)` with `a x - b`, by their
+    /// squares with the signs kept.
+    pub(super) fn compare_with(&self, number: f64) -> Ordering {
+        let (significand, exponent) = parts_of_double(number);
+        let exponent = exponent - (self.units.length - self.units.direction);
+        // All times 2^fraction is whole.
+        let fraction = (-exponent).max(0) as u64;
+        let product = (&self.a * significand) << exponent.max(0) as u64;
+        let rest = product - (&self.b << fraction);
+        let square = BigInt::from_biguint(rest.sign(), rest.magnitude() * rest.magnitude());
+        ((&self.q * self.root) << (2 * fraction)).cmp(&square)
+    }
+
     /// `root sqrt(q) 2^places`, off by less than 1.
     fn scaled_root(&self, places: u64) -> BigInt {
         (&self.q << (2 * places)).sqrt() * self.root
@@ -168,6 +181,14 @@ fn parts(x: f32) -> (u32, i32) {
     if biased == 0 { (fraction, -149) } else { (fraction | 0x80_0000, biased - 150) }
 }
 
+/// Significand, with the sign, and exponent of a finite number.
+fn parts_of_double(x: f64) -> (i64, i32) {
+    let (fraction, biased) = ((x.to_bits() << 12 >> 12) as i64, (x.to_bits() >> 52 & 0x7ff) as i32);
+    let (significand, exponent) =
+        if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+    (if x < 0.0 { -significand } else { significand }, exponent)
+}
+
 /// `x 2^-exponent`, which is whole.
 fn whole(x: f32, exponent: i32) -> BigInt {
     let (significand, own) = parts(x);
@@ -190,43 +211,4 @@ fn least<'a>(numbers: impl IntoIterator<Item = &'a f32>) -> i32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_become_whole() {
-        let least_of = |numbers: &[f32]| least(numbers);
-        assert_eq!(least_of(&[0.0, 0.75, 4.0]), -2);
-        assert_eq!(least_of(&[0.0, 1e-45]), -149);
-        assert_eq!(least_of(&[f32::MAX, 0.0]), 104);
-        assert_eq!(least_of(&[0.0]), 0);
-        assert_eq!(whole(-0.75, -2), BigInt::from(-3));
-        assert_eq!(whole(f32::MAX, 104), BigInt::from((1 << 24) - 1));
-        assert_eq!(whole(0.0, 5), BigInt::ZERO);
-    }
-
-    #[test]
-    fn quotients_have_more_than_a_hundred_bits() {
-        let third = quotient(BigInt::from(-1), &BigInt::from(3), 4);
-        assert!((third.high + 16.0 / 3.0).abs() < 1e-15 && third.low != 0.0);
-        // 3 (high + low) + 16 is the error, and all of it is exact here.
-        let error = third.high.mul_add(3.0, 16.0) + 3.0 * third.low;
-        assert!(error.abs() < 1e-30, "{error}");
-        assert_eq!(quotient(BigInt::ZERO, &BigInt::from(3), 0), Twofold::default());
-        let huge = quotient(BigInt::from(3) << 900, &BigInt::from(4), -1000);
-        assert_eq!(huge, Twofold { high: 0.75 * (-100_f64).exp2(), low: 0.0 });
-    }
-
-    #[test]
-    fn distances_are_compared_beyond_the_first_places() {
-        // Far spheres of nearly one distance: the centers differ by 2^-100 along the ray.
-        let ray = Ray { origin: [0.0; 3], direction: [1.0, 0.25, 0.0] };
-        let tiny = 100_f32.exp2().recip();
-        let spheres = [[0.5, 0.0, 0.0, 0.25], [0.5, 0.0, tiny, 0.25], [0.5, 0.0, -tiny, 0.25]];
-        let units = Units::of(&ray, &spheres);
-        let [first, up, down] = spheres.map(|row| Encounter::new(units, &ray, row).unwrap());
-        assert_eq!(first.compare(&up), Ordering::Less);
-        assert_eq!(down.compare(&first), Ordering::Greater);
-        assert_eq!(up.compare(&down), Ordering::Equal);
-    }
-}
+mod tests;

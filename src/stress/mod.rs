@@ -4,7 +4,8 @@
 //! [`run()`] lays out random scenes and rays of each [`Regime`], asks every [`Form`] what the rays
 //! hit, and counts where an answer is not that of the [`reference`](mod@reference), which is
 //! certain. Spherule itself takes part as it ships: through [`crate::query::SphereTree`] for rays
-//! from anywhere, and through the renderer's own world and walk for rays that start on a surface.
+//! from anywhere, with and without a bound of the distance, and through the renderer's own world and
+//! walk for rays that start on a surface.
 //! The counts are a function of seed, number of rays and regimes alone.
 //!
 //! ```
@@ -16,6 +17,7 @@
 //! assert!(report.regimes[1].form(Form::Naive).wrong_hits > 100);
 //! ```
 
+mod bounds;
 pub mod forms;
 mod integers;
 mod interval;

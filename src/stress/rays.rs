@@ -2,6 +2,7 @@
 
 use super::random::Random;
 use super::scenes::{Aim, NORMALS, Origin, Recipe, above, axis, parts};
+use crate::query::RayColumns;
 use glam::{DVec3, Vec3};
 
 /// A ray: single-precision numbers, taken exactly.
@@ -11,6 +12,29 @@ pub struct Ray {
     pub origin: [f32; 3],
     /// Where it goes, of any length but 0.
     pub direction: [f32; 3],
+}
+
+/// Rays in columns.
+pub(super) struct Columns {
+    origin: [Vec<f32>; 3],
+    direction: [Vec<f32>; 3],
+}
+
+impl Columns {
+    pub(super) fn new(rays: &[Ray]) -> Self {
+        let column = |of: &dyn Fn(&Ray) -> f32| rays.iter().map(of).collect();
+        Self {
+            origin: std::array::from_fn(|i| column(&|ray| ray.origin[i])),
+            direction: std::array::from_fn(|i| column(&|ray| ray.direction[i])),
+        }
+    }
+
+    pub(super) fn view(&self) -> RayColumns<'_> {
+        RayColumns {
+            origin: self.origin.each_ref().map(Vec::as_slice),
+            direction: self.direction.each_ref().map(Vec::as_slice),
+        }
+    }
 }
 
 /// A ray after a recipe, toward a scene of it.

@@ -92,6 +92,18 @@ pub fn solve(sphere: [f32; 4], ray: &Ray) -> Option<Solution> {
     Some(Solution { t: encounter.distance(), normal: encounter.normal(), t_unit })
 }
 
+/// Whether a ray hits a sphere nearer than each of some bounds, which `about` makes of the distance,
+/// rounded toward 0; `None` if it does not hit.
+pub fn nearer_than<const N: usize>(
+    sphere: [f32; 4],
+    ray: &Ray,
+    about: impl Fn(f64) -> [f64; N],
+) -> Option<[(f64, bool); N]> {
+    let encounter = Encounter::new(Units::of(ray, &[sphere]), ray, sphere)?;
+    let bounds = about(encounter.distance().high);
+    Some(bounds.map(|bound| (bound, encounter.compare_with(bound).is_lt())))
+}
+
 /// What decides about a ray and a sphere, in intervals.
 struct Terms {
     a: Interval,

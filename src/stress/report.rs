@@ -31,6 +31,9 @@ pub struct RegimeReport {
     pub close: u64,
     /// Decisions that Spherule needed arithmetic without rounding for.
     pub exact: u64,
+    /// Bounds about the distances of hits: seven for each of one ray in 16 that hits. About each it is
+    /// asked whether anything is nearer.
+    pub bounds: u64,
     /// Further rays that start on a surface and go outward.
     pub leaving: u64,
     /// Further rays that start on a surface and go inward.
@@ -48,6 +51,9 @@ pub struct FormReport {
     pub wrong_hits: u64,
     /// Rays that hit another sphere than it says.
     pub wrong_spheres: u64,
+    /// Bounds than which it says something is nearer and nothing is, or the other way round. 0 for the
+    /// forms of single precision: most of these bounds are no numbers of theirs, so they are not asked.
+    pub wrong_bounds: u64,
     /// Rays whose distance and normal were compared with the reference's: of those measured, the ones
     /// whose sphere is right. If there is none, the errors are 0.
     pub measured: u64,
@@ -72,6 +78,7 @@ impl FormReport {
             form: form.name(),
             wrong_hits: 0,
             wrong_spheres: 0,
+            wrong_bounds: 0,
             measured: 0,
             t_error: 0.0,
             t_error_natural: 0.0,
@@ -83,12 +90,14 @@ impl FormReport {
 
     /// Wrong decisions of every kind.
     pub fn wrong(&self) -> u64 {
-        self.wrong_hits + self.wrong_spheres + self.self_hits + self.missed_exits
+        let decisions = self.wrong_hits + self.wrong_spheres + self.wrong_bounds;
+        decisions + self.self_hits + self.missed_exits
     }
 
     fn add(&mut self, other: &Self) {
         self.wrong_hits += other.wrong_hits;
         self.wrong_spheres += other.wrong_spheres;
+        self.wrong_bounds += other.wrong_bounds;
         self.measured += other.measured;
         self.t_error = self.t_error.max(other.t_error);
         self.t_error_natural = self.t_error_natural.max(other.t_error_natural);
@@ -108,6 +117,7 @@ impl RegimeReport {
             hits: 0,
             close: 0,
             exact: 0,
+            bounds: 0,
             leaving: 0,
             entering: 0,
             forms: Form::ALL.map(FormReport::new),
@@ -120,6 +130,7 @@ impl RegimeReport {
         self.hits += other.hits;
         self.close += other.close;
         self.exact += other.exact;
+        self.bounds += other.bounds;
         self.leaving += other.leaving;
         self.entering += other.entering;
         for (form, other) in self.forms.iter_mut().zip(&other.forms) {
@@ -156,6 +167,11 @@ impl Report {
         self.regimes.iter().map(|regime| regime.leaving + regime.entering).sum()
     }
 
+    /// Bounds about the distances of hits.
+    pub fn bounds(&self) -> u64 {
+        self.regimes.iter().map(|regime| regime.bounds).sum()
+    }
+
     /// Writes CSV: a header, then a row for each regime and form.
     ///
     /// # Errors
@@ -170,6 +186,7 @@ impl Report {
                     regime.hits,
                     regime.close,
                     regime.exact,
+                    regime.bounds,
                     regime.leaving,
                     regime.entering,
                 ];
@@ -182,17 +199,19 @@ impl Report {
 }
 
 /// The columns of [`Report::write_csv`].
-const COLUMNS: [&str; 16] = [
+const COLUMNS: [&str; 18] = [
     "regime",
     "rays",
     "hits",
     "close",
     "exact",
+    "bounds",
     "leaving",
     "entering",
     "form",
     "wrong_hits",
     "wrong_spheres",
+    "wrong_bounds",
     "measured",
     "t_error",
     "t_error_natural",
@@ -212,6 +231,7 @@ mod tests {
         regime.form_mut(Form::Naive).wrong_hits = 2;
         regime.form_mut(Form::Naive).self_hits = 4;
         regime.form_mut(Form::Good).t_error = 1.5;
+        regime.bounds = 7;
         Report { seed: 3, rays: 10, regimes: vec![regime] }
     }
 
@@ -220,10 +240,12 @@ mod tests {
         let one = report().regimes.remove(0);
         let mut other = one.clone();
         other.form_mut(Form::Good).t_error = 7.0;
+        other.form_mut(Form::Spherule).wrong_bounds = 3;
         let both = one.merged(&other);
         assert_eq!((both.rays, both.form(Form::Naive).wrong_hits), (20, 4));
         assert_eq!(both.form(Form::Good).t_error, 7.0);
         assert_eq!(both.form(Form::Naive).wrong(), 12);
+        assert_eq!((both.form(Form::Spherule).wrong(), both.bounds), (3, 14));
         assert_eq!(both.wrong_share(Form::Naive), 0.2);
     }
 
@@ -234,8 +256,8 @@ mod tests {
         let mut rows = csv::Reader::from_reader(&text[..]);
         assert_eq!(rows.headers().unwrap(), &COLUMNS[..]);
         let rows: Vec<_> = rows.records().map(Result::unwrap).collect();
-        let forms: Vec<_> = rows.iter().map(|row| row[7].to_owned()).collect();
+        let forms: Vec<_> = rows.iter().map(|row| row[8].to_owned()).collect();
         assert_eq!(forms, Form::ALL.map(Form::name));
-        assert_eq!((&rows[0][0], &rows[0][8], &rows[2][11]), ("near_unit", "2", "1.5"));
+        assert_eq!((&rows[0][0], &rows[0][9], &rows[2][13]), ("near_unit", "2", "1.5"));
     }
 }

@@ -1,14 +1,15 @@
 //! The run: scene after scene, ray after ray, each form next to the truth.
 
+use super::bounds;
 use super::forms::{self, Answer, Form};
 use super::random::Random;
-use super::rays::{self, Ray};
+use super::rays::{self, Columns, Ray};
 use super::reference::{self, Decision, Twofold};
 use super::regimes::Regime;
 use super::report::{FormReport, RegimeReport, Report};
 use super::scenes;
 use super::surface;
-use crate::query::{Hits, NOTHING, QueryError, RayColumns, SphereTree, Surface};
+use crate::query::{Hits, NOTHING, QueryError, SphereTree, Surface};
 use crate::sampling::{mix, stream};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,7 +17,8 @@ use rayon::prelude::*;
 /// Rays of a scene.
 const RAYS: u64 = 256;
 
-/// Of so many rays the distance and the normal of one are compared: whole numbers take their time.
+/// Of so many rays the distance and the normal of one are compared, and answers to bounds: whole numbers
+/// take their time.
 const MEASURED: usize = 16;
 
 /// For so many rays one ray leaves a surface and one enters.
@@ -78,6 +80,7 @@ fn run_scene(regime: &Regime, count: usize, seed: u64) -> RegimeReport {
     // Columns made here are of one length, and few.
     let spherule = Spherule::trace(&spheres, &rays).unwrap_or_default();
     report.exact = spherule.exact;
+    let mut measured = Vec::with_capacity(count.div_ceil(MEASURED));
     for (i, ray) in rays.iter().enumerate() {
         let truth = reference::closest(&spheres, ray);
         report.hits += u64::from(truth.sphere.is_some());
@@ -95,9 +98,11 @@ fn run_scene(regime: &Regime, count: usize, seed: u64) -> RegimeReport {
         }
         if i % MEASURED == 0 {
             measure(&mut report, &spheres, ray, (truth, &answers));
+            measured.extend(truth.sphere.map(|sphere| (*ray, sphere)));
         }
     }
     report.forms[Form::Spherule as usize].wrong_hits += spherule.contradictions;
+    bounds::count(&spheres, &measured, &mut report);
     surface::count(&spheres, count.div_ceil(SURFACE), &mut random, &mut report);
     report
 }
@@ -159,20 +164,14 @@ struct Spherule {
 impl Spherule {
     fn trace(spheres: &[[f32; 4]], rays: &[Ray]) -> Result<Self, QueryError> {
         let tree = SphereTree::from_rows(spheres)?;
-        let column = |of: &dyn Fn(&Ray) -> f32| rays.iter().map(of).collect::<Vec<f32>>();
-        let origin: [Vec<f32>; 3] = std::array::from_fn(|i| column(&|ray| ray.origin[i]));
-        let direction: [Vec<f32>; 3] = std::array::from_fn(|i| column(&|ray| ray.direction[i]));
-        let columns = RayColumns {
-            origin: [&origin[0], &origin[1], &origin[2]],
-            direction: [&direction[0], &direction[1], &direction[2]],
-        };
+        let columns = Columns::new(rays);
         let bounds = vec![f64::INFINITY; rays.len()];
         let (mut t, mut sphere) = (bounds.clone(), vec![NOTHING; rays.len()]);
         let mut surface = vec![Surface::default(); rays.len()];
         let hits = Hits { t: &mut t, sphere: &mut sphere, surface: Some(&mut surface) };
-        let closest = tree.intersect_columns(&columns, hits)?;
+        let closest = tree.intersect_columns(&columns.view(), hits)?;
         let mut occluded = vec![false; rays.len()];
-        let any = tree.occluded_columns(&columns, &bounds, &mut occluded)?;
+        let any = tree.occluded_columns(&columns.view(), &bounds, &mut occluded)?;
         let pairs = sphere.iter().zip(&occluded);
         let contradictions = pairs.filter(|(sphere, any)| (**sphere != NOTHING) != **any).count();
         Ok(Self {
@@ -209,6 +208,7 @@ mod tests {
                 let spherule = regime.form(Form::Spherule);
                 assert_eq!(spherule.wrong(), 0, "seed {seed}: {regime:?}");
                 assert!(regime.leaving > 0 && regime.entering > 0, "{}", regime.name);
+                assert!(regime.bounds > 0 || regime.name == "behind", "{}", regime.name);
                 // Four natural units of double precision, 2^-29 of those of single precision.
                 assert!(spherule.t_error_natural < 4.0 / 29_f64.exp2(), "seed {seed}: {regime:?}");
                 assert!(spherule.normal_error < 0.5, "seed {seed}: {regime:?}");

@@ -36,8 +36,9 @@ pub(in crate::cli) struct Args {
 }
 
 pub(in crate::cli) const EXAMPLES: &str = "\
-Every ray is decided again in whole numbers, without any rounding. Exit code 0 says that this
-program was never wrong, 1 that it was.
+Every ray is decided again in whole numbers, without any rounding. Of one ray in 16 that hits, this
+program is also asked whether anything is nearer than seven bounds at the distance and next to it,
+down to the next number of double precision. Exit code 0 says that it was never wrong, 1 that it was.
 
 Examples:
   spherule stress

@@ -93,7 +93,8 @@ fn write(
 /// The verdict.
 fn closing(report: &Report) -> String {
     let (wrong, rays) = (report.wrong(Form::Spherule), report.rays + report.surface_rays());
-    let counted = format!("{} wrong decisions in {} rays", HumanCount(wrong), HumanCount(rays));
+    let [wrong, rays, bounds] = [wrong, rays, report.bounds()].map(HumanCount);
+    let counted = format!("{wrong} wrong decisions in {rays} rays and {bounds} bounds");
     let at_fault = report.regimes.iter().filter(|regime| regime.form(Form::Spherule).wrong() > 0);
     let names: Vec<_> = at_fault.map(|regime| regime.name).collect();
     if names.is_empty() { counted } else { format!("{counted}, in {}", names.join(", ")) }
@@ -115,8 +116,8 @@ mod tests {
     fn the_verdict_names_the_regimes_at_fault() {
         let regimes = REGIMES[..2].iter().collect();
         let mut report = stress::run(&Options { rays: 64, seed: 0, regimes }, &|_| ());
-        assert_eq!(closing(&report), "0 wrong decisions in 80 rays");
+        assert_eq!(closing(&report), "0 wrong decisions in 80 rays and 28 bounds");
         report.regimes[1].forms[Form::Spherule as usize].wrong_spheres = 1234;
-        assert_eq!(closing(&report), "1,234 wrong decisions in 80 rays, in inside");
+        assert_eq!(closing(&report), "1,234 wrong decisions in 80 rays and 28 bounds, in inside");
     }
 }

@@ -49,6 +49,7 @@ pub(super) fn text(report: &Report) -> String {
             rays(|regime| regime.rays),
             share("wrong hit or miss", |form| form.wrong_hits),
             share("wrong sphere", |form| form.wrong_spheres),
+            bounds(regimes),
         ],
         vec![
             names(regimes, "largest errors"),
@@ -69,6 +70,13 @@ pub(super) fn text(report: &Report) -> String {
 fn names(regimes: &[RegimeReport], heading: &'static str) -> Group {
     let names = regimes.iter().map(|regime| regime.name.to_owned());
     Group { heading, columns: vec![[String::new()].into_iter().chain(names).collect()] }
+}
+
+/// What is wrong about bounds: of this program, which alone is asked.
+fn bounds(regimes: &[RegimeReport]) -> Group {
+    let wrong =
+        |regime: &RegimeReport, form: &FormReport| percent(form.wrong_bounds, regime.bounds);
+    group(regimes, "wrong bound", &[(Form::Spherule, "Spherule")], wrong)
 }
 
 /// One column for each form.
