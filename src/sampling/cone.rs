@@ -66,7 +66,7 @@ impl Cone {
 mod tests {
     use super::*;
     use crate::sampling::hash::ONE_BELOW;
-    use crate::sampling::warp::tests::{check_directions, random_pairs};
+    use crate::sampling::statistics::{Grid, random_pairs};
     use glam::DVec3;
 
     fn toward(radius: f64, distance: f64) -> Cone {
@@ -104,15 +104,21 @@ mod tests {
         }
     }
 
+    fn check(cone: Cone, angle: f64) {
+        let samples = random_pairs(400_000, 3).map(|u| Some(cone.sample(u)));
+        Grid::cone(Vec3::Z, angle).check(samples, |_| cone.pdf(), Some(0.0));
+    }
+
     #[test]
     fn directions_follow_the_density() {
         for sine in [0.9999, 0.9, 0.5, 0.1, 1e-3] {
             let cone = toward(sine, 1.0);
             // The cosine of a narrow cone is not resolved by f32, but its density does not need it.
-            check_directions(f64::from(cone.height()), |u| cone.sample(u), |_| cone.pdf());
+            check(cone, sine.asin());
         }
-        let half_space = Cone::from_half_angle(0.5 * PI);
-        check_directions(1.0, |u| half_space.sample(u), |_| half_space.pdf());
+        for angle in [1e-3, 0.1, 0.5 * PI, 0.9 * PI, PI] {
+            check(Cone::from_half_angle(angle), angle);
+        }
     }
 
     #[test]

@@ -132,8 +132,7 @@ impl Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::statistics::assert_chi_squared;
-    use crate::sampling::warp::tests::random_pairs;
+    use crate::sampling::statistics::{assert_chi_squared, random_pairs};
     use proptest::prelude::*;
 
     #[test]
@@ -142,7 +141,7 @@ mod tests {
         let total: f64 = weights.iter().sum();
         let distribution = Distribution::new(&weights).expect("there are positive weights");
         let mut observed = vec![0_u64; weights.len()];
-        for [u, _] in random_pairs(100_000, 6) {
+        for [u, _] in random_pairs(1_000_000, 6) {
             observed[distribution.sample(u).index] += 1;
         }
         let probabilities: Vec<f64> = weights.iter().map(|weight| weight / total).collect();

@@ -59,8 +59,7 @@ impl Distribution2d {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::statistics::assert_chi_squared;
-    use crate::sampling::warp::tests::random_pairs;
+    use crate::sampling::statistics::{assert_chi_squared, random_pairs};
 
     const WIDTH: usize = 13;
     const HEIGHT: usize = 9;
@@ -87,7 +86,7 @@ mod tests {
     fn positions_follow_the_picture() {
         let distribution = distribution();
         let mut observed = vec![0_u64; WIDTH * HEIGHT];
-        for u in random_pairs(100_000, 12) {
+        for u in random_pairs(1_000_000, 12) {
             let ([x, y], pdf) = distribution.sample(u);
             assert!((0.0..1.0).contains(&x) && (0.0..1.0).contains(&y));
             assert_eq!(pdf, distribution.pdf([x, y]));

@@ -85,8 +85,7 @@ fn blackman_harris(x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::sampling::hash::ONE_BELOW;
-    use crate::sampling::statistics::assert_chi_squared;
-    use crate::sampling::warp::tests::random_pairs;
+    use crate::sampling::statistics::{assert_chi_squared, random_pairs};
     use std::f64::consts::PI;
 
     /// Mean and variance of dx by quadrature over the draw.
@@ -123,15 +122,17 @@ mod tests {
     #[test]
     fn offsets_follow_the_profile() {
         for (filter, profile) in [
-            (Filter::Gaussian, gaussian as fn(f64) -> f64),
+            (Filter::Box, (|x| f64::from(x.abs() < 0.5)) as fn(f64) -> f64),
+            (Filter::Gaussian, gaussian),
             (Filter::BlackmanHarris, blackman_harris),
         ] {
             const CELLS: usize = 40;
             let sampled = PixelFilter::new(filter);
-            let mut observed = vec![0_u64; CELLS];
-            for u in random_pairs(100_000, 21) {
-                let [_, dy] = sampled.offset(u);
-                observed[((dy + 2.0) * 10.0) as usize] += 1;
+            let mut observed = [vec![0_u64; CELLS], vec![0_u64; CELLS]];
+            for u in random_pairs(1_000_000, 21) {
+                for (observed, offset) in observed.iter_mut().zip(sampled.offset(u)) {
+                    observed[((offset + 2.0) * 10.0) as usize] += 1;
+                }
             }
             let mass = |cell: usize| {
                 let center = (cell as f64 + 0.5) / 10.0 - 2.0;
@@ -140,7 +141,9 @@ mod tests {
             let masses: Vec<f64> = (0..CELLS).map(mass).collect();
             let total: f64 = masses.iter().sum();
             let probabilities: Vec<f64> = masses.iter().map(|mass| mass / total).collect();
-            assert_chi_squared(&observed, &probabilities);
+            for observed in &observed {
+                assert_chi_squared(observed, &probabilities);
+            }
         }
     }
 

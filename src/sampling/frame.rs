@@ -47,7 +47,8 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::warp::{tests::random_pairs, uniform_sphere};
+    use crate::sampling::statistics::random_pairs;
+    use crate::sampling::uniform_sphere;
 
     /// Largest rounding error of products of unit vectors that is let pass.
     const TOLERANCE: f32 = 4e-7;

@@ -31,7 +31,7 @@ mod plan;
 mod sampler;
 mod sobol;
 #[cfg(test)]
-mod statistics;
+pub(crate) mod statistics;
 mod stratified;
 mod warp;
 

@@ -1,12 +1,19 @@
-//! Tests of goodness of fit for the tests of this module.
+//! Goodness of fit, for tests of whatever draws at random.
 
-/// Upper quantile of the normal distribution for a significance of 1e-5.
-const Z: f64 = 4.264_890_8;
+use super::Frame;
+use super::hash::{mix, stream, unit_pair};
+use glam::{DVec3, Vec3};
+use std::f64::consts::{PI, TAU};
 
-/// Fails unless counts fit probabilities by Pearson's chi-squared test at a significance of 1e-5.
+/// Upper quantile of the normal distribution for a significance of 1e-6: that of a hundred tests
+/// together is 1e-4 (Šidák, "Rectangular Confidence Regions for the Means of Multivariate Normal
+/// Distributions", JASA 1967).
+const Z: f64 = 4.753_424_3;
+
+/// Fails unless counts fit probabilities by Pearson's chi-squared test.
 ///
 /// Cells that expect fewer than 5 are pooled. The probabilities must sum to 1.
-pub(super) fn assert_chi_squared(observed: &[u64], probabilities: &[f64]) {
+pub(crate) fn assert_chi_squared(observed: &[u64], probabilities: &[f64]) {
     let sum: f64 = probabilities.iter().sum();
     assert!((sum - 1.0).abs() < 1e-4, "the probabilities sum to {sum}");
     let count = observed.iter().sum::<u64>() as f64;
@@ -24,12 +31,13 @@ pub(super) fn assert_chi_squared(observed: &[u64], probabilities: &[f64]) {
             add(observed as f64, expected);
         }
     }
-    if pooled.1 > 0.0 {
+    if pooled.1 > 1.0 {
         add(pooled.0, pooled.1);
     } else {
-        assert!(pooled.0 == 0.0, "{} samples where none can be", pooled.0);
+        assert!(pooled.0 < 15.0, "{} samples where {} are expected", pooled.0, pooled.1);
+        assert!(pooled.0 == 0.0 || pooled.1 > 0.0, "{} samples where none can be", pooled.0);
     }
-    let limit = chi_squared_quantile(f64::from(cells - 1));
+    let limit = chi_squared_quantile(f64::from(cells.max(2) - 1));
     assert!(statistic < limit, "chi-squared {statistic} >= {limit} of {cells} cells");
 }
 
@@ -39,18 +47,145 @@ fn chi_squared_quantile(degrees: f64) -> f64 {
     degrees * (1.0 - spread + Z * spread.sqrt()).powi(3)
 }
 
-#[test]
-fn quantile_of_the_tables() {
-    // Exact values, from the incomplete gamma function; the approximation errs to the safe side.
-    for (degrees, quantile) in [(15.0, 50.493_006), (63.0, 122.727_215), (255.0, 362.988_816)] {
-        let approximation = chi_squared_quantile(degrees);
-        assert!((1.0..1.015).contains(&(approximation / quantile)), "{degrees}: {approximation}");
+/// Pairs of random numbers in [0, 1).
+pub(crate) fn random_pairs(count: u64, seed: u64) -> impl Iterator<Item = [f32; 2]> {
+    (0..count).map(move |position| unit_pair(stream(mix(seed), position)))
+}
+
+/// Cells of directions about an axis: rings of angles up to one, each in sectors.
+#[derive(Clone, Copy)]
+pub(crate) struct Grid {
+    pub(crate) frame: Frame,
+    /// Largest angle to the axis, radians.
+    pub(crate) angle: f64,
+    /// Rings are at parts of the angle that are evenly spread numbers to this power: more than 1 for
+    /// finer cells next to the axis.
+    pub(crate) power: f64,
+    pub(crate) rings: usize,
+    pub(crate) sectors: usize,
+    /// Points to a side of a cell at which densities are taken.
+    pub(crate) steps: usize,
+}
+
+impl Grid {
+    /// Of directions that are no farther than `angle` from an axis.
+    pub(crate) fn cone(axis: Vec3, angle: f64) -> Self {
+        Self { frame: Frame::new(axis), angle, power: 1.0, rings: 20, sectors: 20, steps: 12 }
+    }
+
+    /// Of the hemisphere about an axis.
+    pub(crate) fn hemisphere(axis: Vec3) -> Self {
+        Self::cone(axis, PI / 2.0)
+    }
+
+    /// Of all directions, most of which are close to an axis.
+    pub(crate) fn lobe(axis: Vec3) -> Self {
+        Self { power: 3.0, steps: 48, ..Self::cone(axis, PI) }
+    }
+
+    /// The cell of a direction: for what rounding has moved out of the grid, the nearest.
+    fn cell(&self, direction: Vec3) -> Option<usize> {
+        let direction = direction.as_dvec3();
+        let [x, y, z] = [self.frame.tangent, self.frame.bitangent, self.frame.normal]
+            .map(|axis| direction.dot(axis.as_dvec3()));
+        let part = x.hypot(y).atan2(z) / self.angle;
+        let ring = (part.powf(1.0 / self.power) * self.rings as f64) as usize;
+        let sector = (y.atan2(x) / TAU).rem_euclid(1.0) * self.sectors as f64;
+        let place = ring.min(self.rings - 1) * self.sectors;
+        (part < 1.0 + 1e-4).then(|| place + (sector as usize).min(self.sectors - 1))
+    }
+
+    /// Integral of a density by solid angle over each cell, by midpoints.
+    fn integrals(&self, pdf: impl Fn(Vec3) -> f32) -> Vec<f64> {
+        let steps = self.steps;
+        let (rows, columns) = (self.rings * steps, self.sectors * steps);
+        let mut integrals = vec![0.0; self.rings * self.sectors];
+        for row in 0..rows {
+            let part = (row as f64 + 0.5) / rows as f64;
+            let (sine, cosine) = (self.angle * part.powf(self.power)).sin_cos();
+            // Of the angle by the row, and of the turn by the column.
+            let width = self.angle * self.power * part.powf(self.power - 1.0) / rows as f64;
+            let area = sine * width * TAU / columns as f64;
+            for column in 0..columns {
+                let (sin, cos) = (TAU * (column as f64 + 0.5) / columns as f64).sin_cos();
+                let local = DVec3::new(sine * cos, sine * sin, cosine);
+                let density = f64::from(pdf(self.frame.to_world(local.as_vec3())));
+                integrals[row / steps * self.sectors + column / steps] += density * area;
+            }
+        }
+        integrals
+    }
+
+    /// Fails unless samples follow a density by solid angle, which is more than 0 at each of them, and
+    /// all of them lie in the grid. `none` is the probability of no sample; if that is not known it is
+    /// what the density leaves.
+    pub(crate) fn check(
+        &self,
+        samples: impl Iterator<Item = Option<Vec3>>,
+        pdf: impl Fn(Vec3) -> f32,
+        none: Option<f64>,
+    ) {
+        let mut probabilities = self.integrals(&pdf);
+        let all: f64 = probabilities.iter().sum();
+        assert!(all < 1.0 + 1e-4, "the density integrates to {all}");
+        let missing = probabilities.len();
+        probabilities.push(none.unwrap_or(1.0 - all).max(0.0));
+        let mut observed = vec![0_u64; missing + 1];
+        for sample in samples {
+            let cell = sample.map_or(missing, |direction| {
+                assert!((direction.length() - 1.0).abs() < 1e-6, "{direction}");
+                assert!(pdf(direction) > 0.0, "density {} at {direction}", pdf(direction));
+                self.cell(direction).unwrap_or_else(|| panic!("{direction} is out of bounds"))
+            });
+            observed[cell] += 1;
+        }
+        assert_chi_squared(&observed, &probabilities);
     }
 }
 
-#[test]
-#[should_panic(expected = "chi-squared")]
-fn a_bias_is_found() {
-    let observed: Vec<u64> = (0..64).map(|i| if i < 32 { 1050 } else { 950 }).collect();
-    assert_chi_squared(&observed, &[1.0 / 64.0; 64]);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::uniform_sphere;
+
+    #[test]
+    fn quantile_of_the_tables() {
+        // Exact values, from the incomplete gamma function; the approximation errs to the safe side.
+        for (degrees, quantile) in [(15.0, 56.493_442), (63.0, 131.369_702), (255.0, 377.078_115)] {
+            let approximation = chi_squared_quantile(degrees);
+            let ratio = approximation / quantile;
+            assert!((1.0..1.025).contains(&ratio), "{degrees}: {approximation}");
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "chi-squared")]
+    fn a_bias_is_found() {
+        let observed: Vec<u64> = (0..64).map(|i| if i < 32 { 1050 } else { 950 }).collect();
+        assert_chi_squared(&observed, &[1.0 / 64.0; 64]);
+    }
+
+    /// As dense as on the sphere, but for 2 % more on one side.
+    fn check_sphere(density: impl Fn(Vec3) -> f32) {
+        let samples = random_pairs(500_000, 1).map(|u| Some(uniform_sphere(u)));
+        Grid::cone(Vec3::X, PI).check(samples, density, Some(0.0));
+    }
+
+    #[test]
+    #[should_panic(expected = "chi-squared")]
+    fn a_density_that_is_off_by_a_part_is_found() {
+        check_sphere(|direction| (1.0 + 0.02_f32.copysign(direction.y)) / (4.0 * PI as f32));
+    }
+
+    #[test]
+    #[should_panic(expected = "integrates to")]
+    fn a_density_that_is_too_large_is_found() {
+        check_sphere(|_| 1.02 / (4.0 * PI as f32));
+    }
+
+    #[test]
+    #[should_panic(expected = "sum to")]
+    fn a_density_that_is_too_small_is_found() {
+        check_sphere(|_| 0.98 / (4.0 * PI as f32));
+    }
 }

@@ -86,60 +86,21 @@ pub(super) fn cap(u: [f32; 2], height: f32) -> Vec3 {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
-    use crate::sampling::hash::{ONE_BELOW, mix, stream, unit_pair};
-    use crate::sampling::statistics::assert_chi_squared;
+    use crate::sampling::hash::ONE_BELOW;
+    use crate::sampling::statistics::{Grid, assert_chi_squared, random_pairs};
     use std::f64::consts::PI;
-
-    pub(in crate::sampling) fn random_pairs(
-        count: u64,
-        seed: u64,
-    ) -> impl Iterator<Item = [f32; 2]> {
-        (0..count).map(move |position| unit_pair(stream(mix(seed), position)))
-    }
-
-    /// Tests directions in the cap of height `height` against a density that depends on z only, in
-    /// 16 x 16 cells of equal solid angle; also that the density integrates to 1 over the cap.
-    pub(in crate::sampling) fn check_directions(
-        height: f64,
-        sample: impl Fn([f32; 2]) -> Vec3,
-        pdf: impl Fn(f32) -> f32,
-    ) {
-        const CELLS: usize = 16;
-        let mut observed = vec![0_u64; CELLS * CELLS];
-        for u in random_pairs(100_000, 3) {
-            let direction = sample(u).as_dvec3();
-            assert!((direction.length() - 1.0).abs() < 3e-7, "{direction}");
-            let lateral = direction.truncate().length_squared();
-            let z = direction.z;
-            let drop = if z > 0.0 { lateral / (1.0 + z) } else { 1.0 - z };
-            let ring = (drop / height * CELLS as f64) as usize;
-            let turn = (direction.y.atan2(direction.x) / (2.0 * PI) + 1.0).fract();
-            let sector = (turn * CELLS as f64) as usize % CELLS;
-            observed[ring.min(CELLS - 1) * CELLS + sector] += 1;
-        }
-        let probabilities: Vec<f64> = (0..CELLS * CELLS)
-            .map(|cell| ring_integral(cell / CELLS, CELLS, height, &pdf) / CELLS as f64)
-            .collect();
-        assert_chi_squared(&observed, &probabilities);
-    }
-
-    /// Integral of a density over one ring, by the midpoint rule.
-    fn ring_integral(ring: usize, rings: usize, height: f64, pdf: impl Fn(f32) -> f32) -> f64 {
-        const STEPS: usize = 64;
-        let step = height / (rings * STEPS) as f64;
-        (0..STEPS)
-            .map(|i| ((ring * STEPS + i) as f64 + 0.5) * step)
-            .map(|drop| f64::from(pdf((1.0 - drop) as f32)) * 2.0 * PI * step)
-            .sum()
-    }
 
     #[test]
     fn hemisphere_and_sphere_follow_their_densities() {
-        check_directions(1.0, cosine_hemisphere, cosine_hemisphere_pdf);
-        check_directions(2.0, cosine_hemisphere, cosine_hemisphere_pdf);
-        check_directions(2.0, uniform_sphere, |_| UNIFORM_SPHERE_PDF);
+        let samples =
+            |of: fn([f32; 2]) -> Vec3| random_pairs(1_000_000, 3).map(move |u| Some(of(u)));
+        let cosine = |direction: Vec3| cosine_hemisphere_pdf(direction.z);
+        let sphere = Grid::cone(Vec3::Z, PI);
+        Grid::hemisphere(Vec3::Z).check(samples(cosine_hemisphere), cosine, Some(0.0));
+        sphere.check(samples(cosine_hemisphere), cosine, Some(0.0));
+        sphere.check(samples(uniform_sphere), |_| UNIFORM_SPHERE_PDF, Some(0.0));
     }
 
     #[test]

@@ -86,7 +86,9 @@ impl Bsdf for Conductor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, samples_match_density};
+    use crate::sampling::statistics::Grid;
+    use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
+    use crate::shade::tests::{samples_follow_density, samples_match_density};
 
     fn rough(roughness: f32) -> Conductor {
         Conductor { fresnel: ConductorFresnel::Constant(Rgb::ONE), roughness, tint: Rgb::ONE }
@@ -98,6 +100,17 @@ mod tests {
         let scatter = rough(0.0).sample(outgoing, [0.3, 0.4], 0.5).unwrap();
         assert_eq!(scatter.incoming, Vec3::new(-0.6, 0.0, 0.8));
         assert_eq!((scatter.weight, scatter.pdf), (Rgb::ONE, None));
+    }
+
+    #[test]
+    fn directions_follow_the_density() {
+        for roughness in [0.02, 0.1, 0.4, 1.0] {
+            for cosine in [1.0, 0.7, 0.2, 0.05] {
+                let (bsdf, outgoing) = (rough(roughness), at(cosine));
+                samples_follow_density(&bsdf, outgoing, Grid::lobe(mirror(outgoing)), None);
+                samples_match_density(&bsdf, outgoing);
+            }
+        }
     }
 
     #[test]

@@ -54,13 +54,17 @@ impl Emitter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::tests::{albedo_by_quadrature, samples_match_density};
+    use crate::sampling::statistics::Grid;
+    use crate::shade::tests::{
+        albedo_by_quadrature, samples_follow_density, samples_match_density,
+    };
 
     #[test]
     fn scatters_its_albedo() {
         let bsdf = Lambertian { color: Rgb::splat(0.8) };
         let outgoing = Vec3::new(0.6, 0.0, 0.8);
         samples_match_density(&bsdf, outgoing);
+        samples_follow_density(&bsdf, outgoing, Grid::hemisphere(Vec3::Z), Some(0.0));
         let (albedo, error) = albedo_by_quadrature(&bsdf, outgoing);
         assert!((albedo - 0.8).abs() < 4.0 * error, "{albedo} {error}");
     }

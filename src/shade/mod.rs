@@ -64,6 +64,7 @@ pub fn mirror(outgoing: Vec3) -> Vec3 {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::sampling::statistics::Grid;
     use crate::sampling::{stream, uniform_sphere, unit};
     use std::f32::consts::PI;
 
@@ -73,6 +74,26 @@ pub(crate) mod tests {
             let draw = |k| unit(stream(seed, 3 * i + k) as u32);
             [draw(0), draw(1), draw(2)]
         })
+    }
+
+    /// A direction at an angle to the normal.
+    pub(crate) fn at(cosine: f32) -> Vec3 {
+        Vec3::new(0.6, 0.8, 0.0) * (1.0 - cosine * cosine).sqrt() + Vec3::Z * cosine
+    }
+
+    /// Sampled directions follow the density, and what is mirrored comes as often as it should: none if
+    /// that is not known. Around the mirrored direction where the lobe is narrow.
+    pub(crate) fn samples_follow_density<B: Bsdf>(
+        bsdf: &B,
+        outgoing: Vec3,
+        grid: Grid,
+        none: Option<f64>,
+    ) {
+        let samples = numbers(9, 500_000).map(|u| {
+            let scatter = bsdf.sample(outgoing, [u[0], u[1]], u[2])?;
+            scatter.pdf.map(|_| scatter.incoming)
+        });
+        grid.check(samples, |incoming| bsdf.pdf(outgoing, incoming), none);
     }
 
     /// The share of light that is scattered: by the surface's own sampling, and with a standard
@@ -111,6 +132,7 @@ pub(crate) mod tests {
         for u in numbers(3, 20_000) {
             let Some(scatter) = bsdf.sample(outgoing, [u[0], u[1]], u[2]) else { continue };
             let Some(pdf) = scatter.pdf else { continue };
+            assert!(pdf > 0.0 && pdf.is_finite(), "{pdf} {scatter:?}");
             assert!(scatter.incoming.is_normalized() && scatter.incoming.z >= 0.0);
             let (expected, density) =
                 (bsdf.eval(outgoing, scatter.incoming), bsdf.pdf(outgoing, scatter.incoming));

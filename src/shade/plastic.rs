@@ -70,7 +70,9 @@ impl Bsdf for Plastic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, samples_match_density};
+    use crate::sampling::statistics::Grid;
+    use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
+    use crate::shade::tests::{samples_follow_density, samples_match_density};
 
     fn plastic(color: f32) -> Plastic {
         let internal_reflectance = fresnel::internal_diffuse_reflectance(1.5) as f32;
@@ -83,6 +85,16 @@ mod tests {
         {
             let (albedo, error) = albedo_by_sampling(&plastic(1.0), outgoing);
             assert!((albedo - 1.0).abs() < 4.0 * error + 1e-5, "{albedo} {error}");
+        }
+    }
+
+    #[test]
+    fn directions_follow_the_density() {
+        for cosine in [1.0, 0.5, 0.1, 0.01] {
+            let (bsdf, outgoing) = (plastic(0.5), at(cosine));
+            let coat = f64::from(bsdf.coat(outgoing.z));
+            samples_follow_density(&bsdf, outgoing, Grid::hemisphere(Vec3::Z), Some(coat));
+            samples_match_density(&bsdf, outgoing);
         }
     }
 

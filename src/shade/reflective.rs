@@ -55,13 +55,16 @@ impl Bsdf for Reflective {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, samples_match_density};
+    use crate::sampling::statistics::Grid;
+    use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling};
+    use crate::shade::tests::{samples_follow_density, samples_match_density};
 
     #[test]
     fn shares_add_up() {
         let bsdf = Reflective { color: Rgb::splat(0.9), diffuse: 0.5, mirror: 0.3 };
         let outgoing = Vec3::new(0.6, 0.0, 0.8);
         samples_match_density(&bsdf, outgoing);
+        samples_follow_density(&bsdf, outgoing, Grid::hemisphere(Vec3::Z), Some(0.375));
         let (all, _) = albedo_by_sampling(&bsdf, outgoing);
         let (diffuse, error) = albedo_by_quadrature(&bsdf, outgoing);
         assert!((all - 0.72).abs() < 1e-6, "{all}");

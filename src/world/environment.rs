@@ -222,3 +222,6 @@ fn to_square(d: Vec3) -> (f32, f32) {
 pub(super) fn luminance(color: Rgb) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
+
+#[cfg(test)]
+mod tests;

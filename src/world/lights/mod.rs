@@ -268,3 +268,6 @@ impl Aim<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

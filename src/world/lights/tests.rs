@@ -1,0 +1,141 @@
+//! The choice of a light and what is sampled of each, against the densities.
+
+use super::*;
+use crate::image::Image;
+use crate::intersect;
+use crate::ray::ExactRay;
+use crate::sampling::statistics::{Grid, assert_chi_squared, random_pairs};
+use crate::scene::{EnvironmentMap, Light as SceneLight, Material, NamedMaterial};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Degrees.
+const SUNS: [f64; 3] = [0.266, 20.0, 0.0];
+
+/// A few lights of every kind; the emissive sphere of radius 1 at 0 is the largest.
+fn world() -> World {
+    let mut scene = Scene::default();
+    let mut sphere = |center: DVec3, radius: f64, radiance: f32| {
+        let material =
+            Material::Emitter { radiance: Rgb::new(radiance, 0.5, 1.0), albedo: Rgb::ZERO };
+        scene.materials.push(NamedMaterial { name: String::new(), material });
+        scene.spheres.push(center, radius, scene.materials.len() as u32 - 1, Rgb::ONE);
+    };
+    sphere(DVec3::ZERO, 1.0, 0.02);
+    sphere(DVec3::X * 3.0, 0.1, 4.0);
+    let position = DVec3::Z * 2.0;
+    scene.lights.push(SceneLight::Point { position, intensity: Rgb::ONE, falloff: true });
+    let direction = DVec3::new(0.36, 0.48, -0.8);
+    let irradiance = Rgb::splat(0.05);
+    let suns = SUNS.map(|angular_radius| SceneLight::Sun { direction, irradiance, angular_radius });
+    scene.lights.extend(suns);
+    let image = Arc::new(Image::new(2, 1, vec![[0.1; 3], [0.2; 3]]).unwrap());
+    let up = DVec3::Z;
+    scene.environment.map = EnvironmentMap::Picture { image, up, rotation: 0.0, scale: 1.0 };
+    World::build(&scene).unwrap()
+}
+
+/// The light's index and row in the world of the emissive sphere that was the first in the scene.
+fn largest(world: &World) -> (usize, usize) {
+    let is_largest = |row: &u32| world.spheres.id[*row as usize] == 0;
+    let index = world.lights.emitters.iter().position(is_largest).unwrap();
+    (index, world.lights.emitters[index] as usize)
+}
+
+#[test]
+fn lights_are_chosen_by_their_probability() {
+    let world = world();
+    let lights = &world.lights;
+    let count = lights.len();
+    let mut observed = vec![0_u64; count];
+    for [u, _] in random_pairs(1_000_000, 1) {
+        let (index, probability) = lights.choose(u).unwrap();
+        assert!(probability > 0.0 && probability == lights.probability(index));
+        observed[index] += 1;
+    }
+    let probability = |index| f64::from(lights.probability(index));
+    assert_chi_squared(&observed, &(0..count).map(probability).collect::<Vec<_>>());
+    let powers = lights.powers(&world.spheres, &world.environment);
+    let total: f64 = powers.iter().sum();
+    for (index, power) in powers.iter().enumerate() {
+        assert!((power / total - probability(index)).abs() < 1e-5, "{index}");
+    }
+}
+
+#[test]
+fn emissive_spheres_are_sampled_by_their_density() {
+    let world = world();
+    let (index, row) = largest(&world);
+    let (center, radius) = world.spheres.exact(row);
+    for distance in [1.0 + 1e-6, 1.000_1, 1.1, 1.5, 3.0, 1e3] {
+        let toward = DVec3::new(-0.48, 0.6, 0.64);
+        let origin = (center - toward * (distance * radius)).as_vec3();
+        let from = (origin, MISS);
+        let aim = world.lights.aim(&world, index, from).unwrap();
+        let to_center = center - origin.as_dvec3();
+        let angle = (radius / to_center.length()).asin();
+        let axis = to_center.normalize().as_vec3();
+        let directions = random_pairs(400_000, 2).map(|u| Some(aim.sample(u)?.direction));
+        let pdf = aim.sample([0.5; 2]).and_then(|sample| sample.pdf).unwrap();
+        Grid::cone(axis, angle).check(directions, |_| pdf, Some(0.0));
+        let (of_all, _) = world.lights.emitter_pdf(&world.spheres, row as u32, from);
+        assert!((of_all / (pdf * world.lights.probability(index)) - 1.0).abs() < 1e-6);
+        for sample in random_pairs(10_000, 3).filter_map(|u| aim.sample(u)) {
+            assert_eq!((sample.pdf, sample.target), (Some(pdf), row as u32));
+            let radiance = sample.weight * pdf / world.lights.radiance[index];
+            assert!((radiance - Rgb::ONE).abs().max_element() < 1e-6, "{radiance}");
+            // At the edge rounding may take the ray past the sphere.
+            let ray = ExactRay::new(origin, sample.direction, true);
+            let root = intersect::confirm(&ray, center, radius, || false);
+            assert!(root.is_none_or(|root| root.t == sample.t), "{sample:?}");
+        }
+    }
+}
+
+#[test]
+fn suns_are_sampled_by_their_density() {
+    let world = world();
+    let lights = &world.lights;
+    let first = lights.emitters.len() + lights.points.len();
+    for (i, degrees) in SUNS.into_iter().enumerate() {
+        let aim = lights.aim(&world, first + i, (Vec3::ZERO, MISS)).unwrap();
+        let sun = lights.suns[i];
+        let Some(cone) = sun.disc else {
+            assert!(degrees == 0.0 && aim.sample([0.3; 2]).unwrap().weight == sun.irradiance);
+            continue;
+        };
+        let directions = random_pairs(400_000, 4).map(|u| Some(aim.sample(u)?.direction));
+        Grid::cone(sun.direction, degrees.to_radians()).check(
+            directions,
+            |_| cone.pdf(),
+            Some(0.0),
+        );
+        let radiance = sun.radiance(cone);
+        let mut outside = 0;
+        for sample in random_pairs(10_000, 5).filter_map(|u| aim.sample(u)) {
+            assert_eq!(sample.pdf, Some(cone.pdf()));
+            let weighted = sample.weight * cone.pdf() / radiance;
+            assert!((weighted - Rgb::ONE).abs().max_element() < 1e-6);
+            // What a ray that goes there sees: that sun, but where rounding takes it past the edge.
+            let pdf = cone.pdf() * lights.probability(first + i);
+            outside += i32::from(
+                !lights.suns_toward(sample.direction).any(|seen| seen == (radiance, pdf)),
+            );
+        }
+        assert!(outside < 20, "{degrees}: {outside}");
+    }
+}
+
+#[test]
+fn the_sky_is_sampled_by_its_density() {
+    let world = world();
+    let last = world.lights.len() - 1;
+    let aim = world.lights.aim(&world, last, (Vec3::ZERO, MISS)).unwrap();
+    for sample in random_pairs(1000, 6).filter_map(|u| aim.sample(u)) {
+        let pdf = sample.pdf.unwrap();
+        let of_all = world.lights.sky_pdf(&world.environment, sample.direction);
+        assert!((of_all / (pdf * world.lights.probability(last)) - 1.0).abs() < 1e-3);
+        let radiance = world.environment.radiance(sample.direction);
+        assert!((sample.weight * pdf / radiance - Rgb::ONE).abs().max_element() < 1e-5);
+    }
+}
