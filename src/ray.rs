@@ -1,6 +1,6 @@
 //! Rays and hits in columns: row `i` of every column belongs to ray `i`.
 
-use crate::lanes::{Lanes, MAX_LANES};
+use crate::lanes::{F64x8, Lanes, MAX_LANES, store_rounded};
 use crate::vec3::Vec3;
 use glam::{DVec3, Vec3 as Point};
 
@@ -68,6 +68,14 @@ impl Columns3 {
         (self.x[i], self.y[i], self.z[i]) = (p.x, p.y, p.z);
     }
 
+    /// Writes rows `i..i + 8`, rounded.
+    #[inline(always)]
+    pub(crate) fn set_row(&mut self, i: usize, p: Vec3<F64x8>) {
+        store_rounded(p.x, &mut self.x[i..]);
+        store_rounded(p.y, &mut self.y[i..]);
+        store_rounded(p.z, &mut self.z[i..]);
+    }
+
     /// Rows `i..i + L::WIDTH`.
     #[inline(always)]
     pub fn load<L: Lanes>(&self, i: usize) -> Vec3<L> {
@@ -87,6 +95,14 @@ impl Rays {
             precise: Vec::new(),
             len: 0,
         }
+    }
+
+    /// Forgets all rays and begins as many, from empty space; where they start and go, the caller
+    /// writes. The caller keeps to the capacity.
+    pub fn begin(&mut self, count: usize) {
+        self.len = count;
+        self.own[..count].fill(MISS);
+        self.target[..count].fill(MISS);
     }
 
     /// Number of rays.
@@ -123,8 +139,8 @@ impl Rays {
                 lanes.store(&mut column[row..]);
             }
         }
-        self.own[row..row + count].fill(MISS);
-        self.target[row..row + count].fill(MISS);
+        self.own[row..row + L::WIDTH].fill(MISS);
+        self.target[row..row + L::WIDTH].fill(MISS);
         self.len += count;
     }
 

@@ -67,6 +67,13 @@ impl<D: Doubles> Vec3<D> {
     }
 }
 
+impl From<DVec3> for Vec3<f64> {
+    #[inline(always)]
+    fn from(v: DVec3) -> Self {
+        Self { x: v.x, y: v.y, z: v.z }
+    }
+}
+
 impl From<glam::Vec3> for Vec3<f32> {
     #[inline(always)]
     fn from(v: glam::Vec3) -> Self {
@@ -74,10 +81,10 @@ impl From<glam::Vec3> for Vec3<f32> {
     }
 }
 
-impl From<DVec3> for Vec3<f64> {
+impl From<Vec3<f32>> for glam::Vec3 {
     #[inline(always)]
-    fn from(v: DVec3) -> Self {
-        Self { x: v.x, y: v.y, z: v.z }
+    fn from(v: Vec3<f32>) -> Self {
+        Self::new(v.x, v.y, v.z)
     }
 }
 

@@ -18,7 +18,7 @@ use std::cmp::Ordering;
 use std::marker::PhantomData;
 
 /// The bound of a ray that needs no more answers.
-pub(super) const DONE: f32 = -1.0;
+pub(super) const DONE: f32 = f32::NEG_INFINITY;
 
 /// Rays, what they may hit, and what they have hit so far.
 pub(super) struct Decider<'a, Q> {

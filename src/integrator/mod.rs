@@ -7,6 +7,7 @@
 pub mod ao;
 pub mod clock;
 pub mod path;
+pub mod shadows;
 pub mod stages;
 pub mod whitted;
 pub mod workspace;

@@ -14,7 +14,7 @@ use super::workspace::{Arrival, Workspace, chord};
 use crate::ray::GROUND;
 use crate::scene::{Rgb, Roulette};
 use crate::shade::Bsdf;
-use crate::world::{Kind, LightSample, MaterialId};
+use crate::world::{Kind, LightSample, MaterialId, World};
 use glam::Vec3;
 
 /// Follows all paths to their ends.
@@ -182,6 +182,12 @@ pub fn survival(roulette: Roulette, throughput: Rgb, bounce: u32) -> f32 {
     }
 }
 
+/// Whether a sphere hides a light from a point of its inside: what lies behind its far side.
+pub fn hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
+    let own = work.hits.sphere[row];
+    own != GROUND && chord(world, own, work.surface.normal[row], sample.direction) < sample.t
+}
+
 /// Queues the shadow ray of a light sample; traces the queue when it is full.
 #[inline]
 pub fn cast_shadow(
@@ -194,17 +200,12 @@ pub fn cast_shadow(
     if light.max_element() <= 0.0 {
         return;
     }
-    let own = work.hits.sphere[row];
-    // From inside a sphere, what lies behind its far side is hidden by it.
-    if inside
-        && own != GROUND
-        && chord(job.world, own, work.surface.normal[row], sample.direction) < sample.t
-    {
+    if inside && hides(job.world, work, row, sample) {
         return;
     }
-    let origin: Vec3 = work.surface.point[row];
-    work.shadows.push((origin, own), sample, (work.place[row], light));
-    if work.shadows.is_full() {
+    let from: (Vec3, u32) = (work.surface.point[row], work.hits.sphere[row]);
+    work.shadows.push(from, sample, (work.place[row], light));
+    if !work.shadows.has_room(1) {
         stages::occlude(job, work);
     }
 }

@@ -4,9 +4,11 @@ use super::Job;
 use super::clock::Stage;
 use super::workspace::{Arrival, Workspace};
 use crate::film::{Tile, View};
+use crate::lanes::{F64x8, Lanes, load_doubles};
 use crate::ray::{ExactRay, GROUND, MISS};
 use crate::sampling;
 use crate::shade::{Bsdf, dielectric};
+use crate::vec3;
 use crate::world::{Kind, MaterialId, World};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -14,34 +16,71 @@ use std::ops::Range;
 /// Begins a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
 /// neighbors in the picture: packets are square.
 pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspace) {
-    work.clear();
+    let mut count = 0;
     for pixel in tile.pixels() {
         for index in samples.clone() {
-            let sample = job.sampler.start(pixel.0, pixel.1, index);
-            let draw = job.sampler.camera(&sample);
-            let [dx, dy] = job.filter.offset(draw.pixel);
-            let lens =
-                job.world.features.lens.then(|| sampling::concentric_disk(draw.lens).to_array());
-            let x = f64::from(pixel.0) + 0.5 + f64::from(dx);
-            let y = f64::from(pixel.1) + 0.5 + f64::from(dy);
-            let (origin, direction) = job.world.camera.ray(x, y, lens);
-            let place = work.begin(origin, direction, sample);
-            enter_glass(job.world, work, place, origin, direction);
+            work.paths.sample[count] = job.sampler.start(pixel.0, pixel.1, index);
+            (work.rays.origin.x[count], work.rays.origin.y[count]) =
+                (pixel.0 as f32, pixel.1 as f32);
+            count += 1;
         }
     }
-    work.counters.camera_rays += work.len() as u64;
+    work.begin(count);
+    draw_places(job, work);
+    aim_camera(job, work);
+    if !job.world.features.glass_at_camera.is_empty() {
+        (0..count).for_each(|path| enter_glass(job.world, work, path));
+    }
+    work.counters.camera_rays += count as u64;
     work.clock.end(Stage::Generate);
 }
 
+/// Puts the offset from the pixel in the first two columns of directions, and the place on the lens
+/// in the third ones of origins and directions.
+fn draw_places(job: &Job, work: &mut Workspace) {
+    let count = work.len();
+    let (origin, direction) = (&mut work.rays.origin, &mut work.rays.direction);
+    for (path, sample) in work.paths.sample[..count].iter().enumerate() {
+        let [dx, dy] = job.filter.offset(job.sampler.pixel(sample));
+        (direction.x[path], direction.y[path]) = (dx, dy);
+        if job.world.features.lens {
+            let place = sampling::concentric_disk(job.sampler.lens(sample));
+            (origin.z[path], direction.z[path]) = place.into();
+        }
+    }
+}
+
+/// Turns pixels and places into rays, where they stand.
+fn aim_camera(job: &Job, work: &mut Workspace) {
+    let (count, half) = (work.len(), F64x8::splat(0.5));
+    let (origin, direction) = (&mut work.rays.origin, &mut work.rays.direction);
+    for row in (0..count).step_by(8) {
+        let place = |pixel: &[f32], offset: &[f32]| {
+            load_doubles(&pixel[row..]) + half + load_doubles(&offset[row..])
+        };
+        let x = place(&origin.x, &direction.x);
+        let y = place(&origin.y, &direction.y);
+        let lens = job
+            .world
+            .features
+            .lens
+            .then(|| [load_doubles(&origin.z[row..]), load_doubles(&direction.z[row..])]);
+        let (from, toward) = job.world.camera.rays([x, y], lens);
+        origin.set_row(row, from);
+        direction.set_row(row, toward);
+    }
+}
+
 /// Notes the glass spheres in which a camera ray starts. On a surface, its direction decides.
-fn enter_glass(world: &World, work: &mut Workspace, place: usize, origin: Vec3, direction: Vec3) {
+fn enter_glass(world: &World, work: &mut Workspace, path: usize) {
+    let ray = work.rays.exact(path);
     for &row in &world.features.glass_at_camera {
-        let offset = origin.as_dvec3() - world.spheres.center(row as usize).as_dvec3();
+        let offset = ray.origin - world.spheres.center(row as usize).as_dvec3();
         let radius = f64::from(world.spheres.radius(row as usize));
         let outside = offset.length_squared() - radius * radius;
-        let inward = offset.dot(direction.as_dvec3()) < 0.0;
+        let inward = offset.dot(ray.direction) < 0.0;
         if (outside < 0.0 || (outside == 0.0 && inward))
-            && !dielectric::insert(world, work.paths.inside(place), row)
+            && !dielectric::insert(world, work.paths.inside(path), row)
         {
             work.counters.nesting_overflows += 1;
         }
@@ -130,6 +169,13 @@ impl Local {
     #[inline]
     pub fn to_world(&self, incoming: Vec3) -> Vec3 {
         self.frame.to_world(incoming).normalize()
+    }
+
+    /// [`Local::to_world`] for a row of directions.
+    #[inline(always)]
+    pub fn row_to_world<L: Lanes>(&self, incoming: vec3::Vec3<L>) -> vec3::Vec3<L> {
+        let direction = self.frame.row_to_world(incoming);
+        direction * (L::splat(1.0) / direction.dot(direction).sqrt())
     }
 }
 

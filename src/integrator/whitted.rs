@@ -9,14 +9,17 @@
 
 use super::Job;
 use super::clock::Stage;
-use super::path::{cast_shadow, survival};
+use super::path::{hides, survival};
 use super::stages::{self, Local, ShadeKind};
 use super::workspace::{Arrival, Workspace};
+use crate::lanes::{F32x16, set_bits};
 use crate::ray::MISS;
-use crate::sampling::cosine_hemisphere;
+use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
 use crate::shade::{Bsdf, mirror};
-use crate::world::{Kind, LightSample, MaterialId};
+use crate::vec3::Vec3 as Row3;
+use crate::world::{Kind, LightRow, MaterialId, ROW};
+use glam::Vec3;
 use std::f32::consts::PI;
 
 /// Follows all paths to their ends, with `samples` shadow samples per light and hit.
@@ -123,14 +126,9 @@ impl Shade<'_> {
         let origin = (work.surface.point[row], work.hits.sphere[row]);
         let Some(aim) = world.lights.aim(world, light, origin) else { return };
         let points = self.job.sampler.split(&work.paths.sample[place], self.event(light), count);
-        for i in 0..count {
-            let Some(sample) = aim.sample(points.pair(i)) else { continue };
-            let incoming = local.frame.to_local(sample.direction);
-            if incoming.z > 0.0 {
-                let response = bsdf.eval(local.outgoing, incoming);
-                let light = share * response * sample.weight;
-                cast_shadow(self.job, work, row, (&sample, light), local.inside);
-            }
+        for (first, count) in rows(count) {
+            let samples = aim.sample_row(points.row(first, count), count);
+            self.cast(work, row, (bsdf, local), (share, &samples));
         }
     }
 
@@ -140,21 +138,44 @@ impl Shade<'_> {
         let share = work.paths.throughput[place] / self.samples as f32;
         let event = self.event(self.job.world.lights.len());
         let points = self.job.sampler.split(&work.paths.sample[place], event, self.samples);
-        for i in 0..self.samples {
-            let incoming = cosine_hemisphere(points.pair(i));
-            let direction = local.to_world(incoming);
-            let radiance = self.job.world.environment.radiance(direction);
-            let sample = LightSample {
-                direction,
-                t: f64::INFINITY,
-                target: MISS,
-                weight: radiance * (PI / incoming.z.max(f32::MIN_POSITIVE)),
-                pdf: None,
-                close: false,
-            };
-            let light = share * bsdf.eval(local.outgoing, incoming) * sample.weight;
-            cast_shadow(self.job, work, row, (&sample, light), local.inside);
+        for (first, count) in rows(self.samples) {
+            let incoming = cosine_hemispheres(points.row(first, count));
+            let direction = local.row_to_world(incoming);
+            let mut samples = LightRow::distant(direction, Rgb::ZERO, count);
+            for (lane, cosine) in incoming.z.to_array().into_iter().enumerate().take(count) {
+                let radiance = self.job.world.environment.radiance(samples.sample(lane).direction);
+                samples.weight[lane] = radiance * (PI / cosine.max(f32::MIN_POSITIVE));
+            }
+            self.cast(work, row, (bsdf, local), (share, &samples));
         }
+    }
+
+    /// Queues the shadow rays of a row of light samples; traces the queue when it is full.
+    #[inline]
+    fn cast<B: Bsdf>(
+        &self,
+        work: &mut Workspace,
+        row: usize,
+        (bsdf, local): (&B, &Local),
+        (share, samples): (Rgb, &LightRow),
+    ) {
+        let Row3 { x, y, z } = local.frame.row_to_local(samples.direction).map(F32x16::to_array);
+        let (mut light, mut lanes) = ([Rgb::ZERO; ROW], 0);
+        for lane in 0..samples.count {
+            let response = bsdf.eval(local.outgoing, Vec3::new(x[lane], y[lane], z[lane]));
+            light[lane] = share * response * samples.weight[lane];
+            let arrives = z[lane] > 0.0 && light[lane].max_element() > 0.0;
+            lanes |= u32::from(arrives) << lane;
+        }
+        if local.inside {
+            let hidden = |&lane: &usize| hides(self.job.world, work, row, &samples.sample(lane));
+            lanes = set_bits(lanes).filter(hidden).fold(lanes, |lanes, lane| lanes ^ 1 << lane);
+        }
+        if !work.shadows.has_room(ROW) {
+            stages::occlude(self.job, work);
+        }
+        let from = (work.surface.point[row], work.hits.sphere[row]);
+        work.shadows.push_row(from, (samples, lanes), (work.place[row], &light));
     }
 
     /// Sends the mirrored share on, or what has no other share.
@@ -178,4 +199,9 @@ impl Shade<'_> {
         let direction = local.to_world(incoming);
         work.go_on(self.job.world, row, direction, local.inside);
     }
+}
+
+/// Divides so many samples into rows: the first of each, and how many it has.
+fn rows(count: u32) -> impl Iterator<Item = (u32, usize)> {
+    (0..count).step_by(ROW).map(move |first| (first, ROW.min((count - first) as usize)))
 }

@@ -1,19 +1,17 @@
 //! The columns that a task works on: allocated once, used for tile after tile.
 
 use super::clock::Clock;
+use super::shadows::Shadows;
 use crate::film::View;
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{PathState, Sampler};
 use crate::scene::Rgb;
-use crate::world::{Kind, LightSample, World};
+use crate::world::{Kind, World};
 use glam::{DVec3, Vec3};
 
 /// Paths that are followed together: 16 samples of each pixel of a tile. The columns of that many
 /// stay in the second-level cache.
 pub const BATCH: usize = 4096;
-
-/// Shadow rays that are traced together.
-pub const SHADOWS: usize = 4096;
 
 /// How many glass spheres a path can be in at the same time.
 const NESTING: usize = 16;
@@ -91,18 +89,6 @@ pub struct Bins {
     pub kind: [Vec<u32>; Kind::COUNT],
 }
 
-/// Shadow rays and what they carry.
-pub struct Shadows {
-    /// From the surface toward the light.
-    pub rays: Rays,
-    /// Bounds on entry, occlusion on return.
-    pub hits: Hits,
-    /// Which path the light goes to.
-    pub place: Vec<u32>,
-    /// What arrives if nothing is in between.
-    pub light: Vec<Rgb>,
-}
-
 /// What was done, for statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
@@ -167,21 +153,11 @@ impl Workspace {
                 nesting,
             },
             bins: Bins::default(),
-            shadows: Shadows {
-                rays: Rays::with_capacity(SHADOWS),
-                hits: Hits::with_capacity(SHADOWS),
-                place: vec![MISS; SHADOWS],
-                light: vec![Rgb::ZERO; SHADOWS],
-            },
+            shadows: Shadows::new(),
             view: View::Anything,
             counters: Counters::default(),
             clock: Clock::new(),
         }
-    }
-
-    /// Forgets all paths.
-    pub fn clear(&mut self) {
-        self.rays.truncate(0);
     }
 
     /// Number of paths that still go on, once compacted.
@@ -194,19 +170,17 @@ impl Workspace {
         self.rays.is_empty()
     }
 
-    /// Begins a path at the next place.
-    #[inline]
-    pub fn begin(&mut self, origin: Vec3, direction: Vec3, sample: PathState) -> usize {
-        let place = self.rays.len();
-        self.rays.push(origin, direction, MISS);
-        self.hits.set(place, f64::INFINITY, MISS);
-        self.place[place] = place as u32;
-        self.paths.throughput[place] = Rgb::ONE;
-        self.paths.radiance[place] = Rgb::ZERO;
-        self.paths.sample[place] = sample;
-        self.paths.arrival[place] = Arrival::CAMERA;
-        self.paths.inside(place).fill(MISS);
-        place
+    /// Begins as many paths at the camera. The caller has set their samples, and sets their rays.
+    pub fn begin(&mut self, count: usize) {
+        self.rays.begin(count);
+        self.hits.t[..count].fill(f64::INFINITY);
+        self.hits.sphere[..count].fill(MISS);
+        self.place[..count].iter_mut().zip(0..).for_each(|(place, path)| *place = path);
+        self.paths.throughput[..count].fill(Rgb::ONE);
+        self.paths.radiance[..count].fill(Rgb::ZERO);
+        self.paths.arrival[..count].fill(Arrival::CAMERA);
+        let nesting = self.paths.nesting;
+        self.paths.inside[..count * nesting].fill(MISS);
     }
 
     /// Sends the path in `row` on from the surface it has hit. `direction` goes inside the sphere
@@ -283,22 +257,5 @@ impl Bins {
                 self.kind[world.material(hit).kind() as usize].push(row as u32);
             }
         }
-    }
-}
-
-impl Shadows {
-    /// Whether there is room for one more.
-    pub fn is_full(&self) -> bool {
-        self.rays.len() == SHADOWS
-    }
-
-    /// Appends a shadow ray toward a light, for the path and with the light given.
-    #[inline]
-    pub fn push(&mut self, (origin, own): (Vec3, u32), sample: &LightSample, to: (u32, Rgb)) {
-        let row = self.rays.len();
-        self.rays.push(origin, sample.direction, own);
-        self.rays.target[row] = sample.target;
-        self.hits.set(row, sample.t, MISS);
-        (self.place[row], self.light[row]) = to;
     }
 }

@@ -1,6 +1,6 @@
 //! Rows of double precision: as little as the decision about hits needs.
 
-use super::{F64x8, Mask, WideMask};
+use super::{F32x16, F64x8, Mask, WideMask};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A row of `f64` values, as little as the decision about hits needs.
@@ -72,4 +72,30 @@ impl Doubles for F64x8 {
     fn lt(self, other: Self) -> Self::Mask {
         WideMask(self.simd_lt(other))
     }
+}
+
+/// The first eight numbers of a column, in double precision.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn load_doubles(column: &[f32]) -> F64x8 {
+    let row: &[f32; 8] = column.first_chunk().expect("columns hold whole rows");
+    F64x8::new(row.map(f64::from))
+}
+
+/// Writes numbers to the first eight places of a column, rounded to single precision.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn store_rounded(row: F64x8, column: &mut [f32]) {
+    column[..8].copy_from_slice(&row.to_array().map(|x| x as f32));
+}
+
+/// The same numbers in double precision.
+#[inline(always)]
+pub fn widen(row: F32x16) -> [F64x8; 2] {
+    let halves: [[f32; 8]; 2] = bytemuck::cast(row);
+    halves.map(|half| F64x8::new(half.map(f64::from)))
 }

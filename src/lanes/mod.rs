@@ -13,7 +13,7 @@ mod across;
 mod doubles;
 
 pub use across::{greatest_of, shuffle, shuffle_numbers};
-pub use doubles::Doubles;
+pub use doubles::{Doubles, load_doubles, store_rounded, widen};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub use wide::{f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8};
 

@@ -1,6 +1,8 @@
 //! Cones of directions: what a sphere or a sun looks like from a point.
 
 use super::warp::cap;
+use crate::lanes::Lanes;
+use crate::vec3;
 use glam::Vec3;
 use std::f64::consts::PI;
 
@@ -46,6 +48,12 @@ impl Cone {
     /// A unit direction in the cone, from two numbers in [0, 1).
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> Vec3 {
+        self.sample_row(u).into()
+    }
+
+    /// [`Cone::sample`] for a row of numbers.
+    #[inline(always)]
+    pub fn sample_row<L: Lanes>(&self, u: [L; 2]) -> vec3::Vec3<L> {
         cap(u, self.height)
     }
 

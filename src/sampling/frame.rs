@@ -1,5 +1,7 @@
 //! Right-handed orthonormal frames about a unit vector.
 
+use crate::lanes::Lanes;
+use crate::vec3;
 use glam::Vec3;
 
 /// Three perpendicular unit vectors; local z is the normal.
@@ -34,13 +36,33 @@ impl Frame {
     /// A local direction in world axes.
     #[inline]
     pub fn to_world(&self, local: Vec3) -> Vec3 {
-        self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
+        self.row_to_world(local.into()).into()
+    }
+
+    /// [`Frame::to_world`] for a row of directions.
+    #[inline(always)]
+    pub fn row_to_world<L: Lanes>(&self, local: vec3::Vec3<L>) -> vec3::Vec3<L> {
+        let [tangent, bitangent, normal] = self.axes();
+        (normal * local.z).along(bitangent, local.y).along(tangent, local.x)
     }
 
     /// A world direction in local axes: the inverse of [`Frame::to_world`].
     #[inline]
     pub fn to_local(&self, world: Vec3) -> Vec3 {
-        Vec3::new(world.dot(self.tangent), world.dot(self.bitangent), world.dot(self.normal))
+        self.row_to_local(world.into()).into()
+    }
+
+    /// [`Frame::to_local`] for a row of directions.
+    #[inline(always)]
+    pub fn row_to_local<L: Lanes>(&self, world: vec3::Vec3<L>) -> vec3::Vec3<L> {
+        let [x, y, z] = self.axes().map(|axis| world.dot(axis));
+        vec3::Vec3::new(x, y, z)
+    }
+
+    #[inline(always)]
+    fn axes<L: Lanes>(&self) -> [vec3::Vec3<L>; 3] {
+        let splat = |axis: Vec3| vec3::Vec3::splat(axis.x, axis.y, axis.z);
+        [splat(self.tangent), splat(self.bitangent), splat(self.normal)]
     }
 }
 

@@ -41,8 +41,9 @@ pub use distribution2d::Distribution2d;
 pub use filter::PixelFilter;
 pub use frame::Frame;
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
-pub use plan::{CameraDraw, LightDraw, ScatterDraw};
+pub use plan::{LightDraw, ScatterDraw};
 pub use sampler::{PathState, Sampler, Split};
 pub use warp::{
-    UNIFORM_SPHERE_PDF, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf, uniform_sphere,
+    UNIFORM_SPHERE_PDF, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,
+    cosine_hemispheres, uniform_sphere,
 };

@@ -4,15 +4,6 @@
 
 use super::sampler::{PathState, Sampler};
 
-/// The numbers that make a camera ray; all in [0, 1).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraDraw {
-    /// Place in the picture, for [`PixelFilter::offset`](super::PixelFilter::offset).
-    pub pixel: [f32; 2],
-    /// Place on the lens.
-    pub lens: [f32; 2],
-}
-
 /// The numbers of one scattering; all in [0, 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatterDraw {
@@ -34,12 +25,19 @@ pub struct LightDraw {
 }
 
 impl Sampler {
-    /// The numbers of the camera ray.
+    /// The camera ray's place in the picture, for
+    /// [`PixelFilter::offset`](super::PixelFilter::offset); in [0, 1).
     #[inline]
-    pub fn camera(&self, path: &PathState) -> CameraDraw {
+    pub fn pixel(&self, path: &PathState) -> [f32; 2] {
         let [_, _, x, y] = self.draw4(path, 0);
+        [x, y]
+    }
+
+    /// The camera ray's place on the lens; in [0, 1).
+    #[inline]
+    pub fn lens(&self, path: &PathState) -> [f32; 2] {
         let [u, v, _, _] = self.draw4(path, 1);
-        CameraDraw { pixel: [x, y], lens: [u, v] }
+        [u, v]
     }
 
     /// The numbers of scattering number `bounce`, from 0 at the first hit.
@@ -72,8 +70,7 @@ mod tests {
         for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
             let sampler = Sampler::new(kind, 4, 16);
             let path = sampler.start(1, 2, 3);
-            let CameraDraw { pixel, lens } = sampler.camera(&path);
-            let mut numbers = [pixel, lens].concat();
+            let mut numbers = [sampler.pixel(&path), sampler.lens(&path)].concat();
             for bounce in 0..100 {
                 let ScatterDraw { direction, lobe, roulette } = sampler.scatter(&path, bounce);
                 let LightDraw { point, light } = sampler.light(&path, bounce);
@@ -94,6 +91,6 @@ mod tests {
         let path = sampler.start(1, 2, 3);
         let [u, v, x, y] = sampler.draw4(&path, 0);
         assert_eq!(sampler.scatter(&path, 0).direction, [u, v]);
-        assert_eq!(sampler.camera(&path).pixel, [x, y]);
+        assert_eq!(sampler.pixel(&path), [x, y]);
     }
 }

@@ -3,6 +3,7 @@
 use super::hash::{mix, stream, unit};
 use super::sobol::{Shuffled, Sobol, block, shuffle};
 use super::stratified::Strata;
+use crate::lanes::F32x16;
 use crate::scene::SamplerKind;
 use rand_xoshiro::Xoshiro128PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -79,7 +80,7 @@ impl Sampler {
     /// Four numbers in [0, 1): set number `set` of the path's dimensions, in any order of calls.
     ///
     /// The first two are well distributed together, as are the last two. Integrators draw through
-    /// [`Sampler::camera`], [`Sampler::scatter`] and [`Sampler::light`], which know which set is whose.
+    /// [`Sampler::pixel`] and its like, which know which set is whose.
     #[inline]
     pub fn draw4(&self, path: &PathState, set: u32) -> [f32; 4] {
         match &self.points {
@@ -149,6 +150,20 @@ impl Split {
                 [u, v]
             }
         }
+    }
+
+    /// The points of `count` indices from `first` on, at most sixteen; further lanes are of no use.
+    #[inline]
+    pub fn row(&self, first: u32, count: usize) -> [F32x16; 2] {
+        if let SplitPoints::Stratified(strata) = &self.points {
+            return strata.in_cells(first, self.key);
+        }
+        let mut rows = [[0.0; 16]; 2];
+        let [us, vs] = &mut rows;
+        for (index, (u, v)) in (first..).zip(us.iter_mut().zip(vs).take(count)) {
+            [*u, *v] = self.pair(index);
+        }
+        rows.map(F32x16::new)
     }
 }
 

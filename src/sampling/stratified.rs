@@ -1,6 +1,7 @@
 //! Jittered points: one at random in each cell of a grid, the cells visited in shuffled order.
 
 use super::hash::{ONE_BELOW, stream, unit_pair};
+use crate::lanes::F32x16;
 
 /// The unit square cut into cells of equal area, as near to squares as their number allows.
 ///
@@ -11,10 +12,20 @@ use super::hash::{ONE_BELOW, stream, unit_pair};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strata {
     count: u32,
-    /// Cells in a lower column; a taller one has one more.
-    rows: u32,
-    /// Number of taller columns, which come first.
-    taller: u32,
+    /// Cells in the taller columns, which come first.
+    in_taller: u32,
+    /// Those with one cell more.
+    taller: Column,
+    lower: Column,
+    /// Width of a column, by its cells.
+    width: f64,
+}
+
+/// How many cells a column has.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    rows: f64,
+    height: f64,
 }
 
 impl Strata {
@@ -22,7 +33,15 @@ impl Strata {
     pub(super) fn new(count: u32) -> Self {
         let count = count.max(1);
         let columns = count.isqrt();
-        Self { count, rows: count / columns, taller: count % columns }
+        let rows = count / columns;
+        let column = |rows| Column { rows: f64::from(rows), height: f64::from(rows).recip() };
+        Self {
+            count,
+            in_taller: count % columns * (rows + 1),
+            taller: column(rows + 1),
+            lower: column(rows),
+            width: f64::from(count).recip(),
+        }
     }
 
     /// Number of cells.
@@ -34,7 +53,7 @@ impl Strata {
     /// every cell has exactly one point.
     #[inline]
     pub(super) fn point(&self, index: u32, key: u64) -> [f32; 2] {
-        let cell = permute(index, self.count, key as u32);
+        let cell = permute(index, self.count, key);
         self.jitter(cell, unit_pair(stream(key, u64::from(index))))
     }
 
@@ -46,17 +65,31 @@ impl Strata {
         self.jitter(if index < self.count { index } else { index % self.count }, unit_pair(key))
     }
 
+    /// [`Strata::in_cell`] from cell `first` on; lanes past the last cell are of no use.
     #[inline]
+    pub(super) fn in_cells(&self, first: u32, key: u64) -> [F32x16; 2] {
+        let mut rows = [[0.0; 16]; 2];
+        for lane in 0..16 {
+            let index = first.wrapping_add(lane);
+            let point = self.jitter(index, unit_pair(stream(key, u64::from(index))));
+            (rows[0][lane as usize], rows[1][lane as usize]) = (point[0], point[1]);
+        }
+        rows.map(F32x16::new)
+    }
+
+    /// Without division or branch. The column is exact: what is rounded down is farther from a
+    /// whole number, by half a cell, than rounding takes it.
+    #[inline(always)]
     fn jitter(&self, cell: u32, [u, v]: [f32; 2]) -> [f32; 2] {
-        let in_taller = self.taller * (self.rows + 1);
-        let (first, rows) = if cell < in_taller {
-            (cell - cell % (self.rows + 1), self.rows + 1)
-        } else {
-            (cell - (cell - in_taller) % self.rows, self.rows)
-        };
-        let x = (first as f32 + rows as f32 * u) / self.count as f32;
-        let y = ((cell - first) as f32 + v) / rows as f32;
-        [x.min(ONE_BELOW), y.min(ONE_BELOW)]
+        let tall = cell < self.in_taller;
+        let rows = if tall { self.taller.rows } else { self.lower.rows };
+        let height = if tall { self.taller.height } else { self.lower.height };
+        let start = if tall { 0.0 } else { f64::from(self.in_taller) };
+        let cell = f64::from(cell);
+        let first = start + ((cell - start + 0.5) * height).floor() * rows;
+        let x = (first + rows * f64::from(u)) * self.width;
+        let y = (cell - first + f64::from(v)) * height;
+        [(x as f32).min(ONE_BELOW), (y as f32).min(ONE_BELOW)]
     }
 }
 
@@ -66,15 +99,17 @@ impl Strata {
 /// Kensler, "Correlated Multi-Jittered Sampling", Pixar Technical Memo 13-01, 2013: a hash that is
 /// one-to-one on the enclosing power of two, walked until it is back in range.
 #[inline]
-fn permute(mut index: u32, length: u32, key: u32) -> u32 {
+fn permute(mut index: u32, length: u32, key: u64) -> u32 {
     let mask = length.next_power_of_two() - 1;
     loop {
-        index = scramble(index, mask, key);
+        index = scramble(index, mask, key as u32);
         if index < length {
             break;
         }
     }
-    ((u64::from(index) + u64::from(key)) % u64::from(length)) as u32
+    // A turn by any number below the length, of the other half of the key.
+    let turned = u64::from(index) + (((key >> 32) * u64::from(length)) >> 32);
+    (if turned < u64::from(length) { turned } else { turned - u64::from(length) }) as u32
 }
 
 /// One round of Kensler's hash, one-to-one on `0..=mask`.
@@ -109,7 +144,7 @@ mod tests {
     #[test]
     fn permutations_are_one_to_one() {
         for length in [1, 2, 3, 7, 12, 16, 100, 257, 1024] {
-            for key in [0, 1, 0xdead_beef, u32::MAX] {
+            for key in [0, 1, 0xdead_beef, u64::MAX] {
                 let mut images: Vec<u32> = (0..length).map(|i| permute(i, length, key)).collect();
                 images.sort_unstable();
                 assert!(images.into_iter().eq(0..length), "{length} {key}");
@@ -123,7 +158,7 @@ mod tests {
         for index in 0..LENGTH {
             let mut observed = vec![0_u64; LENGTH as usize];
             for key in 0..6000 {
-                observed[permute(index, LENGTH, mix(key) as u32) as usize] += 1;
+                observed[permute(index, LENGTH, mix(key)) as usize] += 1;
             }
             assert_chi_squared(&observed, &[1.0 / f64::from(LENGTH); LENGTH as usize]);
         }

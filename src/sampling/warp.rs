@@ -4,6 +4,8 @@
 //! stay neighbors on the sphere, so low-discrepancy points keep their worth. Local directions have
 //! z along the axis; [`Frame`](super::Frame) turns them into the world's.
 
+use crate::lanes::Lanes;
+use crate::vec3;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_4};
 
@@ -13,9 +15,9 @@ pub const UNIFORM_SPHERE_PDF: f32 = FRAC_1_PI / 4.0;
 /// Maps `u` in [0, 1) to (-1, 1), odd about the middle of the grid of multiples of 2^-24.
 ///
 /// Neither end is reached, and on that grid the result is exact and never 0.
-#[inline]
-pub(super) fn centered(u: f32) -> f32 {
-    2.0 * u - super::ONE_BELOW
+#[inline(always)]
+pub(super) fn centered<L: Lanes>(u: L) -> L {
+    L::splat(2.0) * u - L::splat(super::ONE_BELOW)
 }
 
 /// A point in the unit disk, uniform by area, from two numbers in [0, 1).
@@ -23,33 +25,33 @@ pub(super) fn centered(u: f32) -> f32 {
 /// Shirley & Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997.
 #[inline]
 pub fn concentric_disk(u: [f32; 2]) -> Vec2 {
-    concentric(u).0
+    Vec2::from(concentric(u).0)
 }
 
 /// The point of [`concentric_disk`] and its distance from the center, which is less than 1 even
 /// where the coordinates are rounded. `1 - distance^2` is uniform in (0, 1].
-#[inline]
-fn concentric([u, v]: [f32; 2]) -> (Vec2, f32) {
+#[inline(always)]
+fn concentric<L: Lanes>([u, v]: [L; 2]) -> ([L; 2], L) {
     let (a, b) = (centered(u), centered(v));
-    let steep = b.abs() > a.abs();
-    let (longer, shorter) = if steep { (b, a) } else { (a, b) };
-    let ratio = if longer == 0.0 { 0.0 } else { shorter / longer };
-    let (sine, cosine) = octant_sine_cosine(FRAC_PI_4 * ratio);
+    let steep = a.abs().lt(b.abs());
+    let (longer, shorter) = (L::select(steep, b, a), L::select(steep, a, b));
+    let (zero, radius) = (L::splat(0.0), longer.abs());
+    let ratio = L::select(zero.lt(radius), shorter / longer, zero);
+    let (sine, cosine) = octant_sine_cosine(L::splat(FRAC_PI_4) * ratio);
     let (along, across) = (longer * cosine, longer * sine);
-    let point = if steep { Vec2::new(across, along) } else { Vec2::new(along, across) };
-    (point, longer.abs())
+    ([L::select(steep, across, along), L::select(steep, along, across)], radius)
 }
 
 /// Sine and cosine of an angle of at most 45 degrees, within 1e-7.
 ///
 /// Polynomials of Moshier's Cephes library, 1992: pictures must not depend on the platform's own.
-#[inline]
-fn octant_sine_cosine(angle: f32) -> (f32, f32) {
+#[inline(always)]
+fn octant_sine_cosine<L: Lanes>(angle: L) -> (L, L) {
     let s = angle * angle;
-    let sine = ((-1.951_529_6e-4 * s + 8.332_161e-3) * s - 0.166_666_55) * s * angle + angle;
-    let cosine =
-        ((2.443_315_7e-5 * s - 1.388_731_6e-3) * s + 4.166_664_6e-2) * s * s - 0.5 * s + 1.0;
-    (sine, cosine)
+    let series = |[a, b, c]: [f32; 3]| L::splat(a).mul_add(s, L::splat(b)).mul_add(s, L::splat(c));
+    let sine = series([-1.951_529_6e-4, 8.332_161e-3, -0.166_666_55]) * s;
+    let cosine = series([2.443_315_7e-5, -1.388_731_6e-3, 4.166_664_6e-2]) * s - L::splat(0.5);
+    (sine.mul_add(angle, angle), cosine.mul_add(s, L::splat(1.0)))
 }
 
 /// A local direction on the upper hemisphere with the density of [`cosine_hemisphere_pdf`].
@@ -57,8 +59,15 @@ fn octant_sine_cosine(angle: f32) -> (f32, f32) {
 /// Its z is more than 0: no sample lies in the tangent plane.
 #[inline]
 pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
-    let (point, radius) = concentric(u);
-    point.extend(((1.0 - radius) * (1.0 + radius)).sqrt())
+    cosine_hemispheres(u).into()
+}
+
+/// [`cosine_hemisphere`] for a row of numbers.
+#[inline(always)]
+pub fn cosine_hemispheres<L: Lanes>(u: [L; 2]) -> vec3::Vec3<L> {
+    let ([x, y], radius) = concentric(u);
+    let one = L::splat(1.0);
+    vec3::Vec3::new(x, y, ((one - radius) * (one + radius)).sqrt())
 }
 
 /// Density of [`cosine_hemisphere`] per steradian: cos / pi; 0 for a cosine of 0 or less.
@@ -70,7 +79,7 @@ pub fn cosine_hemisphere_pdf(cosine: f32) -> f32 {
 /// A direction on the whole sphere with the density [`UNIFORM_SPHERE_PDF`].
 #[inline]
 pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
-    cap(u, 2.0)
+    cap(u, 2.0).into()
 }
 
 /// A direction uniform over the spherical cap about +z of height `height`, 0..=2: 1 - cos of its
@@ -78,11 +87,13 @@ pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
 ///
 /// Lambert's azimuthal equal-area projection, inverted: the squared distance from the disk's center
 /// becomes 1 - cos.
-#[inline]
-pub(super) fn cap(u: [f32; 2], height: f32) -> Vec3 {
-    let (point, radius) = concentric(u);
+#[inline(always)]
+pub(super) fn cap<L: Lanes>(u: [L; 2], height: f32) -> vec3::Vec3<L> {
+    let ([x, y], radius) = concentric(u);
+    let height = L::splat(height);
     let drop = height * radius * radius;
-    (point * (height * (2.0 - drop)).sqrt()).extend(1.0 - drop)
+    let scale = (height * (L::splat(2.0) - drop)).sqrt();
+    vec3::Vec3::new(x * scale, y * scale, L::splat(1.0) - drop)
 }
 
 #[cfg(test)]

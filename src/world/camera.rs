@@ -2,8 +2,10 @@
 
 use super::Frame;
 use super::fit::Placement;
+use crate::lanes::Doubles;
 use crate::scene::{Projection, Scene};
-use glam::{DVec2, DVec3, Vec3};
+use crate::vec3::Vec3;
+use glam::{DVec2, DVec3};
 
 /// A camera in world space.
 #[derive(Clone, Copy, Debug)]
@@ -97,29 +99,32 @@ impl Camera {
         [wider(origin), wider(direction)]
     }
 
-    /// Origin and unit direction of the ray through a point of the picture, in pixels from its top
-    /// left corner, and a point of the unit disk, which becomes the lens.
+    /// Origins and unit directions of the rays through points of the picture, in pixels from its top
+    /// left corner, and points of the unit disk, which becomes the lens.
     ///
     /// A lens refracts the rays of a picture point so that they meet where the ray through its
     /// middle crosses the plane in focus, in parallel projection too.
-    #[inline]
-    pub fn ray(&self, x: f64, y: f64, lens: Option<[f32; 2]>) -> (Vec3, Vec3) {
-        let across = (2.0 * x / f64::from(self.width) - 1.0) * self.half_width;
-        let upward = (1.0 - 2.0 * y / f64::from(self.height)) * self.half_height;
-        let offset = self.right * across + self.up * upward;
+    #[inline(always)]
+    pub fn rays<D: Doubles>(&self, [x, y]: [D; 2], lens: Option<[D; 2]>) -> (Vec3<D>, Vec3<D>) {
+        let (all, every) = (D::splat, |v: DVec3| Vec3::from(v).map(D::splat));
+        let (one, two) = (all(1.0), all(2.0));
+        let across = (two * x / all(self.width.into()) - one) * all(self.half_width);
+        let upward = (one - two * y / all(self.height.into())) * all(self.half_height);
+        let (right, up) = (every(self.right), every(self.up));
+        let offset = right * across + up * upward;
         // `direction` goes one unit along the view axis.
         let (mut origin, mut direction) = if self.orthographic {
-            (self.eye + offset, self.forward)
+            (every(self.eye) + offset, every(self.forward))
         } else {
-            (self.eye, self.forward + offset)
+            (every(self.eye), every(self.forward) + offset)
         };
         if let Some([u, v]) = lens {
-            let shift = self.right * (f64::from(u) * self.lens_radius)
-                + self.up * (f64::from(v) * self.lens_radius);
-            origin += shift;
-            direction -= shift / self.focus;
+            let radius = all(self.lens_radius);
+            let shift = right * (u * radius) + up * (v * radius);
+            origin = origin + shift;
+            direction = direction - shift.map(|coordinate| coordinate / all(self.focus));
         }
-        origin += direction * self.near;
-        (origin.as_vec3(), direction.normalize().as_vec3())
+        origin = origin + direction * all(self.near);
+        (origin, direction * (one / direction.dot_unfused(direction).sqrt()))
     }
 }

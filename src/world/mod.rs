@@ -24,7 +24,7 @@ pub use census::Features;
 pub use environment::{Environment, Picture, Radiance, SkySample};
 pub use frame::Frame;
 pub use ground::Ground;
-pub use lights::{Aim, Disc, LightSample, Lights, Point, Sun};
+pub use lights::{Aim, Disc, LightRow, LightSample, Lights, Point, ROW, Sun};
 pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };

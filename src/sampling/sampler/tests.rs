@@ -238,3 +238,19 @@ fn well_distributed_points_beat_random_ones() {
         assert!(ratio > 5.0, "{ratio}");
     }
 }
+
+#[test]
+fn a_row_of_a_split_is_its_points() {
+    for kind in KINDS {
+        let sampler = Sampler::new(kind, 3, 16);
+        for (count, first) in [(50, 16), (50, 48), (7, 0), (1, 0), (1 << 20, 65_530)] {
+            let split = sampler.split(&sampler.start(5, 6, 7), 8, count);
+            let lanes = 16.min(count - first);
+            let row = split.row(first, lanes as usize).map(F32x16::to_array);
+            for lane in 0..lanes {
+                let point = row.map(|numbers| numbers[lane as usize]);
+                assert_eq!(point, split.pair(first + lane), "{kind:?} {count} {first} {lane}");
+            }
+        }
+    }
+}

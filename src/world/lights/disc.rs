@@ -10,13 +10,13 @@ use glam::{DVec3, Vec3};
 
 /// An emissive sphere as seen from a point: what fills a cone.
 pub struct Disc {
-    row: u32,
-    frame: Frame,
-    cone: Cone,
-    origin: Vec3,
-    center: DVec3,
-    radius: f64,
-    weight: Rgb,
+    pub(super) row: u32,
+    pub(super) frame: Frame,
+    pub(super) cone: Cone,
+    pub(super) origin: Vec3,
+    pub(super) center: DVec3,
+    pub(super) radius: f64,
+    pub(super) weight: Rgb,
     close: bool,
 }
 
@@ -72,7 +72,7 @@ impl Disc {
 
     /// Distance to the sphere. At the edge of its disc rounding may take the ray past it: then, to
     /// the point where it is nearest.
-    fn distance(&self, direction: Vec3) -> f64 {
+    pub(super) fn distance(&self, direction: Vec3) -> f64 {
         let ray = ExactRay::new(self.origin, direction, true);
         match intersect::confirm(&ray, self.center, self.radius, || false) {
             Some(root) => root.t,

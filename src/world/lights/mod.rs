@@ -2,10 +2,12 @@
 
 mod disc;
 mod point;
+mod row;
 mod sun;
 
 pub use disc::Disc;
 pub use point::Point;
+pub use row::{LightRow, ROW};
 pub use sun::Sun;
 
 use super::appearance::Appearance;

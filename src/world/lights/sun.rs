@@ -14,7 +14,7 @@ const NO_DISC: f64 = 1e-6;
 /// A disc at infinity.
 #[derive(Clone, Copy, Debug)]
 pub struct Sun {
-    frame: Frame,
+    pub(super) frame: Frame,
     pub(super) direction: Vec3,
     pub(super) irradiance: Rgb,
     /// `None`: of no extent.
