@@ -122,15 +122,14 @@ impl ShadeKind for Shade<'_> {
 
 impl Shade<'_> {
     /// Samples one light.
-    #[inline]
+    #[inline(always)]
     fn look_for_light<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
         let world = self.job.world;
         let place = work.place[row] as usize;
         let draw = self.job.sampler.light(&work.paths.sample[place], self.bounce);
         let Some((light, probability)) = world.lights.choose(draw.light) else { return };
         let origin = (work.surface.point[row], work.hits.sphere[row]);
-        let aim = world.lights.aim(world, light, origin);
-        let Some(sample) = aim.and_then(|aim| aim.sample(draw.point)) else { return };
+        let Some(sample) = world.lights.sample(world, light, origin, draw.point) else { return };
         let incoming = local.frame.to_local(sample.direction);
         if incoming.z <= 0.0 {
             return;
@@ -148,7 +147,7 @@ impl Shade<'_> {
     }
 
     /// Sends the path on, or ends it.
-    #[inline]
+    #[inline(always)]
     fn go_on<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
         let place = work.place[row] as usize;
         let draw = self.job.sampler.scatter(&work.paths.sample[place], self.bounce);

@@ -7,6 +7,7 @@ use crate::scene::Rgb;
 ///
 /// `cosine` of the incident direction is in 0..=1; `eta` is the index of refraction on the incident
 /// side over that on the other. Total internal reflection gives 1 and 0.
+#[inline(always)]
 pub fn dielectric(cosine: f64, eta: f64) -> (f64, f64) {
     let sine2 = eta * eta * ((1.0 - cosine) * (1.0 + cosine));
     if sine2 >= 1.0 {

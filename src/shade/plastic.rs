@@ -14,6 +14,7 @@ use std::f32::consts::FRAC_1_PI;
 
 impl Plastic {
     /// Share that the coat mirrors at this cosine.
+    #[inline(always)]
     fn coat(&self, cosine: f32) -> f32 {
         fresnel::dielectric(f64::from(cosine), f64::from(self.ior).recip()).0 as f32
     }
@@ -35,6 +36,7 @@ impl Bsdf for Plastic {
         self.color == Rgb::ZERO
     }
 
+    #[inline(always)]
     fn eval(&self, outgoing: Vec3, incoming: Vec3) -> Rgb {
         if incoming.z <= 0.0 {
             return Rgb::ZERO;
@@ -43,10 +45,12 @@ impl Bsdf for Plastic {
         self.base() * (passes * FRAC_1_PI * incoming.z)
     }
 
+    #[inline(always)]
     fn pdf(&self, outgoing: Vec3, incoming: Vec3) -> f32 {
         (1.0 - self.coat(outgoing.z)) * FRAC_1_PI * incoming.z.max(0.0)
     }
 
+    #[inline(always)]
     fn sample(&self, outgoing: Vec3, direction: [f32; 2], choice: f32) -> Option<Scatter> {
         let mirrored = self.coat(outgoing.z);
         if choice < mirrored {

@@ -159,8 +159,12 @@ impl Lights {
     /// Chooses a light in proportion to its power: its index and the probability of the choice.
     #[inline]
     pub fn choose(&self, u: f32) -> Option<(usize, f32)> {
-        let choice = self.choice.as_ref()?.sample(u);
-        Some((choice.index, choice.pmf))
+        let choice = self.choice.as_ref()?;
+        if choice.count() == 1 {
+            return Some((0, 1.0));
+        }
+        let chosen = choice.sample(u);
+        Some((chosen.index, chosen.pmf))
     }
 
     /// The probability that [`Lights::choose`] chooses light `index`.
@@ -187,6 +191,21 @@ impl Lights {
             Light::Point(i) => self.points[i].sample(origin).map(Aim::Delta),
             Light::Sun(i) => Some(Aim::Sun(&self.suns[i])),
             Light::Sky => world.environment.picture().map(Aim::Sky),
+        }
+    }
+
+    /// One sample of light `index`: that of [`Lights::aim`], by the short way where there is one.
+    #[inline(always)]
+    pub fn sample(
+        &self,
+        world: &World,
+        index: usize,
+        from: (Vec3, u32),
+        u: [f32; 2],
+    ) -> Option<LightSample> {
+        match self.light(index) {
+            Light::Sun(i) => Some(self.suns[i].sample(u)),
+            _ => self.aim(world, index, from)?.sample(u),
         }
     }
 
@@ -227,7 +246,7 @@ impl Lights {
             // 1 - cos from the chord, which does not cancel.
             let height = (toward - sun.direction).length_squared() / 2.0;
             (height <= cone.height())
-                .then(|| (sun.radiance(*cone), self.probability(first + i) * cone.pdf()))
+                .then(|| (sun.radiance, self.probability(first + i) * cone.pdf()))
         })
     }
 }

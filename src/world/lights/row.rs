@@ -52,7 +52,7 @@ impl Aim<'_> {
             Self::Sun(sun) => match &sun.disc {
                 Some(cone) => {
                     let direction = sun.frame.row_to_world(cone.sample_row(u));
-                    LightRow::distant(direction, sun.radiance(*cone) / cone.pdf(), count)
+                    LightRow::distant(direction, sun.weight, count)
                 }
                 None => self.sample_each(u, count),
             },

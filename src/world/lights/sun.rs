@@ -19,45 +19,46 @@ pub struct Sun {
     pub(super) irradiance: Rgb,
     /// `None`: of no extent.
     pub(super) disc: Option<Cone>,
+    /// Of the disc.
+    pub(super) radiance: Rgb,
+    /// Of a sample: radiance over density, or the irradiance if there is no extent.
+    pub(super) weight: Rgb,
 }
 
 impl Sun {
     /// `direction` is a unit vector toward it; `angular_radius` is in degrees, 0 or more.
     pub(super) fn new(direction: DVec3, irradiance: Rgb, angular_radius: f64) -> Self {
+        let disc =
+            (angular_radius > NO_DISC).then(|| Cone::from_half_angle(angular_radius.to_radians()));
+        // Irradiance on a facing plane is radiance times pi sin^2; sin^2 = h (2 - h) with h = 1 -
+        // cos.
+        let radiance = disc.map_or(Rgb::ZERO, |cone| {
+            let radiance = irradiance / (PI * cone.height() * (2.0 - cone.height()));
+            radiance.min(Rgb::splat(BRIGHTEST))
+        });
         Self {
             frame: Frame::new(direction.as_vec3()),
             direction: direction.as_vec3(),
             irradiance,
-            disc: (angular_radius > NO_DISC)
-                .then(|| Cone::from_half_angle(angular_radius.to_radians())),
+            disc,
+            radiance,
+            weight: disc.map_or(irradiance, |cone| radiance / cone.pdf()),
         }
     }
 
-    /// Radiance of its disc, `cone`.
-    pub(super) fn radiance(&self, cone: Cone) -> Rgb {
-        // Irradiance on a facing plane is radiance times pi sin^2; sin^2 = h (2 - h) with h = 1 -
-        // cos.
-        let radiance = self.irradiance / (PI * cone.height() * (2.0 - cone.height()));
-        radiance.min(Rgb::splat(BRIGHTEST))
-    }
-
     /// Light from a point of it.
+    #[inline(always)]
     pub(super) fn sample(&self, u: [f32; 2]) -> LightSample {
-        let sample = |direction, weight, pdf| LightSample {
-            direction,
+        LightSample {
+            direction: match &self.disc {
+                None => self.direction,
+                Some(cone) => self.frame.to_world(cone.sample(u)),
+            },
             t: f64::INFINITY,
             target: MISS,
-            weight,
-            pdf,
+            weight: self.weight,
+            pdf: self.disc.map(|cone| cone.pdf()),
             close: false,
-        };
-        match &self.disc {
-            None => sample(self.direction, self.irradiance, None),
-            Some(cone) => sample(
-                self.frame.to_world(cone.sample(u)),
-                self.radiance(*cone) / cone.pdf(),
-                Some(cone.pdf()),
-            ),
         }
     }
 }
