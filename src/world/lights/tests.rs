@@ -110,7 +110,7 @@ fn suns_are_sampled_by_their_density() {
             |_| cone.pdf(),
             Some(0.0),
         );
-        let radiance = sun.radiance(cone);
+        let radiance = sun.radiance;
         let mut outside = 0;
         for sample in random_pairs(10_000, 5).filter_map(|u| aim.sample(u)) {
             assert_eq!(sample.pdf, Some(cone.pdf()));
