@@ -142,10 +142,14 @@ impl Shade<'_> {
             let incoming = cosine_hemispheres(points.row(first, count));
             let direction = local.row_to_world(incoming);
             let mut samples = LightRow::distant(direction, Rgb::ZERO, count);
+            let mut weight = [[0.0; ROW]; 3];
             for (lane, cosine) in incoming.z.to_array().into_iter().enumerate().take(count) {
                 let radiance = self.job.world.environment.radiance(samples.sample(lane).direction);
-                samples.weight[lane] = radiance * (PI / cosine.max(f32::MIN_POSITIVE));
+                let light = radiance * (PI / cosine.max(f32::MIN_POSITIVE));
+                (0..3).for_each(|channel| weight[channel][lane] = light[channel]);
             }
+            let [r, g, b] = weight.map(F32x16::new);
+            samples.weight = Row3::new(r, g, b);
             self.cast(work, row, (bsdf, local), (share, &samples));
         }
     }
@@ -160,10 +164,12 @@ impl Shade<'_> {
         (share, samples): (Rgb, &LightRow),
     ) {
         let Row3 { x, y, z } = local.frame.row_to_local(samples.direction).map(F32x16::to_array);
+        let weight = samples.weight.map(F32x16::to_array);
         let (mut light, mut lanes) = ([Rgb::ZERO; ROW], 0);
         for lane in 0..samples.count {
             let response = bsdf.eval(local.outgoing, Vec3::new(x[lane], y[lane], z[lane]));
-            light[lane] = share * response * samples.weight[lane];
+            let weight = Rgb::new(weight.x[lane], weight.y[lane], weight.z[lane]);
+            light[lane] = share * response * weight;
             let arrives = z[lane] > 0.0 && light[lane].max_element() > 0.0;
             lanes |= u32::from(arrives) << lane;
         }
@@ -180,9 +186,13 @@ impl Shade<'_> {
 
     /// Sends the mirrored share on, or what has no other share.
     fn go_on<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
+        let mirrored = bsdf.mirrored(local.outgoing);
+        if mirrored == Some(Rgb::ZERO) {
+            return work.end(row);
+        }
         let place = work.place[row] as usize;
         let draw = self.job.sampler.scatter(&work.paths.sample[place], self.bounce);
-        let next = match bsdf.mirrored(local.outgoing) {
+        let next = match mirrored {
             Some(share) => Some((mirror(local.outgoing), share)),
             None => bsdf
                 .sample(local.outgoing, draw.direction, draw.lobe)

@@ -21,8 +21,8 @@ pub struct LightRow {
     pub t: [f64; ROW],
     /// The light's row if it is a sphere, otherwise [`MISS`].
     pub target: u32,
-    /// Radiance over density; black where there is no light.
-    pub weight: [Rgb; ROW],
+    /// Radiance over density, by channel; black where there is no light.
+    pub weight: Vec3<F32x16>,
     /// How many of the lanes are samples: the first.
     pub count: usize,
 }
@@ -31,16 +31,22 @@ impl LightRow {
     /// Light from infinity, the same from everywhere.
     #[inline(always)]
     pub fn distant(direction: Vec3<F32x16>, weight: Rgb, count: usize) -> Self {
-        Self { direction, t: [f64::INFINITY; ROW], target: MISS, weight: [weight; ROW], count }
+        Self { direction, t: [f64::INFINITY; ROW], target: MISS, weight: every(weight), count }
     }
 
     /// One of the samples.
     #[inline]
     pub fn sample(&self, lane: usize) -> LightSample {
         let direction = self.direction.map(|lanes| lanes.to_array()[lane]).into();
-        let (t, target, weight) = (self.t[lane], self.target, self.weight[lane]);
+        let weight = self.weight.map(|lanes| lanes.to_array()[lane]).into();
+        let (t, target) = (self.t[lane], self.target);
         LightSample { direction, t, target, weight, pdf: None, close: false }
     }
+}
+
+#[inline(always)]
+fn every(color: Rgb) -> Vec3<F32x16> {
+    Vec3::splat(color.x, color.y, color.z)
 }
 
 impl Aim<'_> {
@@ -62,17 +68,18 @@ impl Aim<'_> {
 
     fn sample_each(&self, u: [F32x16; 2], count: usize) -> LightRow {
         let [u, v] = u.map(F32x16::to_array);
-        let mut direction = [[0.0; ROW]; 3];
+        let (mut direction, mut weight) = ([[0.0; ROW]; 3], [[0.0; ROW]; 3]);
         let mut row = LightRow::distant(Vec3::splat(0.0, 0.0, 1.0), Rgb::ZERO, count);
         for lane in 0..count {
             let Some(sample) = self.sample([u[lane], v[lane]]) else { continue };
-            for (lanes, coordinate) in direction.iter_mut().zip(sample.direction.to_array()) {
-                lanes[lane] = coordinate;
+            row.t[lane] = sample.t;
+            for axis in 0..3 {
+                direction[axis][lane] = sample.direction[axis];
+                weight[axis][lane] = sample.weight[axis];
             }
-            (row.t[lane], row.weight[lane]) = (sample.t, sample.weight);
         }
-        let [x, y, z] = direction.map(F32x16::new);
-        LightRow { direction: Vec3::new(x, y, z), ..row }
+        let lanes = |[x, y, z]: [[f32; ROW]; 3]| Vec3::new(x, y, z).map(F32x16::new);
+        LightRow { direction: lanes(direction), weight: lanes(weight), ..row }
     }
 }
 
@@ -84,7 +91,7 @@ impl Disc {
             direction,
             t: self.distances(direction, count),
             target: self.row,
-            weight: [self.weight; ROW],
+            weight: every(self.weight),
             count,
         }
     }
@@ -105,7 +112,8 @@ impl Disc {
                 radius: F64x8::splat(self.radius),
             });
             t.copy_from_slice(&near.to_array());
-            for lane in set_bits(!plain & 0xff) {
+            let samples = (1_u32 << (count - 8 * half).min(8)) - 1;
+            for lane in set_bits(!plain & samples) {
                 t[lane] = self.distance(direction.map(|c| c.to_array()[8 * half + lane]).into());
             }
         }
