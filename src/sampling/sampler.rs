@@ -153,7 +153,7 @@ impl Split {
     }
 
     /// The points of `count` indices from `first` on, at most sixteen; further lanes are of no use.
-    #[inline]
+    #[inline(always)]
     pub fn row(&self, first: u32, count: usize) -> [F32x16; 2] {
         if let SplitPoints::Stratified(strata) = &self.points {
             return strata.in_cells(first, self.key);

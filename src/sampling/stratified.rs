@@ -66,7 +66,7 @@ impl Strata {
     }
 
     /// [`Strata::in_cell`] from cell `first` on; lanes past the last cell are of no use.
-    #[inline]
+    #[inline(always)]
     pub(super) fn in_cells(&self, first: u32, key: u64) -> [F32x16; 2] {
         let mut rows = [[0.0; 16]; 2];
         for lane in 0..16 {

@@ -51,7 +51,7 @@ fn every(color: Rgb) -> Vec3<F32x16> {
 
 impl Aim<'_> {
     /// [`Aim::sample`] for the first `count` lanes of a row of numbers; densities are left out.
-    #[inline]
+    #[inline(always)]
     pub fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightRow {
         match self {
             Self::Disc(disc) => disc.sample_row(u, count),
