@@ -15,7 +15,7 @@ use crate::filter::{Chord, FilterRay};
 use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, greatest_of, set_bits};
 use crate::ray::{Columns3, MISS, Rays};
 use crate::slabs::{MARGIN, Planes, Slabs};
-use crate::spheres::{Block, LEAF};
+use crate::spheres::{Block, LEAF, Spheres};
 use crate::vec3::Vec3;
 
 /// Some of the rays `row..row + L::WIDTH`.
@@ -80,11 +80,7 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
 
     #[inline(always)]
     fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) {
-        let block = &decider.spheres.blocks()[sphere / LEAF];
-        let lane = sphere % LEAF;
-        let center = Vec3::splat(block.x[lane], block.y[lane], block.z[lane]);
-        let radius = L::splat(block.radius[lane]);
-        let chord = Chord::new(&self.filter, center, radius);
+        let (chord, radius) = self.chord(decider.spheres, sphere);
         let met = chord.may_hit(self.t_max);
         let [own, target] = self.known.map(|known| known.has_bits_of(bits(sphere as u32)));
         self.take(decider, sphere, (met & !(own | target), &chord, radius));
@@ -129,13 +125,24 @@ impl<L: Lanes> Packet<L> {
         };
     }
 
+    /// What the rays cut out of a sphere, and its radius.
+    #[inline(always)]
+    fn chord(&self, spheres: &Spheres, sphere: usize) -> (Chord<L>, L) {
+        let (block, lane) = (&spheres.blocks()[sphere / LEAF], sphere % LEAF);
+        let center = Vec3::splat(block.x[lane], block.y[lane], block.z[lane]);
+        let radius = L::splat(block.radius[lane]);
+        (Chord::new(&self.filter, center, radius), radius)
+    }
+
     /// Tests every sphere there is, for some of the rays from a row on.
     #[inline(always)]
     pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, rows: (usize, u32)) {
         let mut packet = <Self as Bundle<Q>>::none();
         packet.take_rays(decider, rows);
         for sphere in 0..decider.spheres.len() {
-            packet.test(decider, sphere);
+            if packet.chord(decider.spheres, sphere).0.may_hit(packet.t_max).bits() != 0 {
+                packet.test(decider, sphere);
+            }
         }
         packet.settle(decider);
     }

@@ -278,18 +278,21 @@ impl SphereTree {
     ) -> Tally {
         let mut tally = Tally::default();
         let count = columns.origin[0].len();
+        // Powers of two: their reciprocals and products do not round.
+        let inverse_scale = self.scale.recip();
         let mut rays = Rays::with_capacity(CHUNK.min(count));
         let mut hits = ray::Hits::with_capacity(CHUNK.min(count));
         for first in (0..count).step_by(CHUNK) {
             let rows = first..count.min(first + CHUNK);
             rays.truncate(0);
             let plain = self.load(columns, rows.clone(), &mut rays);
-            let unit = |row: usize| f64::from(plain.shrink[row]) / self.scale;
+            let stretch = |row: usize| f64::from(plain.stretch[row]);
+            let unit = |row: usize| f64::from(plain.shrink[row]) * inverse_scale;
             let is_plain =
                 |row: usize| plain.packets[row / plain::PACKET] && !bound(first + row).is_nan();
             for (row, i) in rows.clone().enumerate() {
                 // Nothing counts below 0: what is not plain is not traced here.
-                let bound = if is_plain(row) { bound(i) / unit(row) } else { -1.0 };
+                let bound = if is_plain(row) { bound(i) * self.scale * stretch(row) } else { -1.0 };
                 hits.set(row, bound, MISS);
             }
             tally.exact +=
@@ -302,8 +305,8 @@ impl SphereTree {
                     }
                 } else if hits.sphere[row] != MISS {
                     let sphere = hits.sphere[row] as usize;
-                    let t = hits.t[row] * unit(row);
-                    found(i, &Found { sphere, id: self.spheres.id[sphere], t });
+                    let id = if Q::ANY { NOTHING } else { self.spheres.id[sphere] };
+                    found(i, &Found { sphere, id, t: hits.t[row] * unit(row) });
                 }
             }
         }
@@ -331,7 +334,7 @@ impl SphereTree {
 struct Found {
     /// The sphere's row in the tree.
     sphere: usize,
-    /// The sphere's row in the user's columns.
+    /// The sphere's row in the user's columns; [`NOTHING`] if nobody asks which.
     id: u32,
     /// In units of the user's direction.
     t: f64,

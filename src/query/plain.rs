@@ -19,13 +19,16 @@ pub(super) struct Plain {
     pub(super) packets: [bool; CHUNK / PACKET],
     /// By ray, what its direction was multiplied by: a power of two.
     pub(super) shrink: [f32; CHUNK],
+    /// The reciprocals.
+    pub(super) stretch: [f32; CHUNK],
 }
 
 impl SphereTree {
     /// Appends some rays in the tree's units, and tells which are plain: all that they are fits single
     /// precision, and they start no farther than [`REACH`].
     pub(super) fn load(&self, columns: &RayColumns, rows: Range<usize>, rays: &mut Rays) -> Plain {
-        let mut plain = Plain { packets: [false; CHUNK / PACKET], shrink: [1.0; CHUNK] };
+        let mut plain =
+            Plain { packets: [false; CHUNK / PACKET], shrink: [1.0; CHUNK], stretch: [1.0; CHUNK] };
         let scale = self.scale as f32;
         let scalable = f64::from(scale) == self.scale && scale.is_normal();
         for (packet, first) in rows.clone().step_by(PACKET).enumerate() {
@@ -41,6 +44,8 @@ impl SphereTree {
             let longest = Lanes::max(Lanes::max(x, y), z);
             let shrink = longest.to_array().map(reciprocal_power);
             plain.shrink[packet * PACKET..][..PACKET].copy_from_slice(&shrink);
+            let stretch = F32x16::splat(1.0) / F32x16::new(shrink);
+            stretch.store(&mut plain.stretch[packet * PACKET..]);
             let moved = origin.map(|x| x * F32x16::splat(scale));
             let turned = direction.map(|x| x * F32x16::new(shrink));
             let mut all =
