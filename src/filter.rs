@@ -72,6 +72,18 @@ impl<L: Lanes> FilterRay<L> {
         }
     }
 
+    /// Where they start.
+    #[inline(always)]
+    pub fn origin(&self) -> Vec3<L> {
+        self.origin
+    }
+
+    /// Where they go.
+    #[inline(always)]
+    pub fn direction(&self) -> Vec3<L> {
+        self.direction
+    }
+
     /// By how much the origin may be off if it is a point of a surface, rounded: as
     /// [`ExactRay::origin_error`](crate::ray::ExactRay::origin_error), and no less.
     #[inline(always)]

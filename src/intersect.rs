@@ -29,7 +29,7 @@
 //! not matter: the least product of four single-precision numbers is 1e-180.
 
 use crate::exact;
-use crate::lanes::{Doubles, Mask};
+use crate::lanes::Doubles;
 use crate::ray::ExactRay;
 use crate::vec3::Vec3;
 use glam::DVec3;
@@ -106,7 +106,7 @@ impl Pairs<f64> {
 /// [`confirm`] for pairs that are plain: the lanes whose ray enters the sphere from outside and that are
 /// far from any doubt, and the distances; the error of each is at most [`CLEAR`] of it.
 #[inline(always)]
-pub fn confirm_plain<D: Doubles>(pairs: &Pairs<D>) -> (u32, D) {
+pub fn confirm_plain<D: Doubles>(pairs: &Pairs<D>) -> (D::Mask, D) {
     let terms = Terms::new(pairs.origin, pairs.direction, pairs.center, pairs.radius);
     let zero = D::splat(0.0);
     let band = pairs.origin_error * (D::splat(2.0) * pairs.radius + pairs.origin_error);
@@ -115,7 +115,7 @@ pub fn confirm_plain<D: Doubles>(pairs: &Pairs<D>) -> (u32, D) {
         & band.lt(terms.outside)
         & zero.lt(terms.outside)
         & zero.lt(terms.b);
-    (plain.bits(), terms.near())
+    (plain, terms.near())
 }
 
 /// Relative errors of distances above this are not put up with.

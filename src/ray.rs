@@ -39,6 +39,9 @@ pub struct Columns3 {
     pub z: Vec<f32>,
 }
 
+/// Rays that are looked at together before they are traced.
+pub(crate) const CHUNK: usize = 4096;
+
 /// What each ray hits: on entry a bound, on return the answer.
 #[derive(Clone, Debug, Default)]
 pub struct Hits {
@@ -46,7 +49,8 @@ pub struct Hits {
     pub t: Vec<f64>,
     /// The sphere's row, [`GROUND`] or [`MISS`].
     pub sphere: Vec<u32>,
-    /// By how much a distance may be off; 0 where it is so by definition.
+    /// By how much a distance may be off, 0 where it is so by definition: of the chunk of rays that
+    /// is being traced.
     pub(crate) error: Vec<f64>,
 }
 
@@ -173,7 +177,11 @@ impl Hits {
     /// Misses, room for `capacity`.
     pub fn with_capacity(capacity: usize) -> Self {
         let rows = capacity.next_multiple_of(MAX_LANES) + MAX_LANES;
-        Self { t: vec![f64::INFINITY; rows], sphere: vec![MISS; rows], error: vec![0.0; rows] }
+        Self {
+            t: vec![f64::INFINITY; rows],
+            sphere: vec![MISS; rows],
+            error: vec![0.0; rows.min(CHUNK)],
+        }
     }
 
     /// Writes row `i`.

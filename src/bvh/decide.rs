@@ -5,13 +5,14 @@
 //! that comes first in the user's scene. Walks only decide how soon the answer is found, never which
 //! it is.
 
+use super::certain::Certain;
 use super::walk::Query;
 use crate::exact::{self, Distance};
 use crate::filter::{Chord, FilterRay};
 use crate::intersect::{self, CLEAR, Pairs, Root};
-use crate::lanes::{F64x8, Lanes, MAX_LANES, set_bits};
-use crate::ray::{Columns3, ExactRay, Hits, MISS, Rays};
-use crate::spheres::{LEAF, Spheres};
+use crate::lanes::{F64x8, Lanes, MAX_LANES, Mask, bits, bits_of, numbers, set_bits, store_where};
+use crate::ray::{CHUNK, ExactRay, Hits, MISS, Rays};
+use crate::spheres::Spheres;
 use crate::vec3::Vec3;
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -19,6 +20,13 @@ use std::marker::PhantomData;
 
 /// The bound of a ray that needs no more answers.
 pub(super) const DONE: f32 = f32::NEG_INFINITY;
+
+/// Bounds of what was rounded to this, at any magnitude.
+#[inline(always)]
+fn rounded_out<L: Lanes>(t: L) -> (L, L) {
+    let scaled = |factor, least| t.mul_add(L::splat(factor), L::splat(least));
+    (scaled(1.0 - f32::EPSILON, -f32::MIN_POSITIVE), scaled(1.0 + f32::EPSILON, f32::MIN_POSITIVE))
+}
 
 /// Rays, what they may hit, and what they have hit so far.
 pub(super) struct Decider<'a, Q> {
@@ -35,85 +43,95 @@ impl<'a, Q: Query> Decider<'a, Q> {
         Self { spheres, rays, hits, exact: 0, query: PhantomData }
     }
 
-    /// Bounds of the distances that still count for the rays from `row` on whose bits are set in
-    /// `lanes`; [`DONE`] where none does.
+    /// Bounds of the distance that still counts for a ray; [`DONE`] if none does.
     #[inline(always)]
-    pub(super) fn bounds<L: Lanes>(&self, row: usize, lanes: u32) -> (L, L) {
-        let rows = row..row + L::WIDTH;
-        let (t, error) = (&self.hits.t[rows.clone()], &self.hits.error[rows.clone()]);
-        let sphere = &self.hits.sphere[rows];
-        let (mut low, mut high) = ([DONE; MAX_LANES], [DONE; MAX_LANES]);
-        for lane in 0..L::WIDTH {
-            let done = lanes >> lane & 1 == 0 || (Q::ANY && sphere[lane] != MISS);
-            low[lane] = if done { DONE } else { (t[lane] - error[lane]) as f32 };
-            high[lane] = if done { DONE } else { (t[lane] + error[lane]) as f32 };
+    pub(super) fn bounds(&self, row: usize) -> (f32, f32) {
+        if Q::ANY && self.hits.sphere[row] != MISS {
+            return (DONE, DONE);
         }
-        // Beyond the rounding of the conversion, at any magnitude.
-        let scaled = |bound: &[f32], factor: f32, least: f32| {
-            L::load(bound).mul_add(L::splat(factor), L::splat(least))
-        };
-        let low = scaled(&low, 1.0 - f32::EPSILON, -f32::MIN_POSITIVE);
-        (low, scaled(&high, 1.0 + f32::EPSILON, f32::MIN_POSITIVE))
+        let (t, error) = (self.hits.t[row], self.hits.error[row % CHUNK]);
+        (rounded_out((t - error) as f32).0, rounded_out((t + error) as f32).1)
     }
 
-    /// Keeps hits of rays `first..` that are certain and nearer than what the rays have: sphere
-    /// `candidates[i]`, or [`MISS`], for ray `first + i`.
+    /// [`Decider::bounds`] for the rays from `row` on of which nothing is known yet but the bounds of
+    /// the search; [`DONE`] for lanes that are not in `members`.
     #[inline(always)]
-    pub(super) fn settle(&mut self, first: usize, candidates: &[u32]) {
-        if Q::ANY {
-            for (i, &candidate) in candidates.iter().enumerate() {
-                if candidate != MISS {
-                    self.hits.sphere[first + i] = candidate;
-                }
-            }
+    pub(super) fn start<L: Lanes>(&self, row: usize, members: L::Mask) -> (L, L) {
+        let (low, high) = rounded_out(L::load_rounded(&self.hits.t[row..]));
+        let searched = if Q::ANY {
+            members & bits_of::<L>(&self.hits.sphere[row..]).has_bits_of(bits(MISS))
+        } else {
+            members
+        };
+        let done = L::splat(DONE);
+        (L::select(searched, low, done), L::select(searched, high, done))
+    }
+
+    /// Keeps hits of rays `first..` that are certain and nearer than what the rays have.
+    #[inline(always)]
+    pub(super) fn settle<L: Lanes>(
+        &mut self,
+        first: usize,
+        rays: &FilterRay<L>,
+        certain: &Certain<L>,
+    ) {
+        let there = certain.there().bits();
+        if there == 0 {
             return;
         }
-        for (row, candidates) in (first..).step_by(8).zip(candidates.chunks(8)) {
-            let there = |i: usize| candidates.get(i).is_some_and(|&candidate| candidate != MISS);
-            let mut open = (0..8).fold(0, |mask, i| mask | u32::from(there(i)) << i);
-            let single = self.rays.precise.is_empty() && self.spheres.precise.is_empty();
-            if candidates.len() == 8 && open != 0 && single {
-                open &= !self.settle_plain(row, candidates, open);
-            }
-            for i in set_bits(open) {
-                self.consider(row + i, candidates[i] as usize);
+        if Q::ANY {
+            return self.keep_spheres(first, certain.there(), certain.sphere);
+        }
+        let single = self.rays.precise.is_empty() && self.spheres.precise.is_empty();
+        let plain = if single { self.settle_plain(first, rays, certain) } else { 0 };
+        self.keep_spheres(first, L::lanes(plain), certain.sphere);
+        if plain != there {
+            let sphere = numbers(certain.sphere);
+            for lane in set_bits(there & !plain) {
+                self.consider(first + lane, sphere[lane] as usize);
             }
         }
     }
 
-    /// [`Decider::settle`] for eight rays; returns those that it could.
+    /// Leaves the distances of hits that double precision is sure of in the hits, and returns which
+    /// they are.
     #[inline(always)]
-    fn settle_plain(&mut self, first: usize, candidates: &[u32], there: u32) -> u32 {
-        let (rays, blocks) = (self.rays, self.spheres.blocks());
-        let places: [_; 8] = std::array::from_fn(|i| {
-            let sphere = if there >> i & 1 == 1 { candidates[i] as usize } else { 0 };
-            (sphere / LEAF, sphere % LEAF)
-        });
-        let wide = |row: [f32; 8]| F64x8::new(row.map(f64::from));
-        let column = |x: &[f32]| wide(std::array::from_fn(|i| x[first..first + 8][i]));
-        let columns = |v: &Columns3| Vec3::new(column(&v.x), column(&v.y), column(&v.z));
-        let origin = columns(&rays.origin);
-        let span = origin.x.abs() + origin.y.abs() + origin.z.abs();
-        let pairs = Pairs {
-            origin,
-            direction: columns(&rays.direction),
-            // As if all were on surfaces: no less.
-            origin_error: span * F64x8::splat(f64::from(f32::EPSILON)),
-            center: Vec3::new(
-                wide(places.map(|(block, lane)| blocks[block].x[lane])),
-                wide(places.map(|(block, lane)| blocks[block].y[lane])),
-                wide(places.map(|(block, lane)| blocks[block].z[lane])),
-            ),
-            radius: wide(places.map(|(block, lane)| blocks[block].radius[lane])),
-        };
-        let (plain, t) = intersect::confirm_plain(&pairs);
-        let t = t.to_array();
-        for i in set_bits(plain & there) {
-            let row = first + i;
-            (self.hits.t[row], self.hits.sphere[row]) = (t[i], candidates[i]);
-            self.hits.error[row] = t[i] * CLEAR;
+    fn settle_plain<L: Lanes>(
+        &mut self,
+        first: usize,
+        rays: &FilterRay<L>,
+        certain: &Certain<L>,
+    ) -> u32 {
+        let mut bits = 0;
+        // Nothing is plain about what is no number.
+        let radius = L::select(certain.there(), certain.radius, L::splat(f32::NAN));
+        for half in (0..L::WIDTH).step_by(8) {
+            let vector =
+                |v: Vec3<L>| Vec3::new(v.x.doubles(half), v.y.doubles(half), v.z.doubles(half));
+            let pairs = Pairs {
+                origin: vector(rays.origin()),
+                direction: vector(rays.direction()),
+                // As if all were on surfaces: no less.
+                origin_error: rays.origin_error().doubles(half),
+                center: vector(certain.center),
+                radius: radius.doubles(half),
+            };
+            let (plain, t) = intersect::confirm_plain(&pairs);
+            store_where(plain, t, &mut self.hits.t[first + half..]);
+            store_where(
+                plain,
+                t * F64x8::splat(CLEAR),
+                &mut self.hits.error[first % CHUNK + half..],
+            );
+            bits |= plain.bits() << half;
         }
-        plain & there
+        bits
+    }
+
+    #[inline(always)]
+    fn keep_spheres<L: Lanes>(&mut self, first: usize, mask: L::Mask, sphere: L) {
+        let column = bytemuck::cast_slice_mut(&mut self.hits.sphere[first..]);
+        L::select(mask, sphere, L::load(column)).store(column);
     }
 
     /// Decides about a ray and a sphere, and keeps the hit if it is nearer: then it is true.
@@ -128,7 +146,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
         let (center, radius) = self.spheres.exact(sphere);
         let ray = self.rays.exact(row);
         let (plain, t) = intersect::confirm_plain(&Pairs::one(&ray, center, radius));
-        if plain == 0 {
+        if !plain {
             return self.consider_closely(row, sphere, &ray);
         }
         self.keep_nearer(row, sphere, &ray, (t, t * CLEAR))
@@ -157,18 +175,19 @@ impl<'a, Q: Query> Decider<'a, Q> {
         if nearer {
             self.hits.sphere[row] = sphere as u32;
             if !Q::ANY {
-                (self.hits.t[row], self.hits.error[row]) = (t, error);
+                (self.hits.t[row], self.hits.error[row % CHUNK]) = (t, error);
             }
         }
         nearer
     }
 
     /// [`Decider::settle`] with distances of single precision.
-    pub(super) fn believe_all(&mut self, first: usize, candidates: &[u32], nears: &[f32]) {
-        for (i, (&candidate, &near)) in candidates.iter().zip(nears).enumerate() {
-            if candidate != MISS {
-                self.hits.set(first + i, f64::from(near), candidate);
-            }
+    #[inline(always)]
+    pub(super) fn believe_all<L: Lanes>(&mut self, first: usize, certain: &Certain<L>, near: L) {
+        let (sphere, mut nears) = (numbers(certain.sphere), [0.0; MAX_LANES]);
+        near.store(&mut nears);
+        for lane in set_bits(certain.there().bits()) {
+            self.hits.set(first + lane, f64::from(nears[lane]), sphere[lane]);
         }
     }
 
@@ -178,7 +197,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
         let ray = FilterRay::new(self.rays.origin.load(row), self.rays.direction.load(row));
         let center = self.spheres.center(sphere);
         let near = Chord::<f32>::new(&ray, center.into(), self.spheres.radius(sphere)).near();
-        let nearer = near >= 0.0 && near < self.bounds::<f32>(row, 1).1;
+        let nearer = near >= 0.0 && near < self.bounds(row).1;
         if nearer {
             self.hits.set(row, f64::from(near), sphere as u32);
         }
@@ -214,7 +233,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
         ray: &ExactRay,
         (t, error): (f64, f64),
     ) -> bool {
-        let (best, best_error) = (self.hits.t[row], self.hits.error[row]);
+        let (best, best_error) = (self.hits.t[row], self.hits.error[row % CHUNK]);
         if t + error < best - best_error {
             return true;
         }
@@ -239,7 +258,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
         (t, error): (f64, f64),
     ) -> Ordering {
         let (best, other) = (self.hits.t[row], self.hits.sphere[row] as usize);
-        let best_error = self.hits.error[row];
+        let best_error = self.hits.error[row % CHUNK];
         let twins = || self.spheres.exact(sphere) == self.spheres.exact(other);
         if best_error != 0.0 && twins() {
             return Ordering::Equal;

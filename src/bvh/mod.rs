@@ -6,6 +6,7 @@
 //! knows nothing of materials, the rest of the program nothing of nodes.
 
 pub mod build;
+mod certain;
 mod decide;
 mod order;
 mod packet;

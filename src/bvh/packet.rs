@@ -8,11 +8,12 @@
 //! nearest one's distance is computed in the end. Where they overlap, or cannot tell a hit from a miss,
 //! [`Decider`] is asked at once.
 
+use super::certain::Certain;
 use super::decide::{DONE, Decider};
 use super::stream::Bundle;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay};
-use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, greatest_of, set_bits};
+use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, bits, bits_of, greatest_of, numbers, set_bits};
 use crate::ray::{Columns3, MISS, Rays};
 use crate::slabs::{MARGIN, Planes, Slabs};
 use crate::spheres::{Block, LEAF, Spheres};
@@ -29,20 +30,8 @@ pub(super) struct Packet<L: Lanes> {
     /// ray, or done.
     t_min: L,
     t_max: L,
-    /// The bits of the sphere that is hit for certain, if the hits do not know of it yet; else
-    /// [`MISS`].
-    candidate: L,
-}
-
-#[inline(always)]
-fn bits<L: Lanes>(number: u32) -> L {
-    L::splat(f32::from_bits(number))
-}
-
-/// The same, one for each lane.
-#[inline(always)]
-fn bits_of<L: Lanes>(numbers: &[u32]) -> L {
-    L::load(bytemuck::cast_slice(numbers))
+    /// What is hit for certain, if the hits do not know of it yet.
+    certain: Certain<L>,
 }
 
 impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
@@ -57,7 +46,7 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
             known: [bits(MISS); 2],
             t_min: L::splat(DONE),
             t_max: L::splat(DONE),
-            candidate: bits(MISS),
+            certain: Certain::none(),
         }
     }
 
@@ -80,10 +69,12 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
 
     #[inline(always)]
     fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) {
-        let (chord, radius) = self.chord(decider.spheres, sphere);
+        let (chord, center, radius) = self.chord(decider.spheres, sphere);
         let met = chord.may_hit(self.t_max);
-        let [own, target] = self.known.map(|known| known.has_bits_of(bits(sphere as u32)));
-        self.take(decider, sphere, (met & !(own | target), &chord, radius));
+        let number = bits(sphere as u32);
+        let [own, target] = self.known.map(|known| known.has_bits_of(number));
+        let candidate = Certain { sphere: number, center, radius };
+        self.take(decider, &candidate, (met & !(own | target), &chord));
     }
 
     #[inline(always)]
@@ -94,18 +85,12 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     /// Computes the distances of what is hit for certain.
     #[inline(always)]
     fn settle(&self, decider: &mut Decider<Q>) {
-        if self.candidate.has_bits_of(bits(MISS)).bits().count_ones() as usize == L::WIDTH {
-            return;
-        }
-        let mut candidates = [0.0; MAX_LANES];
-        self.candidate.store(&mut candidates);
-        let candidates: [u32; MAX_LANES] = bytemuck::cast(candidates);
+        let row = self.row as usize;
         if Q::EXACT {
-            return decider.settle(self.row as usize, &candidates[..L::WIDTH]);
+            decider.settle(row, &self.filter, &self.certain);
+        } else {
+            decider.believe_all(row, &self.certain, self.t_min);
         }
-        let mut nears = [0.0; MAX_LANES];
-        self.t_min.store(&mut nears);
-        decider.believe_all(self.row as usize, &candidates[..L::WIDTH], &nears);
     }
 }
 
@@ -114,24 +99,24 @@ impl<L: Lanes> Packet<L> {
     fn take_rays<Q: Query>(&mut self, decider: &Decider<Q>, (row, lanes): (usize, u32)) {
         let rays = decider.rays;
         let origin: Vec3<L> = rays.origin.load(row);
-        let (t_min, t_max) = decider.bounds(row, lanes);
+        let (t_min, t_max) = decider.start(row, L::lanes(lanes));
         *self = Self {
             row: row as u32,
             filter: FilterRay::new(origin, rays.direction.load(row)),
             known: [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])],
             t_min,
             t_max,
-            candidate: bits(MISS),
+            certain: Certain::none(),
         };
     }
 
-    /// What the rays cut out of a sphere, and its radius.
+    /// What the rays cut out of a sphere, and its center and radius.
     #[inline(always)]
-    fn chord(&self, spheres: &Spheres, sphere: usize) -> (Chord<L>, L) {
+    fn chord(&self, spheres: &Spheres, sphere: usize) -> (Chord<L>, Vec3<L>, L) {
         let (block, lane) = (&spheres.blocks()[sphere / LEAF], sphere % LEAF);
         let center = Vec3::splat(block.x[lane], block.y[lane], block.z[lane]);
         let radius = L::splat(block.radius[lane]);
-        (Chord::new(&self.filter, center, radius), radius)
+        (Chord::new(&self.filter, center, radius), center, radius)
     }
 
     /// Tests every sphere there is, for some of the rays from a row on.
@@ -152,13 +137,14 @@ impl<L: Lanes> Packet<L> {
     fn take<Q: Query>(
         &mut self,
         decider: &mut Decider<Q>,
-        sphere: usize,
-        (met, chord, radius): (L::Mask, &Chord<L>, L),
+        candidate: &Certain<L>,
+        (met, chord): (L::Mask, &Chord<L>),
     ) {
         let near = chord.near();
-        let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
+        let origin_error = self.filter.origin_error();
+        let (certain, far) = chord.enters(&self.filter, candidate.radius, origin_error);
         let nearer = if Q::EXACT { met & certain & far.lt(self.t_min) } else { met };
-        self.candidate = L::select(nearer, bits(sphere as u32), self.candidate);
+        self.certain = Certain::select(nearer, candidate, &self.certain);
         if Q::ANY {
             self.t_max = L::select(nearer, L::splat(DONE), self.t_max);
         } else {
@@ -167,28 +153,27 @@ impl<L: Lanes> Packet<L> {
         }
         let open = met & !nearer;
         if open.bits() != 0 {
-            self.ask(decider, sphere, open.bits());
+            self.ask(decider, candidate.sphere, open.bits());
         }
     }
 
     /// Has the lanes in `open` decided.
     #[cold]
-    fn ask<Q: Query>(&mut self, decider: &mut Decider<Q>, sphere: usize, open: u32) {
-        let mut candidates = [0.0; MAX_LANES];
-        self.candidate.store(&mut candidates);
+    fn ask<Q: Query>(&mut self, decider: &mut Decider<Q>, sphere: L, open: u32) {
+        let (sphere, mut certain) = (numbers(sphere)[0], numbers(self.certain.sphere));
         let (mut t_min, mut t_max) = ([DONE; MAX_LANES], [DONE; MAX_LANES]);
         self.t_min.store(&mut t_min);
         self.t_max.store(&mut t_max);
         for lane in set_bits(open) {
-            let (row, candidate) = (self.row as usize + lane, candidates[lane].to_bits());
-            if candidate != MISS {
-                decider.consider(row, candidate as usize);
-                candidates[lane] = f32::from_bits(MISS);
+            let row = self.row as usize + lane;
+            if certain[lane] != MISS {
+                decider.consider(row, certain[lane] as usize);
+                certain[lane] = MISS;
             }
-            decider.consider(row, sphere);
-            (t_min[lane], t_max[lane]) = decider.bounds::<f32>(row, 1);
+            decider.consider(row, sphere as usize);
+            (t_min[lane], t_max[lane]) = decider.bounds(row);
         }
-        self.candidate = L::load(&candidates);
+        self.certain.sphere = bits_of(&certain);
         (self.t_min, self.t_max) = (L::load(&t_min), L::load(&t_max));
     }
 }

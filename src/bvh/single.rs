@@ -39,7 +39,7 @@ impl<Q: Query> Bundle<Q> for Single {
             own: (own / LEAF as u32, !(1 << (own % LEAF as u32))),
             filter: FilterRay::new(origin.into(), direction.into()),
         };
-        decider.bounds::<f32>(row, 1).1
+        decider.bounds(row).1
     }
 
     #[inline(always)]
@@ -62,7 +62,7 @@ impl<Q: Query> Bundle<Q> for Single {
 
     #[inline(always)]
     fn t_far(&self, decider: &Decider<Q>) -> f32 {
-        decider.bounds::<f32>(self.row as usize, 1).1
+        decider.bounds(self.row as usize).1
     }
 
     #[inline(always)]
@@ -77,8 +77,6 @@ impl Single {
         let (center, radius) = (decider.spheres.center(sphere), decider.spheres.radius(sphere));
         let chord = Chord::new(&self.filter, center.into(), radius);
         let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
-        certain
-            && far < decider.bounds::<f32>(row, 1).0
-            && decider.rays.target[row] != sphere as u32
+        certain && far < decider.bounds(row).0 && decider.rays.target[row] != sphere as u32
     }
 }

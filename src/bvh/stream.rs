@@ -3,8 +3,8 @@
 //! A walk is a chain of steps that wait for each other: for the loads, for the order of the
 //! children, for what is on top of the stack. So some walks take turns: all that are at a node take
 //! one step, then all that are at a leaf, then all spheres that those may hit are tested. The steps
-//! of a turn do not depend on each other, and what comes next is appended to a queue without a
-//! branch that could be mispredicted: so the processor overlaps them.
+//! of a turn do not depend on each other, and what comes next is noted in bit masks, without a branch
+//! that could be mispredicted: so the processor overlaps them.
 
 use super::decide::{DONE, Decider};
 use super::walk::Query;
@@ -190,13 +190,15 @@ impl<B: Copy> Flight<B> {
         self.child
     }
 
-    /// Takes what is too far off the stack.
+    /// Takes what is too far off the stack: all of it if no more answers are needed.
     #[inline(always)]
     fn forget<Q: Query>(&mut self) {
         self.nearer = false;
+        if Q::ANY && self.t_far >= 0.0 {
+            return;
+        }
         let full = std::mem::replace(&mut self.top, 1);
-        if self.t_far < 0.0 || Q::ANY {
-            self.top = if self.t_far < 0.0 { 1 } else { full };
+        if self.t_far < 0.0 {
             return;
         }
         for first in (1..full).step_by(WIDTH) {

@@ -93,6 +93,16 @@ pub fn store_rounded(row: F64x8, column: &mut [f32]) {
     column[..8].copy_from_slice(&row.to_array().map(|x| x as f32));
 }
 
+/// Writes the lanes in which `mask` is true to the first eight places of a column.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn store_where(mask: WideMask<F64x8>, row: F64x8, column: &mut [f64]) {
+    let place: &mut [f64; 8] = column.first_chunk_mut().expect("columns hold whole rows");
+    *place = wide::Select::select(mask.0, row, F64x8::new(*place)).to_array();
+}
+
 /// The same numbers in double precision.
 #[inline(always)]
 pub fn widen(row: F32x16) -> [F64x8; 2] {

@@ -13,7 +13,7 @@ mod across;
 mod doubles;
 
 pub use across::{greatest_of, shuffle, shuffle_numbers};
-pub use doubles::{Doubles, load_doubles, store_rounded, widen};
+pub use doubles::{Doubles, load_doubles, store_rounded, store_where, widen};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub use wide::{f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8};
 
@@ -86,6 +86,25 @@ pub trait Lanes:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// True in lane `i` if bit `i` is set.
     fn lanes(bits: u32) -> Self::Mask;
+    /// The first `WIDTH` values of a column of double precision, rounded to the nearest.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[inline(always)]
+    fn load_rounded(column: &[f64]) -> Self {
+        let mut row = [0.0; MAX_LANES];
+        for (lane, &x) in row.iter_mut().zip(&column[..Self::WIDTH]) {
+            *lane = x as f32;
+        }
+        Self::load(&row)
+    }
+    /// Lanes `first..first + 8` in double precision; 0 for those that there are not.
+    #[inline(always)]
+    fn doubles(self, first: usize) -> F64x8 {
+        let mut row = [0.0; MAX_LANES];
+        self.store(&mut row);
+        load_doubles(&row[first..])
+    }
 }
 
 impl Mask for bool {
@@ -282,6 +301,29 @@ macro_rules! impl_lanes {
 }
 
 impl_lanes! { f32x4, i32x4: 4, f32x8, i32x8: 8, f32x16, i32x16: 16 }
+
+/// A number that is no float, in every lane.
+#[inline(always)]
+pub fn bits<L: Lanes>(number: u32) -> L {
+    L::splat(f32::from_bits(number))
+}
+
+/// The first `L::WIDTH` numbers of a column that are no floats.
+///
+/// # Panics
+/// If there are fewer.
+#[inline(always)]
+pub fn bits_of<L: Lanes>(column: &[u32]) -> L {
+    L::load(bytemuck::cast_slice(column))
+}
+
+/// The numbers that are no floats of a row, in the first `L::WIDTH` places.
+#[inline(always)]
+pub fn numbers<L: Lanes>(row: L) -> [u32; MAX_LANES] {
+    let mut lanes = [0.0; MAX_LANES];
+    row.store(&mut lanes);
+    bytemuck::cast(lanes)
+}
 
 /// The indices of the set bits, lowest first.
 #[inline(always)]

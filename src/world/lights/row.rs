@@ -3,7 +3,7 @@
 
 use super::{Aim, Disc, LightSample};
 use crate::intersect::{self, Pairs};
-use crate::lanes::{F32x16, F64x8, set_bits, widen};
+use crate::lanes::{F32x16, F64x8, Mask, set_bits, widen};
 use crate::ray::{ExactRay, MISS};
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
@@ -113,7 +113,7 @@ impl Disc {
             });
             t.copy_from_slice(&near.to_array());
             let samples = (1_u32 << (count - 8 * half).min(8)) - 1;
-            for lane in set_bits(!plain & samples) {
+            for lane in set_bits(!plain.bits() & samples) {
                 t[lane] = self.distance(direction.map(|c| c.to_array()[8 * half + lane]).into());
             }
         }
