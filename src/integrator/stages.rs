@@ -4,7 +4,7 @@ use super::Job;
 use super::clock::Stage;
 use super::workspace::{Arrival, Workspace};
 use crate::film::{Tile, View};
-use crate::lanes::{F64x8, Lanes, load_doubles};
+use crate::lanes::{F64x8, Lanes, MAX_LANES, load_doubles};
 use crate::ray::{ExactRay, GROUND, MISS};
 use crate::sampling;
 use crate::shade::{Bsdf, dielectric};
@@ -17,13 +17,12 @@ use std::ops::Range;
 /// neighbors in the picture: packets are square.
 pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspace) {
     let mut count = 0;
-    for pixel in tile.pixels() {
-        for index in samples.clone() {
-            work.paths.sample[count] = job.sampler.start(pixel.0, pixel.1, index);
-            (work.rays.origin.x[count], work.rays.origin.y[count]) =
-                (pixel.0 as f32, pixel.1 as f32);
-            count += 1;
-        }
+    for (x, y) in tile.pixels() {
+        let rows = count..count + samples.len();
+        job.sampler.start_all(x, y, samples.start, &mut work.paths.sample[rows.clone()]);
+        work.rays.origin.x[rows.clone()].fill(x as f32);
+        work.rays.origin.y[rows.clone()].fill(y as f32);
+        count = rows.end;
     }
     work.begin(count);
     draw_places(job, work);
@@ -40,12 +39,18 @@ pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspac
 fn draw_places(job: &Job, work: &mut Workspace) {
     let count = work.len();
     let (origin, direction) = (&mut work.rays.origin, &mut work.rays.direction);
-    for (path, sample) in work.paths.sample[..count].iter().enumerate() {
-        let [dx, dy] = job.filter.offset(job.sampler.pixel(sample));
-        (direction.x[path], direction.y[path]) = (dx, dy);
+    for (i, row) in
+        work.paths.sample.as_chunks().0.iter().enumerate().take(count.div_ceil(MAX_LANES))
+    {
+        let first = i * MAX_LANES;
+        let [dx, dy] = job.filter.offset_row(job.sampler.pixel_row(row));
+        dx.store(&mut direction.x[first..]);
+        dy.store(&mut direction.y[first..]);
         if job.world.features.lens {
-            let place = sampling::concentric_disk(job.sampler.lens(sample));
-            (origin.z[path], direction.z[path]) = place.into();
+            for (path, sample) in (first..).zip(row) {
+                let place = sampling::concentric_disk(job.sampler.lens(sample));
+                (origin.z[path], direction.z[path]) = place.into();
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
-//! What moves values from lane to lane.
+//! What moves values from lane to lane, and bits from place to place.
 
-use super::{F32x4, F32x8, Lanes};
+use super::{F32x4, F32x8, Lanes, U32x16};
 
 /// In lane `i` the greatest lane of `row[i]`; anything in the last.
 #[inline(always)]
@@ -26,9 +26,39 @@ pub fn shuffle(row: F32x8, order: u32) -> F32x8 {
     bytemuck::cast(shuffle_numbers(&row, order))
 }
 
+/// In each lane the number of `table` at the place that the last four bits of `places` tell.
+#[inline(always)]
+pub fn look_up(table: U32x16, places: U32x16) -> U32x16 {
+    table.shuffle_wrapping(places)
+}
+
+/// The bits of each lane from last to first.
+#[inline(always)]
+pub fn reverse_bits(row: U32x16) -> U32x16 {
+    let swap = |row: U32x16, width: u32, mask: u32| {
+        let mask = U32x16::splat(mask);
+        (row >> width & mask) | (row & mask) << width
+    };
+    let row = swap(row, 1, 0x5555_5555);
+    let row = swap(row, 2, 0x3333_3333);
+    let row = swap(row, 4, 0x0f0f_0f0f);
+    let row = swap(row, 8, 0x00ff_00ff);
+    row >> 16 | row << 16
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bits_are_reversed_and_places_wrap() {
+        let row: [u32; 16] = std::array::from_fn(|i| 0x9e37_79b9_u32.wrapping_mul(i as u32));
+        let reversed = reverse_bits(U32x16::new(row)).to_array();
+        assert_eq!(reversed, row.map(u32::reverse_bits));
+        let places: [u32; 16] = std::array::from_fn(|i| 16 * i as u32 + 15 - i as u32);
+        let found = look_up(U32x16::new(row), U32x16::new(places)).to_array();
+        assert_eq!(found, std::array::from_fn(|i| row[15 - i]));
+    }
 
     #[test]
     fn orders_are_read_by_nibbles() {

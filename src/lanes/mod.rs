@@ -12,10 +12,12 @@
 mod across;
 mod doubles;
 
-pub use across::{greatest_of, shuffle, shuffle_numbers};
+pub use across::{greatest_of, look_up, reverse_bits, shuffle, shuffle_numbers};
 pub use doubles::{Doubles, load_doubles, store_rounded, store_where, widen};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
-pub use wide::{f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8};
+pub use wide::{
+    f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8, u32x16 as U32x16,
+};
 
 /// The widest packet there is; columns of rays are padded to a multiple of it.
 pub const MAX_LANES: usize = 16;

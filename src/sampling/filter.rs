@@ -5,6 +5,7 @@
 //! Sampling", RT 2006. The filters are products of one profile per axis and never negative.
 
 use super::warp::centered;
+use crate::lanes::F32x16;
 use crate::scene::Filter;
 use std::f64::consts::FRAC_PI_2;
 
@@ -48,6 +49,15 @@ impl PixelFilter {
         match &self.places {
             None => [u - 0.5, v - 0.5],
             Some(places) => [place(places, u), place(places, v)],
+        }
+    }
+
+    /// [`PixelFilter::offset`] for a row of numbers.
+    #[inline(always)]
+    pub fn offset_row(&self, row: [F32x16; 2]) -> [F32x16; 2] {
+        match &self.places {
+            None => row.map(|u| u - F32x16::splat(0.5)),
+            Some(places) => row.map(|u| F32x16::new(u.to_array().map(|u| place(places, u)))),
         }
     }
 

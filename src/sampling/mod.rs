@@ -28,6 +28,7 @@ mod filter;
 mod frame;
 mod hash;
 mod plan;
+mod rows;
 mod sampler;
 mod sobol;
 #[cfg(test)]
@@ -42,6 +43,7 @@ pub use filter::PixelFilter;
 pub use frame::Frame;
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
 pub use plan::{LightDraw, ScatterDraw};
+pub use rows::PathRow;
 pub use sampler::{PathState, Sampler, Split};
 pub use warp::{
     UNIFORM_SPHERE_PDF, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,

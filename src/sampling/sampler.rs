@@ -29,11 +29,12 @@ const BEYOND: u64 = 0xd134_2543_de82_ef95;
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     seed: u64,
-    points: Points,
+    pub(super) points: Points,
 }
 
+/// Where the numbers come from.
 #[derive(Clone, Copy, Debug)]
-enum Points {
+pub(super) enum Points {
     Sobol(Sobol),
     Stratified(Strata),
     Independent,
@@ -43,11 +44,11 @@ enum Points {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathState {
     /// Hash of seed, pixel and, by the kind, the samples that share one set of points.
-    key: u64,
+    pub(super) key: u64,
     /// The path's place among the samples that share `key`.
-    index: u32,
+    pub(super) index: u32,
     /// The same place in the Sobol sequence of `key`.
-    shuffled: Shuffled,
+    pub(super) shuffled: Shuffled,
 }
 
 impl Sampler {

@@ -6,6 +6,7 @@
 //! shuffled once per path, is looked up by nibbles: the same sum of direction vectors, without a
 //! branch.
 
+use crate::lanes::{F32x16, MAX_LANES, U32x16, look_up, reverse_bits};
 use sobol_burley::NUM_DIMENSION_SETS_4D;
 use sobol_burley::parts::{Int4, hash, hash_int4};
 use sobol_burley::parts::{owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
@@ -18,23 +19,30 @@ const INDEX_BITS: u32 = 16;
 /// For each nibble of the index, from its last bits on, the sum of its direction vectors by value.
 type Nibbles = [[Int4; 16]; 4];
 
+/// The same for a row of paths: by dimension and nibble, each a table to look up in.
+type RowNibbles = [[U32x16; 4]; 4];
+
 static TABLE: LazyLock<Vec<Nibbles>> =
     LazyLock::new(|| (0..NUM_DIMENSION_SETS_4D).map(tabulate).collect());
 
-/// Sums of direction vectors for every set of dimensions: 64 KiB, of which a path uses 1 KiB per
-/// set.
+static ROW_TABLE: LazyLock<Vec<RowNibbles>> =
+    LazyLock::new(|| TABLE.iter().map(by_dimension).collect());
+
+/// Sums of direction vectors for every set of dimensions: 64 KiB for paths one by one and as much for
+/// rows of them, of which a path uses 1 KiB per set.
 #[derive(Clone, Copy)]
 pub(super) struct Sobol {
     sets: &'static [Nibbles],
+    row_sets: &'static [RowNibbles],
 }
 
 /// The place of a point in a scrambled sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shuffled(u32);
+pub(super) struct Shuffled(pub(super) u32);
 
 impl Sobol {
     pub(super) fn new() -> Self {
-        Self { sets: &TABLE }
+        Self { sets: &TABLE, row_sets: &ROW_TABLE }
     }
 
     /// Four numbers in [0, 1), multiples of 2^-23, of the sequence that belongs to `seed`; `None`
@@ -42,6 +50,12 @@ impl Sobol {
     #[inline]
     pub(super) fn draw4(&self, place: Shuffled, set: u32, seed: u32) -> Option<[f32; 4]> {
         self.sets.get(set as usize).map(|nibbles| scrambled(nibbles, place, set, seed))
+    }
+
+    /// [`Sobol::draw4`] for a row of places, each with its seed.
+    #[inline(always)]
+    pub(super) fn draw4_row(&self, places: U32x16, set: u32, seeds: U32x16) -> Option<[F32x16; 4]> {
+        self.row_sets.get(set as usize).map(|nibbles| scrambled_row(nibbles, places, set, seeds))
     }
 
     /// The first two dimensions of the sequence that belongs to `seed`, at an index below 2^16.
@@ -58,9 +72,54 @@ fn scrambled(nibbles: &Nibbles, place: Shuffled, set: u32, seed: u32) -> [f32; 4
     for (i, table) in nibbles.iter().enumerate() {
         sum ^= table[(place.0 >> (4 * i) & 15) as usize];
     }
-    let mut scramble = Int4::from([0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8]);
+    let mut scramble = Int4::from(DIMENSIONS);
     scramble ^= [seed.wrapping_mul(0x9c8f_2d3b) ^ set; 4].into();
     owen_scramble_int4_rev(sum, hash_int4(scramble)).reverse_bits().to_f32_norm()
+}
+
+/// Burley's constants, which set the four dimensions of a set apart.
+const DIMENSIONS: [u32; 4] = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8];
+
+#[inline(always)]
+fn scrambled_row(nibbles: &RowNibbles, places: U32x16, set: u32, seeds: U32x16) -> [F32x16; 4] {
+    let seeds = (seeds * U32x16::splat(0x9c8f_2d3b)) ^ U32x16::splat(set);
+    std::array::from_fn(|dimension| {
+        let [a, b, c, d] = nibbles[dimension];
+        let sum = look_up(a, places)
+            ^ look_up(b, places >> 4)
+            ^ look_up(c, places >> 8)
+            ^ look_up(d, places >> 12);
+        let scramble = hash_row(seeds ^ U32x16::splat(DIMENSIONS[dimension]));
+        norm_row(reverse_bits(owen_scramble_row(sum, scramble)))
+    })
+}
+
+/// [`hash`] for a row.
+#[inline(always)]
+fn hash_row(mut n: U32x16) -> U32x16 {
+    n ^= U32x16::splat(0xe6fe_3beb);
+    n ^= n >> 16;
+    n *= U32x16::splat(0x7feb_352d);
+    n ^= n >> 15;
+    n *= U32x16::splat(0x846c_a68b);
+    n ^ n >> 16
+}
+
+/// [`owen_scramble_rev`] for a row.
+#[inline(always)]
+fn owen_scramble_row(mut n: U32x16, scramble: U32x16) -> U32x16 {
+    n ^= n * U32x16::splat(0x3d20_adea);
+    n += scramble;
+    n *= scramble >> 16 | U32x16::splat(1);
+    n ^= n * U32x16::splat(0x0552_6c56);
+    n ^ n * U32x16::splat(0x53a2_2864)
+}
+
+/// The upper 23 bits as numbers in [0, 1), as [`Int4::to_f32_norm`].
+#[inline(always)]
+fn norm_row(bits: U32x16) -> F32x16 {
+    let from_one: F32x16 = bytemuck::cast(bits >> 9 | U32x16::splat(1.0_f32.to_bits()));
+    from_one - F32x16::splat(1.0)
 }
 
 impl fmt::Debug for Sobol {
@@ -76,6 +135,15 @@ pub(super) fn shuffle(index: u32, seed: u32) -> Shuffled {
     Shuffled(owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a)) >> INDEX_BITS)
 }
 
+/// [`shuffle`] for the indices from `first` on, which lie in one block.
+#[inline(always)]
+pub(super) fn shuffle_from(first: u32, seed: u32) -> [Shuffled; MAX_LANES] {
+    let indices = U32x16::new(std::array::from_fn(|i| first + i as u32));
+    let scramble = U32x16::splat(hash(seed ^ 0x79c6_8e4a));
+    let shuffled = owen_scramble_row(reverse_bits(indices), scramble) >> INDEX_BITS;
+    shuffled.to_array().map(Shuffled)
+}
+
 /// Splits a position into the block of 2^16 points in which it lies, and its index there.
 #[inline]
 pub(super) fn block(position: u64) -> (u64, u32) {
@@ -87,6 +155,12 @@ fn tabulate(set: u32) -> Nibbles {
         std::array::from_fn(|value| {
             sobol_int4_rev((value as u32) << (INDEX_BITS as usize + 4 * nibble), set)
         })
+    })
+}
+
+fn by_dimension(nibbles: &Nibbles) -> RowNibbles {
+    std::array::from_fn(|dimension| {
+        nibbles.map(|table| U32x16::new(table.map(|sums| <[u32; 4]>::from(sums)[dimension])))
     })
 }
 
@@ -109,8 +183,29 @@ mod tests {
     }
 
     #[test]
+    fn rows_are_what_their_lanes_are() {
+        let sobol = Sobol::new();
+        for (row, set) in [0, 1, 2, 30, NUM_DIMENSION_SETS_4D - 1].into_iter().enumerate() {
+            let seeds: [u32; MAX_LANES] =
+                std::array::from_fn(|lane| hash((MAX_LANES * row + lane) as u32));
+            let places = seeds.map(|seed| shuffle(seed >> INDEX_BITS, seed));
+            let lanes = U32x16::new(places.map(|place| place.0));
+            let rows = sobol
+                .draw4_row(lanes, set, U32x16::new(seeds))
+                .map(|row| row.map(|x| x.to_array()));
+            for lane in 0..MAX_LANES {
+                let one = sobol.draw4(places[lane], set, seeds[lane]);
+                assert_eq!(rows.map(|rows| rows.map(|row| row[lane])), one);
+            }
+        }
+        assert_eq!(shuffle_from(65_520, 7), std::array::from_fn(|i| shuffle(65_520 + i as u32, 7)));
+    }
+
+    #[test]
     fn dimensions_end() {
-        assert_eq!(Sobol::new().draw4(shuffle(0, 0), NUM_DIMENSION_SETS_4D, 0), None);
+        let (sobol, zero) = (Sobol::new(), U32x16::splat(0));
+        assert_eq!(sobol.draw4(shuffle(0, 0), NUM_DIMENSION_SETS_4D, 0), None);
+        assert!(sobol.draw4_row(zero, NUM_DIMENSION_SETS_4D, zero).is_none());
     }
 
     #[test]
