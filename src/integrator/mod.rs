@@ -6,6 +6,7 @@
 
 pub mod ao;
 pub mod clock;
+mod diffuse;
 pub mod path;
 pub mod shadows;
 pub mod stages;

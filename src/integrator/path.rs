@@ -9,8 +9,10 @@
 
 use super::Job;
 use super::clock::Stage;
+use super::diffuse;
 use super::stages::{self, Local, ShadeKind};
 use super::workspace::{Arrival, Workspace, chord};
+use crate::lanes::MAX_LANES;
 use crate::ray::GROUND;
 use crate::scene::{Rgb, Roulette};
 use crate::shade::Bsdf;
@@ -106,15 +108,21 @@ struct Shade<'a> {
 impl ShadeKind for Shade<'_> {
     fn shade<B: Bsdf>(&mut self, work: &mut Workspace, kind: Kind, bsdf: impl Fn(MaterialId) -> B) {
         let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
-        for &row in &rows {
+        let lights = self.job.world.features.lights;
+        for &row in rows.iter().filter(|_| lights || !B::DIFFUSE) {
             let row = row as usize;
             let hit = work.hits.sphere[row];
             let bsdf = bsdf(self.job.world.material(hit)).tinted(self.job.world.color(hit));
             let local = Local::new(work, row);
-            if self.job.world.features.lights && !bsdf.is_delta() {
+            if lights && !bsdf.is_delta() {
                 self.look_for_light(work, row, &bsdf, &local);
             }
-            self.go_on(work, row, &bsdf, &local);
+            if !B::DIFFUSE {
+                self.go_on(work, row, &bsdf, &local);
+            }
+        }
+        for rows in rows.chunks(MAX_LANES).filter(|_| B::DIFFUSE) {
+            diffuse::go_on(self.job, work, self.bounce, (rows, &bsdf));
         }
         work.bins.kind[kind as usize] = rows;
     }
@@ -160,9 +168,8 @@ impl Shade<'_> {
             return work.end(row);
         }
         let unscattered = work.paths.arrival[place].unscattered && scatter.pdf.is_none();
-        let diffuse = B::DIFFUSE && scatter.pdf.is_some();
         work.paths.throughput[place] = throughput / survival;
-        work.paths.arrival[place] = Arrival { pdf: scatter.pdf, diffuse, unscattered };
+        work.paths.arrival[place] = Arrival { pdf: scatter.pdf, diffuse: false, unscattered };
         let direction = local.to_world(scatter.incoming);
         work.go_on(self.job.world, row, direction, local.inside);
     }

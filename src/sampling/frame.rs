@@ -22,15 +22,8 @@ impl Frame {
     /// Revisited", JCGT 2017.
     #[inline]
     pub fn new(normal: Vec3) -> Self {
-        let Vec3 { x, y, z } = normal;
-        let sign = 1.0_f32.copysign(z);
-        let a = -1.0 / (sign + z);
-        let b = x * y * a;
-        Self {
-            tangent: Vec3::new(1.0 + sign * x * x * a, sign * b, -sign * x),
-            bitangent: Vec3::new(b, sign + y * y * a, -y),
-            normal,
-        }
+        let [tangent, bitangent] = across::<f32>(normal.into());
+        Self { tangent: tangent.into(), bitangent: bitangent.into(), normal }
     }
 
     /// A local direction in world axes.
@@ -64,6 +57,27 @@ impl Frame {
         let splat = |axis: Vec3| vec3::Vec3::splat(axis.x, axis.y, axis.z);
         [splat(self.tangent), splat(self.bitangent), splat(self.normal)]
     }
+}
+
+/// Tangents and bitangents of a row of unit normals, as [`Frame::new`].
+#[inline(always)]
+fn across<L: Lanes>(normal: vec3::Vec3<L>) -> [vec3::Vec3<L>; 2] {
+    let vec3::Vec3 { x, y, z } = normal;
+    let one = L::splat(1.0);
+    let sign = L::select(z.is_negative(), -one, one);
+    let a = -one / (sign + z);
+    let b = x * y * a;
+    [
+        vec3::Vec3::new(one + sign * x * x * a, sign * b, -sign * x),
+        vec3::Vec3::new(b, sign + y * y * a, -y),
+    ]
+}
+
+/// [`Frame::to_world`] for a row of directions, each about a normal of its own.
+#[inline(always)]
+pub fn to_world_about<L: Lanes>(normal: vec3::Vec3<L>, local: vec3::Vec3<L>) -> vec3::Vec3<L> {
+    let [tangent, bitangent] = across(normal);
+    (normal * local.z).along(bitangent, local.y).along(tangent, local.x)
 }
 
 #[cfg(test)]

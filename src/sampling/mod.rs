@@ -40,10 +40,10 @@ pub use cone::Cone;
 pub use distribution::{Choice, Distribution};
 pub use distribution2d::Distribution2d;
 pub use filter::PixelFilter;
-pub use frame::Frame;
+pub use frame::{Frame, to_world_about};
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
 pub use plan::{LightDraw, ScatterDraw};
-pub use rows::PathRow;
+pub use rows::{PathRow, ScatterRow};
 pub use sampler::{PathState, Sampler, Split};
 pub use warp::{
     UNIFORM_SPHERE_PDF, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,

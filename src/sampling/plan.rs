@@ -24,6 +24,18 @@ pub struct LightDraw {
     pub light: f32,
 }
 
+/// The set that holds the direction of scattering number `bounce`.
+#[inline(always)]
+pub(super) fn directions(bounce: u32) -> u32 {
+    if bounce == 0 { 0 } else { choices(bounce) }
+}
+
+/// The set that holds lobe and roulette of scattering number `bounce`.
+#[inline(always)]
+pub(super) fn choices(bounce: u32) -> u32 {
+    1 + 2 * bounce
+}
+
 impl Sampler {
     /// The camera ray's place in the picture, for
     /// [`PixelFilter::offset`](super::PixelFilter::offset); in [0, 1).
@@ -43,12 +55,13 @@ impl Sampler {
     /// The numbers of scattering number `bounce`, from 0 at the first hit.
     #[inline]
     pub fn scatter(&self, path: &PathState, bounce: u32) -> ScatterDraw {
-        let ([u, v, ..], [_, _, lobe, roulette]) = if bounce == 0 {
-            (self.draw4(path, 0), self.draw4(path, 1))
+        let first = self.draw4(path, directions(bounce));
+        let second = if choices(bounce) == directions(bounce) {
+            first
         } else {
-            let draw = self.draw4(path, 1 + 2 * bounce);
-            (draw, draw)
+            self.draw4(path, choices(bounce))
         };
+        let ([u, v, ..], [_, _, lobe, roulette]) = (first, second);
         ScatterDraw { direction: [u, v], lobe, roulette }
     }
 

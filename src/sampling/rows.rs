@@ -1,11 +1,21 @@
 //! The numbers of sixteen paths at once.
 
+use super::plan::{choices, directions};
 use super::sampler::{PathState, Points, Sampler};
 use super::sobol::{block, shuffle_from};
 use crate::lanes::{F32x16, MAX_LANES, U32x16};
 
 /// Paths that draw together.
 pub type PathRow = [PathState; MAX_LANES];
+
+/// The numbers of one scattering of each path; all in [0, 1).
+#[derive(Clone, Copy, Debug)]
+pub struct ScatterRow {
+    /// The new directions.
+    pub direction: [F32x16; 2],
+    /// Whether the paths go on.
+    pub roulette: F32x16,
+}
 
 impl Sampler {
     /// The states of the paths of a pixel's samples from `first` on: [`Sampler::start`] for each.
@@ -36,6 +46,19 @@ impl Sampler {
     pub fn pixel_row(&self, paths: &PathRow) -> [F32x16; 2] {
         let [_, _, x, y] = self.draw4_row(paths, 0);
         [x, y]
+    }
+
+    /// [`Sampler::scatter`] for each, at a surface of a single lobe. Numbers of Russian roulette are 0
+    /// unless they are asked for.
+    #[inline(always)]
+    pub fn scatter_row(&self, paths: &PathRow, bounce: u32, roulette: bool) -> ScatterRow {
+        let [u, v, _, number] = self.draw4_row(paths, directions(bounce));
+        let roulette = match (roulette, choices(bounce)) {
+            (false, _) => F32x16::splat(0.0),
+            (true, set) if set == directions(bounce) => number,
+            (true, set) => self.draw4_row(paths, set)[3],
+        };
+        ScatterRow { direction: [u, v], roulette }
     }
 
     /// [`Sampler::draw4`] for each.
@@ -78,6 +101,12 @@ mod tests {
                     for (lane, path) in row.iter().enumerate() {
                         assert_eq!(rows.map(|x| x[lane]), sampler.draw4(path, set), "{kind:?}");
                     }
+                }
+                for bounce in [0, 1, 2, 7] {
+                    let rows = sampler.scatter_row(row, bounce, true);
+                    let one = sampler.scatter(&row[5], bounce);
+                    assert_eq!(rows.direction.map(|x| x.to_array()[5]), one.direction);
+                    assert_eq!(rows.roulette.to_array()[5], one.roulette);
                 }
                 let [x, y] = sampler.pixel_row(row).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.pixel(&row[3]));

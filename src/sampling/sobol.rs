@@ -112,7 +112,7 @@ fn owen_scramble_row(mut n: U32x16, scramble: U32x16) -> U32x16 {
     n += scramble;
     n *= scramble >> 16 | U32x16::splat(1);
     n ^= n * U32x16::splat(0x0552_6c56);
-    n ^ n * U32x16::splat(0x53a2_2864)
+    n ^ (n * U32x16::splat(0x53a2_2864))
 }
 
 /// The upper 23 bits as numbers in [0, 1), as [`Int4::to_f32_norm`].

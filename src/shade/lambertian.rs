@@ -14,6 +14,10 @@ impl Bsdf for Lambertian {
         Self { color: self.color * color }
     }
 
+    fn albedo(&self) -> Rgb {
+        self.color
+    }
+
     fn is_delta(&self) -> bool {
         self.color == Rgb::ZERO
     }

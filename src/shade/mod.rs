@@ -20,6 +20,12 @@ pub trait Bsdf: Copy {
     /// Whether it is so even that light is best looked for at the lights alone.
     const DIFFUSE: bool;
 
+    /// The albedo of a surface that is [`Bsdf::DIFFUSE`], all that there is to know of it; black for
+    /// others.
+    fn albedo(&self) -> Rgb {
+        Rgb::ZERO
+    }
+
     /// The same, with the sphere's color as a factor.
     #[must_use]
     fn tinted(self, color: Rgb) -> Self;
