@@ -98,6 +98,7 @@ pub mod integrator;
 pub mod shade;
 
 pub mod film;
+pub mod layers;
 pub mod render;
 
 pub mod atomic;

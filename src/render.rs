@@ -138,12 +138,12 @@ fn in_world_units(world: &World, settings: &Settings) -> Settings {
 }
 
 /// The samples of each pass.
-fn passes(spp: u32) -> impl Iterator<Item = Range<u32>> {
+pub(crate) fn passes(spp: u32) -> impl Iterator<Item = Range<u32>> {
     (0..spp).step_by(PASS as usize).map(move |first| first..spp.min(first + PASS))
 }
 
 /// What camera rays of a tile may hit.
-fn view(job: &Job, tile: &Tile) -> View {
+pub(crate) fn view(job: &Job, tile: &Tile) -> View {
     let world = job.world;
     let reach = f64::from(job.filter.radius()) - 0.5;
     let Region { x, y, width, height } = tile.region;

@@ -1,18 +1,22 @@
 //! The command line as typed.
 
-use super::names::{BITS, Builder, FILTERS, INTEGRATORS, LANES, PPM, SAMPLERS, TONES, Traversal};
+use super::examples;
+use super::names::{
+    BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, PPM, SAMPLERS, TONES, Traversal,
+};
 use super::stress;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
 use spherule::image::{Depth, PpmEncoding};
+use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, Roulette, SamplerKind, Tone};
 use spherule::trace::Width;
 use std::path::PathBuf;
 
 /// Renders scenes made of spheres: exact visibility, and the same picture at every speed setting
 #[derive(Debug, Parser)]
-#[command(name = "spherule", version, after_help = PROGRAM_EXAMPLES)]
+#[command(name = "spherule", version, after_help = examples::PROGRAM)]
 pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
@@ -21,22 +25,22 @@ pub(super) struct Args {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Render a scene or a particle file to a picture (the default command)
-    #[command(allow_negative_numbers = true, after_help = RENDER_EXAMPLES)]
+    #[command(allow_negative_numbers = true, after_help = examples::RENDER)]
     Render(Box<RenderArgs>),
     /// Write a generated scene: a TOML file, and its spheres in a CSV file beside it
-    #[command(allow_negative_numbers = true, after_help = FIELD_EXAMPLES)]
+    #[command(allow_negative_numbers = true, after_help = examples::FIELD)]
     Field(FieldArgs),
     /// Say what is in a scene, and what a render of it will do without
-    #[command(after_help = INFO_EXAMPLES)]
+    #[command(after_help = examples::INFO)]
     Info(InfoArgs),
     /// Measure how far a picture is from a reference
-    #[command(after_help = COMPARE_EXAMPLES)]
+    #[command(after_help = examples::COMPARE)]
     Compare(CompareArgs),
     /// Count wrong decisions of this program, and of usual forms, where rounding is at its worst
     #[command(after_help = stress::EXAMPLES)]
     Stress(stress::Args),
     /// Print a completion script for a shell
-    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    #[command(after_help = examples::COMPLETIONS)]
     Completions(CompletionsArgs),
 }
 
@@ -113,6 +117,9 @@ pub(super) struct EncodingArgs {
     /// Dialect of PPM [default: binary]
     #[arg(long, value_parser = PPM.parser())]
     pub(super) ppm: Option<PpmEncoding>,
+    /// More channels in an EXR file, for denoisers and compositors; several with commas
+    #[arg(long, value_name = "LAYERS", value_delimiter = ',', value_parser = LAYERS.parser())]
+    pub(super) layers: Vec<Option<Layer>>,
 }
 
 /// What never changes the picture.
@@ -256,46 +263,3 @@ impl Args {
         Self::parse().command.unwrap_or_else(usual)
     }
 }
-
-const PROGRAM_EXAMPLES: &str = "\
-Examples:
-  spherule                                   a random field of spheres, to spherule.png
-  spherule render scenes/weekend.toml -o weekend.png
-  spherule info scenes/weekend.toml
-
-Exit codes: 0 done, 1 failed, 2 command line not understood, 130 interrupted";
-
-const RENDER_EXAMPLES: &str = "\
-Examples:
-  spherule render                            a random field of spheres, to spherule.png
-  spherule render scene.toml -o picture.exr --size 1920x1080 --spp 256
-  spherule render particles.xyz -o figure.png --integrator ao
-  spherule render scene.toml --region 100,50,64x64 -o detail.png
-  spherule render scene.toml --json --quiet > statistics.json
-
-Ctrl-C saves the picture so far and exits with code 130.";
-
-const FIELD_EXAMPLES: &str = "\
-Examples:
-  spherule field -o field.toml               the scene of `spherule render`
-  spherule field --count 500 --mix 1,0,0 --seed 7 -o large.toml
-  spherule field grid --count 50 --radius 0.3 -o grid.toml
-  spherule field lattice --jitter 0.03 -o crystal.toml";
-
-const INFO_EXAMPLES: &str = "\
-Examples:
-  spherule info scene.toml
-  spherule info particles.csv --json";
-
-const COMPARE_EXAMPLES: &str = "\
-Differences are in linear radiance. Exit code 0 says that the pictures could be compared, not that
-they are equal.
-
-Examples:
-  spherule compare picture.exr reference.exr
-  spherule compare a.png b.png --json";
-
-const COMPLETIONS_EXAMPLES: &str = "\
-Examples:
-  spherule completions bash > ~/.local/share/bash-completion/completions/spherule
-  spherule completions zsh > ~/.zfunc/_spherule";

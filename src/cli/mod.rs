@@ -5,6 +5,7 @@ mod args;
 mod compare;
 mod completions;
 mod contents;
+mod examples;
 mod failure;
 mod field;
 mod field_scene;

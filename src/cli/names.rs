@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule::image::{Depth, PpmEncoding};
+use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, SamplerKind, Tone};
 use spherule::stress::{REGIMES, Regime};
 use spherule::trace::Width;
@@ -71,6 +72,21 @@ pub(super) const BITS: Names<Depth> =
 pub(super) const PPM: Names<PpmEncoding> = Names(&[
     ("plain", PpmEncoding::Plain, "P3: numbers as text"),
     ("binary", PpmEncoding::Binary, "P6: bytes"),
+]);
+
+/// Layers of the picture's file; none is all of them.
+pub(super) const LAYERS: Names<Option<Layer>> = Names(&[
+    ("albedo", Some(Layer::Albedo), "albedo.R G B: the surface's color, black beside it"),
+    ("normal", Some(Layer::Normal), "normal.X Y Z: toward the viewer, in the scene's axes"),
+    ("depth", Some(Layer::Depth), "depth.Z: distance from the camera; inf where nothing is"),
+    ("coverage", Some(Layer::Coverage), "coverage.Y: share of the pixel that is not sky"),
+    (
+        "id",
+        Some(Layer::Id),
+        "id.Y, integers: which sphere the pixel's center sees, from 0; 4294967295 for none, \
+         4294967294 for the ground",
+    ),
+    ("all", None, "All of these"),
 ]);
 
 /// Rays in a packet.

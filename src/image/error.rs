@@ -63,6 +63,22 @@ pub enum ImageError {
         /// What the encoder said.
         reason: String,
     },
+    /// Only EXR files hold more channels than colors.
+    #[error("cannot write layers to {path:?}: {format} has no room for them; end the name in .exr")]
+    Layers {
+        /// The destination.
+        path: PathBuf,
+        /// The format its suffix asks for.
+        format: Format,
+    },
+    /// A channel that no file can hold.
+    #[error("the channel {name:?} cannot be written: {reason}")]
+    Channel {
+        /// The channel's name.
+        name: String,
+        /// What is wrong, and what would be right.
+        reason: String,
+    },
     /// The number of pixels is not the product of width and height, or it is 0.
     #[error(
         "a picture of {width} x {height} cannot have {count} pixels; give width * height of them, \

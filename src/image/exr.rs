@@ -5,7 +5,7 @@
 //! equal files.
 
 use super::{
-    Image, Metadata,
+    Channel, Image, Metadata, Values,
     format::{claimed_area, damaged},
 };
 use ::exr::{
@@ -15,8 +15,8 @@ use ::exr::{
         header::{Header, LayerAttributes},
     },
     prelude::{
-        Encoding, Image as ExrImage, Layer, ReadChannels, ReadLayers, ReadSpecificChannel,
-        SpecificChannels, Vec2, WritableImage, read,
+        AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, ReadChannels,
+        ReadLayers, ReadSpecificChannel, SpecificChannels, Vec2, WritableImage, read,
     },
 };
 use std::io::Cursor;
@@ -119,29 +119,46 @@ pub(super) fn metadata(bytes: &[u8]) -> Result<Metadata, String> {
     Ok(Metadata::from_lines(text.lines()))
 }
 
-/// Encodes a picture as channels `R`, `G`, `B` of 32-bit floats.
-pub(super) fn encode(image: &Image, metadata: &Metadata) -> Result<Vec<u8>, String> {
-    let size = Vec2(image.width as usize, image.height as usize);
-    let channels = SpecificChannels::rgb(|Vec2(x, y)| {
-        let [red, green, blue] = image.pixels[y * size.width() + x];
-        (red, green, blue)
-    });
+/// Encodes a picture as channels `R`, `G`, `B` of 32-bit floats, and others beside them.
+pub(super) fn encode(
+    image: &Image,
+    channels: &[Channel],
+    metadata: &Metadata,
+) -> Result<Vec<u8>, String> {
+    let color = |(i, name)| {
+        let values = image.pixels.iter().map(|pixel| pixel[i]).collect();
+        AnyChannel::new(name, FlatSamples::F32(values))
+    };
+    let colors = ["R", "G", "B"].into_iter().enumerate().map(color);
+    let all = colors.map(Ok).chain(channels.iter().map(flat)).collect::<Result<_, String>>()?;
     let comments = metadata.to_lines("");
     let attributes = LayerAttributes {
         comments: (!metadata.is_empty()).then(|| Text::from_slice_unchecked(comments.as_bytes())),
         ..LayerAttributes::default()
     };
-    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
+    let size = Vec2(image.width as usize, image.height as usize);
+    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(all));
     let mut bytes = Cursor::new(Vec::new());
     ExrImage::from_layer(layer).write().to_buffered(&mut bytes).map_err(|e| e.to_string())?;
     Ok(bytes.into_inner())
+}
+
+/// A channel as the encoder wants it.
+fn flat(channel: &Channel) -> Result<AnyChannel<FlatSamples>, String> {
+    let name = Text::new_or_none(&channel.name)
+        .ok_or_else(|| format!("the channel {:?} has no valid name", channel.name))?;
+    let samples = match &channel.values {
+        Values::Floats(values) => FlatSamples::F32(values.clone()),
+        Values::Integers(values) => FlatSamples::U32(values.clone()),
+    };
+    Ok(AnyChannel::new(name, samples))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::image::tests::ramp;
-    use ::exr::prelude::{AnyChannel, AnyChannels, FlatSamples, SmallVec, f16};
+    use ::exr::prelude::{SmallVec, f16};
 
     /// A file with channels of any name and kind, written by the crate alone.
     fn file(size: (usize, usize), channels: Vec<(&str, FlatSamples)>) -> Vec<u8> {
@@ -158,8 +175,8 @@ mod tests {
         image.pixels[7] = [f32::NAN, f32::NEG_INFINITY, -0.0];
         image.pixels[8] = [f32::MIN_POSITIVE / 2.0, f32::MAX, 1e-30];
         let metadata: Metadata = (0..20).map(|i| (format!("key {i}"), "value".into())).collect();
-        let bytes = encode(&image, &metadata).unwrap();
-        assert_eq!(encode(&image, &metadata).unwrap(), bytes);
+        let bytes = encode(&image, &[], &metadata).unwrap();
+        assert_eq!(encode(&image, &[], &metadata).unwrap(), bytes);
         let back = decode(&bytes).unwrap();
         let bits =
             |image: &Image| image.pixels.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -193,7 +210,7 @@ mod tests {
 
     #[test]
     fn absurd_sizes_are_refused_before_memory_is_taken() {
-        let mut bytes = encode(&ramp(2, 2), &Metadata::new()).unwrap();
+        let mut bytes = encode(&ramp(2, 2), &[], &Metadata::new()).unwrap();
         let name = b"dataWindow\0box2i\0\x10\0\0\0";
         let start =
             bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len();

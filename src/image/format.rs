@@ -1,6 +1,6 @@
 //! File formats: how they are told apart, and the way to their codecs.
 
-use super::{Image, ImageError, WriteOptions, exr, pfm, png, ppm, radiance};
+use super::{Channel, Image, ImageError, WriteOptions, exr, pfm, png, ppm, radiance};
 use crate::memory;
 use std::{
     fmt,
@@ -85,10 +85,15 @@ impl Format {
             .unwrap_or_else(|_| Err("the file is damaged; write it anew".into()))
     }
 
-    /// Encodes a picture whose shape and options have been checked.
-    pub(super) fn encode(self, image: &Image, options: &WriteOptions) -> Result<Vec<u8>, String> {
+    /// Encodes a picture whose shape and options have been checked, with its channels if it is EXR.
+    pub(super) fn encode(
+        self,
+        image: &Image,
+        channels: &[Channel],
+        options: &WriteOptions,
+    ) -> Result<Vec<u8>, String> {
         match self {
-            Self::Exr => exr::encode(image, &options.metadata),
+            Self::Exr => exr::encode(image, channels, &options.metadata),
             Self::Pfm => Ok(pfm::encode(image)),
             Self::Png => png::encode(image, options),
             Self::Ppm => Ok(ppm::encode(image, options)),
@@ -170,7 +175,7 @@ mod tests {
     fn sample(format: Format) -> Vec<u8> {
         match format {
             Format::Radiance => RADIANCE.to_vec(),
-            written => written.encode(&ramp(9, 5), &WriteOptions::default()).unwrap(),
+            written => written.encode(&ramp(9, 5), &[], &WriteOptions::default()).unwrap(),
         }
     }
 

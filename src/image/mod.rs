@@ -6,6 +6,7 @@
 //! ([`atomic::write_atomically`]), and [`check_writable`] finds a destination that cannot be
 //! written before hours are spent on the picture.
 
+mod channel;
 pub mod compare;
 mod error;
 mod exr;
@@ -19,6 +20,7 @@ mod ppm;
 mod radiance;
 pub mod tone;
 
+pub use self::channel::{Channel, Values};
 pub use self::compare::{CompareError, Comparison, Difference, compare};
 pub use self::error::ImageError;
 pub use self::format::Format;
@@ -106,15 +108,33 @@ impl Image {
     /// written; [`ImageError::Encode`] if the format cannot hold the picture; [`ImageError::Write`]
     /// if the file cannot be written.
     pub fn write(&self, path: impl AsRef<Path>, options: &WriteOptions) -> Result<(), ImageError> {
+        self.write_layers(path, &[], options)
+    }
+
+    /// Writes an EXR file that has more channels than `R`, `G` and `B`; without any, what
+    /// [`Image::write`] writes.
+    ///
+    /// # Errors
+    /// Those of [`Image::write`]; [`ImageError::Layers`] for another format, and
+    /// [`ImageError::Channel`] for a name that is not valid or there twice, or a number of values
+    /// that is not the picture's of pixels.
+    pub fn write_layers(
+        &self,
+        path: impl AsRef<Path>,
+        channels: &[Channel],
+        options: &WriteOptions,
+    ) -> Result<(), ImageError> {
         let path = path.as_ref();
         let format = Format::of_suffix(path)?;
         self.check_shape()?;
         options.check()?;
-        let bytes = format.encode(self, options).map_err(|reason| ImageError::Encode {
-            path: path.to_owned(),
-            format,
-            reason,
-        })?;
+        channel::check(channels, self.pixels.len())?;
+        if !channels.is_empty() && format != Format::Exr {
+            return Err(ImageError::Layers { path: path.to_owned(), format });
+        }
+        let bytes = format
+            .encode(self, channels, options)
+            .map_err(|reason| ImageError::Encode { path: path.to_owned(), format, reason })?;
         atomic::write_atomically(path, |file| file.write_all(&bytes))
             .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
     }

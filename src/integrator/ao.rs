@@ -10,8 +10,7 @@ use super::stages::{self, Local};
 use super::workspace::Workspace;
 use crate::ray::MISS;
 use crate::sampling::cosine_hemisphere;
-use crate::scene::Rgb;
-use crate::world::{Kind, LightSample, MaterialId, World};
+use crate::world::{Kind, LightSample};
 
 /// One direction for each path; `distance` is in world units.
 pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
@@ -31,7 +30,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
             let draw = job.sampler.scatter(sample, 0);
             let direction = local.to_world(cosine_hemisphere(draw.direction));
             let hit = work.hits.sphere[row];
-            let color = albedo(job.world, job.world.material(hit)) * job.world.color(hit);
+            let color = job.world.albedo(hit);
             let sky = LightSample {
                 direction,
                 t: distance,
@@ -45,17 +44,4 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
         work.bins.kind[kind as usize] = rows;
     }
     stages::occlude(job, work);
-}
-
-/// The color by which a material is told from others.
-fn albedo(world: &World, id: MaterialId) -> Rgb {
-    let tables = &world.materials;
-    match id.kind() {
-        Kind::Lambertian => tables.lambertian[id.row()].color,
-        Kind::Conductor => tables.conductor[id.row()].color(),
-        Kind::Dielectric => tables.dielectric[id.row()].color,
-        Kind::Plastic => tables.plastic[id.row()].color,
-        Kind::Reflective => tables.reflective[id.row()].color,
-        Kind::Emitter => tables.emitter[id.row()].radiance.min(Rgb::ONE),
-    }
 }

@@ -26,7 +26,25 @@ pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspac
     }
     work.begin(count);
     draw_places(job, work);
+    start_at_camera(job, work);
+}
+
+/// Begins a path through the center of each of the tile's pixels, and through that of the lens.
+pub fn generate_centers(job: &Job, tile: &Tile, work: &mut Workspace) {
+    let mut count = 0;
+    for (x, y) in tile.pixels() {
+        work.rays.origin.set(count, Vec3::new(x as f32, y as f32, 0.0));
+        work.rays.direction.set(count, Vec3::ZERO);
+        count += 1;
+    }
+    work.begin(count);
+    start_at_camera(job, work);
+}
+
+/// Turns pixels and places into paths that have left the camera.
+fn start_at_camera(job: &Job, work: &mut Workspace) {
     aim_camera(job, work);
+    let count = work.len();
     if !job.world.features.glass_at_camera.is_empty() {
         (0..count).for_each(|path| enter_glass(job.world, work, path));
     }

@@ -59,6 +59,14 @@ impl Camera {
         self.orthographic
     }
 
+    /// How far a point is from the camera, in the world's unit: from the eye in perspective, from
+    /// the plane through the eye across the view in parallel projection. The lens and `near` do
+    /// not matter.
+    pub fn distance(&self, point: DVec3) -> f64 {
+        let offset = point - self.eye;
+        if self.orthographic { offset.dot(self.forward) } else { offset.length() }
+    }
+
     /// A ball that holds every ray's origin: its center and radius.
     pub fn origins(&self) -> (DVec3, f64) {
         let (across, along) = if self.orthographic {

@@ -171,6 +171,19 @@ impl Materials {
         tables
     }
 
+    /// The color by which a material is told from others, each channel 0..=1: the diffuse color, a
+    /// metal's reflectance from above, what glass lets through, an emitter's radiance up to 1.
+    pub fn albedo(&self, id: MaterialId) -> Rgb {
+        match id.kind() {
+            Kind::Lambertian => self.lambertian[id.row()].color,
+            Kind::Conductor => self.conductor[id.row()].color(),
+            Kind::Dielectric => self.dielectric[id.row()].color,
+            Kind::Plastic => self.plastic[id.row()].color,
+            Kind::Reflective => self.reflective[id.row()].color,
+            Kind::Emitter => self.emitter[id.row()].radiance.min(Rgb::ONE),
+        }
+    }
+
     /// The material in row `row` of the scene's list.
     pub(super) fn id(&self, row: u32) -> MaterialId {
         self.ids.get(row as usize).copied().unwrap_or_default()

@@ -186,4 +186,10 @@ impl World {
             _ => Rgb::ONE,
         }
     }
+
+    /// The color by which what was hit is told from others: [`Materials::albedo`], times the
+    /// sphere's own color.
+    pub fn albedo(&self, hit: u32) -> Rgb {
+        self.materials.albedo(self.material(hit)) * self.color(hit)
+    }
 }

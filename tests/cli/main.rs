@@ -3,6 +3,7 @@
 
 mod folder;
 mod inputs;
+mod layers;
 mod pictures;
 mod processes;
 mod refusals;

@@ -32,11 +32,17 @@ impl<'a> Job<'a> {
     /// What was typed, made sense of.
     pub(super) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
         let seed = args.picture.seed.unwrap_or(0);
+        let format = Format::of_suffix(&args.output)?;
+        if !args.encoding.layers.is_empty() && format != Format::Exr {
+            let message =
+                format!("{format} has no room for --layers; end the name of --output in .exr");
+            return Err(Failure::usage("render", message));
+        }
         let source = args.scene.as_deref().map_or(Source::Field { seed }, Source::of_path);
         Ok(Self {
             source,
             output: args.output.clone(),
-            format: Format::of_suffix(&args.output)?,
+            format,
             picture: &args.picture,
             encoding: &args.encoding,
             speed: &args.speed,

@@ -2,6 +2,7 @@
 
 mod interrupt;
 mod job;
+mod layers;
 mod metadata;
 mod notes;
 mod prepare;
@@ -36,7 +37,8 @@ fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::from(INTERRUPTED));
     }
     let options = metadata::write_options(job, &prepared, &render);
-    render.image.write(&job.output, &options)?;
+    let channels = layers::channels(job, &prepared, &render);
+    render.image.write_layers(&job.output, &channels, &options)?;
     Summary::new(job, &prepared, &render, &options).tell(job.report);
     if render.complete {
         return Ok(ExitCode::SUCCESS);

@@ -8,6 +8,7 @@ use crate::cli::output;
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::film::{Film, Region};
+use spherule::layers::Layers;
 use spherule::memory;
 use spherule::render::Render;
 use spherule::scene::{Scene, Settings, Spheres};
@@ -41,7 +42,9 @@ impl Prepared {
         let load = start.elapsed();
         job.picture.replace(&mut scene.settings);
         let region = job.region(&scene.settings)?;
-        memory::check(Film::bytes(region)).map_err(|shortage| Failure::Film(region, shortage))?;
+        let bytes = if job.encoding.layers.is_empty() { 0 } else { Layers::bytes(region) };
+        memory::check(Film::bytes(region) + bytes)
+            .map_err(|shortage| Failure::Film(region, shortage))?;
         let start = Instant::now();
         let samples = samples(region, &scene.settings);
         let builder = job.builder(scene.spheres.len(), samples);

@@ -1,0 +1,51 @@
+//! What `--help` ends with.
+
+/// Of the program.
+pub(super) const PROGRAM: &str = "\
+Examples:
+  spherule                                   a random field of spheres, to spherule.png
+  spherule render scenes/weekend.toml -o weekend.png
+  spherule info scenes/weekend.toml
+
+Exit codes: 0 done, 1 failed, 2 command line not understood, 130 interrupted";
+
+/// Of `spherule render`.
+pub(super) const RENDER: &str = "\
+Examples:
+  spherule render                            a random field of spheres, to spherule.png
+  spherule render scene.toml -o picture.exr --size 1920x1080 --spp 256
+  spherule render particles.xyz -o figure.png --integrator ao
+  spherule render scene.toml --region 100,50,64x64 -o detail.png
+  spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id
+  spherule render scene.toml --json --quiet > statistics.json
+
+Ctrl-C saves the picture so far and exits with code 130.";
+
+/// Of `spherule field`.
+pub(super) const FIELD: &str = "\
+Examples:
+  spherule field -o field.toml               the scene of `spherule render`
+  spherule field --count 500 --mix 1,0,0 --seed 7 -o large.toml
+  spherule field grid --count 50 --radius 0.3 -o grid.toml
+  spherule field lattice --jitter 0.03 -o crystal.toml";
+
+/// Of `spherule info`.
+pub(super) const INFO: &str = "\
+Examples:
+  spherule info scene.toml
+  spherule info particles.csv --json";
+
+/// Of `spherule compare`.
+pub(super) const COMPARE: &str = "\
+Differences are in linear radiance. Exit code 0 says that the pictures could be compared, not that
+they are equal.
+
+Examples:
+  spherule compare picture.exr reference.exr
+  spherule compare a.png b.png --json";
+
+/// Of `spherule completions`.
+pub(super) const COMPLETIONS: &str = "\
+Examples:
+  spherule completions bash > ~/.local/share/bash-completion/completions/spherule
+  spherule completions zsh > ~/.zfunc/_spherule";

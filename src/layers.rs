@@ -1,0 +1,229 @@
+//! Layers beside the picture: what denoisers and compositors want to know of each pixel.
+//!
+//! They come from a pass of camera rays of its own, so that every integrator has them, and a render
+//! without them does nothing for them. The rays are the picture's: the same samples of the same
+//! filter through the same lens, so that edges and blur lie where the picture has them.
+
+use crate::bvh::walk::Method;
+use crate::film::{Film, Region, Tile, View};
+use crate::image::{Channel, Values};
+use crate::integrator::workspace::Workspace;
+use crate::integrator::{Job, stages};
+use crate::ray::{GROUND, MISS};
+use crate::render::{Options, passes, view};
+use crate::sampling::{PixelFilter, Sampler};
+use crate::scene::Settings;
+use crate::world::World;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The most samples of a pixel that layers take: with so many an edge is smooth to 1/256.
+pub const SAMPLES: u32 = 256;
+
+/// The id of a pixel whose center sees no surface.
+pub const NOTHING: u32 = MISS;
+
+/// The id of a pixel whose center sees the ground plane.
+pub const GROUND_PLANE: u32 = GROUND;
+
+/// What can be known of a pixel besides its color.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Layer {
+    /// [`Features::albedo`]: channels `albedo.R`, `albedo.G`, `albedo.B`.
+    Albedo,
+    /// [`Features::normal`]: channels `normal.X`, `normal.Y`, `normal.Z`.
+    Normal,
+    /// [`Features::depth`]: channel `depth.Z`.
+    Depth,
+    /// [`Features::coverage`]: channel `coverage.Y`.
+    Coverage,
+    /// [`Features::id`]: channel `id.Y`, of integers.
+    Id,
+}
+
+/// What is known of a pixel: of what its rays hit first, whatever it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Features {
+    /// Mean of [`World::albedo`], linear RGB, 0..=1; rays that hit nothing count as black.
+    pub albedo: [f32; 3],
+    /// Mean of the unit normals on the side that is looked at, in the scene's axes; rays that hit
+    /// nothing count as 0, so it is shorter at edges.
+    pub normal: [f32; 3],
+    /// Mean of the distances from the camera, in the scene's unit, of the rays that hit: from the
+    /// eye in perspective, from the plane through the eye in parallel projection. Infinite if none
+    /// hits.
+    pub depth: f32,
+    /// Share of the rays that hit a sphere or the ground, 0..=1.
+    pub coverage: f32,
+    /// The sphere that the pixel's center sees, through the center of the lens: its place in the
+    /// scene's order, from 0; or else [`NOTHING`] or [`GROUND_PLANE`].
+    pub id: u32,
+}
+
+/// The layers of a picture, or of a region of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layers {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Row by row from the top left.
+    pub pixels: Vec<Features>,
+}
+
+impl Layer {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Albedo, Self::Normal, Self::Depth, Self::Coverage, Self::Id];
+
+    /// The name before the dot in its channels' names.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Albedo => "albedo",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Coverage => "coverage",
+            Self::Id => "id",
+        }
+    }
+
+    fn channels(self, pixels: &[Features]) -> Vec<Channel> {
+        let channel = |part, values| Channel { name: format!("{}.{part}", self.name()), values };
+        let floats = |part, value: &dyn Fn(&Features) -> f32| {
+            channel(part, Values::Floats(pixels.iter().map(value).collect()))
+        };
+        match self {
+            Self::Albedo => [('R', 0), ('G', 1), ('B', 2)]
+                .map(|(part, i)| floats(part, &|pixel| pixel.albedo[i]))
+                .into(),
+            Self::Normal => [('X', 0), ('Y', 1), ('Z', 2)]
+                .map(|(part, i)| floats(part, &|pixel| pixel.normal[i]))
+                .into(),
+            Self::Depth => vec![floats('Z', &|pixel| pixel.depth)],
+            Self::Coverage => vec![floats('Y', &|pixel| pixel.coverage)],
+            Self::Id => {
+                let ids = pixels.iter().map(|pixel| pixel.id).collect();
+                vec![channel('Y', Values::Integers(ids))]
+            }
+        }
+    }
+}
+
+impl Layers {
+    /// Bytes that the layers of a region take, their channels included, at most.
+    pub fn bytes(region: Region) -> u64 {
+        let pixel = 2 * size_of::<Features>() as u64;
+        Film::bytes(region) + u64::from(region.width) * u64::from(region.height) * pixel
+    }
+
+    /// The channels of some layers, for [`Image::write_layers`](crate::Image::write_layers).
+    pub fn channels(&self, layers: &[Layer]) -> Vec<Channel> {
+        layers.iter().flat_map(|layer| layer.channels(&self.pixels)).collect()
+    }
+}
+
+/// Finds the layers of a picture, by as many samples as it has but at most [`SAMPLES`].
+///
+/// Only the region and the tracer of `options` count. Like the picture's, pixels are the same bytes
+/// for any number of threads and any tracer, in a region and in the whole. If `wanted` is nothing but
+/// [`Layer::Id`], one ray for each pixel does, and only the ids are of use.
+pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[Layer]) -> Layers {
+    let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
+    let filter = PixelFilter::new(settings.filter);
+    let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer: options.tracer };
+    let sampled = wanted.iter().any(|layer| *layer != Layer::Id);
+    let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
+    let camera = &world.camera;
+    let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
+    let region = options.region.unwrap_or(whole);
+    let mut tiles = Film::new(region).tiles;
+    let features: Vec<Vec<Features>> = tiles
+        .par_iter_mut()
+        .map_init(
+            || Workspace::new(world, &sampler),
+            |work, tile| {
+                if job.tracer.method != Method::Brute {
+                    tile.view = view(&job, tile);
+                }
+                of_tile(&job, tile, samples, work)
+            },
+        )
+        .collect();
+    let mut pixels = vec![Sums::default().mean(0); region.width as usize * region.height as usize];
+    for (tile, features) in tiles.iter().zip(features) {
+        for ((x, y), features) in tile.pixels().zip(features) {
+            let (column, row) = ((x - region.x) as usize, (y - region.y) as usize);
+            pixels[row * region.width as usize + column] = features;
+        }
+    }
+    Layers { width: region.width, height: region.height, pixels }
+}
+
+/// The features of a tile's pixels, in the order of [`Tile::pixels`].
+fn of_tile(job: &Job, tile: &Tile, samples: u32, work: &mut Workspace) -> Vec<Features> {
+    let mut sums = vec![Sums::default(); tile.pixels().count()];
+    if tile.view == View::Anything || job.world.ground.is_some() {
+        for samples in passes(samples) {
+            let count = samples.len();
+            stages::generate(job, tile, samples, work);
+            see(job, tile, work);
+            for (pixel, sums) in sums.iter_mut().enumerate() {
+                (pixel * count..(pixel + 1) * count).for_each(|row| sums.add(job.world, work, row));
+            }
+        }
+        stages::generate_centers(job, tile, work);
+        see(job, tile, work);
+        for (sums, &hit) in sums.iter_mut().zip(&work.hits.sphere) {
+            sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);
+        }
+    }
+    sums.iter().map(|sums| sums.mean(samples)).collect()
+}
+
+fn see(job: &Job, tile: &Tile, work: &mut Workspace) {
+    work.view = tile.view;
+    stages::intersect(job, work);
+}
+
+/// What the samples of a pixel have added up to.
+#[derive(Clone, Copy)]
+struct Sums {
+    albedo: DVec3,
+    normal: DVec3,
+    depth: f64,
+    hits: u32,
+    id: u32,
+}
+
+impl Default for Sums {
+    fn default() -> Self {
+        Self { albedo: DVec3::ZERO, normal: DVec3::ZERO, depth: 0.0, hits: 0, id: NOTHING }
+    }
+}
+
+impl Sums {
+    /// Adds what row `row` has hit, if anything.
+    fn add(&mut self, world: &World, work: &Workspace, row: usize) {
+        let hit = work.hits.sphere[row];
+        if hit == MISS {
+            return;
+        }
+        let (ray, normal) = (work.rays.exact(row), work.surface.normal[row]);
+        self.albedo += world.albedo(hit).as_dvec3();
+        self.normal += if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
+        self.depth += world.camera.distance(ray.at(work.hits.t[row])) / world.frame.scale;
+        self.hits += 1;
+    }
+
+    /// What they come to, of so many samples.
+    fn mean(&self, samples: u32) -> Features {
+        let share = 1.0 / f64::from(samples.max(1));
+        let depth = if self.hits > 0 { self.depth / f64::from(self.hits) } else { f64::INFINITY };
+        Features {
+            albedo: (self.albedo * share).as_vec3().to_array(),
+            normal: (self.normal * share).as_vec3().to_array(),
+            depth: depth as f32,
+            coverage: (f64::from(self.hits) * share) as f32,
+            id: self.id,
+        }
+    }
+}
