@@ -75,6 +75,7 @@
 #![forbid(unsafe_code)]
 
 // Vocabulary: knows nothing of scenes.
+pub mod color;
 pub mod lanes;
 pub mod vec3;
 
@@ -100,6 +101,9 @@ pub mod shade;
 pub mod film;
 pub mod layers;
 pub mod render;
+
+#[cfg(feature = "cli")]
+pub mod drawing;
 
 pub mod atomic;
 pub mod image;

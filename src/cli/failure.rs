@@ -9,6 +9,7 @@ use miette::{
     LabeledSpan, MietteError, MietteHandlerOpts, MietteSpanContents, SourceCode, SourceSpan,
     SpanContents,
 };
+use spherule::drawing::DrawingError;
 use spherule::film::Region;
 use spherule::image::{CompareError, ImageError};
 use spherule::memory::Shortage;
@@ -42,8 +43,8 @@ pub(crate) enum Failure {
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error("{}: cannot be written: {}", .0.display(), .1)]
     Write(PathBuf, io::Error),
-    #[error("the plot cannot be drawn: {0}; leave out --plot, --csv has the same numbers")]
-    Plot(String),
+    #[error("{0}")]
+    Drawing(#[from] DrawingError),
     #[error(
         "{} x {} pixels need {}; give --size or --region smaller numbers", .0.width, .0.height, .1
     )]

@@ -6,7 +6,6 @@
 //! puts a scene into files that load as the same scene.
 
 mod camera;
-mod color;
 mod error;
 pub mod file;
 pub mod generate;
@@ -17,8 +16,8 @@ mod settings;
 mod spheres;
 mod write;
 
+pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use camera::{Camera, Lens, Pose, Projection};
-pub use color::{linear_from_srgb, srgb};
 pub use error::{Place, SceneError};
 pub(crate) use light::is_radiance;
 pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
@@ -26,12 +25,6 @@ pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
 pub use settings::{Filter, Integrator, Roulette, SamplerKind, Settings, Tone};
 pub use spheres::Spheres;
 pub use write::write;
-
-use glam::Vec3;
-
-/// A linear RGB triple with the primaries of sRGB: a reflectance in 0..=1, or a radiance of 0 or
-/// more.
-pub type Rgb = Vec3;
 
 /// A whole scene: what there is, how it is lit, who looks at it and with which settings.
 #[derive(Clone, Debug, Default)]

@@ -5,12 +5,13 @@ mod plot;
 mod table;
 
 pub(super) use self::args::{Args, EXAMPLES};
-use self::plot::Format;
+use self::plot::Plot;
 use super::progress::{Meter, rate};
 use super::{Failure, output, threads};
 use indicatif::HumanCount;
 use serde::Serialize;
 use spherule::atomic::{check_destination, write_atomically};
+use spherule::drawing::{self, Format};
 use spherule::render::Progress;
 use spherule::stress::{self, Form, Options, REGIMES, Regime, Report};
 use std::io;
@@ -32,7 +33,7 @@ struct Summary<'a> {
 
 /// Runs, tells, and fails if this program was wrong anywhere.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
-    let format = args.plot.as_deref().map(Format::of_suffix).transpose()?;
+    let format = args.plot.as_deref().map(plot_format).transpose()?;
     for path in args.csv.iter().chain(&args.plot) {
         check_destination(path).map_err(|error| Failure::Write(path.clone(), error))?;
     }
@@ -41,7 +42,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         write(path, |writer| report.write_csv(writer).map_err(io::Error::from))?;
     }
     if let (Some(path), Some(format)) = (&args.plot, format) {
-        let picture = plot::draw(&report, format)?;
+        let picture = drawing::file(&Plot(&report), format)?;
         write(path, |writer| writer.write_all(&picture))?;
     }
     let wrong = report.wrong(Form::Spherule);
@@ -55,6 +56,14 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         output::print(closing(&report));
     }
     Ok(if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn plot_format(path: &Path) -> Result<Format, Failure> {
+    Format::of_suffix(path).ok_or_else(|| {
+        let name = path.display();
+        let message = format!("--plot takes a name that ends in .png or .svg, not {name}");
+        Failure::usage("stress", message)
+    })
 }
 
 fn measure(args: &Args) -> Result<Report, Failure> {

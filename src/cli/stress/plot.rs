@@ -1,25 +1,12 @@
 //! A picture of the wrong decisions: a line for each regime, a mark for each form, and how often it
 //! is wrong to the right. The axis is logarithmic; what is never wrong stands apart at the left.
 
-use crate::cli::failure::Failure;
-use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
-use plotters::coord::Shift;
-use plotters::drawing::{DrawingArea, IntoDrawingArea};
+use plotters::backend::DrawingBackend;
 use plotters::element::{Circle, PathElement, Polygon, Text};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    Color, FontStyle, IntoTextStyle, RGBColor, ShapeStyle, TextStyle, register_font,
-};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, RGBColor, ShapeStyle, TextStyle};
+use spherule::drawing::{Area, Drawn, INK, Picture, letters};
 use spherule::stress::{Form, Report};
-use std::ffi::OsStr;
-use std::path::Path;
-
-/// What the picture's file is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
-    Png,
-    Svg,
-}
 
 /// Pixels across.
 const WIDTH: u32 = 1500;
@@ -34,10 +21,7 @@ const GAP: i32 = 150;
 /// Least exponent of ten, in percent, at which the axis begins, and the greatest.
 const DECADES: [i32; 2] = [-4, 2];
 
-const FONT: &str = "sans-serif";
-const INK: RGBColor = RGBColor(40, 40, 40);
 const FAINT: RGBColor = RGBColor(222, 222, 222);
-const PAPER: RGBColor = RGBColor(255, 255, 255);
 
 /// The forms with their colors, which the color-blind can tell apart: Okabe and Ito, "Color
 /// Universal Design", 2008.
@@ -47,76 +31,30 @@ const FORMS: [(Form, &str, RGBColor); 3] = [
     (Form::Spherule, "Spherule", RGBColor(0, 158, 115)),
 ];
 
-type Area<B> = DrawingArea<B, Shift>;
+/// The picture of a report.
+pub(super) struct Plot<'a>(pub(super) &'a Report);
 
-impl Format {
-    /// The format of a file by its name.
-    pub(super) fn of_suffix(path: &Path) -> Result<Self, Failure> {
-        let suffix = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-        match suffix.as_deref() {
-            Some("png") => Ok(Self::Png),
-            Some("svg") => Ok(Self::Svg),
-            _ => {
-                let name = path.display();
-                let message = format!("--plot takes a name that ends in .png or .svg, not {name}");
-                Err(Failure::usage("stress", message))
+impl Picture for Plot<'_> {
+    fn size(&self) -> (u32, u32) {
+        let lines = self.0.regimes.len() as i32;
+        (WIDTH, (MARGIN[0] + MARGIN[1] + lines * LINE) as u32)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
+        let Self(report) = self;
+        heading(area, report)?;
+        axis(area, report.regimes.len() as i32)?;
+        for (line, regime) in (0..).zip(&report.regimes) {
+            let y = MARGIN[0] + line * LINE + LINE / 2;
+            area.draw(&Text::new(regime.name, (SIDES[0] - 40, y), style(20, HPos::Right)))?;
+            let ends = [(SIDES[0], y), (WIDTH as i32 - SIDES[1], y)];
+            area.draw(&PathElement::new(ends, FAINT.stroke_width(1)))?;
+            for (form, _, color) in FORMS {
+                mark(area, form, (x_of(100.0 * regime.wrong_share(form)), y), color)?;
             }
         }
+        Ok(())
     }
-}
-
-/// The file's content.
-pub(super) fn draw(report: &Report, format: Format) -> Result<Vec<u8>, Failure> {
-    let fault = || Failure::Plot("its font cannot be read".to_owned());
-    register_font(FONT, FontStyle::Normal, dejavu::sans::regular()).map_err(|_| fault())?;
-    let lines = report.regimes.len() as i32;
-    let size = (WIDTH, (MARGIN[0] + MARGIN[1] + lines * LINE) as u32);
-    let broken = |error: &dyn std::fmt::Display| Failure::Plot(error.to_string());
-    match format {
-        Format::Svg => {
-            let mut text = String::new();
-            let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            picture(&area, report).map_err(|error| broken(&error))?;
-            drop(area);
-            Ok(text.into_bytes())
-        }
-        Format::Png => {
-            let mut pixels = vec![0; size.0 as usize * size.1 as usize * 3];
-            let area = BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area();
-            picture(&area, report).map_err(|error| broken(&error))?;
-            drop(area);
-            encode(&pixels, size).map_err(|error| broken(&error))
-        }
-    }
-}
-
-fn encode(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header()?.write_image_data(pixels)?;
-    Ok(file)
-}
-
-/// How the drawing can fail, for one way of drawing.
-type Drawn<B> =
-    Result<(), plotters::drawing::DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-
-fn picture<B: DrawingBackend>(area: &Area<B>, report: &Report) -> Drawn<B> {
-    area.fill(&PAPER)?;
-    heading(area, report)?;
-    axis(area, report.regimes.len() as i32)?;
-    for (line, regime) in (0..).zip(&report.regimes) {
-        let y = MARGIN[0] + line * LINE + LINE / 2;
-        area.draw(&Text::new(regime.name, (SIDES[0] - 40, y), style(20, HPos::Right)))?;
-        let ends = [(SIDES[0], y), (WIDTH as i32 - SIDES[1], y)];
-        area.draw(&PathElement::new(ends, FAINT.stroke_width(1)))?;
-        for (form, _, color) in FORMS {
-            mark(area, form, (x_of(100.0 * regime.wrong_share(form)), y), color)?;
-        }
-    }
-    area.present()
 }
 
 fn heading<B: DrawingBackend>(area: &Area<B>, report: &Report) -> Drawn<B> {
@@ -181,21 +119,15 @@ fn mark<B: DrawingBackend>(
     }
 }
 
-fn style(size: i32, side: HPos) -> TextStyle<'static> {
-    (FONT, size).into_text_style(&(WIDTH, WIDTH)).color(&INK).pos(Pos::new(side, VPos::Center))
+fn style(size: u32, side: HPos) -> TextStyle<'static> {
+    letters(size, INK, side)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spherule::drawing::{Format, file};
     use spherule::stress::{Options, REGIMES, run};
-
-    #[test]
-    fn formats_go_by_the_name() {
-        let of = |name: &str| Format::of_suffix(Path::new(name)).ok();
-        assert_eq!((of("a.png"), of("b/A.SVG")), (Some(Format::Png), Some(Format::Svg)));
-        assert_eq!((of("a.pdf"), of("png")), (None, None));
-    }
 
     #[test]
     fn shares_stand_in_order_and_never_apart() {
@@ -209,12 +141,12 @@ mod tests {
     fn both_pictures_show_every_regime() {
         let regimes = REGIMES.iter().take(3).collect();
         let report = run(&Options { rays: 300, seed: 0, regimes }, &|_| ());
-        let svg = String::from_utf8(draw(&report, Format::Svg).unwrap()).unwrap();
+        let svg = String::from_utf8(file(&Plot(&report), Format::Svg).unwrap()).unwrap();
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
         for words in ["near_unit", "far_1e3", "never", "0.001 %", "Spherule", "300 random rays"] {
             assert!(svg.contains(words), "{words}");
         }
-        let png = draw(&report, Format::Png).unwrap();
+        let png = file(&Plot(&report), Format::Png).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();

@@ -170,7 +170,7 @@ impl<'a> Value<'a> {
                 let [red, green, blue] = self.list()?;
                 Ok(Rgb::new(red.single(limits)?, green.single(limits)?, blue.single(limits)?))
             }
-            DeValue::String(text) => crate::scene::color::parse_hex(text)
+            DeValue::String(text) => crate::color::parse_hex(text)
                 .ok_or_else(|| self.must_be("\"#rrggbb\" where it is a text")),
             DeValue::Integer(_) | DeValue::Float(_) => self.single(limits).map(Rgb::splat),
             _ => Err(self.must_be("[red, green, blue], one number for gray, or \"#rrggbb\"")),

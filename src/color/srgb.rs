@@ -14,7 +14,7 @@ pub fn srgb(hex: u32) -> Rgb {
 }
 
 /// The color that a scene file writes as `#rrggbb`; `None` if `text` is anything else.
-pub(super) fn parse_hex(text: &str) -> Option<Rgb> {
+pub(crate) fn parse_hex(text: &str) -> Option<Rgb> {
     let digits = text.strip_prefix('#')?;
     let valid = digits.len() == 6 && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
     valid.then(|| u32::from_str_radix(digits, 16).ok().map(srgb)).flatten()

@@ -1,0 +1,30 @@
+//! Colors that stand for numbers, kinds and elements.
+//!
+//! Published colors are sRGB codes; all that is handed out here is linear, as the renderer works. A
+//! [`Scale`] takes numbers to colors: a [`Range`] says where on a [`Map`] each one lies. [`ticks`]
+//! are round numbers of a range, for a bar that tells what the colors mean.
+
+#[cfg(feature = "cli")]
+pub mod bar;
+mod categories;
+pub mod elements;
+mod map;
+mod range;
+mod scale;
+mod srgb;
+mod tables;
+mod ticks;
+
+pub use categories::{CATEGORIES, category};
+pub use map::Map;
+pub use range::{Range, RangeError, Spacing};
+pub use scale::Scale;
+pub(crate) use srgb::parse_hex;
+pub use srgb::{linear_from_srgb, srgb};
+pub use ticks::{Tick, ticks};
+
+use glam::Vec3;
+
+/// A linear RGB triple with the primaries of sRGB: a reflectance in 0..=1, or a radiance of 0 or
+/// more.
+pub type Rgb = Vec3;

@@ -1,0 +1,116 @@
+//! Scales: from a column of numbers to a column of colors.
+
+use super::map::{Map, between};
+use super::{Range, Rgb, srgb};
+use rayon::prelude::*;
+
+/// What colors numbers have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The colors.
+    pub map: Map,
+    /// Whether the map's high end is at the range's low one.
+    pub reversed: bool,
+    /// The numbers.
+    pub range: Range,
+    /// The color of numbers below the range; `None` for that of its low end.
+    pub below: Option<Rgb>,
+    /// The color of numbers above the range; `None` for that of its high end.
+    pub above: Option<Rgb>,
+    /// The color of NaN.
+    pub missing: Rgb,
+}
+
+impl Scale {
+    /// Numbers outside of the range get the colors of its ends; NaN is middle gray, `#808080`.
+    pub fn new(map: Map, range: Range) -> Self {
+        let missing = srgb(0x80_80_80);
+        Self { map, reversed: false, range, below: None, above: None, missing }
+    }
+
+    /// The linear color of a number.
+    pub fn color(&self, value: f64) -> Rgb {
+        self.pick(value, |position| self.map.at(position))
+    }
+
+    /// The linear colors of numbers, one for each: those of [`Scale::color`], faster.
+    pub fn colors(&self, values: &[f64]) -> Vec<Rgb> {
+        let rows = self.map.rows();
+        let at = |position| between(position, |row| rows[row]);
+        values.par_iter().map(|&value| self.pick(value, at)).collect()
+    }
+
+    /// The linear color at a place in the range: 0 is the low end, 1 the high one.
+    pub fn at(&self, position: f64) -> Rgb {
+        self.map.at(if self.reversed { 1.0 - position } else { position })
+    }
+
+    fn pick(&self, value: f64, at: impl Fn(f64) -> Rgb) -> Rgb {
+        let position = self.range.position(value);
+        let outside = match position {
+            position if position.is_nan() => Some(self.missing),
+            position if position < 0.0 => self.below,
+            position if position > 1.0 => self.above,
+            _ => None,
+        };
+        let position = if self.reversed { 1.0 - position } else { position };
+        outside.unwrap_or_else(|| at(position))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Spacing;
+
+    fn scale() -> Scale {
+        Scale::new(Map::Plasma, Range::new(10.0, 1000.0, Spacing::Logarithmic).unwrap())
+    }
+
+    #[test]
+    fn numbers_have_the_colors_of_their_places() {
+        let at = |position: f64| Map::Plasma.at(position);
+        let expected = [
+            (10.0, at(0.0)),
+            (100.0, at(0.5)),
+            (1000.0, at(1.0)),
+            (1e9, at(1.0)),
+            (f64::INFINITY, at(1.0)),
+            (1.0, at(0.0)),
+            (0.0, at(0.0)),
+            (-5.0, at(0.0)),
+            (f64::NAN, srgb(0x80_80_80)),
+        ];
+        for (value, color) in expected {
+            assert_eq!(scale().color(value), color, "{value}");
+        }
+        let reversed = Scale { reversed: true, ..scale() };
+        for (value, color) in [(10.0, at(1.0)), (1000.0, at(0.0)), (1e9, at(0.0)), (0.0, at(1.0))] {
+            assert_eq!(reversed.color(value), color, "{value}");
+        }
+    }
+
+    #[test]
+    fn what_is_outside_may_have_colors_of_its_own() {
+        let scale = Scale {
+            below: Some(Rgb::X),
+            above: Some(Rgb::Y),
+            missing: Rgb::Z,
+            reversed: true,
+            ..scale()
+        };
+        let colors = scale.colors(&[9.9, 0.0, 1000.1, f64::INFINITY, f64::NAN, 10.0, 1000.0]);
+        assert_eq!(colors[..5], [Rgb::X, Rgb::X, Rgb::Y, Rgb::Y, Rgb::Z]);
+        assert_eq!(colors[5..], [Map::Plasma.at(1.0), Map::Plasma.at(0.0)]);
+    }
+
+    #[test]
+    fn columns_have_the_colors_of_their_numbers() {
+        let values: Vec<f64> = (0..500).map(|i| f64::from(i) * 2.5 - 20.0).collect();
+        for reversed in [false, true] {
+            let scale = Scale { reversed, ..scale() };
+            let colors = scale.colors(&values);
+            assert!(values.iter().zip(&colors).all(|(value, color)| scale.color(*value) == *color));
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Pictures of lines, areas and letters: what charts and color bars are drawn with.
+//!
+//! A [`Picture`] is drawn once for pixels and vectors alike. Letters are those of the font that
+//! comes with the program: the system may have none.
+
+use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
+use plotters::coord::Shift;
+use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, FontStyle, IntoFont, RGBColor, TextStyle, register_font};
+use std::ffi::OsStr;
+use std::fmt::Display;
+use std::path::Path;
+
+/// What a picture is drawn on, from (0, 0) at the top left to its size.
+pub type Area<B> = DrawingArea<B, Shift>;
+
+/// How drawing can fail, for one way of drawing.
+pub type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+
+/// White.
+pub const PAPER: RGBColor = RGBColor(255, 255, 255);
+
+/// Nearly black.
+pub const INK: RGBColor = RGBColor(40, 40, 40);
+
+const FONT: &str = "sans-serif";
+
+/// What the file of a picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Pixels.
+    Png,
+    /// Vectors.
+    Svg,
+}
+
+/// Why nothing was drawn: a fault of the program, but for a size of thousands of pixels.
+#[derive(Debug, thiserror::Error)]
+#[error("the picture cannot be drawn: {0}")]
+pub struct DrawingError(String);
+
+/// Something that can be drawn.
+pub trait Picture {
+    /// Width and height in pixels.
+    fn size(&self) -> (u32, u32);
+
+    /// Draws it onto paper.
+    ///
+    /// # Errors
+    /// Those of the backend.
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B>;
+}
+
+impl Format {
+    /// The format of a file by its name: `None` if it ends in neither `.png` nor `.svg`.
+    pub fn of_suffix(path: &Path) -> Option<Self> {
+        let suffix = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
+        match suffix.as_deref() {
+            Some("png") => Some(Self::Png),
+            Some("svg") => Some(Self::Svg),
+            _ => None,
+        }
+    }
+}
+
+/// The content of a picture's file, on white paper.
+///
+/// # Errors
+/// [`DrawingError`].
+pub fn file(picture: &impl Picture, format: Format) -> Result<Vec<u8>, DrawingError> {
+    match format {
+        Format::Png => encode(&codes(picture, PAPER)?, picture.size()).map_err(broken),
+        Format::Svg => {
+            register()?;
+            let mut text = String::new();
+            let area = SVGBackend::with_string(&mut text, picture.size()).into_drawing_area();
+            on_paper(picture, &area, PAPER).map_err(broken)?;
+            drop(area);
+            Ok(text.into_bytes())
+        }
+    }
+}
+
+/// The pixels of a picture on paper of a color: sRGB codes, three bytes each, row by row.
+///
+/// # Errors
+/// [`DrawingError`].
+pub fn codes(picture: &impl Picture, paper: RGBColor) -> Result<Vec<u8>, DrawingError> {
+    register()?;
+    let (width, height) = picture.size();
+    let mut codes = vec![0; width as usize * height as usize * 3];
+    let area = BitMapBackend::with_buffer(&mut codes, (width, height)).into_drawing_area();
+    on_paper(picture, &area, paper).map_err(broken)?;
+    drop(area);
+    Ok(codes)
+}
+
+fn on_paper<B: DrawingBackend>(
+    picture: &impl Picture,
+    area: &Area<B>,
+    paper: RGBColor,
+) -> Drawn<B> {
+    area.fill(&paper)?;
+    picture.draw(area)?;
+    area.present()
+}
+
+/// Makes the font known: again and again does no harm.
+fn register() -> Result<(), DrawingError> {
+    register_font(FONT, FontStyle::Normal, dejavu::sans::regular())
+        .map_err(|_| DrawingError("its font cannot be read".to_owned()))
+}
+
+fn broken(error: impl Display) -> DrawingError {
+    DrawingError(error.to_string())
+}
+
+fn encode(codes: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header()?.write_image_data(codes)?;
+    Ok(file)
+}
+
+/// Letters of a size in pixels, which stand to the right of their place (`HPos::Left`), about it or
+/// to its left, and halfway up at its height.
+pub fn letters(size: u32, color: RGBColor, side: HPos) -> TextStyle<'static> {
+    let style = TextStyle::from((FONT, size)).pos(Pos::new(side, VPos::Center));
+    TextStyle { color: color.to_backend_color(), ..style }
+}
+
+/// How wide a text is in letters of a size, in pixels.
+///
+/// # Errors
+/// [`DrawingError`].
+pub fn width(text: &str, size: u32) -> Result<u32, DrawingError> {
+    register()?;
+    let (width, _) = (FONT, size).into_font().box_size(text).map_err(broken)?;
+    Ok(width)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_go_by_the_name() {
+        let of = |name: &str| Format::of_suffix(Path::new(name));
+        assert_eq!((of("a.png"), of("b/A.SVG")), (Some(Format::Png), Some(Format::Svg)));
+        assert_eq!((of("a.pdf"), of("png")), (None, None));
+    }
+
+    #[test]
+    fn texts_are_as_wide_as_their_letters() {
+        let [one, two, large] =
+            [("m", 20), ("mm", 20), ("m", 40)].map(|(text, size)| width(text, size).unwrap());
+        assert!(one > 10 && two.abs_diff(2 * one) <= 1 && large.abs_diff(2 * one) <= 1);
+        assert_eq!(width("", 20).unwrap(), 0);
+    }
+}
