@@ -180,7 +180,7 @@ impl Hits {
         Self {
             t: vec![f64::INFINITY; rows],
             sphere: vec![MISS; rows],
-            error: vec![0.0; rows.min(CHUNK)],
+            error: vec![0.0; rows.min(CHUNK + MAX_LANES)],
         }
     }
 
