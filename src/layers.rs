@@ -135,7 +135,7 @@ pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[L
     let camera = &world.camera;
     let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
     let region = options.region.unwrap_or(whole);
-    let mut tiles = Film::new(region).tiles;
+    let mut tiles = Film::new(region, false).tiles;
     let features: Vec<Vec<Features>> = tiles
         .par_iter_mut()
         .map_init(

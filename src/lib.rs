@@ -100,6 +100,7 @@ pub mod shade;
 
 pub mod film;
 pub mod layers;
+pub mod noise;
 pub mod render;
 
 #[cfg(feature = "cli")]

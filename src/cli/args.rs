@@ -5,7 +5,7 @@ use super::names::{
     BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, PPM, SAMPLERS, TONES, Traversal,
 };
 use super::stress;
-use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS};
+use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
 use spherule::image::{Depth, PpmEncoding};
@@ -13,6 +13,7 @@ use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, Roulette, SamplerKind, Tone};
 use spherule::trace::Width;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Renders scenes made of spheres: exact visibility, and the same picture at every speed setting
 #[derive(Debug, Parser)]
@@ -69,9 +70,16 @@ pub(super) struct PictureArgs {
     /// Width and height in pixels, each 1 to 65535
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = values::size)]
     pub(super) size: Option<Size>,
-    /// Samples per pixel
+    /// Samples per pixel; with --until-error or --time, the most of them
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(SAMPLES))]
     pub(super) spp: Option<u32>,
+    /// Stop when the picture is 95 % sure to be right: when the root of its mean squared error, by
+    /// its mean radiance, is below this; none for as many samples as --spp says
+    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, value_parser = values::error)]
+    pub(super) until_error: Option<Target<f64>>,
+    /// Stop when this time is over, as in 60s or 5m, with the best picture that it allows
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = values::time)]
+    pub(super) time: Option<Target<Duration>>,
     /// Most scatterings on a path: a number, or unlimited
     #[arg(long, value_name = "N", value_parser = values::depth)]
     pub(super) depth: Option<DepthLimit>,

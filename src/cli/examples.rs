@@ -14,6 +14,7 @@ pub(super) const RENDER: &str = "\
 Examples:
   spherule render                            a random field of spheres, to spherule.png
   spherule render scene.toml -o picture.exr --size 1920x1080 --spp 256
+  spherule render scene.toml --until-error 1%       as many samples as that takes
   spherule render particles.xyz -o figure.png --integrator ao
   spherule render scene.toml --region 100,50,64x64 -o detail.png
   spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id

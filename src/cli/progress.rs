@@ -55,7 +55,7 @@ impl Meter {
             Self::Bar { bar, step } => {
                 let now = (progress.done * STEPS) as u64;
                 if step.fetch_max(now, Ordering::Relaxed) < now {
-                    bar.set_message(rate(progress.rays, progress.elapsed));
+                    bar.set_message(message(&progress));
                     bar.set_position(now);
                 }
             }
@@ -94,10 +94,19 @@ pub(super) fn rate(rays: u64, elapsed: Duration) -> String {
     format!("{mega:.1} Mrays/s")
 }
 
+/// Speed, and how far the picture is from its limit if that is known.
+fn message(progress: &Progress) -> String {
+    let rate = rate(progress.rays, progress.elapsed);
+    match progress.noise {
+        Some(noise) => format!("{rate}, error {:.2} %", 100.0 * noise.error),
+        None => rate,
+    }
+}
+
 fn text(progress: &Progress) -> String {
     let left = progress.elapsed.mul_f64((1.0 - progress.done) / progress.done);
-    let (percent, rate) = (100.0 * progress.done, rate(progress.rays, progress.elapsed));
-    format!("{percent:.0} %, {:#} left, {rate}", HumanDuration(left))
+    let percent = 100.0 * progress.done;
+    format!("{percent:.0} %, {:#} left, {}", HumanDuration(left), message(progress))
 }
 
 fn bar() -> ProgressBar {
@@ -112,9 +121,11 @@ fn bar() -> ProgressBar {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spherule::noise::Noise;
 
     fn at(done: f64, seconds: u64) -> Progress {
-        Progress { done, rays: 30_000_000, elapsed: Duration::from_secs(seconds) }
+        let elapsed = Duration::from_secs(seconds);
+        Progress { done, rays: 30_000_000, elapsed, noise: None }
     }
 
     #[test]
@@ -130,5 +141,8 @@ mod tests {
     #[test]
     fn lines_tell_percent_time_left_and_speed() {
         assert_eq!(text(&at(0.25, 10)), "25 %, 30s left, 3.0 Mrays/s");
+        let noise = Some(Noise { error: 0.0123, bound: 0.013 });
+        let text = text(&Progress { noise, ..at(0.25, 10) });
+        assert_eq!(text, "25 %, 30s left, 3.0 Mrays/s, error 1.23 %");
     }
 }

@@ -3,6 +3,7 @@
 
 use super::args::PictureArgs;
 use super::names::{FILTERS, INTEGRATORS, PPM, SAMPLERS, TONES};
+use super::values::Target;
 use serde_json::{Map, Value, json};
 use spherule::film::Region;
 use spherule::image::{Depth, Format, WriteOptions};
@@ -20,12 +21,30 @@ impl PictureArgs {
         if let Some(depth) = self.depth {
             settings.depth = depth.0;
         }
-        settings.spp = self.spp.unwrap_or(settings.spp);
+        self.set_target(settings);
         settings.seed = self.seed.unwrap_or(settings.seed);
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         settings.filter = self.filter.unwrap_or(settings.filter);
         settings.roulette = self.roulette.unwrap_or(settings.roulette);
         settings.integrator = self.integrator(settings.integrator);
+    }
+
+    /// Samples, and what decides on them: where nobody has set a target before, the scene's samples
+    /// are no limit.
+    fn set_target(&self, settings: &mut Settings) {
+        let had_target = settings.has_target();
+        if let Some(Target(error)) = self.until_error {
+            settings.until_error = error;
+        }
+        if let Some(Target(time)) = self.time {
+            settings.time = time;
+        }
+        let usual = match (had_target, settings.has_target()) {
+            (false, true) => Settings::HARD_SAMPLES,
+            (true, false) => Settings::default().spp,
+            _ => settings.spp,
+        };
+        settings.spp = self.spp.unwrap_or(usual);
     }
 
     /// The integrator; one that was typed keeps the scene's parameters if it is the scene's own.
@@ -55,6 +74,12 @@ pub(super) fn list(settings: &Settings, region: Region) -> List {
         put("region", json!(region_text(region)));
     }
     put("spp", json!(settings.spp));
+    if let Some(error) = settings.until_error {
+        put("until_error", json!(error));
+    }
+    if let Some(time) = settings.time {
+        put("time", json!(time.as_secs_f64()));
+    }
     put("depth", settings.depth.map_or(json!("unlimited"), |depth| json!(depth)));
     put("seed", json!(settings.seed));
     put("integrator", json!(INTEGRATORS.name(&settings.integrator)));

@@ -5,6 +5,7 @@ use spherule::film::Region;
 use spherule::scene::Roulette;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// Pixels each way, as in scene files.
 const PIXELS: RangeInclusive<u32> = 1..=65_535;
@@ -12,11 +13,18 @@ const PIXELS: RangeInclusive<u32> = 1..=65_535;
 /// Samples per pixel, as in scene files.
 pub(super) const SAMPLES: RangeInclusive<i64> = 1..=1 << 24;
 
+/// Longest time limit, as in scene files.
+const MOST_TIME: Duration = Duration::from_secs(1_000_000_000);
+
 /// Threads: far more than any processor has gains nothing and costs memory.
 pub(super) const THREADS: RangeInclusive<i64> = 1..=4096;
 
 /// Rays of a stress run: a thousand years of them at most.
 pub(super) const RAYS: RangeInclusive<u64> = 1..=1 << 52;
+
+/// A target, or none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Target<T>(pub(super) Option<T>);
 
 /// Most scatterings on a path; `None` for no limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +90,38 @@ pub(super) fn roulette(text: &str) -> Result<Roulette, String> {
                 "give none, throughput, or a probability of more than 0 and at most 1".to_owned()
             }),
     }
+}
+
+/// `1%`, `0.01` or `none`.
+pub(super) fn error(text: &str) -> Result<Target<f64>, String> {
+    if text == "none" {
+        return Ok(Target(None));
+    }
+    let (digits, unit) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
+    number(digits)
+        .map(|value: f64| value / unit)
+        .filter(|share| *share > 0.0 && *share <= 1.0)
+        .map(|share| Target(Some(share)))
+        .ok_or_else(|| {
+            "give a part of the mean radiance, more than 0 and at most 100%, as in 1% or 0.01; or \
+             none"
+                .to_owned()
+        })
+}
+
+/// `90s`, `5m`, `1h 30m` or `none`.
+pub(super) fn time(text: &str) -> Result<Target<Duration>, String> {
+    if text == "none" {
+        return Ok(Target(None));
+    }
+    humantime::parse_duration(text)
+        .ok()
+        .filter(|time| !time.is_zero() && *time <= MOST_TIME)
+        .map(|time| Target(Some(time)))
+        .ok_or_else(|| {
+            "give a time of more than 0 with its unit, as in 60s, 500ms, 5m or 1h 30m; or none"
+                .to_owned()
+        })
 }
 
 /// Stops, in the range that scene files have too.
@@ -159,6 +199,12 @@ mod tests {
         for text in ["0", "-1", "NaN"] {
             assert!(distance(text).is_err(), "{text}");
         }
+        for text in ["0", "0%", "-1%", "101%", "NaN", "inf", "1 %%", "%", "small", ""] {
+            assert!(error(text).is_err(), "{text}");
+        }
+        for text in ["60", "0s", "-1s", "1 fortnight", "100y", "s", ""] {
+            assert!(time(text).is_err(), "{text}");
+        }
         assert!(depth("-1").is_err() && depth("4294967296").is_err() && depth("none").is_err());
         assert!(radii("0.1,").is_err() && radii("inf").is_err());
         assert!(mix("1,2").is_err() && mix("1,2,3,4").is_err());
@@ -167,6 +213,11 @@ mod tests {
     #[test]
     fn the_ends_of_ranges_belong_to_them() {
         assert_eq!(roulette("1"), Ok(Roulette::Fixed(1.0)));
+        assert_eq!(error("100%"), Ok(Target(Some(1.0))));
+        assert_eq!(error("2.5 %"), Ok(Target(Some(0.025))));
+        assert_eq!(error("0.01"), Ok(Target(Some(0.01))));
+        assert_eq!(time("1h 30m"), Ok(Target(Some(Duration::from_secs(5400)))));
+        assert_eq!((error("none"), time("none")), (Ok(Target(None)), Ok(Target(None))));
         assert_eq!(exposure("-100"), Ok(-100.0));
         assert_eq!(distance("inf"), Ok(f64::INFINITY));
         assert_eq!(depth("0"), Ok(DepthLimit(Some(0))));

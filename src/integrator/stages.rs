@@ -6,7 +6,7 @@ use super::workspace::{Arrival, Workspace};
 use crate::film::{Tile, View};
 use crate::lanes::{F64x8, Lanes, MAX_LANES, load_doubles};
 use crate::ray::{ExactRay, GROUND, MISS};
-use crate::sampling;
+use crate::sampling::{self, Sampler};
 use crate::shade::{Bsdf, dielectric};
 use crate::vec3;
 use crate::world::{Kind, MaterialId, World};
@@ -16,10 +16,20 @@ use std::ops::Range;
 /// Begins a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
 /// neighbors in the picture: packets are square.
 pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspace) {
+    generate_streams(job, tile.pixels().map(|(x, y)| (x, y, *job.sampler)), samples, work);
+}
+
+/// The same for streams of samples: column and row of a pixel, and the sampler of its numbers.
+pub fn generate_streams(
+    job: &Job,
+    streams: impl Iterator<Item = (u32, u32, Sampler)>,
+    samples: Range<u32>,
+    work: &mut Workspace,
+) {
     let mut count = 0;
-    for (x, y) in tile.pixels() {
+    for (x, y, sampler) in streams {
         let rows = count..count + samples.len();
-        job.sampler.start_all(x, y, samples.start, &mut work.paths.sample[rows.clone()]);
+        sampler.start_all(x, y, samples.start, &mut work.paths.sample[rows.clone()]);
         work.rays.origin.x[rows.clone()].fill(x as f32);
         work.rays.origin.y[rows.clone()].fill(y as f32);
         count = rows.end;

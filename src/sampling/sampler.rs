@@ -11,6 +11,9 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 /// Sets the keys of split events apart from those of draws.
 const SPLIT: u64 = 0x5851_f42d_4c95_7f2d;
 
+/// Sets the keys of replicas apart from those of pixels.
+const REPLICA: u64 = 0xbb67_ae85_84ca_a73b;
+
 /// Sets the keys of numbers beyond the Sobol dimensions apart from both.
 const BEYOND: u64 = 0xd134_2543_de82_ef95;
 
@@ -61,6 +64,12 @@ impl Sampler {
         };
         // Mixed, so that the pixels' keys of neighboring seeds do not overlap.
         Self { seed: mix(seed), points }
+    }
+
+    /// A sampler of points of the same kind, independent of this one's and of every other replica's:
+    /// number 0 is another one too.
+    pub fn replica(&self, number: u64) -> Self {
+        Self { seed: stream(self.seed ^ REPLICA, number), ..*self }
     }
 
     /// The state of the path of sample `index`, from 0, of the pixel in column `x` and row `y`.

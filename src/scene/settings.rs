@@ -1,5 +1,7 @@
 //! How the picture is made.
 
+use std::time::Duration;
+
 /// How the picture is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -7,8 +9,13 @@ pub struct Settings {
     pub width: u32,
     /// Pixels, 1..=65535 each way.
     pub height: u32,
-    /// Samples per pixel, 1 or more.
+    /// Samples per pixel, 1 or more; with a target, `until_error` or `time`, the most.
     pub spp: u32,
+    /// Ends the render when the picture's error is below this, more than 0: the root of the mean
+    /// squared error of linear radiance, by the mean radiance.
+    pub until_error: Option<f64>,
+    /// Ends the render when this time is over.
+    pub time: Option<Duration>,
     /// Most scatterings on a path: 0 sees only what emits. `None`: no limit but
     /// [`Settings::HARD_DEPTH`].
     pub depth: Option<u32>,
@@ -93,6 +100,14 @@ impl Settings {
     /// The most scatterings of a path whose depth is not limited. Paths cut here are counted, and
     /// reported.
     pub const HARD_DEPTH: u32 = 4096;
+
+    /// The most samples of a pixel with a target, where nobody says how many.
+    pub const HARD_SAMPLES: u32 = 1 << 16;
+
+    /// Whether a target decides on samples.
+    pub fn has_target(&self) -> bool {
+        self.until_error.is_some() || self.time.is_some()
+    }
 }
 
 impl Default for Settings {
@@ -101,6 +116,8 @@ impl Default for Settings {
             width: 800,
             height: 600,
             spp: 16,
+            until_error: None,
+            time: None,
             depth: None,
             seed: 0,
             integrator: Integrator::Path,

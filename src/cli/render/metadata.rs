@@ -39,8 +39,15 @@ fn metadata(job: &Job, prepared: &Prepared, render: &Render, options: &WriteOpti
         };
         metadata.push(name, text);
     }
-    if !render.complete {
-        metadata.push("samples taken", render.counters.camera_rays.to_string());
+    if prepared.scene.settings.has_target() {
+        metadata.push("rounds", render.samples.rounds.to_string());
+    }
+    if prepared.scene.settings.has_target() || !render.complete {
+        metadata.push("samples taken", render.samples.total.to_string());
+    }
+    if let Some(noise) = render.noise {
+        metadata.push("error", noise.error.to_string());
+        metadata.push("error bound", noise.bound.to_string());
     }
     metadata
 }

@@ -4,6 +4,7 @@ mod interrupt;
 mod job;
 mod layers;
 mod metadata;
+mod noise;
 mod notes;
 mod prepare;
 mod summary;
@@ -32,7 +33,7 @@ fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
     let prepared = Prepared::load(job)?;
     prepared.tell(job);
     let render = trace(job, &prepared);
-    if render.counters.camera_rays == 0 {
+    if render.samples.total == 0 {
         output::warn("interrupted before the first sample: nothing is written");
         return Ok(ExitCode::from(INTERRUPTED));
     }
@@ -43,9 +44,13 @@ fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
     if render.complete {
         return Ok(ExitCode::SUCCESS);
     }
-    let share = 100.0 * prepared.share(&render);
     let output = job.output.display();
-    output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
+    if prepared.scene.settings.has_target() {
+        output::warn(format_args!("interrupted: {output} holds what there was"));
+    } else {
+        let share = 100.0 * prepared.share(&render);
+        output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
+    }
     Ok(ExitCode::from(INTERRUPTED))
 }
 
@@ -57,6 +62,7 @@ fn trace(job: &Job, prepared: &Prepared) -> Render {
         region: Some(prepared.region),
         progress: Some(&show),
         cancel: Some(interrupt::flag()),
+        statistics: false,
     };
     let render = render(&prepared.world, &prepared.scene.settings, &options);
     meter.finish();

@@ -90,7 +90,7 @@ impl Prepared {
 
     /// Share of the samples that a render has taken, 0..=1.
     pub(super) fn share(&self, render: &Render) -> f64 {
-        render.counters.camera_rays as f64 / self.samples() as f64
+        render.samples.total as f64 / self.samples() as f64
     }
 }
 

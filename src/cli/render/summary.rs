@@ -1,6 +1,7 @@
 //! How a render went: the same facts as lines and as JSON.
 
 use super::job::Job;
+use super::noise::{NoiseSummary, missed};
 use super::prepare::Prepared;
 use crate::cli::args::ReportArgs;
 use crate::cli::contents::{found, plural, spheres};
@@ -31,6 +32,7 @@ pub(super) struct Summary<'a> {
     settings: List,
     tracer: TracerSummary,
     statistics: Statistics,
+    noise: Option<NoiseSummary>,
     found: Vec<String>,
     skipped: Vec<String>,
     notes: &'a [String],
@@ -83,7 +85,8 @@ impl<'a> Summary<'a> {
     ) -> Self {
         let mut listed = settings::list(&prepared.scene.settings, prepared.region);
         listed.extend(settings::list_encoding(job.format, options));
-        let new_warnings = warnings(&render.counters, &prepared.scene.settings);
+        let mut new_warnings = warnings(&render.counters, &prepared.scene.settings);
+        new_warnings.extend(missed(render, &prepared.scene.settings));
         Self {
             program: "spherule",
             version: env!("CARGO_PKG_VERSION"),
@@ -93,6 +96,7 @@ impl<'a> Summary<'a> {
             settings: listed,
             tracer: TracerSummary::new(job, prepared.builder),
             statistics: Statistics::new(prepared, render),
+            noise: NoiseSummary::new(prepared, render),
             found: found(&prepared.world),
             skipped: prepared.world.features.skipped(),
             notes: &prepared.notes,
@@ -146,6 +150,7 @@ impl<'a> Summary<'a> {
             HumanCount(statistics.shadow_rays),
             plural(statistics.exact_decisions, "decision"),
         ));
+        self.noise.iter().for_each(NoiseSummary::print);
     }
 }
 
@@ -182,7 +187,7 @@ impl Statistics {
             load_seconds: prepared.load.as_secs_f64(),
             build_seconds: prepared.build.as_secs_f64(),
             render_seconds: seconds,
-            samples: counters.camera_rays,
+            samples: render.samples.total,
             rays: counters.rays(),
             skipped_samples: counters.skipped_samples,
             camera_rays: counters.camera_rays,

@@ -73,7 +73,7 @@ fn measure(args: &Args) -> Result<Report, Failure> {
     let show = |more: u64| {
         let rays = traced.fetch_add(more, Ordering::Relaxed) + more;
         let done = rays as f64 / options.rays as f64;
-        meter.show(Progress { done, rays, elapsed: start.elapsed() });
+        meter.show(Progress { done, rays, elapsed: start.elapsed(), noise: None });
     };
     let pool = threads::pool(threads::count(args.threads))?;
     let report = pool.install(|| stress::run(&options, &show));

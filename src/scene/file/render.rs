@@ -3,18 +3,26 @@
 use super::block::Block;
 use super::value::{Limits, Value};
 use crate::scene::{Filter, Integrator, Roulette, SamplerKind, SceneError, Settings, Tone};
+use std::time::Duration;
 use toml::de::DeValue;
 
 /// Most pixels each way.
 const MOST_PIXELS: u64 = 65_535;
 /// Most samples per pixel: above, sums in single precision would stall.
 const MOST_SAMPLES: u64 = 1 << 24;
+/// Longest time limit: some thirty years.
+const MOST_SECONDS: f64 = 1e9;
 
 pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
     let usual = Settings::default();
     let [width, height] =
         block.value("size").map_or(Ok([usual.width, usual.height]), |value| size(&value))?;
-    let spp = block.value("spp").map_or(Ok(u64::from(usual.spp)), |v| v.whole(1, MOST_SAMPLES))?;
+    let until_error = block.value("until_error").map(|v| v.number(Limits::AboveTo(0.0, 1.0)));
+    let time = block.value("time").map(|v| v.number(Limits::AboveTo(0.0, MOST_SECONDS)));
+    let (until_error, time) = (until_error.transpose()?, time.transpose()?);
+    let targeted = until_error.is_some() || time.is_some();
+    let usual_spp = if targeted { Settings::HARD_SAMPLES } else { usual.spp };
+    let spp = block.value("spp").map_or(Ok(u64::from(usual_spp)), |v| v.whole(1, MOST_SAMPLES))?;
     let depth = block.value("depth").map_or(Ok(usual.depth), |value| depth(&value))?;
     let seed = block.value("seed").map_or(Ok(usual.seed), |value| value.whole(0, u64::MAX))?;
     let exposure = block
@@ -24,6 +32,8 @@ pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
         width,
         height,
         spp: spp as u32,
+        until_error,
+        time: time.map(Duration::from_secs_f64),
         depth,
         seed,
         integrator: integrator(block)?,

@@ -55,6 +55,8 @@ pub(super) const RENDER: Schema = Schema {
     keys: &[
         ("size", &[]),
         ("spp", &[]),
+        ("until_error", &[]),
+        ("time", &[]),
         ("depth", &[]),
         ("seed", &[]),
         ("shadow_samples", &["whitted"]),

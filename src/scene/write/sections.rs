@@ -38,8 +38,13 @@ pub(super) fn render(settings: &Settings) -> String {
         Tone::Linear => "linear",
         Tone::Filmic => "filmic",
     };
+    let line = |key: &str, value: Option<f64>| {
+        value.map_or(String::new(), |value| format!("{key} = {value:?}\n"))
+    };
+    let error = line("until_error", settings.until_error);
+    let time = line("time", settings.time.map(|time| time.as_secs_f64()));
     format!(
-        "[render]\nsize = [{width}, {height}]\nspp = {spp}\ndepth = {depth}\nseed = {seed}\n\
+        "[render]\nsize = [{width}, {height}]\nspp = {spp}\n{error}{time}depth = {depth}\nseed = {seed}\n\
          integrator = {integrator}\nsampler = \"{sampler}\"\nfilter = \"{filter}\"\n\
          roulette = {roulette}\nexposure = {exposure:?}\ntone = \"{tone}\"\n\n"
     )

@@ -1,0 +1,83 @@
+//! How far the picture is from its limit, in a report.
+
+use super::prepare::Prepared;
+use crate::cli::output;
+use serde::Serialize;
+use spherule::film::Region;
+use spherule::noise::CONFIDENCE;
+use spherule::render::{End, Render, Samples};
+use spherule::scene::Settings;
+
+/// How far the picture is from its limit, by its mean radiance.
+#[derive(Serialize)]
+pub(super) struct NoiseSummary {
+    error: f64,
+    bound: f64,
+    confidence: f64,
+    ended_by: &'static str,
+    rounds: u32,
+    least_samples: u32,
+    most_samples: u32,
+    mean_samples: f64,
+}
+
+impl NoiseSummary {
+    pub(super) fn new(prepared: &Prepared, render: &Render) -> Option<Self> {
+        let Region { width, height, .. } = prepared.region;
+        let Samples { total, least, most, rounds } = render.samples;
+        render.noise.map(|noise| Self {
+            error: noise.error,
+            bound: noise.bound,
+            confidence: CONFIDENCE,
+            ended_by: match render.end {
+                End::Samples => "samples",
+                End::Error => "error",
+                End::Time => "time",
+                End::Cancelled => "interrupt",
+            },
+            rounds,
+            least_samples: least,
+            most_samples: most,
+            mean_samples: total as f64 / (f64::from(width) * f64::from(height)),
+        })
+    }
+
+    /// As a line.
+    pub(super) fn print(&self) {
+        let percent = |share: f64| two_digits(100.0 * share);
+        output::print(format_args!(
+            "error   {} % ({:.0} % sure that it is below {} %), {} samples per pixel ({} to {})",
+            percent(self.error),
+            100.0 * self.confidence,
+            percent(self.bound),
+            two_digits(self.mean_samples),
+            self.least_samples,
+            self.most_samples,
+        ));
+    }
+}
+
+/// A target that was not met, though nobody interrupted the render.
+pub(super) fn missed(render: &Render, settings: &Settings) -> Option<String> {
+    let target = settings.until_error.filter(|_| render.end == End::Samples)?;
+    let bound = render.noise.map(|noise| noise.bound).filter(|bound| *bound > target)?;
+    Some(format!(
+        "the error is {} % at most, not {} %: {} samples per pixel are too few; give --spp a larger \
+         number",
+        two_digits(100.0 * bound),
+        two_digits(100.0 * target),
+        settings.spp
+    ))
+}
+
+/// A number with three digits or more, two of them behind the point at most.
+fn two_digits(number: f64) -> String {
+    let places = if number < 0.1 {
+        4
+    } else if number < 10.0 {
+        2
+    } else {
+        1
+    };
+    format!("{number:.places$}")
+}

@@ -1,0 +1,184 @@
+//! Where samples become pixels: tiles of sums in double precision.
+//!
+//! Each pixel's samples are added up in the order of their index, by the one task that owns its
+//! tile, so the sum does not depend on threads, on tile order, or on how the samples are divided
+//! into passes. A filter that is sampled gives every sample weight 1: a pixel is the mean of its
+//! own.
+
+mod probes;
+mod sums;
+mod tile;
+
+pub use probes::{Density, Pilot, Probes, Reading, Role};
+pub use sums::Sums;
+pub use tile::{TILE, Tile, View};
+
+use crate::image::Image;
+
+/// A rectangle of pixels of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// First column, from the left.
+    pub x: u32,
+    /// First row, from the top.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// The sums of all pixels of a region.
+#[derive(Clone, Debug)]
+pub struct Film {
+    /// What part of the picture it is.
+    pub region: Region,
+    /// Its tiles, row by row.
+    pub tiles: Vec<Tile>,
+}
+
+impl Film {
+    /// Bytes that a film of so many pixels takes, and the picture that it becomes.
+    pub fn bytes(region: Region) -> u64 {
+        let pixel = size_of::<([f64; 3], [f32; 3])>() as u64;
+        u64::from(region.width) * u64::from(region.height) * pixel
+    }
+
+    /// A black film; with sums of squares, which tell how samples spread, if `squared`.
+    pub fn new(region: Region, squared: bool) -> Self {
+        let steps = |first: u32, count: u32| {
+            (first..first + count)
+                .step_by(TILE as usize)
+                .map(move |from| (from, TILE.min(first + count - from)))
+        };
+        let tiles = steps(region.y, region.height)
+            .flat_map(|(y, height)| {
+                steps(region.x, region.width).map(move |(x, width)| Region { x, y, width, height })
+            })
+            .map(|region| Tile::new(region, squared))
+            .collect();
+        Self { region, tiles }
+    }
+
+    /// Tiles in a row of them.
+    pub fn columns(&self) -> usize {
+        self.region.width.div_ceil(TILE) as usize
+    }
+
+    /// How many pixels it has.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.region.width) * u64::from(self.region.height)
+    }
+
+    /// Gives probes to the tiles that need them.
+    pub fn place_probes(&mut self, density: Density, seed: u64, needed: impl Fn(&Tile) -> bool) {
+        for tile in self.tiles.iter_mut().filter(|tile| needed(tile)) {
+            tile.probes = Probes::new(tile, density, seed);
+        }
+    }
+
+    /// The mean radiance over pixels and channels.
+    pub fn mean(&self) -> f64 {
+        let means = self.tiles.iter().flat_map(|tile| tile.sums.means(tile.samples));
+        means.flatten().sum::<f64>() / (3.0 * self.pixels() as f64)
+    }
+
+    /// The mean radiance of each pixel; black where there is no sample.
+    pub fn resolve(&self) -> Image {
+        let radiance = |tile: &Tile| tile.sums.means(tile.samples).map(single).collect::<Vec<_>>();
+        Image {
+            width: self.region.width,
+            height: self.region.height,
+            pixels: self.gather([0.0; 3], radiance),
+        }
+    }
+
+    /// Samples of each pixel, row by row.
+    pub fn samples(&self) -> Vec<u32> {
+        self.gather(0, |tile| vec![tile.samples; tile.len() as usize])
+    }
+
+    /// Variance of each pixel's mean, row by row and by channel: the variance of its samples over
+    /// their number, times what `gain` says of its tile. All 0 without sums of squares.
+    pub fn variance(&self, gain: impl Fn(usize) -> f64) -> Image {
+        let gains: Vec<f64> = (0..self.tiles.len()).map(gain).collect();
+        let mut tiles = gains.iter();
+        let pixels = self.gather([0.0; 3], |tile| {
+            let factor = tiles.next().copied().unwrap_or(1.0) / f64::from(tile.samples.max(1));
+            let of_mean = |variance: [f64; 3]| single(variance.map(|channel| channel * factor));
+            tile.sums.variances(tile.samples).map(of_mean).collect()
+        });
+        Image { width: self.region.width, height: self.region.height, pixels }
+    }
+
+    /// Puts what tiles say of their pixels into rows of the region.
+    fn gather<T: Copy>(&self, empty: T, mut of_tile: impl FnMut(&Tile) -> Vec<T>) -> Vec<T> {
+        let width = self.region.width as usize;
+        let mut pixels = vec![empty; width * self.region.height as usize];
+        for tile in &self.tiles {
+            for ((x, y), value) in tile.pixels().zip(of_tile(tile)) {
+                let (column, row) = (x - self.region.x, y - self.region.y);
+                pixels[row as usize * width + column as usize] = value;
+            }
+        }
+        pixels
+    }
+}
+
+fn single(channels: [f64; 3]) -> [f32; 3] {
+    channels.map(|channel| channel as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Rgb;
+
+    #[test]
+    fn tiles_hold_every_pixel_once_whatever_the_size() {
+        for (width, height) in [(1, 1), (16, 16), (17, 1), (1, 40), (33, 50)] {
+            let region = Region { x: 5, y: 7, width, height };
+            let film = Film::new(region, false);
+            let mut seen = vec![0; (width * height) as usize];
+            for (x, y) in film.tiles.iter().flat_map(Tile::pixels) {
+                seen[((y - 7) * width + x - 5) as usize] += 1;
+            }
+            assert!(seen.iter().all(|&count| count == 1), "{width} x {height}");
+        }
+    }
+
+    #[test]
+    fn films_of_any_size_are_measured() {
+        let side = u32::from(u16::MAX);
+        let region = Region { x: 0, y: 0, width: side, height: side };
+        assert!(Film::bytes(region) > 150_000_000_000);
+        let region = Region { width: u32::MAX, height: u32::MAX >> 6, ..region };
+        assert!(Film::bytes(region) > 1 << 62);
+    }
+
+    #[test]
+    fn packets_of_pixels_are_square() {
+        let film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false);
+        let first: Vec<_> = film.tiles[0].pixels().take(16).collect();
+        assert!(first.iter().all(|&(x, y)| x < 4 && y < 4));
+    }
+
+    #[test]
+    fn a_pixel_is_the_mean_of_its_samples() {
+        let mut film = Film::new(Region { x: 0, y: 0, width: 2, height: 1 }, false);
+        let sample = |x: f32| Rgb::new(x, 2.0 * x, 0.0);
+        film.tiles[0].add(&[sample(1.0), sample(2.0), sample(3.0), sample(5.0)], 2);
+        film.tiles[0].add(&[sample(6.0), sample(1.0)], 1);
+        assert_eq!(film.resolve().pixels, [[3.0, 6.0, 0.0], [3.0, 6.0, 0.0]]);
+    }
+
+    #[test]
+    fn a_million_samples_do_not_stall() {
+        let mut film = Film::new(Region { x: 0, y: 0, width: 1, height: 1 }, false);
+        let block = vec![Rgb::splat(0.1); 1 << 12];
+        for _ in 0..1 << 13 {
+            film.tiles[0].add(&block, 1 << 12);
+        }
+        assert_eq!(film.resolve().pixels[0], [0.1; 3]);
+    }
+}

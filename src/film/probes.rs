@@ -1,0 +1,191 @@
+//! Probes: pixels that are rendered beside the picture, twice each, to see how far two equal renders
+//! of them are apart.
+//!
+//! What the probes of a tile have seen is no part of the picture: every one of their streams of
+//! samples has numbers of its own. So whatever is decided by them, the picture's own samples know
+//! nothing of it (see [`crate::noise`]).
+
+use super::{Sums, Tile};
+use crate::sampling::{Sampler, mix, stream};
+use crate::scene::Rgb;
+use std::ops::Range;
+
+/// Sets the hashes that place probes apart from those that make samples.
+const PLACES: u64 = 0x6a09_e667_f3bc_c909;
+
+/// Sampler replica of the pilot's samples; those of probes come after it, the picture's is none.
+const PILOT: u64 = 1;
+
+/// What a probe is for. What steers does not judge: a tile that looks quiet by chance would not be
+/// refined, and would be judged by the same chance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Says which tiles need more samples.
+    Steer,
+    /// Says how far the picture is from its limit.
+    Judge,
+}
+
+/// Streams of samples of a probe.
+const PAIR: usize = 2;
+
+/// How many pixels have a probe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Density {
+    /// Neighboring pixels that share a probe of each role: a power of two.
+    pub block: u32,
+    /// Probes of each role in each block, in places of their own.
+    pub replicas: u32,
+}
+
+/// The probes of a tile, and its pilot.
+#[derive(Clone, Debug, Default)]
+pub struct Probes {
+    /// Samples in each of the streams.
+    pub samples: u32,
+    /// Rays that these took.
+    pub rays: u64,
+    /// One of each role after the other.
+    places: Vec<Place>,
+    /// Two streams for each place, one after the other.
+    sums: Sums,
+    /// What a few samples of all pixels have seen before the render.
+    pub pilot: Pilot,
+}
+
+/// Where a probe is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    x: u32,
+    y: u32,
+    /// Pixels for which it stands.
+    weight: f64,
+}
+
+/// A sum over a tile's pixels, and its variance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pilot {
+    /// Sum of the pixels' radiance, averaged over the channels.
+    pub sum: f64,
+    /// Of the sum; an upper estimate where pixels differ.
+    pub variance: f64,
+}
+
+/// What one probe says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Pixels for which it stands.
+    pub weight: f64,
+    /// Mean over channels and both streams.
+    pub radiance: f64,
+    /// Half the squared difference of the streams' means, averaged over channels: an estimate,
+    /// without bias, of the variance of the mean of one stream.
+    pub squared: f64,
+    /// The same, if samples were independent: their variance over their number.
+    pub independent: f64,
+}
+
+impl Density {
+    /// What suits a picture of so many pixels: one in 64 has a probe of each role, which takes a
+    /// sixteenth of the time; more in small pictures, which would have too few.
+    pub fn of(pixels: u64) -> Self {
+        let block = match pixels {
+            65_536.. => 64,
+            4096.. => 32,
+            _ => 1 << (pixels / 128).max(1).ilog2(),
+        };
+        Self { block, replicas: 32_u64.div_ceil(pixels.clamp(1, 32)) as u32 }
+    }
+}
+
+impl Probes {
+    /// Places the probes of a tile, by a hash of `seed` and block: in a block each pixel is as
+    /// likely as the others.
+    pub fn new(tile: &Tile, density: Density, seed: u64) -> Self {
+        let pixels: Vec<_> = tile.pixels().collect();
+        let key =
+            stream(mix(seed ^ PLACES), u64::from(tile.region.y) << 32 | u64::from(tile.region.x));
+        let blocks = pixels.chunks(density.block as usize);
+        let places: Vec<Place> = (0..density.replicas)
+            .flat_map(|_| blocks.clone())
+            .flat_map(|block| [block; 2])
+            .zip(0..)
+            .map(|(block, number)| place(block, stream(key, number), density))
+            .collect();
+        let sums = Sums::new(places.len() * PAIR, true);
+        Self { places, sums, ..Self::default() }
+    }
+
+    /// Streams of samples; none if nothing is measured.
+    pub fn streams(&self) -> usize {
+        self.places.len() * PAIR
+    }
+
+    /// Pixel and sampler of each stream. All of them, and the picture, are independent.
+    pub fn starts<'a>(
+        &'a self,
+        sampler: &'a Sampler,
+    ) -> impl Iterator<Item = (u32, u32, Sampler)> + 'a {
+        let replicas = PILOT + 1..;
+        let both = self.places.iter().flat_map(|place| [place; PAIR]);
+        both.zip(replicas).map(|(place, number)| (place.x, place.y, sampler.replica(number)))
+    }
+
+    /// Adds samples to every stream, as [`Sums::add`] does.
+    pub fn add(&mut self, radiance: &[Rgb], samples: &Range<u32>) -> u64 {
+        self.samples = samples.end;
+        self.sums.add(radiance, samples.end - samples.start)
+    }
+
+    /// What the probes of one role say.
+    pub fn readings(&self, role: Role) -> impl Iterator<Item = Reading> + '_ {
+        let means: Vec<_> = self.sums.means(self.samples).collect();
+        let variances: Vec<_> = self.sums.variances(self.samples).collect();
+        let count = f64::from(self.samples.max(1));
+        (role as usize..self.places.len()).step_by(2).map(move |place| {
+            let [a, b] = [means[PAIR * place], means[PAIR * place + 1]];
+            let spread = [variances[PAIR * place], variances[PAIR * place + 1]];
+            Reading {
+                weight: self.places[place].weight,
+                radiance: f64::midpoint(average(a), average(b)),
+                squared: average(std::array::from_fn(|i| (a[i] - b[i]).powi(2) / 2.0)),
+                independent: spread.map(average).iter().sum::<f64>() / 2.0 / count,
+            }
+        })
+    }
+
+    /// Rays of a sample, on average.
+    pub fn rays_per_sample(&self) -> f64 {
+        self.rays as f64 / (self.samples as f64 * self.streams() as f64).max(1.0)
+    }
+}
+
+impl Pilot {
+    /// The sampler of its samples.
+    pub fn sampler(sampler: &Sampler) -> Sampler {
+        sampler.replica(PILOT)
+    }
+
+    /// From `radiance`, `count` samples of each pixel.
+    ///
+    /// The variance is that of neighbors in the column, whose differences hold noise and content.
+    pub fn new(radiance: &[Rgb], count: u32) -> Self {
+        let values: Vec<f64> =
+            radiance.iter().map(|sample| average(sample.to_array().map(f64::from))).collect();
+        let sum: f64 = values.iter().sum();
+        let squares: f64 = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2) / 2.0).sum();
+        let (number, count) = (values.len() as f64, f64::from(count));
+        let variance = if values.len() > 1 { squares * number / (number - 1.0) } else { sum * sum };
+        Self { sum: sum / count, variance: variance / (count * count) }
+    }
+}
+
+fn place(block: &[(u32, u32)], hash: u64, density: Density) -> Place {
+    // The upper half of the product is less than the number of pixels.
+    let (x, y) = block[(((hash >> 32) * block.len() as u64) >> 32) as usize];
+    Place { x, y, weight: block.len() as f64 / f64::from(density.replicas) }
+}
+
+fn average(channels: [f64; 3]) -> f64 {
+    channels.iter().sum::<f64>() / 3.0
+}

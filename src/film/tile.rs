@@ -1,0 +1,84 @@
+//! The sums of a square of pixels.
+
+use super::{Probes, Region, Sums};
+use crate::scene::Rgb;
+
+/// Pixels along a tile's side.
+pub const TILE: u32 = 16;
+
+/// The sums of a square of pixels.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// Where it is in the picture; smaller than [`TILE`] at the region's right and lower edge.
+    pub region: Region,
+    /// Sums of radiance, in the order of [`Tile::pixels`].
+    pub(super) sums: Sums,
+    /// Samples in each of the sums.
+    pub samples: u32,
+    /// What its camera rays may hit.
+    pub view: View,
+    /// What tells how far the sums are from their limit; none unless that is measured.
+    pub probes: Probes,
+}
+
+/// What camera rays of a tile may hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// Anything.
+    Anything,
+    /// The ground and the environment, but no sphere.
+    Background,
+}
+
+impl Tile {
+    /// A black tile; with sums of squares if `squared`.
+    pub(super) fn new(region: Region, squared: bool) -> Self {
+        let pixels = region.width as usize * region.height as usize;
+        Self {
+            region,
+            sums: Sums::new(pixels, squared),
+            samples: 0,
+            view: View::Anything,
+            probes: Probes::default(),
+        }
+    }
+
+    /// The pixels as columns and rows of the picture, along a Morton curve: the first four are a
+    /// square, and so are the first sixteen.
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let inside = |&(x, y): &(u32, u32)| x < self.region.width && y < self.region.height;
+        (0..TILE * TILE)
+            .map(|i| (even_bits(i), even_bits(i >> 1)))
+            .filter(inside)
+            .map(|(x, y)| (self.region.x + x, self.region.y + y))
+    }
+
+    /// How many pixels it has.
+    pub fn len(&self) -> u32 {
+        self.region.width * self.region.height
+    }
+
+    /// Whether it has no pixels: never.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Adds `count` samples of the same radiance, finite and not negative, to every pixel.
+    pub fn add_even(&mut self, radiance: Rgb, count: u32) {
+        self.sums.add_even(radiance, count);
+        self.samples += count;
+    }
+
+    /// Adds `count` samples to every pixel: `radiance` holds those of the first pixel, then those
+    /// of the next. Returns how many were negative or not finite: these count as black, and are
+    /// told of in the statistics.
+    pub fn add(&mut self, radiance: &[Rgb], count: u32) -> u64 {
+        self.samples += count;
+        self.sums.add(radiance, count)
+    }
+}
+
+/// The bits of `i` at even places, side by side.
+fn even_bits(i: u32) -> u32 {
+    (0..16).fold(0, |bits, place| bits | (i >> (2 * place) & 1) << place)
+}

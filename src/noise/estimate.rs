@@ -1,0 +1,245 @@
+//! The error of a picture, from what probes say.
+
+use crate::film::{Film, Pilot, Reading, Role, Tile};
+use std::ops::Add;
+
+/// Share of renders whose error is below [`Noise::bound`], at least.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// The bound lies this many standard deviations above the estimate. One look at Gaussian terms would
+/// need 1.64 for [`CONFIDENCE`]; this allows for several looks and for heavy tails.
+const DEVIATIONS: f64 = 2.4;
+
+/// Weight of the third moment over the second in the bound: (2 x^2 + 1) / 6 for the same `x`.
+const SKEW: f64 = (2.0 * DEVIATIONS * DEVIATIONS + 1.0) / 6.0;
+
+/// An estimated number.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Its variance, rather too large than too small.
+    pub variance: f64,
+    /// Its third moment about the mean, likewise; 0 if it is not skew.
+    pub third: f64,
+}
+
+/// How far a picture is from its limit: the root of its mean squared error, over pixels and
+/// channels, by its mean radiance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// The estimate.
+    pub error: f64,
+    /// What it is below with the probability [`CONFIDENCE`].
+    pub bound: f64,
+}
+
+impl Noise {
+    /// From the sum of the squared errors of so many pixels, and their mean radiance. A picture
+    /// without error has none relative to black either.
+    pub fn new(squared: Estimate, pixels: u64, mean: Estimate) -> Self {
+        if squared.value == 0.0 {
+            return Self { error: 0.0, bound: 0.0 };
+        }
+        if mean.value == 0.0 {
+            return Self { error: f64::INFINITY, bound: f64::INFINITY };
+        }
+        let ratio = squared.value / pixels as f64 / mean.value.powi(2);
+        // Relative variances of the sum and of the squared mean.
+        let variance =
+            squared.variance / squared.value.powi(2) + 4.0 * mean.variance / mean.value.powi(2);
+        // What Cornish and Fisher add for a skew sum, by terms of which few are large.
+        let skew = squared.third / squared.variance.max(f64::MIN_POSITIVE) / squared.value;
+        let bound = ratio * (1.0 + DEVIATIONS * variance.sqrt() + SKEW * skew);
+        Self { error: ratio.sqrt(), bound: bound.sqrt() }
+    }
+}
+
+impl Estimate {
+    /// What a reading adds to the sum of squared errors. The error of the picture at hand strays
+    /// from its expectation too: its pixels are `weight` times as many as the probes.
+    fn of_squared(reading: &Reading) -> Self {
+        let value = reading.weight * reading.squared;
+        let stray = 1.0 + 1.0 / reading.weight.max(1.0);
+        Self { value, variance: value * value * stray, third: value.powi(3) }
+    }
+
+    /// The better one of two of the same, or what is better than both.
+    fn with(self, other: Self) -> Self {
+        let total = self.variance + other.variance;
+        if self.variance == 0.0 || other.variance == 0.0 {
+            return self;
+        }
+        Self {
+            value: (self.value * other.variance + other.value * self.variance) / total,
+            variance: self.variance * other.variance / total,
+            third: 0.0,
+        }
+    }
+}
+
+impl Add for Estimate {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            variance: self.variance + other.variance,
+            third: self.third + other.third,
+        }
+    }
+}
+
+/// The sum of the squared errors of all pixels, averaged over channels.
+pub fn squared_error(film: &Film) -> Estimate {
+    let readings = film.tiles.iter().flat_map(|tile| tile.probes.readings(Role::Judge));
+    readings.map(|reading| Estimate::of_squared(&reading)).fold(Estimate::default(), Add::add)
+}
+
+/// The mean radiance over pixels and channels, from pilot and probes: the picture's own samples have
+/// no part in it.
+pub fn mean_radiance(film: &Film) -> Estimate {
+    let pixels = film.pixels() as f64;
+    let scale = |sum: Estimate| Estimate {
+        value: sum.value / pixels,
+        variance: sum.variance / (pixels * pixels),
+        third: 0.0,
+    };
+    let pilot = film.tiles.iter().map(pilot).fold(Estimate::default(), Add::add);
+    let probes = film.tiles.iter().map(probes).fold(Estimate::default(), Add::add);
+    scale(pilot).with(scale(probes))
+}
+
+/// The sum of a tile's radiance by its pilot.
+fn pilot(tile: &Tile) -> Estimate {
+    let Pilot { sum, variance } = tile.probes.pilot;
+    Estimate { value: sum, variance, third: 0.0 }
+}
+
+/// The same by its probes; by its pilot, which is exact, if it needs none.
+fn probes(tile: &Tile) -> Estimate {
+    if tile.probes.streams() == 0 {
+        return pilot(tile);
+    }
+    let pairs = tile.probes.readings(Role::Steer).zip(tile.probes.readings(Role::Judge));
+    let sums = pairs.map(|(a, b)| Estimate {
+        value: a.weight * (a.radiance + b.radiance) / 2.0,
+        variance: (a.weight * (a.radiance - b.radiance) / 2.0).powi(2),
+        third: 0.0,
+    });
+    sums.fold(Estimate::default(), Add::add)
+}
+
+/// By how much the variance of pixels' means in a tile differs from that of as many independent
+/// samples, from the probes of the tile and its neighbors: less than 1 for well-distributed samples,
+/// 1 where nothing is known.
+pub fn gain(film: &Film, tile: usize) -> f64 {
+    let (mut squared, mut independent) = (0.0, 0.0);
+    for (neighbor, _) in neighbors(tile, film.columns(), film.tiles.len()) {
+        let probes = &film.tiles[neighbor].probes;
+        for reading in [Role::Steer, Role::Judge].iter().flat_map(|role| probes.readings(*role)) {
+            squared += reading.weight * reading.squared;
+            independent += reading.weight * reading.independent;
+        }
+    }
+    if independent > 0.0 { squared / independent } else { 1.0 }
+}
+
+/// A tile and those around it, row by row, each with its share in what is pooled.
+pub(super) fn neighbors(
+    tile: usize,
+    columns: usize,
+    count: usize,
+) -> impl Iterator<Item = (usize, f64)> {
+    let (column, row, rows) = (tile % columns, tile / columns, count / columns);
+    let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+    let weight = move |at: usize, middle: usize| if at == middle { 2.0 } else { 1.0 };
+    around(row, rows).flat_map(move |y| {
+        around(column, columns).map(move |x| (y * columns + x, weight(x, column) * weight(y, row)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{mix, stream, unit};
+
+    /// Numbers in (0, 1) of a stream.
+    fn uniform(key: u64, index: u64) -> f64 {
+        (f64::from(unit(stream(mix(key), index) as u32)) + 1e-8).min(1.0)
+    }
+
+    /// Shares of 4000 estimates, by so many probes of 64 pixels each, whose bound holds, and their
+    /// mean error.
+    fn coverage(probes: u64, squared: impl Fn(u64, u64) -> f64, truth: f64) -> (f64, f64) {
+        const RUNS: u64 = 4000;
+        let pixels = probes * 64;
+        let mean = Estimate { value: 1.0, ..Estimate::default() };
+        let (mut held, mut sum) = (0, 0.0);
+        for run in 0..RUNS {
+            let readings = (0..probes).map(|probe| Reading {
+                weight: 64.0,
+                radiance: 0.0,
+                squared: squared(run, probe),
+                independent: 0.0,
+            });
+            let terms = readings.map(|reading| Estimate::of_squared(&reading));
+            let total = terms.fold(Estimate::default(), Add::add);
+            held += u64::from(Noise::new(total, pixels, mean).bound.powi(2) >= truth);
+            sum += total.value / pixels as f64;
+        }
+        (held as f64 / RUNS as f64, sum / RUNS as f64)
+    }
+
+    /// Half the squared difference of two Gaussians of variance 1, by Box and Muller.
+    fn gaussian(run: u64, probe: u64) -> f64 {
+        let key = run << 32 | probe;
+        let (u, v) = (uniform(key, 0), uniform(key, 1));
+        -2.0 * u.ln() * (std::f64::consts::TAU * v).cos().powi(2)
+    }
+
+    #[test]
+    fn bounds_hold_for_gaussian_errors() {
+        for probes in [32, 128, 1024] {
+            let (held, mean) = coverage(probes, gaussian, 1.0);
+            assert!(held > 0.97, "{probes}: {held}");
+            assert!((mean - 1.0).abs() < 5.0 * (2.0 / (4000.0 * probes as f64)).sqrt(), "{mean}");
+        }
+    }
+
+    #[test]
+    fn bounds_hold_for_rare_and_for_heavy_errors() {
+        // One pixel in thirty has all the noise.
+        let rare = |run: u64, probe: u64| {
+            let key = 1 << 60 | run << 32 | probe;
+            if uniform(key, 2) < 1.0 / 30.0 { 30.0 * gaussian(run, probe) } else { 0.0 }
+        };
+        let (held, _) = coverage(1024, rare, 1.0);
+        assert!(held > 0.95, "rare: {held}");
+        // Variances that are log-normal of deviation 1.5, mean e^(1.125).
+        let heavy = |run: u64, probe: u64| {
+            let key = 1 << 61 | run << 32 | probe;
+            let normal = (-2.0 * uniform(key, 2).ln()).sqrt()
+                * (std::f64::consts::TAU * uniform(key, 3)).cos();
+            (1.5 * normal).exp() * gaussian(run, probe)
+        };
+        let (held, _) = coverage(1024, heavy, 1.125_f64.exp());
+        assert!(held > 0.95, "heavy: {held}");
+    }
+
+    #[test]
+    fn a_picture_without_error_has_none_whatever_its_brightness() {
+        let nothing = Estimate::default();
+        assert_eq!(Noise::new(nothing, 5, nothing), Noise { error: 0.0, bound: 0.0 });
+        let dim = Noise::new(Estimate { value: 1.0, ..nothing }, 4, nothing);
+        assert_eq!(dim, Noise { error: f64::INFINITY, bound: f64::INFINITY });
+    }
+
+    #[test]
+    fn neighbors_are_those_of_the_grid() {
+        let all = |tile| neighbors(tile, 3, 6).map(|(at, _)| at).collect::<Vec<_>>();
+        assert_eq!(all(0), [0, 1, 3, 4]);
+        assert_eq!(all(4), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(neighbors(0, 1, 1).collect::<Vec<_>>(), [(0, 4.0)]);
+    }
+}

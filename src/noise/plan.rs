@@ -1,0 +1,179 @@
+//! Which tiles get more samples: a function of what the film holds.
+
+use super::estimate::neighbors;
+use crate::film::{Film, Role, Tile};
+
+/// Least and greatest exponent by which variance is taken to fall with samples.
+const EXPONENTS: (f64, f64) = (0.5, 2.0);
+
+/// Pixels' worth of the whole picture's noise that a tile is taken to have seen, beside its own
+/// 4096: no tile is quiet for good because its probes have seen nothing.
+const OTHERS: f64 = 128.0;
+
+/// Work of a round, in shares of the work before it: at least the first, lest there be too many
+/// looks, at most the second.
+const WORK: (f64, f64) = (1.0 / 16.0, 0.5);
+
+/// Tiles below which steps are small under a time limit, and the share of such a step.
+const FEW_TILES: usize = 64;
+const SMALL_STEP: u32 = 16;
+
+/// What a render is to reach.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Samples from which on probes are believed.
+    pub first: u32,
+    /// Most samples of a pixel.
+    pub most: u32,
+    /// Whether a clock ends the render: then it begins with single samples.
+    pub timed: bool,
+}
+
+/// How steeply variance falls with samples, from tiles whose samples were doubled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slope {
+    /// Sum of their variances before, and after.
+    sums: [f64; 2],
+}
+
+impl Default for Slope {
+    /// As for independent samples, but not for long.
+    fn default() -> Self {
+        Self { sums: [2e-12, 1e-12] }
+    }
+}
+
+impl Slope {
+    /// Takes in what was `before` doubling the samples and is `after` it; older news fade.
+    pub fn learn(&mut self, before: f64, after: f64) {
+        self.sums = [self.sums[0] / 2.0 + before, self.sums[1] / 2.0 + after];
+    }
+
+    /// The exponent: variance is inverse to this power of the number of samples.
+    pub fn exponent(&self) -> f64 {
+        let exponent = (self.sums[0] / self.sums[1]).log2();
+        if exponent.is_finite() { exponent.clamp(EXPONENTS.0, EXPONENTS.1) } else { 1.0 }
+    }
+}
+
+impl Goal {
+    /// How many samples a tile of a film of `tiles` tiles has after its next step.
+    pub fn next(&self, samples: u32, tiles: usize) -> u32 {
+        let next = match samples {
+            _ if samples < self.first && self.timed => (2 * samples).clamp(1, self.first),
+            _ if samples < self.first => self.first,
+            _ if self.timed && tiles < FEW_TILES => {
+                samples + (samples / SMALL_STEP).next_multiple_of(self.first.max(SMALL_STEP))
+            }
+            _ => samples.saturating_mul(2),
+        };
+        next.min(self.most)
+    }
+}
+
+/// Sum of the variances of a tile's pixels, by the probes that steer.
+pub fn steering_variance(tile: &Tile) -> f64 {
+    tile.probes.readings(Role::Steer).map(|reading| reading.weight * reading.squared).sum()
+}
+
+/// The tiles of the next round, those first that are worth most; none if all have what they can get.
+///
+/// `wanted` is the factor by which the picture's squared error is to fall, less than 1; 0 if there
+/// is no end to it.
+pub fn next_round(film: &Film, goal: &Goal, slope: Slope, wanted: f64) -> Vec<u32> {
+    let least = film.tiles.iter().filter(|tile| tile.probes.streams() > 0);
+    let least = least.map(|tile| tile.samples).min().unwrap_or(0);
+    let mut open: Vec<u32> = (0..film.tiles.len() as u32)
+        .filter(|&tile| is_open(&film.tiles[tile as usize], goal))
+        .collect();
+    if least < goal.first {
+        // Everywhere the same; what time does not suffice for is strewn over the picture.
+        open.retain(|&tile| film.tiles[tile as usize].samples == least);
+        open.sort_by_key(|&tile| crate::sampling::mix(u64::from(tile)));
+        return open;
+    }
+    let tiles = Worth::of(film, goal, slope.exponent());
+    open.sort_by(|&a, &b| tiles[b as usize].rate().total_cmp(&tiles[a as usize].rate()));
+    let total: f64 = tiles.iter().map(|tile| tile.variance).sum();
+    let spent: f64 = film.tiles.iter().map(work).sum();
+    let (mut left, mut added, mut count) = (total, 0.0, 0);
+    for &tile in &open {
+        let enough = left <= total * wanted && added >= WORK.0 * spent;
+        if enough || added > WORK.1 * spent {
+            break;
+        }
+        left -= tiles[tile as usize].gained;
+        added += tiles[tile as usize].work;
+        count += 1;
+    }
+    open.truncate(count);
+    open
+}
+
+/// Whether a tile can have more samples that are worth something.
+fn is_open(tile: &Tile, goal: &Goal) -> bool {
+    tile.probes.streams() > 0 && tile.samples < goal.most
+}
+
+/// Rays that a tile has taken, by those of its probes: the picture's own have no say.
+pub fn work(tile: &Tile) -> f64 {
+    f64::from(tile.samples) * per_sample(tile)
+}
+
+/// Rays of a sample of each pixel; some even where all are the sky's.
+fn per_sample(tile: &Tile) -> f64 {
+    f64::from(tile.len()) * tile.probes.rays_per_sample()
+}
+
+/// What a step of a tile is worth.
+#[derive(Clone, Copy, Debug)]
+struct Worth {
+    /// Sum of the variances of its pixels.
+    variance: f64,
+    /// By how much that will fall.
+    gained: f64,
+    /// What it takes.
+    work: f64,
+}
+
+impl Worth {
+    /// Of each tile, by probes of its neighbors too, whose noise is put to the tile's own number of
+    /// samples.
+    fn of(film: &Film, goal: &Goal, exponent: f64) -> Vec<Self> {
+        let count = film.tiles.len();
+        // Noise and pixels of each tile, as if it had one sample.
+        let power = |samples: u32| f64::from(samples.max(1)).powf(exponent);
+        let measured = |tile: &Tile| tile.probes.streams() > 0;
+        let rows: Vec<(f64, f64)> = film
+            .tiles
+            .iter()
+            .map(|tile| {
+                if measured(tile) {
+                    (steering_variance(tile), f64::from(tile.len()))
+                } else {
+                    (0.0, 0.0)
+                }
+            })
+            .zip(&film.tiles)
+            .map(|((variance, pixels), tile)| (variance * power(tile.samples), pixels))
+            .collect();
+        let sum = |a: (f64, f64), b: (f64, f64)| (a.0 + b.0, a.1 + b.1);
+        let (noise, pixels) = rows.iter().copied().fold((0.0, 0.0), sum);
+        let mean = noise / f64::max(pixels, 1.0);
+        let worth = |(index, tile): (usize, &Tile)| {
+            let pooled = neighbors(index, film.columns(), count)
+                .map(|(at, weight)| (weight * rows[at].0, weight * rows[at].1))
+                .fold((OTHERS * mean, OTHERS), sum);
+            let variance = pooled.0 / pooled.1 * rows[index].1 / power(tile.samples);
+            let next = goal.next(tile.samples, count);
+            let gained = variance * (1.0 - power(tile.samples) / power(next));
+            let steps = f64::from(next.saturating_sub(tile.samples));
+            Self { variance, gained, work: steps * per_sample(tile) }
+        };
+        film.tiles.iter().enumerate().map(worth).collect()
+    }
+
+    fn rate(&self) -> f64 {
+        self.gained / self.work.max(1.0)
+    }
+}

@@ -1,0 +1,96 @@
+//! A tile's samples, batch by batch.
+
+use crate::film::{Pilot, Region, Tile, View};
+use crate::integrator::clock::Stage;
+use crate::integrator::workspace::{BATCH, Workspace};
+use crate::integrator::{Job, stages};
+use crate::scene::Rgb;
+use crate::world::World;
+use glam::{DVec2, DVec3};
+use std::ops::Range;
+
+/// Samples per pixel and pass: a tile of them is one batch of paths.
+pub(super) const PASS: u32 = 16;
+
+/// What camera rays of a tile may hit.
+pub(crate) fn view(job: &Job, tile: &Tile) -> View {
+    let world = job.world;
+    let reach = f64::from(job.filter.radius()) - 0.5;
+    let Region { x, y, width, height } = tile.region;
+    let low = DVec2::new(f64::from(x), f64::from(y)) - reach;
+    let high = DVec2::new(f64::from(x + width), f64::from(y + height)) + reach;
+    let [origin, direction] = world.camera.bounds(low, high);
+    let single = |v: [DVec3; 2]| v.map(DVec3::as_vec3);
+    let hit = world.bvh.may_be_hit(&world.spheres, single(origin), single(direction));
+    if hit { View::Anything } else { View::Background }
+}
+
+/// The radiance of every sample of a tile, if it is the same and known.
+pub(super) fn even(world: &World, tile: &Tile) -> Option<Rgb> {
+    let only = world.ground.is_none() && world.lights.suns.is_empty();
+    world.environment.constant().filter(|_| only && tile.view == View::Background)
+}
+
+/// Adds samples to the pixels of a tile.
+pub(super) fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
+    let count = samples.end - samples.start;
+    work.clock.restart();
+    if let Some(radiance) = even(job.world, tile) {
+        tile.add_even(radiance, count);
+        work.counters.skipped_samples += u64::from(count) * tile.pixels().count() as u64;
+        return work.clock.end(Stage::Film);
+    }
+    work.view = tile.view;
+    stages::generate(job, tile, samples, work);
+    let paths = integrate(job, work);
+    work.counters.bad_samples += tile.add(&work.paths.radiance[..paths], count);
+    work.clock.end(Stage::Film);
+}
+
+/// Gives the probes of a tile as many samples as are asked for; `go_on` may end it before.
+pub(super) fn probe_pass(
+    job: &Job,
+    tile: &mut Tile,
+    samples: u32,
+    work: &mut Workspace,
+    go_on: impl Fn() -> bool,
+) {
+    let Some(batch) = BATCH.checked_div(tile.probes.streams()) else { return };
+    while tile.probes.samples < samples && go_on() {
+        let first = tile.probes.samples;
+        let range = first..samples.min(first + batch as u32);
+        work.clock.restart();
+        work.view = tile.view;
+        let rays = work.counters.rays();
+        stages::generate_streams(job, tile.probes.starts(job.sampler), range.clone(), work);
+        let paths = integrate(job, work);
+        work.counters.bad_samples += tile.probes.add(&work.paths.radiance[..paths], &range);
+        tile.probes.rays += work.counters.rays() - rays;
+        work.clock.end(Stage::Film);
+    }
+}
+
+/// Takes a few samples of each pixel beside the picture, at most [`PASS`].
+pub(super) fn pilot_pass(job: &Job, tile: &mut Tile, samples: u32, work: &mut Workspace) {
+    if let Some(radiance) = even(job.world, tile) {
+        let sum = f64::from(tile.len()) * radiance.to_array().map(f64::from).iter().sum::<f64>();
+        tile.probes.pilot = Pilot { sum: sum / 3.0, variance: 0.0 };
+        return;
+    }
+    work.clock.restart();
+    work.view = tile.view;
+    let sampler = Pilot::sampler(job.sampler);
+    let streams = tile.pixels().map(|(x, y)| (x, y, sampler));
+    stages::generate_streams(job, streams, 0..samples, work);
+    let paths = integrate(job, work);
+    tile.probes.pilot = Pilot::new(&work.paths.radiance[..paths], samples);
+    work.clock.end(Stage::Film);
+}
+
+/// Follows the paths that were generated to their ends, and says how many there were.
+fn integrate(job: &Job, work: &mut Workspace) -> usize {
+    let paths = work.len();
+    job.integrate(work);
+    work.clock.end(Stage::Shade);
+    paths
+}
