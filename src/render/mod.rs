@@ -141,7 +141,7 @@ pub fn render(world: &World, settings: &Settings, options: &Options) -> Render {
     let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
     let mut film = Film::new(options.region.unwrap_or(whole), options.statistics);
     if options.tracer.method != Method::Brute {
-        film.tiles.par_iter_mut().for_each(|tile| tile.view = pass::view(&job, tile));
+        film.tiles.par_iter_mut().for_each(|tile| tile.view = view(&job, tile));
     }
     let measured = targeted || options.statistics;
     let mut state = if measured { State::new(&job, film) } else { State::unmeasured(film) };

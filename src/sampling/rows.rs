@@ -97,7 +97,7 @@ mod tests {
                 }
                 let row: &PathRow = paths.first_chunk().expect("more than a row");
                 for set in [0, 1, 5, 200] {
-                    let rows = sampler.draw4_row(row, set).map(|x| x.to_array());
+                    let rows = sampler.draw4_row(row, set).map(wide::f32x16::to_array);
                     for (lane, path) in row.iter().enumerate() {
                         assert_eq!(rows.map(|x| x[lane]), sampler.draw4(path, set), "{kind:?}");
                     }

@@ -192,7 +192,7 @@ mod tests {
             let lanes = U32x16::new(places.map(|place| place.0));
             let rows = sobol
                 .draw4_row(lanes, set, U32x16::new(seeds))
-                .map(|row| row.map(|x| x.to_array()));
+                .map(|row| row.map(wide::f32x16::to_array));
             for lane in 0..MAX_LANES {
                 let one = sobol.draw4(places[lane], set, seeds[lane]);
                 assert_eq!(rows.map(|rows| rows.map(|row| row[lane])), one);
