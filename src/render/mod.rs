@@ -9,12 +9,13 @@ mod watch;
 
 pub use adapt::End;
 pub(crate) use pass::view;
+pub use watch::Tasks;
 
 use self::adapt::{State, Target};
 use self::pass::PASS;
 use self::watch::Watch;
 use crate::bvh::walk::Method;
-use crate::film::{Film, Region};
+use crate::film::{Film, Region, Tile};
 use crate::image::Image;
 use crate::integrator::Job;
 use crate::integrator::clock::Times;
@@ -26,7 +27,8 @@ use crate::trace::{Tracer, Width};
 use crate::world::World;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 /// What decides how a picture is made, but not what is in it.
@@ -80,6 +82,8 @@ pub struct Render {
     pub counters: Counters,
     /// Time in each stage, of all threads together.
     pub times: Times,
+    /// The tasks that the threads shared.
+    pub tasks: Tasks,
     /// Time that it took.
     pub elapsed: Duration,
     /// Why it ended.
@@ -155,25 +159,37 @@ pub fn render(world: &World, settings: &Settings, options: &Options) -> Render {
 }
 
 /// Gives every pixel the samples that the settings say.
+///
+/// A task is a pass over a tile, and threads take them off one counter: none ever waits for a whole pass
+/// over the picture to end. Whoever comes to a tile takes the samples that are next there, so their
+/// order does not depend on that of the tasks.
 fn uniform(job: &Job, state: &mut State, watch: &Watch) -> End {
-    let total = state.film.tiles.len() as u64 * u64::from(job.settings.spp);
-    let done = AtomicU64::new(0);
-    for samples in passes(job.settings.spp).take_while(|_| !watch.cancelled()) {
-        state.round += 1;
-        state.film.tiles.par_iter_mut().for_each_init(
-            || Workspace::new(job.world, job.sampler),
-            |work, tile| {
-                if !watch.cancelled() {
-                    pass::tile_pass(job, tile, samples.clone(), work);
-                    pass::probe_pass(job, tile, samples.end, work, || true);
-                    let count = u64::from(samples.end - samples.start);
-                    let done = done.fetch_add(count, Ordering::Relaxed) + count;
-                    watch.report(work, done as f64 / total as f64, None);
-                }
-            },
-        );
-    }
-    if done.into_inner() == total { End::Samples } else { End::Cancelled }
+    let spp = job.settings.spp;
+    let tiles: Vec<Mutex<&mut Tile>> = state.film.tiles.iter_mut().map(Mutex::new).collect();
+    let tasks = tiles.len() * spp.div_ceil(PASS) as usize;
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    rayon::broadcast(|_| {
+        let mut work = Workspace::new(job.world, job.sampler);
+        while !watch.cancelled() {
+            let task = next.fetch_add(1, Ordering::Relaxed);
+            let Some(Ok(mut tile)) = (task < tasks).then(|| tiles[task % tiles.len()].lock())
+            else {
+                return;
+            };
+            let samples = tile.samples..spp.min(tile.samples + PASS);
+            pass::tile_pass(job, &mut tile, samples.clone(), &mut work);
+            pass::probe_pass(job, &mut tile, samples.end, &mut work, || true);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            watch.report(&mut work, done as f64 / tasks as f64, None);
+        }
+    });
+    state.round = film_rounds(&state.film);
+    if done.into_inner() == tasks { End::Samples } else { End::Cancelled }
+}
+
+/// Passes of the tile that has had most.
+fn film_rounds(film: &Film) -> u32 {
+    film.tiles.iter().map(|tile| tile.samples.div_ceil(PASS)).max().unwrap_or(0)
 }
 
 fn finish(state: &State, noise: Option<Noise>, end: End, statistics: bool, watch: Watch) -> Render {
@@ -183,7 +199,7 @@ fn finish(state: &State, noise: Option<Noise>, end: End, statistics: bool, watch
         samples: film.samples(),
     });
     let elapsed = watch.elapsed();
-    let (counters, times) = watch.totals();
+    let (counters, times, tasks) = watch.totals();
     let counts = || film.tiles.iter().map(|tile| tile.samples);
     let total = film.tiles.iter().map(|tile| u64::from(tile.samples) * u64::from(tile.len()));
     Render {
@@ -198,6 +214,7 @@ fn finish(state: &State, noise: Option<Noise>, end: End, statistics: bool, watch
         statistics,
         counters,
         times,
+        tasks,
         elapsed,
         end,
         complete: end != End::Cancelled,

@@ -15,7 +15,7 @@ use spherule::bvh::walk::Method;
 use spherule::image::WriteOptions;
 use spherule::integrator::clock::{Stage, Times};
 use spherule::integrator::workspace::Counters;
-use spherule::render::Render;
+use spherule::render::{Render, Tasks};
 use spherule::scene::Settings;
 use spherule::trace::Width;
 use std::collections::BTreeMap;
@@ -74,6 +74,17 @@ struct Statistics {
     exact_decisions: u64,
     /// Share of each stage in the time of all threads, by name.
     stage_shares: BTreeMap<&'static str, f64>,
+    tasks: TaskSummary,
+}
+
+/// How the work was divided.
+#[derive(Serialize)]
+struct TaskSummary {
+    count: u64,
+    mean_seconds: f64,
+    longest_seconds: f64,
+    /// The least share of their time for which so many threads would be busy.
+    efficiency_on_64_threads: f64,
 }
 
 impl<'a> Summary<'a> {
@@ -124,6 +135,14 @@ impl<'a> Summary<'a> {
             let share = self.statistics.stage_shares.get(stage.name()).copied().unwrap_or(0.0);
             output::print(format_args!("        {:<8} {:5.1} %", stage.name(), 100.0 * share));
         }
+        let tasks = &self.statistics.tasks;
+        output::print(format_args!(
+            "tasks   {} of {:.2} ms, the longest {:.2} ms: 64 threads would be busy for {:.0} % of their time",
+            HumanCount(tasks.count),
+            1e3 * tasks.mean_seconds,
+            1e3 * tasks.longest_seconds,
+            100.0 * tasks.efficiency_on_64_threads,
+        ));
     }
 
     fn print(&self) {
@@ -151,6 +170,17 @@ impl<'a> Summary<'a> {
             plural(statistics.exact_decisions, "decision"),
         ));
         self.noise.iter().for_each(NoiseSummary::print);
+    }
+}
+
+impl TaskSummary {
+    fn new(tasks: &Tasks) -> Self {
+        Self {
+            count: tasks.count,
+            mean_seconds: tasks.total.as_secs_f64() / tasks.count.max(1) as f64,
+            longest_seconds: tasks.longest.as_secs_f64(),
+            efficiency_on_64_threads: tasks.efficiency(64),
+        }
     }
 }
 
@@ -201,6 +231,7 @@ impl Statistics {
             stage_shares: Stage::ALL
                 .map(|stage| (stage.name(), share(&render.times, stage)))
                 .into(),
+            tasks: TaskSummary::new(&render.tasks),
         }
     }
 }
