@@ -10,7 +10,7 @@ use crate::image::{Channel, Values};
 use crate::integrator::workspace::Workspace;
 use crate::integrator::{Job, stages};
 use crate::ray::{GROUND, MISS};
-use crate::render::{Options, passes, view};
+use crate::render::{Options, Statistics, passes, view};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::Settings;
 use crate::world::World;
@@ -39,6 +39,11 @@ pub enum Layer {
     Coverage,
     /// [`Features::id`]: channel `id.Y`, of integers.
     Id,
+    /// [`Statistics::variance`], which the render measures: channels `variance.R`, `variance.G`,
+    /// `variance.B`.
+    Variance,
+    /// [`Statistics::samples`], which the render counts: channel `samples.Y`, of integers.
+    Samples,
 }
 
 /// What is known of a pixel: of what its rays hit first, whatever it is made of.
@@ -69,11 +74,21 @@ pub struct Layers {
     pub height: u32,
     /// Row by row from the top left.
     pub pixels: Vec<Features>,
+    /// What the render knows of the same pixels; [`layers`] does not.
+    pub statistics: Option<Statistics>,
 }
 
 impl Layer {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Albedo, Self::Normal, Self::Depth, Self::Coverage, Self::Id];
+    pub const ALL: [Self; 7] = [
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+        Self::Coverage,
+        Self::Id,
+        Self::Variance,
+        Self::Samples,
+    ];
 
     /// The name before the dot in its channels' names.
     pub fn name(self) -> &'static str {
@@ -83,14 +98,23 @@ impl Layer {
             Self::Depth => "depth",
             Self::Coverage => "coverage",
             Self::Id => "id",
+            Self::Variance => "variance",
+            Self::Samples => "samples",
         }
     }
 
-    fn channels(self, pixels: &[Features]) -> Vec<Channel> {
+    /// Whether the render has to know it: see [`Options::statistics`].
+    pub fn is_statistic(self) -> bool {
+        matches!(self, Self::Variance | Self::Samples)
+    }
+
+    fn channels(self, layers: &Layers) -> Vec<Channel> {
         let channel = |part, values| Channel { name: format!("{}.{part}", self.name()), values };
+        let pixels = &layers.pixels;
         let floats = |part, value: &dyn Fn(&Features) -> f32| {
             channel(part, Values::Floats(pixels.iter().map(value).collect()))
         };
+        let statistics = layers.statistics.iter();
         match self {
             Self::Albedo => [('R', 0), ('G', 1), ('B', 2)]
                 .map(|(part, i)| floats(part, &|pixel| pixel.albedo[i]))
@@ -104,6 +128,16 @@ impl Layer {
                 let ids = pixels.iter().map(|pixel| pixel.id).collect();
                 vec![channel('Y', Values::Integers(ids))]
             }
+            Self::Variance => statistics
+                .flat_map(|known| [('R', 0), ('G', 1), ('B', 2)].map(|part| (known, part)))
+                .map(|(known, (part, i))| {
+                    let variance = known.variance.pixels.iter().map(|pixel| pixel[i]);
+                    channel(part, Values::Floats(variance.collect()))
+                })
+                .collect(),
+            Self::Samples => statistics
+                .map(|known| channel('Y', Values::Integers(known.samples.clone())))
+                .collect(),
         }
     }
 }
@@ -115,22 +149,24 @@ impl Layers {
         Film::bytes(region) + u64::from(region.width) * u64::from(region.height) * pixel
     }
 
-    /// The channels of some layers, for [`Image::write_layers`](crate::Image::write_layers).
+    /// The channels of some layers, for [`Image::write_layers`](crate::Image::write_layers); none for
+    /// those that only statistics know, if there are none.
     pub fn channels(&self, layers: &[Layer]) -> Vec<Channel> {
-        layers.iter().flat_map(|layer| layer.channels(&self.pixels)).collect()
+        layers.iter().flat_map(|layer| layer.channels(self)).collect()
     }
 }
 
 /// Finds the layers of a picture, by as many samples as it has but at most [`SAMPLES`].
 ///
 /// Only the region and the tracer of `options` count. Like the picture's, pixels are the same bytes
-/// for any number of threads and any tracer, in a region and in the whole. If `wanted` is nothing but
-/// [`Layer::Id`], one ray for each pixel does, and only the ids are of use.
+/// for any number of threads and any tracer, in a region and in the whole. If `wanted` has nothing but
+/// [`Layer::Id`] and statistics, one ray for each pixel does, and only the ids are of use.
 pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[Layer]) -> Layers {
     let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
     let filter = PixelFilter::new(settings.filter);
     let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer: options.tracer };
-    let sampled = wanted.iter().any(|layer| *layer != Layer::Id);
+    let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
+    let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
     let camera = &world.camera;
     let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
@@ -155,7 +191,7 @@ pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[L
             pixels[row * region.width as usize + column] = features;
         }
     }
-    Layers { width: region.width, height: region.height, pixels }
+    Layers { width: region.width, height: region.height, pixels, statistics: None }
 }
 
 /// The features of a tile's pixels, in the order of [`Tile::pixels`].

@@ -86,6 +86,12 @@ pub(super) const LAYERS: Names<Option<Layer>> = Names(&[
         "id.Y, integers: which sphere the pixel's center sees, from 0; 4294967295 for none, \
          4294967294 for the ground",
     ),
+    (
+        "variance",
+        Some(Layer::Variance),
+        "variance.R G B: of the pixel's mean, an estimate that takes some more samples",
+    ),
+    ("samples", Some(Layer::Samples), "samples.Y, integers: how many the pixel has"),
     ("all", None, "All of these"),
 ]);
 

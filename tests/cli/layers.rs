@@ -19,7 +19,10 @@ fn the_picture_gets_the_layers_that_are_named() {
     folder.picture("two.exr", &["--layers", "id,depth"]);
     assert_eq!(channels(&folder, "two.exr"), ["B", "G", "R", "depth.Z", "id.Y"]);
     let all = folder.picture("all.exr", &["--layers", "all", "--threads", "1"]);
-    assert_eq!(channels(&folder, "all.exr").len(), 12);
+    assert_eq!(channels(&folder, "all.exr").len(), 16);
+    folder.picture("noise.exr", &["--layers", "variance,samples"]);
+    let noise = ["B", "G", "R", "samples.Y", "variance.B", "variance.G", "variance.R"];
+    assert_eq!(channels(&folder, "noise.exr"), noise);
     assert!(folder.picture("all.exr", &["--layers", "all", "--lanes", "4"]) == all);
     let picture = |name: &str| Image::read(folder.path(name)).expect("a picture");
     assert_eq!(picture("all.exr"), picture("plain.exr"));

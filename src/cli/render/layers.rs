@@ -7,24 +7,24 @@ use spherule::layers::{Layer, layers};
 use spherule::render::{Options, Render};
 use spherule::scene::Settings;
 
+/// Whether the render has to measure some of those that were asked for.
+pub(super) fn need_statistics(job: &Job) -> bool {
+    wanted(&job.encoding.layers).into_iter().any(Layer::is_statistic)
+}
+
 /// The channels that were asked for: none takes no time.
 pub(super) fn channels(job: &Job, prepared: &Prepared, render: &Render) -> Vec<Channel> {
     let wanted = wanted(&job.encoding.layers);
     if wanted.is_empty() {
         return Vec::new();
     }
-    let mut settings = prepared.scene.settings.clone();
-    if !render.complete {
-        settings.spp = taken(&settings, prepared.share(render));
-    }
+    // No more than the picture has: who interrupts a render does not want to wait.
+    let settings = Settings { spp: render.samples.most.max(1), ..prepared.scene.settings.clone() };
     let options =
         Options { tracer: job.tracer, region: Some(prepared.region), ..Options::default() };
-    layers(&prepared.world, &settings, &options, &wanted).channels(&wanted)
-}
-
-/// Samples per pixel of a render that was interrupted, about: who did so does not want to wait.
-fn taken(settings: &Settings, share: f64) -> u32 {
-    ((f64::from(settings.spp) * share).ceil() as u32).clamp(1, settings.spp)
+    let mut layers = layers(&prepared.world, &settings, &options, &wanted);
+    layers.statistics.clone_from(&render.statistics);
+    layers.channels(&wanted)
 }
 
 /// Those that were typed, each once; all if one is `None`.
@@ -43,12 +43,5 @@ mod tests {
         let typed = [Some(Layer::Id), Some(Layer::Albedo), Some(Layer::Id)];
         assert_eq!(wanted(&typed), [Layer::Albedo, Layer::Id]);
         assert_eq!(wanted(&[Some(Layer::Id), None]), Layer::ALL);
-    }
-
-    #[test]
-    fn interrupted_pictures_get_as_many_samples_as_they_have() {
-        let settings = Settings { spp: 100, ..Settings::default() };
-        let samples = [0.0, 0.101, 0.5, 1.0].map(|share| taken(&settings, share));
-        assert_eq!(samples, [1, 11, 50, 100]);
     }
 }

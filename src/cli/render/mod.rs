@@ -62,7 +62,7 @@ fn trace(job: &Job, prepared: &Prepared) -> Render {
         region: Some(prepared.region),
         progress: Some(&show),
         cancel: Some(interrupt::flag()),
-        statistics: false,
+        statistics: layers::need_statistics(job),
     };
     let render = render(&prepared.world, &prepared.scene.settings, &options);
     meter.finish();
