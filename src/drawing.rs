@@ -70,7 +70,7 @@ impl Format {
 /// [`DrawingError`].
 pub fn file(picture: &impl Picture, format: Format) -> Result<Vec<u8>, DrawingError> {
     match format {
-        Format::Png => encode(&codes(picture, PAPER)?, picture.size()).map_err(broken),
+        Format::Png => encode(&codes(picture, PAPER)?, picture.size()),
         Format::Svg => {
             register()?;
             let mut text = String::new();
@@ -116,13 +116,14 @@ fn broken(error: impl Display) -> DrawingError {
     DrawingError(error.to_string())
 }
 
-fn encode(codes: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
+/// A file of pixels.
+pub(crate) fn encode(codes: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, DrawingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header()?.write_image_data(codes)?;
-    Ok(file)
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(codes));
+    written.map(|()| file).map_err(broken)
 }
 
 /// Letters of a size in pixels, which stand to the right of their place (`HPos::Left`), about it or

@@ -113,6 +113,12 @@ pub mod memory;
 // Judges what is above.
 pub mod stress;
 
+// Measures it, and tells what was found.
+#[cfg(feature = "cli")]
+pub mod bench;
+#[cfg(feature = "cli")]
+pub mod report;
+
 pub use image::Image;
 pub use query::SphereTree;
 pub use scene::Scene;

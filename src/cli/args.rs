@@ -1,11 +1,10 @@
 //! The command line as typed.
 
-use super::examples;
 use super::names::{
     BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, PPM, SAMPLERS, TONES, Traversal,
 };
-use super::stress;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
+use super::{bench, examples, stress};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
 use spherule::image::{Depth, PpmEncoding};
@@ -40,6 +39,9 @@ pub(super) enum Command {
     /// Count wrong decisions of this program, and of usual forms, where rounding is at its worst
     #[command(after_help = stress::EXAMPLES)]
     Stress(stress::Args),
+    /// Measure how fast this program is on this machine: tables, plots, and a report
+    #[command(after_help = bench::EXAMPLES)]
+    Bench(bench::Args),
     /// Print a completion script for a shell
     #[command(after_help = examples::COMPLETIONS)]
     Completions(CompletionsArgs),

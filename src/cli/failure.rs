@@ -9,6 +9,7 @@ use miette::{
     LabeledSpan, MietteError, MietteHandlerOpts, MietteSpanContents, SourceCode, SourceSpan,
     SpanContents,
 };
+use spherule::bench::BenchError;
 use spherule::drawing::DrawingError;
 use spherule::film::Region;
 use spherule::image::{CompareError, ImageError};
@@ -45,6 +46,8 @@ pub(crate) enum Failure {
     Write(PathBuf, io::Error),
     #[error("{0}")]
     Drawing(#[from] DrawingError),
+    #[error("{0}")]
+    Bench(#[from] BenchError),
     #[error(
         "{} x {} pixels need {}; give --size or --region smaller numbers", .0.width, .0.height, .1
     )]

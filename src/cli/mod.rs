@@ -2,6 +2,7 @@
 //! outline.
 
 mod args;
+mod bench;
 mod compare;
 mod completions;
 mod contents;
@@ -34,6 +35,7 @@ pub(crate) fn run() -> Result<ExitCode, Failure> {
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Stress(args) => stress::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Completions(args) => Ok(completions::run(&args)),
     }
 }

@@ -1,6 +1,7 @@
 //! The program as its users meet it: commands, messages, exit codes and files.
 #![cfg(feature = "cli")]
 
+mod bench;
 mod folder;
 mod inputs;
 mod layers;

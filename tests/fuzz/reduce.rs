@@ -38,5 +38,5 @@ fn what_is_not_needed_goes() {
     let needs = |bytes: &[u8]| bytes.contains(&7) && ones(bytes) > 1;
     let input: Vec<u8> = (0..100).chain(0..50).collect();
     assert_eq!(reduce(&input, needs), [1, 7, 1]);
-    assert_eq!(reduce(&[], |_| true), []);
+    assert!(reduce(&[], |_| true).is_empty());
 }

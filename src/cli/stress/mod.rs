@@ -5,14 +5,14 @@ mod plot;
 mod table;
 
 pub(super) use self::args::{Args, EXAMPLES};
-use self::plot::Plot;
 use super::progress::{Meter, rate};
 use super::{Failure, output, threads};
 use indicatif::HumanCount;
 use serde::Serialize;
 use spherule::atomic::{check_destination, write_atomically};
-use spherule::drawing::{self, Format};
+use spherule::drawing::Format;
 use spherule::render::Progress;
+use spherule::report::draw::draw;
 use spherule::stress::{self, Form, Options, REGIMES, Regime, Report};
 use std::io;
 use std::path::Path;
@@ -42,7 +42,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         write(path, |writer| report.write_csv(writer).map_err(io::Error::from))?;
     }
     if let (Some(path), Some(format)) = (&args.plot, format) {
-        let picture = drawing::file(&Plot(&report), format)?;
+        let picture = draw(&plot::plot(&report), format)?;
         write(path, |writer| writer.write_all(&picture))?;
     }
     let wrong = report.wrong(Form::Spherule);

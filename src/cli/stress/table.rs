@@ -1,15 +1,7 @@
 //! What a run found, as tables for the terminal.
 
-use indicatif::HumanCount;
+use spherule::report::{Cell, Column, Style, Table};
 use spherule::stress::{Form, FormReport, RegimeReport, Report};
-use std::fmt::Write;
-
-/// Columns under one heading.
-struct Group {
-    heading: &'static str,
-    /// The first row names the columns.
-    columns: Vec<Vec<String>>,
-}
 
 /// Forms that are shown, and their names.
 const USUAL: &[(Form, &str)] =
@@ -23,134 +15,94 @@ const SURFACE: &[(Form, &str)] = &[
     (Form::Spherule, "Spherule"),
 ];
 
+/// This program, which alone is asked about bounds.
+const OWN: &[(Form, &str)] = &[(Form::Spherule, "Spherule")];
+
 /// The tables.
 pub(super) fn text(report: &Report) -> String {
     let regimes = &report.regimes;
-    let rays = |of: fn(&RegimeReport) -> u64| {
-        let counts = regimes.iter().map(|regime| HumanCount(of(regime)).to_string());
-        let columns = vec![["rays".to_owned()].into_iter().chain(counts).collect()];
-        Group { heading: "", columns }
-    };
-    let share = |heading, of: fn(&FormReport) -> u64| {
-        group(regimes, heading, USUAL, move |regime, form| percent(of(form), regime.rays))
-    };
-    let error = |heading, of: fn(&FormReport) -> f64| {
-        group(regimes, heading, USUAL, move |_, form| match form.measured {
-            0 => "-".to_owned(),
-            _ => size(of(form)),
-        })
-    };
-    let surface = |heading, of: fn(&FormReport) -> u64, all: fn(&RegimeReport) -> u64| {
-        group(regimes, heading, SURFACE, move |regime, form| percent(of(form), all(regime)))
-    };
     let tables = [
-        vec![
-            names(regimes, "decisions"),
-            rays(|regime| regime.rays),
-            share("wrong hit or miss", |form| form.wrong_hits),
-            share("wrong sphere", |form| form.wrong_spheres),
-            bounds(regimes),
-        ],
-        vec![
-            names(regimes, "largest errors"),
-            error("distance, 2^-23 t", |form| form.t_error),
-            error("distance, natural unit", |form| form.t_error_natural),
-            error("normal, 2^-23 rad", |form| form.normal_error),
-        ],
-        vec![
-            names(regimes, "from surfaces"),
-            rays(|regime| regime.leaving + regime.entering),
-            surface("self-hits", |form| form.self_hits, |regime| regime.leaving),
-            surface("missed exits", |form| form.missed_exits, |regime| regime.entering),
-        ],
+        Grid::new("decisions", regimes)
+            .rays(|regime| regime.rays)
+            .shares("wrong hit or miss", USUAL, |form| form.wrong_hits, |regime| regime.rays)
+            .shares("wrong sphere", USUAL, |form| form.wrong_spheres, |regime| regime.rays)
+            .shares("wrong bound", OWN, |form| form.wrong_bounds, |regime| regime.bounds),
+        Grid::new("largest errors", regimes)
+            .errors("distance, 2^-23 t", |form| form.t_error)
+            .errors("distance, natural unit", |form| form.t_error_natural)
+            .errors("normal, 2^-23 rad", |form| form.normal_error),
+        Grid::new("from surfaces", regimes)
+            .rays(|regime| regime.leaving + regime.entering)
+            .shares("self-hits", SURFACE, |form| form.self_hits, |regime| regime.leaving)
+            .shares("missed exits", SURFACE, |form| form.missed_exits, |regime| regime.entering),
     ];
-    tables.iter().map(|table| aligned(table)).collect::<Vec<_>>().join("\n")
+    tables.map(|grid| grid.table.text()).join("\n")
 }
 
-fn names(regimes: &[RegimeReport], heading: &'static str) -> Group {
-    let names = regimes.iter().map(|regime| regime.name.to_owned());
-    Group { heading, columns: vec![[String::new()].into_iter().chain(names).collect()] }
+/// A table with a row for each regime.
+struct Grid<'a> {
+    table: Table,
+    regimes: &'a [RegimeReport],
 }
 
-/// What is wrong about bounds: of this program, which alone is asked.
-fn bounds(regimes: &[RegimeReport]) -> Group {
-    let wrong =
-        |regime: &RegimeReport, form: &FormReport| percent(form.wrong_bounds, regime.bounds);
-    group(regimes, "wrong bound", &[(Form::Spherule, "Spherule")], wrong)
-}
-
-/// One column for each form.
-fn group(
-    regimes: &[RegimeReport],
-    heading: &'static str,
-    forms: &[(Form, &str)],
-    cell: impl Fn(&RegimeReport, &FormReport) -> String,
-) -> Group {
-    let column = |&(form, name): &(Form, &str)| {
-        let cells = regimes.iter().map(|regime| cell(regime, regime.form(form)));
-        [name.to_owned()].into_iter().chain(cells).collect()
-    };
-    Group { heading, columns: forms.iter().map(column).collect() }
-}
-
-/// Nothing is 0 that is not.
-fn percent(part: u64, all: u64) -> String {
-    let percent = 100.0 * part as f64 / all.max(1) as f64;
-    match part {
-        0 => "0".to_owned(),
-        _ if percent >= 0.01 => format!("{percent:.2} %"),
-        _ => format!("{percent:.0e} %"),
-    }
-}
-
-fn size(error: f64) -> String {
-    if error == 0.0 || (0.1..1e4).contains(&error) {
-        format!("{error:.1}")
-    } else {
-        format!("{error:.0e}")
-    }
-}
-
-/// The first column to the left, the others to the right, headings above their first column.
-fn aligned(groups: &[Group]) -> String {
-    let width = |column: &[String]| column.iter().map(|cell| cell.chars().count()).max();
-    let mut lines = vec![String::new(); 1 + groups[0].columns[0].len()];
-    for (at, group) in groups.iter().enumerate() {
-        let (heading, rows) = lines.split_at_mut(1);
-        let start = rows[0].chars().count();
-        for column in &group.columns {
-            let width = width(column).unwrap_or(0);
-            for (line, cell) in rows.iter_mut().zip(column) {
-                // Writing to a string cannot fail.
-                let _ = match at {
-                    0 => write!(line, "{cell:<width$}"),
-                    _ => write!(line, "  {cell:>width$}"),
-                };
-            }
+impl<'a> Grid<'a> {
+    fn new(heading: &str, regimes: &'a [RegimeReport]) -> Self {
+        let mut table = Table::new(heading, heading, vec![Column::new("", "").group(heading)]);
+        for regime in regimes {
+            table.push([regime.name.into()]);
         }
-        let end = rows[0].chars().count();
-        let room = end - start - if at == 0 { 0 } else { 2 };
-        let gap = if at == 0 { "" } else { "  " };
-        let _ = write!(heading[0], "{gap}{:<room$}", group.heading);
+        Self { table, regimes }
     }
-    lines.iter().fold(String::new(), |text, line| text + line.trim_end() + "\n")
+
+    fn column(mut self, column: Column, cell: impl Fn(&RegimeReport) -> Cell) -> Self {
+        self.table.columns.push(column);
+        for (row, regime) in self.table.rows.iter_mut().zip(self.regimes) {
+            row.push(cell(regime));
+        }
+        self
+    }
+
+    fn rays(self, count: fn(&RegimeReport) -> u64) -> Self {
+        self.column(Column::new("rays", ""), |regime| Cell::Count(count(regime)))
+    }
+
+    /// A column for each form: which share of all is wrong.
+    fn shares(
+        self,
+        group: &str,
+        forms: &[(Form, &str)],
+        part: fn(&FormReport) -> u64,
+        all: fn(&RegimeReport) -> u64,
+    ) -> Self {
+        forms.iter().zip(headings(group)).fold(self, |grid, (&(form, name), group)| {
+            let column = Column::new(name, "").group(group).style(Style::Percent);
+            grid.column(column, |regime| {
+                (part(regime.form(form)) as f64 / all(regime).max(1) as f64).into()
+            })
+        })
+    }
+
+    /// A column for each form: how large the error is.
+    fn errors(self, group: &str, error: fn(&FormReport) -> f64) -> Self {
+        USUAL.iter().zip(headings(group)).fold(self, |grid, (&(form, name), group)| {
+            let column = Column::new(name, "").group(group).style(Style::Size);
+            grid.column(column, |regime| {
+                let form = regime.form(form);
+                (form.measured > 0).then(|| error(form)).into()
+            })
+        })
+    }
+}
+
+/// The heading, then none.
+fn headings(group: &str) -> impl Iterator<Item = &str> {
+    [group].into_iter().chain(std::iter::repeat(""))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use spherule::stress::{Options, REGIMES, run};
-
-    #[test]
-    fn numbers_are_short_and_only_zero_is_zero() {
-        assert_eq!(
-            [percent(0, 9), percent(1, 3), percent(1, 1_000_000)],
-            ["0", "33.33 %", "1e-4 %"]
-        );
-        assert_eq!(percent(0, 0), "0");
-        let sizes = [0.0, 0.25, 1234.5, 1.2e-9, 3e7, f64::INFINITY].map(size);
-        assert_eq!(sizes, ["0.0", "0.2", "1234.5", "1e-9", "3e7", "inf"]);
-    }
 
     #[test]
     fn columns_stand_below_their_headings() {

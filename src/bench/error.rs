@@ -1,0 +1,40 @@
+//! Why a measurement failed.
+
+use crate::memory::Shortage;
+use crate::scene::SceneError;
+use crate::scene::generate::GenerateError;
+use crate::world::WorldError;
+
+/// Why a measurement failed.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// There is no scene of that name.
+    #[error("there is no scene \"{name}\" to measure; give some of {known}")]
+    UnknownScene {
+        /// As it was asked for.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// A scene file.
+    #[error("{}", .0.message)]
+    Scene(Box<SceneError>),
+    /// A scene that cannot be rendered.
+    #[error("{0}: {1}")]
+    World(String, WorldError),
+    /// Spheres that cannot be made.
+    #[error("{0}: {1}")]
+    Generate(String, GenerateError),
+    /// There is not the memory for it.
+    #[error("{0} needs {1}; leave it out of --scenes")]
+    Memory(String, Shortage),
+    /// Two ways to the same result have come to different ones.
+    #[error("{0}: the times mean nothing; please report this fault of the program")]
+    Differ(String),
+}
+
+impl From<SceneError> for BenchError {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(Box::new(error))
+    }
+}

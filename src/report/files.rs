@@ -1,0 +1,132 @@
+//! Tables for programs.
+
+use super::{Cell, Machine, Report, Spread, Table};
+use serde_json::{Map, Value, json};
+
+/// What stands in a column's name for each number of a spread.
+const SPREAD: [&str; 3] = ["", " least", " greatest"];
+
+impl Table {
+    /// The table as CSV, in UTF-8. A header with names and units, then a line for each row; a
+    /// column of numbers that were measured several times becomes three, of the medians, the least
+    /// and the greatest. What is missing, or not finite, is empty.
+    pub fn csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let header = self.columns.iter().enumerate().flat_map(|(i, column)| {
+            let count = if self.has_spread(i) { SPREAD.len() } else { 1 };
+            SPREAD[..count].iter().map(|part| column.with_unit(&format!("{}{part}", column.name)))
+        });
+        // Writing to memory cannot fail, nor do rows differ in length.
+        let _ = writer.write_record(header);
+        for row in &self.rows {
+            let cells = row.iter().enumerate().flat_map(|(i, cell)| self.record(i, cell));
+            let _ = writer.write_record(cells);
+        }
+        String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+    }
+
+    /// The fields of a cell in column `i`.
+    fn record(&self, i: usize, cell: &Cell) -> Vec<String> {
+        let number = |x: f64| if x.is_finite() { x.to_string() } else { String::new() };
+        let mut fields = match cell {
+            Cell::None => vec![String::new()],
+            Cell::Text(text) => vec![text.clone()],
+            Cell::Count(count) => vec![count.to_string()],
+            Cell::Number(x) => vec![number(*x)],
+            Cell::Spread(Spread { median, least, greatest }) => {
+                [median, least, greatest].map(|x| number(*x)).to_vec()
+            }
+        };
+        if self.has_spread(i) {
+            fields.resize(SPREAD.len(), String::new());
+        }
+        fields
+    }
+
+    fn json(&self) -> Value {
+        let columns = self.columns.iter().map(
+            |column| json!({ "name": column.name, "unit": column.unit, "about": column.about }),
+        );
+        let rows = self.rows.iter().map(|row| {
+            let cells = self.columns.iter().zip(row);
+            Value::Object(cells.map(|(column, cell)| (column.name.clone(), value(cell))).collect())
+        });
+        json!({
+            "name": self.name,
+            "title": self.title,
+            "columns": columns.collect::<Vec<_>>(),
+            "rows": rows.collect::<Vec<_>>(),
+            "notes": self.notes,
+        })
+    }
+}
+
+/// What is missing, or not finite, is null.
+fn value(cell: &Cell) -> Value {
+    match cell {
+        Cell::None => Value::Null,
+        Cell::Text(text) => json!(text),
+        Cell::Count(count) => json!(count),
+        Cell::Number(number) => json!(number),
+        Cell::Spread(spread) => json!(spread),
+    }
+}
+
+impl Report {
+    /// The report as one JSON object: what was measured, on what, and the tables. Rows are objects
+    /// whose keys are the columns' names.
+    pub fn json(&self, machine: &Machine) -> Value {
+        let strings = |pairs: &[(String, String)]| {
+            let pairs = pairs.iter().map(|(name, text)| (name.clone(), json!(text)));
+            Value::Object(pairs.collect::<Map<_, _>>())
+        };
+        json!({
+            "name": self.name,
+            "title": self.title,
+            "about": self.about,
+            "machine": strings(&machine.facts),
+            "settings": strings(&self.settings),
+            "tables": self.tables.iter().map(Table::json).collect::<Vec<_>>(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Column;
+
+    fn table() -> Table {
+        let columns = vec![
+            Column::new("name", "what it is called"),
+            Column::new("rate", "how fast").unit("Mrays/s"),
+        ];
+        let mut table = Table::new("a", "A", columns);
+        let spread = Spread { median: 2.0, least: 1.5, greatest: 1e-9 };
+        table.push(["one, \"two\"".into(), spread.into()]);
+        table.push([Cell::None, Cell::Number(f64::INFINITY)]);
+        table
+    }
+
+    #[test]
+    fn csv_has_all_digits_and_no_gaps() {
+        assert_eq!(
+            table().csv(),
+            "name,rate [Mrays/s],rate least [Mrays/s],rate greatest [Mrays/s]\n\
+             \"one, \"\"two\"\"\",2,1.5,0.000000001\n\
+             ,,,\n"
+        );
+    }
+
+    #[test]
+    fn json_rows_go_by_names() {
+        let machine = Machine { facts: vec![("threads".into(), "2".into())] };
+        let report = Report { tables: vec![table()], ..Report::default() };
+        let json = report.json(&machine);
+        assert_eq!(json["machine"]["threads"], "2");
+        let table = &json["tables"][0];
+        assert_eq!(table["columns"][1]["unit"], "Mrays/s");
+        assert_eq!(table["rows"][0]["rate"]["least"], 1.5);
+        assert_eq!(table["rows"][1]["rate"], Value::Null);
+    }
+}

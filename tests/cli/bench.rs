@@ -1,0 +1,90 @@
+//! Measurements as a command: what they write, and what they refuse.
+
+use crate::folder::{Folder, text};
+use serde_json::Value;
+use std::fs;
+
+/// Runs a measurement that takes no time to speak of.
+fn quick(folder: &Folder, args: &[&str]) {
+    let output = folder.succeed(&[&["bench"], args, &["--quick", "--quiet", "-o", "out"]].concat());
+    assert!(output.is_empty(), "{output}");
+}
+
+/// Checks that every file in the folder `out` is whole; returns their names in order.
+fn check_files(folder: &Folder) -> Vec<String> {
+    let entries = fs::read_dir(folder.path("out")).expect("a folder that is there");
+    let mut names: Vec<_> =
+        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    for name in &names {
+        let content = folder.read(&format!("out/{name}"));
+        check(name, &content);
+    }
+    names
+}
+
+fn check(name: &str, content: &[u8]) {
+    let words = text(content);
+    match name.rsplit_once('.').map(|name| name.1) {
+        Some("csv") => {
+            let mut table = csv::Reader::from_reader(content);
+            assert!(table.headers().is_ok_and(|names| names.len() > 1), "{name}");
+            let rows: Result<Vec<_>, _> = table.records().collect();
+            assert!(rows.is_ok_and(|rows| !rows.is_empty()), "{name}");
+        }
+        Some("json") => {
+            let report: Value = serde_json::from_slice(content).expect(name);
+            assert!(report["machine"]["version"].is_string(), "{name}");
+            assert!(report["tables"][0]["rows"][0].is_object(), "{name}");
+        }
+        Some("svg") => {
+            assert!(words.starts_with("<svg") && words.trim_end().ends_with("</svg>"), "{name}");
+            assert!(!words.contains("NaN") && !words.contains("inf"), "{name}");
+        }
+        Some("png") => assert!(content.starts_with(b"\x89PNG") && content.len() > 1000, "{name}"),
+        Some("html") => {
+            assert!(words.starts_with("<!DOCTYPE html>") && words.ends_with("</html>\n"), "{name}");
+            assert!(words.contains("<svg") && !words.contains("src="), "{name}");
+        }
+        // References, which other tests read.
+        Some("exr") => {}
+        _ => panic!("{name} was not asked for"),
+    }
+}
+
+#[test]
+fn the_builders_are_measured() {
+    let folder = Folder::new();
+    quick(&folder, &["build", "--scenes", "paper400", "paper2500"]);
+    let names = ["build.csv", "build.html", "build.json", "build.png", "build.svg"];
+    assert_eq!(check_files(&folder), names);
+    let report: Value = serde_json::from_slice(&folder.read("out/build.json")).unwrap();
+    assert_eq!(report["tables"][0]["rows"].as_array().unwrap().len(), 6);
+    assert_eq!(report["settings"]["scenes"], "paper400, paper2500");
+}
+
+#[test]
+fn wrong_commands_harm_nothing() {
+    let folder = Folder::new();
+    folder.write("file", "old");
+    let cases: &[(&str, i32, &[&str])] = &[
+        ("bench", 2, &["build", "all"]),
+        ("bench nothing", 2, &["nothing"]),
+        ("bench build --quick --full", 2, &["--quick", "--full"]),
+        ("bench build --rounds 0", 2, &["--rounds", "1..=1000"]),
+        ("bench build --threads 0", 2, &["--threads"]),
+        ("bench build --quick -o out --scenes nowhere", 1, &["\"nowhere\"", "paper400"]),
+        ("bench build --quick -o file", 1, &["file", "folder"]),
+        ("bench build --quick -o missing/out", 1, &["missing", "folder"]),
+    ];
+    for (line, code, words) in cases {
+        let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(*code), "{line}: {message}");
+        for word in *words {
+            assert!(message.contains(word), "{line}: {message}");
+        }
+    }
+    assert_eq!(fs::read_dir(folder.root()).unwrap().count(), 1);
+    assert_eq!(folder.read("file"), b"old");
+}
