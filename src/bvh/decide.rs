@@ -6,7 +6,7 @@
 //! it is.
 
 use super::certain::Certain;
-use super::walk::Query;
+use super::walk::{Query, Visits};
 use crate::exact::{self, Distance};
 use crate::filter::{Chord, FilterRay};
 use crate::intersect::{self, CLEAR, Pairs, Root};
@@ -35,12 +35,14 @@ pub(super) struct Decider<'a, Q> {
     pub(super) hits: &'a mut Hits,
     /// How often arithmetic without rounding was needed.
     pub(super) exact: u64,
+    /// What was visited, if it is counted.
+    pub(super) visits: Visits,
     query: PhantomData<Q>,
 }
 
 impl<'a, Q: Query> Decider<'a, Q> {
     pub(super) fn new(spheres: &'a Spheres, rays: &'a Rays, hits: &'a mut Hits) -> Self {
-        Self { spheres, rays, hits, exact: 0, query: PhantomData }
+        Self { spheres, rays, hits, exact: 0, visits: Visits::default(), query: PhantomData }
     }
 
     /// Bounds of the distance that still counts for a ray; [`DONE`] if none does.

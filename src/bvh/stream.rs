@@ -110,6 +110,10 @@ pub(super) fn trace<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
         if now.nodes | now.leaves | next.nodes == 0 {
             return;
         }
+        if Q::COUNTED {
+            decider.visits.nodes += u64::from(now.nodes.count_ones());
+            decider.visits.leaves += u64::from(now.leaves.count_ones());
+        }
         for place in set_bits(now.nodes) {
             let flight = &mut flights[place % FLIGHTS];
             let child = flight.step::<Q>(&bvh.nodes()[flight.child.index()]);
@@ -146,6 +150,9 @@ fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
     for &(place, met) in &candidates[..count.min(FLIGHTS)] {
         let flight = &mut flights[place as usize % FLIGHTS];
         let first = flight.child.index() * LEAF;
+        if Q::COUNTED {
+            decider.visits.candidates += u64::from(met.count_ones());
+        }
         for lane in set_bits(u64::from(met)) {
             flight.bundle.test(decider, first + lane);
         }

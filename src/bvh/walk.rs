@@ -10,7 +10,7 @@ use super::single::Single;
 use super::{Bvh, stream};
 use crate::lanes::{Lanes, Mask, set_bits};
 use crate::ray::{CHUNK, Hits, Rays};
-use crate::spheres::Spheres;
+use crate::spheres::{LEAF, Spheres};
 use std::marker::PhantomData;
 
 /// Single rays on their way at once. By million rays per second on scenes of 400 to a million spheres:
@@ -38,6 +38,8 @@ pub trait Query {
     const ANY: bool;
     /// Whether hits are decided exactly.
     const EXACT: bool = true;
+    /// Whether what is visited is counted.
+    const COUNTED: bool = false;
 }
 
 /// Which sphere is hit first: leaves `t` and `sphere` of the hit.
@@ -53,6 +55,34 @@ pub struct Rough<Q>(PhantomData<Q>);
 impl<Q: Query> Query for Rough<Q> {
     const ANY: bool = Q::ANY;
     const EXACT: bool = false;
+}
+
+/// A query that counts what its rays visit. For benches alone: others do not even test whether to
+/// count.
+struct Counted<Q>(PhantomData<Q>);
+
+impl<Q: Query> Query for Counted<Q> {
+    const ANY: bool = Q::ANY;
+    const EXACT: bool = Q::EXACT;
+    const COUNTED: bool = true;
+}
+
+/// What rays visit. What a packet does counts once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Visits {
+    /// Nodes, the root among them.
+    pub nodes: u64,
+    /// Leaves.
+    pub leaves: u64,
+    /// Spheres that a leaf's test did not rule out.
+    pub candidates: u64,
+}
+
+impl Visits {
+    /// Spheres that are tested, whole leaves of them.
+    pub fn spheres(&self) -> u64 {
+        self.leaves * LEAF as u64
+    }
 }
 
 impl Query for Closest {
@@ -88,7 +118,31 @@ pub fn trace<'a, L: Lanes, Q: Query>(
     rays: &'a Rays,
     hits: &'a mut Hits,
 ) -> u64 {
-    let decider = &mut Decider::<Q>::new(spheres, rays, hits);
+    walk::<L, Q>(method, bvh, spheres, rays, hits).exact
+}
+
+/// [`trace`], to count what rays visit.
+pub fn visits<'a, L: Lanes, Q: Query>(
+    method: Method,
+    bvh: &'a Bvh,
+    spheres: &'a Spheres,
+    rays: &'a Rays,
+    hits: &'a mut Hits,
+) -> Visits {
+    walk::<L, Counted<Q>>(method, bvh, spheres, rays, hits).visits
+}
+
+/// Returns who decided, with what was counted.
+#[inline(always)]
+fn walk<'a, L: Lanes, Q: Query>(
+    method: Method,
+    bvh: &'a Bvh,
+    spheres: &'a Spheres,
+    rays: &'a Rays,
+    hits: &'a mut Hits,
+) -> Decider<'a, Q> {
+    let mut all = Decider::<Q>::new(spheres, rays, hits);
+    let decider = &mut all;
     for first in (0..rays.len()).step_by(CHUNK) {
         let rows = first..rays.len().min(first + CHUNK);
         decider.hits.error[..rows.len()].fill(0.0);
@@ -119,7 +173,7 @@ pub fn trace<'a, L: Lanes, Q: Query>(
             }
         }
     }
-    decider.exact
+    all
 }
 
 /// A bit for each row in `row..row + width` that is less than `end`.
