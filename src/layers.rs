@@ -164,7 +164,8 @@ impl Layers {
 pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[Layer]) -> Layers {
     let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
     let filter = PixelFilter::new(settings.filter);
-    let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer: options.tracer };
+    let (tracer, skips) = (options.tracer, options.skips);
+    let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, skips };
     let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
     let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };

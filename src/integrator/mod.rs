@@ -9,6 +9,7 @@ pub mod clock;
 mod diffuse;
 pub mod path;
 pub mod shadows;
+pub mod skips;
 pub mod stages;
 pub mod whitted;
 pub mod workspace;
@@ -17,6 +18,7 @@ use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::trace::Tracer;
 use crate::world::World;
+use skips::Skips;
 use workspace::Workspace;
 
 /// What an integrator reads.
@@ -32,12 +34,24 @@ pub struct Job<'a> {
     pub filter: &'a PixelFilter,
     /// How rays find spheres.
     pub tracer: Tracer,
+    /// What is left out where it changes nothing.
+    pub skips: Skips,
 }
 
 impl Job<'_> {
     /// The most scatterings of a path.
     pub fn depth(&self) -> u32 {
         self.settings.depth.unwrap_or(Settings::HARD_DEPTH)
+    }
+
+    /// Whether the place on the lens is sampled.
+    pub fn has_lens(&self) -> bool {
+        self.world.features.lens || !self.skips.lens
+    }
+
+    /// Whether lights are sampled.
+    pub fn has_lights(&self) -> bool {
+        self.world.features.lights || !self.skips.lights
     }
 
     /// Follows the paths that were generated to their ends.

@@ -108,7 +108,7 @@ struct Shade<'a> {
 impl ShadeKind for Shade<'_> {
     fn shade<B: Bsdf>(&mut self, work: &mut Workspace, kind: Kind, bsdf: impl Fn(MaterialId) -> B) {
         let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
-        let lights = self.job.world.features.lights;
+        let lights = self.job.has_lights();
         for &row in rows.iter().filter(|_| lights || !B::DIFFUSE) {
             let row = row as usize;
             let hit = work.hits.sphere[row];

@@ -74,7 +74,7 @@ fn draw_places(job: &Job, work: &mut Workspace) {
         let [dx, dy] = job.filter.offset_row(job.sampler.pixel_row(row));
         dx.store(&mut direction.x[first..]);
         dy.store(&mut direction.y[first..]);
-        if job.world.features.lens {
+        if job.has_lens() {
             for (path, sample) in (first..).zip(row) {
                 let place = sampling::concentric_disk(job.sampler.lens(sample));
                 (origin.z[path], direction.z[path]) = place.into();
@@ -94,9 +94,7 @@ fn aim_camera(job: &Job, work: &mut Workspace) {
         let x = place(&origin.x, &direction.x);
         let y = place(&origin.y, &direction.y);
         let lens = job
-            .world
-            .features
-            .lens
+            .has_lens()
             .then(|| [load_doubles(&origin.z[row..]), load_doubles(&direction.z[row..])]);
         let (from, toward) = job.world.camera.rays([x, y], lens);
         origin.set_row(row, from);
@@ -216,8 +214,11 @@ impl Local {
 pub fn occlude(job: &Job, work: &mut Workspace) {
     work.clock.end(Stage::Shade);
     let shadows = &mut work.shadows;
-    work.counters.exact_decisions +=
-        job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits);
+    work.counters.exact_decisions += if job.skips.nearest_occluder {
+        job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits)
+    } else {
+        job.tracer.closest(job.world, &shadows.rays, &mut shadows.hits)
+    };
     for row in 0..shadows.rays.len() {
         if shadows.hits.sphere[row] == MISS {
             work.paths.radiance[shadows.place[row] as usize] += shadows.light[row];

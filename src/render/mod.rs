@@ -7,6 +7,7 @@ mod adapt;
 mod pass;
 mod watch;
 
+pub use crate::integrator::skips::Skips;
 pub use adapt::End;
 pub(crate) use pass::view;
 pub use watch::Tasks;
@@ -45,6 +46,8 @@ pub struct Options<'a> {
     pub cancel: Option<&'a AtomicBool>,
     /// Whether [`Render::statistics`] are wanted: they take probes, which take time.
     pub statistics: bool,
+    /// What is left out where it changes nothing; the default is all.
+    pub skips: Skips,
 }
 
 impl Default for Tracer {
@@ -140,11 +143,12 @@ pub fn render(world: &World, settings: &Settings, options: &Options) -> Render {
         sampler: &sampler,
         filter: &filter,
         tracer: options.tracer,
+        skips: options.skips,
     };
     let camera = &world.camera;
     let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
     let mut film = Film::new(options.region.unwrap_or(whole), options.statistics);
-    if options.tracer.method != Method::Brute {
+    if options.tracer.method != Method::Brute && options.skips.empty_tiles {
         film.tiles.par_iter_mut().for_each(|tile| tile.view = view(&job, tile));
     }
     let measured = targeted || options.statistics;

@@ -35,7 +35,7 @@ pub(super) fn even(world: &World, tile: &Tile) -> Option<Rgb> {
 pub(super) fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
     let count = samples.end - samples.start;
     work.clock.restart();
-    if let Some(radiance) = even(job.world, tile) {
+    if let Some(radiance) = even(job.world, tile).filter(|_| job.skips.even_background) {
         tile.add_even(radiance, count);
         work.counters.skipped_samples += u64::from(count) * tile.pixels().count() as u64;
         return work.clock.end(Stage::Film);

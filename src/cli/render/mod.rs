@@ -16,7 +16,7 @@ use super::args::RenderArgs;
 use super::progress::Meter;
 use super::{Failure, output};
 use spherule::image::check_writable;
-use spherule::render::{Options, Render, render};
+use spherule::render::{Options, Render, Skips, render};
 use std::process::ExitCode;
 
 /// What a shell reports of a process that Ctrl-C ended.
@@ -63,6 +63,7 @@ fn trace(job: &Job, prepared: &Prepared) -> Render {
         progress: Some(&show),
         cancel: Some(interrupt::flag()),
         statistics: layers::need_statistics(job),
+        skips: Skips::ALL,
     };
     let render = render(&prepared.world, &prepared.scene.settings, &options);
     meter.finish();
