@@ -34,7 +34,7 @@ struct Outcome {
 ///
 /// # Errors
 /// A scene is unknown or does not fit in memory, or a tree is wrong.
-pub fn run(options: &Options, tell: Tell) -> Result<Report, BenchError> {
+pub fn measure(options: &Options, tell: Tell) -> Result<Report, BenchError> {
     use SphereScene as S;
     let most = [S::PAPER400, S::PAPER2500, S::LAYER250K, S::VOLUME1M, S::VOLUME10M];
     let usual = &most[..options.pick([1, 4, 5])];
@@ -42,7 +42,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, BenchError> {
     let mut outcomes = Vec::new();
     for scene in scenes {
         tell(&format!("build: {}", scene.name));
-        outcomes.push(measure(scene, options)?);
+        outcomes.push(of_scene(scene, options)?);
     }
     Ok(Report {
         name: "build".to_owned(),
@@ -54,7 +54,7 @@ pub fn run(options: &Options, tell: Tell) -> Result<Report, BenchError> {
     })
 }
 
-fn measure(scene: SphereScene, options: &Options) -> Result<Outcome, BenchError> {
+fn of_scene(scene: SphereScene, options: &Options) -> Result<Outcome, BenchError> {
     let spheres = scene.spheres()?;
     let mut trees = vec![None; BUILDERS.len()];
     let times = Times::by_turns(options.rounds, BUILDERS.len(), |i| {
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn every_builder_has_a_row_for_each_scene() {
-        let report = run(&quick(&["paper400", "paper2500"]), &|_| ()).unwrap();
+        let report = measure(&quick(&["paper400", "paper2500"]), &|_| ()).unwrap();
         let rows = &report.tables[0].rows;
         assert_eq!(rows.len(), 2 * BUILDERS.len());
         for row in rows {
@@ -148,6 +148,6 @@ mod tests {
             assert!(time.least > 0.0 && time.least <= time.median && time.median <= time.greatest);
             assert!(matches!(row[5], Cell::Number(bytes) if (20.0..60.0).contains(&bytes)));
         }
-        assert!(run(&quick(&["nowhere"]), &|_| ()).is_err());
+        assert!(measure(&quick(&["nowhere"]), &|_| ()).is_err());
     }
 }

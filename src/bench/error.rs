@@ -1,9 +1,12 @@
 //! Why a measurement failed.
 
+use crate::image::ImageError;
 use crate::memory::Shortage;
 use crate::scene::SceneError;
 use crate::scene::generate::GenerateError;
 use crate::world::WorldError;
+use std::io;
+use std::path::PathBuf;
 
 /// Why a measurement failed.
 #[derive(Debug, thiserror::Error)]
@@ -28,6 +31,15 @@ pub enum BenchError {
     /// There is not the memory for it.
     #[error("{0} needs {1}; leave it out of --scenes")]
     Memory(String, Shortage),
+    /// The system does not give so many.
+    #[error("cannot start {0} threads: {1}; ask for fewer")]
+    Threads(usize, rayon::ThreadPoolBuildError),
+    /// A reference that is to be kept.
+    #[error("{}: cannot be written: {}", .0.display(), .1)]
+    Write(PathBuf, io::Error),
+    /// The same, as a picture.
+    #[error("{0}")]
+    Image(#[from] ImageError),
     /// Two ways to the same result have come to different ones.
     #[error("{0}: the times mean nothing; please report this fault of the program")]
     Differ(String),

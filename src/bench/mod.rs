@@ -6,11 +6,20 @@
 //! difference is an error: the time of a wrong result means nothing.
 
 pub mod build;
+pub mod convergence;
 mod error;
+pub mod naive;
+pub mod rays;
 pub mod rounds;
+pub mod scenes;
+pub mod skips;
 pub mod spheres;
+pub mod threads;
+pub mod traversal;
 
 pub use error::BenchError;
+
+use std::path::PathBuf;
 
 /// What is asked of a measurement.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,6 +28,10 @@ pub struct Options {
     pub scenes: Vec<String>,
     /// How often each contestant has its turn.
     pub rounds: u32,
+    /// The most threads that are compared; all else runs on those of the current pool.
+    pub threads: usize,
+    /// Where references are kept; `None` to render them each time.
+    pub references: Option<PathBuf>,
     /// How much is measured.
     pub effort: Effort,
 }
@@ -87,7 +100,7 @@ pub(crate) mod tests {
     /// The least there is.
     pub(crate) fn quick(scenes: &[&str]) -> Options {
         let scenes = scenes.iter().map(|&name| name.to_owned()).collect();
-        Options { scenes, rounds: 2, effort: Effort::Quick }
+        Options { scenes, rounds: 2, threads: 2, references: None, effort: Effort::Quick }
     }
 
     #[test]

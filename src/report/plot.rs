@@ -42,6 +42,8 @@ pub struct Axis {
 pub enum Scale {
     /// By their differences, from 0 on.
     Linear,
+    /// The same, of whole numbers.
+    Whole,
     /// By their ratios.
     Log,
     /// Names: places are their indices. For places alone.
@@ -93,6 +95,11 @@ impl Axis {
             range: None,
             zero: None,
         }
+    }
+
+    /// Whole numbers from 0 on.
+    pub fn whole(label: &str) -> Self {
+        Self { scale: Scale::Whole, ..Self::linear(label, "") }
     }
 
     /// Logarithmic.

@@ -1,5 +1,6 @@
 //! The command as typed.
 
+use crate::cli::threads;
 use crate::cli::values::THREADS;
 use clap::{Subcommand, value_parser};
 use spherule::bench::{Effort, Options};
@@ -14,12 +15,42 @@ pub(in crate::cli) struct Args {
 /// What is measured.
 #[derive(Debug, Subcommand)]
 pub(super) enum Measurement {
+    /// Finding what rays hit: every walk, for four classes of rays
+    #[command(after_help = TRAVERSAL)]
+    Traversal(Common),
+    /// What more threads bring, and what one generator of random numbers for all of them costs
+    #[command(after_help = THREADS_EXAMPLES)]
+    Threads(ThreadsArgs),
     /// Building trees: time, memory and quality of each builder
     #[command(after_help = BUILD)]
     Build(Common),
+    /// What is saved by leaving out what a scene does not need
+    #[command(after_help = SKIPS)]
+    Skips(Common),
+    /// Error against time and samples, for sets of settings
+    #[command(after_help = ERROR)]
+    Error(Common),
     /// All of these, on one page: report.html
     #[command(after_help = EVERYTHING)]
     All(Common),
+}
+
+#[derive(Debug, clap::Args)]
+pub(super) struct ThreadsArgs {
+    /// Compare 1 to N threads [default: as --threads]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=256))]
+    threads_up_to: Option<u16>,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
+
+impl ThreadsArgs {
+    /// What is asked of the measurement.
+    pub(super) fn options(&self) -> Options {
+        let usual = self.common.options();
+        let threads = self.threads_up_to.map_or(usual.threads, usize::from);
+        Options { threads, ..usual }
+    }
 }
 
 /// What all measurements take.
@@ -49,6 +80,11 @@ pub(super) struct Common {
 }
 
 impl Common {
+    /// Whether scenes are named.
+    pub(super) fn has_scenes(&self) -> bool {
+        !self.scenes.is_empty()
+    }
+
     /// What is asked of a measurement.
     pub(super) fn options(&self) -> Options {
         let effort = match (self.quick, self.full) {
@@ -57,7 +93,9 @@ impl Common {
             _ => Effort::Usual,
         };
         let rounds = if self.quick { self.rounds.min(2) } else { self.rounds };
-        Options { scenes: self.scenes.clone(), rounds, effort }
+        let threads = threads::count(self.threads);
+        let references = Some(self.output.join("references"));
+        Options { scenes: self.scenes.clone(), rounds, threads, references, effort }
     }
 }
 
@@ -70,10 +108,35 @@ Examples:
   spherule bench all
   spherule bench build --scenes layer250k volume1m --rounds 9 --output measured";
 
+const TRAVERSAL: &str = "\
+Examples:
+  spherule bench traversal
+  spherule bench traversal --scenes fcc1m volume10m
+  spherule bench traversal --full --rounds 9";
+
+const THREADS_EXAMPLES: &str = "\
+Examples:
+  spherule bench threads
+  spherule bench threads --threads-up-to 16 --scenes smallpt my-scene.toml";
+
 const BUILD: &str = "\
 Examples:
   spherule bench build
   spherule bench build --scenes layer250k volume1m --threads 1";
+
+const SKIPS: &str = "\
+Examples:
+  spherule bench skips
+  spherule bench skips --rounds 15 --scenes veach my-scene.toml";
+
+const ERROR: &str = "\
+References are kept in the folder `references` of the output: the next run with the same scene and
+settings takes them from there.
+
+Examples:
+  spherule bench error
+  spherule bench error --scenes veach my-scene.toml --rounds 3
+  spherule bench error --full";
 
 const EVERYTHING: &str = "\
 Examples:

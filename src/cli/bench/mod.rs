@@ -6,8 +6,8 @@ mod files;
 pub(super) use self::args::{Args, EXAMPLES};
 use self::args::{Common, Measurement};
 use self::files::Folder;
-use super::{Failure, output, threads};
-use spherule::bench::{BenchError, Options, Tell, build};
+use super::{Failure, output, threads as cores};
+use spherule::bench::{BenchError, Options, Tell, build, convergence, skips, threads, traversal};
 use spherule::report::{Machine, Report};
 use std::process::ExitCode;
 
@@ -15,22 +15,39 @@ use std::process::ExitCode;
 type Run = fn(&Options, Tell) -> Result<Report, BenchError>;
 
 /// What `all` runs, in this order.
-const ALL: [Run; 1] = [build::run];
+const ALL: [Run; 4] = [traversal::measure, build::measure, threads::measure, convergence::measure];
 
 /// Measures, prints tables, and writes files.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     match &args.measurement {
-        Measurement::Build(common) => of(common, "build", &[build::run]),
-        Measurement::All(common) => of(common, "report", &ALL),
+        Measurement::Traversal(common) => one(common, "traversal", traversal::measure),
+        Measurement::Threads(args) => {
+            of((&args.common, &args.options()), "threads", &[threads::measure])
+        }
+        Measurement::Build(common) => one(common, "build", build::measure),
+        Measurement::Skips(common) => one(common, "skips", skips::measure),
+        Measurement::Error(common) => one(common, "error", convergence::measure),
+        Measurement::All(common) if common.has_scenes() => {
+            let message = "--scenes is for single measurements: each has scenes of its own";
+            Err(Failure::usage("bench", message))
+        }
+        Measurement::All(common) => of((common, &common.options()), "report", &ALL),
     }
 }
 
+fn one(common: &Common, name: &str, run: Run) -> Result<ExitCode, Failure> {
+    of((common, &common.options()), name, &[run])
+}
+
 /// Runs some measurements. The page is called `page`.
-fn of(common: &Common, page: &str, runs: &[Run]) -> Result<ExitCode, Failure> {
+fn of(
+    (common, options): (&Common, &Options),
+    page: &str,
+    runs: &[Run],
+) -> Result<ExitCode, Failure> {
     let folder = Folder::new(&common.output)?;
-    let count = threads::count(common.threads);
-    let pool = threads::pool(count)?;
-    let options = common.options();
+    let count = cores::count(common.threads);
+    let pool = cores::pool(count)?;
     let tell = |words: &str| {
         if !common.quiet {
             output::tell_plain(words);
@@ -38,7 +55,7 @@ fn of(common: &Common, page: &str, runs: &[Run]) -> Result<ExitCode, Failure> {
     };
     let mut reports = Vec::new();
     for run in runs {
-        let report = pool.install(|| run(&options, &tell))?;
+        let report = pool.install(|| run(options, &tell))?;
         if !common.quiet {
             print(&report);
         }

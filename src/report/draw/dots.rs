@@ -6,8 +6,10 @@ use super::ruler::Ruler;
 use super::sheet::{EDGE, FAINT, LETTERS, Sheet, Side, WIDTH, color, width};
 use crate::report::{Plot, Point, Series};
 
-/// Pixels from line to line.
+/// Pixels from line to line, at least.
 const LINE: f64 = 36.0;
+/// Pixels from series to series where error bars keep apart.
+const STEP: f64 = 13.0;
 /// Pixels to the left of the lines at most.
 const NAMES: f64 = 420.0;
 /// Pixels from marks that are zero to a logarithmic axis.
@@ -21,6 +23,10 @@ struct Frame {
     sides: [f64; 2],
     /// Where the axis begins and ends.
     axis: [f64; 2],
+    /// From line to line.
+    line: f64,
+    /// From series to series of a line.
+    step: f64,
 }
 
 pub(super) fn lay_out(plot: &Plot, names: &[String]) -> Sheet {
@@ -34,9 +40,13 @@ pub(super) fn lay_out(plot: &Plot, names: &[String]) -> Sheet {
     let longest = names.iter().map(|name| width(name, LETTERS)).fold(0.0, f64::max);
     let left = (EDGE + longest + 30.0).min(NAMES);
     let apart = if plot.value.zero.is_some() { APART } else { 20.0 };
+    let step = if has_bars(plot) { STEP } else { 0.0 };
+    let line = LINE.max(step * (plot.series.len() + 1) as f64);
     let frame = Frame {
+        line,
+        step,
         top,
-        bottom: top + LINE * names.len() as f64,
+        bottom: top + line * names.len() as f64,
         sides: [left, WIDTH - 60.0],
         axis: [left + apart, WIDTH - 100.0],
     };
@@ -51,6 +61,12 @@ pub(super) fn lay_out(plot: &Plot, names: &[String]) -> Sheet {
         sheet.text(plot.note.as_str(), (EDGE, frame.bottom + 100.0), 18.0, Side::Left);
     }
     sheet
+}
+
+/// Whether there are error bars, which would hide each other on one line.
+fn has_bars(plot: &Plot) -> bool {
+    let varies = |point: &Point| point.value.greatest > point.value.least;
+    plot.series.iter().any(|series| series.points.iter().any(varies))
 }
 
 fn ends(point: &Point) -> [f64; 2] {
@@ -96,9 +112,17 @@ fn row(
     plot: &Plot,
     (ruler, frame): (&Ruler, &Frame),
 ) {
-    let y = frame.top + LINE * (line as f64 + 0.5);
+    let y = frame.top + frame.line * (line as f64 + 0.5);
+    if frame.step > 0.0 && line > 0 {
+        let above = y - frame.line / 2.0;
+        sheet.path([(frame.sides[0], above), (frame.sides[1], above)], FAINT, 1.0);
+    }
     sheet.text(name, (frame.sides[0] - 20.0, y), LETTERS, Side::Right);
-    sheet.path([(frame.sides[0], y), (frame.sides[1], y)], FAINT, 1.0);
+    if frame.step == 0.0 {
+        sheet.path([(frame.sides[0], y), (frame.sides[1], y)], FAINT, 1.0);
+    }
+    let middle = (plot.series.len() as f64 - 1.0) / 2.0;
+    let y = |index: usize| y + frame.step * (index as f64 - middle);
     let shown = |value: f64| value.is_finite() && (ruler.takes(value) || plot.value.zero.is_some());
     let here = |(index, series): (usize, &Series)| {
         let points = series.points.iter().filter(|point| point.place == line as f64);
@@ -106,13 +130,14 @@ fn row(
         points.map(|value| (index, legend::number(series, index), value)).collect::<Vec<_>>()
     };
     let marks: Vec<_> = plot.series.iter().enumerate().flat_map(here).collect();
-    for &(_, number, value) in &marks {
+    for &(index, number, value) in &marks {
+        let y = y(index);
         let [low, high] = [value.least, value.greatest].map(|value| frame.x(ruler, value));
         if high - low > 1.0 {
             sheet.path([(low, y), (high, y)], color(number), 3.0);
         }
     }
     for &(index, number, value) in &marks {
-        sheet.mark(number, (frame.x(ruler, value.median), y), size(index, plot));
+        sheet.mark(number, (frame.x(ruler, value.median), y(index)), size(index, plot));
     }
 }

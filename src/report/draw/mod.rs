@@ -43,6 +43,6 @@ pub fn svg(plot: &Plot) -> Result<String, DrawingError> {
 fn lay_out(plot: &Plot) -> Sheet {
     match &plot.place.scale {
         Scale::Names(names) => dots::lay_out(plot, names),
-        Scale::Linear | Scale::Log => curves::lay_out(plot),
+        Scale::Linear | Scale::Whole | Scale::Log => curves::lay_out(plot),
     }
 }

@@ -6,6 +6,7 @@ use crate::report::{Axis, Scale, Style};
 #[derive(Clone, Debug)]
 pub(super) struct Ruler {
     log: bool,
+    whole: bool,
     ends: [f64; 2],
     percent: bool,
 }
@@ -23,7 +24,7 @@ impl Ruler {
         let usual = if log { [1.0, 10.0] } else { [0.0, 1.0] };
         let data = if found[0] <= found[1] { found } else { usual };
         let ends = axis.range.unwrap_or_else(|| if log { round_log(data) } else { round(data) });
-        Self { log, ends, percent: axis.unit == "%" }
+        Self { log, whole: axis.scale == Scale::Whole, ends, percent: axis.unit == "%" }
     }
 
     /// Where a number stands: 0 at the lower end, 1 at the upper; at an end if it is beyond.
@@ -50,7 +51,7 @@ impl Ruler {
 
     fn linear_ticks(&self) -> Vec<f64> {
         let [low, high] = self.ends;
-        let step = step(high - low);
+        let step = if self.whole { step(high - low).max(1.0) } else { step(high - low) };
         let first = (low / step).ceil() as i64;
         let last = (high / step + 1e-9).floor() as i64;
         (first..=last).map(|i| i as f64 * step).collect()
@@ -120,6 +121,7 @@ mod tests {
     fn numbers_are_round() {
         let linear = Axis::linear("", "");
         assert_eq!(labels(&linear, &[0.9, 2.7]), ["0", "0.5", "1", "1.5", "2", "2.5", "3"]);
+        assert_eq!(labels(&Axis::whole(""), &[1.0, 2.0]), ["0", "1", "2"]);
         assert_eq!(labels(&linear, &[]), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
         let log = Axis::log("", "");
         assert_eq!(labels(&log, &[3.0, 40.0]), ["2", "5", "10", "20", "50"]);

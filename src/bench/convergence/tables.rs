@@ -1,0 +1,136 @@
+//! What was found about errors, as tables and plots.
+
+use super::{Outcome, VARIANTS, Variant, fit};
+use crate::report::{Axis, Column, Plot, Point, Series, Style, Table};
+
+pub(super) fn levels(outcomes: &[Outcome]) -> Table {
+    let columns = vec![
+        Column::new("scene", "What is rendered."),
+        Column::new("variant", "What differs from the scene's own settings."),
+        Column::new("samples", "Per pixel."),
+        Column::new("time", "Of rendering.").unit("ms"),
+        Column::new("RMSE", "Root of the mean squared error, without the reference's own."),
+        Column::new("relative MSE", "Mean of squared errors by the squares of the reference."),
+        Column::new("efficiency", "1 / (mean squared error x time).").unit("1/s"),
+    ];
+    let mut table = Table::new("error", "Errors", columns);
+    for outcome in outcomes {
+        for (variant, Variant { name, .. }) in VARIANTS.iter().enumerate() {
+            for (level, &spp) in outcome.levels.iter().enumerate() {
+                table.push([
+                    outcome.scene.as_str().into(),
+                    (*name).into(),
+                    u64::from(spp).into(),
+                    outcome.seconds(variant, level).times(1e3).into(),
+                    outcome.rmse(variant, level).into(),
+                    outcome.error(variant, level, |squares| squares.relative).into(),
+                    outcome.efficiency(variant, level).into(),
+                ]);
+            }
+        }
+    }
+    table.notes = vec![
+        "The reference's own error is taken off. Where it is more than what is left, nothing is \
+         shown."
+            .to_owned(),
+    ];
+    table
+}
+
+pub(super) fn summary(outcomes: &[Outcome]) -> Table {
+    let columns = vec![
+        Column::new("scene", "What is rendered."),
+        Column::new("variant", "What differs from the scene's own settings."),
+        Column::new(
+            "samples",
+            "Slope of log RMSE over log samples, by least squares: -0.5 is that \
+            of independent samples, less is better.",
+        )
+        .group("slope over")
+        .style(Style::Fixed(2)),
+        Column::new("seconds", "The same over time.").style(Style::Fixed(2)),
+        Column::new("error", "The least RMSE that both variants reach.").group("to equal error"),
+        Column::new("time to it", "To this error, interpolated in logarithms.").unit("ms"),
+        Column::new("times as fast", "Time of the first variant by the time of this one.")
+            .style(Style::Fixed(2)),
+    ];
+    let mut table = Table::new("error-slopes", "Slopes, and times to equal error", columns);
+    for outcome in outcomes {
+        let first = pairs(&outcome.over_time(0));
+        for (variant, Variant { name, .. }) in VARIANTS.iter().enumerate() {
+            let own = pairs(&outcome.over_time(variant));
+            let equal = fit::equal(&first, &own);
+            table.push([
+                outcome.scene.as_str().into(),
+                (*name).into(),
+                fit::slope(&pairs(&outcome.over_samples(variant))).into(),
+                fit::slope(&own).into(),
+                equal.map(|equal| equal.value).into(),
+                equal.map(|equal| equal.places[1] * 1e3).into(),
+                equal.map(|equal| equal.places[0] / equal.places[1]).into(),
+            ]);
+        }
+    }
+    table
+}
+
+pub(super) fn references(outcomes: &[Outcome]) -> Table {
+    let columns = vec![
+        Column::new("scene", "What is rendered."),
+        Column::new("pixels", "Of the picture."),
+        Column::new("samples", "Per pixel, of both halves together."),
+        Column::new("RMSE", "The reference's own error, from the difference of its halves."),
+        Column::new("relative MSE", "The same, relative."),
+    ];
+    let mut table = Table::new("error-references", "References", columns);
+    for Outcome { scene, reference, .. } in outcomes {
+        table.push([
+            scene.as_str().into(),
+            (reference.mean.pixels.len() as u64).into(),
+            (2 * u64::from(reference.samples)).into(),
+            reference.error.absolute.sqrt().into(),
+            reference.error.relative.into(),
+        ]);
+    }
+    table
+}
+
+fn pairs(points: &[Point]) -> Vec<(f64, f64)> {
+    points.iter().map(|point| (point.place, point.value.median)).collect()
+}
+
+pub(super) fn over_time(outcome: &Outcome) -> Plot {
+    let place = Axis::log("time to render", "s");
+    plot(outcome, ("time", "time"), place, |variant| outcome.over_time(variant))
+}
+
+pub(super) fn over_samples(outcome: &Outcome) -> Plot {
+    let place = Axis::log("samples per pixel", "");
+    plot(outcome, ("samples", "samples"), place, |variant| outcome.over_samples(variant))
+}
+
+fn plot(
+    outcome: &Outcome,
+    (name, words): (&str, &str),
+    place: Axis,
+    curve: impl Fn(usize) -> Vec<Point>,
+) -> Plot {
+    let series = |(i, variant): (usize, &Variant)| Series::joined(variant.name, curve(i));
+    let mut series: Vec<_> = VARIANTS.iter().enumerate().map(series).collect();
+    let ends = series.first().map(|series| series.points.as_slice());
+    if let Some([first, .., last]) = ends {
+        let (at, value) = (first.place, first.value.median);
+        let ideal = [at, last.place].map(|place| Point::new(place, value * (at / place).sqrt()));
+        series.push(Series::model("slope -1/2", ideal, 7));
+    }
+    let error = Style::Usual.write(outcome.reference.error.absolute.sqrt());
+    Plot {
+        name: format!("error-{name}-{}", outcome.scene),
+        title: format!("Error against {words}: {}", outcome.scene),
+        about: "Medians and ranges over seeds; farther down and to the left is better".to_owned(),
+        note: format!("The reference's own RMSE, {error}, is taken off."),
+        place,
+        value: Axis::log("root mean squared error", "radiance"),
+        series,
+    }
+}

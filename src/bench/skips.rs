@@ -1,0 +1,194 @@
+//! What is saved by leaving out what a scene does not need: each saving is turned off by itself, in
+//! a scene that allows it, and the picture stays the same to the byte.
+
+use super::rounds::Times;
+use super::scenes::{FIELD, NamedScene};
+use super::{BenchError, Options, Tell};
+use crate::image::Image;
+use crate::render::{self, Skips, render};
+use crate::report::{Axis, Column, Plot, Point, Report, Series, Spread, Style, Table};
+use crate::scene::{EnvironmentMap, Rgb, Scene};
+use crate::world::World;
+
+const EXPLANATION: &str = "Each saving is turned off by itself, in a scene that allows it; with and \
+    without it the scene is rendered by turns. Pictures are compared byte by byte. What a census of \
+    the scene leaves out without a choice (shading stages of materials that do not occur, columns of \
+    colors, the plane test without a ground) costs nothing that could be turned on.";
+
+/// A saving: what it is, in which scene it is measured, and what that scene is changed to.
+struct Saving {
+    name: &'static str,
+    about: &'static str,
+    scene: &'static str,
+    change: fn(&mut Scene),
+    without: Skips,
+}
+
+const SAVINGS: [Saving; 5] = [
+    Saving {
+        name: "empty tiles",
+        about: "no tests against spheres where the tile sees none",
+        scene: FIELD,
+        change: |_| (),
+        without: Skips { empty_tiles: false, ..Skips::ALL },
+    },
+    Saving {
+        name: "even background",
+        about: "no paths where the tile sees one color, in the field without ground and sun",
+        scene: FIELD,
+        change: floating,
+        without: Skips { even_background: false, ..Skips::ALL },
+    },
+    Saving {
+        name: "no lens",
+        about: "no samples of a lens, in the field through a pinhole",
+        scene: FIELD,
+        change: |scene| scene.camera.lens = None,
+        without: Skips { lens: false, ..Skips::ALL },
+    },
+    Saving {
+        name: "no lights",
+        about: "no samples of lights, in the field without its sun",
+        scene: FIELD,
+        change: |scene| scene.lights.clear(),
+        without: Skips { lights: false, ..Skips::ALL },
+    },
+    Saving {
+        name: "any occluder",
+        about: "shadow rays end at the first sphere found, whether or not it is the nearest",
+        scene: "paper-field-20",
+        change: |_| (),
+        without: Skips { nearest_occluder: false, ..Skips::ALL },
+    },
+];
+
+/// Nothing but spheres in a white sky.
+fn floating(scene: &mut Scene) {
+    scene.ground = None;
+    scene.lights.clear();
+    scene.environment.map = EnvironmentMap::Constant(Rgb::ONE);
+}
+
+/// What was measured: with the saving, and without it.
+struct Outcome {
+    saving: &'static Saving,
+    scene: String,
+    times: Times,
+}
+
+/// Measures the savings; with scenes named, all of them in each of these.
+///
+/// # Errors
+/// A scene is wrong, or a picture is not the same without a saving.
+pub fn measure(options: &Options, tell: Tell) -> Result<Report, BenchError> {
+    let mut outcomes = Vec::new();
+    for saving in &SAVINGS {
+        for scene in NamedScene::choose(options, &[saving.scene])? {
+            tell(&format!("skips: {}, {}", saving.name, scene.name));
+            outcomes.push(of_saving(saving, scene, options)?);
+        }
+    }
+    Ok(Report {
+        name: "skips".to_owned(),
+        title: "What leaving out saves".to_owned(),
+        about: EXPLANATION.to_owned(),
+        settings: options.settings(),
+        tables: vec![table(&outcomes)],
+        plots: vec![plot(&outcomes)],
+    })
+}
+
+fn of_saving(
+    saving: &'static Saving,
+    scene: NamedScene,
+    options: &Options,
+) -> Result<Outcome, BenchError> {
+    let mut scene = scene.resized(options.pick([32, 240, 640]));
+    (saving.change)(&mut scene.scene);
+    scene.scene.settings.spp = options.pick([1, 16, 32]);
+    let world = scene.world()?;
+    let mut first: Option<Image> = None;
+    let times = Times::by_turns(options.rounds, 2, |contestant| {
+        let skips = if contestant == 0 { Skips::ALL } else { saving.without };
+        let (seconds, image) = draw(&world, &scene, skips);
+        if *first.get_or_insert_with(|| image.clone()) == image {
+            return Ok(seconds);
+        }
+        let name = format!("{}: the picture without the saving \"{}\"", scene.name, saving.name);
+        Err(BenchError::Differ(format!("{name} is another one")))
+    })?;
+    Ok(Outcome { saving, scene: scene.stem(), times })
+}
+
+fn draw(world: &World, scene: &NamedScene, skips: Skips) -> (f64, Image) {
+    let options = render::Options { skips, ..render::Options::default() };
+    let render = render(world, &scene.scene.settings, &options);
+    (render.elapsed.as_secs_f64(), render.image)
+}
+
+fn table(outcomes: &[Outcome]) -> Table {
+    let columns = vec![
+        Column::new("saving", "What is left out."),
+        Column::new("scene", "Where, changed so that it may be left out."),
+        Column::new("with", "Time to render, the work left out.").unit("ms"),
+        Column::new("without", "Time to render, the work done for nothing.").unit("ms"),
+        Column::new("times as fast", "Time without by time with, round by round.")
+            .style(Style::Fixed(3)),
+        Column::new("what it is", "In words."),
+    ];
+    let mut table = Table::new("skips", "Savings", columns);
+    for Outcome { saving, scene, times } in outcomes {
+        table.push([
+            saving.name.into(),
+            scene.as_str().into(),
+            times.seconds(0).times(1e3).into(),
+            times.seconds(1).times(1e3).into(),
+            times.ratio(0, 1).into(),
+            saving.about.into(),
+        ]);
+    }
+    table
+}
+
+fn plot(outcomes: &[Outcome]) -> Plot {
+    let percent = |outcome: &Outcome| {
+        let Spread { median, least, greatest } = outcome.times.ratio(0, 1);
+        let saved = |ratio: f64| 100.0 * (1.0 - 1.0 / ratio);
+        Spread { median: saved(median), least: saved(least), greatest: saved(greatest) }
+    };
+    let points =
+        outcomes.iter().enumerate().map(|(i, outcome)| Point::spread(i as f64, percent(outcome)));
+    let name = |outcome: &Outcome| format!("{}: {}", outcome.saving.name, outcome.scene);
+    Plot {
+        name: "skips".to_owned(),
+        title: "What leaving out saves".to_owned(),
+        about: "Share of the time without it; medians and ranges over the rounds".to_owned(),
+        note: "The picture is the same to the byte.".to_owned(),
+        place: Axis::names(outcomes.iter().map(name)),
+        value: Axis::linear("time saved", "%"),
+        series: vec![Series::marks("time saved", points)],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::tests::quick;
+
+    #[test]
+    fn pictures_do_not_depend_on_what_is_left_out() {
+        let report = measure(&quick(&[]), &|_| ()).unwrap();
+        assert_eq!(report.tables[0].rows.len(), SAVINGS.len());
+        // Scenes with lens, lights, glass and ground take no harm either.
+        let report = measure(&quick(&["field", "smallpt", "veach"]), &|_| ()).unwrap();
+        assert_eq!(report.tables[0].rows.len(), 3 * SAVINGS.len());
+    }
+
+    #[test]
+    fn every_saving_is_measured_once() {
+        for (i, one) in SAVINGS.iter().enumerate() {
+            assert_ne!(one.without, Skips::ALL);
+            assert!(SAVINGS[..i].iter().all(|other| other.without != one.without));
+        }
+    }
+}
