@@ -20,7 +20,7 @@ pub enum BenchError {
         known: String,
     },
     /// A scene file.
-    #[error("{}", .0.message)]
+    #[error("{0}")]
     Scene(Box<SceneError>),
     /// A scene that cannot be rendered.
     #[error("{0}: {1}")]

@@ -47,7 +47,7 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Drawing(#[from] DrawingError),
     #[error("{0}")]
-    Bench(#[from] BenchError),
+    Bench(BenchError),
     #[error(
         "{} x {} pixels need {}; give --size or --region smaller numbers", .0.width, .0.height, .1
     )]
@@ -62,6 +62,15 @@ pub(crate) enum Failure {
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         Self::Scene(Box::new(error))
+    }
+}
+
+impl From<BenchError> for Failure {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Scene(error) => Self::Scene(error),
+            other => Self::Bench(other),
+        }
     }
 }
 

@@ -13,8 +13,9 @@ fn quick(folder: &Folder, args: &[&str]) {
 /// Checks that every file in the folder `out` is whole; returns their names in order.
 fn check_files(folder: &Folder) -> Vec<String> {
     let entries = fs::read_dir(folder.path("out")).expect("a folder that is there");
+    let files = entries.flatten().filter(|entry| entry.path().is_file());
     let mut names: Vec<_> =
-        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+        files.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     for name in &names {
         let content = folder.read(&format!("out/{name}"));
@@ -46,8 +47,6 @@ fn check(name: &str, content: &[u8]) {
             assert!(words.starts_with("<!DOCTYPE html>") && words.ends_with("</html>\n"), "{name}");
             assert!(words.contains("<svg") && !words.contains("src="), "{name}");
         }
-        // References, which other tests read.
-        Some("exr") => {}
         _ => panic!("{name} was not asked for"),
     }
 }
@@ -64,6 +63,38 @@ fn the_builders_are_measured() {
 }
 
 #[test]
+fn everything_is_on_one_page() {
+    let folder = Folder::new();
+    quick(&folder, &["all"]);
+    let names = check_files(&folder);
+    for name in ["traversal", "build", "threads", "skips", "error"] {
+        for suffix in ["csv", "json"] {
+            assert!(names.contains(&format!("{name}.{suffix}")), "{name}.{suffix}: {names:?}");
+        }
+    }
+    let page = text(&folder.read("out/report.html"));
+    let count = |suffix: &str| {
+        let end = |name: &&String| name.rsplit_once('.').is_some_and(|name| name.1 == suffix);
+        names.iter().filter(end).count()
+    };
+    assert_eq!(page.matches("<svg").count(), count("svg"));
+    assert_eq!(page.matches("<h3>").count(), count("csv"));
+    assert_eq!(fs::read_dir(folder.path("out/references")).expect("references").count(), 2);
+}
+
+#[test]
+fn scenes_come_from_files_and_references_are_used_again() {
+    let folder = Folder::new();
+    folder.succeed(&["field", "grid", "--count", "3", "--quiet", "-o", "own.toml"]);
+    quick(&folder, &["error", "--scenes", "own.toml", "--rounds", "1"]);
+    let first = text(&folder.read("out/error-references.csv"));
+    quick(&folder, &["error", "--scenes", "own.toml", "--rounds", "1"]);
+    assert_eq!(text(&folder.read("out/error-references.csv")), first);
+    assert!(check_files(&folder).contains(&"error-time-own.svg".to_owned()));
+    assert_eq!(fs::read_dir(folder.path("out/references")).expect("references").count(), 2);
+}
+
+#[test]
 fn wrong_commands_harm_nothing() {
     let folder = Folder::new();
     folder.write("file", "old");
@@ -74,6 +105,10 @@ fn wrong_commands_harm_nothing() {
         ("bench build --rounds 0", 2, &["--rounds", "1..=1000"]),
         ("bench build --threads 0", 2, &["--threads"]),
         ("bench build --quick -o out --scenes nowhere", 1, &["\"nowhere\"", "paper400"]),
+        ("bench all --quick --scenes field", 2, &["--scenes", "single"]),
+        ("bench threads --quick -o out --threads-up-to 0", 2, &["--threads-up-to"]),
+        ("bench error --quick -o out --scenes nowhere", 1, &["\"nowhere\"", "smallpt", ".toml"]),
+        ("bench skips --quick -o out --scenes missing.toml", 1, &["missing.toml"]),
         ("bench build --quick -o file", 1, &["file", "folder"]),
         ("bench build --quick -o missing/out", 1, &["missing", "folder"]),
     ];

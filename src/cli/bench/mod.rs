@@ -15,7 +15,8 @@ use std::process::ExitCode;
 type Run = fn(&Options, Tell) -> Result<Report, BenchError>;
 
 /// What `all` runs, in this order.
-const ALL: [Run; 4] = [traversal::measure, build::measure, threads::measure, convergence::measure];
+const ALL: [Run; 5] =
+    [traversal::measure, build::measure, threads::measure, skips::measure, convergence::measure];
 
 /// Measures, prints tables, and writes files.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
