@@ -53,8 +53,11 @@ pub(super) fn go_on<B: Bsdf>(
         work.paths.throughput[place] = throughput / survival;
         work.paths.arrival[place] =
             Arrival { pdf: Some(FRAC_1_PI * cosine[lane]), diffuse: true, unscattered: false };
-        let [x, y, z] = direction.map(|axis| axis[lane]);
-        work.go_on(job.world, row, glam::Vec3::new(x, y, z), gathered.inside[lane]);
+        let vector = |columns: &[[f32; MAX_LANES]; 3]| glam::Vec3::from(columns.map(|x| x[lane]));
+        if let Some(normal) = work.paths.normal.get_mut(place) {
+            *normal = vector(&gathered.normal);
+        }
+        work.go_on(job.world, row, vector(&direction), gathered.inside[lane]);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Path tracing with next-event estimation and multiple importance sampling.
 //!
-//! At each surface a path looks for light at one light, chosen by power, and goes on in a direction
-//! sampled from the material. Light that both ways can find is weighted by the power heuristic
+//! At each surface a path looks for light at one light, chosen by what each would give there, and
+//! goes on in a direction sampled from the material. Light that both ways can find is weighted by the power heuristic
 //! (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH
 //! 1995), but from a diffuse surface a light that is not close, a sun or a point is left to the
 //! light samples alone: adding the other way would only add variance. A constant or gradient
@@ -16,7 +16,7 @@ use crate::lanes::MAX_LANES;
 use crate::ray::GROUND;
 use crate::scene::{Rgb, Roulette};
 use crate::shade::Bsdf;
-use crate::world::{Kind, LightSample, MaterialId, World};
+use crate::world::{Kind, LightSample, MaterialId, Receiver, World};
 use glam::Vec3;
 
 /// Follows all paths to their ends.
@@ -51,12 +51,14 @@ fn escape(job: &Job, work: &mut Workspace) {
         let direction = work.rays.direction.row(row);
         let mut light = Rgb::ZERO;
         if world.environment.illuminates || arrival.unscattered {
-            let weight =
-                heuristic(arrival.pdf, world.lights.sky_pdf(&world.environment, direction));
+            let weight = heuristic(arrival.pdf, || {
+                world.lights.sky_pdf(&world.environment, direction, &receiver(work, row))
+            });
             light += world.environment.radiance(direction) * weight;
         }
         if !arrival.diffuse {
-            for (radiance, pdf) in world.lights.suns_toward(direction) {
+            for (sun, radiance) in world.lights.suns_toward(direction) {
+                let pdf = || world.lights.sun_pdf(sun, &receiver(work, row));
                 light += radiance * heuristic(arrival.pdf, pdf);
             }
         }
@@ -76,10 +78,9 @@ fn emit(job: &Job, work: &mut Workspace) {
         let weight = match arrival.pdf {
             None => 1.0,
             Some(pdf) => {
-                let from = (work.rays.origin.row(row), work.rays.own[row]);
-                match world.lights.emitter_pdf(&world.spheres, hit, from) {
+                match world.lights.emitter_pdf(&world.spheres, hit, &receiver(work, row)) {
                     (_, false) if arrival.diffuse => 0.0,
-                    (other, _) => heuristic(Some(pdf), other),
+                    (other, _) => heuristic(Some(pdf), || other),
                 }
             }
         };
@@ -88,10 +89,17 @@ fn emit(job: &Job, work: &mut Workspace) {
     }
 }
 
+/// Where the path in `row` looked for light last.
+fn receiver(work: &Workspace, row: usize) -> Receiver {
+    let normal = work.paths.normal.get(work.place[row] as usize).copied().unwrap_or_default();
+    Receiver { point: work.rays.origin.row(row), normal, own: work.rays.own[row] }
+}
+
 /// Weight of what was found with density `found` and might have been found with density `other`.
 /// `None` is a density that is infinite.
-fn heuristic(found: Option<f32>, other: f32) -> f32 {
+fn heuristic(found: Option<f32>, other: impl FnOnce() -> f32) -> f32 {
     let Some(found) = found else { return 1.0 };
+    let other = other();
     if other == 0.0 {
         return 1.0;
     }
@@ -135,8 +143,9 @@ impl Shade<'_> {
         let world = self.job.world;
         let place = work.place[row] as usize;
         let draw = self.job.sampler.light(&work.paths.sample[place], self.bounce);
-        let Some((light, probability)) = world.lights.choose(draw.light) else { return };
         let origin = (work.surface.point[row], work.hits.sphere[row]);
+        let at = Receiver { point: origin.0, normal: local.frame.normal, own: origin.1 };
+        let Some((light, probability)) = world.lights.choose(&at, draw.light) else { return };
         let Some(sample) = world.lights.sample(world, light, origin, draw.point) else { return };
         let incoming = local.frame.to_local(sample.direction);
         if incoming.z <= 0.0 {
@@ -144,7 +153,7 @@ impl Shade<'_> {
         }
         let weight = match sample.pdf {
             Some(pdf) if !B::DIFFUSE || sample.close => {
-                heuristic(Some(pdf * probability), bsdf.pdf(local.outgoing, incoming))
+                heuristic(Some(pdf * probability), || bsdf.pdf(local.outgoing, incoming))
             }
             _ => 1.0,
         };
@@ -170,6 +179,9 @@ impl Shade<'_> {
         let unscattered = work.paths.arrival[place].unscattered && scatter.pdf.is_none();
         work.paths.throughput[place] = throughput / survival;
         work.paths.arrival[place] = Arrival { pdf: scatter.pdf, diffuse: false, unscattered };
+        if let Some(normal) = work.paths.normal.get_mut(place) {
+            *normal = local.frame.normal;
+        }
         let direction = local.to_world(scatter.incoming);
         work.go_on(self.job.world, row, direction, local.inside);
     }

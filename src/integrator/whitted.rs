@@ -56,7 +56,7 @@ fn escape(job: &Job, work: &mut Workspace) {
         let row = work.bins.escaped[i] as usize;
         let place = work.place[row] as usize;
         let direction = work.rays.direction.row(row);
-        let suns: Rgb = job.world.lights.suns_toward(direction).map(|(radiance, _)| radiance).sum();
+        let suns: Rgb = job.world.lights.suns_toward(direction).map(|(_, radiance)| radiance).sum();
         let light = job.world.environment.radiance(direction) + suns;
         work.paths.radiance[place] += work.paths.throughput[place] * light;
         work.end(row);

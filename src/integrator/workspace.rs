@@ -61,6 +61,9 @@ pub struct Paths {
     pub sample: Vec<PathState>,
     /// How the path came to where it is.
     pub arrival: Vec<Arrival>,
+    /// Normal of the last surface, on the side that was lit, for what the choice of a light depends
+    /// on; empty where that depends on nothing.
+    pub normal: Vec<Vec3>,
     /// The glass spheres that the path is in: a fixed number of places for each path, none if there
     /// is no glass.
     inside: Vec<u32>,
@@ -149,6 +152,7 @@ impl Workspace {
                 radiance: vec![Rgb::ZERO; BATCH],
                 sample: vec![sampler.start(0, 0, 0); BATCH],
                 arrival: vec![Arrival::CAMERA; BATCH],
+                normal: vec![Vec3::Z; if world.lights.by_receiver() { BATCH } else { 0 }],
                 inside: vec![MISS; BATCH * nesting],
                 nesting,
             },

@@ -16,7 +16,7 @@
 //! | 0       | direction of scattering 0                | place in the pixel                |
 //! | 1       | place on the lens                        | lobe, roulette of scattering 0    |
 //! | 1 + 2 k | direction of scattering k                | lobe, roulette of scattering k    |
-//! | 2 + 2 k | place on a light, seen from scattering k | which light, and one to spare     |
+//! | 2 + 2 k | place on a light, seen from scattering k | which light, and its finer digits |
 //!
 //! The third row is for k of 1 or more, the last one for all. Events that are sampled several times
 //! on one path, such as stratified shadow rays, draw from [`Sampler::split`] instead.

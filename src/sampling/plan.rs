@@ -4,6 +4,9 @@
 
 use super::sampler::{PathState, Sampler};
 
+/// The step of the numbers of a set, from one to the next.
+const FINE: f64 = 1.0 / (1 << 23) as f64;
+
 /// The numbers of one scattering; all in [0, 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatterDraw {
@@ -20,8 +23,9 @@ pub struct ScatterDraw {
 pub struct LightDraw {
     /// Place on the light.
     pub point: [f32; 2],
-    /// Which light.
-    pub light: f32,
+    /// Which light: a number of twice the digits, for chances that single precision does not
+    /// resolve.
+    pub light: f64,
 }
 
 /// The set that holds the direction of scattering number `bounce`.
@@ -68,8 +72,9 @@ impl Sampler {
     /// The numbers of the light that is sampled at scattering number `bounce`.
     #[inline]
     pub fn light(&self, path: &PathState, bounce: u32) -> LightDraw {
-        let [u, v, light, _] = self.draw4(path, 2 + 2 * bounce);
-        LightDraw { point: [u, v], light }
+        let [u, v, coarse, fine] = self.draw4(path, 2 + 2 * bounce);
+        let light = f64::from(coarse) + f64::from(fine) * FINE;
+        LightDraw { point: [u, v], light: light.min(1.0 - f64::EPSILON) }
     }
 }
 
@@ -87,7 +92,11 @@ mod tests {
             for bounce in 0..100 {
                 let ScatterDraw { direction, lobe, roulette } = sampler.scatter(&path, bounce);
                 let LightDraw { point, light } = sampler.light(&path, bounce);
-                numbers.extend(direction.into_iter().chain(point).chain([lobe, roulette, light]));
+                numbers.extend(direction.into_iter().chain(point).chain([
+                    lobe,
+                    roulette,
+                    light as f32,
+                ]));
             }
             let count = numbers.len();
             assert_eq!(count, 704);

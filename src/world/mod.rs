@@ -24,7 +24,7 @@ pub use census::Features;
 pub use environment::{Environment, Picture, Radiance, SkySample};
 pub use frame::Frame;
 pub use ground::Ground;
-pub use lights::{Aim, Disc, LightRow, LightSample, Lights, Point, ROW, Sun};
+pub use lights::{Aim, Disc, LightRow, LightSample, Lights, Point, ROW, Receiver, Sun};
 pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };
@@ -44,7 +44,7 @@ const SPHERE_BYTES: u64 = 64;
 const RAYS_PER_SAMPLE: u64 = 4;
 
 /// The same where every sphere may be a light.
-const EMITTER_BYTES: u64 = 104;
+const EMITTER_BYTES: u64 = 240;
 
 /// Everything that a render reads, immutable.
 #[derive(Clone, Debug)]

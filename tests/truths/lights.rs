@@ -162,3 +162,34 @@ fn path_and_whitted_agree_on_direct_light() {
         assert_agree(path, whitted, &format!("{made_of:?}"));
     }
 }
+
+/// More lamps than are told apart at a glance, some of them next to surfaces: one light chosen at a time gives
+/// what all of them one by one do.
+#[test]
+fn many_lights_are_those_of_all_together() {
+    let plastic = Material::Plastic { color: Rgb::splat(0.7), ior: 1.5 };
+    for (count, made_of) in [(3, lambertian(0.6)), (100, lambertian(0.6)), (100, plastic)] {
+        let mut scene = dark();
+        ground(&mut scene, made_of.clone());
+        sphere(&mut scene, [0.0, 0.0, 1.0], 1.0, made_of.clone());
+        sphere(&mut scene, [1.5, 0.5, 0.5], 0.5, made_of.clone());
+        for i in 0..count {
+            let (turn, height) = (2.4 * f64::from(i), f64::from(i % 10) / 10.0);
+            let at = DVec3::new(2.2 * turn.cos(), 2.2 * turn.sin(), 0.05 + 2.0 * height);
+            sphere(&mut scene, at, 0.02 + 0.03 * height, emitter(1.0 + 20.0 * height as f32, 0.0));
+        }
+        let position = DVec3::new(2.0, 2.0, 3.0);
+        scene.lights = vec![Light::Point { position, intensity: Rgb::splat(0.3), falloff: true }];
+        look(&mut scene, DVec3::new(4.0, -4.0, 3.0), DVec3::new(0.0, 0.0, 0.7), 40.0);
+        scene.settings.depth = Some(1);
+        let [path, whitted] =
+            [(Integrator::Path, 256), (Integrator::Whitted { shadow_samples: 1 }, 16)].map(
+                |(integrator, spp)| {
+                    scene.settings.integrator = integrator;
+                    scene.settings.spp = spp;
+                    over_seeds(&scene, mean)
+                },
+            );
+        assert_agree(path, whitted, &format!("{count} {made_of:?}"));
+    }
+}

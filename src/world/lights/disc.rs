@@ -17,7 +17,7 @@ pub struct Disc {
     pub(super) center: DVec3,
     pub(super) radius: f64,
     pub(super) weight: Rgb,
-    close: bool,
+    pub(super) close: bool,
 }
 
 /// Direction to the center of sphere `row`, the cone that it fills as seen from `origin`, and

@@ -1,28 +1,32 @@
 //! What can be sampled to find light: emissive spheres, points, suns and a picture of the sky.
 
+mod choice;
 mod disc;
+mod grow;
 mod point;
 mod row;
 mod sun;
+mod tree;
 
 pub use disc::Disc;
 pub use point::Point;
 pub use row::{LightRow, ROW};
 pub use sun::Sun;
+pub use tree::Receiver;
 
 use super::appearance::Appearance;
-use super::environment::{Environment, Picture, luminance};
+use super::environment::{Environment, Picture};
 use super::materials::{Kind, Materials};
 use super::{Frame, World};
 use crate::ray::MISS;
-use crate::sampling::Distribution;
 use crate::scene::{self, Rgb, Scene};
 use crate::spheres::Spheres;
 use disc::toward_sphere;
 use glam::Vec3;
-use std::f64::consts::PI;
+use tree::Tree;
 
-/// The lights, each with a share of the samples in proportion to its power.
+/// The lights, each with a share of the samples in proportion to what it would give to the point
+/// that looks for light if nothing stood between.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
     /// Rows of emissive spheres, in the order of [`Spheres::key`]: what is sampled does not depend on
@@ -37,7 +41,7 @@ pub struct Lights {
     /// Whether the environment is sampled as well, as the last light.
     pub sky: bool,
     /// Chooses among emitters, points, suns and sky, in this order; `None` if there is none.
-    choice: Option<Distribution>,
+    choice: Option<Tree>,
 }
 
 /// Light that arrives from a direction, if nothing is in between.
@@ -53,7 +57,8 @@ pub struct LightSample {
     pub weight: Rgb,
     /// Density by solid angle, without the choice of the light; `None` if the light has no extent.
     pub pdf: Option<f32>,
-    /// Whether it is an emissive sphere, so near that a diffuse surface should look for it too.
+    /// Whether it is an emissive sphere, so near or one of so many that a diffuse surface should look
+    /// for it too.
     pub close: bool,
 }
 
@@ -102,26 +107,8 @@ impl Lights {
         }
         let sky = environment.illuminates && environment.picture().is_some();
         let mut lights = Self { emitters, radiance, points, suns, sky, choice: None };
-        let powers = lights.powers(spheres, environment);
-        lights.choice = Distribution::new(&powers);
+        lights.choice = Tree::new(&lights.balls(spheres, environment));
         lights
-    }
-
-    /// Power of each light, up to a common factor. Light from infinity is what falls on a disk of
-    /// the scene's size, which is about 1.
-    fn powers(&self, spheres: &Spheres, sky: &Environment) -> Vec<f64> {
-        let emitters = self.emitters.iter().zip(&self.radiance).map(|(&row, &radiance)| {
-            f64::from(luminance(radiance))
-                * (2.0 * PI * f64::from(spheres.radius(row as usize))).powi(2)
-        });
-        let points = self.points.iter().map(|point| {
-            let falloff = point.falloff.map_or(1.0, |scale| scale * scale);
-            f64::from(luminance(point.intensity)) * falloff * 4.0 * PI
-        });
-        let suns = self.suns.iter().map(|sun| f64::from(luminance(sun.irradiance)) * PI);
-        let sky = sky.picture().filter(|_| self.sky);
-        let sky = sky.map(|picture| f64::from(picture.mean_luminance()) * (2.0 * PI).powi(2));
-        emitters.chain(points).chain(suns).chain(sky).collect()
     }
 
     /// How many there are.
@@ -156,23 +143,6 @@ impl Lights {
         }
     }
 
-    /// Chooses a light in proportion to its power: its index and the probability of the choice.
-    #[inline]
-    pub fn choose(&self, u: f32) -> Option<(usize, f32)> {
-        let choice = self.choice.as_ref()?;
-        if choice.count() == 1 {
-            return Some((0, 1.0));
-        }
-        let chosen = choice.sample(u);
-        Some((chosen.index, chosen.pmf))
-    }
-
-    /// The probability that [`Lights::choose`] chooses light `index`.
-    #[inline]
-    fn probability(&self, index: usize) -> f32 {
-        self.choice.as_ref().map_or(0.0, |choice| choice.pmf(index))
-    }
-
     /// Light `index` as seen from a point of the surface of sphere `own`; `None` if the point is in
     /// or on the light: such light is found by the surface's own sampling.
     #[inline]
@@ -186,7 +156,9 @@ impl Lights {
             Light::Emitter(i) if self.emitters[i] == own => None,
             Light::Emitter(i) => {
                 let row = self.emitters[i] as usize;
-                Disc::new(&world.spheres, row, self.radiance[i], origin).map(Aim::Disc)
+                let mut disc = Disc::new(&world.spheres, row, self.radiance[i], origin)?;
+                disc.close |= self.crowd();
+                Some(Aim::Disc(disc))
             }
             Light::Point(i) => self.points[i].sample(origin).map(Aim::Delta),
             Light::Sun(i) => Some(Aim::Sun(&self.suns[i])),
@@ -209,45 +181,44 @@ impl Lights {
         }
     }
 
-    /// Density with which `choose` and `sample` find a direction from a point of the surface of
-    /// sphere `own` that meets emissive sphere `row`, and whether that sphere is close; density 0
-    /// from in or on it.
-    pub fn emitter_pdf(
-        &self,
-        spheres: &Spheres,
-        row: u32,
-        (origin, own): (Vec3, u32),
-    ) -> (f32, bool) {
+    /// Density with which `choose` and `sample` find a direction that meets emissive sphere `row`,
+    /// and whether that sphere is close; density 0 from in or on it.
+    pub fn emitter_pdf(&self, spheres: &Spheres, row: u32, at: &Receiver) -> (f32, bool) {
         let key = spheres.key(row as usize);
         let found = self.emitters.binary_search_by_key(&key, |&other| spheres.key(other as usize));
-        let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != own) else {
+        let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != at.own) else {
             return (0.0, true);
         };
-        match toward_sphere(spheres, row as usize, origin) {
-            Some((_, cone, close)) => (self.probability(index) * cone.pdf(), close),
+        match toward_sphere(spheres, row as usize, at.point) {
+            Some((_, cone, close)) => {
+                (self.probability(at, index) * cone.pdf(), close || self.crowd())
+            }
             None => (0.0, true),
         }
     }
 
     /// Density with which the environment's picture is sampled in unit direction `toward`.
-    pub fn sky_pdf(&self, environment: &Environment, toward: Vec3) -> f32 {
+    pub fn sky_pdf(&self, environment: &Environment, toward: Vec3, at: &Receiver) -> f32 {
         match environment.picture() {
-            Some(picture) if self.sky => self.probability(self.len() - 1) * picture.pdf(toward),
+            Some(picture) if self.sky => self.probability(at, self.len() - 1) * picture.pdf(toward),
             _ => 0.0,
         }
     }
 
-    /// Radiance of each sun that is seen in unit direction `toward`, and the density with which it
-    /// is sampled.
-    pub fn suns_toward(&self, toward: Vec3) -> impl Iterator<Item = (Rgb, f32)> {
-        let first = self.emitters.len() + self.points.len();
+    /// Each sun that is seen in unit direction `toward`, and its radiance.
+    pub fn suns_toward(&self, toward: Vec3) -> impl Iterator<Item = (usize, Rgb)> {
         self.suns.iter().enumerate().filter_map(move |(i, sun)| {
             let cone = sun.disc.as_ref()?;
             // 1 - cos from the chord, which does not cancel.
             let height = (toward - sun.direction).length_squared() / 2.0;
-            (height <= cone.height())
-                .then(|| (sun.radiance, self.probability(first + i) * cone.pdf()))
+            (height <= cone.height()).then_some((i, sun.radiance))
         })
+    }
+
+    /// Density with which a direction toward sun `sun` is sampled.
+    pub fn sun_pdf(&self, sun: usize, at: &Receiver) -> f32 {
+        let index = self.emitters.len() + self.points.len() + sun;
+        self.suns[sun].disc.map_or(0.0, |cone| self.probability(at, index) * cone.pdf())
     }
 }
 

@@ -1,19 +1,21 @@
-//! The choice of a light and what is sampled of each, against the densities.
+//! What is sampled of each light, against the densities.
 
 use super::*;
 use crate::image::Image;
 use crate::intersect;
 use crate::ray::ExactRay;
-use crate::sampling::statistics::{Grid, assert_chi_squared, random_pairs};
+use crate::sampling::statistics::{Grid, random_pairs};
 use crate::scene::{EnvironmentMap, Light as SceneLight, Material, NamedMaterial};
 use glam::DVec3;
 use std::sync::Arc;
+
+const ANYWHERE: Receiver = Receiver { point: Vec3::ZERO, normal: Vec3::Y, own: MISS };
 
 /// Degrees.
 const SUNS: [f64; 3] = [0.266, 20.0, 0.0];
 
 /// A few lights of every kind; the emissive sphere of radius 1 at 0 is the largest.
-fn world() -> World {
+pub(super) fn world() -> World {
     let mut scene = Scene::default();
     let mut sphere = |center: DVec3, radius: f64, radiance: f32| {
         let material =
@@ -43,26 +45,6 @@ fn largest(world: &World) -> (usize, usize) {
 }
 
 #[test]
-fn lights_are_chosen_by_their_probability() {
-    let world = world();
-    let lights = &world.lights;
-    let count = lights.len();
-    let mut observed = vec![0_u64; count];
-    for [u, _] in random_pairs(1_000_000, 1) {
-        let (index, probability) = lights.choose(u).unwrap();
-        assert!(probability > 0.0 && probability == lights.probability(index));
-        observed[index] += 1;
-    }
-    let probability = |index| f64::from(lights.probability(index));
-    assert_chi_squared(&observed, &(0..count).map(probability).collect::<Vec<_>>());
-    let powers = lights.powers(&world.spheres, &world.environment);
-    let total: f64 = powers.iter().sum();
-    for (index, power) in powers.iter().enumerate() {
-        assert!((power / total - probability(index)).abs() < 1e-5, "{index}");
-    }
-}
-
-#[test]
 fn emissive_spheres_are_sampled_by_their_density() {
     let world = world();
     let (index, row) = largest(&world);
@@ -71,6 +53,7 @@ fn emissive_spheres_are_sampled_by_their_density() {
         let toward = DVec3::new(-0.48, 0.6, 0.64);
         let origin = (center - toward * (distance * radius)).as_vec3();
         let from = (origin, MISS);
+        let at = Receiver { point: origin, normal: toward.as_vec3(), own: MISS };
         let aim = world.lights.aim(&world, index, from).unwrap();
         let to_center = center - origin.as_dvec3();
         let angle = (radius / to_center.length()).asin();
@@ -78,8 +61,8 @@ fn emissive_spheres_are_sampled_by_their_density() {
         let directions = random_pairs(400_000, 2).map(|u| Some(aim.sample(u)?.direction));
         let pdf = aim.sample([0.5; 2]).and_then(|sample| sample.pdf).unwrap();
         Grid::cone(axis, angle).check(directions, |_| pdf, Some(0.0));
-        let (of_all, _) = world.lights.emitter_pdf(&world.spheres, row as u32, from);
-        assert!((of_all / (pdf * world.lights.probability(index)) - 1.0).abs() < 1e-6);
+        let (of_all, _) = world.lights.emitter_pdf(&world.spheres, row as u32, &at);
+        assert!((of_all / (pdf * world.lights.probability(&at, index)) - 1.0).abs() < 1e-6);
         for sample in random_pairs(10_000, 3).filter_map(|u| aim.sample(u)) {
             assert_eq!((sample.pdf, sample.target), (Some(pdf), row as u32));
             let radiance = sample.weight * pdf / world.lights.radiance[index];
@@ -117,12 +100,12 @@ fn suns_are_sampled_by_their_density() {
             let weighted = sample.weight * cone.pdf() / radiance;
             assert!((weighted - Rgb::ONE).abs().max_element() < 1e-6);
             // What a ray that goes there sees: that sun, but where rounding takes it past the edge.
-            let pdf = cone.pdf() * lights.probability(first + i);
-            outside += i32::from(
-                !lights.suns_toward(sample.direction).any(|seen| seen == (radiance, pdf)),
-            );
+            outside +=
+                i32::from(!lights.suns_toward(sample.direction).any(|seen| seen == (i, radiance)));
         }
         assert!(outside < 20, "{degrees}: {outside}");
+        let pdf = cone.pdf() * lights.probability(&ANYWHERE, first + i);
+        assert!(pdf > 0.0 && lights.sun_pdf(i, &ANYWHERE) == pdf);
     }
 }
 
@@ -133,8 +116,9 @@ fn the_sky_is_sampled_by_its_density() {
     let aim = world.lights.aim(&world, last, (Vec3::ZERO, MISS)).unwrap();
     for sample in random_pairs(1000, 6).filter_map(|u| aim.sample(u)) {
         let pdf = sample.pdf.unwrap();
-        let of_all = world.lights.sky_pdf(&world.environment, sample.direction);
-        assert!((of_all / (pdf * world.lights.probability(last)) - 1.0).abs() < 1e-3);
+        let of_all = world.lights.sky_pdf(&world.environment, sample.direction, &ANYWHERE);
+        let probability = world.lights.probability(&ANYWHERE, last);
+        assert!((of_all / (pdf * probability) - 1.0).abs() < 1e-3);
         let radiance = world.environment.radiance(sample.direction);
         assert!((sample.weight * pdf / radiance - Rgb::ONE).abs().max_element() < 1e-5);
     }

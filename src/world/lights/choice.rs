@@ -1,0 +1,78 @@
+//! The choice of the light to sample.
+
+use super::Lights;
+use super::tree::{BRANCHES, Ball, FAR, Receiver};
+use crate::scene::Rgb;
+use crate::spheres::Spheres;
+use crate::world::environment::{Environment, luminance};
+use std::f64::consts::PI;
+
+impl Lights {
+    /// Each light as the choice sees it.
+    pub(super) fn balls(&self, spheres: &Spheres, sky: &Environment) -> Vec<Ball> {
+        let power = |color: Rgb| f64::from(luminance(color));
+        let dark = Ball::default();
+        let emitters = self.emitters.iter().zip(&self.radiance).map(|(&row, &radiance)| {
+            let center = spheres.center(row as usize).as_dvec3();
+            let radius = f64::from(spheres.radius(row as usize));
+            Ball {
+                center,
+                radius,
+                power: power(radiance) * PI * radius * radius,
+                hollow: true,
+                ..dark
+            }
+        });
+        let points = self.points.iter().map(|point| {
+            let at = Ball { center: point.position, ..dark };
+            match point.falloff {
+                Some(scale) => Ball { power: power(point.intensity) * scale * scale, ..at },
+                None => Ball { steady: power(point.intensity), ..at },
+            }
+        });
+        let suns = self.suns.iter().map(|sun| {
+            let height = sun.disc.map_or(0.0, |cone| f64::from(cone.height()));
+            let radius = FAR * (height * (2.0 - height)).sqrt();
+            let center = sun.direction.as_dvec3() * FAR;
+            Ball { center, radius, steady: power(sun.irradiance), ..dark }
+        });
+        let sky = sky.picture().filter(|_| self.sky).map(|picture| {
+            let irradiance = PI * f64::from(picture.mean_luminance());
+            // From the middle of a ball a quarter arrives.
+            Ball { radius: FAR, steady: 4.0 * irradiance, ..dark }
+        });
+        emitters.chain(points).chain(suns).chain(sky).collect()
+    }
+
+    /// Whether the choice depends on the receiver: a lone light is no choice.
+    pub fn by_receiver(&self) -> bool {
+        self.choice.as_ref().is_some_and(|tree| tree.leaf.len() > 1)
+    }
+
+    /// Whether there are so many lights that they are not all told apart at a glance. The choice may
+    /// then miss what is next to a surface, which its own sampling makes up for: with a third of
+    /// 10 000 spheres glowing, the error in equal time is 0.84 of what it is without.
+    pub(super) fn crowd(&self) -> bool {
+        self.choice.as_ref().is_some_and(|tree| tree.leaf.len() > BRANCHES)
+    }
+
+    /// Chooses a light to sample, by a draw in [0, 1): its index and the probability of the choice.
+    #[inline]
+    pub fn choose(&self, at: &Receiver, draw: f64) -> Option<(usize, f32)> {
+        let tree = self.choice.as_ref()?;
+        if tree.leaf.len() == 1 {
+            return Some((0, 1.0));
+        }
+        Some(tree.choose(at, draw))
+    }
+
+    /// The probability that [`Lights::choose`] chooses light `index`.
+    #[inline]
+    pub(super) fn probability(&self, at: &Receiver, index: usize) -> f32 {
+        match &self.choice {
+            Some(tree) if tree.leaf.len() == 1 => 1.0,
+            Some(tree) => tree.probability(at, index),
+            None => 0.0,
+        }
+    }
+}
