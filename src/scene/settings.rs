@@ -80,7 +80,7 @@ pub enum Filter {
 pub enum Roulette {
     /// Paths end by depth only.
     None,
-    /// From the fourth scattering on, a path goes on with the probability of its largest
+    /// From the fourth scattering on, a path goes on with the probability of four times its largest
     /// throughput.
     Throughput,
     /// Every bounce survives with this probability, more than 0, at most 1: the paper's.
