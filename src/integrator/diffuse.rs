@@ -1,11 +1,11 @@
 //! Scattering by diffuse surfaces, sixteen paths at a time: they are all alike.
 
 use super::Job;
-use super::path::survival;
+use super::path::{may_end, survival};
 use super::workspace::{Arrival, Workspace};
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::sampling::{self, PathRow};
-use crate::scene::{Rgb, Roulette};
+use crate::scene::Rgb;
 use crate::shade::Bsdf;
 use crate::vec3::Vec3;
 use crate::world::MaterialId;
@@ -29,11 +29,7 @@ pub(super) fn go_on<B: Bsdf>(
 ) {
     let gathered = gather(work, rows);
     // Nothing is drawn for what is certain.
-    let roulette = match job.settings.roulette {
-        Roulette::None => false,
-        Roulette::Fixed(_) => true,
-        Roulette::Throughput => bounce >= 3,
-    };
+    let roulette = may_end(job.settings.roulette, bounce);
     let draw = job.sampler.scatter_row(&gathered.sample, bounce, roulette);
     let local = sampling::cosine_hemispheres(draw.direction);
     let direction = to_world(gathered.normal.map(F32x16::new), local);

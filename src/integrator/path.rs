@@ -196,8 +196,17 @@ pub fn survival(roulette: Roulette, throughput: Rgb, bounce: u32) -> f32 {
     match roulette {
         Roulette::None => 1.0,
         Roulette::Fixed(p) => p as f32,
-        Roulette::Throughput if bounce < 3 => 1.0,
+        Roulette::Throughput if !may_end(roulette, bounce) => 1.0,
         Roulette::Throughput => (throughput.max_element() / FAINT).clamp(0.05, 1.0),
+    }
+}
+
+/// Whether there is a chance to end after scattering number `bounce`.
+pub fn may_end(roulette: Roulette, bounce: u32) -> bool {
+    match roulette {
+        Roulette::None => false,
+        Roulette::Fixed(_) => true,
+        Roulette::Throughput => bounce >= 3,
     }
 }
 
