@@ -110,7 +110,8 @@ pub mod atomic;
 pub mod image;
 pub mod memory;
 
-// Judges what is above.
+// Judge what is above.
+pub mod paper;
 pub mod stress;
 
 // Measures it, and tells what was found.
