@@ -2,6 +2,7 @@
 
 use crate::image::ImageError;
 use crate::memory::Shortage;
+use crate::paper::Unsupported;
 use crate::scene::SceneError;
 use crate::scene::generate::GenerateError;
 use crate::world::WorldError;
@@ -40,6 +41,12 @@ pub enum BenchError {
     /// The same, as a picture.
     #[error("{0}")]
     Image(#[from] ImageError),
+    /// A measurement whose scenes cannot be chosen.
+    #[error("the paper's tables have scenes of their own; leave out --scenes")]
+    OwnScenes,
+    /// A scene that the paper's tracer does not render.
+    #[error("{0}")]
+    Unsupported(#[from] Unsupported),
     /// Two ways to the same result have come to different ones.
     #[error("{0}: the times mean nothing; please report this fault of the program")]
     Differ(String),

@@ -9,7 +9,9 @@ pub mod build;
 pub mod convergence;
 mod error;
 pub mod naive;
+pub mod paper;
 pub mod rays;
+pub mod roulette;
 pub mod rounds;
 pub mod scenes;
 pub mod skips;
@@ -34,6 +36,8 @@ pub struct Options {
     pub references: Option<PathBuf>,
     /// How much is measured.
     pub effort: Effort,
+    /// The size of the pictures of the paper's tables.
+    pub scale: paper::Scale,
 }
 
 /// How much is measured.
@@ -95,12 +99,20 @@ impl Options {
 
 #[cfg(test)]
 pub(crate) mod tests {
+    use super::paper::Scale;
     use super::*;
 
     /// The least there is.
     pub(crate) fn quick(scenes: &[&str]) -> Options {
         let scenes = scenes.iter().map(|&name| name.to_owned()).collect();
-        Options { scenes, rounds: 2, threads: 2, references: None, effort: Effort::Quick }
+        Options {
+            scenes,
+            rounds: 2,
+            threads: 2,
+            references: None,
+            effort: Effort::Quick,
+            scale: Scale::default(),
+        }
     }
 
     #[test]

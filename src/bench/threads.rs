@@ -58,7 +58,8 @@ pub fn measure(options: &Options, tell: Tell) -> Result<Report, BenchError> {
     })
 }
 
-fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
+/// So many threads.
+pub(super) fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|error| BenchError::Threads(threads, error))
 }

@@ -111,6 +111,11 @@ impl Tracer {
         Ok(Self { spheres, hierarchy, ground, lights, environment, camera, frame })
     }
 
+    /// Builds the paper's tree anew, to be measured and thrown away.
+    pub fn hierarchy(&self) -> impl Sized + use<> {
+        Node::build(&self.spheres)
+    }
+
     /// What a ray hits first, farther than the epsilon; `direction` has length 1.
     pub fn closest(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let ray = Ray { origin, direction };

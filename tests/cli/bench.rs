@@ -95,6 +95,33 @@ fn scenes_come_from_files_and_references_are_used_again() {
 }
 
 #[test]
+fn the_papers_tables_are_measured_at_the_scale_asked_for() {
+    let folder = Folder::new();
+    quick(&folder, &["paper", "--size", "24", "--spp", "2", "--threads", "2"]);
+    let names = check_files(&folder);
+    let tables = ["paper-roulette", "paper-spheres", "paper-threads", "paper-together"];
+    for table in tables {
+        assert!(names.contains(&format!("{table}.csv")), "{names:?}");
+    }
+    assert!(names.contains(&"paper-spheres.png".to_owned()));
+    let report: Value = serde_json::from_slice(&folder.read("out/paper.json")).unwrap();
+    let scale = report["settings"]["scale"].as_str().unwrap();
+    assert!(scale.starts_with("24 x 24 pixels of 2 samples"), "{scale}");
+    assert_eq!(report["tables"][1]["rows"][1]["threads"], 2);
+}
+
+#[test]
+fn roulette_is_measured_on_the_scenes_asked_for() {
+    let folder = Folder::new();
+    quick(&folder, &["roulette", "--scenes", "grid"]);
+    let names = check_files(&folder);
+    assert_eq!(names[..3], ["roulette-equal.csv", "roulette-grid.png", "roulette-grid.svg"]);
+    let report: Value = serde_json::from_slice(&folder.read("out/roulette.json")).unwrap();
+    let rows = report["tables"][1]["rows"].as_array().unwrap();
+    assert!(rows.len() == 7 && rows.iter().all(|row| row["scene"] == "grid"));
+}
+
+#[test]
 fn wrong_commands_harm_nothing() {
     let folder = Folder::new();
     folder.write("file", "old");
@@ -109,6 +136,9 @@ fn wrong_commands_harm_nothing() {
         ("bench threads --quick -o out --threads-up-to 0", 2, &["--threads-up-to"]),
         ("bench error --quick -o out --scenes nowhere", 1, &["\"nowhere\"", "smallpt", ".toml"]),
         ("bench skips --quick -o out --scenes missing.toml", 1, &["missing.toml"]),
+        ("bench paper --quick -o out --scenes grid", 1, &["tables", "--scenes"]),
+        ("bench paper --quick -o out --size 7", 2, &["--size", "8..=4096"]),
+        ("bench roulette --quick -o out --scenes paper400", 1, &["two-spheres, grid, field"]),
         ("bench build --quick -o file", 1, &["file", "folder"]),
         ("bench build --quick -o missing/out", 1, &["missing", "folder"]),
     ];

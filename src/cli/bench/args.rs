@@ -1,8 +1,9 @@
 //! The command as typed.
 
 use crate::cli::threads;
-use crate::cli::values::THREADS;
+use crate::cli::values::{SAMPLES, THREADS};
 use clap::{Subcommand, value_parser};
+use spherule::bench::paper::Scale;
 use spherule::bench::{Effort, Options};
 use std::path::PathBuf;
 
@@ -30,6 +31,12 @@ pub(super) enum Measurement {
     /// Error against time and samples, for sets of settings
     #[command(after_help = ERROR)]
     Error(Common),
+    /// The paper's tables and its figure 3, its tracer beside this program
+    #[command(after_help = PAPER)]
+    Paper(PaperArgs),
+    /// Russian roulette: error against time for each probability, in the paper's tracer and here
+    #[command(after_help = ROULETTE)]
+    Roulette(Common),
     /// All of these, on one page: report.html
     #[command(after_help = EVERYTHING)]
     All(Common),
@@ -79,6 +86,26 @@ pub(super) struct Common {
     pub(super) quiet: bool,
 }
 
+#[derive(Debug, clap::Args)]
+pub(super) struct PaperArgs {
+    #[command(flatten)]
+    pub(super) common: Common,
+    /// Pixels along each side; the paper has 512 [default: 64, --full: 512]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(8..=4096))]
+    size: Option<u32>,
+    /// Samples in each pixel; the paper has 16 [default: 4, --full: 16]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(SAMPLES))]
+    spp: Option<u32>,
+}
+
+impl PaperArgs {
+    /// What is asked of the measurement.
+    pub(super) fn options(&self) -> Options {
+        let scale = Scale { size: self.size, spp: self.spp };
+        Options { scale, ..self.common.options() }
+    }
+}
+
 impl Common {
     /// Whether scenes are named.
     pub(super) fn has_scenes(&self) -> bool {
@@ -95,7 +122,8 @@ impl Common {
         let rounds = if self.quick { self.rounds.min(2) } else { self.rounds };
         let threads = threads::count(self.threads);
         let references = Some(self.output.join("references"));
-        Options { scenes: self.scenes.clone(), rounds, threads, references, effort }
+        let scale = Scale::default();
+        Options { scenes: self.scenes.clone(), rounds, threads, references, effort, scale }
     }
 }
 
@@ -137,6 +165,23 @@ Examples:
   spherule bench error
   spherule bench error --scenes veach my-scene.toml --rounds 3
   spherule bench error --full";
+
+const PAPER: &str = "\
+The paper's scenes at its own scale, without a tree, take minutes for each render: --full measures
+that. Otherwise pictures are smaller, which the report says, and times at full scale extrapolated
+where they were measured to be linear.
+
+Examples:
+  spherule bench paper
+  spherule bench paper --size 256 --spp 1 --rounds 3
+  spherule bench paper --full --rounds 1";
+
+const ROULETTE: &str = "\
+Scenes: two-spheres, grid, field.
+
+Examples:
+  spherule bench roulette
+  spherule bench roulette --scenes two-spheres field --rounds 9";
 
 const EVERYTHING: &str = "\
 Examples:

@@ -7,7 +7,9 @@ pub(super) use self::args::{Args, EXAMPLES};
 use self::args::{Common, Measurement};
 use self::files::Folder;
 use super::{Failure, output, threads as cores};
-use spherule::bench::{BenchError, Options, Tell, build, convergence, skips, threads, traversal};
+use spherule::bench::{
+    BenchError, Options, Tell, build, convergence, paper, roulette, skips, threads, traversal,
+};
 use spherule::report::{Machine, Report};
 use std::process::ExitCode;
 
@@ -15,8 +17,15 @@ use std::process::ExitCode;
 type Run = fn(&Options, Tell) -> Result<Report, BenchError>;
 
 /// What `all` runs, in this order.
-const ALL: [Run; 5] =
-    [traversal::measure, build::measure, threads::measure, skips::measure, convergence::measure];
+const ALL: [Run; 7] = [
+    traversal::measure,
+    build::measure,
+    threads::measure,
+    skips::measure,
+    convergence::measure,
+    paper::measure,
+    roulette::measure,
+];
 
 /// Measures, prints tables, and writes files.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
@@ -28,6 +37,8 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         Measurement::Build(common) => one(common, "build", build::measure),
         Measurement::Skips(common) => one(common, "skips", skips::measure),
         Measurement::Error(common) => one(common, "error", convergence::measure),
+        Measurement::Paper(args) => of((&args.common, &args.options()), "paper", &[paper::measure]),
+        Measurement::Roulette(common) => one(common, "roulette", roulette::measure),
         Measurement::All(common) if common.has_scenes() => {
             let message = "--scenes is for single measurements: each has scenes of its own";
             Err(Failure::usage("bench", message))
