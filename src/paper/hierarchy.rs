@@ -61,8 +61,8 @@ impl Node {
     }
 }
 
-/// Whether a ray is in the box somewhere between its origin and `most` (Kay and Kajiya, "Ray Tracing
-/// Complex Scenes", SIGGRAPH 1986).
+/// Whether a ray is in the box somewhere between its origin and `most` (Kay and Kajiya, "Ray
+/// Tracing Complex Scenes", SIGGRAPH 1986).
 fn enters([low, high]: [DVec3; 2], ray: &Ray, most: f64) -> bool {
     let (a, b) = ((low - ray.origin) / ray.direction, (high - ray.origin) / ray.direction);
     a.min(b).max_element().max(0.0) <= a.max(b).min_element().min(most)

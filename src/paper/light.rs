@@ -153,7 +153,8 @@ impl Tracer {
     }
 }
 
-/// A direction uniform by solid angle in a cone about `axis`; `height` is 1 - cos of its half-angle.
+/// A direction uniform by solid angle in a cone about `axis`; `height` is 1 - cos of its
+/// half-angle.
 fn in_cone(axis: DVec3, height: f64, [u, v]: [f64; 2]) -> DVec3 {
     let depth = height * v;
     to_world(axis, (depth * (2.0 - depth)).sqrt(), 1.0 - depth, u)

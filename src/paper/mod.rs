@@ -2,10 +2,10 @@
 //!
 //! The paper "Optimizing Ray Tracing" starts from a plain recursive tracer of spheres and makes it
 //! faster by Russian roulette, by threads, and by a tree of bounding boxes. This is that tracer, in
-//! its own style: an array of sphere structures, a tree of boxed nodes, a function that calls itself
-//! for every mirrored ray, double precision throughout, an epsilon against self-hits, and, where it
-//! is told so, random numbers and finished pixels that go through critical sections, which is what
-//! kept the paper's four threads from being more than twice as fast as one.
+//! its own style: an array of sphere structures, a tree of boxed nodes, a function that calls
+//! itself for every mirrored ray, double precision throughout, an epsilon against self-hits, and,
+//! where it is told so, random numbers and finished pixels that go through critical sections, which
+//! is what kept the paper's four threads from being more than twice as fast as one.
 //!
 //! It reads the [`Scene`] itself and shares none of Spherule's kernels but the camera and the
 //! environment's colors, and it estimates what [`whitted`](crate::integrator::whitted) does: a

@@ -13,14 +13,15 @@ use crate::report::Report;
 use crate::scene::Roulette;
 use race::{Outcome, Race};
 
-const EXPLANATION: &str = "With a fixed probability p every bounce goes on with probability p, and \
-    weighs 1 / p as much: the paper's roulette. By throughput, bounces from the fourth on go on with \
-    the probability of what they may still carry: Spherule's. The error of a picture is the root \
-    mean square of what its pixels differ by from a reference of many samples, less the \
-    reference's own error; radiance counts up to 1, which is what displays show, lest the few \
-    pixels in which a mirror shows a lamp outweigh all others. Each run has other random numbers; medians are reported, with the least \
-    and the greatest. Threads of the paper's tracer have their own numbers here. At equal \
-    time the mean of all runs must agree with the reference: a bias is an error.";
+const EXPLANATION: &str = "With a fixed probability p every bounce goes on with probability p, \
+    and weighs 1 / p as much: the paper's roulette. By throughput, from the fourth bounce on, \
+    what can carry less than a quarter of the light goes on with a probability of four times that \
+    share: Spherule's. The error of a picture is the root mean square of what its pixels differ \
+    by from a reference of many samples, less the reference's own error; radiance counts up to 1, \
+    which is what displays show, lest the few pixels in which a mirror shows a lamp outweigh all \
+    others. Each run has other random numbers; medians are reported, with the least and the \
+    greatest. Threads of the paper's tracer have their own numbers here. At equal time the mean \
+    of all runs must agree with the reference: a bias is an error.";
 
 /// A program and its roulette.
 #[derive(Clone, Copy, Debug, PartialEq)]

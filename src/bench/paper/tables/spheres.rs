@@ -103,7 +103,8 @@ fn builds(plan: &Plan, scene: &Scene) -> Result<Times, BenchError> {
     Times::by_turns(plan.options.rounds, 2, |contestant| Ok(one.install(|| turn(contestant))))
 }
 
-/// The mean of as many seconds as a turn takes: what is built is thrown away in between, unmeasured.
+/// The mean of as many seconds as a turn takes: what is built is thrown away in between,
+/// unmeasured.
 fn repeat(mut build: impl FnMut() -> f64) -> f64 {
     let (mut seconds, mut runs) = (build(), 1);
     while seconds < TURN {
