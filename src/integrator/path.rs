@@ -191,7 +191,7 @@ impl Shade<'_> {
 /// from 0.
 ///
 /// By throughput, paths of a white furnace never end by chance: that picture has no noise at all.
-/// Nor does any path of more than [`FAINT`].
+/// Nor does any path that may carry more than a quarter of the light.
 pub fn survival(roulette: Roulette, throughput: Rgb, bounce: u32) -> f32 {
     match roulette {
         Roulette::None => 1.0,
