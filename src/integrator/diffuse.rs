@@ -1,7 +1,7 @@
 //! Scattering by diffuse surfaces, sixteen paths at a time: they are all alike.
 
 use super::Job;
-use super::path::{may_end, survival};
+use super::path::{faint, may_end, survival};
 use super::workspace::{Arrival, Workspace};
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::sampling::{self, PathRow};
@@ -30,6 +30,7 @@ pub(super) fn go_on<B: Bsdf>(
     let gathered = gather(work, rows);
     // Nothing is drawn for what is certain.
     let roulette = may_end(job.settings.roulette, bounce);
+    let faint = faint(job.world);
     let draw = job.sampler.scatter_row(&gathered.sample, bounce, roulette);
     let local = sampling::cosine_hemispheres(draw.direction);
     let direction = to_world(gathered.normal.map(F32x16::new), local);
@@ -41,7 +42,7 @@ pub(super) fn go_on<B: Bsdf>(
         let hit = work.hits.sphere[row];
         let albedo = bsdf(job.world.material(hit)).tinted(job.world.color(hit)).albedo();
         let throughput = work.paths.throughput[place] * albedo;
-        let survival = survival(job.settings.roulette, throughput, bounce);
+        let survival = survival(job.settings.roulette, throughput, bounce, faint);
         if roulette[lane] >= survival || throughput == Rgb::ZERO {
             work.end(row);
             continue;

@@ -9,7 +9,7 @@
 
 use super::Job;
 use super::clock::Stage;
-use super::path::{hides, survival};
+use super::path::{faint, hides, survival};
 use super::stages::{self, Local, ShadeKind};
 use super::workspace::{Arrival, Workspace};
 use crate::lanes::{F32x16, set_bits};
@@ -29,6 +29,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
     let sky = job.world.environment.illuminates
         && !job.world.environment.is_black()
         && !job.world.lights.sky;
+    let faint = faint(job.world);
     for bounce in 0.. {
         stages::intersect(job, work);
         escape(job, work);
@@ -38,7 +39,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
             return;
         }
         stages::glass(job, work, bounce);
-        stages::by_kind(job, work, &mut Shade { job, bounce, samples, sky });
+        stages::by_kind(job, work, &mut Shade { job, bounce, samples, sky, faint });
         stages::occlude(job, work);
         work.compact();
         work.clock.end(Stage::Shade);
@@ -80,6 +81,7 @@ struct Shade<'a> {
     bounce: u32,
     samples: u32,
     sky: bool,
+    faint: f32,
 }
 
 impl ShadeKind for Shade<'_> {
@@ -200,7 +202,7 @@ impl Shade<'_> {
         };
         let Some((incoming, weight)) = next else { return work.end(row) };
         let throughput = work.paths.throughput[place] * weight;
-        let survival = survival(self.job.settings.roulette, throughput, self.bounce);
+        let survival = survival(self.job.settings.roulette, throughput, self.bounce, self.faint);
         if throughput == Rgb::ZERO || draw.roulette >= survival {
             return work.end(row);
         }

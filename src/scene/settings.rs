@@ -80,8 +80,8 @@ pub enum Filter {
 pub enum Roulette {
     /// Paths end by depth only.
     None,
-    /// From the fourth scattering on, a path goes on with the probability of four times its largest
-    /// throughput.
+    /// From the fourth scattering on, a path whose largest throughput is little goes on with a
+    /// probability in proportion to it: less than a quarter under a sky, than a half without.
     Throughput,
     /// Every bounce survives with this probability, more than 0, at most 1: the paper's.
     Fixed(f64),

@@ -49,11 +49,18 @@ impl Lights {
         self.choice.as_ref().is_some_and(|tree| tree.leaf.len() > 1)
     }
 
-    /// Whether there are so many lights that they are not all told apart at a glance. The choice may
-    /// then miss what is next to a surface, which its own sampling makes up for: with a third of
-    /// 10 000 spheres glowing, the error in equal time is 0.84 of what it is without.
-    pub(super) fn crowd(&self) -> bool {
-        self.choice.as_ref().is_some_and(|tree| tree.leaf.len() > BRANCHES)
+    /// Radii from its center within which a diffuse surface looks for an emissive sphere by its own
+    /// sampling as well.
+    ///
+    /// Farther off the cone alone has the least variance. In the box of `scenes/smallpt.toml`, whose
+    /// lamp is all close and nearly all hidden, the error at equal samples is 0.81 of what it is
+    /// without (`spherule compare` of pictures of two seeds), and the same up to 1.6 radii. Where
+    /// there are more lights than are told apart at a glance, the choice may miss what is next to a
+    /// surface: with a third of 10 000 spheres glowing, variance times time is 0.7 of what it is
+    /// without.
+    pub(super) fn close_within(&self) -> f64 {
+        let crowd = self.choice.as_ref().is_some_and(|tree| tree.leaf.len() > BRANCHES);
+        if crowd { f64::INFINITY } else { 1.15 }
     }
 
     /// Chooses a light to sample, by a draw in [0, 1): its index and the probability of the choice.

@@ -42,6 +42,8 @@ pub struct Lights {
     pub sky: bool,
     /// Chooses among emitters, points, suns and sky, in this order; `None` if there is none.
     choice: Option<Tree>,
+    /// Radii from its center within which an emissive sphere is close.
+    reach: f64,
 }
 
 /// Light that arrives from a direction, if nothing is in between.
@@ -106,8 +108,9 @@ impl Lights {
             }
         }
         let sky = environment.illuminates && environment.picture().is_some();
-        let mut lights = Self { emitters, radiance, points, suns, sky, choice: None };
+        let mut lights = Self { emitters, radiance, points, suns, sky, choice: None, reach: 0.0 };
         lights.choice = Tree::new(&lights.balls(spheres, environment));
+        lights.reach = lights.close_within();
         lights
     }
 
@@ -156,9 +159,8 @@ impl Lights {
             Light::Emitter(i) if self.emitters[i] == own => None,
             Light::Emitter(i) => {
                 let row = self.emitters[i] as usize;
-                let mut disc = Disc::new(&world.spheres, row, self.radiance[i], origin)?;
-                disc.close |= self.crowd();
-                Some(Aim::Disc(disc))
+                let from = (origin, self.reach);
+                Disc::new(&world.spheres, row, self.radiance[i], from).map(Aim::Disc)
             }
             Light::Point(i) => self.points[i].sample(origin).map(Aim::Delta),
             Light::Sun(i) => Some(Aim::Sun(&self.suns[i])),
@@ -189,10 +191,8 @@ impl Lights {
         let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != at.own) else {
             return (0.0, true);
         };
-        match toward_sphere(spheres, row as usize, at.point) {
-            Some((_, cone, close)) => {
-                (self.probability(at, index) * cone.pdf(), close || self.crowd())
-            }
+        match toward_sphere(spheres, row as usize, (at.point, self.reach)) {
+            Some((_, cone, close)) => (self.probability(at, index) * cone.pdf(), close),
             None => (0.0, true),
         }
     }

@@ -149,7 +149,8 @@ mod tests {
         // From afar, from near, and from where half of the lanes may be in doubt.
         for distance in [0.250_001, 0.3, 1.0, 100.0, 1e7] {
             let origin = Vec3::new(0.3, -0.5, 0.7) + Vec3::new(0.48, -0.6, 0.64) * distance;
-            let disc = Disc::new(&spheres, 0, Rgb::ONE, origin).expect("the point is outside");
+            let disc =
+                Disc::new(&spheres, 0, Rgb::ONE, (origin, 1.0)).expect("the point is outside");
             let aim = Aim::Disc(disc);
             (1..=ROW).for_each(|count| check(&aim, count, count as u64));
         }

@@ -92,7 +92,8 @@ impl Tree {
 
     /// Chooses a light by a draw in [0, 1): its index, and the probability of the choice. The next
     /// draw chooses the same light or a neighbor.
-    #[inline]
+    // Not where a lone light would have to go round it.
+    #[inline(never)]
     pub(super) fn choose(&self, at: &Receiver, mut draw: f64) -> (usize, f32) {
         let (mut first, mut count, mut probability) = (0, usize::from(self.top), 1.0);
         loop {
@@ -109,6 +110,7 @@ impl Tree {
     }
 
     /// The probability with which a light is chosen.
+    #[inline(never)]
     pub(super) fn probability(&self, at: &Receiver, light: usize) -> f32 {
         let (mut node, mut probability) = (self.leaf[light], 1.0);
         if node == ROOT {
