@@ -16,7 +16,7 @@
 //!    per tile, one task with one workspace of columns:                            render
 //!      generate -> intersect -> escape, emit -> shade, kind by kind -> occlude -> compact,
 //!      until no path is left                                                      integrator
-//!    -> Film      sums in f64, tile by tile                                       film
+//!    -> Film      sums in f64, tile by tile; probes that tell their error         film, noise
 //!    -> Image     PNG, PPM, PFM, EXR                                              image
 //! ```
 //!

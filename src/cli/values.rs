@@ -13,8 +13,9 @@ const PIXELS: RangeInclusive<u32> = 1..=65_535;
 /// Samples per pixel, as in scene files.
 pub(super) const SAMPLES: RangeInclusive<i64> = 1..=1 << 24;
 
-/// Longest time limit, as in scene files.
-const MOST_TIME: Duration = Duration::from_secs(1_000_000_000);
+/// Time limits, as in scene files.
+const TIMES: RangeInclusive<Duration> =
+    Duration::from_millis(1)..=Duration::from_secs(1_000_000_000);
 
 /// Threads: far more than any processor has gains nothing and costs memory.
 pub(super) const THREADS: RangeInclusive<i64> = 1..=4096;
@@ -116,10 +117,10 @@ pub(super) fn time(text: &str) -> Result<Target<Duration>, String> {
     }
     humantime::parse_duration(text)
         .ok()
-        .filter(|time| !time.is_zero() && *time <= MOST_TIME)
+        .filter(|time| TIMES.contains(time))
         .map(|time| Target(Some(time)))
         .ok_or_else(|| {
-            "give a time of more than 0 with its unit, as in 60s, 500ms, 5m or 1h 30m; or none"
+            "give a time of 1ms or more with its unit, as in 60s, 500ms, 5m or 1h 30m; or none"
                 .to_owned()
         })
 }

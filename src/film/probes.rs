@@ -13,6 +13,9 @@ use std::ops::Range;
 /// Sets the hashes that place probes apart from those that make samples.
 const PLACES: u64 = 0x6a09_e667_f3bc_c909;
 
+/// The same for the pilot.
+const PILOT_PLACES: u64 = 0x3c6e_f372_fe94_f82b;
+
 /// Sampler replica of the pilot's samples; those of probes come after it, the picture's is none.
 const PILOT: u64 = 1;
 
@@ -103,8 +106,7 @@ impl Probes {
     /// likely as the others.
     pub fn new(tile: &Tile, density: Density, seed: u64) -> Self {
         let pixels: Vec<_> = tile.pixels().collect();
-        let key =
-            stream(mix(seed ^ PLACES), u64::from(tile.region.y) << 32 | u64::from(tile.region.x));
+        let key = key(tile, mix(seed ^ PLACES));
         let blocks = pixels.chunks(density.block as usize);
         let places: Vec<Place> = (0..density.replicas)
             .flat_map(|_| blocks.clone())
@@ -161,17 +163,34 @@ impl Probes {
 }
 
 impl Pilot {
-    /// The sampler of its samples.
-    pub fn sampler(sampler: &Sampler) -> Sampler {
-        sampler.replica(PILOT)
+    /// Pixel, sampler, and pixels for which it stands, of one of each `block` neighbors of a tile.
+    pub fn starts(
+        tile: &Tile,
+        sampler: &Sampler,
+        seed: u64,
+        block: u32,
+    ) -> Vec<(u32, u32, Sampler, f64)> {
+        let (pixels, key): (Vec<_>, _) =
+            (tile.pixels().collect(), key(tile, mix(seed ^ PILOT_PLACES)));
+        let blocks = pixels.chunks(block as usize).zip(0..);
+        let sampler = sampler.replica(PILOT);
+        blocks
+            .map(|(block, number)| {
+                let (x, y) = any(block, stream(key, number));
+                (x, y, sampler, block.len() as f64)
+            })
+            .collect()
     }
 
-    /// From `radiance`, `count` samples of each pixel.
+    /// From `radiance`, `count` samples of each place, and the pixels for which each place stands.
     ///
     /// The variance is that of neighbors in the column, whose differences hold noise and content.
-    pub fn new(radiance: &[Rgb], count: u32) -> Self {
-        let values: Vec<f64> =
-            radiance.iter().map(|sample| average(sample.to_array().map(f64::from))).collect();
+    pub fn new(radiance: &[Rgb], count: u32, weights: impl Iterator<Item = f64>) -> Self {
+        let value = |sample: &Rgb| average(sample.to_array().map(f64::from));
+        let weighted = radiance.chunks_exact(count as usize).zip(weights);
+        let values: Vec<f64> = weighted
+            .flat_map(|(samples, weight)| samples.iter().map(move |s| weight * value(s)))
+            .collect();
         let sum: f64 = values.iter().sum();
         let squares: f64 = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2) / 2.0).sum();
         let (number, count) = (values.len() as f64, f64::from(count));
@@ -180,12 +199,82 @@ impl Pilot {
     }
 }
 
-fn place(block: &[(u32, u32)], hash: u64, density: Density) -> Place {
+/// The hash of a tile's place.
+fn key(tile: &Tile, seed: u64) -> u64 {
+    stream(seed, u64::from(tile.region.y) << 32 | u64::from(tile.region.x))
+}
+
+/// A pixel of a block, by the upper half of a hash.
+fn any(block: &[(u32, u32)], hash: u64) -> (u32, u32) {
     // The upper half of the product is less than the number of pixels.
-    let (x, y) = block[(((hash >> 32) * block.len() as u64) >> 32) as usize];
+    block[(((hash >> 32) * block.len() as u64) >> 32) as usize]
+}
+
+fn place(block: &[(u32, u32)], hash: u64, density: Density) -> Place {
+    let (x, y) = any(block, hash);
     Place { x, y, weight: block.len() as f64 / f64::from(density.replicas) }
 }
 
 fn average(channels: [f64; 3]) -> f64 {
     channels.iter().sum::<f64>() / 3.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Film, Region};
+    use crate::scene::SamplerKind;
+
+    fn film(width: u32, height: u32) -> Film {
+        let mut film = Film::new(Region { x: 3, y: 5, width, height }, false);
+        let density = Density::of(film.pixels());
+        film.place_probes(density, 7, |_| true);
+        film
+    }
+
+    #[test]
+    fn probes_stand_for_every_pixel_once() {
+        for (width, height) in [(1, 1), (3, 2), (16, 16), (40, 33), (100, 80), (300, 260)] {
+            let film = film(width, height);
+            for role in [Role::Steer, Role::Judge] {
+                let readings = || film.tiles.iter().flat_map(|tile| tile.probes.readings(role));
+                let weight: f64 = readings().map(|reading| reading.weight).sum();
+                let pixels = f64::from(width) * f64::from(height);
+                assert!((weight - pixels).abs() < 1e-9 * pixels, "{width} x {height}: {weight}");
+                assert!(readings().count() >= 32, "{width} x {height}");
+            }
+        }
+    }
+
+    #[test]
+    fn probes_lie_in_their_tile_and_no_two_streams_are_alike() {
+        let film = film(40, 33);
+        let sampler = Sampler::new(SamplerKind::Sobol, 1, 16);
+        for tile in &film.tiles {
+            let inside: Vec<_> = tile.pixels().collect();
+            let starts: Vec<_> = tile.probes.starts(&sampler).collect();
+            let mut states: Vec<_> = inside
+                .iter()
+                .flat_map(|&(x, y)| [(x, y, sampler), (x, y, sampler.replica(PILOT))])
+                .chain(starts)
+                .inspect(|&(x, y, _)| assert!(inside.contains(&(x, y))))
+                .map(|(x, y, sampler)| format!("{:?}", sampler.start(x, y, 0)))
+                .collect();
+            let count = states.len();
+            states.sort_unstable();
+            states.dedup();
+            assert_eq!(states.len(), count);
+        }
+    }
+
+    #[test]
+    fn half_the_squared_difference_of_a_pair_is_its_variance() {
+        let mut film = film(1, 1);
+        let probes = &mut film.tiles[0].probes;
+        let samples: Vec<Rgb> = (0..probes.streams()).map(|i| Rgb::splat((i % 2) as f32)).collect();
+        probes.add(&samples, &(0..1));
+        for reading in probes.readings(Role::Judge) {
+            assert_eq!((reading.squared, reading.radiance, reading.independent), (0.5, 0.5, 0.0));
+        }
+    }
 }

@@ -8,7 +8,7 @@ pub const CONFIDENCE: f64 = 0.95;
 
 /// The bound lies this many standard deviations above the estimate. One look at Gaussian terms would
 /// need 1.64 for [`CONFIDENCE`]; this allows for several looks and for heavy tails.
-const DEVIATIONS: f64 = 2.4;
+const DEVIATIONS: f64 = 3.0;
 
 /// Weight of the third moment over the second in the bound: (2 x^2 + 1) / 6 for the same `x`.
 const SKEW: f64 = (2.0 * DEVIATIONS * DEVIATIONS + 1.0) / 6.0;

@@ -28,7 +28,10 @@
 //! Gaussian or lighter, however heavy the upper one is: it lies more than `x` times the root of the
 //! sum of their second moments below its expectation with a probability of at most exp(-x^2/2)
 //! (Maurer, "A Bound on the Deviation Probability for Sums of Non-Negative Random Variables", JIPAM
-//! 2003). Second moments are estimated by the squares of the terms.
+//! 2003). Second moments are estimated by the squares of the terms, and third moments add to the
+//! bound, so that it holds at several looks and for errors that a few pixels dominate. What no
+//! probe has seen it cannot know: noise that is all from events too rare for the probes' samples, or
+//! whose fourth moment is infinite (roulette that makes paths ever brighter), is underestimated.
 //!
 //! [`Probes`]: crate::film::Probes
 

@@ -177,3 +177,68 @@ impl Worth {
         self.gained / self.work.max(1.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Density, Region};
+    use crate::scene::Rgb;
+
+    fn steps(goal: Goal, tiles: usize) -> Vec<u32> {
+        let step = |&samples: &u32| {
+            Some(goal.next(samples, tiles)).filter(|next| samples < goal.most && *next > samples)
+        };
+        std::iter::successors(Some(0), step).collect()
+    }
+
+    #[test]
+    fn samples_double_up_to_the_limit() {
+        let goal = Goal { first: 16, most: 100, timed: false };
+        assert_eq!(steps(goal, 1000), [0, 16, 32, 64, 100]);
+        let timed = Goal { timed: true, ..goal };
+        assert_eq!(steps(timed, 1000), [0, 1, 2, 4, 8, 16, 32, 64, 100]);
+        assert_eq!(steps(timed, 3), [0, 1, 2, 4, 8, 16, 32, 48, 64, 80, 96, 100]);
+        assert_eq!(steps(Goal { first: 3, most: 3, timed: true }, 9), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn slopes_follow_the_news() {
+        let mut slope = Slope::default();
+        assert_eq!(slope.exponent(), 1.0);
+        slope.learn(8.0, 3.0);
+        assert!((slope.exponent() - (8.0_f64 / 3.0).log2()).abs() < 1e-9);
+        slope.learn(1e9, 1.0);
+        assert_eq!(slope.exponent(), 2.0);
+        slope.learn(0.0, 0.0);
+        assert!(slope.exponent().is_finite());
+    }
+
+    /// Four tiles in a row; probes of tile `noisy` see noise, and those of tile 3 need none.
+    fn film(noisy: usize) -> Film {
+        let mut film = Film::new(Region { x: 0, y: 0, width: 64, height: 16 }, false);
+        film.place_probes(Density { block: 64, replicas: 1 }, 1, |tile| tile.region.x < 48);
+        for (index, tile) in film.tiles.iter_mut().enumerate() {
+            let streams = tile.probes.streams();
+            let samples = (0..16 * streams).map(|i| {
+                let odd = index == noisy && i / 16 % 2 == 1;
+                Rgb::splat(if odd { 2.0 } else { 1.0 })
+            });
+            tile.samples = 16;
+            tile.probes.add(&samples.collect::<Vec<_>>(), &(0..16));
+            tile.probes.rays = 16 * streams as u64;
+        }
+        film
+    }
+
+    #[test]
+    fn noisy_tiles_come_first_and_quiet_ones_in_the_end() {
+        let goal = Goal { first: 16, most: 64, timed: false };
+        let film = film(1);
+        let some = next_round(&film, &goal, Slope::default(), 0.9);
+        assert_eq!(some, [1]);
+        let all = next_round(&film, &goal, Slope::default(), 0.0);
+        assert!(all.len() >= 2 && all[0] == 1 && !all.contains(&3), "{all:?}");
+        let done = Goal { most: 16, ..goal };
+        assert!(next_round(&film, &done, Slope::default(), 0.0).is_empty());
+    }
+}

@@ -14,8 +14,9 @@ use std::time::Duration;
 /// Samples of a pixel from which on probes are believed.
 pub(super) const FIRST: u32 = 16;
 
-/// Samples of the pilot, all pixels taken together, below which it takes more than one of each.
-const PILOT: u64 = 4096;
+/// Samples of the pilot, all pixels taken together, below which it takes more than one of each; and
+/// pixels from which on it takes but one of four.
+const PILOT: (u64, u64) = (4096, 65_536);
 
 /// Part of the time limit, and the least time in seconds, after which the clock is looked at.
 const LOOKS: (f64, f64) = (0.02, 0.1);
@@ -167,13 +168,15 @@ fn begin(job: &Job, state: &mut State, target: &Target, watch: &Watch) {
     if state.round > 0 {
         return;
     }
-    let samples = PILOT.div_ceil(state.film.pixels()).clamp(1, u64::from(PASS)) as u32;
+    let pixels = state.film.pixels();
+    let samples = PILOT.0.div_ceil(pixels).clamp(1, u64::from(PASS)) as u32;
+    let block = if pixels < PILOT.1 { 1 } else { 4 };
     over(job, &mut state.film.tiles, watch, |tile, work| {
         if pass::even(job.world, tile).is_some() {
             pass::tile_pass(job, tile, 0..target.goal.first, work);
         }
         if target.error.is_some() {
-            pass::pilot_pass(job, tile, samples, work);
+            pass::pilot_pass(job, tile, (block, samples), work);
         }
         watch.report(work, 0.0, None);
     });

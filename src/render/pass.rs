@@ -70,8 +70,14 @@ pub(super) fn probe_pass(
     }
 }
 
-/// Takes a few samples of each pixel beside the picture, at most [`PASS`].
-pub(super) fn pilot_pass(job: &Job, tile: &mut Tile, samples: u32, work: &mut Workspace) {
+/// Takes samples of some or all pixels beside the picture: one pixel of each `block`, and `samples`
+/// of it, at most [`PASS`].
+pub(super) fn pilot_pass(
+    job: &Job,
+    tile: &mut Tile,
+    (block, samples): (u32, u32),
+    work: &mut Workspace,
+) {
     if let Some(radiance) = even(job.world, tile) {
         let sum = f64::from(tile.len()) * radiance.to_array().map(f64::from).iter().sum::<f64>();
         tile.probes.pilot = Pilot { sum: sum / 3.0, variance: 0.0 };
@@ -79,11 +85,12 @@ pub(super) fn pilot_pass(job: &Job, tile: &mut Tile, samples: u32, work: &mut Wo
     }
     work.clock.restart();
     work.view = tile.view;
-    let sampler = Pilot::sampler(job.sampler);
-    let streams = tile.pixels().map(|(x, y)| (x, y, sampler));
+    let places = Pilot::starts(tile, job.sampler, job.settings.seed, block);
+    let streams = places.iter().map(|&(x, y, sampler, _)| (x, y, sampler));
     stages::generate_streams(job, streams, 0..samples, work);
     let paths = integrate(job, work);
-    tile.probes.pilot = Pilot::new(&work.paths.radiance[..paths], samples);
+    let weights = places.iter().map(|&(.., weight)| weight);
+    tile.probes.pilot = Pilot::new(&work.paths.radiance[..paths], samples, weights);
     work.clock.end(Stage::Film);
 }
 

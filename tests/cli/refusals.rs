@@ -16,6 +16,8 @@ fn bad_input_is_refused_in_words() {
         ("render --size -4x4", 2, &["--size", "1 to 65535"]),
         ("render --spp 0", 2, &["--spp", "1..=16777216"]),
         ("render --spp -3", 2, &["--spp"]),
+        ("render --until-error 0%", 2, &["--until-error", "1% or 0.01"]),
+        ("render --time 60", 2, &["--time", "60s"]),
         ("render --depth -1", 2, &["--depth", "unlimited"]),
         ("render --seed -1", 2, &["--seed"]),
         ("render --threads 0", 2, &["--threads", "1..=4096"]),

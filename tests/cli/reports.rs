@@ -1,6 +1,7 @@
 //! What the program tells: statistics, notes, comparisons, help.
 
 use crate::folder::{Folder, SMALL, text};
+use serde_json::json;
 use spherule::image::{Image, WriteOptions};
 
 #[test]
@@ -18,6 +19,27 @@ fn statistics_are_one_json_object() {
     assert_eq!(report["settings"]["width"], 40);
     assert_eq!(report["settings"]["depth"], 1);
     assert_eq!(report["complete"], true);
+}
+
+#[test]
+fn a_render_says_how_right_it_is() {
+    let folder = Folder::new();
+    let small = ["render", "--size", "40x24", "--quiet", "--json"];
+    let report = folder.json(&[&small[..], &["--until-error", "50%"]].concat());
+    let noise = &report["noise"];
+    assert_eq!((&noise["ended_by"], &noise["confidence"]), (&json!("error"), &json!(0.95)));
+    let number = |name: &str| noise[name].as_f64().unwrap();
+    assert!(number("error") > 0.0 && number("error") < number("bound") && number("bound") <= 0.5);
+    let pixels = 40.0 * 24.0;
+    assert_eq!(report["statistics"]["samples"].as_f64().unwrap(), pixels * number("mean_samples"));
+    assert_eq!(report["settings"]["spp"], 65_536);
+    let limited = folder.run(&[&small[..3], &["--until-error", "0.01%", "--spp", "16"]].concat());
+    assert!(limited.status.success());
+    assert!(text(&limited.stderr).contains("larger number"), "{}", text(&limited.stderr));
+    assert!(text(&limited.stdout).contains("16.0 samples per pixel (16 to 16)"));
+    let timed = folder.json(&[&small[..], &["--time", "10ms"]].concat());
+    assert_eq!((&timed["noise"]["ended_by"], &timed["complete"]), (&json!("time"), &json!(true)));
+    assert!(folder.json(&small)["noise"].is_null());
 }
 
 #[test]

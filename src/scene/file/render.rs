@@ -10,6 +10,8 @@ use toml::de::DeValue;
 const MOST_PIXELS: u64 = 65_535;
 /// Most samples per pixel: above, sums in single precision would stall.
 const MOST_SAMPLES: u64 = 1 << 24;
+/// Shortest time limit.
+const LEAST_SECONDS: f64 = 1e-3;
 /// Longest time limit: some thirty years.
 const MOST_SECONDS: f64 = 1e9;
 
@@ -18,7 +20,7 @@ pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
     let [width, height] =
         block.value("size").map_or(Ok([usual.width, usual.height]), |value| size(&value))?;
     let until_error = block.value("until_error").map(|v| v.number(Limits::AboveTo(0.0, 1.0)));
-    let time = block.value("time").map(|v| v.number(Limits::AboveTo(0.0, MOST_SECONDS)));
+    let time = block.value("time").map(|v| v.number(Limits::Within(LEAST_SECONDS, MOST_SECONDS)));
     let (until_error, time) = (until_error.transpose()?, time.transpose()?);
     let targeted = until_error.is_some() || time.is_some();
     let usual_spp = if targeted { Settings::HARD_SAMPLES } else { usual.spp };
