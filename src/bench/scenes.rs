@@ -48,7 +48,7 @@ impl NamedScene {
     /// There is no such scene, or its file is wrong.
     pub fn named(name: &str) -> Result<Self, BenchError> {
         let found = FILES.iter().find(|file| file.0 == name);
-        let scene = match found {
+        let mut scene = match found {
             Some((name, text)) => Scene::parse(text, name, Path::new("."))?,
             None if name == FIELD => default_scene(0),
             None if is_file(name) => Scene::load(Path::new(name))?,
@@ -58,6 +58,8 @@ impl NamedScene {
                 return Err(BenchError::UnknownScene { name: name.to_owned(), known });
             }
         };
+        // Measurements decide themselves on samples.
+        (scene.settings.until_error, scene.settings.time) = (None, None);
         Ok(Self { name: name.to_owned(), scene })
     }
 
