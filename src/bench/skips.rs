@@ -7,7 +7,7 @@ use super::{BenchError, Options, Tell};
 use crate::image::Image;
 use crate::render::{self, Skips, render};
 use crate::report::{Axis, Column, Plot, Point, Report, Series, Spread, Style, Table};
-use crate::scene::{EnvironmentMap, Rgb, Scene};
+use crate::scene::{EnvironmentMap, Integrator, Rgb, Scene};
 use crate::world::World;
 
 const EXPLANATION: &str = "Each saving is turned off by itself, in a scene that allows it; with and \
@@ -57,7 +57,7 @@ const SAVINGS: [Saving; 5] = [
         name: "any occluder",
         about: "shadow rays end at the first sphere found, whether or not it is the nearest",
         scene: "paper-field-20",
-        change: |_| (),
+        change: |scene| scene.settings.integrator = Integrator::Whitted { shadow_samples: 4 },
         without: Skips { nearest_occluder: false, ..Skips::ALL },
     },
 ];
