@@ -3,6 +3,7 @@
 use super::names::{
     BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, PPM, SAMPLERS, TONES, Traversal,
 };
+use super::particles::ParticleArgs;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
 use super::{bench, examples, stress};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
@@ -49,12 +50,14 @@ pub(super) enum Command {
 
 #[derive(Debug, Parser)]
 pub(super) struct RenderArgs {
-    /// A scene (.toml) or a file of particles (any other name); without it, a random field of
-    /// spheres
+    /// A scene (.toml), a file of particles (any other name) or - for particles on standard input;
+    /// without it, a random field of spheres
     pub(super) scene: Option<PathBuf>,
     /// The picture: .png, .ppm, .pfm or .exr
     #[arg(short, long, value_name = "FILE", default_value = "spherule.png")]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) particles: ParticleArgs,
     #[command(flatten)]
     pub(super) picture: PictureArgs,
     #[command(flatten)]
@@ -238,8 +241,10 @@ pub(super) struct ParameterArgs {
 
 #[derive(Debug, clap::Args)]
 pub(super) struct InfoArgs {
-    /// A scene (.toml) or a file of particles (any other name)
+    /// A scene (.toml), a file of particles (any other name) or - for particles on standard input
     pub(super) scene: PathBuf,
+    #[command(flatten)]
+    pub(super) particles: ParticleArgs,
     /// One JSON object on standard output
     #[arg(long)]
     pub(super) json: bool,

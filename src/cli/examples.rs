@@ -16,6 +16,7 @@ Examples:
   spherule render scene.toml -o picture.exr --size 1920x1080 --spp 256
   spherule render scene.toml --until-error 1%       as many samples as that takes
   spherule render particles.xyz -o figure.png --integrator ao
+  spherule render run.lammpstrj.gz --frame last --radii 0.5 -o last.png
   spherule render scene.toml --region 100,50,64x64 -o detail.png
   spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id
   spherule render scene.toml --json --quiet > statistics.json

@@ -2,6 +2,7 @@
 
 use super::args::InfoArgs;
 use super::contents::{dropped, found, plural, spheres};
+use super::particles::ParticleInfo;
 use super::source::Source;
 use super::{Failure, output, settings};
 use indicatif::{BinaryBytes, HumanCount};
@@ -17,6 +18,8 @@ use std::process::ExitCode;
 struct Info {
     file: String,
     title: String,
+    /// Null for scenes.
+    particles: Option<ParticleInfo>,
     spheres: usize,
     dropped_spheres: u64,
     /// Lower and upper corner; null without spheres.
@@ -70,11 +73,11 @@ const SHOWN: usize = 12;
 
 /// Looks and tells.
 pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
-    let source = Source::of_path(&args.scene);
-    let scene = source.load()?;
+    let source = Source::of_path(&args.scene, &args.particles)?;
+    let (scene, particles) = load(&source)?;
     let world =
         World::build(&scene).map_err(|error| Failure::World(source.name().into_owned(), error))?;
-    let info = Info::new(&source, &scene, &world);
+    let info = Info { particles, ..Info::new(&source, &scene, &world) };
     if args.json {
         output::print_json(&info);
     } else {
@@ -83,12 +86,21 @@ pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The scene, and what its file says if it is one of particles.
+fn load(source: &Source) -> Result<(Scene, Option<ParticleInfo>), Failure> {
+    let Source::Particles(path, options) = source else { return Ok((source.load()?, None)) };
+    let particles = spherule::scene::particles::read(path, options)?;
+    let info = ParticleInfo::new(path, options, &particles);
+    Ok((Scene::of_particles(particles, &source.title(&Scene::default())), Some(info)))
+}
+
 impl Info {
     fn new(source: &Source, scene: &Scene, world: &World) -> Self {
         let (width, height) = (scene.settings.width, scene.settings.height);
         Self {
             file: source.name().into_owned(),
             title: source.title(scene).into_owned(),
+            particles: None,
             spheres: scene.spheres.len(),
             dropped_spheres: world.features.vanished + world.features.hidden,
             bounds: bounds(scene),
@@ -108,6 +120,7 @@ impl Info {
 
     fn print(&self) {
         output::print(format_args!("{}: {}", self.file, self.title));
+        self.particles.iter().for_each(ParticleInfo::print);
         output::print(format_args!("spheres      {}", HumanCount(self.spheres as u64)));
         if let (Some([low, high]), Some([least, greatest])) = (self.bounds, self.radius) {
             output::print(format_args!("bounds       {low:?} to {high:?}"));

@@ -13,6 +13,7 @@ mod field_scene;
 mod info;
 mod names;
 mod output;
+mod particles;
 mod processor;
 mod progress;
 mod render;

@@ -1,17 +1,20 @@
 //! Where a scene comes from.
 
+use super::Failure;
+use super::particles::ParticleArgs;
+use spherule::scene::particles::ReadOptions;
 use spherule::scene::{Scene, SceneError, generate};
 use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Where a scene comes from.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Source {
     /// A scene file.
     Toml(PathBuf),
-    /// A file of particles.
-    Particles(PathBuf),
+    /// A file of particles, and how to read it.
+    Particles(PathBuf, Box<ReadOptions>),
     /// The random field that shows what the program does.
     Field {
         /// Of the field's random numbers.
@@ -20,17 +23,26 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// The source that a path speaks of.
-    pub(super) fn of_path(path: &Path) -> Self {
+    /// The source that a path speaks of; `args` are for particles alone.
+    pub(super) fn of_path(path: &Path, args: &ParticleArgs) -> Result<Self, Failure> {
         let toml = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml"));
-        if toml { Self::Toml(path.to_owned()) } else { Self::Particles(path.to_owned()) }
+        if toml && args.any() {
+            let message = "how to read particles is what a scene says of each of its files: write \
+                           format, radius and scale in its [[file]]";
+            return Err(Failure::usage("render", message));
+        }
+        Ok(if toml {
+            Self::Toml(path.to_owned())
+        } else {
+            Self::Particles(path.to_owned(), Box::new(args.options()))
+        })
     }
 
     /// The scene.
     pub(super) fn load(&self) -> Result<Scene, SceneError> {
         match self {
             Self::Toml(path) => Scene::load(path),
-            Self::Particles(path) => Scene::from_particles(path),
+            Self::Particles(path, options) => Scene::from_particles(path, options),
             Self::Field { seed } => Ok(generate::default_scene(*seed)),
         }
     }
@@ -38,7 +50,7 @@ impl Source {
     /// As the user knows it.
     pub(super) fn name(&self) -> Cow<'_, str> {
         match self {
-            Self::Toml(path) | Self::Particles(path) => path.to_string_lossy(),
+            Self::Toml(path) | Self::Particles(path, _) => path.to_string_lossy(),
             Self::Field { .. } => Cow::Borrowed("the random field"),
         }
     }
@@ -47,7 +59,7 @@ impl Source {
     /// business.
     pub(super) fn title<'a>(&'a self, scene: &'a Scene) -> Cow<'a, str> {
         match self {
-            Self::Toml(path) | Self::Particles(path) if scene.title.is_empty() => {
+            Self::Toml(path) | Self::Particles(path, _) if scene.title.is_empty() => {
                 path.file_name().map_or(Cow::Borrowed(""), OsStr::to_string_lossy)
             }
             _ => Cow::Borrowed(&scene.title),
@@ -59,16 +71,20 @@ impl Source {
 mod tests {
     use super::*;
 
+    fn of_path(name: &str) -> Source {
+        Source::of_path(Path::new(name), &ParticleArgs::default()).expect("nothing of particles")
+    }
+
     #[test]
     fn suffixes_tell_scenes_from_particles() {
-        let toml = |name: &str| matches!(Source::of_path(Path::new(name)), Source::Toml(_));
+        let toml = |name: &str| matches!(of_path(name), Source::Toml(_));
         assert!(toml("a/b.toml") && toml("B.TOML"));
         assert!(!toml("a.xyz") && !toml("toml") && !toml("a.toml.csv"));
     }
 
     #[test]
     fn titles_tell_no_folders() {
-        let source = Source::of_path(Path::new("/home/someone/secret/a.toml"));
+        let source = of_path("/home/someone/secret/a.toml");
         assert_eq!(source.title(&Scene::default()), "a.toml");
         let titled = Scene { title: "A scene".to_owned(), ..Scene::default() };
         assert_eq!(source.title(&titled), "A scene");

@@ -189,9 +189,11 @@ fn names_need_not_be_text() {
 }
 
 #[test]
-fn a_dash_is_a_name_like_any_other() {
-    let folder = Folder::new();
-    refuse(&folder, "render -", "-: cannot be read");
-    folder.write("-", "0 0 0 1\n");
-    assert!(folder.run(&["info", "-"]).status.success());
+fn a_dash_is_standard_input() {
+    let frames = "1\na\nC 0 0 0\n1\nb\nO 0 0 0\n";
+    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
+    program.args(["info", "-", "--frame", "last"]).write_stdin(frames).timeout(TIME);
+    let output = program.output().expect("a program that runs");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("type         O (O): 1"), "{}", text(&output.stdout));
 }

@@ -3,7 +3,7 @@
 use spherule::bvh::walk::Method;
 use spherule::image::{Image, compare, read_metadata};
 use spherule::render::{Options, render};
-use spherule::scene::particles::{Format, ReadOptions, read};
+use spherule::scene::particles::{Format, FrameChoice, Radii, ReadOptions, count_frames, read};
 use spherule::scene::{Integrator, Scene, Spheres};
 use spherule::trace::{Tracer, Width};
 use spherule::world::World;
@@ -28,19 +28,22 @@ pub(crate) fn scene(path: &Path) {
 
 /// Reads particles in every format, and renders them as those that they seem to have.
 pub(crate) fn particles(path: &Path) {
-    let options = |format, radius, scale| ReadOptions { format, radius, scale };
-    for options in [
-        options(None, Some(1e-300), 1e300),
-        options(Some(Format::Xyzr), None, 1e-300),
-        options(Some(Format::Csv), None, 1.0),
-        options(Some(Format::Xyz), None, 1.0),
-    ] {
+    let options = |format, radius, scale| {
+        let radii = Option::map_or(radius, Radii::Auto, Radii::Missing);
+        ReadOptions { format, radii, scale, ..ReadOptions::default() }
+    };
+    let all = Format::ALL.map(|(_, format)| options(Some(format), None, 1.0));
+    let some = [options(None, Some(1e-300), 1e300), options(Some(Format::Xyzr), None, 1e-300)];
+    for options in some.into_iter().chain(all) {
         if let Some(particles) = told(read(path, &options)) {
             assert!(!particles.spheres.is_empty());
             check_spheres(&particles.spheres, particles.material_names.len());
         }
     }
-    look_at(told(Scene::from_particles(path)));
+    let last = ReadOptions { frame: FrameChoice::Last, ..ReadOptions::default() };
+    told(read(path, &last));
+    told(count_frames(path, &last));
+    look_at(told(Scene::from_particles(path, &ReadOptions::default())));
 }
 
 /// Reads a picture and what it says about itself, compares it and renders a sphere under it.

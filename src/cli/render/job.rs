@@ -38,7 +38,10 @@ impl<'a> Job<'a> {
                 format!("{format} has no room for --layers; end the name of --output in .exr");
             return Err(Failure::usage("render", message));
         }
-        let source = args.scene.as_deref().map_or(Source::Field { seed }, Source::of_path);
+        let source = match &args.scene {
+            Some(path) => Source::of_path(path, &args.particles)?,
+            None => Source::Field { seed },
+        };
         Ok(Self {
             source,
             output: args.output.clone(),

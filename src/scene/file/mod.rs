@@ -17,7 +17,7 @@ mod value;
 
 use self::block::{Block, Source};
 use self::materials::Materials;
-use super::particles::{self, ReadOptions};
+use super::particles::{self, Particles, ReadOptions};
 use super::{
     Camera, Environment, EnvironmentMap, Light, Material, NamedMaterial, Rgb, Scene, SceneError,
     Settings, Spheres,
@@ -76,8 +76,13 @@ impl Scene {
     /// # Errors
     ///
     /// The file cannot be read, or is not in a format that [`particles::read`] knows.
-    pub fn from_particles(path: &Path) -> Result<Self, SceneError> {
-        let particles = particles::read(path, &ReadOptions::default())?;
+    pub fn from_particles(path: &Path, options: &ReadOptions) -> Result<Self, SceneError> {
+        let title = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        Ok(Self::of_particles(particles::read(path, options)?, &title.unwrap_or_default()))
+    }
+
+    /// The same scene of particles that are read already.
+    pub fn of_particles(particles: Particles, title: &str) -> Self {
         let material = Material::Plastic { color: Rgb::splat(0.8), ior: 1.5 };
         let named =
             |name: &str| NamedMaterial { name: name.to_owned(), material: material.clone() };
@@ -90,14 +95,13 @@ impl Scene {
         }
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);
-        let title = path.file_name().map(|name| name.to_string_lossy().into_owned());
-        Ok(Self {
-            title: title.unwrap_or_default(),
+        Self {
+            title: title.to_owned(),
             spheres,
             materials: materials.into_rows(),
             warnings: particles.warnings,
             ..Self::default()
-        })
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use super::materials::{self, Materials};
 use super::schema;
 use super::value::{Limits, Value};
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
-use crate::scene::particles::{self, Format, ReadOptions};
+use crate::scene::particles::{self, Format, Radii, ReadOptions};
 use crate::scene::{Rgb, Scene, SceneError, Spheres};
 use crate::{memory, world::World};
 
@@ -143,10 +143,12 @@ fn read_file(
     let file = block.need("path", "path = \"particles.csv\"")?;
     let format = block.value("format").map(|value| format(&value)).transpose()?;
     let scale = block.value("scale");
+    let radius = block.value("radius").map(|value| value.number(Limits::Positive)).transpose()?;
     let options = ReadOptions {
         format,
-        radius: block.value("radius").map(|value| value.number(Limits::Positive)).transpose()?,
+        radii: radius.map_or(Radii::Auto, Radii::Missing),
         scale: scale.map_or(Ok(1.0), |value| value.number(Limits::Positive))?,
+        ..ReadOptions::default()
     };
     let path = source.folder.join(file.text()?);
     if !path.is_file() {
@@ -173,11 +175,9 @@ fn read_file(
 }
 
 fn format(value: &Value) -> Result<Format, SceneError> {
-    Ok(match value.choice(&["xyzr", "csv", "xyz"])? {
-        "csv" => Format::Csv,
-        "xyz" => Format::Xyz,
-        _ => Format::Xyzr,
-    })
+    let chosen = value.choice(&Format::ALL.map(|(name, _)| name))?;
+    let format = Format::ALL.into_iter().find(|(name, _)| *name == chosen);
+    Ok(format.map_or(Format::Xyzr, |(_, format)| format))
 }
 
 /// What is wrong with so many spheres, if anything is.

@@ -1,93 +1,232 @@
-//! The lines of a text file, and the numbers in them.
+//! The lines of a text file, cut from large blocks.
 
+pub(super) use super::line::Line;
+use super::source::Source;
 use crate::scene::SceneError;
-use std::io::{self, BufRead, Read};
+use memchr::{memchr, memchr_iter};
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Longest line in bytes: a longer one is a sign that the file is not text.
-const LONGEST: u64 = 1 << 16;
+pub(super) const LONGEST: usize = 1 << 20;
+
+/// How much is read at once; the rest of a line moves to the front before each read.
+const BLOCK: usize = 1 << 18;
 
 /// A file's lines, one at a time.
-pub(super) struct Lines<'p, R> {
-    path: &'p Path,
-    reader: R,
+pub(super) struct Lines {
+    path: Arc<Path>,
+    reader: Box<dyn Read + Send>,
+    /// What is read and not yet passed is `start..end`.
+    buffer: Vec<u8>,
+    start: usize,
+    end: usize,
+    ended: bool,
     number: usize,
-    bytes: Vec<u8>,
+    /// Where the last line began, and whether it ended with a carriage return.
+    last: usize,
+    returned: bool,
 }
 
-/// One line without its end.
-#[derive(Clone, Copy)]
-pub(super) struct Line<'l> {
-    path: &'l Path,
-    number: usize,
-    pub(super) text: &'l str,
-}
-
-impl<'p, R: BufRead> Lines<'p, R> {
-    pub(super) fn new(path: &'p Path, reader: R) -> Self {
-        Self { path, reader, number: 0, bytes: Vec::new() }
+impl Lines {
+    pub(super) fn new(source: Source) -> Self {
+        let Source { path, mut head, reader } = source;
+        if head.starts_with(b"\xEF\xBB\xBF") {
+            head.drain(..3);
+        }
+        let end = head.len();
+        Self {
+            path,
+            reader,
+            buffer: head,
+            start: 0,
+            end,
+            ended: false,
+            number: 0,
+            last: 0,
+            returned: false,
+        }
     }
 
     /// The next line, if there is one.
     pub(super) fn next(&mut self) -> Result<Option<Line<'_>>, SceneError> {
-        self.bytes.clear();
         self.number += 1;
-        let mut limited = self.reader.by_ref().take(LONGEST);
-        let length = limited.read_until(b'\n', &mut self.bytes).map_err(|e| self.failed(&e))?;
-        if length == 0 {
+        let Some(mut range) = self.find()? else {
+            self.last = self.start;
             return Ok(None);
+        };
+        self.last = range.start;
+        self.returned = self.buffer[range.clone()].last() == Some(&b'\r');
+        range.end -= usize::from(self.returned);
+        Ok(Some(Line::new(&self.path, self.number, &self.buffer[range])))
+    }
+
+    /// How the line that came last ended.
+    pub(super) fn ending(&self) -> &'static [u8] {
+        if self.returned { b"\r\n" } else { b"\n" }
+    }
+
+    /// Gives the line that came last once more.
+    pub(super) fn back(&mut self) {
+        self.start = self.last;
+        self.number -= 1;
+    }
+
+    /// What follows, a block or less, which is not passed.
+    pub(super) fn ahead(&mut self) -> Result<&[u8], SceneError> {
+        while self.end - self.start < BLOCK / 4 && self.fill()? {}
+        Ok(&self.buffer[self.start..self.end])
+    }
+
+    /// Passes over lines without a look at them; how many there were, of so many.
+    pub(super) fn skip(&mut self, count: u64) -> Result<u64, SceneError> {
+        let mut passed = 0;
+        while passed < count {
+            let rest = &self.buffer[self.start..self.end];
+            let wanted = usize::try_from(count - passed - 1).unwrap_or(usize::MAX);
+            if let Some(newline) = memchr_iter(b'\n', rest).nth(wanted) {
+                self.start += newline + 1;
+                passed = count;
+                break;
+            }
+            passed += memchr_iter(b'\n', rest).count() as u64;
+            let newline = memchr::memrchr(b'\n', rest).map_or(0, |newline| newline + 1);
+            self.start += newline;
+            if !self.fill()? {
+                passed += u64::from(self.start < self.end);
+                self.start = self.end;
+                break;
+            }
         }
-        if length as u64 == LONGEST && self.bytes.last() != Some(&b'\n') {
-            let message = format!("line {} is longer than {LONGEST} bytes", self.number);
-            return Err(SceneError::whole_file(self.path, message)
+        self.number += passed as usize;
+        Ok(passed)
+    }
+
+    /// The bytes of the next line, and past its end.
+    fn find(&mut self) -> Result<Option<Range<usize>>, SceneError> {
+        let mut looked = 0;
+        loop {
+            let rest = &self.buffer[self.start..self.end];
+            if let Some(newline) = memchr(b'\n', &rest[looked..]) {
+                let line = self.start..self.start + looked + newline;
+                self.start = line.end + 1;
+                return Ok(Some(line));
+            }
+            looked = rest.len();
+            if !self.fill()? {
+                let line = self.start..self.end;
+                self.start = self.end;
+                return Ok(Some(line).filter(|line| !line.is_empty()));
+            }
+        }
+    }
+
+    /// Reads more behind what is left; whether there is more.
+    fn fill(&mut self) -> Result<bool, SceneError> {
+        if self.ended {
+            return Ok(false);
+        }
+        if self.end - self.start >= LONGEST {
+            let message = format!("line {} is longer than {LONGEST} bytes", self.number.max(1));
+            return Err(SceneError::whole_file(&self.path, message)
                 .with_help("a file of particles has one line for each particle"));
         }
-        let text = std::str::from_utf8(&self.bytes).map_err(|_| {
-            let message = format!("line {} is not UTF-8 text", self.number);
-            SceneError::whole_file(self.path, message)
-        })?;
-        let text = text.trim_start_matches('\u{FEFF}').trim_end_matches(['\n', '\r']);
-        Ok(Some(Line { path: self.path, number: self.number, text }))
+        self.buffer.copy_within(self.start..self.end, 0);
+        (self.start, self.end) = (0, self.end - self.start);
+        if self.buffer.len() < self.end + BLOCK {
+            self.buffer.resize(self.end + BLOCK, 0);
+        }
+        let length = loop {
+            match self.reader.read(&mut self.buffer[self.end..]) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => (),
+                outcome => break outcome.map_err(|error| self.failed(&error))?,
+            }
+        };
+        self.end += length;
+        self.ended = length == 0;
+        Ok(!self.ended)
     }
 
     /// An error after the last line.
     pub(super) fn ended(&self, message: impl Into<String>) -> SceneError {
-        SceneError::at(self.path, "", self.number, 0..0, message)
+        SceneError::at(&self.path, "", self.number, 0..0, message)
     }
 
     fn failed(&self, error: &io::Error) -> SceneError {
-        SceneError::whole_file(
-            self.path,
-            format!("cannot be read at line {}: {error}", self.number),
-        )
+        let message = format!("cannot be read at line {}: {error}", self.number.max(1));
+        SceneError::whole_file(&self.path, message)
+    }
+
+    pub(super) fn path(&self) -> &Arc<Path> {
+        &self.path
     }
 }
 
-impl<'l> Line<'l> {
-    /// An error at these bytes of the line.
-    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneError {
-        SceneError::at(self.path, self.text, self.number, span, message)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gives a few bytes at a time, as pipes do.
+    struct Drops(Vec<u8>, usize);
+
+    impl Read for Drops {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            let length = self.1.min(self.0.len()).min(buffer.len());
+            buffer[..length].copy_from_slice(&self.0[..length]);
+            self.0.drain(..length);
+            Ok(length)
+        }
     }
 
-    /// An error that concerns the whole line.
-    pub(super) fn whole(&self, message: impl Into<String>) -> SceneError {
-        self.error(0..self.text.len(), message)
+    fn lines(text: &str, drop: usize) -> Lines {
+        let reader = Box::new(Drops(text.as_bytes().to_vec(), drop));
+        Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader })
     }
 
-    /// What stands between blanks, commas and semicolons before a comment, with its bytes.
-    pub(super) fn fields(self) -> impl Iterator<Item = (Range<usize>, &'l str)> {
-        let text = self.text.split('#').next().unwrap_or_default();
-        text.split(|letter: char| letter.is_whitespace() || ",;".contains(letter))
-            .filter(|field| !field.is_empty())
-            .map(move |field| {
-                let start = field.as_ptr() as usize - text.as_ptr() as usize;
-                (start..start + field.len(), field)
-            })
+    #[test]
+    fn lines_are_the_same_however_blocks_fall() {
+        let text = "a\r\n\nbcd\n\u{e4}\nlast";
+        for drop in 1..12 {
+            let mut lines = lines(text, drop);
+            let mut all = Vec::new();
+            while let Some(line) = lines.next().expect("lines") {
+                all.push((line.number_in_file(), line.text().into_owned()));
+            }
+            let expected = ["a", "", "bcd", "\u{e4}", "last"].map(str::to_owned);
+            assert_eq!(all, (1..).zip(expected).collect::<Vec<_>>(), "{drop}");
+            assert!(lines.next().expect("no fault").is_none());
+        }
     }
 
-    /// The number that a field is.
-    pub(super) fn number(&self, (span, field): (Range<usize>, &str)) -> Result<f64, SceneError> {
-        field.parse().map_err(|_| self.error(span, format!("`{field}` is not a number")))
+    #[test]
+    fn skipping_is_reading_without_a_look() {
+        for drop in 1..8 {
+            for count in 0..7 {
+                let mut lines = lines("1\n22\n333\n4444\n5", drop);
+                assert_eq!(lines.skip(count).expect("lines"), count.min(5));
+                let next = lines.next().expect("a line").map(|line| line.text().into_owned());
+                let expected = ["1", "22", "333", "4444", "5"].get(count as usize);
+                assert_eq!(next.as_deref(), expected.copied(), "{drop} {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_given_back_comes_again() {
+        let mut lines = lines("one\ntwo\n", 3);
+        for _ in 0..3 {
+            assert_eq!(lines.next().expect("a line").map(|line| line.number_in_file()), Some(1));
+            lines.back();
+        }
+        assert_eq!(lines.skip(9).expect("lines"), 2);
+    }
+
+    #[test]
+    fn lines_without_end_are_faults() {
+        let mut lines = lines(&"1".repeat(LONGEST + BLOCK), BLOCK);
+        let error = lines.next().err().expect("a fault");
+        assert!(error.message.contains("longer than"), "{error}");
     }
 }

@@ -1,70 +1,140 @@
 //! What kind of file this is, told from how it begins.
 
-use super::Format;
+use super::fields::Fields;
+use super::options::{Format, ReadOptions, Role};
+use super::source::Source;
+use super::{csv, gro, gsd, number, numpy, pdb, ply};
 use crate::scene::SceneError;
-use std::io::BufRead;
-use std::path::Path;
 
-/// How many bytes of a file are looked at.
-pub(super) const HEAD: usize = 1 << 16;
+/// What the formats are that can be told.
+const KNOWN: &str = "files of particles are rows of `x y z [radius]`, CSV with a header that \
+                     names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, GSD, \
+                     PLY and arrays of NumPy";
 
-/// How compressed files begin.
-const COMPRESSED: [(&[u8], &str); 4] = [
-    (&[0x1F, 0x8B], "gzip"),
-    (b"BZh", "bzip2"),
-    (&[0x28, 0xB5, 0x2F, 0xFD], "zstd"),
-    (&[0xFD, b'7', b'z', b'X', b'Z'], "xz"),
+/// Lines within which a data file of LAMMPS tells its number of atoms.
+const DATA_HEADER: usize = 40;
+
+/// What files are that are no particles, though they are often taken for some.
+const OTHERS: [(&str, &str, &str); 5] = [
+    ("<!doctype html", "is a web page (HTML)", "a download went wrong: fetch the file itself"),
+    ("<html", "is a web page (HTML)", "a download went wrong: fetch the file itself"),
+    ("<?xml", "is an XML file", KNOWN),
+    ("version https://git-lfs", "is a pointer to a file that Git LFS keeps", "run `git lfs pull`"),
+    ("{", "is a JSON file", KNOWN),
 ];
 
-/// The format that was asked for, or else the one the file seems to have. Nothing is consumed.
-pub(super) fn format(
-    path: &Path,
-    reader: &mut impl BufRead,
-    asked: Option<Format>,
-) -> Result<Format, SceneError> {
-    let fault = |message: String| SceneError::whole_file(path, message);
-    let head = reader.fill_buf().map_err(|error| fault(format!("cannot be read: {error}")))?;
-    if let Some((_, name)) = COMPRESSED.iter().find(|(magic, _)| head.starts_with(magic)) {
-        return Err(fault(format!("is compressed ({name})")).with_help("unpack the file first"));
+/// The format that was asked for, or else the one the file seems to have.
+pub(super) fn format(source: &Source, options: &ReadOptions) -> Result<Format, SceneError> {
+    let fault = |message: String| SceneError::whole_file(&source.path, message);
+    let head = &source.head[..];
+    if head.get(257..262) == Some(b"ustar") {
+        let help = "unpack it first, and read one of its files; a name that ends in .gz is no sign";
+        return Err(fault("is a tar archive".to_owned()).with_help(help));
+    }
+    if let Some(format) = binary(head) {
+        return match options.format {
+            Some(asked) if asked != format => {
+                let message = format!("is {}, not {}", format.name(), asked.name());
+                Err(fault(message).with_help("leave the format to the file"))
+            }
+            _ => Ok(format),
+        };
+    }
+    if let Some(asked @ (Format::Gsd | Format::Npy | Format::Npz | Format::Ply)) = options.format {
+        return Err(
+            fault(format!("is not {}", asked.name())).with_help("leave the format to the file")
+        );
     }
     if head.contains(&0) {
         let error = fault("is not a text file: it holds zero bytes".to_owned());
         return Err(error.with_help(KNOWN));
     }
-    match asked {
-        Some(format) => Ok(format),
-        None => {
-            told(&String::from_utf8_lossy(head)).map_err(|message| fault(message).with_help(KNOWN))
+    if let Some(format) = options.format {
+        return Ok(format);
+    }
+    let text = head.trim_ascii_start();
+    for (begin, message, help) in OTHERS {
+        let start = text.get(..begin.len()).unwrap_or_default();
+        if start.eq_ignore_ascii_case(begin.as_bytes()) {
+            return Err(fault(message.to_owned()).with_help(help));
         }
     }
+    told(head, options).map_err(|message| fault(message).with_help(KNOWN))
 }
 
-const KNOWN: &str = "files of particles are rows of `x y z [radius]`, CSV with a header that \
-                     names x, y and z, or XYZ";
+fn binary(head: &[u8]) -> Option<Format> {
+    if head.starts_with(&gsd::MAGIC) {
+        return Some(Format::Gsd);
+    }
+    if head.starts_with(numpy::MAGIC) {
+        return Some(Format::Npy);
+    }
+    if head.starts_with(b"PK\x03\x04") {
+        return Some(Format::Npz);
+    }
+    ply::is_ply(head).then_some(Format::Ply)
+}
 
-fn told(head: &str) -> Result<Format, String> {
-    let lines = head.trim_start_matches('\u{FEFF}').lines().map(str::trim);
-    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
+fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
+    let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
+    let mut raw = head.split(|&byte| byte == b'\n').skip(1);
+    if let (Some(second), Some(third)) = (raw.next(), raw.next())
+        && gro::is_gro(second, third)
+    {
+        return Ok(Format::Gro);
+    }
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
     let Some(first) = lines.next() else { return Err("holds no particles".to_owned()) };
-    if first.parse::<u64>().is_ok() {
+    if let Some(format) = told_by_words(first, lines) {
+        return Ok(format);
+    }
+    if number::whole(first).is_some() {
         return Ok(Format::Xyz);
     }
-    let fields = first.split(|letter: char| letter.is_whitespace() || ",;#".contains(letter));
-    let mut fields = fields.map(|field| field.trim_matches('"')).filter(|field| !field.is_empty());
     // Two, because a title may begin with a number.
-    if fields.clone().take(2).all(|field| field.parse::<f64>().is_ok()) {
+    if Fields::marks(first).take(2).all(|field| number::parse(field).is_some()) {
         return Ok(Format::Xyzr);
     }
-    if fields.any(|field| field.eq_ignore_ascii_case("x")) {
+    let x = options.columns.roles.iter().find(|(role, _)| *role == Role::X);
+    let names = ["x", "pos_x", "position_x", "points:0"];
+    let names: Vec<&str> = names.into_iter().chain(x.map(|(_, name)| name.as_str())).collect();
+    let mut fields = csv::header_names(first).into_iter();
+    if fields.any(|field| names.iter().any(|name| field.eq_ignore_ascii_case(name))) {
         return Ok(Format::Csv);
     }
-    let shown: String = first.chars().take(40).collect();
+    let shown: String = String::from_utf8_lossy(first).chars().take(40).collect();
     Err(format!("is in no format known here: it begins with `{}`", shown.escape_debug()))
+}
+
+/// Formats that have words of their own.
+fn told_by_words<'l>(first: &[u8], lines: impl Iterator<Item = &'l [u8]>) -> Option<Format> {
+    if first.starts_with(b"ITEM:") {
+        return Some(Format::LammpsDump);
+    }
+    if first.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"data_")) {
+        return Some(Format::MmCif);
+    }
+    if pdb::is_pdb(first) {
+        return Some(Format::Pdb);
+    }
+    let is_count = |line: &[u8]| {
+        let mut words = Fields::blanks(line);
+        words.next().is_some_and(|count| number::whole(count).is_some())
+            && words.next() == Some(b"atoms")
+    };
+    // The first line of a data file may say anything.
+    let data = is_count(first) || { lines }.take(DATA_HEADER).any(is_count);
+    data.then_some(Format::LammpsData)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn told(head: &str) -> Result<Format, String> {
+        super::told(head.as_bytes(), &ReadOptions::default())
+    }
 
     #[test]
     fn content_tells_the_format() {
@@ -75,6 +145,16 @@ mod tests {
         assert_eq!(told("\"x\";\"y\";\"z\"\n"), Ok(Format::Csv));
         assert_eq!(told("x\ty\tz\n"), Ok(Format::Csv));
         assert!(told(" \n# nothing\n").is_err_and(|message| message == "holds no particles"));
+        assert_eq!(told("ITEM: TIMESTEP\n0\n"), Ok(Format::LammpsDump));
+        assert_eq!(told("# LAMMPS\n\n 17 atoms\n"), Ok(Format::LammpsData));
+        assert_eq!(told("LAMMPS data file\n\n17 atoms\n\n1 atom types\n"), Ok(Format::LammpsData));
+        let atom = "    1MET      N    1   5.202   4.356   3.155\n";
+        assert_eq!(told(&format!("12\n1\n{atom}")), Ok(Format::Gro));
+        assert_eq!(told(&format!("\n 1\n{atom}")), Ok(Format::Gro));
+        assert_eq!(told("12\n1\nC 1.0 2.0 3.0\n"), Ok(Format::Xyz));
+        assert_eq!(told("REMARK  made by hand\n"), Ok(Format::Pdb));
+        assert_eq!(told("ATOM      1  N   MET"), Ok(Format::Pdb));
+        assert_eq!(told("# comment\ndata_3KPR\n"), Ok(Format::MmCif));
         assert!(told("BEGIN_SCENE\n").is_err());
         assert!(told("50 pct water\n").is_err());
     }

@@ -113,14 +113,14 @@ fn particles_are_a_scene_of_their_own() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("p.xyz");
     fs::write(&path, "2\nwater\nO 0 0 0\nH 1 0 0\n").expect("a file");
-    let scene = Scene::from_particles(&path).expect("a scene");
+    let scene = Scene::from_particles(&path, &ReadOptions::default()).expect("a scene");
     assert_eq!((scene.spheres.len(), scene.title.as_str()), (2, "p.xyz"));
     assert_eq!(scene.spheres.radius, [1.5, 1.2]);
     assert_eq!((scene.materials.len(), scene.spheres.material_of(1)), (1, 0));
     assert!(matches!(scene.materials[0].material, Material::Plastic { .. }));
     crate::scene::write(&scene, &folder.path().join("p.toml")).expect("it can be written");
     fs::write(&path, "x,y,z,r,material\n0,0,0,1,a\n0,0,0,1,\n0,0,0,1,b\n").expect("a file");
-    let scene = Scene::from_particles(&path).expect("a scene");
+    let scene = Scene::from_particles(&path, &ReadOptions::default()).expect("a scene");
     let names: Vec<&str> = scene.materials.iter().map(|row| row.name.as_str()).collect();
     assert_eq!((names, scene.spheres.material), (vec!["particles", "a", "b"], vec![1, 0, 2]));
     assert!(matches!(scene.camera.pose, Pose::Fit { .. }));

@@ -1,27 +1,8 @@
+//! Rows without and with a header, and what all formats have in common.
+
 use super::*;
 use crate::scene::Rgb;
-use glam::DVec3;
 use proptest::prelude::*;
-
-/// Reads a file with this content.
-fn read_with(content: impl AsRef<[u8]>, options: &ReadOptions) -> Result<Particles, SceneError> {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("particles");
-    std::fs::write(&path, content).expect("a file");
-    read(&path, options)
-}
-
-fn particles(content: impl AsRef<[u8]>) -> Particles {
-    read_with(content, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// Line, column and message of what is wrong with a content.
-fn fault(content: impl AsRef<[u8]>) -> (usize, usize, String) {
-    match read_with(content, &ReadOptions::default()) {
-        Err(error) => (error.line().unwrap_or(0), error.column().unwrap_or(0), error.message),
-        Ok(read) => panic!("this is accepted: {read:?}"),
-    }
-}
 
 #[test]
 fn rows_of_numbers_are_read_whatever_stands_between_them() {
@@ -44,12 +25,12 @@ fn faulty_rows_have_a_line_and_a_column() {
         ("1 2 3 4\n1 2 3\n", (2, 1, "3 columns, but the rows above have 4")),
         ("1 2\n", (1, 1, "2 columns, but a row is `x y z` or `x y z radius`")),
         ("# a\n1 2 3 4 5\n", (2, 1, "5 columns, but a row is `x y z` or `x y z radius`")),
-        ("x,y,z,r\n1,2,3,4\n1,2,,4\n", (3, 5, "z is ``, not a number")),
-        ("x,y,z,r\n\n# c\n1,2,3,four\n", (4, 7, "r is `four`, not a number")),
+        ("x,y,z,r\n1,2,3,4\n1,2,,4\n", (3, 5, "`` is not a number")),
+        ("x,y,z,r\n\n# c\n1,2,3,four\n", (4, 7, "`four` is not a number")),
         ("x,y,z,r\r\n1,2,3\r\n", (2, 1, "3 columns, but the header has 4")),
-        ("x,y,z,r\r\n1,2,3,4\r\n\r\n1,\"2\", a ,4\r\n", (4, 8, "z is `a`, not a number")),
+        ("x,y,z,r\r\n1,2,3,4\r\n\r\n1,\"2\", a ,4\r\n", (4, 8, "`a` is not a number")),
         ("x,y,z,r\n1,2,3,4\n\n#\n1,2,3", (5, 1, "3 columns, but the header has 4")),
-        ("x,y,red\n1,2,3\n", (1, 1, "no column is named `z`")),
+        ("x,y,red\n1,2,3\n", (1, 1, "no column is named `z`; there are x, y, red")),
         (
             "x,y,z,red,green,blue\n1,2,3,0.5,255,0\n",
             (2, 11, "a color of 255, but colors are 0 to 1"),
@@ -59,9 +40,15 @@ fn faulty_rows_have_a_line_and_a_column() {
         ("1\nc\nC 0 zero 0\n", (3, 5, "`zero` is not a number")),
         ("1\nc\nC 0 0\n", (3, 1, "an atom is `symbol x y z`")),
         (
-            "1\nProperties=id:I:1:species:S:1:pos:R:3\n1 C 0 0 0\n",
-            (2, 1, "columns in an order that is not read here"),
+            "1\nProperties=id:I:1:pos:R:2\n1 0 0\n",
+            (2, 1, "no column is named `x`; there are id, pos_1, pos_2"),
         ),
+        ("1\nProperties=pos:R\n0 0 0\n", (2, 1, "`pos:R` are no properties")),
+        (
+            "1\nProperties=pos:R:99999999999\n0 0 0\n",
+            (2, 1, "`pos:R:99999999999` are no properties"),
+        ),
+        ("1\nLattice=\"1 0 0\"\nC 0 0 0\n", (2, 1, "Lattice is `1 0 0`, but must be 9 numbers")),
     ];
     for (content, (line, column, message)) in cases {
         assert_eq!(fault(content), (line, column, message.to_owned()), "{content}");
@@ -75,16 +62,16 @@ fn garbage_is_refused_with_a_reason() {
         (b"\n# nothing\n", "holds no particles"),
         (b"x,y,z\n", "holds no particles"),
         (b"0\nempty\n", "holds no particles"),
-        (b"\x1F\x8B\x08rest", "is compressed (gzip)"),
-        (b"BZh9rest", "is compressed (bzip2)"),
+        (b"\x1F\x8B\x08rest", "the gzip data is damaged or cut off"),
+        (b"BZh9rest", "the bzip2 data is damaged or cut off"),
         (b"abc\0def", "zero bytes"),
         (b"BEGIN_SCENE\n", "no format known"),
-        (b"1 2 3\n\xFF\xFE", "line 2 is not UTF-8"),
+        (b"1 2 3\n\xFF\xFE 2 3", "is not a number"),
     ];
     for (content, message) in cases {
         assert!(fault(content).2.contains(message), "{message}: {:?}", fault(content));
     }
-    let endless = format!("1 2 3\n{}", "1".repeat(100_000));
+    let endless = format!("1 2 3\n{}", "1".repeat(2_000_000));
     assert!(fault(endless).2.contains("longer than"));
 }
 
@@ -140,7 +127,7 @@ fn atoms_have_radii_and_colors_of_their_elements() {
 
 #[test]
 fn options_give_radii_and_scale() {
-    let options = ReadOptions { radius: Some(0.3), scale: 0.1, ..ReadOptions::default() };
+    let options = ReadOptions { radii: Radii::Missing(0.3), scale: 0.1, ..ReadOptions::default() };
     let read = |content: &str| read_with(content, &options).map(|read| read.spheres);
     let constant = read("1 2 3\n").ok().map(|spheres| (spheres.x, spheres.radius));
     assert_eq!(constant, Some((vec![0.1], vec![0.3])));
@@ -159,8 +146,8 @@ fn missing_radii_are_guessed_with_a_warning() {
 
 #[test]
 fn rows_without_end_are_faults_and_long_names_short_warnings() {
-    let (_, _, message) = fault(format!("x,y,z\n1,2,3\n\n1,2,\"{}", "3,4,5\n".repeat(400_000)));
-    assert_eq!(message, "a row, from line 3 on, is longer than 1048576 bytes");
+    let unclosed = fault("x,y,z\n1,2,3\n\n1,2,\"3,4,5\n");
+    assert_eq!(unclosed, (4, 1, "a quote is not closed".to_owned()));
     let read = particles(format!("x,y,z,{}\n1,2,3,4\n", "n".repeat(100_000)));
     assert!(read.warnings.iter().all(|warning| warning.len() < 1000));
 }
@@ -187,5 +174,74 @@ proptest! {
             Ok(read) => prop_assert!(!read.spheres.is_empty()),
             Err(error) => prop_assert!(!error.message.is_empty()),
         }
+    }
+}
+
+#[test]
+fn a_column_of_ids_is_told_from_coordinates() {
+    let read = particles("7 1.5 2 3\n2 2.5 1 0\n9 0.5 1 1\n");
+    assert_eq!(read.spheres.x, [1.5, 2.5, 0.5]);
+    assert!(read.warnings.iter().any(|warning| warning.ends_with("is taken for ids")));
+    let with_radii = particles("1 1.5 2 3 0.5\n2 2.5 1 0 0.25\n");
+    assert_eq!(with_radii.spheres.radius, [0.5, 0.25]);
+    // Whole positions, or ids that come twice, are taken for what they are.
+    assert_eq!(particles("1 2 3 4\n5 6 7 8\n").spheres.x, [1.0, 5.0]);
+    assert_eq!(particles("1 2.5 3 4\n1 6.5 7 8\n").spheres.radius, [4.0, 8.0]);
+}
+
+#[test]
+fn columns_may_be_chosen() {
+    let options = columns("x=2,y=3,z=4,diameter=6,5");
+    let frame = frame_with("0 1 2 3 7 8\n0 4 5 6 9 10\n", &options).expect("a frame");
+    assert_eq!((&frame.x[..], &frame.radius[..]), (&[1.0, 4.0][..], &[4.0, 5.0][..]));
+    assert_eq!(frame.numbers[0].values, [7.0, 9.0]);
+    let options = columns("x=px,y=py,z=pz,type=what,name,q");
+    let text = "px,py,pz,what,name,q\n1,2,3,C,\u{e4}\u{3b1},.5\n4,5,6,O,b,?\n7,8,9,C,b,1\n";
+    let frame = frame_with(text, &options).expect("a frame");
+    assert_eq!(kinds(&frame), [("C", "C"), ("O", "O"), ("C", "C")]);
+    assert_eq!((frame.texts[0].text(0), frame.texts[0].text(2)), ("\u{e4}\u{3b1}", "b"));
+    assert!(frame.numbers[0].values[1].is_nan());
+    let missing = frame_with("x,y,z\n1,2,3\n", &columns("charge"));
+    let message = missing.expect_err("no such column").message;
+    assert_eq!(message, "no column is named `charge`; there are x, y, z");
+}
+
+#[test]
+fn radii_come_from_where_they_are_asked_for() {
+    let text = "x,y,z,radius,element,size\n0,0,0,1,C,7\n1,0,0,2,O,8\n";
+    let radii = |radii: &str, radius_scale| {
+        let radii = radii.parse().expect("radii");
+        let options = ReadOptions { radii, radius_scale, ..ReadOptions::default() };
+        read_with(text, &options).expect("particles").spheres.radius
+    };
+    assert_eq!(radii("vdw", 1.0), [1.77, 1.5]);
+    assert_eq!(radii("covalent", 2.0), [1.52, 1.32]);
+    assert_eq!(radii("0.5", 1.0), [0.5, 0.5]);
+    assert_eq!(radii("column:size", 0.5), [3.5, 4.0]);
+    let options = ReadOptions { radii: Radii::VanDerWaals, ..ReadOptions::default() };
+    let none = read_with("1 2 3\n", &options).expect_err("no elements");
+    assert!(none.message.contains("none of its particles has an element"));
+}
+
+#[test]
+fn types_have_colors_that_differ() {
+    let read = particles("x,y,z,type\n0,0,0,1\n1,0,0,2\n0,1,0,1\n");
+    let color = &read.spheres.color;
+    assert!(color[0] == color[2] && color[0] != color[1]);
+    assert!(particles("x,y,z,type\n0,0,0,1\n1,0,0,1\n").spheres.color.is_empty());
+}
+
+#[test]
+fn what_is_no_file_of_particles_is_called_by_its_name() {
+    let mut tar = vec![0; 1024];
+    tar[257..262].copy_from_slice(b"ustar");
+    for (content, message) in [
+        (&tar[..], "is a tar archive"),
+        (b"<!DOCTYPE html>\n<title>404</title>", "is a web page (HTML)"),
+        (b"\n<html>", "is a web page (HTML)"),
+        (b"{\"x\": 1}", "is a JSON file"),
+        (b"version https://git-lfs.github.com/spec/v1\noid", "is a pointer to a file"),
+    ] {
+        assert!(fault(content).2.contains(message), "{message}");
     }
 }

@@ -1,0 +1,157 @@
+//! How the command line has files of particles read, and what it says of them.
+
+use super::output;
+use indicatif::HumanCount;
+use serde::Serialize;
+use spherule::scene::particles::{
+    Columns, Element, Format, FrameChoice, LengthUnit, Particles, Radii, ReadOptions, count_frames,
+};
+use std::path::Path;
+
+/// How a file of particles is read.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[command(next_help_heading = "Files of particles")]
+pub(super) struct ParticleArgs {
+    /// The format, where the content does not tell it: xyzr, csv, xyz, lammps-dump, lammps-data,
+    /// gro, pdb, mmcif, gsd, ply, npy or npz
+    #[arg(long, value_parser = format)]
+    format: Option<Format>,
+    /// What columns are, as in x=px,radius=size,type=species
+    #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<Columns>())]
+    columns: Option<Columns>,
+    /// The frame: first, last or a number from 0
+    #[arg(long, value_name = "N|first|last", value_parser = |text: &str| text.parse::<FrameChoice>())]
+    frame: Option<FrameChoice>,
+    /// Radii: vdw or covalent by element, a column's, or one for all
+    #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<Radii>())]
+    radii: Option<Radii>,
+    /// Factor on all radii
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    radius_scale: Option<f64>,
+    /// Atom style of a LAMMPS data file that does not name it, such as full
+    #[arg(long, value_name = "STYLE")]
+    atom_style: Option<String>,
+}
+
+fn format(name: &str) -> Result<Format, String> {
+    let found = Format::ALL.iter().find(|(own, _)| *own == name).map(|(_, format)| *format);
+    let names = || Format::ALL.map(|(name, _)| name).join(", ");
+    found.ok_or_else(|| format!("formats are {}", names()))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| *number > 0.0 && *number < f64::INFINITY);
+    number.ok_or_else(|| "write a number of more than 0".to_owned())
+}
+
+impl ParticleArgs {
+    /// The same for the library.
+    pub(super) fn options(&self) -> ReadOptions {
+        ReadOptions {
+            format: self.format,
+            columns: self.columns.clone().unwrap_or_default(),
+            frame: self.frame.unwrap_or_default(),
+            radii: self.radii.clone().unwrap_or_default(),
+            radius_scale: self.radius_scale.unwrap_or(1.0),
+            atom_style: self.atom_style.clone(),
+            ..ReadOptions::default()
+        }
+    }
+
+    /// Whether anything was typed.
+    pub(super) fn any(&self) -> bool {
+        self.options() != ReadOptions::default()
+    }
+}
+
+/// What a file of particles says of itself, lengths in its own unit.
+#[derive(Serialize)]
+pub(super) struct ParticleInfo {
+    format: &'static str,
+    title: String,
+    /// Null where they cannot be counted.
+    frames: Option<u64>,
+    step: Option<i64>,
+    time: Option<f64>,
+    unit: Option<&'static str>,
+    columns: Vec<String>,
+    types: Vec<TypeInfo>,
+    /// Null if the file has none.
+    cell: Option<CellInfo>,
+}
+
+#[derive(Serialize)]
+struct TypeInfo {
+    name: String,
+    element: Option<&'static str>,
+    spheres: u64,
+}
+
+#[derive(Serialize)]
+struct CellInfo {
+    origin: [f64; 3],
+    vectors: [[f64; 3]; 3],
+    periodic: [bool; 3],
+}
+
+/// How many types are listed one by one.
+const SHOWN: usize = 12;
+
+impl ParticleInfo {
+    pub(super) fn new(path: &Path, options: &ReadOptions, particles: &Particles) -> Self {
+        let kinds = &particles.kinds;
+        let mut counts = vec![0; kinds.table.len()];
+        (0..kinds.codes.len()).for_each(|row| counts[kinds.codes.code(row) as usize] += 1);
+        let types = kinds.table.iter().zip(counts).filter(|(_, spheres)| *spheres > 0);
+        Self {
+            format: particles.format.name(),
+            title: particles.title.clone(),
+            // What can be read but once has been read.
+            frames: path.is_file().then(|| count_frames(path, options).ok()).flatten(),
+            step: particles.step,
+            time: particles.time,
+            unit: (particles.unit != LengthUnit::Unknown).then(|| particles.unit.name()),
+            columns: particles.columns.clone(),
+            types: types
+                .map(|(kind, spheres)| TypeInfo {
+                    name: kind.name.clone(),
+                    element: kind.element.map(Element::symbol),
+                    spheres,
+                })
+                .collect(),
+            cell: particles.cell.map(|cell| CellInfo {
+                origin: cell.origin.to_array(),
+                vectors: cell.vectors.map(|vector| vector.to_array()),
+                periodic: cell.periodic,
+            }),
+        }
+    }
+
+    pub(super) fn print(&self) {
+        let title = if self.title.is_empty() { String::new() } else { format!(": {}", self.title) };
+        output::print(format_args!("format       {}{title}", self.format));
+        if let Some(frames) = self.frames {
+            output::print(format_args!("frames       {}", HumanCount(frames)));
+        }
+        if let Some(step) = self.step {
+            output::print(format_args!("step         {step}"));
+        }
+        if let Some(time) = self.time {
+            output::print(format_args!("time         {time}"));
+        }
+        output::print(format_args!("unit         {}", self.unit.unwrap_or("not told")));
+        output::print(format_args!("columns      {}", self.columns.join(", ")));
+        for kind in self.types.iter().take(SHOWN) {
+            let element = kind.element.map_or(String::new(), |element| format!(" ({element})"));
+            let count = HumanCount(kind.spheres);
+            output::print(format_args!("type         {}{element}: {count}", kind.name));
+        }
+        if self.types.len() > SHOWN {
+            let more = self.types.len() - SHOWN;
+            output::print(format_args!("type         and {more} more; --json lists all"));
+        }
+        if let Some(CellInfo { origin, vectors: [a, b, c], .. }) = &self.cell {
+            output::print(format_args!("cell         {a:?}, {b:?}, {c:?} from {origin:?}"));
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! Where readers put particles: columns that grow, and nothing that a file only claims.
+
+use super::categories::{Codebook, Kind, TextColumn};
+use super::element::{Element, is_virtual_site};
+use super::frame::{NumberColumn, ParticleFrame};
+use super::lines::Line;
+use super::schema::{Naming, Schema, Slot};
+use super::{Format, number};
+use crate::memory;
+use crate::scene::{Rgb, SceneError, Spheres};
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Share of particles without an element from which on names are not taken for elements.
+const NO_SYMBOLS: f64 = 0.5;
+const NO_NAMES: f64 = 0.1;
+
+/// A frame that is being read.
+pub(super) struct Builder {
+    path: Arc<Path>,
+    pub(super) frame: ParticleFrame,
+    schema: Arc<Schema>,
+    position: [f64; 3],
+    color: Rgb,
+    kinds: Codebook,
+    kind_rows: HashMap<Kind, u32>,
+    materials: Codebook,
+    extras: Vec<Extra>,
+    /// The number of rows from which on there may be too little memory.
+    room: usize,
+}
+
+/// A column that is kept.
+enum Extra {
+    /// Before the first row tells whether they are numbers.
+    Unknown(String),
+    Number(NumberColumn),
+    Text(TextColumn, Box<Codebook>),
+}
+
+impl Extra {
+    fn number(name: String) -> Self {
+        Self::Number(NumberColumn { name, values: Vec::new() })
+    }
+
+    fn text(name: String) -> Self {
+        Self::Text(TextColumn { name, ..TextColumn::default() }, Box::default())
+    }
+}
+
+impl Builder {
+    pub(super) fn new(path: &Arc<Path>, format: Format, schema: &Arc<Schema>) -> Self {
+        let mut frame = ParticleFrame { format, ..ParticleFrame::default() };
+        frame.columns.clone_from(&schema.names);
+        Self {
+            path: path.clone(),
+            frame,
+            position: [0.0; 3],
+            color: Rgb::ONE,
+            kinds: Codebook::default(),
+            kind_rows: HashMap::new(),
+            materials: Codebook::default(),
+            extras: schema.extras.iter().cloned().map(Extra::Unknown).collect(),
+            schema: schema.clone(),
+            room: 1 << 16,
+        }
+    }
+
+    pub(super) fn schema(&self) -> &Arc<Schema> {
+        &self.schema
+    }
+
+    /// Says of columns that may be kept whether they are texts or numbers.
+    pub(super) fn declare(&mut self, texts: &[&str], numbers: &[&str]) {
+        for extra in &mut self.extras {
+            let Extra::Unknown(name) = extra else { continue };
+            if texts.contains(&name.as_str()) {
+                *extra = Extra::text(std::mem::take(name));
+            } else if numbers.contains(&name.as_str()) {
+                *extra = Extra::number(std::mem::take(name));
+            }
+        }
+    }
+
+    /// Reads a row by the schema; fields beyond it may follow.
+    #[inline]
+    pub(super) fn row<'l>(
+        &mut self,
+        line: &Line,
+        mut fields: impl Iterator<Item = &'l [u8]>,
+    ) -> Result<(), SceneError> {
+        for column in 0..self.schema.slots.len() {
+            let Some(field) = fields.next() else { return Err(self.too_short(line, column)) };
+            self.put(self.schema.slots[column], line, field)?;
+        }
+        self.end_row()
+    }
+
+    fn too_short(&self, line: &Line, columns: usize) -> SceneError {
+        let names = &self.schema.names[..self.schema.slots.len()];
+        let message = format!("{columns} columns, but a row has {}", names.join(", "));
+        line.whole(message)
+    }
+
+    /// Takes a field.
+    #[inline]
+    pub(super) fn put(&mut self, slot: Slot, line: &Line, field: &[u8]) -> Result<(), SceneError> {
+        match slot {
+            Slot::Skip => (),
+            Slot::Position(axis) => self.position[axis] = line.number(field)?,
+            Slot::Radius(factor) => self.frame.radius.push(line.number(field)? * factor),
+            Slot::Kind => self.kind(field),
+            Slot::Color(channel) => self.channel(channel, line, field)?,
+            Slot::Material => self.material(field),
+            Slot::Extra(extra) => self.extra(extra, line, field)?,
+        }
+        Ok(())
+    }
+
+    /// Takes a number that is no text; what is no share of a color becomes one.
+    pub(super) fn put_number(&mut self, slot: Slot, value: f64) {
+        match slot {
+            Slot::Skip | Slot::Material => (),
+            Slot::Position(axis) => self.position[axis] = value,
+            Slot::Radius(factor) => self.frame.radius.push(value * factor),
+            Slot::Kind => self.kind(value.to_string().as_bytes()),
+            Slot::Color(channel) => self.color[channel] = share(value),
+            Slot::Extra(extra) => self.extra_number(extra, value),
+        }
+    }
+
+    /// Takes the row that the last fields make up.
+    #[inline]
+    pub(super) fn end_row(&mut self) -> Result<(), SceneError> {
+        let [x, y, z] = self.position;
+        self.push([x, y, z])?;
+        if self.schema.has_color() {
+            self.frame.color.push(self.color);
+        }
+        Ok(())
+    }
+
+    /// Appends a position alone.
+    #[inline]
+    pub(super) fn push(&mut self, [x, y, z]: [f64; 3]) -> Result<(), SceneError> {
+        if self.frame.x.len() == self.room {
+            self.check_room()?;
+        }
+        self.frame.x.push(x);
+        self.frame.y.push(y);
+        self.frame.z.push(z);
+        Ok(())
+    }
+
+    /// Appends a type by its name.
+    #[inline]
+    pub(super) fn kind(&mut self, name: &[u8]) {
+        let naming = self.schema.naming;
+        self.kind_of(name, |name| kind(name, naming));
+    }
+
+    /// Appends a type that `make` knows from a key, if it is a new one.
+    #[inline]
+    pub(super) fn kind_of(&mut self, key: &[u8], make: impl FnOnce(&str) -> Kind) {
+        let (rows, table) = (&mut self.kind_rows, &mut self.frame.kinds.table);
+        let code = self.kinds.code(key, |key| {
+            let kind = make(key);
+            *rows.entry(kind).or_insert_with_key(|kind| {
+                table.push(kind.clone());
+                table.len() as u32 - 1
+            })
+        });
+        self.frame.kinds.codes.push(code);
+    }
+
+    fn channel(&mut self, channel: usize, line: &Line, field: &[u8]) -> Result<(), SceneError> {
+        let value = line.number(field)? as f32;
+        if !(0.0..=1.0).contains(&value) {
+            let message = format!("a color of {value}, but colors are 0 to 1");
+            let help = "colors are linear; make values of 0 to 255 linear after a division by 255";
+            return Err(line.error_at(field, message).with_help(help));
+        }
+        self.color[channel] = value;
+        Ok(())
+    }
+
+    fn material(&mut self, name: &[u8]) {
+        let column = &mut self.frame.materials;
+        let code = self.materials.code(name, |name| add(&mut column.names, name));
+        column.codes.push(code);
+    }
+
+    fn extra(&mut self, at: usize, line: &Line, field: &[u8]) -> Result<(), SceneError> {
+        let extra = &mut self.extras[at];
+        if let Extra::Unknown(name) = extra {
+            let name = std::mem::take(name);
+            let is_number = number::parse(field).is_some();
+            *extra = if is_number { Extra::number(name) } else { Extra::text(name) };
+        }
+        match extra {
+            Extra::Unknown(_) => (),
+            Extra::Number(column) if matches!(field, b"" | b"." | b"?") => {
+                column.values.push(f64::NAN);
+            }
+            Extra::Number(column) => column.values.push(line.number(field)?),
+            Extra::Text(TextColumn { names, codes, .. }, book) => {
+                codes.push(book.code(field, |name| add(names, name)));
+            }
+        }
+        Ok(())
+    }
+
+    fn extra_number(&mut self, at: usize, value: f64) {
+        let extra = &mut self.extras[at];
+        if let Extra::Unknown(name) = extra {
+            *extra = Extra::number(std::mem::take(name));
+        }
+        if let Extra::Number(column) = extra {
+            column.values.push(value);
+        }
+    }
+
+    /// Before columns grow, which take twice the memory then: whether there is so much.
+    fn check_room(&mut self) -> Result<(), SceneError> {
+        let count = self.frame.x.len() as u64;
+        self.room *= 2;
+        if count >= Spheres::MAX {
+            let message = format!("holds more than {} particles", Spheres::MAX);
+            return Err(SceneError::whole_file(&self.path, message));
+        }
+        let bytes = Spheres::BYTES + 8 * self.extras.len() as u64;
+        memory::check(count * bytes).map_err(|shortage| {
+            let message = format!("holds more than {count} particles, which need {shortage}");
+            SceneError::whole_file(&self.path, message)
+        })
+    }
+
+    /// What was read.
+    pub(super) fn finish(mut self) -> ParticleFrame {
+        let limit = match self.schema.naming {
+            Naming::Symbols => NO_SYMBOLS,
+            Naming::Types => 0.0,
+            Naming::Names => NO_NAMES,
+        };
+        forget_elements(&mut self.frame, limit);
+        for extra in self.extras {
+            match extra {
+                Extra::Unknown(name) => {
+                    self.frame.numbers.push(NumberColumn { name, values: Vec::new() });
+                }
+                Extra::Number(column) => self.frame.numbers.push(column),
+                Extra::Text(column, _) => self.frame.texts.push(column),
+            }
+        }
+        self.frame.shrink();
+        self.frame
+    }
+}
+
+/// The nearest share of a color; 0 for NaN.
+pub(super) fn share(value: f64) -> f32 {
+    if value > 0.0 { value.min(1.0) as f32 } else { 0.0 }
+}
+
+fn add(names: &mut Vec<String>, name: &str) -> u32 {
+    names.push(name.to_owned());
+    names.len() as u32 - 1
+}
+
+fn kind(name: &str, naming: Naming) -> Kind {
+    let virtual_site = is_virtual_site(name, "");
+    let is_number = number::whole(name.as_bytes()).is_some();
+    let is_type = is_number && naming == Naming::Types;
+    let element = if virtual_site || is_type { None } else { Element::from_label(name) };
+    Kind { name: name.to_owned(), element, virtual_site }
+}
+
+/// Takes the elements back where more than this share of the particles has none: then names that
+/// look like symbols are something else, such as beads of a coarse-grained model.
+fn forget_elements(frame: &mut ParticleFrame, limit: f64) {
+    let kinds = &mut frame.kinds;
+    let mut counts = vec![0_u64; kinds.table.len()];
+    (0..kinds.codes.len()).for_each(|row| counts[kinds.codes.code(row) as usize] += 1);
+    let none = |(kind, count): (&Kind, &u64)| {
+        if kind.element.is_none() && !kind.virtual_site { *count } else { 0 }
+    };
+    let unknown: u64 = kinds.table.iter().zip(&counts).map(none).sum();
+    if unknown as f64 > limit * kinds.codes.len() as f64 {
+        kinds.table.iter_mut().for_each(|kind| kind.element = None);
+    }
+}

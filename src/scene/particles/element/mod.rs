@@ -1,0 +1,128 @@
+//! The chemical elements: how files name them, how large they are and how heavy.
+
+mod names;
+mod tables;
+
+pub(super) use names::{is_virtual_site, of_aligned_name, of_atom_name};
+use tables::{COVALENT, MASSES, SYMBOLS, VAN_DER_WAALS};
+
+/// A chemical element, by its atomic number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Element(u8);
+
+/// How far a mass may be from that of its element: files round, and some say 1 for hydrogen.
+const MASS_TOLERANCE: f64 = 0.06;
+
+impl Element {
+    /// The element with this atomic number, 1 to 118.
+    pub fn from_number(number: u64) -> Option<Self> {
+        (1..=SYMBOLS.len() as u64).contains(&number).then_some(Self(number as u8))
+    }
+
+    /// The element with this symbol, in any case; deuterium and tritium are hydrogen.
+    pub fn from_symbol(symbol: &str) -> Option<Self> {
+        let symbol = if ["D", "T", "d", "t"].contains(&symbol) { "H" } else { symbol };
+        let row = SYMBOLS.iter().position(|own| own.eq_ignore_ascii_case(symbol))?;
+        Self::from_number(row as u64 + 1)
+    }
+
+    /// The element with this mass, if one has it within 0.06 daltons.
+    pub fn from_mass(mass: f64) -> Option<Self> {
+        let distance = |row: &usize| (MASSES[*row] - mass).abs();
+        let row = (0..MASSES.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        (distance(&row) <= MASS_TOLERANCE).then(|| Self::from_number(row as u64 + 1)).flatten()
+    }
+
+    /// The element that a file calls so: a symbol in any case, alone or with a number or a charge
+    /// after it, or an atomic number.
+    pub fn from_label(label: &str) -> Option<Self> {
+        match label.parse() {
+            Ok(number) => Self::from_number(number),
+            Err(_) => Self::from_symbol(label.trim_end_matches(|letter: char| {
+                letter.is_ascii_digit() || letter == '+' || letter == '-'
+            })),
+        }
+    }
+
+    /// Atomic number, 1 to 118.
+    pub fn number(self) -> u8 {
+        self.0
+    }
+
+    /// Symbol, such as `Fe`.
+    pub fn symbol(self) -> &'static str {
+        SYMBOLS[self.row()]
+    }
+
+    /// Van der Waals radius in angstrom (Alvarez, "A cartography of the van der Waals territories",
+    /// Dalton Transactions 2013); `None` for elements that have none there.
+    pub fn van_der_waals_radius(self) -> Option<f64> {
+        VAN_DER_WAALS.get(self.row()).copied().filter(|&radius| radius > 0.0)
+    }
+
+    /// Covalent radius in angstrom (Cordero et al., "Covalent radii revisited", Dalton Transactions
+    /// 2008); `None` beyond curium.
+    pub fn covalent_radius(self) -> Option<f64> {
+        COVALENT.get(self.row()).copied()
+    }
+
+    fn row(self) -> usize {
+        usize::from(self.0) - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn radii(symbol: &str) -> (Option<f64>, Option<f64>) {
+        let element = Element::from_symbol(symbol).expect("an element");
+        (element.van_der_waals_radius(), element.covalent_radius())
+    }
+
+    #[test]
+    fn radii_are_those_of_the_papers() {
+        for (symbol, van_der_waals, covalent) in [
+            ("H", 1.20, 0.31),
+            ("C", 1.77, 0.76),
+            ("N", 1.66, 0.71),
+            ("O", 1.50, 0.66),
+            ("P", 1.90, 1.07),
+            ("S", 1.89, 1.05),
+            ("Fe", 2.44, 1.32),
+            ("Cs", 3.48, 2.44),
+            ("Au", 2.32, 1.36),
+            ("U", 2.71, 1.96),
+        ] {
+            assert_eq!(radii(symbol), (Some(van_der_waals), Some(covalent)), "{symbol}");
+        }
+        assert_eq!(radii("Po"), (None, Some(1.40)));
+        assert_eq!(radii("Es"), (Some(2.70), None));
+        assert_eq!(radii("Og"), (None, None));
+    }
+
+    #[test]
+    fn labels_of_all_kinds_find_their_element() {
+        let iron = Element::from_symbol("Fe");
+        assert_eq!(iron.map(Element::number), Some(26));
+        for label in ["FE", "fe", "Fe12", "26", "Fe3+", "Fe2-"] {
+            assert_eq!(Element::from_label(label), iron, "{label}");
+        }
+        assert_eq!(Element::from_label("D").map(Element::symbol), Some("H"));
+        for label in ["", "Q", "1e9", "ä", "0", "119", "99999999999999999999"] {
+            assert_eq!(Element::from_label(label), None, "{label}");
+        }
+    }
+
+    #[test]
+    fn masses_find_their_element() {
+        for (mass, symbol) in
+            [(1.0, "H"), (12.011, "C"), (15.9994, "O"), (26.9815, "Al"), (55.85, "Fe")]
+        {
+            assert_eq!(Element::from_mass(mass).map(Element::symbol), Some(symbol), "{mass}");
+        }
+        for mass in [0.0, -1.0, 72.0, 500.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Element::from_mass(mass), None, "{mass}");
+        }
+    }
+}

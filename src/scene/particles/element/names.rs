@@ -1,0 +1,168 @@
+//! Elements from the names of atoms in molecules, where a file has no column for them.
+
+use super::Element;
+
+/// Residues whose atoms' names begin with the element: amino acids, nucleotides and water.
+const STANDARD: [&str; 52] = [
+    "ALA", "ARG", "ASN", "ASP", "ASH", "CYS", "CYX", "CYM", "GLN", "GLU", "GLH", "GLY", "HIS",
+    "HID", "HIE", "HIP", "HSD", "HSE", "HSP", "ILE", "LEU", "LYS", "LYN", "MET", "PHE", "PRO",
+    "SER", "THR", "TRP", "TYR", "VAL", "ACE", "NME", "A", "C", "G", "U", "DA", "DC", "DG", "DT",
+    "ADE", "CYT", "GUA", "THY", "URA", "SOL", "HOH", "WAT", "TIP3", "TIP4", "SPC",
+];
+
+/// Residues of water whose models have sites without an atom.
+const WATER: [&str; 16] = [
+    "SOL", "HOH", "WAT", "H2O", "TIP", "TIP4", "TIP5", "TP4", "TP5", "T4P", "T5P", "T4E", "TP4E",
+    "OPC", "SPC", "TIP3",
+];
+
+/// Residues that are one bead of water or ion in coarse-grained models, where `W` is not tungsten.
+const BEADS: [&str; 5] = ["W", "WF", "PW", "WN", "ION"];
+
+/// Names that CHARMM gives to ions.
+const IONS: [(&str, &str); 8] = [
+    ("SOD", "Na"),
+    ("CLA", "Cl"),
+    ("POT", "K"),
+    ("CAL", "Ca"),
+    ("CES", "Cs"),
+    ("LIT", "Li"),
+    ("RUB", "Rb"),
+    ("BAR", "Ba"),
+];
+
+/// Elements of two letters that names of atoms outside of [`STANDARD`] residues begin with, though
+/// the first letter alone is an element too.
+const LONG: [&str; 7] = ["CL", "BR", "SI", "SE", "FE", "CU", "PT"];
+
+/// Elements of one letter that names of atoms begin with.
+const SHORT: &str = "HCNOPSFIBKD";
+
+/// Whether this is a site of a water model that has a charge or a mass, but is no atom: `MW`, `M`,
+/// `EP` or `LP`, with a number or without.
+pub(in super::super) fn is_virtual_site(name: &str, residue: &str) -> bool {
+    let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    match stem {
+        "MW" | "EP" | "LP" | "EPW" => true,
+        "M" | "IW" => residue.is_empty() || is_one_of(residue, &WATER),
+        _ => false,
+    }
+}
+
+/// The element of the atom `name` of a residue; `None` if the name does not tell.
+pub(in super::super) fn of_atom_name(name: &str, residue: &str) -> Option<Element> {
+    let letters = letters(name);
+    if is_one_of(residue, &BEADS) && self::letters(residue) == letters {
+        return None;
+    }
+    ion(letters, residue).or_else(|| by_first_letters(letters, residue))
+}
+
+/// The element of an atom whose name stands in four columns, the first of which is blank for
+/// elements of one letter (PDB); `aligned` is those columns as they are.
+pub(in super::super) fn of_aligned_name(aligned: &str, residue: &str) -> Option<Element> {
+    let name = aligned.trim();
+    let symbol = aligned.get(..2).unwrap_or_default();
+    let long = symbol.bytes().all(|byte| byte.is_ascii_alphabetic()) && !symbol.is_empty();
+    // `HG11` fills its columns, and is no mercury.
+    let full = name.len() == 4 && name.starts_with('H');
+    if long && !full && !is_one_of(residue, &STANDARD) {
+        return Element::from_symbol(symbol).or_else(|| of_atom_name(name, residue));
+    }
+    of_atom_name(name, residue)
+}
+
+fn letters(name: &str) -> &str {
+    let name = name.trim_start_matches(|letter: char| !letter.is_ascii_alphabetic());
+    let end = name.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(name.len());
+    &name[..end]
+}
+
+/// An ion is a residue of its own, with the same name.
+fn ion(name: &str, residue: &str) -> Option<Element> {
+    if let Some((_, symbol)) = IONS.iter().find(|(ion, _)| *ion == name) {
+        return Element::from_symbol(symbol);
+    }
+    let alone = letters(residue).eq_ignore_ascii_case(name) || residue.eq_ignore_ascii_case("ION");
+    if alone { Element::from_symbol(name) } else { None }
+}
+
+fn by_first_letters(name: &str, residue: &str) -> Option<Element> {
+    let (first, pair) = (name.get(..1)?, name.get(..2));
+    let lower = name.as_bytes().get(1).is_some_and(u8::is_ascii_lowercase);
+    let long = pair.filter(|pair| {
+        let outside = !is_one_of(residue, &STANDARD);
+        lower || *pair == "SE" || outside && LONG.contains(pair)
+    });
+    if let Some(element) = long.and_then(Element::from_symbol) {
+        return Some(element);
+    }
+    if SHORT.contains(first) { Element::from_symbol(first) } else { Element::from_symbol(pair?) }
+}
+
+fn is_one_of(residue: &str, list: &[&str]) -> bool {
+    list.iter().any(|own| own.eq_ignore_ascii_case(residue))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn symbol(element: Option<Element>) -> &'static str {
+        element.map_or("-", Element::symbol)
+    }
+
+    #[test]
+    fn names_in_molecules_begin_with_their_element() {
+        for (name, residue, expected) in [
+            ("CA", "ALA", "C"),
+            ("1HB", "ALA", "H"),
+            ("OW", "SOL", "O"),
+            ("HG11", "VAL", "H"),
+            ("SD", "MET", "S"),
+            ("SE", "MSE", "Se"),
+            ("CL1", "LIG", "Cl"),
+            ("NA", "NA", "Na"),
+            ("NA", "HEM", "N"),
+            ("NA", "NA+", "Na"),
+            ("CL", "CL-", "Cl"),
+            ("SOD", "SOD", "Na"),
+            ("MG", "MG", "Mg"),
+            ("FE", "HEM", "Fe"),
+            ("Zn2", "X", "Zn"),
+            ("D1", "DOD", "H"),
+            ("GL1", "DPPC", "-"),
+            ("W", "W", "-"),
+            ("R5", "CHOL", "-"),
+            ("", "", "-"),
+            ("é", "", "-"),
+        ] {
+            assert_eq!(symbol(of_atom_name(name, residue)), expected, "{name} of {residue}");
+        }
+    }
+
+    #[test]
+    fn columns_of_names_tell_carbon_from_calcium() {
+        for (name, residue, expected) in [
+            (" CA ", "GLY", "C"),
+            (" CA ", "LIG", "C"),
+            ("CA  ", "LIG", "Ca"),
+            ("CA  ", "GLY", "C"),
+            ("HG21", "XYZ", "H"),
+            ("HG  ", "XYZ", "Hg"),
+            ("FE  ", "HEM", "Fe"),
+            (" PB ", "ATP", "P"),
+            ("    ", "", "-"),
+        ] {
+            assert_eq!(symbol(of_aligned_name(name, residue)), expected, "{name:?} of {residue}");
+        }
+    }
+
+    #[test]
+    fn sites_of_water_models_are_no_atoms() {
+        for (name, residue) in [("MW", "SOL"), ("M", "HOH"), ("EP", "WAT"), ("LP2", "TIP5")] {
+            assert!(is_virtual_site(name, residue), "{name}");
+        }
+        assert!(!is_virtual_site("OW", "SOL") && !is_virtual_site("M", "LIG"));
+    }
+}

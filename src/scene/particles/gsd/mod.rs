@@ -1,0 +1,215 @@
+//! GSD of HOOMD-blue, schema `hoomd` (gsd.readthedocs.io): lengths are reduced, and every particle
+//! has a diameter.
+//!
+//! The crate `hoomd-gsd` asks for a newer compiler than this one does, so this is our own.
+
+mod file;
+
+pub(super) use file::MAGIC;
+
+use self::file::File;
+use super::categories::Kind;
+use super::frame::{Cell, NumberColumn, ParticleFrame};
+use super::options::{Format, Radii, ReadOptions, Role};
+use super::reader::FrameReader;
+use super::source::Source;
+use crate::scene::SceneError;
+use glam::DVec3;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Names of columns that are always there.
+const COLUMNS: [&str; 10] = ["x", "y", "z", "diameter", "type", "mass", "charge", "vx", "vy", "vz"];
+
+/// Reads frames of a GSD file.
+pub(super) struct Gsd {
+    path: Arc<Path>,
+    file: File,
+    options: ReadOptions,
+    next: u64,
+}
+
+impl Gsd {
+    pub(super) fn new(source: Source, options: &ReadOptions) -> Result<Self, SceneError> {
+        let path = source.path.clone();
+        let file = File::open(&path, source.into_file()?)?;
+        Ok(Self { path, file, options: options.clone(), next: 0 })
+    }
+
+    /// Numbers of a chunk of particles in a frame: as many rows of `width` as there are particles;
+    /// `None` if neither the frame nor the first one has it.
+    fn particles(
+        &mut self,
+        name: &str,
+        count: u64,
+        width: u64,
+    ) -> Result<Option<Vec<f64>>, SceneError> {
+        let own = self.file.numbers(self.next, name)?;
+        let chunk = match own {
+            Some(chunk) => Some(chunk),
+            // What does not change stands in the first frame alone.
+            None => self.file.numbers(0, name)?.filter(|chunk| chunk.rows == count),
+        };
+        let Some(chunk) = chunk else { return Ok(None) };
+        if chunk.rows != count || chunk.width != width {
+            let message = format!(
+                "{name} of frame {} is {} x {}, but there are {count} particles",
+                self.next, chunk.rows, chunk.width
+            );
+            return Err(self.fault(message));
+        }
+        Ok(Some(chunk.values))
+    }
+
+    /// Numbers that concern a whole frame, which may stand in the first frame alone.
+    fn whole(&mut self, name: &str) -> Result<Option<Vec<f64>>, SceneError> {
+        let own = self.file.numbers(self.next, name)?;
+        let chunk = match own {
+            Some(chunk) => Some(chunk),
+            None => self.file.numbers(0, name)?,
+        };
+        Ok(chunk.map(|chunk| chunk.values))
+    }
+
+    /// A column by its name: one of [`COLUMNS`], or a chunk with one number for each particle.
+    fn column(&mut self, name: &str, count: u64) -> Result<Vec<f64>, SceneError> {
+        let usual = match name {
+            "diameter" | "mass" => Some(1.0),
+            "charge" => Some(0.0),
+            _ => None,
+        };
+        if let Some(axis) = ["vx", "vy", "vz"].iter().position(|own| *own == name) {
+            let velocity = self.particles("particles/velocity", count, 3)?;
+            let zero = || vec![0.0; count as usize];
+            let axis = |rows: Vec<f64>| rows.chunks(3).map(|row| row[axis]).collect();
+            return Ok(velocity.map_or_else(zero, axis));
+        }
+        let known = self.file.names().any(|own| own == name);
+        let chunk = if known { name.to_owned() } else { format!("particles/{name}") };
+        match (self.particles(&chunk, count, 1)?, usual) {
+            (Some(values), _) => Ok(values),
+            (None, Some(value)) => Ok(vec![value; count as usize]),
+            (None, None) => {
+                let names: Vec<&str> = COLUMNS.into_iter().chain(self.file.names()).collect();
+                let names = names.join(", ");
+                Err(self.fault(format!("no column is named `{name}`; there are {names}")))
+            }
+        }
+    }
+
+    fn kinds(&mut self, frame: &mut ParticleFrame) -> Result<(), SceneError> {
+        let own = self.file.texts(self.next, "particles/types")?;
+        let types = match own {
+            Some(types) => Some(types),
+            None => self.file.texts(0, "particles/types")?,
+        };
+        let types = types.unwrap_or_else(|| vec!["A".to_owned()]);
+        let count = frame.len() as u64;
+        let codes = self.particles("particles/typeid", count, 1)?;
+        let unknown = types.len() as f64;
+        // Names of types are no elements: `C` is the third.
+        let kind = |name| Kind { name, element: None, virtual_site: false };
+        frame.kinds.table = types.into_iter().map(kind).collect();
+        for row in 0..frame.len() {
+            let code = codes.as_ref().map_or(0.0, |codes| codes[row]);
+            if code >= unknown {
+                let message = format!("particle {row} is of type {code}, but there are {unknown}");
+                return Err(self.fault(message));
+            }
+            frame.kinds.codes.push(code as u32);
+        }
+        Ok(())
+    }
+
+    fn radius(&mut self, count: u64) -> Result<Vec<f64>, SceneError> {
+        let mut role = self.options.columns.roles.iter();
+        let role = role.find(|(role, _)| matches!(role, Role::Radius | Role::Diameter)).cloned();
+        let (name, factor) = match (&self.options.radii, role) {
+            (Radii::Column(name), _) => (name.clone(), 1.0),
+            (_, Some((Role::Radius, name))) => (name, 1.0),
+            (_, Some((_, name))) => (name, 0.5),
+            _ => ("diameter".to_owned(), 0.5),
+        };
+        let mut radius = self.column(&name, count)?;
+        for radius in &mut radius {
+            *radius *= factor;
+        }
+        Ok(radius)
+    }
+
+    fn fault(&self, message: impl Into<String>) -> SceneError {
+        SceneError::whole_file(&self.path, message)
+    }
+
+    fn frame(&mut self) -> Result<ParticleFrame, SceneError> {
+        let mut frame = ParticleFrame { format: Format::Gsd, ..ParticleFrame::default() };
+        let count = self.whole("particles/N")?.and_then(|count| count.first().copied());
+        let count = count.unwrap_or(0.0) as u64;
+        if count == 0 {
+            return Ok(frame);
+        }
+        let Some(position) = self.particles("particles/position", count, 3)? else {
+            return Err(self.fault(format!("frame {} has no positions", self.next)));
+        };
+        let axis = |axis: usize| position.chunks_exact(3).map(|row| row[axis]).collect();
+        (frame.x, frame.y, frame.z) = (axis(0), axis(1), axis(2));
+        drop(position);
+        self.kinds(&mut frame)?;
+        frame.radius = self.radius(count)?;
+        for name in self.options.columns.kept.clone() {
+            let values = self.column(&name, count)?;
+            frame.numbers.push(NumberColumn { name, values });
+        }
+        let step = self.whole("configuration/step")?.and_then(|step| step.first().copied());
+        frame.step = Some(step.unwrap_or(0.0) as i64);
+        frame.cell = self.whole("configuration/box")?.and_then(|edges| cell(&edges));
+        frame.columns = COLUMNS.map(str::to_owned).into();
+        let more = self.file.names().filter(|name| name.starts_with("log/particles/"));
+        frame.columns.extend(more.map(str::to_owned));
+        Ok(frame)
+    }
+}
+
+/// A box of HOOMD-blue, around the origin: lengths along the axes, and tilts as factors on them.
+fn cell(edges: &[f64]) -> Option<Cell> {
+    let &[x, y, z, xy, xz, yz] = edges else { return None };
+    let a = DVec3::new(x, 0.0, 0.0);
+    let b = DVec3::new(xy * y, y, 0.0);
+    let c = DVec3::new(xz * z, yz * z, z);
+    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }.checked()
+}
+
+impl FrameReader for Gsd {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, SceneError> {
+        if self.next >= self.file.frames() {
+            return Ok(None);
+        }
+        let frame = self.frame()?;
+        self.next += 1;
+        Ok(Some(frame))
+    }
+
+    fn skip(&mut self) -> Result<bool, SceneError> {
+        let there = self.next < self.file.frames();
+        self.next += 1;
+        Ok(there)
+    }
+
+    fn more(&mut self) -> Result<bool, SceneError> {
+        Ok(self.next < self.file.frames())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_lie_around_the_origin() {
+        let cell = cell(&[2.0, 4.0, 8.0, 0.5, 0.25, -0.5]).expect("a box");
+        assert_eq!(cell.vectors[1], DVec3::new(2.0, 4.0, 0.0));
+        assert_eq!(cell.vectors[2], DVec3::new(2.0, -4.0, 8.0));
+        assert_eq!(cell.point([0.5; 3]), DVec3::ZERO);
+        assert_eq!(super::cell(&[1.0; 5]), None);
+    }
+}

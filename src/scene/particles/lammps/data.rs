@@ -1,0 +1,251 @@
+//! LAMMPS data files: a header, and sections in any order (<https://docs.lammps.org/read_data.html>).
+
+use super::bounds::tilted;
+use super::style::{self, STYLES};
+use super::unit;
+use crate::scene::SceneError;
+use crate::scene::particles::builder::Builder;
+use crate::scene::particles::element::Element;
+use crate::scene::particles::frame::{Cell, LengthUnit, ParticleFrame};
+use crate::scene::particles::lines::{Line, Lines};
+use crate::scene::particles::number;
+use crate::scene::particles::options::{Format, ReadOptions, Role};
+use crate::scene::particles::reader::FrameReader;
+use crate::scene::particles::schema::Schema;
+use crate::scene::particles::source::Source;
+use glam::DVec3;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Rows that are looked at to guess an atom style.
+const ROWS: usize = 100;
+
+/// Reads the one frame of a data file.
+pub(in super::super) struct Data {
+    lines: Lines,
+    options: ReadOptions,
+    done: bool,
+}
+
+/// What the file says besides its atoms.
+#[derive(Default)]
+struct Head {
+    title: String,
+    atoms: u64,
+    types: u64,
+    low: [f64; 3],
+    high: [f64; 3],
+    tilt: [f64; 3],
+    /// Vectors and origin of a general triclinic box.
+    general: [Option<DVec3>; 4],
+    has_box: bool,
+    /// Masses of types, by the types' names.
+    masses: HashMap<String, f64>,
+}
+
+impl Data {
+    pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
+        Self { lines: Lines::new(source), options: options.clone(), done: false }
+    }
+
+    /// The next line that is no comment and not blank.
+    fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, SceneError> {
+        while let Some(line) = lines.next()? {
+            if content(line.bytes).is_some() {
+                lines.back();
+                break;
+            }
+        }
+        lines.next()
+    }
+
+    /// Whether the next line begins a section, or the file ends.
+    fn at_section(&mut self) -> Result<bool, SceneError> {
+        let section = Self::line(&mut self.lines)?.is_none_or(|line| is_section(line.bytes));
+        self.lines.back();
+        Ok(section)
+    }
+
+    fn masses(&mut self, head: &mut Head) -> Result<(), SceneError> {
+        while !self.at_section()? {
+            let Some(line) = Self::line(&mut self.lines)? else { break };
+            let mut fields = line.fields();
+            if let (Some(name), Some(mass)) = (fields.next(), fields.next()) {
+                let name = String::from_utf8_lossy(name).into_owned();
+                head.masses.insert(name, line.number(mass)?);
+            }
+        }
+        Ok(())
+    }
+
+    fn atoms(&mut self, head: &Head, style: Option<&str>) -> Result<ParticleFrame, SceneError> {
+        let (names, warning) = self.names(head, style)?;
+        let known = [(Role::Kind, "type")];
+        let schema = Schema::with_roles(names, &self.options, &known)
+            .map_err(|message| self.lines.ended(message))?;
+        let path = self.lines.path().clone();
+        let mut builder = Builder::new(&path, Format::LammpsData, &Arc::new(schema));
+        builder.frame.warnings.extend(warning);
+        for atom in 0..head.atoms {
+            let Some(line) = Self::line(&mut self.lines)? else {
+                let message = format!("the file ends after {atom} of {} atoms", head.atoms);
+                return Err(self.lines.ended(message).with_help("the file is cut off"));
+            };
+            if is_section(line.bytes) {
+                let message = format!("the section ends after {atom} of {} atoms", head.atoms);
+                return Err(line.whole(message).with_help("correct the number in the header"));
+            }
+            builder.row(&line, line.fields())?;
+        }
+        Ok(builder.finish())
+    }
+
+    /// What the columns are called, and a warning if that is a guess.
+    fn names(
+        &mut self,
+        head: &Head,
+        style: Option<&str>,
+    ) -> Result<(Vec<String>, Option<String>), SceneError> {
+        let asked = self.options.atom_style.as_deref().or(style);
+        if let Some(asked) = asked {
+            let asked = asked.split_whitespace().next().unwrap_or_default();
+            if let Some(columns) = style::columns(asked) {
+                return Ok((columns, None));
+            }
+            let message = format!("the atom style `{asked}` is not known");
+            let help = format!("styles are {}", STYLES.map(|(name, _)| name).join(", "));
+            return Err(self.lines.ended(message).with_help(help));
+        }
+        let guess = style::guess(&self.peek()?, head.types);
+        if let [one] = guess[..] {
+            let warning = format!("names no atom style; its columns look like `{one}`");
+            return Ok((style::columns(one).unwrap_or_default(), Some(warning)));
+        }
+        let styles =
+            if guess.is_empty() { "none that is usual".to_owned() } else { guess.join(" or ") };
+        let message = format!("names no atom style, and its columns may be of {styles}");
+        let help = "write the style after the section's name, as in `Atoms # full`, or give it \
+                    as --atom-style";
+        Err(self.lines.ended(message).with_help(help))
+    }
+
+    /// The fields of some of the next rows, which come again.
+    fn peek(&mut self) -> Result<Vec<Vec<Vec<u8>>>, SceneError> {
+        let text = self.lines.ahead()?;
+        let complete = memchr::memrchr(b'\n', text).map_or(text, |newline| &text[..newline]);
+        let rows = complete.split(|&byte| byte == b'\n').filter_map(content);
+        let rows = rows.take_while(|row| !is_section(row)).take(ROWS);
+        let fields = |row: &[u8]| {
+            let fields = crate::scene::particles::fields::Fields::blanks(row);
+            fields.map(<[u8]>::to_vec).collect()
+        };
+        Ok(rows.map(fields).collect())
+    }
+}
+
+/// A line without its comment; `None` if there is nothing else.
+fn content(line: &[u8]) -> Option<&[u8]> {
+    let end = memchr::memchr(b'#', line).unwrap_or(line.len());
+    Some(line[..end].trim_ascii()).filter(|content| !content.is_empty())
+}
+
+/// Whether a line is the name of a section: a word, where others begin with a number or a label.
+fn is_section(line: &[u8]) -> bool {
+    let content = content(line).unwrap_or_default();
+    content.first().is_some_and(u8::is_ascii_uppercase)
+        && content.iter().all(|&byte| byte.is_ascii_alphabetic() || byte == b' ' || byte == b'/')
+}
+
+impl FrameReader for Data {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, SceneError> {
+        if std::mem::replace(&mut self.done, true) {
+            return Ok(None);
+        }
+        let Some(title) = self.lines.next()? else { return Ok(None) };
+        let mut head = Head { title: title.text().trim().to_owned(), ..Head::default() };
+        let mut frame = None;
+        while let Some(line) = Self::line(&mut self.lines)? {
+            if !is_section(line.bytes) {
+                head.read(&line)?;
+                continue;
+            }
+            let text = line.text().into_owned();
+            let (name, comment) = text.split_once('#').unwrap_or((&text, ""));
+            let style = Some(comment.trim()).filter(|comment| !comment.is_empty());
+            match name.trim() {
+                "Masses" => self.masses(&mut head)?,
+                "Atoms" => frame = Some(self.atoms(&head, style)?),
+                // Their rows are passed over one by one, by the next turns of this loop.
+                _ => while !self.at_section()? && Self::line(&mut self.lines)?.is_some() {},
+            }
+        }
+        let frame = frame.ok_or_else(|| {
+            self.lines.ended("no section `Atoms`").with_help("the file is cut off, or no data file")
+        })?;
+        Ok(Some(head.complete(frame)))
+    }
+}
+
+impl Head {
+    /// A line of the header: numbers, and what they are.
+    fn read(&mut self, line: &Line) -> Result<(), SceneError> {
+        let words: Vec<&[u8]> = line.fields().take_while(|word| !word.starts_with(b"#")).collect();
+        let first = words.iter().position(|word| number::parse(word).is_none());
+        let (numbers, names) = words.split_at(first.unwrap_or(words.len()));
+        let values = || numbers.iter().map(|field| number::parse(field).unwrap_or(0.0));
+        let vector = |at: usize| {
+            let value = |axis: usize| values().nth(at + axis).unwrap_or(f64::NAN);
+            DVec3::new(value(0), value(1), value(2))
+        };
+        let pair = |at: usize| [vector(0)[0], vector(0)[1]][at];
+        match names {
+            [b"atoms"] => self.atoms = line.whole_number(numbers.first().unwrap_or(&&b""[..]))?,
+            [b"atom", b"types"] => self.types = vector(0)[0] as u64,
+            [b"xlo", b"xhi"] => {
+                (self.low[0], self.high[0], self.has_box) = (pair(0), pair(1), true);
+            }
+            [b"ylo", b"yhi"] => (self.low[1], self.high[1]) = (pair(0), pair(1)),
+            [b"zlo", b"zhi"] => (self.low[2], self.high[2]) = (pair(0), pair(1)),
+            [b"xy", b"xz", b"yz"] => self.tilt = vector(0).to_array(),
+            [b"avec"] => self.general[0] = Some(vector(0)),
+            [b"bvec"] => self.general[1] = Some(vector(0)),
+            [b"cvec"] => self.general[2] = Some(vector(0)),
+            [b"abc", b"origin"] => self.general[3] = Some(vector(0)),
+            _ => (),
+        }
+        Ok(())
+    }
+
+    fn cell(&self) -> Option<Cell> {
+        if let [Some(a), Some(b), Some(c), origin] = self.general {
+            let origin = origin.unwrap_or(DVec3::ZERO);
+            return Cell { origin, vectors: [a, b, c], periodic: [true; 3] }.checked();
+        }
+        self.has_box.then(|| tilted(self.low, self.high, self.tilt)).and_then(Cell::checked)
+    }
+
+    /// Whether the masses are those of elements: all of them, and not all that of hydrogen, which
+    /// is the usual mass of particles that are no atoms.
+    fn has_elements(&self) -> bool {
+        !self.masses.is_empty()
+            && self.masses.values().all(|&mass| Element::from_mass(mass).is_some())
+            && self.masses.values().any(|&mass| mass > 2.5)
+    }
+
+    fn complete(self, mut frame: ParticleFrame) -> ParticleFrame {
+        let units = self.title.split_once("units = ").map(|(_, units)| units);
+        frame.unit = unit(units.and_then(|units| units.split([',', ' ']).next()).unwrap_or(""));
+        if self.has_elements() {
+            for kind in &mut frame.kinds.table {
+                let mass = self.masses.get(&kind.name);
+                kind.element = mass.and_then(|&mass| Element::from_mass(mass));
+            }
+            if frame.unit == LengthUnit::Unknown {
+                frame.unit = LengthUnit::Angstrom;
+            }
+        }
+        frame.cell = self.cell();
+        frame.title = self.title;
+        frame
+    }
+}

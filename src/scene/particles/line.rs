@@ -1,0 +1,84 @@
+//! One line of a text file, and the numbers in it.
+
+use super::{fields::Fields, number};
+use crate::scene::SceneError;
+use std::borrow::Cow;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+/// One line without its end.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'l> {
+    path: &'l Arc<Path>,
+    number: usize,
+    pub(super) bytes: &'l [u8],
+}
+
+impl<'l> Line<'l> {
+    pub(super) fn new(path: &'l Arc<Path>, number: usize, bytes: &'l [u8]) -> Self {
+        Self { path, number, bytes }
+    }
+
+    pub(super) fn path(&self) -> &'l Arc<Path> {
+        self.path
+    }
+
+    /// Line of the file, from 1.
+    pub(super) fn number_in_file(&self) -> usize {
+        self.number
+    }
+
+    /// An error at these bytes of the line.
+    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneError {
+        let length =
+            |end: usize| String::from_utf8_lossy(&self.bytes[..end.min(self.bytes.len())]).len();
+        let span = length(span.start)..length(span.end);
+        SceneError::at(self.path, &self.text(), self.number, span, message)
+    }
+
+    /// An error at a part of the line; at all of it, if the field is a copy.
+    pub(super) fn error_at(&self, field: &[u8], message: impl Into<String>) -> SceneError {
+        let start = (field.as_ptr() as usize).wrapping_sub(self.bytes.as_ptr() as usize);
+        if start > self.bytes.len() {
+            return self.whole(message);
+        }
+        self.error(start..start + field.len(), message)
+    }
+
+    /// An error that concerns the whole line.
+    pub(super) fn whole(&self, message: impl Into<String>) -> SceneError {
+        self.error(0..self.bytes.len(), message)
+    }
+
+    /// The line as text; what is not UTF-8 becomes replacement characters.
+    pub(super) fn text(&self) -> Cow<'l, str> {
+        String::from_utf8_lossy(self.bytes)
+    }
+
+    /// What stands between blanks.
+    pub(super) fn fields(&self) -> Fields<'l> {
+        Fields::blanks(self.bytes)
+    }
+
+    /// Whether there is nothing but blanks.
+    pub(super) fn is_blank(&self) -> bool {
+        self.bytes.trim_ascii().is_empty()
+    }
+
+    /// The number that a part of the line is.
+    #[inline]
+    pub(super) fn number(&self, field: &[u8]) -> Result<f64, SceneError> {
+        number::parse(field).ok_or_else(|| self.not(field, "a number"))
+    }
+
+    /// The whole number that a part of the line is.
+    pub(super) fn whole_number(&self, field: &[u8]) -> Result<u64, SceneError> {
+        number::whole(field).ok_or_else(|| self.not(field, "a whole number"))
+    }
+
+    fn not(&self, field: &[u8], what: &str) -> SceneError {
+        let shown = String::from_utf8_lossy(field.trim_ascii());
+        self.error_at(field.trim_ascii(), format!("`{shown}` is not {what}"))
+    }
+}

@@ -1,0 +1,239 @@
+//! mmCIF: the loop `_atom_site` of a file of the Protein Data Bank, lengths in angstrom.
+//!
+//! The crate `pdbtbx` builds a tree of models, chains and residues, many times as large as columns
+//! are, so this is our own, on the syntax of CIF (Hall, Allen and Brown, "The crystallographic
+//! information file (CIF)", Acta Crystallographica A47, 1991).
+
+use super::builder::Builder;
+use super::cif::{Token, Tokens};
+use super::frame::{Cell, LengthUnit, ParticleFrame};
+use super::lines::Lines;
+use super::options::{Format, ReadOptions};
+use super::reader::FrameReader;
+use super::schema::Schema;
+use super::{number, source::Source};
+use crate::scene::SceneError;
+use std::sync::Arc;
+
+/// What the names of the columns begin with.
+const SITE: &str = "_atom_site.";
+
+/// Columns of numbers, some of which may be unknown.
+const NUMBERS: [&str; 3] = ["occupancy", "B_iso_or_equiv", "pdbx_formal_charge"];
+
+/// Reads the models of a file, one frame each.
+pub(super) struct MmCif {
+    tokens: Tokens,
+    options: ReadOptions,
+    sites: Option<Sites>,
+    title: String,
+    lengths: [f64; 3],
+    angles: [f64; 3],
+}
+
+/// The loop that is being read.
+struct Sites {
+    schema: Arc<Schema>,
+    columns: usize,
+    /// Columns of the model's number and of the letter of an alternative place.
+    model: Option<usize>,
+    place: Option<usize>,
+    row: Row,
+    /// Whether the row belongs to the next frame.
+    pending: bool,
+}
+
+/// The values of a row, one after another.
+#[derive(Default)]
+struct Row {
+    bytes: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+impl Row {
+    fn field(&self, column: usize) -> &[u8] {
+        let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.bytes[start..self.ends[column]]
+    }
+
+    fn fields(&self) -> impl Iterator<Item = &[u8]> {
+        (0..self.ends.len()).map(|column| self.field(column))
+    }
+}
+
+impl MmCif {
+    pub(super) fn new(source: Source, options: &ReadOptions) -> Self {
+        Self {
+            tokens: Tokens::new(Lines::new(source)),
+            options: options.clone(),
+            sites: None,
+            title: String::new(),
+            lengths: [0.0; 3],
+            angles: [0.0; 3],
+        }
+    }
+
+    /// Reads up to the atoms; `None` if there are none.
+    fn find(&mut self) -> Result<Option<Sites>, SceneError> {
+        while let Some(token) = self.tokens.next()? {
+            match token {
+                Token::Loop => {
+                    if let Some(sites) = self.open()? {
+                        return Ok(Some(sites));
+                    }
+                }
+                Token::Tag(tag) => {
+                    let tag = tag.to_owned();
+                    self.item(&tag)?;
+                }
+                Token::Value(_) | Token::Block => (),
+            }
+        }
+        Ok(None)
+    }
+
+    /// A tag and its value.
+    fn item(&mut self, tag: &str) -> Result<(), SceneError> {
+        let Some(Token::Value(value)) = self.tokens.next()? else {
+            self.tokens.back();
+            return Ok(());
+        };
+        let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag.ends_with(letter));
+        let number = || number::parse(value).unwrap_or(0.0);
+        if tag == "_struct.title" {
+            self.title = String::from_utf8_lossy(value).trim().to_owned();
+        } else if let Some(edge) = axis(["_cell.length_a", "_cell.length_b", "_cell.length_c"]) {
+            self.lengths[edge] = number();
+        } else if let Some(angle) =
+            axis(["_cell.angle_alpha", "_cell.angle_beta", "_cell.angle_gamma"])
+        {
+            self.angles[angle] = number();
+        }
+        Ok(())
+    }
+
+    /// The tags of a loop; `None` if it is not of atoms.
+    fn open(&mut self) -> Result<Option<Sites>, SceneError> {
+        let mut tags = Vec::new();
+        while let Some(Token::Tag(tag)) = self.tokens.next()? {
+            tags.push(tag.to_owned());
+        }
+        self.tokens.back();
+        let is_site = |tag: &String| {
+            tag.get(..SITE.len()).is_some_and(|start| start.eq_ignore_ascii_case(SITE))
+        };
+        if !tags.first().is_some_and(is_site) {
+            if tags.iter().any(|tag| tag.starts_with("_atom_site_fract")) {
+                let help = "this is a crystal in shares of its cell; write it as mmCIF, PDB or XYZ";
+                return Err(self.tokens.error("no _atom_site.Cartn_x").with_help(help));
+            }
+            return Ok(None);
+        }
+        let names: Vec<String> =
+            tags.iter().map(|tag| tag.get(SITE.len()..).unwrap_or(tag).to_owned()).collect();
+        let column = |wanted: &str| names.iter().position(|name| name == wanted);
+        let (model, place) = (column("pdbx_PDB_model_num"), column("label_alt_id"));
+        let columns = names.len();
+        let schema = Schema::new(names, &self.options).map_err(|message| {
+            let help = "atoms of mmCIF have _atom_site.Cartn_x, Cartn_y and Cartn_z";
+            self.tokens.error(message).with_help(help)
+        })?;
+        let (schema, row) = (Arc::new(schema), Row::default());
+        Ok(Some(Sites { schema, columns, model, place, row, pending: false }))
+    }
+
+    /// The atoms of the next model; they are put into a builder, if there is one. Whether there
+    /// are any, and how many of them were left out.
+    fn model(&mut self, mut builder: Option<&mut Builder>) -> Result<(bool, u64), SceneError> {
+        let Some(sites) = &mut self.sites else { return Ok((false, 0)) };
+        let mut model: Option<Vec<u8>> = None;
+        let mut elsewhere = 0;
+        while std::mem::take(&mut sites.pending) || sites.read(&mut self.tokens)? {
+            let own = sites.model.map_or(&b""[..], |column| sites.row.field(column));
+            if model.as_deref().is_some_and(|model| model != own) {
+                sites.pending = true;
+                return Ok((true, elsewhere));
+            }
+            if model.is_none() {
+                model = Some(own.to_vec());
+            }
+            let Some(builder) = &mut builder else { continue };
+            let place = sites.place.map_or(&b"."[..], |column| sites.row.field(column));
+            if matches!(place, b"." | b"?" | b"A" | b"1") {
+                builder.row(&self.tokens.line(), sites.row.fields())?;
+            } else {
+                elsewhere += 1;
+            }
+        }
+        self.sites = None;
+        Ok((model.is_some(), elsewhere))
+    }
+
+    /// Whether there is a loop of atoms at hand.
+    fn is_open(&mut self) -> Result<bool, SceneError> {
+        if self.sites.is_none() {
+            self.sites = self.find()?;
+        }
+        Ok(self.sites.is_some())
+    }
+}
+
+impl Sites {
+    /// Reads a row; whether there is one more.
+    fn read(&mut self, tokens: &mut Tokens) -> Result<bool, SceneError> {
+        self.row.bytes.clear();
+        self.row.ends.clear();
+        while self.row.ends.len() < self.columns {
+            let Some(Token::Value(value)) = tokens.next()? else {
+                tokens.back();
+                if self.row.ends.is_empty() {
+                    return Ok(false);
+                }
+                let (count, columns) = (self.row.ends.len(), self.columns);
+                let error = tokens
+                    .error(format!("a row of {count} values, but there are {columns} columns"));
+                return Err(error.with_help("the file is cut off, or a quote is not closed"));
+            };
+            self.row.bytes.extend_from_slice(value);
+            self.row.ends.push(self.row.bytes.len());
+        }
+        Ok(true)
+    }
+}
+
+impl FrameReader for MmCif {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, SceneError> {
+        while self.is_open()? {
+            let Some(schema) = self.sites.as_ref().map(|sites| sites.schema.clone()) else { break };
+            let mut builder = Builder::new(self.tokens.path(), Format::MmCif, &schema);
+            builder.declare(&[], &NUMBERS);
+            let (any, elsewhere) = self.model(Some(&mut builder))?;
+            if !any {
+                continue;
+            }
+            if elsewhere > 0 {
+                let warning =
+                    format!("{elsewhere} atoms are at other places than the first and left out");
+                builder.frame.warnings.push(warning);
+            }
+            let cell = Cell::of_lengths(self.lengths, self.angles);
+            let cell = cell.filter(|_| self.lengths != [1.0; 3]);
+            let (title, unit) = (self.title.clone(), LengthUnit::Angstrom);
+            return Ok(Some(ParticleFrame { cell, title, unit, ..builder.finish() }));
+        }
+        Ok(None)
+    }
+
+    fn skip(&mut self) -> Result<bool, SceneError> {
+        while self.is_open()? {
+            if self.model(None)?.0 {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn more(&mut self) -> Result<bool, SceneError> {
+        Ok(self.sites.is_some())
+    }
+}

@@ -1,0 +1,71 @@
+//! Numbers in text, however they are spelled.
+
+use std::str;
+
+/// The number that a field is, whether or not blanks stand around it; `None` if it is none. Besides
+/// what Rust reads, exponents may begin with `d`, as Fortran writes them.
+pub(super) fn parse(field: &[u8]) -> Option<f64> {
+    fast_float2::parse(field).ok().or_else(|| rare(field))
+}
+
+fn rare(field: &[u8]) -> Option<f64> {
+    let text = str::from_utf8(field).ok()?.trim();
+    text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
+}
+
+/// The whole number that a field is, if it is one without a sign.
+pub(super) fn whole(field: &[u8]) -> Option<u64> {
+    str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn all_spellings_are_numbers() {
+        for (text, number) in [
+            ("1", 1.0),
+            ("+2", 2.0),
+            ("-3.", -3.0),
+            (".5", 0.5),
+            ("-.25", -0.25),
+            ("1e3", 1e3),
+            ("1E+03", 1e3),
+            ("1.5d-2", 0.015),
+            ("2.D+01", 20.0),
+            ("007", 7.0),
+            ("1e-400", 0.0),
+            ("1e400", f64::INFINITY),
+            ("-inf", f64::NEG_INFINITY),
+            ("Infinity", f64::INFINITY),
+            (" 4 ", 4.0),
+            ("0.1000000000000000055511151231257827", 0.1),
+        ] {
+            assert_eq!(parse(text.as_bytes()), Some(number), "{text}");
+        }
+        assert!(parse(b"NaN").is_some_and(f64::is_nan));
+        assert!(parse(b"-nan").is_some_and(f64::is_nan));
+    }
+
+    #[test]
+    fn what_is_no_number_is_none() {
+        for text in ["", " ", "x", "1x", "1 2", "--1", "1e", "e5", "0x10", "1,5", "1_000", "***"] {
+            assert_eq!(parse(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!(parse(&[0xFF]), None);
+        assert_eq!((whole(b" 12 "), whole(b"-1"), whole(b"1.5")), (Some(12), None, None));
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_come_back_as_they_were(bits in any::<u64>()) {
+            let number = f64::from_bits(bits);
+            prop_assume!(!number.is_nan());
+            for text in [format!("{number}"), format!("{number:e}"), format!("{number:E}")] {
+                prop_assert_eq!(parse(text.as_bytes()), Some(number));
+            }
+        }
+    }
+}

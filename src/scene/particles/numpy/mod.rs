@@ -1,0 +1,89 @@
+//! Arrays of NumPy: one (NPY), or several in an archive (NPZ).
+//!
+//! The crate `npyz` reads one type of numbers at a time, and its parser of headers has no limit of
+//! depth, so the arrays are our own; archives are those of the crate `zip`.
+
+mod archive;
+mod array;
+
+pub(super) use archive::Npz;
+
+use self::array::Array;
+use super::builder::Builder;
+use super::frame::ParticleFrame;
+use super::options::{Format, ReadOptions, Role};
+use super::reader::FrameReader;
+use super::schema::Schema;
+use super::source::Source;
+use crate::scene::SceneError;
+use std::io::{Cursor, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+/// How an array begins.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// Reads an array: rows of `x y z` or `x y z radius`, or of a structured type with these names;
+/// with another dimension before these, each is a frame.
+pub(super) struct Npy {
+    array: Array<Box<dyn Read + Send>>,
+    schema: Arc<Schema>,
+    path: Arc<Path>,
+    /// Frames that are left.
+    left: u64,
+}
+
+impl Npy {
+    pub(super) fn new(source: Source, options: &ReadOptions) -> Result<Self, SceneError> {
+        let path = source.path;
+        let reader: Box<dyn Read + Send> = Box::new(Cursor::new(source.head).chain(source.reader));
+        let fault = |message: String| SceneError::whole_file(&path, message);
+        let array = Array::open(reader).map_err(fault)?;
+        let schema = Arc::new(schema(&array, options).map_err(fault)?);
+        let left = array.frames();
+        Ok(Self { array, schema, path, left })
+    }
+}
+
+/// What the columns of an array are.
+fn schema<R: Read>(array: &Array<R>, options: &ReadOptions) -> Result<Schema, String> {
+    if let Some(names) = array.names() {
+        return Schema::new(names, options);
+    }
+    let columns = array.columns();
+    let names: Vec<String> = (1..=columns).map(|column| column.to_string()).collect();
+    if !options.columns.roles.is_empty() {
+        return Schema::new(names, options);
+    }
+    if !(3..=4).contains(&columns) {
+        return Err(format!(
+            "is an array of {columns} columns, but a row is `x y z` or `x y z radius`; say which \
+             columns are what, as in x=2,y=3,z=4"
+        ));
+    }
+    let roles = [Role::X, Role::Y, Role::Z, Role::Radius].into_iter();
+    let known: Vec<_> = roles.zip(names.iter().map(String::as_str)).collect();
+    Schema::with_roles(names.clone(), options, &known)
+}
+
+impl FrameReader for Npy {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, SceneError> {
+        if self.left == 0 {
+            return Ok(None);
+        }
+        self.left -= 1;
+        let mut builder = Builder::new(&self.path, Format::Npy, &self.schema);
+        let schema = self.schema.clone();
+        self.array.rows(&self.path, |row| {
+            for (slot, &value) in schema.slots.iter().zip(row) {
+                builder.put_number(*slot, value);
+            }
+            builder.end_row()
+        })?;
+        Ok(Some(builder.finish()))
+    }
+
+    fn more(&mut self) -> Result<bool, SceneError> {
+        Ok(self.left > 0)
+    }
+}

@@ -1,0 +1,240 @@
+//! PDB: fixed columns, lengths in angstrom (wwPDB, "Protein Data Bank Contents Guide", version
+//! 3.30).
+//!
+//! The crate `pdbtbx` builds a tree of models, chains and residues and refuses what simulations
+//! write (serial numbers in hexadecimal, hybrid-36 or asterisks), so this is our own: numbers that
+//! need not be read are not.
+
+use super::builder::Builder;
+use super::categories::Kind;
+use super::element::{Element, is_virtual_site, of_aligned_name};
+use super::frame::{Cell, LengthUnit, ParticleFrame};
+use super::lines::{Line, Lines};
+use super::options::{Format, ReadOptions};
+use super::reader::FrameReader;
+use super::schema::{Naming, Schema, Slot};
+use super::source::Source;
+use crate::scene::SceneError;
+use std::sync::Arc;
+
+/// Names of the columns, and the bytes they take.
+const COLUMNS: [(&str, usize, usize); 15] = [
+    ("number", 6, 11),
+    ("name", 12, 16),
+    ("altloc", 16, 17),
+    ("residue", 17, 21),
+    ("chain", 21, 22),
+    ("residue_number", 22, 26),
+    ("insertion", 26, 27),
+    ("x", 30, 38),
+    ("y", 38, 46),
+    ("z", 46, 54),
+    ("occupancy", 54, 60),
+    ("b_factor", 60, 66),
+    ("segment", 72, 76),
+    ("element", 76, 78),
+    ("charge", 78, 80),
+];
+
+/// Those of them that are texts, also where they look like numbers.
+const TEXTS: [&str; 10] = [
+    "number",
+    "name",
+    "altloc",
+    "residue",
+    "chain",
+    "residue_number",
+    "insertion",
+    "segment",
+    "element",
+    "charge",
+];
+
+/// How records begin by which a PDB file is told.
+const RECORDS: [&[u8]; 18] = [
+    b"HEADER", b"OBSLTE", b"TITLE ", b"COMPND", b"SOURCE", b"KEYWDS", b"EXPDTA", b"AUTHOR",
+    b"REMARK", b"CRYST1", b"ORIGX1", b"SCALE1", b"MODEL ", b"ATOM  ", b"HETATM", b"SPLIT ",
+    b"CAVEAT", b"NUMMDL",
+];
+
+/// Reads the models of a PDB file, one frame each.
+pub(super) struct Pdb {
+    lines: Lines,
+    schema: Result<Arc<Schema>, String>,
+    cell: Option<Cell>,
+    title: String,
+}
+
+/// What a record is to a reader of atoms.
+enum Record {
+    Atom,
+    Cell,
+    Title,
+    Begin,
+    End,
+    Other,
+}
+
+impl Record {
+    fn of(line: &[u8]) -> Self {
+        match line.get(..6).unwrap_or(line) {
+            b"ATOM  " | b"HETATM" => Self::Atom,
+            b"CRYST1" => Self::Cell,
+            b"TITLE " => Self::Title,
+            b"MODEL " => Self::Begin,
+            b"ENDMDL" => Self::End,
+            other if other.trim_ascii_end() == b"END" => Self::End,
+            _ => Self::Other,
+        }
+    }
+}
+
+impl Pdb {
+    pub(super) fn new(source: Source, options: &ReadOptions) -> Self {
+        let names = COLUMNS.map(|(name, ..)| name.to_owned()).into();
+        let schema = Schema::new(names, options);
+        let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
+        let lines = Lines::new(source);
+        Self { lines, schema: schema.map(named), cell: None, title: String::new() }
+    }
+}
+
+impl FrameReader for Pdb {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, SceneError> {
+        let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
+        let mut builder = Builder::new(self.lines.path(), Format::Pdb, &schema);
+        builder.declare(&TEXTS, &["occupancy", "b_factor"]);
+        // The type comes from several columns, unless the user names another.
+        let others: Vec<(usize, Slot)> =
+            schema.others().filter(|&(column, slot)| (column, slot) != (13, Slot::Kind)).collect();
+        let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
+        let mut elsewhere = 0_u64;
+        let mut atoms = false;
+        while let Some(line) = self.lines.next()? {
+            match Record::of(line.bytes) {
+                Record::Atom => {
+                    atoms = true;
+                    if !is_first_place(line.bytes) {
+                        elsewhere += 1;
+                        continue;
+                    }
+                    builder.push(position(&line)?)?;
+                    if !has_kind {
+                        builder.kind_of(&key(line.bytes), kind);
+                    }
+                    for &(column, slot) in &others {
+                        builder.put(slot, &line, field(line.bytes, column))?;
+                    }
+                }
+                Record::Cell => self.cell = cell(&line)?,
+                Record::Title => {
+                    self.title.push(' ');
+                    self.title.push_str(&String::from_utf8_lossy(bytes(line.bytes, 10, 80)));
+                }
+                Record::Begin if atoms => {
+                    self.lines.back();
+                    break;
+                }
+                Record::End if atoms => break,
+                Record::Begin | Record::End | Record::Other => (),
+            }
+        }
+        if !atoms {
+            return Ok(None);
+        }
+        if elsewhere > 0 {
+            let warning =
+                format!("{elsewhere} atoms are at other places than the first and left out");
+            builder.frame.warnings.push(warning);
+        }
+        let frame = builder.finish();
+        let title = self.title.split_whitespace().collect::<Vec<_>>().join(" ");
+        Ok(Some(ParticleFrame { title, cell: self.cell, unit: LengthUnit::Angstrom, ..frame }))
+    }
+
+    fn skip(&mut self) -> Result<bool, SceneError> {
+        let mut atoms = false;
+        while let Some(line) = self.lines.next()? {
+            match Record::of(line.bytes) {
+                Record::Atom => atoms = true,
+                Record::Cell => self.cell = cell(&line)?,
+                Record::Begin if atoms => {
+                    self.lines.back();
+                    break;
+                }
+                Record::End if atoms => break,
+                _ => (),
+            }
+        }
+        Ok(atoms)
+    }
+
+    fn more(&mut self) -> Result<bool, SceneError> {
+        self.skip()
+    }
+}
+
+/// These bytes of a line, as many of them as there are, without blanks around them.
+fn bytes(line: &[u8], start: usize, end: usize) -> &[u8] {
+    line.get(start..end.min(line.len())).unwrap_or_default().trim_ascii()
+}
+
+fn field(line: &[u8], column: usize) -> &[u8] {
+    let (_, start, end) = COLUMNS[column];
+    bytes(line, start, end)
+}
+
+fn position(line: &Line) -> Result<[f64; 3], SceneError> {
+    let number = |column: usize| {
+        let field = field(line.bytes, column);
+        if field.is_empty() {
+            let (name, start, end) = COLUMNS[column];
+            let help = format!("PDB has it at columns {} to {end}", start + 1);
+            return Err(line.whole(format!("no {name} in this row")).with_help(help));
+        }
+        line.number(field)
+    };
+    Ok([number(7)?, number(8)?, number(9)?])
+}
+
+/// Whether an atom is where it is most of the time: the first of its places, or the only one.
+fn is_first_place(line: &[u8]) -> bool {
+    matches!(line.get(16), None | Some(b' ' | b'A' | b'1'))
+}
+
+/// What tells the type of an atom: name, residue and element, as they stand.
+fn key(line: &[u8]) -> [u8; 10] {
+    let mut key = [b' '; 10];
+    for (to, from) in (12..16).chain(17..21).chain(76..78).enumerate() {
+        key[to] = line.get(from).copied().unwrap_or(b' ');
+    }
+    key
+}
+
+fn kind(key: &str) -> Kind {
+    let part = |start: usize, end: usize| key.get(start..end).unwrap_or_default();
+    let (name, residue, symbol) = (part(0, 4), part(4, 8).trim(), part(8, 10).trim());
+    let virtual_site = is_virtual_site(name.trim(), residue);
+    let element = Element::from_symbol(symbol).or_else(|| of_aligned_name(name, residue));
+    let element = element.filter(|_| !virtual_site);
+    Kind { name: name.trim().to_owned(), element, virtual_site }
+}
+
+/// The cell of `CRYST1`; one of edges of 1 stands for none.
+fn cell(line: &Line) -> Result<Option<Cell>, SceneError> {
+    let number = |start: usize, end: usize| {
+        let field = bytes(line.bytes, start, end);
+        if field.is_empty() { Ok(0.0) } else { line.number(field) }
+    };
+    let lengths = [number(6, 15)?, number(15, 24)?, number(24, 33)?];
+    let angles = [number(33, 40)?, number(40, 47)?, number(47, 54)?];
+    Ok(Cell::of_lengths(lengths, angles).filter(|_| lengths != [1.0; 3]))
+}
+
+/// Whether a file that begins with this line is PDB.
+pub(super) fn is_pdb(first: &[u8]) -> bool {
+    let mut padded = [b' '; 6];
+    let length = first.len().min(6);
+    padded[..length].copy_from_slice(&first[..length]);
+    RECORDS.contains(&&padded[..])
+}

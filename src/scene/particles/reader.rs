@@ -1,0 +1,130 @@
+//! Frames of a file, one after another.
+
+use super::frame::ParticleFrame;
+use super::options::{Format, FrameChoice, ReadOptions};
+use super::source::{Source, is_standard_input};
+use super::{csv, gro, gsd, lammps, mmcif, numpy, pdb, ply, sniff, text, xyz};
+use crate::scene::SceneError;
+use std::path::Path;
+
+/// A file that is being read, frame by frame.
+pub(super) trait FrameReader {
+    /// The next frame, if there is one.
+    fn next(&mut self) -> Result<Option<ParticleFrame>, SceneError>;
+
+    /// Passes over the next frame, with as little work as the format allows; whether there was
+    /// one, all of it.
+    fn skip(&mut self) -> Result<bool, SceneError> {
+        Ok(self.next()?.is_some())
+    }
+
+    /// Whether more seems to follow.
+    fn more(&mut self) -> Result<bool, SceneError> {
+        Ok(false)
+    }
+}
+
+/// The frames of a file of particles, read one at a time. After an error there are no more.
+pub struct Frames {
+    reader: Box<dyn FrameReader>,
+    failed: bool,
+}
+
+impl Frames {
+    /// Opens a file, or standard input for the path `-`, whatever frame the options choose.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or is in no format known here.
+    pub fn open(path: &Path, options: &ReadOptions) -> Result<Self, SceneError> {
+        let source = Source::open(path)?;
+        let format = sniff::format(&source, options)?;
+        let reader: Box<dyn FrameReader> = match format {
+            Format::Xyzr => Box::new(text::Rows::new(source, options)),
+            Format::Csv => Box::new(csv::Csv::new(source, options)),
+            Format::Xyz => Box::new(xyz::Xyz::new(source, options)),
+            Format::LammpsDump => Box::new(lammps::Dump::new(source, options)),
+            Format::LammpsData => Box::new(lammps::Data::new(source, options)),
+            Format::Gro => Box::new(gro::Gro::new(source, options)),
+            Format::Pdb => Box::new(pdb::Pdb::new(source, options)),
+            Format::MmCif => Box::new(mmcif::MmCif::new(source, options)),
+            Format::Gsd => Box::new(gsd::Gsd::new(source, options)?),
+            Format::Ply => Box::new(ply::Ply::new(source, options)),
+            Format::Npy => Box::new(numpy::Npy::new(source, options)?),
+            Format::Npz => Box::new(numpy::Npz::new(source, options)?),
+        };
+        Ok(Self { reader, failed: false })
+    }
+}
+
+impl Iterator for Frames {
+    type Item = Result<ParticleFrame, SceneError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let frame = self.reader.next();
+        self.failed = frame.is_err();
+        frame.transpose()
+    }
+}
+
+/// Reads the frame that the options choose, as it is: nothing is scaled or dropped. Frames before
+/// it are passed over with little work; for the last one, a file is gone through twice, and a frame
+/// that is cut off is not counted.
+///
+/// # Errors
+///
+/// The file cannot be read, is cut off, has no such frame, or holds something that is not a
+/// particle: the error names the line and the column.
+pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, SceneError> {
+    let index = match options.frame {
+        FrameChoice::Index(index) => index,
+        FrameChoice::Last if is_standard_input(path) => return last_of_stream(path, options),
+        FrameChoice::Last => count_frames(path, options)?.saturating_sub(1),
+    };
+    let mut frames = Frames::open(path, options)?;
+    for before in 0..index {
+        if !frames.reader.skip()? {
+            let message = format!("has no frame {index}, but {before}, and the first is 0");
+            return Err(SceneError::whole_file(path, message));
+        }
+    }
+    let frame = frames.reader.next()?;
+    let mut frame = match (frame, index) {
+        (Some(frame), _) => frame,
+        (None, 0) => return Err(SceneError::whole_file(path, "holds no particles")),
+        (None, count) => {
+            let message = format!("has no frame {index}, but {count}, and the first is 0");
+            return Err(SceneError::whole_file(path, message));
+        }
+    };
+    if options.frame == FrameChoice::default() && frames.reader.more()? {
+        frame.warnings.push("only the first frame is read; more follow".to_owned());
+    }
+    Ok(frame)
+}
+
+/// The last frame of what can be read but once.
+fn last_of_stream(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, SceneError> {
+    let mut last = None;
+    for frame in Frames::open(path, options)? {
+        last = Some(frame?);
+    }
+    last.ok_or_else(|| SceneError::whole_file(path, "holds no particles"))
+}
+
+/// How many frames a file holds that are not cut off.
+///
+/// # Errors
+///
+/// The file cannot be read, or is in no format known here.
+pub fn count_frames(path: &Path, options: &ReadOptions) -> Result<u64, SceneError> {
+    let mut frames = Frames::open(path, options)?;
+    let mut count = 0;
+    while frames.reader.skip()? {
+        count += 1;
+    }
+    Ok(count)
+}

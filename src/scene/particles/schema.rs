@@ -1,0 +1,242 @@
+//! Which column of a file is what.
+
+use super::options::{Radii, ReadOptions, Role};
+
+/// What a column is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Slot {
+    /// Nothing.
+    Skip,
+    /// x, y or z, by 0, 1 or 2.
+    Position(usize),
+    /// A length, and the factor that makes it a radius.
+    Radius(f64),
+    Kind,
+    /// Red, green or blue, by 0, 1 or 2.
+    Color(usize),
+    Material,
+    /// One of [`Schema::extras`].
+    Extra(usize),
+}
+
+/// How names of types become elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Naming {
+    /// Symbols, or atomic numbers.
+    Symbols,
+    /// Symbols if all of them are; numbers are none.
+    Types,
+    /// Names of atoms in molecules.
+    Names,
+}
+
+/// Names that are a role in any case, those that go first in front.
+const USUAL: [(Role, &[&str]); 10] = [
+    (Role::X, &["x", "pos_x", "position_x", "cartn_x", "points:0"]),
+    (Role::Y, &["y", "pos_y", "position_y", "cartn_y", "points:1"]),
+    (Role::Z, &["z", "pos_z", "position_z", "cartn_z", "points:2"]),
+    (Role::Radius, &["radius"]),
+    (Role::Diameter, &["diameter"]),
+    (Role::Kind, &["element", "species", "symbol", "type_symbol", "type", "typeid"]),
+    (Role::Red, &["red"]),
+    (Role::Green, &["green"]),
+    (Role::Blue, &["blue"]),
+    (Role::Material, &["material"]),
+];
+
+/// What every column of a file is for.
+#[derive(Debug)]
+pub(super) struct Schema {
+    /// One for each column, up to the last that is for something.
+    pub(super) slots: Vec<Slot>,
+    pub(super) names: Vec<String>,
+    /// Names of columns to be kept.
+    pub(super) extras: Vec<String>,
+    pub(super) naming: Naming,
+    pub(super) has_color: bool,
+    /// Names of the columns that are for nothing.
+    pub(super) unused: Vec<String>,
+}
+
+impl Schema {
+    /// Tells columns by their names, in any case, unless the options say more.
+    ///
+    /// # Errors
+    ///
+    /// What is missing.
+    pub(super) fn new(names: Vec<String>, options: &ReadOptions) -> Result<Self, String> {
+        Self::with_roles(names, options, &[])
+    }
+
+    /// The same, where the format knows more about some columns than their names.
+    pub(super) fn with_roles(
+        names: Vec<String>,
+        options: &ReadOptions,
+        known: &[(Role, &str)],
+    ) -> Result<Self, String> {
+        let choice = Choice { names: &names, options, known };
+        let mut slots = vec![Slot::Skip; names.len()];
+        for (axis, role) in [Role::X, Role::Y, Role::Z].into_iter().enumerate() {
+            let column = choice.find(role)?.ok_or_else(|| choice.missing(USUAL[axis].1[0]))?;
+            slots[column] = Slot::Position(axis);
+        }
+        let mut take = |column: Option<usize>, slot| {
+            column.filter(|&at| slots[at] == Slot::Skip).map(|at| slots[at] = slot).is_some()
+        };
+        for (channel, column) in choice.colors()?.into_iter().flatten().enumerate() {
+            take(Some(column), Slot::Color(channel));
+        }
+        let has_radius = take(choice.find(Role::Radius)?, Slot::Radius(1.0));
+        // `r` beside `g` and `b` is red.
+        let has_radius = has_radius || take(choice.position("r"), Slot::Radius(1.0));
+        if !has_radius {
+            take(choice.find(Role::Diameter)?, Slot::Radius(0.5));
+        }
+        let kind = choice.find(Role::Kind)?;
+        take(kind, Slot::Kind);
+        take(choice.find(Role::Material)?, Slot::Material);
+        let naming = Naming::of(kind.map_or("", |column| &names[column]));
+        let extras = choice.extras(&mut slots)?;
+        let unused = unused(&names, &slots);
+        while slots.last() == Some(&Slot::Skip) {
+            slots.pop();
+        }
+        let has_color = slots.contains(&Slot::Color(0));
+        Ok(Self { slots, names, extras, naming, has_color, unused })
+    }
+
+    /// The columns that are for something, except for those of positions.
+    pub(super) fn others(&self) -> impl Iterator<Item = (usize, Slot)> {
+        let slots = self.slots.iter().copied().enumerate();
+        slots.filter(|(_, slot)| !matches!(slot, Slot::Skip | Slot::Position(_)))
+    }
+
+    /// Whether rows have colors.
+    pub(super) fn has_color(&self) -> bool {
+        self.has_color
+    }
+}
+
+impl Naming {
+    fn of(column: &str) -> Self {
+        let types = ["type", "typeid"].iter().any(|name| name.eq_ignore_ascii_case(column));
+        if types { Self::Types } else { Self::Symbols }
+    }
+}
+
+fn unused(names: &[String], slots: &[Slot]) -> Vec<String> {
+    let columns = names.iter().zip(slots).filter(|(_, slot)| **slot == Slot::Skip);
+    columns.map(|(name, _)| name.clone()).collect()
+}
+
+/// What columns are chosen from.
+struct Choice<'c> {
+    names: &'c [String],
+    options: &'c ReadOptions,
+    known: &'c [(Role, &'c str)],
+}
+
+impl Choice<'_> {
+    /// The column with a name, the same letter by letter if there is one.
+    fn position(&self, wanted: &str) -> Option<usize> {
+        let same = self.names.iter().position(|name| name == wanted);
+        same.or_else(|| self.names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
+    }
+
+    fn need(&self, wanted: &str) -> Result<usize, String> {
+        self.position(wanted).ok_or_else(|| self.missing(wanted))
+    }
+
+    fn missing(&self, wanted: &str) -> String {
+        let names = self.names.join(", ");
+        format!("no column is named `{wanted}`; there are {names}")
+    }
+
+    /// The column of a role: what the user says, what the format knows, or what names tell.
+    fn find(&self, role: Role) -> Result<Option<usize>, String> {
+        if let (Role::Radius, Radii::Column(name)) = (role, &self.options.radii) {
+            return self.need(name).map(Some);
+        }
+        if let Some((_, name)) = self.options.columns.roles.iter().find(|(own, _)| *own == role) {
+            return self.need(name).map(Some);
+        }
+        let known = self.known.iter().find(|(own, _)| *own == role);
+        if let Some(column) = known.and_then(|(_, name)| self.position(name)) {
+            return Ok(Some(column));
+        }
+        let usual = USUAL.iter().find(|(own, _)| *own == role).map_or(&[][..], |(_, names)| names);
+        Ok(usual.iter().find_map(|name| self.position(name)))
+    }
+
+    /// The columns of colors, if all three are there.
+    fn colors(&self) -> Result<Option<[usize; 3]>, String> {
+        let [red, green, blue] =
+            [self.find(Role::Red)?, self.find(Role::Green)?, self.find(Role::Blue)?];
+        let long = red.zip(green).zip(blue).map(|((red, green), blue)| [red, green, blue]);
+        let short = || {
+            let [red, green, blue] = ["r", "g", "b"].map(|name| self.position(name));
+            Some([red?, green?, blue?])
+        };
+        Ok(long.or_else(short))
+    }
+
+    /// Names of the columns to be kept, whose slots become theirs; columns that have a role are
+    /// kept in it.
+    fn extras(&self, slots: &mut [Slot]) -> Result<Vec<String>, String> {
+        let mut extras = Vec::new();
+        for name in &self.options.columns.kept {
+            let column = self.need(name)?;
+            if slots[column] == Slot::Skip {
+                slots[column] = Slot::Extra(extras.len());
+                extras.push(self.names[column].clone());
+            }
+        }
+        Ok(extras)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn schema(names: &str, columns: &str) -> Result<Schema, String> {
+        let columns = columns.parse()?;
+        let options = ReadOptions { columns, ..ReadOptions::default() };
+        Schema::new(names.split(',').map(str::to_owned).collect(), &options)
+    }
+
+    fn slots(names: &str, columns: &str) -> Vec<Slot> {
+        schema(names, columns).expect("columns").slots
+    }
+
+    #[test]
+    fn names_tell_columns() {
+        use Slot::{Color, Extra, Kind, Material, Position, Radius, Skip};
+        let [x, y, z] = [0, 1, 2].map(Position);
+        let [red, green, blue] = [0, 1, 2].map(Color);
+        assert_eq!(slots("Z,y,X,R,id", ""), [z, y, x, Radius(1.0)]);
+        assert_eq!(slots("x,y,z,r,g,b,diameter", ""), [x, y, z, red, green, blue, Radius(0.5)]);
+        assert_eq!(slots("x,y,z,r,b,radius", ""), [x, y, z, Skip, Skip, Radius(1.0)]);
+        assert_eq!(slots("x,y,z,red,green,blue,r", "")[6], Radius(1.0));
+        assert_eq!(slots("x,y,z,diameter,radius", ""), [x, y, z, Skip, Radius(1.0)]);
+        assert_eq!(slots("id,type,element,x,y,z", ""), [Skip, Skip, Kind, x, y, z]);
+        assert_eq!(slots("x,y,z,material", "")[3], Material);
+        assert_eq!(slots("px,py,pz,q,w", "x=px,y=py,z=pz,w,q"), [x, y, z, Extra(1), Extra(0)]);
+    }
+
+    #[test]
+    fn what_is_missing_is_told() {
+        let missing = schema("x,y", "").expect_err("no z");
+        assert_eq!(missing, "no column is named `z`; there are x, y");
+        assert!(schema("x,y,z", "q").is_err());
+        assert!(schema("x,y,z", "type=q").is_err());
+        assert_eq!(schema("x,y,z,id", "").map(|schema| schema.unused), Ok(vec!["id".to_owned()]));
+    }
+
+    #[test]
+    fn numbers_of_types_are_no_elements() {
+        let naming = |names| schema(names, "").map(|schema| schema.naming);
+        assert_eq!(naming("x,y,z,type"), Ok(Naming::Types));
+        assert_eq!(naming("x,y,z,species"), Ok(Naming::Symbols));
+    }
+}

@@ -1,0 +1,194 @@
+//! Where bytes come from: a file or standard input, unpacked if it is packed.
+//!
+//! What a file is packed with is told by how it begins, whatever its name says. All decoders are
+//! Rust, so that the program needs no library of the system.
+
+use crate::scene::SceneError;
+use flate2::read::MultiGzDecoder;
+use lzma_rust2::XzReader;
+use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
+use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// How many bytes of a file are looked at to tell its format.
+pub(super) const HEAD: usize = 1 << 16;
+
+/// Memory that an xz file may ask for, in KiB: four times as much as `xz -9` takes.
+const XZ_MEMORY: u32 = 1 << 18;
+
+/// How packed files begin.
+const PACKINGS: [(&[u8], Packing); 4] = [
+    (&[0x1F, 0x8B], Packing::Gzip),
+    (b"BZh", Packing::Bzip2),
+    (&[0x28, 0xB5, 0x2F, 0xFD], Packing::Zstd),
+    (&[0xFD, b'7', b'z', b'X', b'Z', 0], Packing::Xz),
+];
+
+/// What may be around a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Packing {
+    Gzip,
+    Bzip2,
+    Xz,
+    Zstd,
+}
+
+/// An open file: how it begins, and what follows.
+pub(super) struct Source {
+    pub(super) path: Arc<Path>,
+    /// The first [`HEAD`] bytes, or all if there are fewer.
+    pub(super) head: Vec<u8>,
+    /// What follows.
+    pub(super) reader: Box<dyn Read + Send>,
+}
+
+/// Whether this path stands for standard input.
+pub(super) fn is_standard_input(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+impl Source {
+    /// Opens a file, or standard input for `-`.
+    pub(super) fn open(path: &Path) -> Result<Self, SceneError> {
+        let path: Arc<Path> = path.into();
+        let fault =
+            |error: &io::Error| SceneError::whole_file(&path, format!("cannot be read: {error}"));
+        let mut raw: Box<dyn Read + Send> = if is_standard_input(&path) {
+            Box::new(io::stdin())
+        } else {
+            Box::new(File::open(&path).map_err(|error| fault(&error))?)
+        };
+        let mut head = head(&mut raw).map_err(|error| fault(&error))?;
+        let Some(packing) = Packing::of(&head) else {
+            return Ok(Self { path, head, reader: raw });
+        };
+        let mut reader = packing.unpack(Cursor::new(head).chain(raw));
+        head = self::head(&mut reader).map_err(|error| fault(&error))?;
+        if let Some(inner) = Packing::of(&head) {
+            let message = format!("is packed twice ({}, then {})", inner.name(), packing.name());
+            return Err(SceneError::whole_file(&path, message).with_help("unpack it once"));
+        }
+        Ok(Self { path, head, reader })
+    }
+
+    /// All of it again, for readers that go back and forth: the file itself, or a temporary copy
+    /// of what was packed or came through a pipe.
+    pub(super) fn into_file(mut self) -> Result<File, SceneError> {
+        let fault = |error: io::Error| {
+            SceneError::whole_file(&self.path, format!("cannot be read: {error}"))
+        };
+        let plain = File::open(&self.path).ok().filter(|_| !is_standard_input(&self.path));
+        if let Some(mut file) = plain {
+            let mut again = vec![0; self.head.len()];
+            let regular = file.metadata().is_ok_and(|metadata| metadata.is_file());
+            if regular && file.read_exact(&mut again).is_ok() && again == self.head {
+                return Ok(file);
+            }
+        }
+        let mut file = tempfile::tempfile().map_err(fault)?;
+        file.write_all(&self.head).map_err(fault)?;
+        io::copy(&mut self.reader, &mut file).map_err(fault)?;
+        Ok(file)
+    }
+}
+
+fn head(reader: &mut impl Read) -> io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    reader.take(HEAD as u64).read_to_end(&mut head)?;
+    Ok(head)
+}
+
+impl Packing {
+    fn of(head: &[u8]) -> Option<Self> {
+        PACKINGS.iter().find(|(magic, _)| head.starts_with(magic)).map(|&(_, packing)| packing)
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Gzip => "gzip",
+            Self::Bzip2 => "bzip2",
+            Self::Xz => "xz",
+            Self::Zstd => "zstd",
+        }
+    }
+
+    fn unpack(self, packed: impl Read + Send + 'static) -> Box<dyn Read + Send> {
+        let packed = BufReader::with_capacity(HEAD, packed);
+        let reader: Box<dyn Read + Send> = match self {
+            Self::Gzip => Box::new(MultiGzDecoder::new(packed)),
+            Self::Bzip2 => Box::new(bzip2::read::MultiBzDecoder::new(packed)),
+            Self::Xz => Box::new(XzReader::new_mem_limit(packed, true, XZ_MEMORY)),
+            Self::Zstd => Box::new(Zstd { packed, decoder: FrameDecoder::new(), inside: false }),
+        };
+        Box::new(Unpacked { reader, packing: self })
+    }
+}
+
+/// Says in its errors what could not be unpacked.
+struct Unpacked {
+    reader: Box<dyn Read + Send>,
+    packing: Packing,
+}
+
+impl Read for Unpacked {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.reader.read(buffer).map_err(|error| match error.kind() {
+            io::ErrorKind::Interrupted => error,
+            kind => {
+                let name = self.packing.name();
+                io::Error::new(kind, format!("the {name} data is damaged or cut off ({error})"))
+            }
+        })
+    }
+}
+
+/// All frames of a zstd file, one after another: the decoder reads one.
+struct Zstd<R: BufRead> {
+    packed: R,
+    decoder: FrameDecoder,
+    /// Whether the decoder is within a frame.
+    inside: bool,
+}
+
+impl<R: BufRead> Zstd<R> {
+    /// Begins the next frame, if there is one.
+    fn begin(&mut self) -> io::Result<bool> {
+        while !self.packed.fill_buf()?.is_empty() {
+            match self.decoder.init(&mut self.packed) {
+                Ok(()) => {
+                    self.inside = true;
+                    return Ok(true);
+                }
+                Err(FrameDecoderError::ReadFrameHeaderError(ReadFrameHeaderError::SkipFrame {
+                    length,
+                    ..
+                })) => {
+                    let mut skipped = self.packed.by_ref().take(u64::from(length));
+                    io::copy(&mut skipped, &mut io::sink())?;
+                }
+                Err(error) => return Err(io::Error::new(io::ErrorKind::InvalidData, error)),
+            }
+        }
+        Ok(false)
+    }
+}
+
+impl<R: BufRead> Read for Zstd<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            while self.inside && self.decoder.can_collect() == 0 && !self.decoder.is_finished() {
+                let one = BlockDecodingStrategy::UptoBlocks(1);
+                self.decoder.decode_blocks(&mut self.packed, one).map_err(io::Error::other)?;
+            }
+            if self.inside && self.decoder.can_collect() > 0 {
+                return self.decoder.read(buffer);
+            }
+            if !self.begin()? {
+                return Ok(0);
+            }
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! From a frame of particles to spheres: radii and colors are found, and what is no sphere dropped.
+
+use super::categories::{Kinds, TextColumn};
+use super::element::Element;
+use super::frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
+use super::options::{Format, ReadOptions};
+use super::radii::{Found, half_spacing, radii};
+use crate::color::category;
+use crate::color::elements::jmol;
+use crate::scene::error::clipped;
+use crate::scene::{Rgb, SceneError, Spheres};
+use std::path::Path;
+
+/// Most unknown names that a warning lists.
+const LISTED: usize = 5;
+
+/// What a file of particles holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Particles {
+    /// The spheres, at least one; materials are rows of `material_names`.
+    pub spheres: Spheres,
+    /// The materials that the file speaks of; an empty name stands for none.
+    pub material_names: Vec<String>,
+    /// Types of the spheres, if the file has types.
+    pub kinds: Kinds,
+    /// The columns of numbers that were asked for, a row for each sphere.
+    pub numbers: Vec<NumberColumn>,
+    /// The columns of texts that were asked for, a row for each sphere.
+    pub texts: Vec<TextColumn>,
+    /// The cell of the simulation, scaled as positions are.
+    pub cell: Option<Cell>,
+    /// How the file is written.
+    pub format: Format,
+    /// What all columns of the file are called, read or not.
+    pub columns: Vec<String>,
+    /// The file's title or comment; empty if it has none.
+    pub title: String,
+    /// The step of the simulation, if the file tells it.
+    pub step: Option<i64>,
+    /// The time of the simulation in the file's own unit, if the file tells it.
+    pub time: Option<f64>,
+    /// What a length of 1 is in the file.
+    pub unit: LengthUnit,
+    /// What was dropped or assumed.
+    pub warnings: Vec<String>,
+}
+
+/// Makes spheres of a frame; positions are moved, not copied.
+pub(super) fn spheres(
+    path: &Path,
+    mut frame: ParticleFrame,
+    options: &ReadOptions,
+) -> Result<Particles, SceneError> {
+    let mut warnings = Warnings { path, list: Vec::new() };
+    for warning in std::mem::take(&mut frame.warnings) {
+        warnings.add(&warning);
+    }
+    if frame.is_empty() {
+        return Err(SceneError::whole_file(path, "holds no particles"));
+    }
+    if options.scale != 1.0 {
+        let columns = [&mut frame.x, &mut frame.y, &mut frame.z];
+        columns.into_iter().flatten().for_each(|value| *value *= options.scale);
+    }
+    let Found { radius, guessed } = radii(path, &mut frame, options, &mut warnings)?;
+    frame.radius = radius;
+    drop_rows(path, &mut frame, &mut warnings)?;
+    if guessed {
+        let radius = half_spacing([&frame.x, &frame.y, &frame.z]);
+        frame.radius.fill(radius * options.radius_scale);
+        warnings.add(&format!(
+            "no radii in the file, so half of the mean spacing is taken: radius = {radius}"
+        ));
+    }
+    let color = colors(&mut frame);
+    let material = material_rows(&frame.materials);
+    let cell = frame.cell.map(|cell| Cell {
+        origin: cell.origin * options.scale,
+        vectors: cell.vectors.map(|vector| vector * options.scale),
+        ..cell
+    });
+    Ok(Particles {
+        spheres: Spheres {
+            x: frame.x,
+            y: frame.y,
+            z: frame.z,
+            radius: frame.radius,
+            material,
+            color,
+        },
+        material_names: material_names(frame.materials),
+        kinds: frame.kinds,
+        numbers: frame.numbers,
+        texts: frame.texts,
+        cell,
+        format: frame.format,
+        columns: frame.columns,
+        title: frame.title,
+        step: frame.step,
+        time: frame.time,
+        unit: frame.unit,
+        warnings: warnings.list,
+    })
+}
+
+/// Sentences with the file's name before them.
+pub(super) struct Warnings<'p> {
+    path: &'p Path,
+    list: Vec<String>,
+}
+
+impl Warnings<'_> {
+    pub(super) fn add(&mut self, message: &str) {
+        self.list.push(format!("{}: {}", self.path.display(), clipped(message)));
+    }
+
+    /// Warns of things that were passed over, if there are any; `reason` begins the sentence.
+    pub(super) fn add_of(&mut self, reason: &str, names: &[&str]) {
+        if !names.is_empty() {
+            self.add(&listed(reason, names));
+        }
+    }
+}
+
+/// A sentence about a few of many names.
+pub(super) fn listed(reason: &str, names: &[&str]) -> String {
+    let more = if names.len() > LISTED { ", ..." } else { "" };
+    format!("{reason}: {}{more}", names[..names.len().min(LISTED)].join(", "))
+}
+
+/// Drops rows that are no spheres, and tells how many.
+fn drop_rows(
+    path: &Path,
+    frame: &mut ParticleFrame,
+    warnings: &mut Warnings,
+) -> Result<(), SceneError> {
+    let virtual_kinds: Vec<bool> = frame.kinds.table.iter().map(|kind| kind.virtual_site).collect();
+    let any_virtual = virtual_kinds.contains(&true);
+    let is_virtual =
+        |row: usize| any_virtual && virtual_kinds[frame.kinds.codes.code(row) as usize];
+    let finite = |row: usize| frame.position(row).is_finite() && frame.radius[row].is_finite();
+    let (mut sites, mut not_finite, mut not_positive) = (0_u64, 0_u64, 0_u64);
+    let mut sphere = |row: usize| {
+        let positive = frame.radius[row] > 0.0;
+        if is_virtual(row) {
+            sites += 1;
+        } else if !finite(row) {
+            not_finite += 1;
+        } else if positive {
+            return true;
+        } else {
+            not_positive += 1;
+        }
+        false
+    };
+    let count = frame.len();
+    let Some(first) = (0..count).find(|&row| !sphere(row)) else { return Ok(()) };
+    let mut keep = vec![true; count];
+    keep[first] = false;
+    (first + 1..count).for_each(|row| keep[row] = sphere(row));
+    let dropped = not_finite + not_positive;
+    let reasons = format!("{not_finite} not finite, {not_positive} with a radius of 0 or less");
+    if !keep.contains(&true) {
+        let message = format!("none of its {count} rows is a sphere: {reasons}");
+        return Err(SceneError::whole_file(path, message));
+    }
+    if sites > 0 {
+        warnings.add(&format!("{sites} sites of water models without an atom are not drawn"));
+    }
+    if dropped > 0 {
+        warnings.add(&format!("{dropped} of {count} rows were dropped: {reasons}"));
+    }
+    frame.retain(&keep);
+    Ok(())
+}
+
+/// The file's colors, or those of elements, or of types; empty if all are the same and unknown.
+fn colors(frame: &mut ParticleFrame) -> Vec<Rgb> {
+    if !frame.color.is_empty() {
+        let own = std::mem::take(&mut frame.color);
+        return if own.iter().all(|color| *color == Rgb::ONE) { Vec::new() } else { own };
+    }
+    let kinds = &frame.kinds;
+    let has_elements = kinds.table.iter().any(|kind| kind.element.is_some());
+    if !has_elements && kinds.table.len() < 2 {
+        return Vec::new();
+    }
+    let table = kinds.table.iter().enumerate();
+    let table: Vec<Rgb> = table
+        .map(|(row, kind)| if has_elements { color_of(kind.element) } else { category(row) })
+        .collect();
+    (0..kinds.codes.len()).map(|row| table[kinds.codes.code(row) as usize]).collect()
+}
+
+/// Jmol's color of an element; gray where it has none, or is unknown.
+fn color_of(element: Option<Element>) -> Rgb {
+    element.and_then(|element| jmol(element.number())).unwrap_or(Rgb::splat(0.5))
+}
+
+/// The material of each sphere; empty if all have the first.
+fn material_rows(materials: &TextColumn) -> Vec<u32> {
+    let codes = &materials.codes;
+    let rows = 0..codes.len();
+    if rows.clone().all(|row| codes.code(row) == 0) {
+        return Vec::new();
+    }
+    rows.map(|row| codes.code(row)).collect()
+}
+
+fn material_names(materials: TextColumn) -> Vec<String> {
+    if materials.names.is_empty() { vec![String::new()] } else { materials.names }
+}

@@ -1,0 +1,114 @@
+//! Arrays of NumPy.
+
+use super::*;
+use std::io::{Cursor, Write};
+use zip::write::{SimpleFileOptions, ZipWriter};
+
+fn npy(kind: &str, shape: &str, fortran: bool, numbers: &[u8]) -> Vec<u8> {
+    let fortran = if fortran { "True" } else { "False" };
+    let kind = if kind.starts_with('[') { kind.to_owned() } else { format!("'{kind}'") };
+    let mut header = format!("{{'descr': {kind}, 'fortran_order': {fortran}, 'shape': {shape}, }}");
+    header.push_str(&" ".repeat(63 - (10 + header.len()) % 64));
+    header.push('\n');
+    let length = (header.len() as u16).to_le_bytes();
+    [&b"\x93NUMPY\x01\x00"[..], &length, header.as_bytes(), numbers].concat()
+}
+
+fn floats(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+fn doubles(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_be_bytes()).collect()
+}
+
+fn npz(arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in arrays {
+        writer.start_file(format!("{name}.npy"), SimpleFileOptions::default()).expect("a file");
+        writer.write_all(bytes).expect("memory");
+    }
+    writer.finish().expect("memory").into_inner()
+}
+
+#[test]
+fn rows_are_positions_with_radii_or_without() {
+    let three = frame(npy("<f4", "(2, 3)", false, &floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])));
+    assert_eq!((three.position(1), three.radius.len()), (DVec3::new(4.0, 5.0, 6.0), 0));
+    let four = frame(npy(">f8", "(1, 4)", false, &doubles(&[0.1, 2.0, 3.0, 0.5])));
+    assert_eq!((four.x[0], four.radius[0]), (0.1, 0.5));
+    let columns = floats(&[1.0, 4.0, 2.0, 5.0, 3.0, 6.0]);
+    assert_eq!(frame(npy("<f4", "(2, 3)", true, &columns)), three);
+    let bytes = [1_u8, 2, 3, 255];
+    assert_eq!(frame(npy("|u1", "(1, 4)", false, &bytes)).radius, [255.0]);
+    let chosen = super::columns("x=2,y=3,z=4,1");
+    let five = npy("|u1", "(1, 5)", false, &[9, 1, 2, 3, 4]);
+    let five = frame_with(five, &chosen).expect("a frame");
+    assert_eq!((five.position(0), five.numbers[0].values[0]), (DVec3::new(1.0, 2.0, 3.0), 9.0));
+}
+
+#[test]
+fn three_dimensions_are_frames_and_structures_have_names() {
+    let values: Vec<f32> = (0..12_u8).map(f32::from).collect();
+    let all = npy("<f4", "(2, 2, 3)", false, &floats(&values));
+    assert_eq!(frames(&all), [[0.0, 3.0], [6.0, 9.0]]);
+    assert_eq!(frame_with(&all, &at_frame("last")).expect("a frame").z, [8.0, 11.0]);
+    let kind = "[('id', '<u2'), ('x', '<f4'), ('y', '<f4'), ('z', '>f8'), ('radius', '|i1')]";
+    let row = [&7_u16.to_le_bytes()[..], &floats(&[1.0, 2.0]), &doubles(&[3.0]), &[4]].concat();
+    let frame = frame_with(npy(kind, "(1,)", false, &row), &columns("id")).expect("a frame");
+    assert_eq!((frame.position(0), frame.radius[0]), (DVec3::new(1.0, 2.0, 3.0), 4.0));
+    assert_eq!(frame.numbers[0].values, [7.0]);
+}
+
+#[test]
+fn archives_have_arrays_for_positions_radii_and_colors() {
+    let position = npy("<f4", "(2, 3)", false, &floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+    let diameters = npy("<f4", "(2,)", false, &floats(&[1.0, 0.5]));
+    let color = npy("<f4", "(2, 3)", false, &floats(&[1.0, 0.5, 0.0, f32::NAN, 2.0, -1.0]));
+    let kind = npy("|u1", "(2,)", false, &[3, 6]);
+    let arrays = [
+        ("position", position.clone()),
+        ("diameters", diameters.clone()),
+        ("color", color),
+        ("typeid", kind),
+        ("q", diameters.clone()),
+    ];
+    let frame = frame_with(npz(&arrays), &columns("q")).expect("a frame");
+    assert_eq!((frame.x[1], &frame.radius[..]), (4.0, &[0.5, 0.25][..]));
+    assert_eq!(frame.color[1].to_array(), [0.0, 1.0, 0.0]);
+    assert_eq!(kinds(&frame), [("3", "-"), ("6", "-")]);
+    assert_eq!(frame.numbers[0].values, [1.0, 0.5]);
+    assert_eq!(super::frame(npz(&[("anything", position.clone())])).len(), 2);
+    let several = npz(&[("a", position.clone()), ("b", position.clone())]);
+    assert_eq!(fault(&several).2, "no array is named `position`; there are a, b");
+    assert!(frame_with(&several, &columns("x=b")).is_ok());
+    let wrong =
+        npz(&[("position", position), ("radius", npy("<f4", "(1,)", false, &floats(&[1.0])))]);
+    assert_eq!(fault(wrong).2, "the array `radius` has 1 numbers, but there are 2 particles");
+    assert!(fault(&several[..several.len() - 30]).2.starts_with("is no whole ZIP archive"));
+}
+
+#[test]
+fn faulty_arrays_are_refused() {
+    let values = floats(&[1.0, 2.0, 3.0]);
+    for (content, message) in [
+        (
+            npy("<f4", "(2, 3)", false, &values),
+            "ends before its last row: failed to fill whole buffer",
+        ),
+        (npy("<f4", "(1, 2)", false, &values), "is an array of 2 columns"),
+        (npy("<f4", "(3,)", false, &values), "is an array of 1 columns"),
+        (npy("<f4", "()", false, &values), "is an array of shape []"),
+        (npy("<f4", "(1, 99999)", false, &values), "is an array of shape [1, 99999]"),
+        (npy("<c8", "(1, 3)", false, &values), "has numbers of the type `<c8`"),
+        (npy("|O", "(1, 3)", false, &values), "has numbers of the type `|O`"),
+        (npy("<f4", "(18446744073709551615, 3)", true, &values), "ends before its last row"),
+        (npy("<f4", "(18446744073709551615, 3)", false, &values), "ends before its last row"),
+        (b"\x93NUMPY\x02\x00\xFF\xFF\xFF\xFF".to_vec(), "has a header of 4294967295 bytes"),
+        (b"\x93NUMPY\x01\x00\x02\x00{}".to_vec(), "has numbers of the type ``"),
+        (b"\x93NUMPY\x01".to_vec(), "cannot be read"),
+    ] {
+        let found = fault(&content).2;
+        assert!(found.starts_with(message), "{message}: {found}");
+    }
+}
