@@ -73,7 +73,7 @@ const SHOWN: usize = 12;
 
 /// Looks and tells.
 pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
-    let source = Source::of_path(&args.scene, &args.particles)?;
+    let source = Source::of_path("info", &args.scene, &args.particles)?;
     let (scene, particles) = load(&source)?;
     let world =
         World::build(&scene).map_err(|error| Failure::World(source.name().into_owned(), error))?;

@@ -23,13 +23,17 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// The source that a path speaks of; `args` are for particles alone.
-    pub(super) fn of_path(path: &Path, args: &ParticleArgs) -> Result<Self, Failure> {
+    /// The source that a path speaks of; `args`, those of a `command`, are for particles alone.
+    pub(super) fn of_path(
+        command: &str,
+        path: &Path,
+        args: &ParticleArgs,
+    ) -> Result<Self, Failure> {
         let toml = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml"));
         if toml && args.any() {
             let message = "how to read particles is what a scene says of each of its files: write \
                            format, radius and scale in its [[file]]";
-            return Err(Failure::usage("render", message));
+            return Err(Failure::usage(command, message));
         }
         Ok(if toml {
             Self::Toml(path.to_owned())
@@ -72,7 +76,8 @@ mod tests {
     use super::*;
 
     fn of_path(name: &str) -> Source {
-        Source::of_path(Path::new(name), &ParticleArgs::default()).expect("nothing of particles")
+        Source::of_path("info", Path::new(name), &ParticleArgs::default())
+            .expect("nothing of particles")
     }
 
     #[test]

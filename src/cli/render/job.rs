@@ -39,7 +39,11 @@ impl<'a> Job<'a> {
             return Err(Failure::usage("render", message));
         }
         let source = match &args.scene {
-            Some(path) => Source::of_path(path, &args.particles)?,
+            Some(path) => Source::of_path("render", path, &args.particles)?,
+            None if args.particles.any() => {
+                let message = "these settings are for a file of particles: name one";
+                return Err(Failure::usage("render", message));
+            }
             None => Source::Field { seed },
         };
         Ok(Self {

@@ -107,6 +107,13 @@ impl File {
                 self.chunks.insert((frame, (last >> 32) as u16), chunk);
             }
         }
+        // Every frame has a chunk of its own, if only that of its step.
+        let (frames, chunks) = (self.frames(), self.chunks.len() as u64);
+        if frames > chunks {
+            let message = format!("has an index of {frames} frames, but of {chunks} chunks");
+            let error = SceneError::whole_file(&self.path, message);
+            return Err(error.with_help("the index is damaged: copy the file anew"));
+        }
         Ok(())
     }
 

@@ -79,9 +79,10 @@ impl<R: Read> Array<R> {
         }
     }
 
-    /// How many frames there are.
+    /// How many frames there are, none of them empty.
     pub(super) fn frames(&self) -> u64 {
         match self.shape[..] {
+            _ if self.count() == 0 || self.columns() == 0 => 0,
             [frames, _] if self.structured => frames,
             [frames, _, _] => frames,
             _ => 1,

@@ -111,5 +111,7 @@ fn faulty_files_are_refused() {
     ]);
     assert_eq!(fault(types).2, "particle 0 is of type 7, but there are 1");
     assert_eq!(fault(gsd(&[])).2, "holds no particles");
+    let far = gsd(&[(1 << 40, "particles/N", 3, 1, words(&[1]))]);
+    assert_eq!(fault(far).2, "has an index of 1099511627777 frames, but of 1 chunks");
     assert!(frame_with(example(), &columns("nothing")).is_err());
 }

@@ -104,6 +104,7 @@ fn faulty_arrays_are_refused() {
         (npy("|O", "(1, 3)", false, &values), "has numbers of the type `|O`"),
         (npy("<f4", "(18446744073709551615, 3)", true, &values), "ends before its last row"),
         (npy("<f4", "(18446744073709551615, 3)", false, &values), "ends before its last row"),
+        (npy("<f4", "(18446744073709551615, 0, 3)", false, &[]), "holds no particles"),
         (b"\x93NUMPY\x02\x00\xFF\xFF\xFF\xFF".to_vec(), "has a header of 4294967295 bytes"),
         (b"\x93NUMPY\x01\x00\x02\x00{}".to_vec(), "has numbers of the type ``"),
         (b"\x93NUMPY\x01".to_vec(), "cannot be read"),

@@ -1,0 +1,83 @@
+//! Files of particles on the command line.
+
+use crate::folder::{Folder, SMALL, text};
+use serde_json::json;
+
+const DUMP: &str = "\
+ITEM: TIMESTEP
+0
+ITEM: NUMBER OF ATOMS
+1
+ITEM: BOX BOUNDS pp pp ff
+0 2
+0 2
+0 4
+ITEM: ATOMS id type x y z size
+1 1 1 1 1 3
+ITEM: TIMESTEP
+100
+ITEM: NUMBER OF ATOMS
+2
+ITEM: BOX BOUNDS pp pp ff
+0 2
+0 2
+0 4
+ITEM: ATOMS id type x y z size
+1 1 0.5 1 1 3
+2 2 1.5 1 1 4
+";
+
+#[test]
+fn files_say_what_is_in_them() {
+    let folder = Folder::new();
+    folder.write("run.dump", DUMP);
+    let info = folder.json(&["info", "run.dump", "--frame", "last", "--json"]);
+    let particles = &info["particles"];
+    assert_eq!(particles["format"], json!("lammps-dump"));
+    assert_eq!((&particles["frames"], &particles["step"]), (&json!(2), &json!(100)));
+    assert_eq!(particles["columns"], json!(["id", "type", "x", "y", "z", "size"]));
+    assert_eq!(particles["cell"]["periodic"], json!([true, true, false]));
+    assert_eq!(particles["types"][1], json!({"name": "2", "element": null, "spheres": 1}));
+    assert_eq!(info["spheres"], json!(2));
+    let lines = folder.succeed(&["info", "run.dump"]);
+    assert!(lines.contains("frames       2") && lines.contains("cell         [2.0, 0.0, 0.0]"));
+}
+
+#[test]
+fn frames_and_radii_are_chosen() {
+    let folder = Folder::new();
+    folder.write("run.dump", DUMP);
+    let radius = |args: &[&str]| {
+        let all = [&["info", "run.dump", "--json", "--frame", "1"], args].concat();
+        folder.json(&all)["radius"].clone()
+    };
+    assert_eq!(radius(&["--radii", "0.25"]), json!([0.25, 0.25]));
+    assert_eq!(radius(&["--radii", "column:size", "--radius-scale", "0.5"]), json!([1.5, 2.0]));
+    assert_eq!(radius(&["--columns", "diameter=size"]), json!([1.5, 2.0]));
+    let args = [&SMALL[..], &["run.dump", "--radii", "1", "-o", "run.png"]].concat();
+    folder.succeed(&args);
+    assert!(folder.path("run.png").exists());
+}
+
+#[test]
+fn settings_without_effect_are_refused() {
+    let folder = Folder::new();
+    folder.write("run.dump", DUMP);
+    folder.write("a.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
+    for (args, code, message) in [
+        (&["info", "a.toml", "--frame", "1"][..], 2, "[[file]]"),
+        (&["render", "--radii", "vdw"], 2, "a file of particles"),
+        (&["info", "run.dump", "--radii", "thick"], 2, "write vdw, covalent"),
+        (&["info", "run.dump", "--frame", "second"], 2, "write first, last"),
+        (&["info", "run.dump", "--columns", "width=size"], 2, "no role of a column"),
+        (&["info", "run.dump", "--format", "png"], 2, "formats are xyzr"),
+        (&["info", "run.dump", "--frame", "2"], 1, "has no frame 2, but 2"),
+        (&["info", "run.dump", "--radii", "vdw"], 1, "none of its particles has an element"),
+        (&["info", "run.dump", "--radii", "column:q"], 1, "no column is named `q`"),
+    ] {
+        let output = folder.run(args);
+        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
+        assert!(said.contains(message), "{args:?}: {said}");
+    }
+}
