@@ -127,10 +127,7 @@ impl FrameReader for Pdb {
                     }
                 }
                 Record::Cell => self.cell = cell(&line)?,
-                Record::Title => {
-                    self.title.push(' ');
-                    self.title.push_str(&String::from_utf8_lossy(bytes(line.bytes, 10, 80)));
-                }
+                Record::Title => add_title(&mut self.title, line.bytes),
                 Record::Begin if atoms => {
                     self.lines.back();
                     break;
@@ -158,6 +155,7 @@ impl FrameReader for Pdb {
             match Record::of(line.bytes) {
                 Record::Atom => atoms = true,
                 Record::Cell => self.cell = cell(&line)?,
+                Record::Title => add_title(&mut self.title, line.bytes),
                 Record::Begin if atoms => {
                     self.lines.back();
                     break;
@@ -172,6 +170,11 @@ impl FrameReader for Pdb {
     fn more(&mut self) -> Result<bool, SceneError> {
         self.skip()
     }
+}
+
+fn add_title(title: &mut String, line: &[u8]) {
+    title.push(' ');
+    title.push_str(&String::from_utf8_lossy(bytes(line, 10, 80)));
 }
 
 /// These bytes of a line, as many of them as there are, without blanks around them.

@@ -3,7 +3,7 @@
 use crate::scene::particles::number;
 
 /// Atom styles and their columns.
-pub(super) const STYLES: [(&str, &str); 30] = [
+pub(super) const STYLES: [(&str, &str); 29] = [
     ("angle", "id mol type x y z"),
     ("atomic", "id type x y z"),
     ("body", "id type bodyflag mass x y z"),
@@ -33,7 +33,6 @@ pub(super) const STYLES: [(&str, &str); 30] = [
     ("template", "id type mol template_index template_atom x y z"),
     ("tri", "id mol type triangleflag density x y z"),
     ("wavepacket", "id type q espin eradius etag cs_re cs_im x y z"),
-    ("peridynamics", "id type volume density x y z"),
 ];
 
 /// Styles that are guessed.

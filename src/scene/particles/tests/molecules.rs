@@ -110,7 +110,8 @@ fn pdb_has_fixed_columns() {
 #[test]
 fn models_of_pdb_are_frames() {
     assert_eq!(frames(PDB)[1], [9.0]);
-    assert_eq!(frame_with(PDB, &at_frame("last")).expect("a frame").x, [9.0]);
+    let last = frame_with(PDB, &at_frame("last")).expect("a frame");
+    assert_eq!((&last.x[..], &last.title[..]), (&[9.0][..], "ONE TITLE IN TWO LINES"));
     let none = PDB.replace("20.000   30.000   40.000", " 1.000    1.000    1.000");
     assert_eq!(frame(none.replace("120.00", " 90.00")).cell, None);
     // Trajectories with END alone between frames.
