@@ -8,7 +8,6 @@
 pub mod build;
 pub mod convergence;
 mod error;
-pub mod naive;
 pub mod paper;
 pub mod rays;
 pub mod roulette;
