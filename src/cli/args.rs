@@ -1,5 +1,6 @@
 //! The command line as typed.
 
+use super::looks::LookArgs;
 use super::names::{
     BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, PPM, SAMPLERS, TONES, Traversal,
 };
@@ -58,6 +59,8 @@ pub(super) struct RenderArgs {
     pub(super) output: PathBuf,
     #[command(flatten)]
     pub(super) particles: ParticleArgs,
+    #[command(flatten)]
+    pub(super) looks: LookArgs,
     #[command(flatten)]
     pub(super) picture: PictureArgs,
     #[command(flatten)]

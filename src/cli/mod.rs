@@ -11,6 +11,7 @@ mod failure;
 mod field;
 mod field_scene;
 mod info;
+mod looks;
 mod names;
 mod output;
 mod particles;

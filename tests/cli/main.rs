@@ -5,6 +5,7 @@ mod bench;
 mod folder;
 mod inputs;
 mod layers;
+mod looks;
 mod particles;
 mod pictures;
 mod processes;

@@ -1,7 +1,9 @@
 //! What is to be rendered, how, and where to: validated as far as it can be without the scene.
 
+use super::looks::with_columns;
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
+use crate::cli::looks::BarFile;
 use crate::cli::names::{self, Traversal};
 use crate::cli::settings::region_text;
 use crate::cli::source::Source;
@@ -12,12 +14,15 @@ use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::Settings;
+use spherule::scene::particles::Looks;
 use spherule::trace::{Tracer, Width};
 use std::path::PathBuf;
 
 /// A render to be done.
 pub(super) struct Job<'a> {
     pub(super) source: Source,
+    pub(super) looks: Looks,
+    pub(super) color_bar: Option<&'a BarFile>,
     pub(super) output: PathBuf,
     pub(super) format: Format,
     pub(super) picture: &'a PictureArgs,
@@ -46,8 +51,11 @@ impl<'a> Job<'a> {
             }
             None => Source::Field { seed },
         };
+        let looks = args.looks.looks();
         Ok(Self {
-            source,
+            source: with_columns(source, &looks)?,
+            looks,
+            color_bar: args.looks.color_bar.as_ref(),
             output: args.output.clone(),
             format,
             picture: &args.picture,

@@ -3,6 +3,7 @@
 mod interrupt;
 mod job;
 mod layers;
+mod looks;
 mod metadata;
 mod noise;
 mod notes;
@@ -26,12 +27,14 @@ const INTERRUPTED: u8 = 130;
 pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
     check_writable(&job.output)?;
+    looks::check_bar(&job)?;
     job.pool()?.install(|| make_picture(&job))
 }
 
 fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
     let prepared = Prepared::load(job)?;
     prepared.tell(job);
+    looks::write_bar(job, &prepared)?;
     let render = trace(job, &prepared);
     if render.samples.total == 0 {
         output::warn("interrupted before the first sample: nothing is written");

@@ -1,6 +1,7 @@
 //! From a job to a world that can be rendered.
 
 use super::job::Job;
+use super::looks;
 use super::notes::notes;
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
@@ -11,6 +12,7 @@ use spherule::film::{Film, Region};
 use spherule::layers::Layers;
 use spherule::memory;
 use spherule::render::Render;
+use spherule::scene::particles::Legend;
 use spherule::scene::{Scene, Settings, Spheres};
 use std::time::{Duration, Instant};
 
@@ -30,6 +32,8 @@ pub(super) struct Prepared {
     pub(super) build: Duration,
     /// Settings that have no effect.
     pub(super) notes: Vec<String>,
+    /// What colors stand for, if they stand for numbers.
+    pub(super) legend: Option<Legend>,
     /// What is wrong with the input.
     pub(super) warnings: Vec<String>,
 }
@@ -38,7 +42,7 @@ impl Prepared {
     /// Loads the scene, puts in the job's settings, and builds the world.
     pub(super) fn load(job: &Job) -> Result<Self, Failure> {
         let start = Instant::now();
-        let mut scene = job.source.load()?;
+        let (mut scene, legend) = looks::load(job)?;
         let load = start.elapsed();
         job.picture.replace(&mut scene.settings);
         let region = job.region(&scene.settings)?;
@@ -64,6 +68,7 @@ impl Prepared {
             builder,
             load,
             build,
+            legend,
             warnings,
         })
     }

@@ -53,6 +53,7 @@ impl Builder {
     pub(super) fn new(path: &Arc<Path>, format: Format, schema: &Arc<Schema>) -> Self {
         let mut frame = ParticleFrame { format, ..ParticleFrame::default() };
         frame.columns.clone_from(&schema.names);
+        frame.roles.clone_from(&schema.roles);
         Self {
             path: path.clone(),
             frame,

@@ -1,7 +1,7 @@
 //! What a frame of a file of particles holds, in columns.
 
-use super::Format;
 use super::categories::{Kinds, TextColumn, retain};
+use super::options::{Format, Role};
 use crate::scene::Rgb;
 use glam::DVec3;
 
@@ -29,6 +29,8 @@ pub struct ParticleFrame {
     pub texts: Vec<TextColumn>,
     /// What all columns of the file are called, read or not.
     pub columns: Vec<String>,
+    /// Which of these positions, radii and types were read from, if from any.
+    pub roles: Vec<(Role, String)>,
     /// The cell of the simulation, if the file has one.
     pub cell: Option<Cell>,
     /// The file's title or comment; empty if it has none.

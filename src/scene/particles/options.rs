@@ -177,6 +177,8 @@ pub struct Columns {
     /// Columns to be kept as [`ParticleFrame::numbers`](super::ParticleFrame::numbers) or
     /// [`texts`](super::ParticleFrame::texts).
     pub kept: Vec<String>,
+    /// Columns to be kept likewise where the file has them.
+    pub wanted: Vec<String>,
 }
 
 impl FromStr for Columns {

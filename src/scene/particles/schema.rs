@@ -56,6 +56,8 @@ pub(super) struct Schema {
     pub(super) has_color: bool,
     /// Names of the columns that are for nothing.
     pub(super) unused: Vec<String>,
+    /// Which column each role is read from.
+    pub(super) roles: Vec<(Role, String)>,
 }
 
 impl Schema {
@@ -98,11 +100,12 @@ impl Schema {
         let naming = Naming::of(kind.map_or("", |column| &names[column]));
         let extras = choice.extras(&mut slots)?;
         let unused = unused(&names, &slots);
+        let roles = roles(&names, &slots);
         while slots.last() == Some(&Slot::Skip) {
             slots.pop();
         }
         let has_color = slots.contains(&Slot::Color(0));
-        Ok(Self { slots, names, extras, naming, has_color, unused })
+        Ok(Self { slots, names, extras, naming, has_color, unused, roles })
     }
 
     /// The columns that are for something, except for those of positions.
@@ -127,6 +130,19 @@ impl Naming {
 fn unused(names: &[String], slots: &[Slot]) -> Vec<String> {
     let columns = names.iter().zip(slots).filter(|(_, slot)| **slot == Slot::Skip);
     columns.map(|(name, _)| name.clone()).collect()
+}
+
+/// The roles that tell something of a particle, but for its color and material.
+fn roles(names: &[String], slots: &[Slot]) -> Vec<(Role, String)> {
+    let role = |slot: &Slot| match *slot {
+        Slot::Position(axis) => Some([Role::X, Role::Y, Role::Z][axis]),
+        Slot::Radius(1.0) => Some(Role::Radius),
+        Slot::Radius(_) => Some(Role::Diameter),
+        Slot::Kind => Some(Role::Kind),
+        Slot::Skip | Slot::Color(_) | Slot::Material | Slot::Extra(_) => None,
+    };
+    let columns = names.iter().zip(slots);
+    columns.filter_map(|(name, slot)| Some((role(slot)?, name.clone()))).collect()
 }
 
 /// What columns are chosen from.
@@ -184,8 +200,11 @@ impl Choice<'_> {
     /// kept in it.
     fn extras(&self, slots: &mut [Slot]) -> Result<Vec<String>, String> {
         let mut extras = Vec::new();
-        for name in &self.options.columns.kept {
-            let column = self.need(name)?;
+        let columns = &self.options.columns;
+        let kept =
+            columns.kept.iter().map(|name| self.need(name)).collect::<Result<Vec<_>, _>>()?;
+        let wanted = columns.wanted.iter().filter_map(|name| self.position(name));
+        for column in kept.into_iter().chain(wanted) {
             if slots[column] == Slot::Skip {
                 slots[column] = Slot::Extra(extras.len());
                 extras.push(self.names[column].clone());

@@ -1,12 +1,11 @@
 //! From a frame of particles to spheres: radii and colors are found, and what is no sphere dropped.
 
 use super::categories::{Kinds, TextColumn};
-use super::element::Element;
 use super::frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
-use super::options::{Format, ReadOptions};
+use super::looks::ElementColors;
+use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
 use crate::color::category;
-use crate::color::elements::jmol;
 use crate::scene::error::clipped;
 use crate::scene::{Rgb, SceneError, Spheres};
 use std::path::Path;
@@ -33,6 +32,8 @@ pub struct Particles {
     pub format: Format,
     /// What all columns of the file are called, read or not.
     pub columns: Vec<String>,
+    /// Which of these positions, radii and types were read from, if from any.
+    pub roles: Vec<(Role, String)>,
     /// The file's title or comment; empty if it has none.
     pub title: String,
     /// The step of the simulation, if the file tells it.
@@ -95,6 +96,7 @@ pub(super) fn spheres(
         cell,
         format: frame.format,
         columns: frame.columns,
+        roles: frame.roles,
         title: frame.title,
         step: frame.step,
         time: frame.time,
@@ -187,14 +189,13 @@ fn colors(frame: &mut ParticleFrame) -> Vec<Rgb> {
     }
     let table = kinds.table.iter().enumerate();
     let table: Vec<Rgb> = table
-        .map(|(row, kind)| if has_elements { color_of(kind.element) } else { category(row) })
+        .map(
+            |(row, kind)| {
+                if has_elements { ElementColors::Jmol.of(kind.element) } else { category(row) }
+            },
+        )
         .collect();
     (0..kinds.codes.len()).map(|row| table[kinds.codes.code(row) as usize]).collect()
-}
-
-/// Jmol's color of an element; gray where it has none, or is unknown.
-fn color_of(element: Option<Element>) -> Rgb {
-    element.and_then(|element| jmol(element.number())).unwrap_or(Rgb::splat(0.5))
 }
 
 /// The material of each sphere; empty if all have the first.

@@ -97,6 +97,14 @@ impl Gsd {
         }
     }
 
+    /// Whether the frame has a column of this name that is none of its positions and types.
+    fn has(&self, name: &str) -> bool {
+        let chunk = format!("particles/{name}");
+        let own = |own: &str| own == name || own == chunk;
+        let role = ["x", "y", "z", "type"].contains(&name);
+        !role && (COLUMNS.contains(&name) || self.file.names().any(own))
+    }
+
     fn kinds(&mut self, frame: &mut ParticleFrame) -> Result<(), SceneError> {
         let own = self.file.texts(self.next, "particles/types")?;
         let types = match own {
@@ -156,7 +164,10 @@ impl Gsd {
         drop(position);
         self.kinds(&mut frame)?;
         frame.radius = self.radius(count)?;
-        for name in self.options.columns.kept.clone() {
+        let columns = &self.options.columns;
+        let wanted = columns.wanted.iter().filter(|name| self.has(name));
+        let names: Vec<String> = columns.kept.iter().chain(wanted).cloned().collect();
+        for name in names {
             let values = self.column(&name, count)?;
             frame.numbers.push(NumberColumn { name, values });
         }

@@ -145,7 +145,10 @@ impl FrameReader for Npz {
             let color = |row: &[f64]| Rgb::new(share(row[0]), share(row[1]), share(row[2]));
             frame.color = values.chunks_exact(3).map(color).collect();
         }
-        for name in self.options.columns.kept.clone() {
+        let (columns, there) = (&self.options.columns, self.names());
+        let wanted = columns.wanted.iter().filter(|name| there.contains(name));
+        let names: Vec<String> = columns.kept.iter().chain(wanted).cloned().collect();
+        for name in names {
             let values = self.rows(&name, 1, count)?;
             frame.numbers.push(NumberColumn { name, values });
         }

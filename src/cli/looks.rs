@@ -1,0 +1,123 @@
+//! How the command line has particles look.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use spherule::color::{Map, Spacing};
+use spherule::drawing::Format;
+use spherule::scene::particles::{Coloring, ColumnColors, ElementColors, Looks};
+use std::path::PathBuf;
+
+/// How particles look.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[command(next_help_heading = "Looks of particles")]
+pub(super) struct LookArgs {
+    /// Colors of elements, also where the file has colors [default: the file's, or else jmol]
+    #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
+    colors: Option<Scheme>,
+    /// Color by a column of the file, or by x, y, z, radius, type, element or id: numbers by a map,
+    /// texts by ten colors in turn
+    #[arg(long, value_name = "COLUMN")]
+    color_by: Option<String>,
+    /// The map of --color-by [default: viridis]
+    #[arg(long, value_name = "MAP", requires = "color_by", value_parser = map())]
+    color_map: Option<Map>,
+    /// What the ends of the map stand for; numbers beyond have the colors of the ends [default:
+    /// auto, the least and the greatest]
+    #[arg(
+        long,
+        value_name = "LOW,HIGH|auto",
+        requires = "color_by",
+        allow_hyphen_values = true,
+        value_parser = ends
+    )]
+    color_range: Option<Ends>,
+    /// Equal ratios are equal steps on the map, not equal differences
+    #[arg(long, requires = "color_by")]
+    color_log: bool,
+    /// A picture of the map and its numbers, .png or .svg
+    #[arg(long, value_name = "FILE", requires = "color_by", value_parser = bar)]
+    pub(super) color_bar: Option<BarFile>,
+}
+
+/// Where a color bar goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct BarFile {
+    pub(super) path: PathBuf,
+    pub(super) format: Format,
+}
+
+/// Schemes of colors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Scheme {
+    /// Jmol's
+    Jmol,
+    /// Corey, Pauling and Koltun's, in the shades of `RasMol`
+    Cpk,
+}
+
+/// What the ends of a map stand for; `None` for what there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ends(Option<[f64; 2]>);
+
+fn map() -> impl TypedValueParser<Value = Map> {
+    PossibleValuesParser::new(Map::ALL.map(|map| PossibleValue::new(map.name())))
+        .try_map(|name| Map::named(&name).ok_or("not one of the names"))
+}
+
+/// `LOW,HIGH` or `auto`.
+fn ends(text: &str) -> Result<Ends, String> {
+    if text == "auto" {
+        return Ok(Ends(None));
+    }
+    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    let numbers = text.split_once(',').and_then(|(low, high)| Some([number(low)?, number(high)?]));
+    numbers
+        .filter(|[low, high]| low <= high)
+        .map(|ends| Ends(Some(ends)))
+        .ok_or_else(|| "give two numbers, the lower one first, as in -1,2.5; or auto".to_owned())
+}
+
+/// A name that ends in `.png` or `.svg`.
+fn bar(text: &str) -> Result<BarFile, String> {
+    let path = PathBuf::from(text);
+    match Format::of_suffix(&path) {
+        Some(format) => Ok(BarFile { path, format }),
+        None => Err("end the name in .png or .svg".to_owned()),
+    }
+}
+
+impl LookArgs {
+    /// The same for the library.
+    pub(super) fn looks(&self) -> Looks {
+        Looks { coloring: self.coloring() }
+    }
+
+    fn coloring(&self) -> Coloring {
+        if let Some(column) = self.color_by.clone() {
+            return Coloring::Column(ColumnColors {
+                column,
+                map: self.color_map,
+                ends: self.color_range.and_then(|Ends(ends)| ends),
+                spacing: if self.color_log { Spacing::Logarithmic } else { Spacing::Linear },
+            });
+        }
+        match self.colors {
+            None => Coloring::Usual,
+            Some(Scheme::Jmol) => Coloring::Elements(ElementColors::Jmol),
+            Some(Scheme::Cpk) => Coloring::Elements(ElementColors::Cpk),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_are_two_numbers() {
+        assert_eq!(ends("-1, 2.5"), Ok(Ends(Some([-1.0, 2.5]))));
+        assert_eq!(ends("auto"), Ok(Ends(None)));
+        for text in ["", "1", "2,1", "1,inf", "nan,1", "1,2,3", "a,b"] {
+            assert!(ends(text).is_err(), "{text}");
+        }
+    }
+}

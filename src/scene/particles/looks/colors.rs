@@ -1,0 +1,141 @@
+//! Colors of elements and of columns.
+
+use super::columns::{self, Column};
+use crate::color::elements::{cpk, jmol};
+use crate::color::{Map, Range, RangeError, Rgb, Scale, Spacing, category};
+use crate::scene::SceneError;
+use crate::scene::particles::categories::Codes;
+use crate::scene::particles::{Element, LengthUnit, Particles};
+use std::path::Path;
+
+/// A scheme of colors for elements.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ElementColors {
+    /// Jmol's.
+    #[default]
+    Jmol,
+    /// After Corey, Pauling and Koltun, in the shades of `RasMol`.
+    Cpk,
+}
+
+impl ElementColors {
+    /// The linear color of an element; gray where the scheme has none, or the element is unknown.
+    pub fn of(self, element: Option<Element>) -> Rgb {
+        let color = element.and_then(|element| match self {
+            Self::Jmol => jmol(element.number()),
+            Self::Cpk => cpk(element.number()),
+        });
+        color.unwrap_or(Rgb::splat(0.5))
+    }
+
+    pub(super) fn apply(self, path: &Path, particles: &mut Particles) -> Result<(), SceneError> {
+        let kinds = &particles.kinds;
+        if kinds.table.iter().all(|kind| kind.element.is_none()) {
+            let message = "colors of elements are asked for, but no particle has an element";
+            let help = "name the column of elements, as in type=NAME, or color by a column";
+            return Err(SceneError::whole_file(path, message).with_help(help));
+        }
+        let table: Vec<Rgb> = kinds.table.iter().map(|kind| self.of(kind.element)).collect();
+        particles.spheres.color = picked(&kinds.codes, &table);
+        Ok(())
+    }
+}
+
+/// How a column becomes colors: numbers by a map, texts by a color for each, which come again after
+/// [`CATEGORIES`](crate::color::CATEGORIES) of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnColors {
+    /// The column: one of the file, or `x`, `y`, `z`, `radius`, `type`, `element`, `id`.
+    pub column: String,
+    /// The colors of numbers; `None` for the usual ones.
+    pub map: Option<Map>,
+    /// The numbers that the map's ends stand for, and for all beyond them; `None` for the least and
+    /// the greatest there are.
+    pub ends: Option<[f64; 2]>,
+    /// How numbers are spaced between the ends.
+    pub spacing: Spacing,
+}
+
+/// What the colors of a picture stand for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Legend {
+    /// From numbers to colors.
+    pub scale: Scale,
+    /// What the numbers are, with their unit if it is known.
+    pub label: String,
+}
+
+impl ColumnColors {
+    pub(super) fn apply(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+    ) -> Result<Option<Legend>, SceneError> {
+        let column = Column::find(particles, &self.column)
+            .ok_or_else(|| columns::missing(path, particles, &self.column))?;
+        let (colors, legend) = match &column {
+            Column::Numbers(values) => {
+                let scale = self.scale(values).map_err(|error| {
+                    let message = format!("the column `{}` has no colors: {error}", self.column);
+                    SceneError::whole_file(path, message)
+                })?;
+                let label = self.label(particles.unit);
+                (scale.colors(values), Some((Legend { scale, label }, values)))
+            }
+            Column::Texts { names, codes } => {
+                self.check_texts(path)?;
+                let table: Vec<Rgb> = (0..names.len()).map(category).collect();
+                (picked(codes, &table), None)
+            }
+        };
+        let missing = legend.as_ref().map_or(0, |(_, values)| missing(values));
+        let legend = legend.map(|(legend, _)| legend);
+        particles.spheres.color = colors;
+        if missing > 0 {
+            let (path, name) = (path.display(), &self.column);
+            let warning = format!("{path}: gray for want of `{name}`: {missing} of the particles");
+            particles.warnings.push(warning);
+        }
+        Ok(legend)
+    }
+
+    fn scale(&self, values: &[f64]) -> Result<Scale, RangeError> {
+        let range = match self.ends {
+            Some([low, high]) => Range::new(low, high, self.spacing),
+            None => Range::of(values, self.spacing),
+        };
+        Ok(Scale::new(self.map.unwrap_or_default(), range?))
+    }
+
+    /// Maps and ranges are for numbers.
+    fn check_texts(&self, path: &Path) -> Result<(), SceneError> {
+        if self.map.is_none() && self.ends.is_none() && self.spacing == Spacing::Linear {
+            return Ok(());
+        }
+        let message = format!(
+            "the column `{}` holds texts, each with a color of its own: there is no map and no range",
+            self.column
+        );
+        Err(SceneError::whole_file(path, message).with_help("name a column of numbers"))
+    }
+
+    /// The column, and the unit of lengths.
+    fn label(&self, unit: LengthUnit) -> String {
+        let lengths = ["x", "y", "z", "radius", "diameter"];
+        let is_length = lengths.iter().any(|name| name.eq_ignore_ascii_case(&self.column));
+        if is_length && unit != LengthUnit::Unknown {
+            format!("{} ({})", self.column, unit.name())
+        } else {
+            self.column.clone()
+        }
+    }
+}
+
+fn missing(values: &[f64]) -> usize {
+    values.iter().filter(|value| value.is_nan()).count()
+}
+
+/// The color of each row.
+fn picked(codes: &Codes, table: &[Rgb]) -> Vec<Rgb> {
+    (0..codes.len()).map(|row| table[codes.code(row) as usize]).collect()
+}

@@ -1,0 +1,105 @@
+//! Columns by their names: those of the file, and those that all particles have.
+
+use crate::scene::SceneError;
+use crate::scene::particles::Particles;
+use crate::scene::particles::categories::{Codes, Kind};
+use crate::scene::particles::options::Role;
+use std::borrow::Cow;
+use std::path::Path;
+
+/// The particle's number: the file's, or else its place, from 0.
+pub(super) const ID: &str = "id";
+
+/// Names that mean something in every file, beside [`ID`] and [`ELEMENT`].
+const USUAL: [(&str, Role); 5] = [
+    ("x", Role::X),
+    ("y", Role::Y),
+    ("z", Role::Z),
+    ("radius", Role::Radius),
+    ("type", Role::Kind),
+];
+
+/// Elements, or types where a type is no element.
+const ELEMENT: &str = "element";
+
+/// The values of a column, a row for each sphere.
+#[derive(Debug)]
+pub(in super::super) enum Column<'p> {
+    /// NaN where there is none.
+    Numbers(Cow<'p, [f64]>),
+    /// Each row is the place of its text in `names`.
+    Texts { names: Vec<&'p str>, codes: &'p Codes },
+}
+
+impl<'p> Column<'p> {
+    /// The column of a name: one that was kept, one that tells positions, radii or types, or one
+    /// that all particles have. In any case, if there is no name that is the same letter by letter.
+    pub(in super::super) fn find(particles: &'p Particles, name: &str) -> Option<Self> {
+        let same = |own: &str| own == name;
+        Self::of(particles, same)
+            .or_else(|| Self::of(particles, |own| own.eq_ignore_ascii_case(name)))
+    }
+
+    fn of(particles: &'p Particles, named: impl Fn(&str) -> bool) -> Option<Self> {
+        if let Some(column) = particles.numbers.iter().find(|column| named(&column.name)) {
+            return Some(Self::Numbers(Cow::Borrowed(&column.values)));
+        }
+        if let Some(column) = particles.texts.iter().find(|column| named(&column.name)) {
+            let names = column.names.iter().map(String::as_str).collect();
+            return Some(Self::Texts { names, codes: &column.codes });
+        }
+        let role = particles.roles.iter().find(|(_, name)| named(name)).map(|(role, _)| *role);
+        let usual = || USUAL.iter().find(|(name, _)| named(name)).map(|(_, role)| *role);
+        match role.or_else(usual) {
+            Some(role) => Self::of_role(particles, role),
+            None if named(ELEMENT) => Self::of_kinds(particles, |kind| match kind.element {
+                Some(element) => element.symbol(),
+                None => &kind.name,
+            }),
+            None => None,
+        }
+    }
+
+    fn of_role(particles: &'p Particles, role: Role) -> Option<Self> {
+        let spheres = &particles.spheres;
+        let column = match role {
+            Role::X => &spheres.x,
+            Role::Y => &spheres.y,
+            Role::Z => &spheres.z,
+            Role::Radius => &spheres.radius,
+            Role::Diameter => {
+                let diameter = spheres.radius.iter().map(|radius| 2.0 * radius);
+                return Some(Self::Numbers(diameter.collect()));
+            }
+            Role::Kind => return Self::of_kinds(particles, |kind| &kind.name),
+            Role::Red | Role::Green | Role::Blue | Role::Material => return None,
+        };
+        Some(Self::Numbers(Cow::Borrowed(column)))
+    }
+
+    fn of_kinds(particles: &'p Particles, name: impl Fn(&'p Kind) -> &'p str) -> Option<Self> {
+        let kinds = &particles.kinds;
+        let names = kinds.table.iter().map(name).collect();
+        (!kinds.codes.is_empty()).then_some(Self::Texts { names, codes: &kinds.codes })
+    }
+}
+
+/// Names of all columns there are.
+pub(super) fn names(particles: &Particles) -> String {
+    let mut names: Vec<&str> = particles.columns.iter().map(String::as_str).collect();
+    let has_kinds = !particles.kinds.codes.is_empty();
+    let usual = USUAL.iter().filter(|(_, role)| has_kinds || *role != Role::Kind);
+    let usual = usual.map(|(name, _)| *name).chain([ID]);
+    for name in usual.chain(has_kinds.then_some(ELEMENT)) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(", ")
+}
+
+/// That there is no such column, and which there are.
+pub(super) fn missing(path: &Path, particles: &Particles, name: &str) -> SceneError {
+    let names = names(particles);
+    SceneError::whole_file(path, format!("no column is named `{name}`; there are {names}"))
+}

@@ -1,0 +1,74 @@
+//! How particles look: what the user says beyond what the file does.
+
+mod colors;
+mod columns;
+
+pub use colors::{ColumnColors, ElementColors, Legend};
+pub(super) use columns::Column;
+
+use super::Particles;
+use super::frame::NumberColumn;
+use crate::scene::SceneError;
+use std::path::Path;
+
+/// Where colors come from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Coloring {
+    /// The file; where it has none, Jmol's of elements; where there are none either, one for each
+    /// type.
+    #[default]
+    Usual,
+    /// Elements, whatever colors the file has.
+    Elements(ElementColors),
+    /// The numbers or texts of a column.
+    Column(ColumnColors),
+}
+
+/// How particles look.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Looks {
+    /// Where colors come from.
+    pub coloring: Coloring,
+}
+
+impl Looks {
+    /// The columns that these looks need, for
+    /// [`Columns::wanted`](super::Columns::wanted).
+    pub fn columns(&self) -> Vec<String> {
+        match &self.coloring {
+            Coloring::Column(colors) => vec![colors.column.clone()],
+            Coloring::Usual | Coloring::Elements(_) => Vec::new(),
+        }
+    }
+
+    /// Changes how particles look, which were read from `path` with the columns of
+    /// [`Looks::columns`]. Returns what the colors stand for, where they stand for numbers.
+    ///
+    /// # Errors
+    ///
+    /// The file has no such column or no elements, or the column has no range.
+    pub fn apply(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+    ) -> Result<Option<Legend>, SceneError> {
+        number(particles, &self.columns());
+        match &self.coloring {
+            Coloring::Usual => Ok(None),
+            Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None),
+            Coloring::Column(colors) => colors.apply(path, particles),
+        }
+    }
+}
+
+/// Gives particles the numbers that files leave out, if they are asked for: before any is dropped.
+fn number(particles: &mut Particles, names: &[String]) {
+    let asked = names.iter().any(|name| name == columns::ID);
+    if asked && Column::find(particles, columns::ID).is_none() {
+        let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
+        particles.numbers.push(NumberColumn { name: columns::ID.to_owned(), values });
+    }
+}
+
+#[cfg(test)]
+mod tests;

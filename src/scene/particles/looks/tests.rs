@@ -1,0 +1,81 @@
+use super::*;
+use crate::color::elements::cpk;
+use crate::color::{Map, Spacing, category, srgb};
+use crate::scene::particles::{Columns, ReadOptions, read};
+
+const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n\
+                    0 9\n0 9\nITEM: ATOMS type x y z radius q mol\n1 1 2 0 .5 10 a\n\
+                    2 2 2 0 1 100 b\n2 3 2 0 2 1000 a\n";
+const WATER: &str = "3\nwater\nO 0 0 0\nH 1 0 0\nH 0 1 0\n";
+
+/// What these looks make of a file with this content.
+fn look_at(content: &str, looks: &Looks) -> Result<(Particles, Option<Legend>), SceneError> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("particles");
+    std::fs::write(&path, content).expect("a file");
+    let columns = Columns { wanted: looks.columns(), ..Columns::default() };
+    let mut particles = read(&path, &ReadOptions { columns, ..ReadOptions::default() })?;
+    let legend = looks.apply(&path, &mut particles)?;
+    Ok((particles, legend))
+}
+
+fn by(column: &str) -> ColumnColors {
+    ColumnColors { column: column.to_owned(), ..ColumnColors::default() }
+}
+
+fn colored(colors: ColumnColors) -> Looks {
+    Looks { coloring: Coloring::Column(colors) }
+}
+
+#[test]
+fn numbers_have_the_colors_of_a_map() {
+    let at = |position: f64| Map::Viridis.at(position);
+    for (column, middle) in [("x", 0.5), ("RADIUS", 1.0 / 3.0), ("q", 10.0 / 110.0), ("id", 0.5)] {
+        let (particles, legend) = look_at(DUMP, &colored(by(column))).expect("colors");
+        assert_eq!(particles.spheres.color, [at(0.0), at(middle), at(1.0)], "{column}");
+        assert_eq!(legend.expect("a legend").label, column);
+    }
+    let logarithmic = ColumnColors { spacing: Spacing::Logarithmic, ..by("q") };
+    let (particles, _) = look_at(DUMP, &colored(logarithmic)).expect("colors");
+    assert!(particles.spheres.color[1].abs_diff_eq(at(0.5), 1e-6));
+    let clipped = ColumnColors { ends: Some([50.0, 100.0]), map: Some(Map::Turbo), ..by("q") };
+    let (particles, _) = look_at(DUMP, &colored(clipped)).expect("colors");
+    let at = |position: f64| Map::Turbo.at(position);
+    assert_eq!(particles.spheres.color, [at(0.0), at(1.0), at(1.0)]);
+}
+
+#[test]
+fn texts_have_colors_of_their_own() {
+    for (column, codes) in [("mol", [0, 1, 0]), ("type", [0, 1, 1]), ("element", [0, 1, 1])] {
+        let (particles, legend) = look_at(DUMP, &colored(by(column))).expect("colors");
+        assert_eq!((particles.spheres.color, legend), (codes.map(category).into(), None));
+    }
+    let ranged = ColumnColors { ends: Some([0.0, 1.0]), ..by("mol") };
+    let error = look_at(DUMP, &colored(ranged)).expect_err("no range");
+    assert!(error.message.contains("`mol` holds texts"), "{error}");
+}
+
+#[test]
+fn elements_have_the_colors_of_a_scheme() {
+    let looks = |scheme| Looks { coloring: Coloring::Elements(scheme) };
+    let (particles, _) = look_at(WATER, &looks(ElementColors::Cpk)).expect("colors");
+    assert_eq!(Some(particles.spheres.color[0]), cpk(8));
+    assert_eq!(ElementColors::Cpk.of(None), ElementColors::Jmol.of(None));
+    let error = look_at(DUMP, &looks(ElementColors::Cpk)).expect_err("no elements");
+    assert!(error.message.contains("no particle has an element"), "{error}");
+}
+
+#[test]
+fn what_is_missing_is_told() {
+    let error = look_at(DUMP, &colored(by("speed"))).expect_err("no column");
+    let expected =
+        "no column is named `speed`; there are type, x, y, z, radius, q, mol, id, element";
+    assert_eq!(error.message, expected);
+    let dust = "x,y,z,q\n0,0,0,4\n1,1,1,\n2,2,2,8\n";
+    let (particles, _) = look_at(dust, &colored(by("q"))).expect("colors");
+    assert_eq!(particles.spheres.color[1], srgb(0x80_80_80));
+    assert!(particles.warnings.iter().any(|text| text.contains("for want of `q`: 1 of")));
+    let flat = ColumnColors { spacing: Spacing::Logarithmic, ..by("z") };
+    let error = look_at(DUMP, &colored(flat)).expect_err("no range");
+    assert!(error.message.contains("the column `z` has no colors: none of the values"), "{error}");
+}
