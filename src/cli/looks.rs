@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule::color::{Map, Spacing};
 use spherule::drawing::Format;
-use spherule::scene::particles::{Coloring, ColumnColors, ElementColors, Looks};
+use spherule::scene::particles::{Coloring, ColumnColors, ElementColors, Looks, TypeLook};
 use std::path::PathBuf;
 
 /// How particles look.
@@ -33,6 +33,14 @@ pub(super) struct LookArgs {
     /// Equal ratios are equal steps on the map, not equal differences
     #[arg(long, requires = "color_by")]
     color_log: bool,
+    /// Looks of a type, by its name or element, before all else; again for further types. Materials
+    /// are lambertian, plastic, metal, glass, mirror and emitter
+    #[arg(
+        long = "type",
+        value_name = "NAME:radius=R,color=#RRGGBB,material=M",
+        value_parser = |text: &str| text.parse::<TypeLook>()
+    )]
+    types: Vec<TypeLook>,
     /// A picture of the map and its numbers, .png or .svg
     #[arg(long, value_name = "FILE", requires = "color_by", value_parser = bar)]
     pub(super) color_bar: Option<BarFile>,
@@ -86,9 +94,12 @@ fn bar(text: &str) -> Result<BarFile, String> {
 }
 
 impl LookArgs {
-    /// The same for the library.
-    pub(super) fn looks(&self) -> Looks {
-        Looks { coloring: self.coloring() }
+    /// The same for the library, with a factor on radii.
+    pub(super) fn looks(&self, radius_scale: f64) -> Looks {
+        let mut types = self.types.clone();
+        let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
+        radii.for_each(|radius| *radius *= radius_scale);
+        Looks { coloring: self.coloring(), types }
     }
 
     fn coloring(&self) -> Coloring {

@@ -31,10 +31,18 @@ fn colors_follow_elements_or_columns() {
         picture(&["--color-by", "q", "--color-map", "coolwarm"]),
         picture(&["--color-by", "q", "--color-range", "0,1"]),
         picture(&["--color-by", "id", "--color-log"]),
+        picture(&["--type", "C:material=mirror"]),
+        picture(&["--type", "C:color=#0000ff", "--type", "O:radius=0.5"]),
     ];
     for (place, picture) in pictures.iter().enumerate() {
         assert!(!pictures[..place].contains(picture), "{place}");
     }
+}
+
+#[test]
+fn radii_of_types_are_scaled_as_all_are() {
+    let scaled = picture(&["--radii", "2", "--radius-scale", "0.5", "--type", "C:radius=0.5"]);
+    assert_eq!(scaled, picture(&["--radii", "1", "--type", "C:radius=0.25"]));
 }
 
 #[test]
@@ -67,6 +75,8 @@ fn looks_that_cannot_be_are_refused() {
         (&["dust.csv", "--color-by", "q", "--color-bar", "bar.pdf"], 2, ".png or .svg"),
         (&["dust.csv", "--color-by", "note", "--color-bar", "bar.png"], 2, "a column of numbers"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "no/bar.png"], 1, "cannot be written"),
+        (&["dust.csv", "--type", "C:material=wood"], 2, "materials are lambertian"),
+        (&["dust.csv", "--type", "Fe:radius=1"], 1, "`Fe`; there are C, O, H"),
         (&["dust.csv", "--color-by", "mass"], 1, "there are id, element, x, y, z, q, note, radius"),
         (&["dust.csv", "--color-by", "note", "--color-log"], 1, "`note` holds texts"),
     ] {

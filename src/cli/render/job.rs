@@ -51,7 +51,7 @@ impl<'a> Job<'a> {
             }
             None => Source::Field { seed },
         };
-        let looks = args.looks.looks();
+        let looks = args.looks.looks(args.particles.options().radius_scale);
         Ok(Self {
             source: with_columns(source, &looks)?,
             looks,

@@ -91,7 +91,8 @@ impl Scene {
         let mut rows = Vec::new();
         for name in &particles.material_names {
             let name = if name.is_empty() { "particles" } else { name };
-            rows.push(materials.row_or_add(named(name)));
+            let chosen = particles.materials.iter().find(|material| material.name == *name);
+            rows.push(materials.row_or_add(chosen.cloned().unwrap_or_else(|| named(name))));
         }
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);

@@ -45,7 +45,7 @@ mod xyz;
 pub use categories::{Codes, Kind, Kinds, TextColumn};
 pub use element::Element;
 pub use frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
-pub use looks::{Coloring, ColumnColors, ElementColors, Legend, Looks};
+pub use looks::{Coloring, ColumnColors, ElementColors, Legend, Looks, TypeLook, TypeMaterial};
 pub use options::{Columns, Format, FrameChoice, Radii, ReadOptions, Role};
 pub use reader::{Frames, count_frames, read_frame};
 pub use spheres::Particles;

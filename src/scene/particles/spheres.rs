@@ -7,7 +7,7 @@ use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
 use crate::color::category;
 use crate::scene::error::clipped;
-use crate::scene::{Rgb, SceneError, Spheres};
+use crate::scene::{NamedMaterial, Rgb, SceneError, Spheres};
 use std::path::Path;
 
 /// Most unknown names that a warning lists.
@@ -34,6 +34,9 @@ pub struct Particles {
     pub columns: Vec<String>,
     /// Which of these positions, radii and types were read from, if from any.
     pub roles: Vec<(Role, String)>,
+    /// Materials that were chosen, by names that `material_names` has; the others are the scene's
+    /// own affair.
+    pub materials: Vec<NamedMaterial>,
     /// The file's title or comment; empty if it has none.
     pub title: String,
     /// The step of the simulation, if the file tells it.
@@ -97,6 +100,7 @@ pub(super) fn spheres(
         format: frame.format,
         columns: frame.columns,
         roles: frame.roles,
+        materials: Vec::new(),
         title: frame.title,
         step: frame.step,
         time: frame.time,

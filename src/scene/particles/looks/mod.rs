@@ -2,9 +2,11 @@
 
 mod colors;
 mod columns;
+mod types;
 
 pub use colors::{ColumnColors, ElementColors, Legend};
 pub(super) use columns::Column;
+pub use types::{TypeLook, TypeMaterial};
 
 use super::Particles;
 use super::frame::NumberColumn;
@@ -29,6 +31,8 @@ pub enum Coloring {
 pub struct Looks {
     /// Where colors come from.
     pub coloring: Coloring,
+    /// Looks of single types, before all else; of two for one type the later one wins.
+    pub types: Vec<TypeLook>,
 }
 
 impl Looks {
@@ -46,18 +50,20 @@ impl Looks {
     ///
     /// # Errors
     ///
-    /// The file has no such column or no elements, or the column has no range.
+    /// The file has no such column, type or element, or the column has no range.
     pub fn apply(
         &self,
         path: &Path,
         particles: &mut Particles,
     ) -> Result<Option<Legend>, SceneError> {
         number(particles, &self.columns());
-        match &self.coloring {
-            Coloring::Usual => Ok(None),
-            Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None),
-            Coloring::Column(colors) => colors.apply(path, particles),
-        }
+        let legend = match &self.coloring {
+            Coloring::Usual => None,
+            Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None)?,
+            Coloring::Column(colors) => colors.apply(path, particles)?,
+        };
+        self.types.iter().try_for_each(|look| look.apply(path, particles))?;
+        Ok(legend)
     }
 }
 

@@ -2,6 +2,7 @@ use super::*;
 use crate::color::elements::cpk;
 use crate::color::{Map, Spacing, category, srgb};
 use crate::scene::particles::{Columns, ReadOptions, read};
+use crate::scene::{Material, Rgb, Scene};
 
 const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n\
                     0 9\n0 9\nITEM: ATOMS type x y z radius q mol\n1 1 2 0 .5 10 a\n\
@@ -24,7 +25,7 @@ fn by(column: &str) -> ColumnColors {
 }
 
 fn colored(colors: ColumnColors) -> Looks {
-    Looks { coloring: Coloring::Column(colors) }
+    Looks { coloring: Coloring::Column(colors), ..Looks::default() }
 }
 
 #[test]
@@ -57,7 +58,7 @@ fn texts_have_colors_of_their_own() {
 
 #[test]
 fn elements_have_the_colors_of_a_scheme() {
-    let looks = |scheme| Looks { coloring: Coloring::Elements(scheme) };
+    let looks = |scheme| Looks { coloring: Coloring::Elements(scheme), ..Looks::default() };
     let (particles, _) = look_at(WATER, &looks(ElementColors::Cpk)).expect("colors");
     assert_eq!(Some(particles.spheres.color[0]), cpk(8));
     assert_eq!(ElementColors::Cpk.of(None), ElementColors::Jmol.of(None));
@@ -78,4 +79,65 @@ fn what_is_missing_is_told() {
     let flat = ColumnColors { spacing: Spacing::Logarithmic, ..by("z") };
     let error = look_at(DUMP, &colored(flat)).expect_err("no range");
     assert!(error.message.contains("the column `z` has no colors: none of the values"), "{error}");
+}
+
+fn typed(looks: &[&str]) -> Looks {
+    let types = looks.iter().map(|look| look.parse().expect("looks of a type")).collect();
+    Looks { types, ..Looks::default() }
+}
+
+#[test]
+fn types_have_looks_of_their_own() {
+    let looks = typed(&["H:radius=0.5,color=#ff0000", "O:material=glass", "H:radius=0.25"]);
+    let (particles, _) = look_at(WATER, &looks).expect("looks");
+    assert_eq!(particles.spheres.radius[1..], [0.25, 0.25]);
+    assert_eq!(particles.spheres.color[1..], [Rgb::X, Rgb::X]);
+    let scene = Scene::of_particles(particles, "water");
+    let material = |row| &scene.materials[scene.spheres.material_of(row) as usize].material;
+    assert!(matches!(material(0), Material::Dielectric { .. }));
+    assert!(matches!(material(1), Material::Plastic { .. }));
+}
+
+#[test]
+fn what_glows_has_the_color_of_its_type() {
+    let radiance = |looks: &[&str]| {
+        let (particles, _) = look_at(WATER, &typed(looks)).expect("looks");
+        match particles.materials.first().expect("a material").material {
+            Material::Emitter { radiance, .. } => radiance,
+            ref other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(radiance(&["H:color=#00ff00,material=emitter"]), Rgb::Y * 4.0);
+    assert_eq!(radiance(&["O:material=emitter"]), srgb(0xFF_0D_0D) * 4.0);
+}
+
+#[test]
+fn every_material_is_one_of_the_scene() {
+    for (name, material) in TypeMaterial::ALL {
+        assert_eq!(material.name(), name);
+        let looks = typed(&[&format!("H:material={name}")]);
+        let (particles, _) = look_at(WATER, &looks).expect("looks");
+        let scene = Scene::of_particles(particles, "water");
+        assert!(crate::World::build(&scene).is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn unknown_types_are_told_with_those_there_are() {
+    let error = look_at(WATER, &typed(&["N:radius=1"])).expect_err("no nitrogen");
+    assert_eq!(error.message, "no type is called `N`; there are O, H");
+    let dust = "x,y,z\n0,0,0\n1,1,1\n";
+    let error = look_at(dust, &typed(&["N:radius=1"])).expect_err("no types");
+    assert!(error.message.contains("the file has no types"), "{error}");
+    for (text, expected) in [
+        ("N", "write a type and its looks"),
+        ("N:", "write a type and its looks"),
+        ("N:radius=0", "`0` is no radius"),
+        ("N:color=red", "`red` is no color"),
+        ("N:material=wood", "materials are lambertian, plastic"),
+        ("N:size=1", "`size` is none of radius, color and material"),
+    ] {
+        let error = text.parse::<TypeLook>().expect_err(text);
+        assert!(error.contains(expected), "{text}: {error}");
+    }
 }

@@ -1,0 +1,193 @@
+//! Looks of single types.
+
+use crate::color::{Rgb, parse_hex};
+use crate::scene::particles::{Element, Kind, Particles};
+use crate::scene::{ConductorFresnel, Material, NamedMaterial, SceneError};
+use std::path::Path;
+use std::str::FromStr;
+
+/// Radiance of what glows, in units of its color: bright beside the white sky of radiance 1.
+const GLOW: f32 = 4.0;
+
+/// Share that what is not clear reflects, of its color.
+const ALBEDO: f32 = 0.8;
+
+/// A material for a type of particles, in the color that the particles have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TypeMaterial {
+    /// Ideally diffuse.
+    Lambertian,
+    /// Diffuse under a smooth coat of index 1.5, as all particles are that nobody says more of.
+    Plastic,
+    /// Brushed: GGX of alpha 0.2.
+    Metal,
+    /// Smooth and clear, of index 1.5.
+    Glass,
+    /// A smooth mirror.
+    Mirror,
+    /// Glows, four times as bright as its color; white if the particles have several colors.
+    Emitter,
+}
+
+impl TypeMaterial {
+    /// All of them, with the names that commands have for them.
+    pub const ALL: [(&'static str, Self); 6] = [
+        ("lambertian", Self::Lambertian),
+        ("plastic", Self::Plastic),
+        ("metal", Self::Metal),
+        ("glass", Self::Glass),
+        ("mirror", Self::Mirror),
+        ("emitter", Self::Emitter),
+    ];
+
+    /// What commands call it.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, material)| *material == self).map_or("", |(name, _)| name)
+    }
+
+    /// The scene's material; what glows does so in this color.
+    fn material(self, color: Rgb) -> Material {
+        let albedo = Rgb::splat(ALBEDO);
+        match self {
+            Self::Lambertian => Material::Lambertian { color: albedo },
+            Self::Plastic => Material::Plastic { color: albedo, ior: 1.5 },
+            Self::Metal => {
+                Material::Conductor { fresnel: ConductorFresnel::Schlick(albedo), roughness: 0.2 }
+            }
+            Self::Glass => Material::Dielectric { ior: 1.5, color: Rgb::ONE },
+            Self::Mirror => {
+                Material::Conductor { fresnel: ConductorFresnel::Constant(albedo), roughness: 0.0 }
+            }
+            Self::Emitter => Material::Emitter { radiance: color * GLOW, albedo: Rgb::ZERO },
+        }
+    }
+}
+
+/// What the particles of a type look like, instead of what all else says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TypeLook {
+    /// The type's name, or else the symbol of its element.
+    pub name: String,
+    /// The radius, more than 0, in the scene's unit.
+    pub radius: Option<f64>,
+    /// The linear color, each channel 0 to 1.
+    pub color: Option<Rgb>,
+    /// What they are made of.
+    pub material: Option<TypeMaterial>,
+}
+
+impl FromStr for TypeLook {
+    type Err = String;
+
+    /// `NAME:radius=R,color=#rrggbb,material=NAME`, of which something may be missing.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let usage = "write a type and its looks, as in Na:radius=1.2,color=#ab5cf2,material=glass";
+        let (name, looks) = text.rsplit_once(':').ok_or(usage)?;
+        let mut look = Self { name: name.to_owned(), ..Self::default() };
+        for entry in looks.split(',') {
+            let (key, value) = entry.split_once('=').ok_or(usage)?;
+            match key.trim() {
+                "radius" => look.radius = Some(radius(value.trim())?),
+                "color" => look.color = Some(color(value.trim())?),
+                "material" => look.material = Some(material(value.trim())?),
+                other => return Err(format!("`{other}` is none of radius, color and material")),
+            }
+        }
+        Ok(look)
+    }
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    let radius = text.parse().ok().filter(|radius| *radius > 0.0 && *radius < f64::INFINITY);
+    radius.ok_or_else(|| format!("`{text}` is no radius: write a number of more than 0"))
+}
+
+fn color(text: &str) -> Result<Rgb, String> {
+    parse_hex(text).ok_or_else(|| format!("`{text}` is no color: write #rrggbb, as in #ff8000"))
+}
+
+fn material(text: &str) -> Result<TypeMaterial, String> {
+    let found = TypeMaterial::ALL.iter().find(|(name, _)| *name == text);
+    found.map(|(_, material)| *material).ok_or_else(|| {
+        let names = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
+        format!("`{text}` is no material here; materials are {names}")
+    })
+}
+
+impl TypeLook {
+    pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), SceneError> {
+        let chosen = self.kinds(&particles.kinds.table);
+        if !chosen.contains(&true) {
+            return Err(self.unknown(path, &particles.kinds.table));
+        }
+        let codes = &particles.kinds.codes;
+        let rows = (0..codes.len()).filter(|&row| chosen[codes.code(row) as usize]);
+        let rows: Vec<usize> = rows.collect();
+        let spheres = &mut particles.spheres;
+        if let Some(radius) = self.radius {
+            for &row in &rows {
+                spheres.radius[row] = radius;
+            }
+        }
+        if let Some(color) = self.color {
+            let count = spheres.len();
+            spheres.color.resize(count, Rgb::ONE);
+            for &row in &rows {
+                spheres.color[row] = color;
+            }
+        }
+        if let Some(material) = self.material {
+            self.make(material, particles, &rows);
+        }
+        Ok(())
+    }
+
+    /// Which types are meant.
+    fn kinds(&self, table: &[Kind]) -> Vec<bool> {
+        let named: Vec<bool> = table.iter().map(|kind| kind.name == self.name).collect();
+        if named.contains(&true) {
+            return named;
+        }
+        let symbol = |kind: &Kind| kind.element.is_some_and(|own| own.symbol() == self.name);
+        table.iter().map(symbol).collect()
+    }
+
+    fn unknown(&self, path: &Path, table: &[Kind]) -> SceneError {
+        if table.is_empty() {
+            let message = "looks of a type are given, but the file has no types";
+            let help = "name the column of types, as in type=NAME";
+            return SceneError::whole_file(path, message).with_help(help);
+        }
+        let mut names: Vec<&str> = Vec::new();
+        for kind in table {
+            let symbol = kind.element.map(Element::symbol);
+            for name in [kind.name.as_str()].into_iter().chain(symbol) {
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+        }
+        let names = names.join(", ");
+        SceneError::whole_file(
+            path,
+            format!("no type is called `{}`; there are {names}", self.name),
+        )
+    }
+
+    /// Has these spheres made of a material of their own.
+    fn make(&self, material: TypeMaterial, particles: &mut Particles, rows: &[usize]) {
+        let spheres = &mut particles.spheres;
+        let mut colors = rows.iter().map(|&row| spheres.color_of(row));
+        let first = colors.next().unwrap_or(Rgb::ONE);
+        let color = if colors.all(|color| color == first) { first } else { Rgb::ONE };
+        let name = format!("{}: {}", self.name, material.name());
+        let count = spheres.len();
+        spheres.material.resize(count, 0);
+        let row = particles.material_names.len() as u32;
+        for &sphere in rows {
+            spheres.material[sphere] = row;
+        }
+        particles.material_names.push(name.clone());
+        particles.materials.push(NamedMaterial { name, material: material.material(color) });
+    }
+}
