@@ -3,13 +3,20 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule::color::{Map, Spacing};
 use spherule::drawing::Format;
-use spherule::scene::particles::{Coloring, ColumnColors, ElementColors, Looks, TypeLook};
+use spherule::scene::particles::{
+    Coloring, ColumnColors, ElementColors, Looks, Selection, TypeLook,
+};
 use std::path::PathBuf;
 
 /// How particles look.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Looks of particles")]
 pub(super) struct LookArgs {
+    /// Draw those alone that a condition on columns holds for, as in 'element != H and z > 10':
+    /// == != < <= > >=, and, or, not, + - * /, parentheses; texts as words or in quotes, names with
+    /// other signs than _ . : [ ] in backticks
+    #[arg(long, value_name = "CONDITION", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<Selection>())]
+    select: Option<Selection>,
     /// Colors of elements, also where the file has colors [default: the file's, or else jmol]
     #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
     colors: Option<Scheme>,
@@ -99,7 +106,7 @@ impl LookArgs {
         let mut types = self.types.clone();
         let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
         radii.for_each(|radius| *radius *= radius_scale);
-        Looks { coloring: self.coloring(), types }
+        Looks { select: self.select.clone(), coloring: self.coloring(), types }
     }
 
     fn coloring(&self) -> Coloring {

@@ -32,6 +32,8 @@ fn colors_follow_elements_or_columns() {
         picture(&["--color-by", "q", "--color-range", "0,1"]),
         picture(&["--color-by", "id", "--color-log"]),
         picture(&["--type", "C:material=mirror"]),
+        picture(&["--select", "element != C"]),
+        picture(&["--select", "-q < 0"]),
         picture(&["--type", "C:color=#0000ff", "--type", "O:radius=0.5"]),
     ];
     for (place, picture) in pictures.iter().enumerate() {
@@ -75,6 +77,9 @@ fn looks_that_cannot_be_are_refused() {
         (&["dust.csv", "--color-by", "q", "--color-bar", "bar.pdf"], 2, ".png or .svg"),
         (&["dust.csv", "--color-by", "note", "--color-bar", "bar.png"], 2, "a column of numbers"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "no/bar.png"], 1, "cannot be written"),
+        (&["dust.csv", "--select", "z > "], 2, "missing here z > ^"),
+        (&["dust.csv", "--select", "mass > 1"], 1, "[selection:1:1] 1 │ mass > 1 · ────"),
+        (&["dust.csv", "--select", "x > 9"], 1, "none of its 3 particles"),
         (&["dust.csv", "--type", "C:material=wood"], 2, "materials are lambertian"),
         (&["dust.csv", "--type", "Fe:radius=1"], 1, "`Fe`; there are C, O, H"),
         (&["dust.csv", "--color-by", "mass"], 1, "there are id, element, x, y, z, q, note, radius"),

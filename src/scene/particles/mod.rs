@@ -36,6 +36,7 @@ mod radii;
 mod reader;
 mod scalar;
 mod schema;
+mod select;
 mod sniff;
 mod source;
 mod spheres;
@@ -48,6 +49,7 @@ pub use frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
 pub use looks::{Coloring, ColumnColors, ElementColors, Legend, Looks, TypeLook, TypeMaterial};
 pub use options::{Columns, Format, FrameChoice, Radii, ReadOptions, Role};
 pub use reader::{Frames, count_frames, read_frame};
+pub use select::{Fault, Selection};
 pub use spheres::Particles;
 
 use super::SceneError;

@@ -1,6 +1,6 @@
 //! From a frame of particles to spheres: radii and colors are found, and what is no sphere dropped.
 
-use super::categories::{Kinds, TextColumn};
+use super::categories::{Kinds, TextColumn, retain};
 use super::frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
 use super::looks::ElementColors;
 use super::options::{Format, ReadOptions, Role};
@@ -47,6 +47,20 @@ pub struct Particles {
     pub unit: LengthUnit,
     /// What was dropped or assumed.
     pub warnings: Vec<String>,
+}
+
+impl Particles {
+    /// Keeps the rows that `keep` is true for.
+    pub(super) fn retain(&mut self, keep: &[bool]) {
+        let spheres = &mut self.spheres;
+        let values = self.numbers.iter_mut().map(|column| &mut column.values);
+        let columns = [&mut spheres.x, &mut spheres.y, &mut spheres.z, &mut spheres.radius];
+        columns.into_iter().chain(values).for_each(|column| retain(column, keep));
+        retain(&mut spheres.material, keep);
+        retain(&mut spheres.color, keep);
+        let texts = self.texts.iter_mut().map(|column| &mut column.codes);
+        texts.chain([&mut self.kinds.codes]).for_each(|codes| codes.retain(keep));
+    }
 }
 
 /// Makes spheres of a frame; positions are moved, not copied.

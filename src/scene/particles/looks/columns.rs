@@ -85,7 +85,7 @@ impl<'p> Column<'p> {
 }
 
 /// Names of all columns there are.
-pub(super) fn names(particles: &Particles) -> String {
+pub(in super::super) fn names(particles: &Particles) -> String {
     let mut names: Vec<&str> = particles.columns.iter().map(String::as_str).collect();
     let has_kinds = !particles.kinds.codes.is_empty();
     let usual = USUAL.iter().filter(|(_, role)| has_kinds || *role != Role::Kind);

@@ -5,11 +5,12 @@ mod columns;
 mod types;
 
 pub use colors::{ColumnColors, ElementColors, Legend};
-pub(super) use columns::Column;
+pub(super) use columns::{Column, names};
 pub use types::{TypeLook, TypeMaterial};
 
 use super::Particles;
 use super::frame::NumberColumn;
+use super::select::Selection;
 use crate::scene::SceneError;
 use std::path::Path;
 
@@ -29,6 +30,9 @@ pub enum Coloring {
 /// How particles look.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Looks {
+    /// Which particles are drawn at all; `None` for all of them. Ranges of colors are those of
+    /// what is drawn.
+    pub select: Option<Selection>,
     /// Where colors come from.
     pub coloring: Coloring,
     /// Looks of single types, before all else; of two for one type the later one wins.
@@ -39,10 +43,11 @@ impl Looks {
     /// The columns that these looks need, for
     /// [`Columns::wanted`](super::Columns::wanted).
     pub fn columns(&self) -> Vec<String> {
-        match &self.coloring {
-            Coloring::Column(colors) => vec![colors.column.clone()],
-            Coloring::Usual | Coloring::Elements(_) => Vec::new(),
+        let mut columns = self.select.as_ref().map_or_else(Vec::new, Selection::columns);
+        if let Coloring::Column(colors) = &self.coloring {
+            columns.push(colors.column.clone());
         }
+        columns
     }
 
     /// Changes how particles look, which were read from `path` with the columns of
@@ -50,13 +55,17 @@ impl Looks {
     ///
     /// # Errors
     ///
-    /// The file has no such column, type or element, or the column has no range.
+    /// The file has no such column, type or element, the column has no range, or the selection is
+    /// empty or makes no sense.
     pub fn apply(
         &self,
         path: &Path,
         particles: &mut Particles,
     ) -> Result<Option<Legend>, SceneError> {
         number(particles, &self.columns());
+        if let Some(selection) = &self.select {
+            selection.apply(path, particles)?;
+        }
         let legend = match &self.coloring {
             Coloring::Usual => None,
             Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None)?,

@@ -141,3 +141,15 @@ fn unknown_types_are_told_with_those_there_are() {
         assert!(error.contains(expected), "{text}: {error}");
     }
 }
+
+#[test]
+fn ranges_are_those_of_what_is_drawn() {
+    let select = Some("id > 0".parse().expect("a condition"));
+    let looks = Looks { select, ..colored(by("id")) };
+    assert_eq!(looks.columns(), ["id", "id"]);
+    let (particles, legend) = look_at(DUMP, &looks).expect("colors");
+    let range = legend.expect("a legend").scale.range;
+    assert_eq!((range.low(), range.high()), (1.0, 2.0));
+    let at = |position: f64| Map::Viridis.at(position);
+    assert_eq!(particles.spheres.color, [at(0.0), at(1.0)]);
+}

@@ -1,0 +1,156 @@
+//! From names to columns, and from columns to the rows that a condition is true of.
+
+use super::grammar::{Node, Tree};
+use super::words::{Sign, Wrong};
+use crate::scene::particles::Particles;
+use crate::scene::particles::categories::Codes;
+use crate::scene::particles::looks::{Column, names};
+use rayon::prelude::*;
+use std::borrow::Cow;
+
+/// A condition on rows.
+enum Truth<'p> {
+    Any(Vec<Self>),
+    All(Vec<Self>),
+    Not(Box<Self>),
+    Compare(Sign, Number<'p>, Number<'p>),
+    /// Whether the condition is true, for each text of a column.
+    Texts(&'p Codes, Vec<bool>),
+}
+
+/// A number for each row.
+enum Number<'p> {
+    Constant(f64),
+    Column(Cow<'p, [f64]>),
+    /// The number of each text of a column; NaN where it is none.
+    Texts(&'p Codes, Vec<f64>),
+    Negative(Box<Self>),
+    Arithmetic(Box<Self>, Vec<(Sign, Self)>),
+}
+
+/// Whether the condition is true, for each row.
+pub(super) fn rows(tree: &Tree, particles: &Particles) -> Result<Vec<bool>, Wrong> {
+    let truth = truth(tree, particles)?;
+    Ok((0..particles.spheres.len()).into_par_iter().map(|row| truth.at(row)).collect())
+}
+
+impl Truth<'_> {
+    fn at(&self, row: usize) -> bool {
+        match self {
+            Self::Any(parts) => parts.iter().any(|part| part.at(row)),
+            Self::All(parts) => parts.iter().all(|part| part.at(row)),
+            Self::Not(inner) => !inner.at(row),
+            Self::Compare(sign, left, right) => compare(*sign, left.at(row), right.at(row)),
+            Self::Texts(codes, truths) => truths[codes.code(row) as usize],
+        }
+    }
+}
+
+fn compare(sign: Sign, left: f64, right: f64) -> bool {
+    match sign {
+        Sign::Equal => left == right,
+        Sign::NotEqual => left != right,
+        Sign::Less => left < right,
+        Sign::LessEqual => left <= right,
+        Sign::Greater => left > right,
+        _ => left >= right,
+    }
+}
+
+impl Number<'_> {
+    fn at(&self, row: usize) -> f64 {
+        match self {
+            Self::Constant(number) => *number,
+            Self::Column(values) => values[row],
+            Self::Texts(codes, numbers) => numbers[codes.code(row) as usize],
+            Self::Negative(inner) => -inner.at(row),
+            Self::Arithmetic(first, rest) => {
+                rest.iter().fold(first.at(row), |left, (sign, right)| {
+                    let right = right.at(row);
+                    match sign {
+                        Sign::Plus => left + right,
+                        Sign::Minus => left - right,
+                        Sign::Times => left * right,
+                        _ => left / right,
+                    }
+                })
+            }
+        }
+    }
+}
+
+fn truth<'p>(tree: &Tree, particles: &'p Particles) -> Result<Truth<'p>, Wrong> {
+    let all = |parts: &[Tree]| {
+        parts.iter().map(|part| truth(part, particles)).collect::<Result<_, Wrong>>()
+    };
+    match &tree.node {
+        Node::Any(parts) => Ok(Truth::Any(all(parts)?)),
+        Node::All(parts) => Ok(Truth::All(all(parts)?)),
+        Node::Not(inner) => Ok(Truth::Not(Box::new(truth(inner, particles)?))),
+        Node::Compare(sign, sides) => comparison(*sign, sides, particles),
+        _ => Err((tree.span.clone(), "compare this with something, as in `z > 10`".to_owned())),
+    }
+}
+
+fn comparison<'p>(
+    sign: Sign,
+    [left, right]: &[Tree; 2],
+    particles: &'p Particles,
+) -> Result<Truth<'p>, Wrong> {
+    for (column, other) in [(left, right), (right, left)] {
+        let (Node::Word(text) | Node::Text(text)) = &other.node else { continue };
+        let Some(Column::Texts { names, codes }) = column_of(column, particles) else { continue };
+        if !matches!(sign, Sign::Equal | Sign::NotEqual) {
+            let span = left.span.start..right.span.end;
+            return Err((span, "texts are equal or not: compare them by `==` or `!=`".to_owned()));
+        }
+        let truths = names.iter().map(|name| (name == text) == (sign == Sign::Equal));
+        return Ok(Truth::Texts(codes, truths.collect()));
+    }
+    Ok(Truth::Compare(sign, number(left, particles)?, number(right, particles)?))
+}
+
+/// The column that a word names.
+fn column_of<'p>(tree: &Tree, particles: &'p Particles) -> Option<Column<'p>> {
+    match &tree.node {
+        Node::Word(name) | Node::Column(name) => Column::find(particles, name),
+        _ => None,
+    }
+}
+
+fn number<'p>(tree: &Tree, particles: &'p Particles) -> Result<Number<'p>, Wrong> {
+    let wrong = |message: &str| Err((tree.span.clone(), message.to_owned()));
+    match &tree.node {
+        Node::Number(number) => Ok(Number::Constant(*number)),
+        Node::Word(name) | Node::Column(name) => {
+            column(name, particles).map_err(|message| (tree.span.clone(), message))
+        }
+        Node::Text(_) => wrong("only a column of texts can be compared with a text"),
+        Node::Negative(inner) => Ok(Number::Negative(Box::new(number(inner, particles)?))),
+        Node::Arithmetic(first, rest) => {
+            let first = number(first, particles)?;
+            let rest = rest.iter().map(|(sign, part)| Ok((*sign, number(part, particles)?)));
+            Ok(Number::Arithmetic(Box::new(first), rest.collect::<Result<_, Wrong>>()?))
+        }
+        Node::Compare(..) | Node::Not(_) | Node::All(_) | Node::Any(_) => {
+            wrong("this is true or false, but a number is wanted")
+        }
+    }
+}
+
+fn column<'p>(name: &str, particles: &'p Particles) -> Result<Number<'p>, String> {
+    match Column::find(particles, name) {
+        Some(Column::Numbers(values)) => Ok(Number::Column(values)),
+        Some(Column::Texts { names, codes }) => {
+            let number = |name: &&str| name.parse().unwrap_or(f64::NAN);
+            let numbers: Vec<f64> = names.iter().map(number).collect();
+            if numbers.iter().all(|number| number.is_nan()) {
+                return Err(format!(
+                    "the column `{name}` holds texts: compare it with a word, or a text in quotes"
+                ));
+            }
+            Ok(Number::Texts(codes, numbers))
+        }
+        None => Err(format!("no column is named `{name}`; there are {}", names(particles))),
+    }
+}

@@ -1,0 +1,110 @@
+use super::*;
+use crate::scene::particles::{Columns, ReadOptions, read};
+
+const ATOMS: &str = "id,element,residue,x,y,z,q\n1,H,x,0,0,0,-1\n2,C,12,1,0,5,0\n3,O,13,2,0,10,\n\
+                     4,H,12,3,0,15,2.5\n";
+
+/// The ids of the atoms that a condition selects, or what is wrong: the faulty part and a message.
+fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("particles");
+    std::fs::write(&path, content).expect("a file");
+    let selection: Selection = condition
+        .parse()
+        .map_err(|fault: Fault| format!("{}: {}", &fault.text[fault.span], fault.message))?;
+    let columns = Columns { wanted: selection.columns(), ..Columns::default() };
+    let options = ReadOptions { columns, ..ReadOptions::default() };
+    let mut particles = read(&path, &options).expect("particles");
+    selection.apply(&path, &mut particles).map_err(|error| match error.place {
+        Some(place) => format!("{}: {}", &place.source_text[place.span], error.message),
+        None => error.message,
+    })?;
+    assert_eq!(particles.kinds.codes.len(), particles.spheres.len());
+    Ok(particles.spheres.x.iter().map(|x| x + 1.0).collect())
+}
+
+fn ids(condition: &str) -> Vec<f64> {
+    select(ATOMS, condition).unwrap_or_else(|fault| panic!("{condition}: {fault}"))
+}
+
+#[test]
+fn conditions_select_rows() {
+    for (condition, expected) in [
+        ("z > 5", &[3.0, 4.0][..]),
+        ("z >= 5 and z < 15", &[2.0, 3.0]),
+        ("element != H and z > 1", &[2.0, 3.0]),
+        ("H == element", &[1.0, 4.0]),
+        ("element == 'C' or element == \"O\"", &[2.0, 3.0]),
+        ("not element == H", &[2.0, 3.0]),
+        ("!(element == H) || id == 1", &[1.0, 2.0, 3.0]),
+        ("id == 1 or id == 2 and z > 100", &[1.0]),
+        ("(id == 1 or id == 2) and z <= 0", &[1.0]),
+        ("1 + 2 * id - 6 / 2 == 4", &[3.0]),
+        ("-z < -5", &[3.0, 4.0]),
+        ("10 - 4 - id > 3", &[1.0, 2.0]),
+        ("`q` > -1e0 AND .5 < 1E+0", &[2.0, 4.0]),
+        ("residue == 12", &[2.0, 4.0]),
+        ("residue > 12", &[3.0]),
+        ("residue == x", &[1.0]),
+        ("Z == 15", &[4.0]),
+        ("radius > 1.5", &[2.0]),
+    ] {
+        assert_eq!(ids(condition), expected, "{condition}");
+    }
+}
+
+#[test]
+fn missing_numbers_are_unlike_any_other() {
+    assert_eq!(ids("q == 0 or q < 0 or q > 0"), [1.0, 2.0, 4.0]);
+    assert_eq!(ids("q != 0"), [1.0, 3.0, 4.0]);
+}
+
+#[test]
+fn faults_are_told_at_their_place() {
+    for (condition, expected) in [
+        ("z > ", ": a number or a name is missing here"),
+        ("", ": a number or a name is missing here"),
+        ("z > and q", "and: a number or a name is missing before this"),
+        ("z = 5", "=: one `=`, but equal is `==`"),
+        ("z > 5 q", "q: `and`, `or` or a sign is missing before this"),
+        ("0 < z < 5", "<: compare two at a time"),
+        ("(z > 5", "(: this is never closed"),
+        ("z > 5)", "): nothing is open here"),
+        ("element == 'C", "'C: a `'` is opened"),
+        ("z > 5nm", "5nm: `5nm` is no number"),
+        ("z > 1e999", "1e999: `1e999` is no number"),
+        ("z > 5 ä$", "$: `$` means nothing here"),
+        ("z $ 5", "$: `$` means nothing here"),
+        ("z", "z: compare this with something"),
+        ("z > 5 and not q", "q: compare this"),
+        ("(z > 5) > 1", "(z > 5): this is true or false"),
+        ("speed > 5", "speed: no column is named `speed`; there are id, element, residue, x"),
+        ("q == hot", "hot: no column is named `hot`"),
+        ("q == 'hot'", "'hot': only a column of texts"),
+        ("element > C", "element > C: texts are equal or not"),
+        ("element > 5", "element: the column `element` holds texts"),
+        ("z > 99", "none of its 4 particles is selected"),
+    ] {
+        let fault = select(ATOMS, condition).expect_err(condition);
+        assert!(fault.starts_with(expected), "{condition}: {fault}");
+    }
+}
+
+#[test]
+fn conditions_may_be_long_but_not_deep() {
+    let long = vec!["id + 1 - 1 == 2"; 20_000].join(" or ");
+    assert_eq!(ids(&long), [2.0]);
+    for (open, close) in [("(", ")"), ("not ", ""), ("-", "")] {
+        let deep = |depth| format!("{}id == 2{}", open.repeat(depth), close.repeat(depth));
+        let fault = deep(100_000).parse::<Selection>().expect_err("too deep");
+        assert!(fault.message.starts_with("more than 64"), "{fault}");
+        assert!(deep(64).parse::<Selection>().is_ok());
+    }
+}
+
+#[test]
+fn faults_show_the_condition() {
+    let fault = "ä > 5 und".parse::<Selection>().expect_err("a fault");
+    let shown = "`and`, `or` or a sign is missing before this\n  ä > 5 und\n        ^^^";
+    assert_eq!(fault.to_string(), shown);
+}
