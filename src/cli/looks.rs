@@ -65,7 +65,7 @@ pub(super) struct BarFile {
 enum Scheme {
     /// Jmol's
     Jmol,
-    /// Corey, Pauling and Koltun's, in the shades of `RasMol`
+    /// Corey, Pauling and Koltun's
     Cpk,
 }
 

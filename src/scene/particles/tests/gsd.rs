@@ -115,3 +115,13 @@ fn faulty_files_are_refused() {
     assert_eq!(fault(far).2, "has an index of 1099511627777 frames, but of 1 chunks");
     assert!(frame_with(example(), &columns("nothing")).is_err());
 }
+
+#[test]
+fn columns_that_are_wanted_are_kept_where_they_are() {
+    let wanted = ["mass", "speed", "x"].map(str::to_owned).into();
+    let options =
+        ReadOptions { columns: Columns { wanted, ..Columns::default() }, ..ReadOptions::default() };
+    let frame = frame_with(example(), &options).expect("a frame");
+    let names: Vec<&str> = frame.numbers.iter().map(|column| column.name.as_str()).collect();
+    assert_eq!((names, &frame.numbers[0].values), (vec!["mass"], &vec![1.0; 2]));
+}

@@ -113,3 +113,16 @@ fn faulty_arrays_are_refused() {
         assert!(found.starts_with(message), "{message}: {found}");
     }
 }
+
+#[test]
+fn arrays_that_are_wanted_are_kept_where_they_are() {
+    let arrays = [
+        ("position", npy("<f4", "(2, 3)", false, &floats(&[0.0, 0.0, 0.0, 3.0, 0.0, 0.0]))),
+        ("charge", npy("<f4", "(2,)", false, &floats(&[1.0, -1.0]))),
+    ];
+    let wanted = ["charge", "speed"].map(str::to_owned).into();
+    let options =
+        ReadOptions { columns: Columns { wanted, ..Columns::default() }, ..ReadOptions::default() };
+    let frame = frame_with(npz(&arrays), &options).expect("a frame");
+    assert_eq!((frame.numbers.len(), &frame.numbers[0].values), (1, &vec![1.0, -1.0]));
+}
