@@ -101,6 +101,7 @@ pub mod shade;
 pub mod film;
 pub mod layers;
 pub mod noise;
+pub mod overlay;
 pub mod render;
 
 #[cfg(feature = "cli")]

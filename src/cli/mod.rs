@@ -23,6 +23,7 @@ mod source;
 mod stress;
 mod threads;
 mod values;
+mod views;
 
 use self::args::{Args, Command};
 pub(crate) use self::failure::Failure;

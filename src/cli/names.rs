@@ -10,7 +10,7 @@ use std::mem::discriminant;
 
 /// Names of values with their help, in the order in which they are listed. Of a value with
 /// parameters only the kind counts.
-pub(super) struct Names<T: 'static>(&'static [(&'static str, T, &'static str)]);
+pub(super) struct Names<T: 'static>(pub(super) &'static [(&'static str, T, &'static str)]);
 
 impl<T: Clone + Send + Sync> Names<T> {
     /// Reads one of the names.

@@ -67,6 +67,29 @@ impl Camera {
         if self.orthographic { offset.dot(self.forward) } else { offset.length() }
     }
 
+    /// A point as the camera sees it, in the world's unit: to the right of the view axis, above it,
+    /// and along it.
+    pub fn view(&self, point: DVec3) -> DVec3 {
+        let offset = point - self.eye;
+        DVec3::new(offset.dot(self.right), offset.dot(self.up), offset.dot(self.forward))
+    }
+
+    /// Where in the picture a point is, through the middle of the lens: in pixels from the top left
+    /// corner, which may lie outside of it. `seen` is what [`Camera::view`] gives; in perspective it
+    /// is ahead of the eye (`seen.z > 0`).
+    pub fn pixel(&self, seen: DVec3) -> DVec2 {
+        let depth = if self.orthographic { 1.0 } else { seen.z };
+        let across = seen.x / (depth * self.half_width);
+        let upward = seen.y / (depth * self.half_height);
+        let size = DVec2::new(f64::from(self.width), f64::from(self.height));
+        DVec2::new(1.0 + across, 1.0 - upward) / 2.0 * size
+    }
+
+    /// Rays start where they cross the plane at this distance along the view axis.
+    pub fn near(&self) -> f64 {
+        self.near
+    }
+
     /// A ball that holds every ray's origin: its center and radius.
     pub fn origins(&self) -> (DVec3, f64) {
         let (across, along) = if self.orthographic {

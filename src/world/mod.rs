@@ -13,6 +13,7 @@ mod check;
 mod environment;
 mod fit;
 mod frame;
+pub mod framing;
 mod ground;
 mod lights;
 mod materials;

@@ -8,6 +8,7 @@ use crate::cli::names::{self, Traversal};
 use crate::cli::settings::region_text;
 use crate::cli::source::Source;
 use crate::cli::threads;
+use crate::cli::views::ViewArgs;
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::bvh::walk::Method;
@@ -16,9 +17,10 @@ use spherule::image::Format;
 use spherule::scene::Settings;
 use spherule::scene::particles::Looks;
 use spherule::trace::{Tracer, Width};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A render to be done.
+#[derive(Clone)]
 pub(super) struct Job<'a> {
     pub(super) source: Source,
     pub(super) looks: Looks,
@@ -26,6 +28,9 @@ pub(super) struct Job<'a> {
     pub(super) output: PathBuf,
     pub(super) format: Format,
     pub(super) picture: &'a PictureArgs,
+    pub(super) views: &'a ViewArgs,
+    /// Which picture of a turn it is, from 0.
+    pub(super) turn: Option<u32>,
     pub(super) encoding: &'a EncodingArgs,
     pub(super) speed: &'a SpeedArgs,
     pub(super) tracer: Tracer,
@@ -59,12 +64,30 @@ impl<'a> Job<'a> {
             output: args.output.clone(),
             format,
             picture: &args.picture,
+            views: &args.views,
+            turn: None,
             encoding: &args.encoding,
             speed: &args.speed,
             tracer: tracer(args.speed.traversal, args.speed.lanes),
             threads: threads::count(args.speed.threads),
             report: args.report,
         })
+    }
+
+    /// The renders of a turn of so many pictures, which are numbered.
+    pub(super) fn turns(&self, pictures: u32) -> Result<Vec<Self>, Failure> {
+        if matches!(&self.source, Source::Particles(path, _) if path.as_os_str() == "-") {
+            let message = "--turntable reads its file for every picture, but standard input can \
+                           be read once: write it to a file";
+            return Err(Failure::usage("render", message));
+        }
+        let digits = (pictures - 1).to_string().len().max(3);
+        let job = |turn: u32| Self {
+            output: numbered(&self.output, turn, digits),
+            turn: Some(turn),
+            ..self.clone()
+        };
+        Ok((0..pictures).map(job).collect())
     }
 
     /// The threads that do it.
@@ -103,6 +126,17 @@ impl<'a> Job<'a> {
     }
 }
 
+/// `a-007.png` of `a.png`.
+fn numbered(path: &Path, number: u32, digits: usize) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{number:0digits$}"));
+    if let Some(suffix) = path.extension() {
+        name.push(".");
+        name.push(suffix);
+    }
+    path.with_file_name(name)
+}
+
 fn tracer(typed: Traversal, lanes: Option<Width>) -> Tracer {
     let width = lanes.unwrap_or(Tracer::default().width);
     let method = match typed {
@@ -118,6 +152,11 @@ fn tracer(typed: Traversal, lanes: Option<Width>) -> Tracer {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_go_before_the_suffix() {
+        assert_eq!(numbered(Path::new("a/b.c.png"), 7, 3), Path::new("a/b.c-007.png"));
+    }
 
     #[test]
     fn traversals_are_what_they_are_called() {

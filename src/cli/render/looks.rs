@@ -7,8 +7,8 @@ use crate::cli::looks::BarFile;
 use crate::cli::source::Source;
 use spherule::atomic::{check_destination, write_atomically};
 use spherule::color::bar::{Bar, Direction};
-use spherule::scene::particles::{self, Legend, Looks};
-use spherule::scene::{Scene, SceneError};
+use spherule::scene::Scene;
+use spherule::scene::particles::{self, Cell, Legend, Looks};
 
 /// The source, with the columns that the looks need; only particles have such looks.
 pub(super) fn with_columns(source: Source, looks: &Looks) -> Result<Source, Failure> {
@@ -26,15 +26,25 @@ pub(super) fn with_columns(source: Source, looks: &Looks) -> Result<Source, Fail
     }
 }
 
-/// The scene, and what its colors stand for if they stand for numbers.
-pub(super) fn load(job: &Job) -> Result<(Scene, Option<Legend>), SceneError> {
+/// A scene, and what is known of the particles that it is made of.
+pub(super) struct Loaded {
+    pub(super) scene: Scene,
+    /// What the colors stand for, if they stand for numbers.
+    pub(super) legend: Option<Legend>,
+    pub(super) cell: Option<Cell>,
+}
+
+/// Loads what is to be rendered: particles as they are to look, in as many copies as there are to be.
+pub(super) fn load(job: &Job) -> Result<Loaded, Failure> {
     let Source::Particles(path, options) = &job.source else {
-        return Ok((job.source.load()?, None));
+        job.views.refuse_cells()?;
+        return Ok(Loaded { scene: job.source.load()?, legend: None, cell: None });
     };
     let mut particles = particles::read(path, options)?;
     let legend = job.looks.apply(path, &mut particles)?;
+    let cell = job.views.repeat(path, &mut particles)?;
     let title = job.source.title(&Scene::default()).into_owned();
-    Ok((Scene::of_particles(particles, &title), legend))
+    Ok(Loaded { scene: Scene::of_particles(particles, &title), legend, cell })
 }
 
 /// Finds out whether the color bar can be written, and changes nothing.

@@ -26,20 +26,38 @@ const INTERRUPTED: u8 = 130;
 /// Renders and writes the picture, and tells how it went.
 pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
-    check_writable(&job.output)?;
     looks::check_bar(&job)?;
-    job.pool()?.install(|| make_picture(&job))
+    let Some(pictures) = args.views.turntable() else {
+        check_writable(&job.output)?;
+        return job.pool()?.install(|| make_picture(&job));
+    };
+    let jobs = job.turns(pictures)?;
+    jobs.iter().try_for_each(|job| check_writable(&job.output))?;
+    job.pool()?.install(|| make_turn(&jobs))
+}
+
+/// Makes the pictures of a turn, until one is interrupted.
+fn make_turn(jobs: &[Job]) -> Result<ExitCode, Failure> {
+    for job in jobs {
+        let code = make_picture(job)?;
+        if code != ExitCode::SUCCESS {
+            return Ok(code);
+        }
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
     let prepared = Prepared::load(job)?;
     prepared.tell(job);
     looks::write_bar(job, &prepared)?;
-    let render = trace(job, &prepared);
+    let mut render = trace(job, &prepared);
     if render.samples.total == 0 {
         output::warn("interrupted before the first sample: nothing is written");
         return Ok(ExitCode::from(INTERRUPTED));
     }
+    let seen = (&prepared.world, &prepared.scene.settings);
+    job.views.draw(seen, prepared.cell.as_ref(), prepared.region, &mut render);
     let options = metadata::write_options(job, &prepared, &render);
     let channels = layers::channels(job, &prepared, &render);
     render.image.write_layers(&job.output, &channels, &options)?;

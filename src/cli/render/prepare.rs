@@ -12,7 +12,7 @@ use spherule::film::{Film, Region};
 use spherule::layers::Layers;
 use spherule::memory;
 use spherule::render::Render;
-use spherule::scene::particles::Legend;
+use spherule::scene::particles::{Cell, Legend};
 use spherule::scene::{Scene, Settings, Spheres};
 use std::time::{Duration, Instant};
 
@@ -20,6 +20,8 @@ use std::time::{Duration, Instant};
 pub(super) struct Prepared {
     /// Without its spheres, which are the world's now.
     pub(super) scene: Scene,
+    /// The cell of the particles, if their file has one.
+    pub(super) cell: Option<Cell>,
     pub(super) title: String,
     pub(super) world: World,
     /// The part of the picture that is rendered.
@@ -42,9 +44,10 @@ impl Prepared {
     /// Loads the scene, puts in the job's settings, and builds the world.
     pub(super) fn load(job: &Job) -> Result<Self, Failure> {
         let start = Instant::now();
-        let (mut scene, legend) = looks::load(job)?;
+        let looks::Loaded { mut scene, legend, cell } = looks::load(job)?;
         let load = start.elapsed();
         job.picture.replace(&mut scene.settings);
+        job.views.frame(&mut scene, cell.as_ref(), job.turn)?;
         let region = job.region(&scene.settings)?;
         let bytes = if job.encoding.layers.is_empty() { 0 } else { Layers::bytes(region) };
         memory::check(Film::bytes(region) + bytes)
@@ -63,6 +66,7 @@ impl Prepared {
             title: job.source.title(&scene).into_owned(),
             notes: notes(job, &scene.settings, &world),
             scene,
+            cell,
             world,
             region,
             builder,

@@ -1,0 +1,138 @@
+//! Cameras: sides, projections and turns.
+
+use super::ViewArgs;
+use crate::cli::Failure;
+use glam::DVec3;
+use spherule::scene::particles::Cell;
+use spherule::scene::{Camera, Pose, Projection, Scene};
+use spherule::world::{WorldError, framing};
+use std::f64::consts::TAU;
+
+/// A side from which everything is framed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum View {
+    /// Broadside, by the principal axes.
+    Auto,
+    /// By a row of [`SIDES`].
+    Side(usize),
+}
+
+/// Names, directions from the camera into the scene, and what is up: z, or else y.
+const SIDES: [(&str, DVec3, DVec3); 7] = [
+    ("x", DVec3::NEG_X, DVec3::Z),
+    ("-x", DVec3::X, DVec3::Z),
+    ("y", DVec3::NEG_Y, DVec3::Z),
+    ("-y", DVec3::Y, DVec3::Z),
+    ("z", DVec3::NEG_Z, DVec3::Y),
+    ("-z", DVec3::Z, DVec3::Y),
+    ("iso", DVec3::NEG_ONE, DVec3::Z),
+];
+
+impl View {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Side(row) => SIDES[row].0,
+        }
+    }
+}
+
+/// `auto` or the name of a side.
+pub(super) fn view(text: &str) -> Result<View, String> {
+    let side = SIDES.iter().position(|side| side.0 == text).map(View::Side);
+    let view = if text == "auto" { Some(View::Auto) } else { side };
+    view.ok_or_else(|| "sides are auto, x, y, z, -x, -y, -z and iso".to_owned())
+}
+
+/// 0 to 0.9.
+pub(super) fn margin(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=0.9).contains(share));
+    share.ok_or_else(|| "give a share of the picture from 0 to 0.9, as in 0.05".to_owned())
+}
+
+impl ViewArgs {
+    /// Places the camera of a scene that has its picture's size, in the picture `turn` of a turn.
+    pub(in crate::cli) fn frame(
+        &self,
+        scene: &mut Scene,
+        cell: Option<&Cell>,
+        turn: Option<u32>,
+    ) -> Result<(), Failure> {
+        self.choose(scene)?;
+        let corners = match cell.filter(|_| self.cell) {
+            Some(cell) => cell.corners().to_vec(),
+            None => Vec::new(),
+        };
+        let all = f64::from(self.turntable.unwrap_or(1));
+        if let Some(turn) = turn {
+            framing::turn(scene, &corners, TAU * f64::from(turn) / all);
+        }
+        let name = scene.title.clone();
+        let failure = |error: WorldError| Failure::World(name, error);
+        if corners.is_empty() { Ok(()) } else { framing::hold(scene, &corners).map_err(failure) }
+    }
+
+    fn choose(&self, scene: &mut Scene) -> Result<(), Failure> {
+        if let Some(projection) = self.projection {
+            let same = std::mem::discriminant(&projection)
+                == std::mem::discriminant(&scene.camera.projection);
+            if !same {
+                scene.camera.projection = projection;
+            }
+        }
+        if let Some(view) = self.view {
+            scene.camera = of_view(view, scene);
+        }
+        match (&mut scene.camera.pose, self.margin) {
+            (Pose::Fit { margin, .. }, Some(typed)) => *margin = typed,
+            (Pose::LookAt { .. }, Some(_)) => {
+                let message = "--margin is for a camera that frames everything, but the scene's \
+                               stands where it stands: add --view";
+                return Err(Failure::usage("render", message));
+            }
+            (_, None) => (),
+        }
+        Ok(())
+    }
+}
+
+fn of_view(view: View, scene: &Scene) -> Camera {
+    let mut camera = scene.camera.clone();
+    if let Projection::Orthographic { height } = &mut camera.projection {
+        *height = None;
+    }
+    camera.near = 0.0;
+    match view {
+        View::Auto => framing::broadside(&scene.spheres, &camera),
+        View::Side(row) => {
+            let (_, direction, up) = SIDES[row];
+            let margin = match camera.pose {
+                Pose::Fit { margin, .. } => margin,
+                Pose::LookAt { .. } => Camera::FIT_MARGIN,
+            };
+            Camera { pose: Pose::Fit { direction, margin }, up, ..camera }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_are_read_and_named() {
+        for name in ["auto", "x", "-x", "y", "-y", "z", "-z", "iso"] {
+            assert_eq!(view(name).map(View::name), Ok(name));
+        }
+        assert!(view("top").is_err() && view("").is_err());
+        for (_, direction, up) in SIDES {
+            assert!(direction.cross(up).length() > 0.5);
+        }
+    }
+
+    #[test]
+    fn margins_leave_something() {
+        assert_eq!(margin("0.1"), Ok(0.1));
+        assert!(margin("-0.1").is_err() && margin("1").is_err() && margin("NaN").is_err());
+    }
+}

@@ -1,0 +1,61 @@
+//! Cells: what they repeat.
+
+use super::ViewArgs;
+use crate::cli::Failure;
+use spherule::scene::SceneError;
+use spherule::scene::particles::{Cell, Particles, PeriodicError};
+use std::path::Path;
+
+/// `NA,NB,NC`.
+pub(super) fn copies(text: &str) -> Result<[u32; 3], String> {
+    let counts: Option<Vec<u32>> = text.split(',').map(|count| count.trim().parse().ok()).collect();
+    counts
+        .and_then(|counts| <[u32; 3]>::try_from(counts).ok())
+        .filter(|counts| !counts.contains(&0))
+        .ok_or_else(|| "give three counts of 1 or more, as in 2,2,1".to_owned())
+}
+
+impl ViewArgs {
+    /// Refuses what only particles can be asked for.
+    pub(in crate::cli) fn refuse_cells(&self) -> Result<(), Failure> {
+        if self.needs_cell() {
+            let message = "--wrap, --replicate and --cell are for files of particles";
+            return Err(Failure::usage("render", message));
+        }
+        Ok(())
+    }
+
+    /// Puts particles into their cell and repeats it, as asked for; returns the cell that holds them
+    /// then, if there is one.
+    pub(in crate::cli) fn repeat(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+    ) -> Result<Option<Cell>, SceneError> {
+        let refused = |error: PeriodicError| SceneError::whole_file(path, error.to_string());
+        if self.wrap {
+            particles.wrap().map_err(refused)?;
+        }
+        if let Some(copies) = self.replicate {
+            particles.replicate(copies).map_err(refused)?;
+        }
+        if self.cell && particles.cell.is_none() {
+            return Err(SceneError::whole_file(path, "has no cell whose edges can be drawn"));
+        }
+        Ok(particles.cell)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_counts_are_read_and_nothing_else() {
+        assert_eq!(copies("2,3,1"), Ok([2, 3, 1]));
+        assert_eq!(copies("2, 3, 1"), Ok([2, 3, 1]));
+        for text in ["2,3", "2,3,1,1", "0,1,1", "-1,1,1", "1.5,1,1", "", "99999999999,1,1"] {
+            assert!(copies(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Straight lines in the scene.
+
+use super::{Overlay, blend};
+use crate::image::Image;
+use crate::layers::Features;
+use crate::world::Camera;
+use glam::{DVec2, DVec3};
+
+/// In perspective a line is cut where it comes nearer to the eye than this part of its farther end:
+/// before the pixels of its end become infinite.
+const NEAREST: f64 = 1e-4;
+
+/// A straight line from one point of the scene to another.
+pub type Line = [DVec3; 2];
+
+/// How lines are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pen {
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// Pixels, more than 0; thinner than 1 is fainter.
+    pub width: f64,
+}
+
+/// The visible side of a line: its ends as the camera sees them, and in the picture.
+struct Projected {
+    seen: [DVec3; 2],
+    pixel: [DVec2; 2],
+}
+
+impl Overlay<'_> {
+    /// Draws lines, where nothing is nearer. Where several meet they count once.
+    pub fn draw_lines(&self, image: &mut Image, lines: &[Line], pen: Pen) {
+        let mut shares = vec![0.0; image.pixels.len()];
+        for line in lines {
+            if let Some(line) = self.project(line) {
+                self.cover(&mut shares, &line, pen.width);
+            }
+        }
+        blend(image, &shares, pen.color);
+    }
+
+    fn project(&self, line: &Line) -> Option<Projected> {
+        let (camera, frame) = (&self.world.camera, &self.world.frame);
+        let seen = clipped(camera, line.map(|point| camera.view(frame.point(point))))?;
+        Some(Projected { seen, pixel: seen.map(|end| camera.pixel(end)) })
+    }
+
+    /// Raises the shares that pixels have of lines to what they have of this one.
+    fn cover(&self, shares: &mut [f32], line: &Projected, width: f64) {
+        let corner = DVec2::new(f64::from(self.region.x), f64::from(self.region.y));
+        let size = DVec2::new(f64::from(self.region.width), f64::from(self.region.height));
+        let [a, b] = line.pixel.map(|pixel| pixel - corner);
+        let reach = width / 2.0 + 1.0;
+        let low = (a.min(b) - reach).clamp(DVec2::ZERO, size).floor();
+        let high = (a.max(b) + reach).clamp(DVec2::ZERO, size).ceil();
+        for y in low.y as usize..high.y as usize {
+            for x in low.x as usize..high.x as usize {
+                let middle = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let (along, distance) = nearest(a, b, middle);
+                // The pixel's own width, as a ramp.
+                let share = (width / 2.0 + 0.5 - distance).clamp(0.0, width.min(1.0));
+                if share > 0.0 {
+                    let row = y * self.region.width as usize + x;
+                    let depth = self.distance(line, along);
+                    let visible = share as f32 * visible(depth, &self.layers.pixels[row]);
+                    shares[row] = shares[row].max(visible);
+                }
+            }
+        }
+    }
+
+    /// How far from the camera the line is at this part of its way in the picture, in the scene's
+    /// unit and as layers tell depths.
+    fn distance(&self, line: &Projected, along: f64) -> f64 {
+        let [a, b] = line.seen;
+        let scale = self.world.frame.scale;
+        if self.world.camera.is_orthographic() {
+            return (a.z + (b.z - a.z) * along) / scale;
+        }
+        // 1/z is linear in the picture.
+        let part = along * a.z / ((1.0 - along) * b.z + along * a.z);
+        (a + (b - a) * part).length() / scale
+    }
+}
+
+/// The part of a line that is ahead of the camera.
+fn clipped(camera: &Camera, [a, b]: [DVec3; 2]) -> Option<[DVec3; 2]> {
+    let farthest = a.z.max(b.z);
+    let least = if camera.is_orthographic() { 0.0 } else { NEAREST * farthest };
+    let least = camera.near().max(least);
+    let inside = if camera.is_orthographic() { farthest >= least } else { farthest > least };
+    let cut = |from: DVec3, to: DVec3| {
+        if from.z >= least { from } else { to + (from - to) * ((to.z - least) / (to.z - from.z)) }
+    };
+    inside.then(|| [cut(a, b), cut(b, a)])
+}
+
+/// Where on the way from `a` to `b`, 0 to 1, a line is nearest to a point, and how near.
+fn nearest(a: DVec2, b: DVec2, point: DVec2) -> (f64, f64) {
+    let way = b - a;
+    let length = way.length_squared();
+    let along = if length > 0.0 { ((point - a).dot(way) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (along, (a + way * along).distance(point))
+}
+
+/// The share of a pixel in which nothing hides what is this far away.
+fn visible(distance: f64, pixel: &Features) -> f32 {
+    if distance <= f64::from(pixel.depth) { 1.0 } else { 1.0 - pixel.coverage }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Region;
+    use crate::layers::{Layer, layers};
+    use crate::render::Options;
+    use crate::scene::particles::Particles;
+    use crate::scene::{Pose, Projection, Rgb, Scene};
+    use crate::world::World;
+
+    const SIZE: u32 = 40;
+
+    /// A ball of radius 1 that a camera looks at from a distance of 5.
+    fn world(projection: Projection) -> (World, Scene) {
+        let mut scene = Scene::default();
+        scene.spheres.push(DVec3::ZERO, 1.0, 0, Rgb::ONE);
+        scene.materials = Scene::of_particles(Particles::default(), "").materials;
+        scene.camera.projection = projection;
+        scene.camera.pose = Pose::LookAt { eye: DVec3::Z * 5.0, target: DVec3::ZERO };
+        (scene.settings.width, scene.settings.height) = (SIZE, SIZE);
+        (World::build(&scene).unwrap(), scene)
+    }
+
+    /// A picture of a white line alone, in a region.
+    fn drawn(projection: Projection, line: Line, region: Region) -> Image {
+        let (world, scene) = world(projection);
+        let options = Options { region: Some(region), ..Options::default() };
+        let layers = layers(&world, &scene.settings, &options, &[Layer::Depth]);
+        let mut image = Image::filled(region.width, region.height, [0.0; 3]).unwrap();
+        let overlay = Overlay { world: &world, region, layers: &layers };
+        overlay.draw_lines(&mut image, &[line], Pen { color: [1.0; 3], width: 2.0 });
+        image
+    }
+
+    const WHOLE: Region = Region { x: 0, y: 0, width: SIZE, height: SIZE };
+    const PARALLEL: Projection = Projection::Orthographic { height: Some(4.0) };
+    const CENTRAL: Projection = Projection::Perspective { fov: 53.13 };
+
+    fn across(z: f64) -> Line {
+        [DVec3::new(-1.5, 0.0, z), DVec3::new(1.5, 0.0, z)]
+    }
+
+    #[test]
+    fn a_line_has_its_length_and_width_where_nothing_hides_it() {
+        let image = drawn(PARALLEL, across(2.0), WHOLE);
+        // 3 of 4 units of 40 pixels, 2 pixels wide, and half a disk at each end.
+        let area: f32 = image.pixels.iter().map(|pixel| pixel[0]).sum();
+        assert!((area - 62.0).abs() < 2.5, "{area}");
+        assert_eq!(image.pixel(20, 19), Some([1.0; 3]));
+        assert_eq!(image.pixel(20, 16), Some([0.0; 3]));
+    }
+
+    #[test]
+    fn spheres_hide_what_is_behind_or_inside_them() {
+        for (projection, beside) in [(PARALLEL, 7), (CENTRAL, 10)] {
+            for z in [0.0, -0.5] {
+                let image = drawn(projection, across(z), WHOLE);
+                assert_eq!(image.pixel(20, 19), Some([0.0; 3]), "{projection:?} {z}");
+                assert!(image.pixel(beside, 19).unwrap()[0] > 0.9, "{projection:?} {z}");
+            }
+            let front = drawn(projection, across(1.2), WHOLE);
+            assert_eq!(front.pixel(20, 19), Some([1.0; 3]));
+        }
+    }
+
+    #[test]
+    fn lines_along_the_view_get_hidden_where_they_enter() {
+        // From beside the eye, through the ball's front.
+        let line = [DVec3::new(0.0, 0.9, 4.0), DVec3::new(0.0, -0.2, -3.0)];
+        let image = drawn(CENTRAL, line, WHOLE);
+        let lit = |y: u32| image.pixel(20, y).unwrap()[0] + image.pixel(19, y).unwrap()[0];
+        assert!(lit(2) > 1.5 && lit(19) == 0.0, "{} {}", lit(2), lit(19));
+    }
+
+    #[test]
+    fn a_region_is_a_part_of_the_whole_and_what_is_behind_the_eye_is_not_there() {
+        let whole = drawn(CENTRAL, across(1.5), WHOLE);
+        let region = Region { x: 11, y: 15, width: 12, height: 9 };
+        let part = drawn(CENTRAL, across(1.5), region);
+        for y in 0..region.height {
+            for x in 0..region.width {
+                assert_eq!(part.pixel(x, y), whole.pixel(x + region.x, y + region.y));
+            }
+        }
+        for projection in [CENTRAL, PARALLEL] {
+            let behind = drawn(projection, across(6.0), WHOLE);
+            assert!(behind.pixels.iter().all(|pixel| *pixel == [0.0; 3]));
+        }
+        let through = [DVec3::new(0.0, 0.1, 20.0), DVec3::new(0.0, 2.0, 0.0)];
+        assert!(drawn(CENTRAL, through, WHOLE).pixels.iter().flatten().all(|x| x.is_finite()));
+    }
+}

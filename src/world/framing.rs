@@ -1,0 +1,251 @@
+//! Cameras that suit what is in the scene: along its principal axes, around it in a turn, and with
+//! more in the picture than spheres.
+
+use super::{WorldError, fit};
+use crate::scene::{Camera, Pose, Projection, Rgb, Scene, Spheres};
+use glam::{DMat3, DQuat, DVec3};
+
+/// Sweeps after which Jacobi's method has converged for any matrix of 3 x 3.
+const SWEEPS: usize = 20;
+
+/// Fixes the scene's camera, which may be one that frames all spheres, so that it frames these
+/// points too. A camera with an `eye` of its own stays there.
+///
+/// # Errors
+/// [`WorldError::NothingToFit`] without spheres, and [`WorldError::Camera`] for a camera that sees
+/// nothing.
+pub fn hold(scene: &mut Scene, points: &[DVec3]) -> Result<(), WorldError> {
+    if matches!(scene.camera.pose, Pose::LookAt { .. }) || scene.spheres.is_empty() {
+        return Ok(());
+    }
+    let count = scene.spheres.len();
+    for &point in points {
+        scene.spheres.push(point, 0.0, 0, Rgb::ONE);
+    }
+    let placed = fit::pose(scene);
+    truncate(&mut scene.spheres, count);
+    let placed = placed?;
+    let distance = if placed.distance > 0.0 { placed.distance } else { placed.half_height };
+    let camera = &mut scene.camera;
+    camera.pose =
+        Pose::LookAt { eye: placed.eye, target: placed.eye + placed.axes.forward * distance };
+    camera.up = placed.axes.up;
+    if let Projection::Orthographic { height } = &mut camera.projection {
+        *height = Some(2.0 * placed.half_height);
+    }
+    Ok(())
+}
+
+fn truncate(spheres: &mut Spheres, count: usize) {
+    for column in [&mut spheres.x, &mut spheres.y, &mut spheres.z, &mut spheres.radius] {
+        column.truncate(count);
+    }
+    spheres.material.truncate(count);
+    spheres.color.truncate(count);
+}
+
+/// Turns the scene's camera by `angle`, in radians and to the right, about the vertical axis (the
+/// camera's `up`) through what it looks at.
+///
+/// A camera that frames all spheres frames the ball around them and `points` instead: at every
+/// angle from the same distance.
+pub fn turn(scene: &mut Scene, points: &[DVec3], angle: f64) {
+    let up = scene.camera.up.normalize_or(DVec3::Y);
+    let turn = DQuat::from_axis_angle(up, angle);
+    let (eye, target) = match scene.camera.pose {
+        Pose::LookAt { eye, target } => (eye, target),
+        Pose::Fit { .. } if scene.spheres.is_empty() => return,
+        Pose::Fit { direction, margin } => {
+            let (center, radius) = ball(&scene.spheres, points);
+            let used = 1.0 - margin;
+            let distance = stand_back(scene, radius / used);
+            let direction = direction.normalize_or(DVec3::NEG_Z);
+            (center - direction * distance, center)
+        }
+    };
+    scene.camera.pose = Pose::LookAt { eye: target + turn * (eye - target), target };
+}
+
+/// How far from its center a camera sees all of a ball; a parallel projection gets its height.
+fn stand_back(scene: &mut Scene, radius: f64) -> f64 {
+    let aspect = f64::from(scene.settings.width) / f64::from(scene.settings.height);
+    match &mut scene.camera.projection {
+        Projection::Perspective { fov } => {
+            let half = (fov.to_radians() / 2.0).tan();
+            radius / half.min(half * aspect).atan().sin()
+        }
+        Projection::Orthographic { height } => {
+            height.get_or_insert(2.0 * radius / aspect.min(1.0));
+            2.0 * radius
+        }
+    }
+}
+
+/// A ball about the middle of the bounds that holds all spheres and points.
+fn ball(spheres: &Spheres, points: &[DVec3]) -> (DVec3, f64) {
+    let rows = || (0..spheres.len()).map(|row| (spheres.center(row), spheres.radius[row]));
+    let all = || rows().chain(points.iter().map(|&point| (point, 0.0)));
+    let low = all().fold(DVec3::INFINITY, |low, (center, radius)| low.min(center - radius));
+    let high = all().fold(DVec3::NEG_INFINITY, |high, (center, radius)| high.max(center + radius));
+    let middle = (low + high) / 2.0;
+    let reach = all().map(|(center, radius)| center.distance(middle) + radius);
+    (middle, reach.fold(0.0, f64::max))
+}
+
+/// The camera that sees a set of spheres at their broadest: along the axis on which centers vary
+/// least, with the axis on which they vary most to the right.
+pub fn broadside(spheres: &Spheres, camera: &Camera) -> Camera {
+    let [right, up, _] = principal_axes(spheres);
+    // Of the two ways to look along an axis, that of the usual camera, and its side up.
+    let toward = |axis: DVec3, like: DVec3| if axis.dot(like) < 0.0 { -axis } else { axis };
+    let right = toward(right, DVec3::new(1.0, 0.1, 0.01));
+    let up = toward(up, DVec3::new(0.01, 1.0, 0.1));
+    let margin = match camera.pose {
+        Pose::Fit { margin, .. } => margin,
+        Pose::LookAt { .. } => Camera::FIT_MARGIN,
+    };
+    let pose = Pose::Fit { direction: up.cross(right), margin };
+    Camera { pose, up, ..camera.clone() }
+}
+
+/// Unit vectors, perpendicular to each other, along which centers vary most, less and least: the
+/// eigenvectors of their covariance. Where variances are equal, any that suit.
+pub fn principal_axes(spheres: &Spheres) -> [DVec3; 3] {
+    let count = spheres.len().max(1) as f64;
+    let centers = || (0..spheres.len()).map(|row| spheres.center(row));
+    let mean = centers().sum::<DVec3>() / count;
+    let largest = centers().map(|center| (center - mean).abs().max_element()).fold(0.0, f64::max);
+    let scale = if largest > 0.0 { largest.recip() } else { 1.0 };
+    let mut covariance = DMat3::ZERO;
+    for center in centers() {
+        let offset = (center - mean) * scale;
+        covariance += DMat3::from_cols(offset * offset.x, offset * offset.y, offset * offset.z);
+    }
+    eigenvectors(covariance * count.recip())
+}
+
+/// Eigenvectors of a symmetric matrix, of the greatest eigenvalue first, by Jacobi's rotations.
+fn eigenvectors(mut matrix: DMat3) -> [DVec3; 3] {
+    let mut vectors = DMat3::IDENTITY;
+    for (row, column) in [(0, 1), (0, 2), (1, 2)].repeat(SWEEPS) {
+        let off = matrix.col(column)[row];
+        if off == 0.0 {
+            continue;
+        }
+        // Golub and Van Loan, "Matrix Computations", 4th edition 2013, section 8.5.2.
+        let tau = (matrix.col(column)[column] - matrix.col(row)[row]) / (2.0 * off);
+        let tangent = tau.signum() / (tau.abs() + tau.hypot(1.0));
+        let cosine = tangent.hypot(1.0).recip();
+        let sine = tangent * cosine;
+        let mut rotation = DMat3::IDENTITY;
+        rotation.col_mut(row)[row] = cosine;
+        rotation.col_mut(column)[column] = cosine;
+        rotation.col_mut(column)[row] = sine;
+        rotation.col_mut(row)[column] = -sine;
+        matrix = rotation.transpose() * matrix * rotation;
+        vectors *= rotation;
+    }
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| matrix.col(j)[j].total_cmp(&matrix.col(i)[i]));
+    order.map(|i| vectors.col(i).normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::particles::Particles;
+
+    /// Spheres in a slab that is long along the first axis and thin along the third.
+    fn slab(axes: [DVec3; 3]) -> Spheres {
+        let mut spheres = Spheres::default();
+        for i in 0..200 {
+            let i = f64::from(i);
+            let shares = [(i * 12.9).sin() * 9.0, (i * 78.2).sin() * 4.0, (i * 37.7).sin()];
+            let center = (0..3).map(|axis| axes[axis] * shares[axis]).sum::<DVec3>();
+            spheres.push(center + DVec3::splat(100.0), 0.3, 0, Rgb::ONE);
+        }
+        spheres
+    }
+
+    fn turned() -> [DVec3; 3] {
+        let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
+        [turn * DVec3::X, turn * DVec3::Y, turn * DVec3::Z]
+    }
+
+    #[test]
+    fn principal_axes_are_those_of_the_slab() {
+        for axes in [turned(), [DVec3::Z, DVec3::X, DVec3::Y]] {
+            for (found, axis) in principal_axes(&slab(axes)).into_iter().zip(axes) {
+                assert!(found.dot(axis).abs() > 0.98, "{found} {axis}");
+                assert!(found.is_normalized());
+            }
+        }
+        let axes = principal_axes(&Spheres::default());
+        assert!(axes[0].cross(axes[1]).dot(axes[2]).abs() > 0.999);
+    }
+
+    #[test]
+    fn eigenvectors_solve_their_equation() {
+        let matrix = DMat3::from_cols_array(&[2.0, -1.0, 0.5, -1.0, 3.0, 0.25, 0.5, 0.25, -4.0]);
+        let vectors = eigenvectors(matrix);
+        let values = vectors.map(|vector| vector.dot(matrix * vector));
+        assert!(values[0] >= values[1] && values[1] >= values[2], "{values:?}");
+        for (vector, value) in vectors.into_iter().zip(values) {
+            assert!((matrix * vector - vector * value).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_broadside_view_looks_along_the_thin_axis_with_the_long_one_across() {
+        let camera = broadside(&slab(turned()), &Camera::default());
+        let Pose::Fit { direction, .. } = camera.pose else { panic!("it frames the slab") };
+        assert!(direction.dot(turned()[2]).abs() > 0.98 && camera.up.dot(turned()[1]).abs() > 0.98);
+    }
+
+    #[test]
+    fn points_are_held_in_the_picture_and_leave_no_spheres() {
+        for projection in
+            [Projection::Perspective { fov: 30.0 }, Projection::Orthographic { height: None }]
+        {
+            let mut scene = Scene { spheres: slab(turned()), ..Scene::default() };
+            scene.materials = Scene::of_particles(Particles::default(), "").materials;
+            scene.camera.projection = projection;
+            let before = scene.spheres.clone();
+            let points = [DVec3::splat(70.0), DVec3::new(130.0, 100.0, 95.0)];
+            hold(&mut scene, &points).unwrap();
+            assert_eq!(scene.spheres, before);
+            check_inside(&scene, &points);
+        }
+    }
+
+    #[test]
+    fn every_picture_of_a_turn_holds_all_from_one_distance() {
+        for projection in
+            [Projection::Perspective { fov: 50.0 }, Projection::Orthographic { height: None }]
+        {
+            let mut distances = Vec::new();
+            for step in 0..5 {
+                let mut scene = Scene { spheres: slab(turned()), ..Scene::default() };
+                scene.materials = Scene::of_particles(Particles::default(), "").materials;
+                scene.camera.projection = projection;
+                let points = [DVec3::splat(80.0)];
+                turn(&mut scene, &points, f64::from(step) * 1.2);
+                check_inside(&scene, &points);
+                let Pose::LookAt { eye, target } = scene.camera.pose else { panic!("it stands") };
+                distances.push(eye.distance(target));
+            }
+            assert!(distances.iter().all(|d| (d / distances[0] - 1.0).abs() < 1e-12));
+        }
+    }
+
+    fn check_inside(scene: &Scene, points: &[DVec3]) {
+        let world = crate::World::build(scene).unwrap();
+        let centers = (0..scene.spheres.len()).map(|row| scene.spheres.center(row));
+        for point in centers.chain(points.iter().copied()) {
+            let seen = world.camera.view(world.frame.point(point));
+            let pixel = world.camera.pixel(seen);
+            assert!(seen.z > 0.0 && pixel.x > 0.0 && pixel.y > 0.0, "{pixel}");
+            assert!(pixel.x < 800.0 && pixel.y < 600.0, "{pixel}");
+        }
+    }
+}

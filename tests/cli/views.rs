@@ -1,0 +1,104 @@
+//! Cells, sides and turns on the command line.
+
+use crate::folder::{Folder, SMALL, text};
+use spherule::image::Image;
+
+/// Two particles, one of them outside of its tilted cell.
+const TILTED: &str = "\
+2
+Lattice=\"4 0 0 1 4 0 0 0 4\" Properties=species:S:1:pos:R:3 pbc=\"T T F\"
+C 1 1 1
+C 6 2 2
+";
+
+fn picture(folder: &Folder, name: &str, args: &[&str]) -> Image {
+    let all = [&SMALL[..], &["a.xyz", "--radii", "0.3", "-o", name], args].concat();
+    folder.succeed(&all);
+    Image::read(folder.path(name)).expect("a picture")
+}
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("a.xyz", TILTED);
+    folder
+}
+
+#[test]
+fn cells_wrap_repeat_and_are_drawn() {
+    let folder = folder();
+    let plain = picture(&folder, "plain.png", &[]);
+    let wrapped = picture(&folder, "wrapped.png", &["--wrap"]);
+    assert_ne!(plain, wrapped);
+    let json = |args: &[&str]| {
+        let all = [&SMALL[..], &["a.xyz", "--radii", "0.3", "--json", "-o", "b.png"], args];
+        folder.json(&all.concat())["statistics"]["spheres"].clone()
+    };
+    assert_eq!((json(&[]), json(&["--replicate", "3,2,1"])), (2.into(), 12.into()));
+    let with_cell = picture(&folder, "cell.png", &["--wrap", "--cell"]);
+    // The cell is framed too, so the particles are smaller, but edges go all through the picture.
+    let columns = |image: &Image| {
+        let gray = |x: u32| (0..image.height).any(|y| image.pixel(x, y).unwrap()[1] < 0.8);
+        (0..image.width).filter(|&x| gray(x)).count()
+    };
+    assert!(columns(&with_cell) >= 15 && columns(&with_cell) > columns(&wrapped));
+}
+
+#[test]
+fn sides_and_projections_frame_everything() {
+    let folder = folder();
+    let mut pictures = Vec::new();
+    for side in ["auto", "x", "-x", "y", "-y", "z", "-z", "iso"] {
+        for projection in ["perspective", "orthographic"] {
+            let args = ["--view", side, "--projection", projection, "--margin", "0.2", "--cell"];
+            let image = picture(&folder, "side.png", &args);
+            let (width, height) = (image.width as usize, image.height as usize);
+            // The margin stays white, and the rest does not.
+            let border = |row: usize| {
+                let (x, y) = (row % width, row / width);
+                x < 2 || y < 1 || x + 2 >= width || y + 1 >= height
+            };
+            let rows = || image.pixels.iter().enumerate();
+            let painted = |pixel: &[f32; 3]| pixel[1] < 0.9;
+            assert!(rows().all(|(row, pixel)| !border(row) || !painted(pixel)), "{side}");
+            assert!(rows().filter(|(_, pixel)| painted(pixel)).count() > 30, "{side}");
+            assert!(!pictures.contains(&image), "{side}");
+            pictures.push(image);
+        }
+    }
+}
+
+#[test]
+fn turns_are_numbered_pictures_that_differ() {
+    let folder = folder();
+    let args = ["a.xyz", "--radii", "0.3", "--turntable", "3", "-o", "turn.png"];
+    folder.succeed(&[&SMALL[..], &args].concat());
+    let files: Vec<_> = (0..3).map(|i| folder.read(&format!("turn-00{i}.png"))).collect();
+    assert!(files[0] != files[1] && files[1] != files[2] && files[0] != files[2]);
+    assert!(!folder.path("turn.png").exists() && !folder.path("turn-003.png").exists());
+}
+
+#[test]
+fn settings_without_effect_are_refused() {
+    let folder = folder();
+    folder.write("bare.xyz", "1\n\nC 0 0 0\n");
+    folder.write("a.toml", "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n");
+    for (line, code, message) in [
+        ("render bare.xyz --wrap", 1, "no cell to wrap by"),
+        ("render bare.xyz --replicate 2,1,1", 1, "no cell to replicate by"),
+        ("render bare.xyz --cell", 1, "no cell"),
+        ("render a.xyz --replicate 1,1,2", 1, "not periodic along its edge c"),
+        ("render a.xyz --replicate 60000,60000,1", 1, "at most"),
+        ("render a.xyz --replicate 2,2", 2, "three counts"),
+        ("render a.xyz --view top", 2, "sides are"),
+        ("render a.xyz --margin 1", 2, "0 to 0.9"),
+        ("render a.xyz --turntable 0", 2, "1..=100000"),
+        ("render - --turntable 2", 2, "standard input"),
+        ("render --cell", 2, "files of particles"),
+        ("render a.toml --margin 0.1", 2, "add --view"),
+    ] {
+        let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
+        assert!(said.contains(message), "{line}: {said}");
+    }
+}
