@@ -6,7 +6,7 @@ use super::names::{
 };
 use super::particles::ParticleArgs;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
-use super::views::ViewArgs;
+use super::views::{StyleArgs, ViewArgs};
 use super::{bench, examples, stress};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
@@ -64,6 +64,8 @@ pub(super) struct RenderArgs {
     pub(super) looks: LookArgs,
     #[command(flatten)]
     pub(super) views: ViewArgs,
+    #[command(flatten)]
+    pub(super) style: StyleArgs,
     #[command(flatten)]
     pub(super) picture: PictureArgs,
     #[command(flatten)]

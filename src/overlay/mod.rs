@@ -1,10 +1,13 @@
-//! What is drawn over a finished picture: thin lines at the places in the scene where they belong.
+//! What is drawn over a finished picture: thin lines at the places in the scene where they belong,
+//! contours of spheres, a fog, another background.
 //!
 //! Lines have no thickness in the scene, so no ray is traced for them. They are projected through
 //! the camera, drawn in pixels with smooth edges, and hidden by what the [layers](crate::layers) say
 //! is nearer. Their places are in the scene's own coordinates.
 
+mod contours;
 mod lines;
+mod sky;
 
 pub use lines::{Line, Pen};
 

@@ -94,6 +94,9 @@ fn settings_without_effect_are_refused() {
         ("render a.xyz --turntable 0", 2, "1..=100000"),
         ("render - --turntable 2", 2, "standard input"),
         ("render --cell", 2, "files of particles"),
+        ("render a.xyz --preset pretty", 2, "looks are chalk"),
+        ("render a.xyz --background red", 2, "six digits"),
+        ("render --preset chalk", 2, "a file of particles"),
         ("render a.toml --margin 0.1", 2, "add --view"),
     ] {
         let output = folder.run(&line.split(' ').collect::<Vec<_>>());
@@ -101,4 +104,24 @@ fn settings_without_effect_are_refused() {
         assert_eq!(output.status.code(), Some(code), "{line}: {said}");
         assert!(said.contains(message), "{line}: {said}");
     }
+}
+
+#[test]
+fn looks_and_backgrounds_make_pictures_of_their_own() {
+    let folder = folder();
+    let mut pictures = Vec::new();
+    for look in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
+        let image = picture(&folder, "look.png", &["--preset", look, "--wrap"]);
+        // The corner is background or, in the studio, ground that looks like it.
+        let corner = image.pixel(0, 0).unwrap();
+        assert!(corner.iter().all(|&value| value > 0.9), "{look}: {corner:?}");
+        assert!(image.pixels.iter().any(|pixel| pixel[1] < 0.7), "{look}");
+        assert!(!pictures.contains(&image), "{look}");
+        pictures.push(image);
+    }
+    let blue = picture(&folder, "blue.png", &["--background", "#0000ff", "--view", "z"]);
+    assert_eq!(blue.pixel(0, 0), Some([0.0, 0.0, 1.0]));
+    let white = picture(&folder, "white.png", &["--view", "z"]);
+    let again = picture(&folder, "again.png", &["--view", "z", "--background", "white"]);
+    assert_eq!(white, again, "the sky is white");
 }

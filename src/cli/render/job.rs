@@ -8,7 +8,7 @@ use crate::cli::names::{self, Traversal};
 use crate::cli::settings::region_text;
 use crate::cli::source::Source;
 use crate::cli::threads;
-use crate::cli::views::ViewArgs;
+use crate::cli::views::{StyleArgs, ViewArgs};
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::bvh::walk::Method;
@@ -29,6 +29,7 @@ pub(super) struct Job<'a> {
     pub(super) format: Format,
     pub(super) picture: &'a PictureArgs,
     pub(super) views: &'a ViewArgs,
+    pub(super) style: &'a StyleArgs,
     /// Which picture of a turn it is, from 0.
     pub(super) turn: Option<u32>,
     pub(super) encoding: &'a EncodingArgs,
@@ -56,6 +57,10 @@ impl<'a> Job<'a> {
             }
             None => Source::Field { seed },
         };
+        if args.style.preset().is_some() && !matches!(source, Source::Particles(..)) {
+            let message = "--preset is for a file of particles: a scene says how it looks";
+            return Err(Failure::usage("render", message));
+        }
         let looks = args.looks.looks(args.particles.options().radius_scale);
         Ok(Self {
             source: with_columns(source, &looks)?,
@@ -65,6 +70,7 @@ impl<'a> Job<'a> {
             format,
             picture: &args.picture,
             views: &args.views,
+            style: &args.style,
             turn: None,
             encoding: &args.encoding,
             speed: &args.speed,

@@ -15,6 +15,7 @@ use self::prepare::Prepared;
 use self::summary::Summary;
 use super::args::RenderArgs;
 use super::progress::Meter;
+use super::views::Over;
 use super::{Failure, output};
 use spherule::image::check_writable;
 use spherule::render::{Options, Render, Skips, render};
@@ -56,8 +57,9 @@ fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
         output::warn("interrupted before the first sample: nothing is written");
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    let seen = (&prepared.world, &prepared.scene.settings);
-    job.views.draw(seen, prepared.cell.as_ref(), prepared.region, &mut render);
+    let (cell, region) = (prepared.cell.as_ref(), prepared.region);
+    let over = Over { views: job.views, style: job.style, cell, region };
+    over.draw(&prepared.world, &prepared.scene.settings, &mut render);
     let options = metadata::write_options(job, &prepared, &render);
     let channels = layers::channels(job, &prepared, &render);
     render.image.write_layers(&job.output, &channels, &options)?;

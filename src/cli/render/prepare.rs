@@ -46,8 +46,10 @@ impl Prepared {
         let start = Instant::now();
         let looks::Loaded { mut scene, legend, cell } = looks::load(job)?;
         let load = start.elapsed();
+        job.style.set(&mut scene);
         job.picture.replace(&mut scene.settings);
         job.views.frame(&mut scene, cell.as_ref(), job.turn)?;
+        job.style.light(&mut scene);
         let region = job.region(&scene.settings)?;
         let bytes = if job.encoding.layers.is_empty() { 0 } else { Layers::bytes(region) };
         memory::check(Film::bytes(region) + bytes)

@@ -3,8 +3,11 @@
 mod camera;
 mod over;
 mod periodic;
+mod style;
 
 use self::camera::View;
+pub(super) use self::over::Over;
+pub(super) use self::style::StyleArgs;
 use super::names::Names;
 use super::settings::List;
 use clap::value_parser;

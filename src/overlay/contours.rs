@@ -1,0 +1,71 @@
+//! Lines where one sphere ends and something else begins.
+
+use super::sky::depths;
+use super::{Overlay, blend};
+use crate::image::Image;
+use crate::layers::{Features, NOTHING};
+use glam::Vec3;
+
+/// Two spheres of a pixel and its neighbor are apart if their depths differ by more than this part
+/// of the whole scene's depth.
+const JUMP: f64 = 0.02;
+
+/// Between which values of 1 - cosine of the angle between normals a crease grows to a line.
+const CREASE: [f32; 2] = [0.1, 0.8];
+
+/// How dark a crease is beside a silhouette.
+const CREASE_SHARE: f32 = 0.7;
+
+/// What makes up for how a line of one pixel spreads when it is made smooth.
+const GAIN: f32 = 1.8;
+
+impl Overlay<'_> {
+    /// Draws silhouettes, and fainter the creases where spheres meet, with ids, normals and depths of
+    /// the layers: about two pixels wide, inside of what is nearer.
+    pub fn draw_contours(&self, image: &mut Image, color: [f32; 3]) {
+        let (width, height) = (self.layers.width as usize, self.layers.height as usize);
+        let [near, far] = depths(self.world);
+        let jump = JUMP * (far - near);
+        let mut marks = vec![0.0_f32; image.pixels.len()];
+        let pixels = &self.layers.pixels;
+        for row in 0..pixels.len() {
+            let right = ((row + 1) % width != 0).then_some(row + 1);
+            let below = (row + width < pixels.len()).then_some(row + width);
+            for other in right.into_iter().chain(below) {
+                let strength = strength(&pixels[row], &pixels[other], jump);
+                let nearer = if pixels[row].depth <= pixels[other].depth { row } else { other };
+                marks[nearer] = marks[nearer].max(strength);
+            }
+        }
+        blend(image, &smooth(&marks, width, height), color);
+    }
+}
+
+/// How much of a line there is between two pixels, 0..=1.
+fn strength(a: &Features, b: &Features, jump: f64) -> f32 {
+    if a.id == b.id {
+        return 0.0;
+    }
+    let apart = f64::from((a.depth - b.depth).abs()) > jump;
+    if a.id == NOTHING || b.id == NOTHING || apart {
+        return 1.0;
+    }
+    let normal = |pixel: &Features| Vec3::from(pixel.normal).normalize_or_zero();
+    let [low, high] = CREASE;
+    let turn = (1.0 - normal(a).dot(normal(b)) - low) / (high - low);
+    CREASE_SHARE * turn.clamp(0.0, 1.0)
+}
+
+/// Marks with soft edges: a binomial filter of 3 x 3 pixels.
+fn smooth(marks: &[f32], width: usize, height: usize) -> Vec<f32> {
+    let at = |x: usize, y: usize| marks[y * width + x];
+    let across = |x: usize, y: usize| {
+        (at(x.saturating_sub(1), y) + 2.0 * at(x, y) + at((x + 1).min(width - 1), y)) / 4.0
+    };
+    let value = |row: usize| {
+        let (x, y) = (row % width, row / width);
+        let beside = across(x, y.saturating_sub(1)) + across(x, (y + 1).min(height - 1));
+        (GAIN * (beside + 2.0 * across(x, y)) / 4.0).min(1.0)
+    };
+    (0..marks.len()).map(value).collect()
+}

@@ -1,0 +1,125 @@
+//! What is behind the scene: a color in the sky's place, and a fog of that color.
+
+use super::Overlay;
+use crate::image::Image;
+use crate::world::World;
+
+impl Overlay<'_> {
+    /// Puts a color in the place of the sky, which goes on lighting the scene. Where spheres cover a
+    /// part of a pixel, the rest of it changes: the layers' samples are best the picture's.
+    ///
+    /// Of a sky that is not of one color, what the pixel's middle sees is taken away.
+    pub fn replace_sky(&self, image: &mut Image, color: [f32; 3]) {
+        let width = self.region.width as usize;
+        for (row, (pixel, seen)) in image.pixels.iter_mut().zip(&self.layers.pixels).enumerate() {
+            let share = 1.0 - seen.coverage;
+            if share >= 1.0 {
+                *pixel = color;
+            } else if share > 0.0 {
+                let sky = self.sky(row % width, row / width);
+                let change = |i: usize| pixel[i] + share * (color[i] - sky[i]);
+                *pixel = std::array::from_fn(|i| change(i).max(0.0));
+            }
+        }
+    }
+
+    fn sky(&self, x: usize, y: usize) -> [f32; 3] {
+        let at = |first: u32, offset: usize| f64::from(first) + offset as f64 + 0.5;
+        let place = [at(self.region.x, x), at(self.region.y, y)];
+        let (_, direction) = self.world.camera.rays::<f64>(place, None);
+        let toward = glam::DVec3::new(direction.x, direction.y, direction.z).as_vec3();
+        self.world.environment.radiance(toward).to_array()
+    }
+
+    /// Fades what is far: nothing where the nearest sphere begins, and `most` (0..=1) of the color
+    /// where the farthest ends, and beyond.
+    pub fn fade(&self, image: &mut Image, color: [f32; 3], most: f32) {
+        let [near, far] = depths(self.world);
+        for (pixel, seen) in image.pixels.iter_mut().zip(&self.layers.pixels) {
+            if seen.coverage > 0.0 && far > near {
+                let share = ((f64::from(seen.depth) - near) / (far - near)).clamp(0.0, 1.0);
+                // What is near keeps its colors for longer.
+                let share = (share * share) as f32 * most;
+                *pixel = std::array::from_fn(|i| pixel[i] + share * (color[i] - pixel[i]));
+            }
+        }
+    }
+}
+
+/// Between which distances from the camera all spheres are, in the scene's unit.
+pub(super) fn depths(world: &World) -> [f64; 2] {
+    let mut depths = [f64::INFINITY, 0.0];
+    for row in 0..world.spheres.len() {
+        let (center, radius) = world.spheres.exact(row);
+        let distance = world.camera.distance(center) / world.frame.scale;
+        let radius = radius / world.frame.scale;
+        depths = [depths[0].min(distance - radius), depths[1].max(distance + radius)];
+    }
+    [depths[0].max(0.0), depths[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Region;
+    use crate::layers::{Layer, layers};
+    use crate::render::{Options, render};
+    use crate::scene::particles::Particles;
+    use crate::scene::{Pose, Projection, Rgb, Scene};
+    use glam::DVec3;
+
+    const SIZE: u32 = 24;
+    const WHOLE: Region = Region { x: 0, y: 0, width: SIZE, height: SIZE };
+
+    /// Two spheres apart, one behind and beside the other, under a white sky.
+    fn scene() -> Scene {
+        let mut scene = Scene::of_particles(Particles::default(), "");
+        scene.spheres.push(DVec3::new(-1.0, 0.0, 0.0), 0.8, 0, Rgb::ONE);
+        scene.spheres.push(DVec3::new(1.0, 0.0, -8.0), 0.8, 0, Rgb::ONE);
+        scene.camera.projection = Projection::Orthographic { height: Some(4.0) };
+        scene.camera.pose = Pose::LookAt { eye: DVec3::Z * 5.0, target: DVec3::ZERO };
+        (scene.settings.width, scene.settings.height) = (SIZE, SIZE);
+        scene
+    }
+
+    /// The picture before and after something is drawn over it.
+    fn drawn(draw: impl Fn(&Overlay, &mut Image)) -> [Image; 2] {
+        let scene = scene();
+        let world = World::build(&scene).unwrap();
+        let before = render(&world, &scene.settings, &Options::default()).image;
+        let layers = layers(&world, &scene.settings, &Options::default(), &[Layer::Depth]);
+        let mut after = before.clone();
+        draw(&Overlay { world: &world, region: WHOLE, layers: &layers }, &mut after);
+        [before, after]
+    }
+
+    #[test]
+    fn the_sky_changes_and_spheres_do_not() {
+        let [before, after] = drawn(|overlay, image| overlay.replace_sky(image, [0.0, 0.5, 1.0]));
+        assert_eq!(after.pixel(0, 0), Some([0.0, 0.5, 1.0]));
+        assert_eq!(after.pixel(6, 12), before.pixel(6, 12));
+        let [before, after] = drawn(|overlay, image| overlay.replace_sky(image, [1.0; 3]));
+        for (old, new) in before.pixels.iter().zip(&after.pixels) {
+            assert!(old.iter().zip(new).all(|(old, new)| (old - new).abs() < 1e-5));
+        }
+    }
+
+    #[test]
+    fn what_is_far_fades() {
+        let [before, after] = drawn(|overlay, image| overlay.fade(image, [0.0; 3], 0.5));
+        let kept = |x: u32| after.pixel(x, 12).unwrap()[1] / before.pixel(x, 12).unwrap()[1];
+        assert!(kept(6) > 0.99 && (0.55..0.75).contains(&kept(18)), "{} {}", kept(6), kept(18));
+        assert_eq!(after.pixel(0, 0), before.pixel(0, 0));
+    }
+
+    #[test]
+    fn contours_lie_on_edges_alone() {
+        let [before, after] = drawn(|overlay, image| overlay.draw_contours(image, [0.0; 3]));
+        assert_eq!(after.pixel(6, 12), before.pixel(6, 12));
+        assert_eq!(after.pixel(0, 0), before.pixel(0, 0));
+        // The first sphere is 9.6 pixels wide, from column 1.2 on.
+        let edge = (1..=3).map(|x| after.pixel(x, 12).unwrap()[1]).fold(1.0, f32::min);
+        assert!(edge < 0.3, "{edge}");
+        assert_eq!(depths(&World::build(&scene()).unwrap()).map(f64::round), [4.0, 14.0]);
+    }
+}

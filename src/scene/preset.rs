@@ -1,0 +1,204 @@
+//! Looks by name: materials, light and ground that suit particles, for who does not want to set
+//! them one by one.
+//!
+//! Lights stand by the camera, so that every side looks alike. What a look needs beyond the scene,
+//! such as contours, is drawn by [`crate::overlay`].
+
+use super::{
+    Camera, Environment, EnvironmentMap, Ground, Integrator, Light, Material, NamedMaterial, Pose,
+    Rgb, Scene, Settings,
+};
+use glam::DVec3;
+
+/// Albedo of all bodies: colors of particles are factors on it.
+const BODY: f32 = 0.8;
+
+/// Albedo of the ground: under these lights it is white, as what is behind it.
+const GROUND: f32 = 0.9;
+
+/// A look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// Matte, lit from everywhere alike: ambient occlusion shows the shape.
+    Chalk,
+    /// Matte under three soft lights, on a ground that takes their shadows.
+    Studio,
+    /// Matte under an overcast sky, which is brightest above.
+    Cloudy,
+    /// Polished plastic under the three lights of a studio.
+    Glossy,
+    /// Matte under a white sky; what is far fades.
+    DepthCue,
+    /// Matte under a white sky, with lines around spheres.
+    Outline,
+}
+
+/// A light of the studio, by the camera's axes.
+struct Lamp {
+    /// Toward it: right, up, and toward the camera.
+    toward: [f64; 3],
+    irradiance: f32,
+    /// Degrees.
+    angular_radius: f64,
+}
+
+/// Key from the upper left, fill from the right, and a light on the rim from behind.
+const STUDIO: [Lamp; 3] = [
+    Lamp { toward: [-0.7, 1.2, 0.9], irradiance: 2.4, angular_radius: 20.0 },
+    Lamp { toward: [1.2, 0.5, 0.8], irradiance: 0.8, angular_radius: 30.0 },
+    Lamp { toward: [0.5, 1.3, -0.9], irradiance: 1.1, angular_radius: 20.0 },
+];
+
+impl Preset {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Chalk, Self::Studio, Self::Cloudy, Self::Glossy, Self::DepthCue, Self::Outline];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Chalk => "chalk",
+            Self::Studio => "studio",
+            Self::Cloudy => "cloudy",
+            Self::Glossy => "glossy",
+            Self::DepthCue => "depthcue",
+            Self::Outline => "outline",
+        }
+    }
+
+    /// Sets how light is gathered.
+    pub fn set(self, settings: &mut Settings) {
+        settings.integrator = match self {
+            Self::Chalk => Integrator::Ao { distance: f64::INFINITY },
+            _ => Integrator::Path,
+        };
+    }
+
+    /// Replaces all materials, which keep their names, and all light; the camera has its place.
+    pub fn light(self, scene: &mut Scene) {
+        for row in &mut scene.materials {
+            row.material = self.material();
+        }
+        scene.environment = Environment { map: self.sky(scene), illuminates: true };
+        scene.lights = match self {
+            Self::Studio | Self::Glossy => studio(&scene.camera),
+            _ => Vec::new(),
+        };
+        scene.ground = (self == Self::Studio).then(|| ground(scene));
+    }
+
+    fn material(self) -> Material {
+        let color = Rgb::splat(BODY);
+        match self {
+            Self::Glossy => Material::Plastic { color, ior: 1.6 },
+            _ => Material::Lambertian { color },
+        }
+    }
+
+    fn sky(self, scene: &Scene) -> EnvironmentMap {
+        match self {
+            Self::Studio => EnvironmentMap::Constant(Rgb::splat(0.3)),
+            Self::Glossy => EnvironmentMap::Constant(Rgb::splat(0.5)),
+            Self::Cloudy => EnvironmentMap::Gradient {
+                bottom: Rgb::splat(0.05),
+                top: Rgb::splat(1.7),
+                up: vertical(&scene.camera),
+            },
+            _ => EnvironmentMap::Constant(Rgb::ONE),
+        }
+    }
+}
+
+fn vertical(camera: &Camera) -> DVec3 {
+    camera.up.normalize_or(DVec3::Y)
+}
+
+/// The lights of the studio, for a camera.
+fn studio(camera: &Camera) -> Vec<Light> {
+    let direction = match camera.pose {
+        Pose::Fit { direction, .. } => direction,
+        Pose::LookAt { eye, target } => target - eye,
+    };
+    let back = -direction.normalize_or(DVec3::NEG_Z);
+    let side = vertical(camera).cross(back);
+    let right = side.try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
+    let up = back.cross(right);
+    let sun = |lamp: &Lamp| {
+        let [x, y, z] = lamp.toward;
+        Light::Sun {
+            direction: (right * x + up * y + back * z).normalize(),
+            irradiance: Rgb::splat(lamp.irradiance),
+            angular_radius: lamp.angular_radius,
+        }
+    };
+    STUDIO.iter().map(sun).collect()
+}
+
+/// A plane that the lowest sphere stands on.
+fn ground(scene: &mut Scene) -> Ground {
+    let normal = vertical(&scene.camera);
+    let spheres = &scene.spheres;
+    let lowest = |row: usize| normal.dot(spheres.center(row)) - spheres.radius[row];
+    let height = (0..spheres.len()).map(lowest).fold(f64::INFINITY, f64::min);
+    let material = Material::Lambertian { color: Rgb::splat(GROUND) };
+    let mut name = "ground".to_owned();
+    while scene.materials.iter().any(|row| row.name == name) {
+        name.push('_');
+    }
+    scene.materials.push(NamedMaterial { name, material });
+    let height = if height.is_finite() { height } else { 0.0 };
+    Ground { normal, height, material: scene.materials.len() as u32 - 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::World;
+    use crate::scene::particles::Particles;
+
+    fn scene() -> Scene {
+        let mut scene = Scene::of_particles(Particles::default(), "");
+        scene.spheres.push(DVec3::new(3.0, 4.0, 5.0), 1.0, 0, Rgb::X);
+        scene.spheres.push(DVec3::new(3.0, 8.0, 5.0), 2.0, 0, Rgb::Y);
+        scene
+    }
+
+    #[test]
+    fn every_look_makes_a_world() {
+        for preset in Preset::ALL {
+            let mut scene = scene();
+            preset.set(&mut scene.settings);
+            preset.light(&mut scene);
+            let world = World::build(&scene).unwrap();
+            assert_eq!(world.ground.is_some(), preset == Preset::Studio);
+            assert_eq!(scene.lights.is_empty(), !matches!(preset, Preset::Studio | Preset::Glossy));
+            let ao = matches!(scene.settings.integrator, Integrator::Ao { .. });
+            assert_eq!(ao, preset == Preset::Chalk);
+        }
+    }
+
+    #[test]
+    fn the_lowest_sphere_stands_on_the_ground() {
+        let mut scene = scene();
+        for (up, height) in [(DVec3::Y, 3.0), (DVec3::Z * 7.0, 3.0), (DVec3::NEG_X, -5.0)] {
+            scene.camera.up = up;
+            Preset::Studio.light(&mut scene);
+            let ground = scene.ground.clone().unwrap();
+            assert_eq!((ground.normal, ground.height), (up.normalize(), height));
+        }
+    }
+
+    #[test]
+    fn lights_turn_with_the_camera_even_when_it_looks_down() {
+        for eye in [DVec3::new(1.0, 2.0, 3.0), DVec3::Y * 4.0, DVec3::NEG_Y] {
+            let pose = Pose::LookAt { eye, target: DVec3::ZERO };
+            let camera = Camera { pose, ..Camera::default() };
+            for (light, lamp) in studio(&camera).into_iter().zip(STUDIO) {
+                let Light::Sun { direction, .. } = light else { panic!("suns alone") };
+                let [_, _, back] = lamp.toward;
+                let expected = back / DVec3::from(lamp.toward).length();
+                assert!((direction.dot(eye.normalize()) - expected).abs() < 1e-12);
+            }
+        }
+    }
+}
