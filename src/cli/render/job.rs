@@ -96,6 +96,11 @@ impl<'a> Job<'a> {
         Ok((0..pictures).map(job).collect())
     }
 
+    /// Whether something is drawn over the picture, which takes layers.
+    pub(super) fn draws_over(&self) -> bool {
+        self.views.draws_cell() || self.style.background().is_some()
+    }
+
     /// The threads that do it.
     pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         threads::pool(self.threads)

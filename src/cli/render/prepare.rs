@@ -51,7 +51,8 @@ impl Prepared {
         job.views.frame(&mut scene, cell.as_ref(), job.turn)?;
         job.style.light(&mut scene);
         let region = job.region(&scene.settings)?;
-        let bytes = if job.encoding.layers.is_empty() { 0 } else { Layers::bytes(region) };
+        let layered = !job.encoding.layers.is_empty() || job.draws_over();
+        let bytes = if layered { Layers::bytes(region) } else { 0 };
         memory::check(Film::bytes(region) + bytes)
             .map_err(|shortage| Failure::Film(region, shortage))?;
         let start = Instant::now();

@@ -62,6 +62,11 @@ impl ViewArgs {
         self.wrap || self.cell || self.replicate.is_some()
     }
 
+    /// Whether the cell is drawn.
+    pub(super) fn draws_cell(&self) -> bool {
+        self.cell
+    }
+
     /// What makes the picture, for its file.
     pub(super) fn list(&self) -> List {
         let mut list = List::new();

@@ -52,7 +52,7 @@ impl StyleArgs {
     }
 
     /// What is seen in the sky's place, linear.
-    pub(super) fn background(&self) -> Option<Rgb> {
+    pub(in crate::cli) fn background(&self) -> Option<Rgb> {
         let typed = self.background.as_ref().map(|background| background.color);
         typed.or(self.preset.map(|_| Rgb::ONE))
     }
