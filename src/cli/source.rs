@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn titles_tell_no_folders() {
-        let source = of_path("/home/someone/secret/a.toml");
+        let source = of_path("somewhere/private/a.toml");
         assert_eq!(source.title(&Scene::default()), "a.toml");
         let titled = Scene { title: "A scene".to_owned(), ..Scene::default() };
         assert_eq!(source.title(&titled), "A scene");
