@@ -14,7 +14,7 @@ mod single;
 mod stream;
 pub mod walk;
 
-use crate::lanes::set_bits;
+use crate::lanes::{U32x16, set_bits};
 use crate::slabs::{Slabs, row};
 use crate::spheres::{LEAF, Spheres};
 use glam::Vec3;
@@ -64,6 +64,12 @@ impl Child {
     fn kinds(self) -> [u64; 3] {
         let (block, none) = (u64::from(self.0 >> 30 & 1), u64::from(self.0 >> 31));
         [1 - (block | none), block, none]
+    }
+
+    /// Which children of a row are blocks, and which are none: a bit for each.
+    #[inline(always)]
+    fn are(row: U32x16) -> [u32; 2] {
+        [(row << 1_u32).to_bitmask(), row.to_bitmask()]
     }
 
     /// [`Child::NODE`] or [`Child::BLOCK`], if there is one.

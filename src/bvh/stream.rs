@@ -9,7 +9,7 @@
 use super::decide::{DONE, Decider};
 use super::walk::Query;
 use super::{Bvh, Child, DEPTH, Node, WIDTH, order};
-use crate::lanes::{F32x8, Lanes, Mask, set_bits, shuffle, shuffle_numbers};
+use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, U32x16, set_bits, shuffle, shuffle_numbers};
 use crate::slabs::Slabs;
 use crate::spheres::{Block, LEAF};
 
@@ -51,8 +51,6 @@ struct Flight<B> {
     t_far: f32,
     /// Whether `t_far` is less than it was when the stack was filled.
     nearer: bool,
-    /// What is visited next.
-    child: Child,
     /// How many children are on the stack, a sentinel included.
     top: u32,
     stack: Stack,
@@ -65,25 +63,73 @@ struct Stack {
     near: [f32; STACK],
 }
 
-/// Flights by what they visit next: a bit for each.
+/// Most flights: there is a bit for each.
+const MOST: usize = u64::BITS as usize;
+
+/// What flights visit next.
+struct Next<const FLIGHTS: usize> {
+    child: [Child; MOST],
+    turn: Turn,
+}
+
+/// Flights by what they visit: a bit for each.
 #[derive(Clone, Copy, Default)]
-struct Queues {
+struct Turn {
     nodes: u64,
     leaves: u64,
     arrived: u64,
 }
 
-impl Queues {
+impl<const FLIGHTS: usize> Next<FLIGHTS> {
+    /// Lanes would wait for what a few flights have just written.
+    const IN_LANES: bool = FLIGHTS >= MAX_LANES;
+
+    fn new() -> Self {
+        let arrived = u64::MAX >> (MOST - FLIGHTS);
+        Self { child: [Child::NONE; MOST], turn: Turn { arrived, ..Turn::default() } }
+    }
+
+    /// What the flight at a place visits now.
     #[inline(always)]
-    fn push(&mut self, child: Child, place: usize) {
-        let [node, leaf, none] = child.kinds();
-        self.nodes |= node << place;
-        self.leaves |= leaf << place;
-        self.arrived |= none << place;
+    fn at(&self, place: usize) -> Child {
+        self.child[place % MOST]
+    }
+
+    /// Says what the flight at a place visits in the next turn.
+    #[inline(always)]
+    fn set(&mut self, place: usize, child: Child) {
+        self.child[place % MOST] = child;
+        if !Self::IN_LANES {
+            let [node, leaf, none] = child.kinds();
+            self.turn.nodes |= node << place;
+            self.turn.leaves |= leaf << place;
+            self.turn.arrived |= none << place;
+        }
+    }
+
+    /// Begins a turn of all flights but those that are idle.
+    #[inline(always)]
+    fn turn(&mut self, idle: u64) -> Turn {
+        if !Self::IN_LANES {
+            return std::mem::take(&mut self.turn);
+        }
+        let (mut leaves, mut arrived) = (0, 0);
+        for first in (0..FLIGHTS).step_by(MAX_LANES) {
+            let row = U32x16::new(std::array::from_fn(|i| self.child[first + i].0));
+            let [leaf, none] = Child::are(row);
+            leaves |= u64::from(leaf) << first;
+            arrived |= u64::from(none) << first;
+        }
+        let all = u64::MAX >> (MOST - FLIGHTS);
+        Turn {
+            nodes: !(leaves | arrived) & all,
+            leaves: leaves & all,
+            arrived: arrived & all & !idle,
+        }
     }
 }
 
-/// Sends bundles on their way, `FLIGHTS` at once: a power of two of at most 64.
+/// Sends bundles on their way, `FLIGHTS` at once: at most [`MOST`].
 pub(super) fn trace<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
     bvh: &Bvh,
     decider: &mut Decider<Q>,
@@ -93,21 +139,24 @@ pub(super) fn trace<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
         return;
     }
     let mut flights = [Flight::idle(B::none()); FLIGHTS];
-    let mut next =
-        Queues { arrived: u64::MAX >> (u64::BITS as usize - FLIGHTS), ..Queues::default() };
+    let mut next = Next::<FLIGHTS>::new();
+    let mut idle = 0;
     loop {
-        let now = std::mem::take(&mut next);
+        let now = next.turn(idle);
+        let mut begun = 0;
         for place in set_bits(now.arrived) {
             let flight = &mut flights[place % FLIGHTS];
             flight.bundle.settle(decider);
             if let Some(start) = bundles.next() {
                 flight.t_far = flight.bundle.begin(decider, start, &mut flight.slabs);
-                flight.child = Child::node(0);
                 flight.top = 1;
-                next.push(flight.child, place);
+                next.set(place, Child::node(0));
+                begun += 1;
+            } else {
+                idle |= 1 << place;
             }
         }
-        if now.nodes | now.leaves | next.nodes == 0 {
+        if now.nodes | now.leaves | begun == 0 {
             return;
         }
         if Q::COUNTED {
@@ -115,17 +164,16 @@ pub(super) fn trace<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
             decider.visits.leaves += u64::from(now.leaves.count_ones());
         }
         for place in set_bits(now.nodes) {
-            let flight = &mut flights[place % FLIGHTS];
-            let child = flight.step::<Q>(&bvh.nodes()[flight.child.index()]);
-            next.push(child, place);
+            let node = &bvh.nodes()[next.at(place).index()];
+            next.set(place, flights[place % FLIGHTS].step::<Q>(node));
         }
-        visit_leaves(&mut flights, now.leaves, decider);
+        visit_leaves(&mut flights, &next, now.leaves, decider);
         for place in set_bits(now.leaves) {
             let flight = &mut flights[place % FLIGHTS];
             if flight.nearer {
                 flight.forget::<Q>();
             }
-            next.push(flight.pop(), place);
+            next.set(place, flight.pop());
         }
     }
 }
@@ -134,6 +182,7 @@ pub(super) fn trace<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
 #[inline(always)]
 fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
     flights: &mut [Flight<B>; FLIGHTS],
+    at: &Next<FLIGHTS>,
     places: u64,
     decider: &mut Decider<Q>,
 ) {
@@ -141,7 +190,7 @@ fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
     let mut count = 0;
     for place in set_bits(places) {
         let flight = &flights[place % FLIGHTS];
-        let index = flight.child.index();
+        let index = at.at(place).index();
         let block = &decider.spheres.blocks()[index];
         let met = flight.bundle.meets(&flight.slabs, flight.t_far, index, block);
         candidates[count % FLIGHTS] = (place as u8, met as u8);
@@ -149,7 +198,7 @@ fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
     }
     for &(place, met) in &candidates[..count.min(FLIGHTS)] {
         let flight = &mut flights[place as usize % FLIGHTS];
-        let first = flight.child.index() * LEAF;
+        let first = at.at(place as usize).index() * LEAF;
         if Q::COUNTED {
             decider.visits.candidates += u64::from(met.count_ones());
         }
@@ -169,7 +218,6 @@ impl<B: Copy> Flight<B> {
             bundle,
             t_far: DONE,
             nearer: false,
-            child: Child::NONE,
             top: 1,
             stack: Stack { child: [Child::NONE; STACK], near: [0.0; STACK] },
         }
@@ -193,8 +241,7 @@ impl<B: Copy> Flight<B> {
     #[inline(always)]
     fn pop(&mut self) -> Child {
         self.top -= 1;
-        self.child = self.stack.child[self.top as usize];
-        self.child
+        self.stack.child[self.top as usize]
     }
 
     /// Takes what is too far off the stack: all of it if no more answers are needed.
