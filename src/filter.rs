@@ -176,7 +176,6 @@ impl<L: Lanes> Chord<L> {
         let certain = zero.lt(reach)
             & zero.lt(chord2)
             & zero.lt(self.near())
-            & zero.lt(half)
             & (band * ray.inverse_length2).lt(outside);
         (certain, self.middle - half)
     }

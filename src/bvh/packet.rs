@@ -24,10 +24,18 @@ use crate::vec3::Vec3;
 pub(super) struct Packet<L: Lanes> {
     row: u32,
     filter: FilterRay<L>,
+    /// Of the rays' origins, as if all were on surfaces.
+    origin_error: L,
     /// The bits of the spheres that the rays start on, and of those that they are aimed at.
     known: [L; 2],
-    /// Bounds of the distance of what is hit so far, or of the search; [`DONE`] for a lane without a
-    /// ray, or done.
+    best: Best<L>,
+}
+
+/// What rays have hit so far.
+#[derive(Clone, Copy)]
+struct Best<L: Lanes> {
+    /// Bounds of the distance of what is hit, or of the search; [`DONE`] for a lane without a ray, or
+    /// done.
     t_min: L,
     t_max: L,
     /// What is hit for certain, if the hits do not know of it yet.
@@ -43,10 +51,9 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
         Self {
             row: 0,
             filter: FilterRay::IDLE.splat(),
+            origin_error: L::splat(0.0),
             known: [bits(MISS); 2],
-            t_min: L::splat(DONE),
-            t_max: L::splat(DONE),
-            certain: Certain::none(),
+            best: Best::of_search((L::splat(DONE), L::splat(DONE))),
         }
     }
 
@@ -59,7 +66,7 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     ) -> f32 {
         self.take_rays(decider, (row, lanes));
         *slabs = bounds::<L>(decider.rays, row, lanes);
-        self.t_max.greatest()
+        self.best.t_max.greatest()
     }
 
     #[inline(always)]
@@ -68,18 +75,18 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     }
 
     #[inline(always)]
-    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) {
-        let (chord, center, radius) = self.chord(decider.spheres, sphere);
-        let met = chord.may_hit(self.t_max);
-        let number = bits(sphere as u32);
-        let [own, target] = self.known.map(|known| known.has_bits_of(number));
-        let candidate = Certain { sphere: number, center, radius };
-        self.take(decider, &candidate, (met & !(own | target), &chord));
+    fn test(&mut self, decider: &mut Decider<Q>, first: usize, spheres: u32) {
+        // In registers: what is stored under a mask takes long to be loaded again.
+        let mut best = self.best;
+        for lane in set_bits(spheres) {
+            best = self.better(decider, first + lane, best);
+        }
+        self.best = best;
     }
 
     #[inline(always)]
     fn t_far(&self, _: &Decider<Q>) -> f32 {
-        self.t_max.greatest()
+        self.best.t_max.greatest()
     }
 
     /// Computes the distances of what is hit for certain.
@@ -87,9 +94,9 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     fn settle(&self, decider: &mut Decider<Q>) {
         let row = self.row as usize;
         if Q::EXACT {
-            decider.settle(row, &self.filter, &self.certain);
+            decider.settle(row, &self.filter, &self.best.certain);
         } else {
-            decider.believe_all(row, &self.certain, self.t_min);
+            decider.believe_all(row, &self.best.certain, self.best.t_min);
         }
     }
 }
@@ -99,14 +106,13 @@ impl<L: Lanes> Packet<L> {
     fn take_rays<Q: Query>(&mut self, decider: &Decider<Q>, (row, lanes): (usize, u32)) {
         let rays = decider.rays;
         let origin: Vec3<L> = rays.origin.load(row);
-        let (t_min, t_max) = decider.start(row, L::lanes(lanes));
+        let filter = FilterRay::new(origin, rays.direction.load(row));
         *self = Self {
             row: row as u32,
-            filter: FilterRay::new(origin, rays.direction.load(row)),
+            filter,
+            origin_error: filter.origin_error(),
             known: [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])],
-            t_min,
-            t_max,
-            certain: Certain::none(),
+            best: Best::of_search(decider.start(row, L::lanes(lanes))),
         };
     }
 
@@ -125,56 +131,76 @@ impl<L: Lanes> Packet<L> {
         let mut packet = <Self as Bundle<Q>>::none();
         packet.take_rays(decider, rows);
         for sphere in 0..decider.spheres.len() {
-            if packet.chord(decider.spheres, sphere).0.may_hit(packet.t_max).bits() != 0 {
-                packet.test(decider, sphere);
+            if packet.chord(decider.spheres, sphere).0.may_hit(packet.best.t_max).bits() != 0 {
+                packet.test(decider, sphere, 1);
             }
         }
         packet.settle(decider);
     }
 
-    /// Takes the lanes whose hit is certain and nearer than what they have, asks about the others.
+    /// What the rays have hit once they have met another sphere: the lanes whose hit is certain and
+    /// nearer than what they have take it, and others that may hit it are asked about.
     #[inline(always)]
-    fn take<Q: Query>(
-        &mut self,
+    fn better<Q: Query>(
+        &self,
         decider: &mut Decider<Q>,
-        candidate: &Certain<L>,
-        (met, chord): (L::Mask, &Chord<L>),
-    ) {
-        let near = chord.near();
-        let origin_error = self.filter.origin_error();
-        let (certain, far) = chord.enters(&self.filter, candidate.radius, origin_error);
-        let nearer = if Q::EXACT { met & certain & far.lt(self.t_min) } else { met };
-        self.certain = Certain::select(nearer, candidate, &self.certain);
+        sphere: usize,
+        mut best: Best<L>,
+    ) -> Best<L> {
+        let (chord, center, radius) = self.chord(decider.spheres, sphere);
+        let number = bits(sphere as u32);
+        let [own, target] = self.known.map(|known| known.has_bits_of(number));
+        let met = chord.may_hit(best.t_max) & !(own | target);
+        let (certain, far) = chord.enters(&self.filter, radius, self.origin_error);
+        let nearer = if Q::EXACT { met & certain & far.lt(best.t_min) } else { met };
+        best.certain =
+            Certain::select(nearer, &Certain { sphere: number, center, radius }, &best.certain);
         if Q::ANY {
-            self.t_max = L::select(nearer, L::splat(DONE), self.t_max);
+            best.t_max = L::select(nearer, L::splat(DONE), best.t_max);
         } else {
-            self.t_min = L::select(nearer, near, self.t_min);
-            self.t_max = L::select(nearer, far, self.t_max);
+            best.t_min = L::select(nearer, chord.near(), best.t_min);
+            best.t_max = L::select(nearer, far, best.t_max);
         }
-        let open = met & !nearer;
-        if open.bits() != 0 {
-            self.ask(decider, candidate.sphere, open.bits());
+        let open = (met & !nearer).bits();
+        if open != 0 {
+            let asked = self.ask(decider, sphere, open, &{ best });
+            best = asked;
         }
+        best
     }
 
     /// Has the lanes in `open` decided.
     #[cold]
-    fn ask<Q: Query>(&mut self, decider: &mut Decider<Q>, sphere: L, open: u32) {
-        let (sphere, mut certain) = (numbers(sphere)[0], numbers(self.certain.sphere));
+    fn ask<Q: Query>(
+        &self,
+        decider: &mut Decider<Q>,
+        sphere: usize,
+        open: u32,
+        best: &Best<L>,
+    ) -> Best<L> {
+        let mut certain = numbers(best.certain.sphere);
         let (mut t_min, mut t_max) = ([DONE; MAX_LANES], [DONE; MAX_LANES]);
-        self.t_min.store(&mut t_min);
-        self.t_max.store(&mut t_max);
+        best.t_min.store(&mut t_min);
+        best.t_max.store(&mut t_max);
         for lane in set_bits(open) {
             let row = self.row as usize + lane;
             if certain[lane] != MISS {
                 decider.consider(row, certain[lane] as usize);
                 certain[lane] = MISS;
             }
-            decider.consider(row, sphere as usize);
+            decider.consider(row, sphere);
             (t_min[lane], t_max[lane]) = decider.bounds(row);
         }
-        self.certain.sphere = bits_of(&certain);
-        (self.t_min, self.t_max) = (L::load(&t_min), L::load(&t_max));
+        let certain = Certain { sphere: bits_of(&certain), ..best.certain };
+        Best { t_min: L::load(&t_min), t_max: L::load(&t_max), certain }
+    }
+}
+
+impl<L: Lanes> Best<L> {
+    /// Nothing yet, between bounds of the distance at which the search ends.
+    #[inline(always)]
+    fn of_search((t_min, t_max): (L, L)) -> Self {
+        Self { t_min, t_max, certain: Certain::none() }
     }
 }
 

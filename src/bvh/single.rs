@@ -4,7 +4,7 @@ use super::decide::Decider;
 use super::stream::Bundle;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay};
-use crate::lanes::{F32x8, Lanes, Mask};
+use crate::lanes::{F32x8, Lanes, Mask, set_bits};
 use crate::ray::MISS;
 use crate::slabs::Slabs;
 use crate::spheres::{Block, LEAF};
@@ -51,12 +51,14 @@ impl<Q: Query> Bundle<Q> for Single {
     }
 
     #[inline(always)]
-    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize) {
+    fn test(&mut self, decider: &mut Decider<Q>, first: usize, spheres: u32) {
         let row = self.row as usize;
-        if Q::ANY && self.is_hit_for_certain(decider, sphere) {
-            decider.hits.sphere[row] = sphere as u32;
-        } else {
-            decider.consider(row, sphere);
+        for sphere in set_bits(spheres).map(|lane| first + lane) {
+            if Q::ANY && self.is_hit_for_certain(decider, sphere) {
+                decider.hits.sphere[row] = sphere as u32;
+            } else {
+                decider.consider(row, sphere);
+            }
         }
     }
 

@@ -32,8 +32,8 @@ pub(super) trait Bundle<Q: Query>: Copy {
     /// the slabs.
     fn meets(&self, slabs: &Slabs, t_far: f32, index: usize, block: &Block) -> u32;
 
-    /// Finds out about a sphere that may be hit.
-    fn test(&mut self, decider: &mut Decider<Q>, sphere: usize);
+    /// Finds out about spheres that may be hit: a bit for each from the first on.
+    fn test(&mut self, decider: &mut Decider<Q>, first: usize, spheres: u32);
 
     /// The distance beyond which it needs no answers now; below 0 if it needs none.
     fn t_far(&self, decider: &Decider<Q>) -> f32;
@@ -202,9 +202,7 @@ fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
         if Q::COUNTED {
             decider.visits.candidates += u64::from(met.count_ones());
         }
-        for lane in set_bits(u64::from(met)) {
-            flight.bundle.test(decider, first + lane);
-        }
+        flight.bundle.test(decider, first, u32::from(met));
         let t_far = flight.bundle.t_far(decider);
         flight.nearer = t_far < flight.t_far;
         flight.t_far = t_far;
