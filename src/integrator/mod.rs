@@ -7,6 +7,7 @@
 pub mod ao;
 pub mod clock;
 mod diffuse;
+mod look;
 pub mod path;
 pub mod shadows;
 pub mod skips;

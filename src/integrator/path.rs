@@ -10,10 +10,12 @@
 use super::Job;
 use super::clock::Stage;
 use super::diffuse;
+use super::look::Look;
 use super::stages::{self, Local, ShadeKind};
 use super::workspace::{Arrival, Workspace, chord};
 use crate::lanes::MAX_LANES;
 use crate::ray::GROUND;
+use crate::sampling::ScatterDraw;
 use crate::scene::{Rgb, Roulette};
 use crate::shade::Bsdf;
 use crate::world::{Kind, LightSample, MaterialId, Receiver, World};
@@ -98,7 +100,7 @@ fn receiver(work: &Workspace, row: usize) -> Receiver {
 
 /// Weight of what was found with density `found` and might have been found with density `other`.
 /// `None` is a density that is infinite.
-fn heuristic(found: Option<f32>, other: impl FnOnce() -> f32) -> f32 {
+pub fn heuristic(found: Option<f32>, other: impl FnOnce() -> f32) -> f32 {
     let Some(found) = found else { return 1.0 };
     let other = other();
     if other == 0.0 {
@@ -118,58 +120,77 @@ struct Shade<'a> {
 impl ShadeKind for Shade<'_> {
     fn shade<B: Bsdf>(&mut self, work: &mut Workspace, kind: Kind, bsdf: impl Fn(MaterialId) -> B) {
         let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
-        let lights = self.job.has_lights();
-        for &row in rows.iter().filter(|_| lights || !B::DIFFUSE) {
-            let row = row as usize;
-            let hit = work.hits.sphere[row];
-            let bsdf = bsdf(self.job.world.material(hit)).tinted(self.job.world.color(hit));
-            let local = Local::new(work, row);
-            if lights && !bsdf.is_delta() {
-                self.look_for_light(work, row, &bsdf, &local);
+        if B::DIFFUSE {
+            for rows in rows.chunks(MAX_LANES) {
+                diffuse::shade(self.job, work, self.bounce, (rows, &bsdf));
             }
-            if !B::DIFFUSE {
-                self.go_on(work, row, &bsdf, &local);
-            }
-        }
-        for rows in rows.chunks(MAX_LANES).filter(|_| B::DIFFUSE) {
-            diffuse::go_on(self.job, work, self.bounce, (rows, &bsdf));
+        } else {
+            rows.chunks(MAX_LANES).for_each(|rows| self.shade_row(work, rows, &bsdf));
         }
         work.bins.kind[kind as usize] = rows;
     }
 }
 
 impl Shade<'_> {
-    /// Samples one light.
+    /// Samples a light for each of at most sixteen rows, and sends their paths on or ends them.
+    fn shade_row<B: Bsdf>(
+        &self,
+        work: &mut Workspace,
+        rows: &[u32],
+        bsdf: &impl Fn(MaterialId) -> B,
+    ) {
+        let (job, world) = (self.job, self.job.world);
+        let samples = work.samples(rows);
+        let look = job.has_lights().then(|| Look::new(job, &samples, self.bounce, rows.len()));
+        let draws = job.sampler.scatter_row(&samples, self.bounce, true).each();
+        for ((lane, &row), draw) in rows.iter().enumerate().zip(&draws) {
+            let row = row as usize;
+            let hit = work.hits.sphere[row];
+            let bsdf = bsdf(world.material(hit)).tinted(world.color(hit));
+            let local = Local::new(work, row);
+            if let Some(look) = look.as_ref().filter(|_| !bsdf.is_delta()) {
+                let sampled = look.sample(job, work, (lane, row), local.frame.normal);
+                if let Some(sampled) = sampled {
+                    self.light(work, row, (&bsdf, &local), &sampled);
+                }
+            }
+            self.go_on(work, row, (&bsdf, &local), draw);
+        }
+    }
+
+    /// Takes the light of a sample, if nothing is in between; it comes with the probability with which
+    /// its light was chosen.
     #[inline(always)]
-    fn look_for_light<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
-        let world = self.job.world;
-        let place = work.place[row] as usize;
-        let draw = self.job.sampler.light(&work.paths.sample[place], self.bounce);
-        let origin = (work.surface.point[row], work.hits.sphere[row]);
-        let at = Receiver { point: origin.0, normal: local.frame.normal, own: origin.1 };
-        let Some((light, probability)) = world.lights.choose(&at, draw.light) else { return };
-        let Some(sample) = world.lights.sample(world, light, origin, draw.point) else { return };
+    fn light<B: Bsdf>(
+        &self,
+        work: &mut Workspace,
+        row: usize,
+        (bsdf, local): (&B, &Local),
+        (sample, probability): &(LightSample, f32),
+    ) {
         let incoming = local.frame.to_local(sample.direction);
         if incoming.z <= 0.0 {
             return;
         }
-        let weight = match sample.pdf {
-            Some(pdf) if !B::DIFFUSE || sample.close => {
-                heuristic(Some(pdf * probability), || bsdf.pdf(local.outgoing, incoming))
-            }
-            _ => 1.0,
-        };
+        let weight = sample.pdf.map_or(1.0, |pdf| {
+            heuristic(Some(pdf * probability), || bsdf.pdf(local.outgoing, incoming))
+        });
         let response = bsdf.eval(local.outgoing, incoming);
-        let light =
-            work.paths.throughput[place] * response * sample.weight * (weight / probability);
-        cast_shadow(self.job, work, row, (&sample, light), local.inside);
+        let throughput = work.paths.throughput[work.place[row] as usize];
+        let light = throughput * response * sample.weight * (weight / probability);
+        cast_shadow(self.job, work, row, (sample, light), local.inside);
     }
 
     /// Sends the path on, or ends it.
     #[inline(always)]
-    fn go_on<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
+    fn go_on<B: Bsdf>(
+        &self,
+        work: &mut Workspace,
+        row: usize,
+        (bsdf, local): (&B, &Local),
+        draw: &ScatterDraw,
+    ) {
         let place = work.place[row] as usize;
-        let draw = self.job.sampler.scatter(&work.paths.sample[place], self.bounce);
         let Some(scatter) = bsdf.sample(local.outgoing, draw.direction, draw.lobe) else {
             return work.end(row);
         };

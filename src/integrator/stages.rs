@@ -232,28 +232,34 @@ pub fn occlude(job: &Job, work: &mut Workspace) {
 /// Sends every path that has hit glass through it or back.
 pub fn glass(job: &Job, work: &mut Workspace, bounce: u32) {
     let rows = std::mem::take(&mut work.bins.kind[Kind::Dielectric as usize]);
-    for &row in &rows {
-        let row = row as usize;
-        let (place, hit) = (work.place[row] as usize, work.hits.sphere[row]);
-        let draw = job.sampler.scatter(&work.paths.sample[place], bounce);
-        let (passage, overflow) = dielectric::pass(
-            job.world,
-            hit,
-            (work.rays.direction.row(row).as_dvec3(), work.surface.normal[row]),
-            work.paths.inside(place),
-            draw.lobe,
-        );
-        work.counters.nesting_overflows += u64::from(overflow);
-        work.go_on(job.world, row, passage.direction.as_vec3(), passage.inward);
-        if passage.real {
-            let table = &job.world.materials.dielectric;
-            let color = table[job.world.material(hit).row()].color * job.world.color(hit);
-            let unscattered = work.paths.arrival[place].unscattered;
-            work.paths.throughput[place] *= color;
-            work.paths.arrival[place] = Arrival { unscattered, ..Arrival::CAMERA };
+    for rows in rows.chunks(MAX_LANES) {
+        let lobes = job.sampler.lobe_row(&work.samples(rows), bounce).to_array();
+        for (&row, lobe) in rows.iter().zip(lobes) {
+            pass_glass(job, work, row as usize, lobe);
         }
     }
     work.bins.kind[Kind::Dielectric as usize] = rows;
+}
+
+/// Sends the path in `row` through the glass that it has hit or back, by a number in [0, 1).
+fn pass_glass(job: &Job, work: &mut Workspace, row: usize, lobe: f32) {
+    let (place, hit) = (work.place[row] as usize, work.hits.sphere[row]);
+    let (passage, overflow) = dielectric::pass(
+        job.world,
+        hit,
+        (work.rays.direction.row(row).as_dvec3(), work.surface.normal[row]),
+        work.paths.inside(place),
+        lobe,
+    );
+    work.counters.nesting_overflows += u64::from(overflow);
+    work.go_on(job.world, row, passage.direction.as_vec3(), passage.inward);
+    if passage.real {
+        let table = &job.world.materials.dielectric;
+        let color = table[job.world.material(hit).row()].color * job.world.color(hit);
+        let unscattered = work.paths.arrival[place].unscattered;
+        work.paths.throughput[place] *= color;
+        work.paths.arrival[place] = Arrival { unscattered, ..Arrival::CAMERA };
+    }
 }
 
 /// A system that shades the rows of one kind of material.

@@ -3,8 +3,9 @@
 use super::clock::Clock;
 use super::shadows::Shadows;
 use crate::film::View;
+use crate::lanes::MAX_LANES;
 use crate::ray::{GROUND, Hits, MISS, Rays};
-use crate::sampling::{PathState, Sampler};
+use crate::sampling::{PathRow, PathState, Sampler};
 use crate::scene::Rgb;
 use crate::world::{Kind, World};
 use glam::{DVec3, Vec3};
@@ -172,6 +173,16 @@ impl Workspace {
     /// Whether no path goes on.
     pub fn is_empty(&self) -> bool {
         self.rays.is_empty()
+    }
+
+    /// Where in their sequences the paths of at most sixteen rows are; lanes without a row are like the
+    /// first.
+    #[inline(always)]
+    pub fn samples(&self, rows: &[u32]) -> PathRow {
+        let sample = |row: u32| self.paths.sample[self.place[row as usize] as usize];
+        let mut samples = [sample(rows[0]); MAX_LANES];
+        samples.iter_mut().zip(rows).for_each(|(lane, &row)| *lane = sample(row));
+        samples
     }
 
     /// Begins as many paths at the camera. The caller has set their samples, and sets their rays.

@@ -40,6 +40,12 @@ pub(super) fn choices(bounce: u32) -> u32 {
     1 + 2 * bounce
 }
 
+/// The set that holds the numbers of the light at scattering number `bounce`.
+#[inline(always)]
+pub(super) fn lights(bounce: u32) -> u32 {
+    2 + 2 * bounce
+}
+
 impl Sampler {
     /// The camera ray's place in the picture, for
     /// [`PixelFilter::offset`](super::PixelFilter::offset); in [0, 1).
@@ -72,9 +78,16 @@ impl Sampler {
     /// The numbers of the light that is sampled at scattering number `bounce`.
     #[inline]
     pub fn light(&self, path: &PathState, bounce: u32) -> LightDraw {
-        let [u, v, coarse, fine] = self.draw4(path, 2 + 2 * bounce);
+        LightDraw::new(self.draw4(path, lights(bounce)))
+    }
+}
+
+impl LightDraw {
+    /// From the numbers of a set.
+    #[inline]
+    pub fn new([u, v, coarse, fine]: [f32; 4]) -> Self {
         let light = f64::from(coarse) + f64::from(fine) * FINE;
-        LightDraw { point: [u, v], light: light.min(1.0 - f64::EPSILON) }
+        Self { point: [u, v], light: light.min(1.0 - f64::EPSILON) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The numbers of sixteen paths at once.
 
-use super::plan::{choices, directions};
+use super::plan::{ScatterDraw, choices, directions, lights};
 use super::sampler::{PathState, Points, Sampler};
 use super::sobol::{block, shuffle_from};
 use crate::lanes::{F32x16, MAX_LANES, U32x16};
@@ -13,8 +13,24 @@ pub type PathRow = [PathState; MAX_LANES];
 pub struct ScatterRow {
     /// The new directions.
     pub direction: [F32x16; 2],
+    /// Which shares of the materials scatter.
+    pub lobe: F32x16,
     /// Whether the paths go on.
     pub roulette: F32x16,
+}
+
+impl ScatterRow {
+    /// Path by path.
+    #[inline(always)]
+    pub fn each(&self) -> [ScatterDraw; MAX_LANES] {
+        let [u, v] = self.direction.map(F32x16::to_array);
+        let (lobe, roulette) = (self.lobe.to_array(), self.roulette.to_array());
+        std::array::from_fn(|lane| ScatterDraw {
+            direction: [u[lane], v[lane]],
+            lobe: lobe[lane],
+            roulette: roulette[lane],
+        })
+    }
 }
 
 impl Sampler {
@@ -48,17 +64,31 @@ impl Sampler {
         [x, y]
     }
 
-    /// [`Sampler::scatter`] for each, at a surface of a single lobe. Numbers of Russian roulette are 0
-    /// unless they are asked for.
+    /// [`Sampler::scatter`] for each. Numbers for lobes and Russian roulette are 0 unless they are
+    /// asked for.
     #[inline(always)]
-    pub fn scatter_row(&self, paths: &PathRow, bounce: u32, roulette: bool) -> ScatterRow {
-        let [u, v, _, number] = self.draw4_row(paths, directions(bounce));
-        let roulette = match (roulette, choices(bounce)) {
-            (false, _) => F32x16::splat(0.0),
-            (true, set) if set == directions(bounce) => number,
-            (true, set) => self.draw4_row(paths, set)[3],
+    pub fn scatter_row(&self, paths: &PathRow, bounce: u32, choose: bool) -> ScatterRow {
+        let first = self.draw4_row(paths, directions(bounce));
+        let second = match (choose, choices(bounce)) {
+            (false, _) => [F32x16::splat(0.0); 4],
+            (true, set) if set == directions(bounce) => first,
+            (true, set) => self.draw4_row(paths, set),
         };
-        ScatterRow { direction: [u, v], roulette }
+        let ([u, v, ..], [_, _, lobe, roulette]) = (first, second);
+        ScatterRow { direction: [u, v], lobe, roulette }
+    }
+
+    /// What glass asks for: the lobes of [`Sampler::scatter`] for each.
+    #[inline(always)]
+    pub fn lobe_row(&self, paths: &PathRow, bounce: u32) -> F32x16 {
+        self.draw4_row(paths, choices(bounce))[2]
+    }
+
+    /// The numbers from which [`LightDraw`](super::LightDraw)s are made, for each: those of
+    /// [`Sampler::light`].
+    #[inline(always)]
+    pub fn light_row(&self, paths: &PathRow, bounce: u32) -> [F32x16; 4] {
+        self.draw4_row(paths, lights(bounce))
     }
 
     /// [`Sampler::draw4`] for each.
@@ -83,6 +113,7 @@ impl Sampler {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::LightDraw;
     use crate::scene::SamplerKind;
 
     #[test]
@@ -103,10 +134,13 @@ mod tests {
                     }
                 }
                 for bounce in [0, 1, 2, 7] {
-                    let rows = sampler.scatter_row(row, bounce, true);
                     let one = sampler.scatter(&row[5], bounce);
-                    assert_eq!(rows.direction.map(|x| x.to_array()[5]), one.direction);
-                    assert_eq!(rows.roulette.to_array()[5], one.roulette);
+                    assert_eq!(sampler.scatter_row(row, bounce, true).each()[5], one);
+                    let plain = ScatterDraw { lobe: 0.0, roulette: 0.0, ..one };
+                    assert_eq!(sampler.scatter_row(row, bounce, false).each()[5], plain);
+                    assert_eq!(sampler.lobe_row(row, bounce).to_array()[5], one.lobe);
+                    let light = sampler.light_row(row, bounce).map(|x| x.to_array()[5]);
+                    assert_eq!(LightDraw::new(light), sampler.light(&row[5], bounce));
                 }
                 let [x, y] = sampler.pixel_row(row).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.pixel(&row[3]));

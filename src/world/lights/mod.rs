@@ -133,6 +133,12 @@ impl Lights {
         }
     }
 
+    /// The sun, if it is the only light: then there is nothing to choose, and it looks the same from
+    /// everywhere.
+    pub fn lone_sun(&self) -> Option<&Sun> {
+        if self.len() == 1 { self.suns.first() } else { None }
+    }
+
     fn light(&self, index: usize) -> Light {
         let (emitters, points) = (self.emitters.len(), self.points.len());
         if index < emitters {
