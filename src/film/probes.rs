@@ -52,8 +52,8 @@ pub struct Probes {
     places: Vec<Place>,
     /// Two streams for each place, one after the other.
     sums: Sums,
-    /// What a few samples of all pixels have seen before the render.
-    pub pilot: Pilot,
+    /// What a few samples of all pixels have seen before the render, once they were taken.
+    pub pilot: Option<Pilot>,
 }
 
 /// Where a probe is.

@@ -45,17 +45,13 @@ impl Sums {
         bad
     }
 
-    /// Adds `count` samples of the same radiance, finite and not negative, to every place.
-    pub fn add_even(&mut self, radiance: Rgb, count: u32) {
+    /// Makes all that every place has `samples` of the same radiance, finite and not negative: what
+    /// they are does not depend on how many came at a time.
+    pub fn set_even(&mut self, radiance: Rgb, samples: u32) {
         let radiance = radiance.to_array().map(f64::from);
-        let each = |sums: &mut [[f64; 3]], value: [f64; 3]| {
-            for (sum, value) in sums.as_flattened_mut().iter_mut().zip(value.iter().cycle()) {
-                // Sums of so few equal numbers of single precision do not round.
-                *sum += value * f64::from(count);
-            }
-        };
-        each(&mut self.totals, radiance);
-        each(&mut self.squares, radiance.map(|channel| channel * channel));
+        // Sums of so few equal numbers of single precision do not round.
+        self.totals.fill(radiance.map(|channel| channel * f64::from(samples)));
+        self.squares.fill(radiance.map(|channel| channel * channel * f64::from(samples)));
     }
 
     /// Mean of each place's samples, of which there are `samples` each; 0 if there are none.
@@ -97,8 +93,8 @@ mod tests {
     #[test]
     fn even_samples_do_not_spread() {
         let mut sums = Sums::new(1, true);
-        sums.add_even(Rgb::new(0.1, 0.2, 0.3), 5);
-        sums.add_even(Rgb::new(0.1, 0.2, 0.3), 11);
+        sums.set_even(Rgb::new(0.1, 0.2, 0.3), 5);
+        sums.set_even(Rgb::new(0.1, 0.2, 0.3), 16);
         let [mean] = sums.means(16).collect::<Vec<_>>()[..] else { panic!("one place") };
         assert_eq!(mean.map(|channel| channel as f32), [0.1, 0.2, 0.3]);
         assert!(sums.variances(16).all(|variance| variance.iter().all(|v| *v < 1e-16)));

@@ -112,7 +112,7 @@ pub fn mean_radiance(film: &Film) -> Estimate {
 
 /// The sum of a tile's radiance by its pilot.
 fn pilot(tile: &Tile) -> Estimate {
-    let Pilot { sum, variance } = tile.probes.pilot;
+    let Pilot { sum, variance } = tile.probes.pilot.unwrap_or_default();
     Estimate { value: sum, variance, third: 0.0 }
 }
 

@@ -80,7 +80,7 @@ pub(super) fn pilot_pass(
 ) {
     if let Some(radiance) = even(job.world, tile) {
         let sum = f64::from(tile.len()) * radiance.to_array().map(f64::from).iter().sum::<f64>();
-        tile.probes.pilot = Pilot { sum: sum / 3.0, variance: 0.0 };
+        tile.probes.pilot = Some(Pilot { sum: sum / 3.0, variance: 0.0 });
         return;
     }
     work.clock.restart();
@@ -90,7 +90,7 @@ pub(super) fn pilot_pass(
     stages::generate_streams(job, streams, 0..samples, work);
     let paths = integrate(job, work);
     let weights = places.iter().map(|&(.., weight)| weight);
-    tile.probes.pilot = Pilot::new(&work.paths.radiance[..paths], samples, weights);
+    tile.probes.pilot = Some(Pilot::new(&work.paths.radiance[..paths], samples, weights));
     work.clock.end(Stage::Film);
 }
 

@@ -34,23 +34,44 @@ impl Tasks {
     }
 }
 
+/// What was done, and how long it took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Totals {
+    /// What was done, for probes too.
+    pub counters: Counters,
+    /// Time in each stage, of all threads together.
+    pub times: Times,
+    /// The tasks that the threads shared.
+    pub tasks: Tasks,
+    /// Time that it took.
+    pub elapsed: Duration,
+}
+
 /// What all threads of a render share.
 pub(super) struct Watch<'a> {
     options: &'a Options<'a>,
     start: Instant,
+    /// Time that the render took before.
+    before: Duration,
     rays: AtomicU64,
-    totals: Mutex<(Counters, Times, Tasks)>,
+    totals: Mutex<Totals>,
 }
 
 impl<'a> Watch<'a> {
-    pub(super) fn new(options: &'a Options<'a>) -> Self {
-        let (rays, totals) = (AtomicU64::new(0), Mutex::default());
-        Self { options, start: Instant::now(), rays, totals }
+    /// Goes on from what was done before.
+    pub(super) fn new(options: &'a Options<'a>, totals: Totals) -> Self {
+        Self {
+            options,
+            start: Instant::now(),
+            before: totals.elapsed,
+            rays: AtomicU64::new(totals.counters.rays()),
+            totals: Mutex::new(totals),
+        }
     }
 
-    /// Since the render began.
+    /// Since the render began, but for pauses.
     pub(super) fn elapsed(&self) -> Duration {
-        self.start.elapsed()
+        self.before + self.start.elapsed()
     }
 
     /// Whether someone wants the render to end.
@@ -63,12 +84,12 @@ impl<'a> Watch<'a> {
         let counted = std::mem::take(&mut work.counters);
         let rays = self.rays.fetch_add(counted.rays(), Ordering::Relaxed) + counted.rays();
         if let Ok(mut totals) = self.totals.lock() {
-            totals.0.add(&counted);
+            totals.counters.add(&counted);
             let times = work.clock.take();
-            totals.1.add(&times);
-            totals.2.count += 1;
-            totals.2.longest = totals.2.longest.max(times.total());
-            totals.2.total += times.total();
+            totals.times.add(&times);
+            totals.tasks.count += 1;
+            totals.tasks.longest = totals.tasks.longest.max(times.total());
+            totals.tasks.total += times.total();
         }
         if let Some(progress) = self.options.progress {
             progress(Progress { done, rays, elapsed: self.elapsed(), noise });
@@ -76,8 +97,9 @@ impl<'a> Watch<'a> {
     }
 
     /// All that was done.
-    pub(super) fn totals(self) -> (Counters, Times, Tasks) {
-        self.totals.into_inner().unwrap_or_default()
+    pub(super) fn totals(self) -> Totals {
+        let elapsed = self.elapsed();
+        Totals { elapsed, ..self.totals.into_inner().unwrap_or_default() }
     }
 }
 

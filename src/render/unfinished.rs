@@ -1,0 +1,212 @@
+//! Renders that can be stopped, kept, and gone on with.
+
+use super::state::State;
+use super::target::{self, End, Stage, Target};
+use super::watch::{Totals, Watch};
+use super::{Options, Render, Samples, Statistics, Unlike, adapt, pass, uniform, unlike};
+use crate::bvh::walk::Method;
+use crate::film::{Film, Region};
+use crate::integrator::Job;
+use crate::noise;
+use crate::sampling::{PixelFilter, Sampler};
+use crate::scene::{Integrator, Settings};
+use crate::world::World;
+use rayon::prelude::*;
+
+/// A render that may have been stopped: all that it knows, and so all that makes what comes next.
+///
+/// # What is the same
+///
+/// However often a render is cancelled, and with however many threads and whatever tracer it goes
+/// on, it comes to the same bytes as one that never stopped: samples of a pixel are added up in the
+/// order of their index, and what a target decides is a function of what is kept here. Renders to a
+/// time go through one sequence of steps, of which the time decides how many there are.
+///
+/// # Asking for more
+///
+/// [`Unfinished::raise`] asks for more samples, a smaller error or more time:
+///
+/// * More samples without a target: the result is that of a render of so many from the start.
+/// * More time: the sequence of steps goes on.
+/// * A smaller error, or more samples with a target: what was asked for before is reached first, and
+///   the new target from there. So the result is a function of all that was asked for, in order,
+///   and not of the moments at which that was; a render to the last target alone may have taken other
+///   samples, and is as right.
+#[derive(Clone, Debug)]
+pub struct Unfinished {
+    pub(crate) settings: Settings,
+    /// What is to be reached with a target, in order.
+    stages: Vec<Stage>,
+    /// How many of them were.
+    met: usize,
+    /// Whether sums of squares are kept.
+    statistics: bool,
+    state: State,
+    totals: Totals,
+    end: End,
+}
+
+impl Unfinished {
+    /// A render that has no samples yet, of `world` by `settings`, both as [`super::render()`] takes
+    /// them. Of the options, region and statistics are those of the whole render.
+    pub fn begin(world: &World, settings: &Settings, options: &Options) -> Self {
+        let camera = &world.camera;
+        let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
+        let mut film = Film::new(options.region.unwrap_or(whole), options.statistics);
+        let statistics = options.statistics;
+        let state = with_job(world, settings, options, |job| {
+            if options.tracer.method != Method::Brute && options.skips.empty_tiles {
+                film.tiles.par_iter_mut().for_each(|tile| tile.view = pass::view(job, tile));
+            }
+            let measured = settings.has_target() || statistics;
+            if measured { State::new(job, film) } else { State::unmeasured(film) }
+        });
+        let stages = if settings.has_target() { vec![Stage::of(settings)] } else { Vec::new() };
+        let (settings, totals, end) = (settings.clone(), Totals::default(), End::Cancelled);
+        Self { settings, stages, met: 0, statistics, state, totals, end }
+    }
+
+    /// Goes on until everything that was asked for is there, time is up, or `options.cancel` is set,
+    /// with the threads of the current rayon pool. A pass over a tile is not broken off.
+    ///
+    /// `world` is that of the beginning. Of the options, region and statistics are those of the
+    /// beginning too, whatever is said here.
+    pub fn run(&mut self, world: &World, options: &Options) -> End {
+        let watch = Watch::new(options, self.totals);
+        let settings = self.settings.clone();
+        self.end = with_job(world, &settings, options, |job| {
+            if settings.has_target() {
+                self.meet(job, &watch)
+            } else {
+                uniform::run(job, &mut self.state, &watch)
+            }
+        });
+        self.totals = watch.totals();
+        self.end
+    }
+
+    /// Meets the stages that are left.
+    fn meet(&mut self, job: &Job, watch: &Watch) -> End {
+        let mut end = self.end;
+        while let Some(&stage) = self.stages.get(self.met) {
+            let target = Target::new(stage, self.settings.time);
+            end = adapt::run(job, &mut self.state, &target, watch);
+            if matches!(end, End::Cancelled | End::Time) {
+                return end;
+            }
+            self.met += 1;
+        }
+        end
+    }
+
+    /// Asks for what `settings` say: more samples, a smaller error, more time, or the same. Exposure
+    /// and tone may be any.
+    ///
+    /// # Errors
+    /// Anything else is other than at the beginning, or it asks for less; or samples are stratified
+    /// in a number of strata that would be another.
+    pub fn raise(&mut self, settings: &Settings) -> Result<(), Unlike> {
+        unlike::check(&self.settings, settings)?;
+        let stage = Stage::of(settings);
+        if settings.has_target() && self.stages.last() != Some(&stage) {
+            self.stages.push(stage);
+        }
+        self.settings = settings.clone();
+        Ok(())
+    }
+
+    /// The picture so far, and what is known of it.
+    pub fn render(&self) -> Render {
+        let (film, settings) = (&self.state.film, &self.settings);
+        let statistics = self.statistics.then(|| Statistics {
+            variance: film.variance(|tile| noise::gain(film, tile)),
+            samples: film.samples(),
+        });
+        let measured = settings.has_target() || self.statistics;
+        let Totals { counters, times, tasks, elapsed } = self.totals;
+        Render {
+            image: film.resolve(),
+            samples: self.samples(),
+            noise: measured.then(|| self.state.noise(settings.until_error.is_some())).flatten(),
+            statistics,
+            counters,
+            times,
+            tasks,
+            elapsed,
+            end: self.end,
+            complete: self.end != End::Cancelled,
+        }
+    }
+
+    /// Samples that there are.
+    pub fn samples(&self) -> Samples {
+        let tiles = &self.state.film.tiles;
+        let counts = || tiles.iter().map(|tile| tile.samples);
+        let total = tiles.iter().map(|tile| u64::from(tile.samples) * u64::from(tile.len()));
+        Samples {
+            total: total.sum(),
+            least: counts().min().unwrap_or(0),
+            most: counts().max().unwrap_or(0),
+            rounds: self.state.round,
+        }
+    }
+
+    /// What it was begun with, but for what was raised since.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What was asked for with a target, in order; the last is what the settings say.
+    pub fn stages(&self) -> &[Stage] {
+        &self.stages
+    }
+
+    /// The part of the picture that it is.
+    pub fn region(&self) -> Region {
+        self.state.film.region
+    }
+
+    /// Whether [`Render::statistics`] are wanted.
+    pub fn statistics(&self) -> bool {
+        self.statistics
+    }
+
+    /// Sums and counts.
+    pub fn film(&self) -> &Film {
+        &self.state.film
+    }
+
+    /// What was done so far, and how long it took.
+    pub fn totals(&self) -> &Totals {
+        &self.totals
+    }
+}
+
+/// Does something with what all tasks of a render share.
+fn with_job<T>(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    work: impl FnOnce(&Job) -> T,
+) -> T {
+    let sampler = Sampler::new(settings.sampler, settings.seed, target::strata(settings));
+    let filter = PixelFilter::new(settings.filter);
+    let settings = in_world_units(world, settings);
+    work(&Job {
+        world,
+        settings: &settings,
+        sampler: &sampler,
+        filter: &filter,
+        tracer: options.tracer,
+        skips: options.skips,
+    })
+}
+
+/// Lengths of the settings in the world's units.
+fn in_world_units(world: &World, settings: &Settings) -> Settings {
+    let integrator = match settings.integrator {
+        Integrator::Ao { distance } => Integrator::Ao { distance: world.frame.length(distance) },
+        other => other,
+    };
+    Settings { integrator, ..settings.clone() }
+}

@@ -1,0 +1,96 @@
+//! Whether a render can go on by other settings.
+
+use super::target;
+use crate::scene::{SamplerKind, Settings};
+use std::fmt::Debug;
+use std::time::Duration;
+
+/// Why a render cannot go on by other settings.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Unlike {
+    /// What every sample depends on.
+    #[error("{name} is {now}, but was {then} when the render began; leave it as it was")]
+    Setting {
+        /// By the name that scene files use.
+        name: &'static str,
+        /// At the beginning.
+        then: String,
+        /// What it would be.
+        now: String,
+    },
+    /// A target can neither come nor go.
+    #[error("the render began {} {name}, and goes on so; {}", if *.then { "with" } else { "without" }, if *.then { "give it again, or leave it as it was" } else { "leave it out" })]
+    Target {
+        /// By the name that scene files use.
+        name: &'static str,
+        /// Whether there was one.
+        then: bool,
+    },
+    /// What is there is not taken back.
+    #[error("{name} is {now}, but {then} was asked for before; ask for as much or for more")]
+    Less {
+        /// By the name that scene files use.
+        name: &'static str,
+        /// What was asked for.
+        then: String,
+        /// What would be.
+        now: String,
+    },
+    /// The samples that there are lie in other strata.
+    #[error(
+        "spp is {now}, but the samples were stratified for {then}; leave it as it was, or begin \
+         anew with the sampler sobol"
+    )]
+    Strata {
+        /// Samples per pixel that were asked for.
+        then: u32,
+        /// What would be.
+        now: u32,
+    },
+}
+
+/// Finds out whether a render that was to reach `then` can go on to `now`.
+pub(super) fn check(then: &Settings, now: &Settings) -> Result<(), Unlike> {
+    let same = |name, then: &dyn Debug, now: &dyn Debug| {
+        let (then, now) = (format!("{then:?}"), format!("{now:?}"));
+        if then == now { Ok(()) } else { Err(Unlike::Setting { name, then, now }) }
+    };
+    same("width", &then.width, &now.width)?;
+    same("height", &then.height, &now.height)?;
+    same("depth", &then.depth, &now.depth)?;
+    same("seed", &then.seed, &now.seed)?;
+    same("integrator", &then.integrator, &now.integrator)?;
+    same("sampler", &then.sampler, &now.sampler)?;
+    same("filter", &then.filter, &now.filter)?;
+    same("roulette", &then.roulette, &now.roulette)?;
+    same_target("until_error", then.until_error.is_some(), now.until_error.is_some())?;
+    same_target("time", then.time.is_some(), now.time.is_some())?;
+    no_less(then, now)
+}
+
+fn same_target(name: &'static str, then: bool, now: bool) -> Result<(), Unlike> {
+    if then == now { Ok(()) } else { Err(Unlike::Target { name, then }) }
+}
+
+fn no_less(then: &Settings, now: &Settings) -> Result<(), Unlike> {
+    let less = |name, then: String, now: String| Err(Unlike::Less { name, then, now });
+    if now.spp < then.spp {
+        return less("spp", then.spp.to_string(), now.spp.to_string());
+    }
+    if let (Some(then), Some(now)) = (then.until_error, now.until_error)
+        && now > then
+    {
+        return less("until_error", then.to_string(), now.to_string());
+    }
+    let seconds = |time: Duration| format!("{} s", time.as_secs_f64());
+    if let (Some(then), Some(now)) = (then.time, now.time)
+        && now < then
+    {
+        return less("time", seconds(then), seconds(now));
+    }
+    let stratified = now.sampler == SamplerKind::Stratified;
+    if stratified && target::strata(then) != target::strata(now) {
+        return Err(Unlike::Strata { then: then.spp, now: now.spp });
+    }
+    Ok(())
+}
