@@ -14,6 +14,13 @@ use tempfile::NamedTempFile;
 /// More links in a row than this are taken for a loop, as Linux does.
 const MAXIMUM_LINKS: usize = 40;
 
+/// What the names of temporary files end with, after so many random characters.
+const TEMPORARY: &str = ".spherule-tmp";
+const RANDOM: usize = 8;
+
+/// Bytes of a file's name that are in those of its temporary files: systems take 255 in all.
+const NAMED: usize = 200;
+
 /// What is at a destination, symbolic links followed.
 enum Destination {
     /// Nothing, or a regular file: replaced as a whole.
@@ -44,7 +51,7 @@ where
             writer.flush()
         }
         Destination::Regular { path, folder, old } => {
-            let mut writer = BufWriter::new(create_temporary(&folder)?);
+            let mut writer = BufWriter::new(create_temporary(&path, &folder)?);
             fill(&mut writer)?;
             let file = writer.into_inner()?;
             if let Some(old) = old {
@@ -52,6 +59,7 @@ where
             }
             file.as_file().sync_all()?;
             file.persist(path)?;
+            sync(&folder);
             Ok(())
         }
     }
@@ -66,8 +74,28 @@ pub fn check_destination(path: impl AsRef<Path>) -> io::Result<()> {
         // Opening a pipe would wait for its reader.
         Destination::Special(_) => Ok(()),
         // The temporary file goes when it is dropped.
-        Destination::Regular { folder, .. } => create_temporary(&folder).map(drop),
+        Destination::Regular { path, folder, .. } => create_temporary(&path, &folder).map(drop),
     }
+}
+
+/// Removes what programs that were killed while they wrote a file have left beside it. Nobody else may
+/// write it meanwhile.
+///
+/// # Errors
+/// The folder cannot be read, or a file in it not be removed.
+pub fn remove_leftovers(path: impl AsRef<Path>) -> io::Result<()> {
+    let path = follow(path.as_ref())?;
+    let prefix = temporary_prefix(&path);
+    for entry in fs::read_dir(folder_of(&path)?)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let middle = name.to_str().and_then(|name| name.strip_prefix(&prefix));
+        let random = middle.and_then(|name| name.strip_suffix(TEMPORARY));
+        if random.is_some_and(|random| random.len() == RANDOM) {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 impl Destination {
@@ -91,7 +119,7 @@ impl Destination {
 }
 
 /// The path with every symbolic link resolved, also if the last one points to nothing yet.
-fn follow(path: &Path) -> io::Result<PathBuf> {
+pub(crate) fn follow(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..MAXIMUM_LINKS {
         match fs::canonicalize(&path) {
@@ -128,10 +156,30 @@ fn folder_of(path: &Path) -> io::Result<PathBuf> {
     Err(explain(ErrorKind::NotFound, &message))
 }
 
-/// An empty file in `folder` with the permissions of any new file, which goes when it is dropped.
-fn create_temporary(folder: &Path) -> io::Result<NamedTempFile<File>> {
+/// What the names of a file's temporary files begin with.
+fn temporary_prefix(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut end = name.len().min(NAMED);
+    while !name.is_char_boundary(end) {
+        end -= 1;
+    }
+    format!(".{}-", &name[..end])
+}
+
+/// Forces a name in a folder to the disk, where systems can do that. The file is there whether this
+/// succeeds or not.
+fn sync(folder: &Path) {
+    if cfg!(unix) {
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
+}
+
+/// An empty file in the folder of `path` with the permissions of any new file, which goes when it is
+/// dropped.
+fn create_temporary(path: &Path, folder: &Path) -> io::Result<NamedTempFile<File>> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".spherule-").suffix(".tmp");
+    let prefix = temporary_prefix(path);
+    builder.prefix(&prefix).suffix(TEMPORARY).rand_bytes(RANDOM);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -152,112 +200,4 @@ fn explain(kind: ErrorKind, message: &str) -> io::Error {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).unwrap();
-        let mut names: Vec<_> =
-            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn new_and_old_files_get_the_content() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a");
-        for content in [&b"first, and longer"[..], b"second", b""] {
-            write_atomically(&path, |file| file.write_all(content)).unwrap();
-            assert_eq!(fs::read(&path).unwrap(), content);
-        }
-        assert_eq!(names(folder.path()), ["a"]);
-    }
-
-    #[test]
-    fn failures_leave_the_old_file_and_nothing_else() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a");
-        let fail = |file: &mut dyn Write| {
-            file.write_all(&[0; 10_000])?;
-            Err(io::Error::other("out of ink"))
-        };
-        assert!(write_atomically(&path, fail).unwrap_err().to_string().contains("ink"));
-        assert_eq!(names(folder.path()), [""; 0]);
-        fs::write(&path, "old").unwrap();
-        assert!(write_atomically(&path, fail).is_err());
-        assert_eq!(fs::read(&path).unwrap(), b"old");
-        assert_eq!(names(folder.path()), ["a"]);
-    }
-
-    #[test]
-    fn destinations_that_cannot_be_are_refused_before_they_are_filled() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("file");
-        fs::write(&file, "old").unwrap();
-        let missing = folder.path().join("missing").join("a");
-        for path in [folder.path(), &missing, &file.join("a"), Path::new(""), Path::new("/")] {
-            let refused = check_destination(path).unwrap_err().to_string();
-            let called = |_: &mut dyn Write| panic!("must not be called");
-            assert_eq!(write_atomically(path, called).unwrap_err().to_string(), refused);
-        }
-        assert!(check_destination(missing).unwrap_err().to_string().contains("create it first"));
-        assert!(check_destination(&file).is_ok());
-        assert!(check_destination(folder.path().join("new")).is_ok());
-        assert_eq!(names(folder.path()), ["file"]);
-        assert_eq!(fs::read(&file).unwrap(), b"old");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn permissions_are_those_of_a_new_file_or_the_old_one() {
-        use std::os::unix::fs::PermissionsExt;
-        let folder = tempfile::tempdir().unwrap();
-        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
-        let (path, ordinary) = (folder.path().join("a"), folder.path().join("b"));
-        fs::write(&ordinary, "").unwrap();
-        write_atomically(&path, |file| file.write_all(b"1")).unwrap();
-        assert_eq!(mode(&path), mode(&ordinary));
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
-        write_atomically(&path, |file| file.write_all(b"2")).unwrap();
-        assert_eq!(mode(&path) & 0o777, 0o640);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn symbolic_links_stay_and_their_target_is_written() {
-        use std::os::unix::fs::symlink;
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        fs::create_dir(path("elsewhere")).unwrap();
-        symlink("elsewhere/target", path("inner")).unwrap();
-        symlink("inner", path("outer")).unwrap();
-        for content in ["to nothing yet", "to a file"] {
-            write_atomically(path("outer"), |file| file.write_all(content.as_bytes())).unwrap();
-            assert!(path("outer").is_symlink() && path("inner").is_symlink());
-            assert_eq!(fs::read(path("elsewhere/target")).unwrap(), content.as_bytes());
-        }
-        symlink("loop", path("loop")).unwrap();
-        assert!(check_destination(path("loop")).is_err());
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn folders_that_take_no_files_are_found() {
-        // Not even the superuser can create a file here.
-        let message = check_destination("/proc/a").unwrap_err().to_string();
-        assert!(message.contains("\"/proc\"") && message.contains("another folder"), "{message}");
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn devices_are_written_to_directly() {
-        use std::os::unix::fs::FileTypeExt;
-        let is_device = |path| fs::metadata(path).unwrap().file_type().is_char_device();
-        let full = write_atomically("/dev/full", |file| file.write_all(b"1"));
-        assert_eq!(full.unwrap_err().kind(), ErrorKind::StorageFull);
-        assert!(is_device("/dev/full"));
-        write_atomically("/dev/null", |file| file.write_all(b"1")).unwrap();
-        assert!(is_device("/dev/null") && check_destination("/dev/null").is_ok());
-    }
-}
+mod tests;

@@ -98,6 +98,7 @@ pub mod trace;
 pub mod integrator;
 pub mod shade;
 
+pub mod checkpoint;
 pub mod film;
 pub mod layers;
 pub mod noise;

@@ -5,18 +5,21 @@
 //! into passes. A filter that is sampled gives every sample weight 1: a pixel is the mean of its
 //! own.
 
+mod kept;
 mod probes;
 mod sums;
 mod tile;
 
+pub(crate) use kept::KeptTile;
 pub use probes::{Density, Pilot, Probes, Reading, Role};
 pub use sums::Sums;
 pub use tile::{TILE, Tile, View};
 
 use crate::image::Image;
+use serde::{Deserialize, Serialize};
 
 /// A rectangle of pixels of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Region {
     /// First column, from the left.
     pub x: u32,
@@ -58,6 +61,11 @@ impl Film {
             .map(|region| Tile::new(region, squared))
             .collect();
         Self { region, tiles }
+    }
+
+    /// Tiles that a film of a region has.
+    pub(crate) fn tiles_of(region: Region) -> u64 {
+        u64::from(region.width.div_ceil(TILE)) * u64::from(region.height.div_ceil(TILE))
     }
 
     /// Tiles in a row of them.

@@ -8,6 +8,7 @@
 use super::{Sums, Tile};
 use crate::sampling::{Sampler, mix, stream};
 use crate::scene::Rgb;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Sets the hashes that place probes apart from those that make samples.
@@ -51,7 +52,7 @@ pub struct Probes {
     /// One of each role after the other.
     places: Vec<Place>,
     /// Two streams for each place, one after the other.
-    sums: Sums,
+    pub(super) sums: Sums,
     /// What a few samples of all pixels have seen before the render, once they were taken.
     pub pilot: Option<Pilot>,
 }
@@ -66,7 +67,7 @@ struct Place {
 }
 
 /// A sum over a tile's pixels, and its variance.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pilot {
     /// Sum of the pixels' radiance, averaged over the channels.
     pub sum: f64,

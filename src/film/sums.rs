@@ -54,6 +54,16 @@ impl Sums {
         self.squares.fill(radiance.map(|channel| channel * channel * f64::from(samples)));
     }
 
+    /// Totals and squares.
+    pub(super) fn columns(&self) -> [&[f64]; 2] {
+        [self.totals.as_flattened(), self.squares.as_flattened()]
+    }
+
+    /// The same, to be filled.
+    pub(super) fn columns_mut(&mut self) -> [&mut [f64]; 2] {
+        [self.totals.as_flattened_mut(), self.squares.as_flattened_mut()]
+    }
+
     /// Mean of each place's samples, of which there are `samples` each; 0 if there are none.
     pub fn means(&self, samples: u32) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
         let samples = f64::from(samples.max(1));

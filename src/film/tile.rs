@@ -2,6 +2,7 @@
 
 use super::{Probes, Region, Sums};
 use crate::scene::Rgb;
+use serde::{Deserialize, Serialize};
 
 /// Pixels along a tile's side.
 pub const TILE: u32 = 16;
@@ -22,7 +23,7 @@ pub struct Tile {
 }
 
 /// What camera rays of a tile may hit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum View {
     /// Anything.
     Anything,

@@ -1,5 +1,6 @@
 //! Where a task's time goes: by stage, and by looking at the clock once per stage and batch.
 
+use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
 /// What a task is doing.
@@ -38,7 +39,7 @@ impl Stage {
 }
 
 /// Time spent in each stage, by [`Stage`]; of several tasks, the sum.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Times([Duration; Stage::ALL.len()]);
 
 impl Times {
@@ -50,6 +51,11 @@ impl Times {
     /// Of all stages.
     pub fn total(&self) -> Duration {
         self.0.iter().sum()
+    }
+
+    /// Of the stage that took longest.
+    pub(crate) fn longest(&self) -> Duration {
+        self.0.into_iter().max().unwrap_or_default()
     }
 
     /// Adds what another task took.

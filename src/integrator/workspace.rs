@@ -9,6 +9,7 @@ use crate::sampling::{PathRow, PathState, Sampler};
 use crate::scene::Rgb;
 use crate::world::{Kind, World};
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// Paths that are followed together: 16 samples of each pixel of a tile. The columns of that many
 /// stay in the second-level cache.
@@ -94,7 +95,7 @@ pub struct Bins {
 }
 
 /// What was done, for statistics.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
     /// Samples that need no ray, for nothing but an even background can be seen there.
     pub skipped_samples: u64,
@@ -130,6 +131,20 @@ impl Counters {
         self.cut_paths += other.cut_paths;
         self.bad_samples += other.bad_samples;
         self.nesting_overflows += other.nesting_overflows;
+    }
+
+    /// All of them.
+    pub(crate) fn all(&self) -> [u64; 8] {
+        [
+            self.skipped_samples,
+            self.camera_rays,
+            self.bounce_rays,
+            self.shadow_rays,
+            self.exact_decisions,
+            self.cut_paths,
+            self.bad_samples,
+            self.nesting_overflows,
+        ]
     }
 }
 

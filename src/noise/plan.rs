@@ -2,6 +2,7 @@
 
 use super::estimate::neighbors;
 use crate::film::{Film, Role, Tile};
+use serde::{Deserialize, Serialize};
 
 /// Least and greatest exponent by which variance is taken to fall with samples.
 const EXPONENTS: (f64, f64) = (0.5, 2.0);
@@ -30,7 +31,7 @@ pub struct Goal {
 }
 
 /// How steeply variance falls with samples, from tiles whose samples were doubled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slope {
     /// Sum of their variances before, and after.
     sums: [f64; 2],

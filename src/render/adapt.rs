@@ -108,7 +108,7 @@ fn expected_work(target: &Target, noise: Option<Noise>, spent: f64, slope: Slope
 fn advance(job: &Job, tile: &mut Tile, to: u32, watch: &Watch, work: &mut Workspace) {
     while tile.samples < to && !watch.cancelled() {
         let first = tile.samples;
-        pass::tile_pass(job, tile, first..to.min(first + PASS), work);
+        pass::tile_pass(job, tile, first..to.min(first.saturating_add(PASS)), work);
     }
     pass::probe_pass(job, tile, to, work, || !watch.cancelled());
 }

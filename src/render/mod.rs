@@ -5,6 +5,7 @@
 //! and go on as if nothing had been: see [`Unfinished`].
 
 mod adapt;
+mod outline;
 mod pass;
 mod state;
 mod target;
@@ -14,6 +15,7 @@ mod unlike;
 mod watch;
 
 pub use crate::integrator::skips::Skips;
+pub(crate) use outline::Outline;
 pub(crate) use pass::view;
 pub use target::{End, Stage};
 pub use unfinished::Unfinished;

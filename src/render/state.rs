@@ -5,6 +5,7 @@ use super::target::Target;
 use crate::film::{Density, Film, Tile};
 use crate::integrator::Job;
 use crate::noise::{self, Estimate, Noise, Slope};
+use serde::{Deserialize, Serialize};
 
 /// All that makes what comes next: a render that goes on from a kept state makes the same picture as
 /// one that never stopped.
@@ -27,7 +28,7 @@ pub(super) struct State {
 }
 
 /// What a tile is to get.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Step {
     /// Its place in the film.
     pub(super) tile: u32,

@@ -2,13 +2,14 @@
 
 use crate::noise::{Goal, Noise};
 use crate::scene::Settings;
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Samples of a pixel from which on probes are believed.
 pub(super) const FIRST: u32 = 16;
 
 /// Why a render ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum End {
     /// Every pixel has as many samples as it may have.
     Samples,
@@ -21,7 +22,7 @@ pub enum End {
 }
 
 /// What is to be reached before what was asked for later.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
     /// Error of the picture, if that is a target.
     pub until_error: Option<f64>,

@@ -34,16 +34,16 @@ use rayon::prelude::*;
 ///   samples, and is as right.
 #[derive(Clone, Debug)]
 pub struct Unfinished {
-    pub(crate) settings: Settings,
+    pub(super) settings: Settings,
     /// What is to be reached with a target, in order.
-    stages: Vec<Stage>,
+    pub(super) stages: Vec<Stage>,
     /// How many of them were.
-    met: usize,
+    pub(super) met: usize,
     /// Whether sums of squares are kept.
-    statistics: bool,
-    state: State,
-    totals: Totals,
-    end: End,
+    pub(super) statistics: bool,
+    pub(super) state: State,
+    pub(super) totals: Totals,
+    pub(super) end: End,
 }
 
 impl Unfinished {
@@ -174,6 +174,11 @@ impl Unfinished {
     /// Sums and counts.
     pub fn film(&self) -> &Film {
         &self.state.film
+    }
+
+    /// The same, to be filled.
+    pub(crate) fn film_mut(&mut self) -> &mut Film {
+        &mut self.state.film
     }
 
     /// What was done so far, and how long it took.

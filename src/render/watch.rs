@@ -4,6 +4,7 @@ use super::{Options, Progress};
 use crate::integrator::clock::Times;
 use crate::integrator::workspace::{Counters, Workspace};
 use crate::noise::Noise;
+use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -15,7 +16,7 @@ use std::time::{Duration, Instant};
 /// there is nothing left to begin (Graham, "Bounds on Multiprocessing Timing Anomalies", SIAM Journal on
 /// Applied Mathematics 1969). That is so for pictures of more tiles than threads, as far as memory keeps
 /// up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tasks {
     /// How many.
     pub count: u64,
@@ -35,7 +36,7 @@ impl Tasks {
 }
 
 /// What was done, and how long it took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Totals {
     /// What was done, for probes too.
     pub counters: Counters,

@@ -1,9 +1,10 @@
 //! How the picture is made.
 
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// How the picture is made.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Pixels, 1..=65535 each way.
     pub width: u32,
@@ -36,7 +37,7 @@ pub struct Settings {
 }
 
 /// How light is gathered.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Integrator {
     /// Path tracing with next-event estimation and multiple importance sampling.
     Path,
@@ -53,7 +54,7 @@ pub enum Integrator {
 }
 
 /// Where samples lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SamplerKind {
     /// Owen-scrambled Sobol points.
     Sobol,
@@ -65,7 +66,7 @@ pub enum SamplerKind {
 
 /// The pixel reconstruction filter, applied by filter importance sampling: every sample has weight
 /// 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Filter {
     /// The pixel's own square.
     Box,
@@ -76,7 +77,7 @@ pub enum Filter {
 }
 
 /// Russian roulette.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Roulette {
     /// Paths end by depth only.
     None,
@@ -88,7 +89,7 @@ pub enum Roulette {
 }
 
 /// From linear radiance to display-linear 0..=1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tone {
     /// Clip at 1.
     Linear,

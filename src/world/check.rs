@@ -56,7 +56,8 @@ fn radiance(name: &str, color: Rgb) -> Result<(), WorldError> {
     demand(bright(color), || format!("{name} is {color}, but must be 0 to {BRIGHTEST:e}"))
 }
 
-fn settings(settings: &Settings) -> Result<(), WorldError> {
+/// Whether settings are in the ranges that their documentation states.
+pub(crate) fn settings(settings: &Settings) -> Result<(), WorldError> {
     let pixels = 1..=65_535;
     let (width, height) = (settings.width, settings.height);
     demand(pixels.contains(&width) && pixels.contains(&height), || {

@@ -9,7 +9,7 @@
 mod appearance;
 mod camera;
 mod census;
-mod check;
+pub(crate) mod check;
 mod environment;
 mod fit;
 mod frame;

@@ -1,7 +1,7 @@
 //! From a scene to files that load as the same scene: a TOML file, and its spheres in a CSV file
 //! beside it.
 
-mod sections;
+pub(super) mod sections;
 
 use self::sections::{camera, environment, light, material, quoted, render, vector};
 use super::{NamedMaterial, Rgb, Scene, SceneError, Spheres};

@@ -50,7 +50,7 @@ pub(super) fn render(settings: &Settings) -> String {
     )
 }
 
-pub(super) fn camera(camera: &Camera) -> String {
+pub(in crate::scene) fn camera(camera: &Camera) -> String {
     let projection = match camera.projection {
         Projection::Perspective { fov } => format!("\"perspective\"\nfov = {fov:?}"),
         Projection::Orthographic { height: Some(height) } => {
@@ -77,7 +77,7 @@ pub(super) fn camera(camera: &Camera) -> String {
     format!("[camera]\nprojection = {projection}\n{pose}\nup = {up}\nnear = {near:?}\n{lens}\n")
 }
 
-pub(super) fn environment(environment: &Environment) -> Result<String, String> {
+pub(in crate::scene) fn environment(environment: &Environment) -> Result<String, String> {
     let map = match &environment.map {
         EnvironmentMap::Constant(color) => format!("kind = \"constant\"\ncolor = {}", rgb(*color)),
         EnvironmentMap::Gradient { bottom, top, up } => {
@@ -92,7 +92,7 @@ pub(super) fn environment(environment: &Environment) -> Result<String, String> {
     Ok(format!("[environment]\n{map}\nilluminates = {illuminates}\n\n"))
 }
 
-pub(super) fn material(material: &Material) -> String {
+pub(in crate::scene) fn material(material: &Material) -> String {
     match material {
         Material::Lambertian { color } => {
             format!("kind = \"lambertian\"\ncolor = {}\n", rgb(*color))
@@ -128,7 +128,7 @@ pub(super) fn material(material: &Material) -> String {
     }
 }
 
-pub(super) fn light(light: &Light) -> String {
+pub(in crate::scene) fn light(light: &Light) -> String {
     match light {
         Light::Sun { direction, irradiance, angular_radius } => {
             let (direction, irradiance) = (vector(*direction), rgb(*irradiance));
@@ -159,7 +159,7 @@ pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", text.chars().map(escape).collect::<String>())
 }
 
-pub(super) fn vector(vector: DVec3) -> String {
+pub(in crate::scene) fn vector(vector: DVec3) -> String {
     format!("{:?}", vector.to_array())
 }
 

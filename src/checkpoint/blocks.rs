@@ -1,0 +1,53 @@
+//! Sums of tiles, packed.
+//!
+//! Sums of single-precision numbers have many zeros at their ends, and exponents that are alike: the
+//! bytes of the same place in all of them go together, where LZ4 finds them.
+
+use crate::film::Tile;
+use std::array;
+
+/// Tiles in a block.
+pub(super) const TILES: usize = 64;
+
+/// Bytes of a number.
+const WIDTH: usize = size_of::<f64>();
+
+/// LZ4 packs no more than this many bytes in one.
+pub(super) const PACKED: u64 = 255;
+
+/// The length of a block, and the block.
+pub(super) fn pack(tiles: &[Tile]) -> Vec<u8> {
+    let numbers: Vec<f64> = tiles.iter().flat_map(Tile::columns).flatten().copied().collect();
+    let mut bytes = vec![0; numbers.len() * WIDTH];
+    let mut places = bytes.chunks_mut(numbers.len().max(1));
+    let mut places: [&mut [u8]; WIDTH] = array::from_fn(|_| places.next().unwrap_or_default());
+    for (at, number) in numbers.iter().enumerate() {
+        for (place, byte) in places.iter_mut().zip(number.to_le_bytes()) {
+            place[at] = byte;
+        }
+    }
+    let most = lz4_flex::block::get_maximum_output_size(bytes.len());
+    let mut block = vec![0; size_of::<u32>() + most];
+    let (length, packed) = block.split_at_mut(size_of::<u32>());
+    // There is room for the most that it can become.
+    let used = lz4_flex::block::compress_into(&bytes, packed).unwrap_or_default();
+    length.copy_from_slice(&(used as u32).to_le_bytes());
+    block.truncate(size_of::<u32>() + used);
+    block
+}
+
+/// Fills tiles from a block, which is without its length; `None` if it is not theirs.
+pub(super) fn unpack(block: &[u8], tiles: &mut [Tile]) -> Option<()> {
+    let count: usize = tiles.iter().flat_map(Tile::columns).map(<[f64]>::len).sum();
+    let mut bytes = vec![0; count * WIDTH];
+    let used = lz4_flex::block::decompress_into(block, &mut bytes).ok()?;
+    if used != bytes.len() {
+        return None;
+    }
+    let mut at = 0..;
+    for number in tiles.iter_mut().flat_map(Tile::columns_mut).flatten() {
+        let at = at.next()?;
+        *number = f64::from_le_bytes(array::from_fn(|place| bytes[place * count + at]));
+    }
+    Some(())
+}

@@ -1,0 +1,47 @@
+//! An unfinished render becomes a file.
+
+use super::blocks::{TILES, pack};
+use super::{FORMAT, MAGIC, Origin, PROGRAM};
+use crate::atomic::write_atomically;
+use crate::render::{Outline, Unfinished};
+use rayon::prelude::*;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Blocks that are packed before they are written, for each thread.
+const AHEAD: usize = 4;
+
+/// Writes a render to a file that [`super::read()`] reads, with the threads of the current rayon pool.
+///
+/// # Errors
+/// What [`write_atomically`] says; the old file is then untouched.
+pub fn write(path: &Path, origin: &Origin, render: &Unfinished) -> io::Result<()> {
+    let head = postcard::to_stdvec(&(PROGRAM, origin, Outline::of(render)));
+    let head = head.map_err(io::Error::other)?;
+    write_atomically(path, |writer| {
+        let mut sealed = Sealed { writer, hasher: blake3::Hasher::new() };
+        sealed.write(&MAGIC)?;
+        sealed.write(&FORMAT.to_le_bytes())?;
+        sealed.write(&(head.len() as u64).to_le_bytes())?;
+        sealed.write(&head)?;
+        for tiles in render.film().tiles.chunks(TILES * AHEAD * rayon::current_num_threads()) {
+            let blocks: Vec<Vec<u8>> = tiles.par_chunks(TILES).map(pack).collect();
+            blocks.iter().try_for_each(|block| sealed.write(block))?;
+        }
+        let hash = sealed.hasher.finalize();
+        writer.write_all(hash.as_bytes())
+    })
+}
+
+/// What is written, and its hash so far.
+struct Sealed<'a> {
+    writer: &'a mut dyn Write,
+    hasher: blake3::Hasher,
+}
+
+impl Sealed<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.hasher.update(bytes);
+        self.writer.write_all(bytes)
+    }
+}

@@ -1,0 +1,127 @@
+//! All of an unfinished render but the sums of its film, as it is kept outside the program.
+
+use super::state::{State, Step};
+use super::target::Stage;
+use super::{End, Totals, Unfinished};
+use crate::film::{Film, KeptTile, Region};
+use crate::noise::Slope;
+use crate::scene::Settings;
+use crate::world::check;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// More of anything than any render does, and so few that sums of them do not overflow.
+const MOST: u64 = 1 << 60;
+
+/// Longer than any render takes, likewise.
+const LONGEST: Duration = Duration::from_secs(1 << 40);
+
+/// All of an unfinished render but the sums of its film.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Outline {
+    settings: Settings,
+    stages: Vec<Stage>,
+    met: usize,
+    pub(crate) statistics: bool,
+    totals: Totals,
+    end: End,
+    pub(crate) region: Region,
+    round: u32,
+    plan: Vec<Step>,
+    begun: usize,
+    doubled: Vec<u32>,
+    variance: f64,
+    slope: Slope,
+    tiles: Vec<KeptTile>,
+}
+
+impl Outline {
+    /// Of a render that goes on.
+    pub(crate) fn of(render: &Unfinished) -> Self {
+        let state = &render.state;
+        Self {
+            settings: render.settings.clone(),
+            stages: render.stages.clone(),
+            met: render.met,
+            statistics: render.statistics,
+            totals: render.totals,
+            end: render.end,
+            region: state.film.region,
+            round: state.round,
+            plan: state.plan.clone(),
+            begun: state.begun,
+            doubled: state.doubled.clone(),
+            variance: state.variance,
+            slope: state.slope,
+            tiles: state.film.kept_tiles(),
+        }
+    }
+
+    /// What is wrong with it, if it is none that any render has: whatever it says, a render that goes
+    /// on from it may show nonsense, but does not fail.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        demand(check::settings(&self.settings).is_ok(), "settings that no render has")?;
+        let Region { x, y, width, height } = self.region;
+        let fits = |first: u32, count: u32, most: u32| {
+            count > 0 && u64::from(first) + u64::from(count) <= u64::from(most)
+        };
+        let inside = fits(x, width, self.settings.width) && fits(y, height, self.settings.height);
+        demand(inside, "a region that is not in the picture")?;
+        let tiles = self.tiles.len();
+        demand(tiles as u64 == Film::tiles_of(self.region), "other tiles than the region has")?;
+        let stages = self.stages.iter().map(|stage| stage.spp);
+        let most = stages.chain([self.settings.spp]).max().unwrap_or(0);
+        let sound = |tile: &KeptTile| {
+            tile.samples.max(tile.probe_samples) <= most && tile.probe_rays <= MOST
+        };
+        demand(self.tiles.iter().all(sound), "more samples than were asked for")?;
+        self.check_plan(most)?;
+        demand(is_small(&self.totals), "counts that no render has")
+    }
+
+    fn check_plan(&self, most: u32) -> Result<(), &'static str> {
+        let there = |tile: u32| (tile as usize) < self.tiles.len();
+        let steps = self.plan.iter().all(|step| there(step.tile) && step.samples <= most);
+        let doubled = self.doubled.iter().all(|tile| there(*tile));
+        demand(steps && doubled && self.begun <= self.plan.len(), "a plan for other tiles")?;
+        let last = self.stages.last().copied();
+        let expected = self.settings.has_target().then(|| Stage::of(&self.settings));
+        demand(last == expected && self.met <= self.stages.len(), "other targets than it has")
+    }
+
+    /// The render, with a film whose sums are still to be filled. It has passed [`Outline::check`].
+    pub(crate) fn begin(self) -> Unfinished {
+        let mut film = Film::new(self.region, self.statistics);
+        film.restore_tiles(&self.tiles, self.settings.seed);
+        let state = State {
+            film,
+            round: self.round,
+            plan: self.plan,
+            begun: self.begun,
+            doubled: self.doubled,
+            variance: self.variance,
+            slope: self.slope,
+        };
+        Unfinished {
+            settings: self.settings,
+            stages: self.stages,
+            met: self.met,
+            statistics: self.statistics,
+            state,
+            totals: self.totals,
+            end: self.end,
+        }
+    }
+}
+
+fn demand(holds: bool, what: &'static str) -> Result<(), &'static str> {
+    if holds { Ok(()) } else { Err(what) }
+}
+
+fn is_small(totals: &Totals) -> bool {
+    let counters = totals.counters.all();
+    let times = [totals.elapsed, totals.tasks.total, totals.tasks.longest, totals.times.longest()];
+    counters.into_iter().all(|count| count <= MOST)
+        && totals.tasks.count <= MOST
+        && times.into_iter().all(|time| time <= LONGEST)
+}
