@@ -112,9 +112,10 @@ pub mod atomic;
 pub mod image;
 pub mod memory;
 
-// Judge what is above.
+// Judge what is above, and give it work.
 pub mod paper;
 pub mod stress;
+pub mod workload;
 
 // Measures it, and tells what was found.
 #[cfg(feature = "cli")]

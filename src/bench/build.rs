@@ -1,12 +1,12 @@
 //! Building trees: how long each builder takes, what the tree takes, and how good it is.
 
 use super::rounds::{Times, clock};
-use super::spheres::SphereScene;
 use super::{BenchError, Options, Tell};
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
 use crate::report::{Axis, Cell, Column, Plot, Point, Report, Series, Style, Table};
 use crate::spheres::Spheres;
+use crate::workload::SphereScene;
 
 const EXPLANATION: &str = "Each builder makes the tree from the same columns of spheres, by turns. \
     Times are medians over the rounds, with the least and the greatest; copying the columns is not \

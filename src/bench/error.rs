@@ -1,10 +1,10 @@
 //! Why a measurement failed.
 
 use crate::image::ImageError;
-use crate::memory::Shortage;
 use crate::paper::Unsupported;
 use crate::scene::SceneError;
 use crate::scene::generate::GenerateError;
+use crate::workload::WorkloadError;
 use crate::world::WorldError;
 use std::io;
 use std::path::PathBuf;
@@ -29,9 +29,9 @@ pub enum BenchError {
     /// Spheres that cannot be made.
     #[error("{0}: {1}")]
     Generate(String, GenerateError),
-    /// There is not the memory for it.
-    #[error("{0} needs {1}; leave it out of --scenes")]
-    Memory(String, Shortage),
+    /// The same, of those that rays and builders are measured on.
+    #[error("{0}")]
+    Workload(#[from] WorkloadError),
     /// The system does not give so many.
     #[error("cannot start {0} threads: {1}; ask for fewer")]
     Threads(usize, rayon::ThreadPoolBuildError),

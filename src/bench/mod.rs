@@ -9,12 +9,10 @@ pub mod build;
 pub mod convergence;
 mod error;
 pub mod paper;
-pub mod rays;
 pub mod roulette;
 pub mod rounds;
 pub mod scenes;
 pub mod skips;
-pub mod spheres;
 pub mod threads;
 pub mod traversal;
 

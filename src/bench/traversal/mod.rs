@@ -6,9 +6,7 @@ mod walks;
 use self::tables::{builders, plot, walks};
 use self::walks::{AUTO, SINGLE, WALKS, Walk};
 use super::build::BUILDERS;
-use super::rays::{Class, Views};
 use super::rounds::{Times, clock};
-use super::spheres::SphereScene;
 use super::{BenchError, Options, Tell};
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
@@ -16,6 +14,7 @@ use crate::bvh::walk::{Method, Visits};
 use crate::ray::{Hits, MISS};
 use crate::report::Report;
 use crate::spheres::Spheres;
+use crate::workload::{Class, SphereScene, Views};
 
 const EXPLANATION: &str = "One thread. Rays are made beforehand, only tracing is timed: medians over \
     the rounds, in which every walk has its turn. What each of them finds is compared with what \

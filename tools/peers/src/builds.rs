@@ -1,10 +1,11 @@
 //! Time and memory of builds.
 
 use crate::options::Options;
-use crate::scenes::{Columns, SceneName};
+use crate::scenes::Columns;
 use peak_alloc::PeakAlloc;
 use serde::Serialize;
 use spherule::SphereTree;
+use spherule::workload::SphereScene;
 use std::error::Error;
 use std::time::Instant;
 
@@ -26,7 +27,7 @@ pub struct Cost {
 /// Builds over one scene, in the file's order.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Builds {
-    pub scene: SceneName,
+    pub scene: &'static str,
     pub spheres: usize,
     pub embree: Cost,
     pub spherule: Cost,
@@ -41,7 +42,7 @@ const ENOUGH: usize = 200_000;
 /// Embree or a thread does not start, or spheres cannot be built over.
 pub fn measure(
     options: &Options,
-    scene: SceneName,
+    scene: SphereScene,
     spheres: &Columns,
 ) -> Result<Builds, Box<dyn Error>> {
     let rows: Vec<_> = (0..spheres.len()).map(|row| spheres.row(row)).collect();
@@ -75,7 +76,7 @@ pub fn measure(
         embree.seconds[threads - 1] = seconds;
         spherule.seconds[threads - 1] = spherule_seconds;
     }
-    Ok(Builds { scene, spheres: rows.len(), embree, spherule })
+    Ok(Builds { scene: scene.name, spheres: rows.len(), embree, spherule })
 }
 
 impl Cost {

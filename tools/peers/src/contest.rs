@@ -3,11 +3,12 @@
 use crate::embree::{Call, Scene};
 use crate::rays::{Class, Rays};
 use crate::referee::{Referee, Verdicts};
-use crate::scenes::{Columns, SceneName};
+use crate::scenes::Columns;
 use cpu_time::ThreadTime;
 use serde::Serialize;
 use spherule::SphereTree;
 use spherule::query::{Hits, NOTHING, QueryError};
+use spherule::workload::SphereScene;
 use std::time::Duration;
 
 /// One way to ask Embree.
@@ -26,7 +27,7 @@ pub struct Entry {
 /// What was measured for one class of rays in one scene; rates in million rays per second.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
-    pub scene: SceneName,
+    pub scene: &'static str,
     pub class: Class,
     pub rays: usize,
     /// Share of the rays that hit something.
@@ -44,7 +45,7 @@ pub struct Outcome {
 
 /// Who competes in a scene.
 pub struct Contest<'a> {
-    pub scene: SceneName,
+    pub scene: SphereScene,
     pub spheres: &'a Columns,
     pub tree: &'a SphereTree,
     /// The rows of spheres along a Morton curve.
@@ -128,7 +129,7 @@ impl Contest<'_> {
         let (fastest, seconds) = order[0];
         let (verdicts, hits) = self.judge(class, rays, fastest)?;
         Ok(Outcome {
-            scene: self.scene,
+            scene: self.scene.name,
             class,
             rays: rays.len(),
             hits,

@@ -15,8 +15,9 @@ use contest::{Contest, Entry, Outcome};
 use embree::{Device, EmbreeError, Scene};
 use options::Options;
 use rays::Seen;
-use scenes::{Columns, SceneName};
+use scenes::Columns;
 use spherule::SphereTree;
+use spherule::workload::SphereScene;
 use std::error::Error;
 use std::fs;
 use std::io::{Write, stderr, stdout};
@@ -41,9 +42,9 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let (mut outcomes, mut builds) = (Vec::new(), Vec::new());
     for &scene in &options.scenes {
-        let spheres = scene.spheres()?;
+        let spheres = Columns::of(scene)?;
         if !options.no_builds {
-            writeln!(stderr(), "{}: builds", report::name(&scene))?;
+            writeln!(stderr(), "{}: builds", scene.name)?;
             builds.push(builds::measure(options, scene, &spheres)?);
         }
         trace(options, scene, &spheres, &mut outcomes)?;
@@ -59,7 +60,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 /// Measures all classes of rays in a scene.
 fn trace(
     options: &Options,
-    scene: SceneName,
+    scene: SphereScene,
     spheres: &Columns,
     outcomes: &mut Vec<Outcome>,
 ) -> Result<(), Box<dyn Error>> {
@@ -80,9 +81,9 @@ fn trace(
     let contest = Contest { scene, spheres, tree: &tree, order: &order, embree: &embree };
     let entries = Entry::all(embree.len(), &options.calls);
     let picture = (options.side.next_multiple_of(4), options.order);
-    let seen = Seen::new(scene, spheres, &tree, picture)?;
+    let seen = Seen::new(scene.flat, spheres, &tree, picture)?;
     for &class in &options.classes {
-        writeln!(stderr(), "{}: {} rays", report::name(&scene), report::name(&class))?;
+        writeln!(stderr(), "{}: {} rays", scene.name, report::name(&class))?;
         let rays = seen.rays(class);
         if rays.len() == 0 {
             continue;

@@ -2,9 +2,13 @@
 
 use crate::embree::{Build, Device, EmbreeError};
 use crate::rays::{Class, Order};
-use crate::scenes::SceneName;
 use clap::{Parser, ValueEnum};
+use spherule::workload::SphereScene;
 use std::path::PathBuf;
+
+/// The scenes that are compared when nobody says which.
+const USUAL: [&str; 7] =
+    ["paper400", "volume10k", "volume1m", "volume10m", "layer250k", "fcc1m", "lognormal1m"];
 
 /// Measures Embree beside Spherule: the same rays, one run, one thread.
 #[derive(Debug, Parser)]
@@ -14,9 +18,9 @@ pub struct Options {
     #[arg(long, value_name = "FILE")]
     pub embree: PathBuf,
 
-    /// Scenes, separated by commas; all by default.
-    #[arg(long, value_enum, value_delimiter = ',', default_values_t = SceneName::value_variants().to_vec())]
-    pub scenes: Vec<SceneName>,
+    /// Scenes, separated by commas.
+    #[arg(long, value_delimiter = ',', default_values = USUAL, value_parser = scene)]
+    pub scenes: Vec<SphereScene>,
 
     /// Classes of rays, separated by commas; all by default.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = Class::value_variants().to_vec())]
@@ -80,6 +84,12 @@ impl Options {
     pub fn device(&self, configuration: &str, threads: usize) -> Result<Device, EmbreeError> {
         Device::new(&self.embree, &format!("threads={threads},{configuration}"))
     }
+}
+
+fn scene(text: &str) -> Result<SphereScene, String> {
+    let names = || SphereScene::ALL.map(|scene| scene.name).join(", ");
+    SphereScene::named(text)
+        .ok_or_else(|| format!("there is no such scene; give some of {}", names()))
 }
 
 fn width(text: &str) -> Result<usize, String> {

@@ -1,12 +1,12 @@
 //! The rays, made beforehand, from what the camera sees.
 
-use crate::scenes::{Columns, SceneName};
+use crate::scenes::Columns;
 use clap::ValueEnum;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 use spherule::SphereTree;
 use spherule::query::{Hits, NOTHING, QueryError, RayColumns, Surface};
-use spherule::sampling::{Frame, cosine_hemisphere, mix, stream, unit_pair};
+use spherule::workload::{LIGHT, View, above};
 use std::borrow::Cow;
 
 /// A class of rays.
@@ -89,17 +89,17 @@ impl Rays {
 }
 
 impl Seen {
-    /// Looks at a scene with `side` x `side` pixels.
+    /// Looks at spheres with `side` x `side` pixels, from above if they are `flat`.
     ///
     /// # Errors
     /// Columns of different lengths.
     pub fn new(
-        scene: SceneName,
+        flat: bool,
         spheres: &Columns,
         tree: &SphereTree,
         (side, order): (u32, Order),
     ) -> Result<Self, QueryError> {
-        let primary = camera(scene, spheres, side, order);
+        let primary = camera(flat, spheres, side, order);
         let count = primary.len();
         let (mut t, mut sphere) = (vec![f64::INFINITY; count], vec![NOTHING; count]);
         let mut surfaces = vec![Surface::default(); count];
@@ -115,7 +115,7 @@ impl Seen {
     pub fn rays(&self, class: Class) -> Cow<'_, Rays> {
         match class {
             Class::Primary => Cow::Borrowed(&self.primary),
-            Class::Shadow => Cow::Owned(self.toward(Vec3::new(0.5, 1.0, 0.3).normalize())),
+            Class::Shadow => Cow::Owned(self.toward(LIGHT.normalize())),
             Class::Ao => Cow::Owned(self.scattered(2, 4)),
             Class::Diffuse => Cow::Owned(self.scattered(3, 1)),
         }
@@ -136,9 +136,7 @@ impl Seen {
         let mut rays = Rays::default();
         for row in 0..self.points.len() * count {
             let point = &self.points[row / count];
-            let u = unit_pair(stream(mix(seed), row as u64));
-            let frame = Frame::new(point.normal.as_vec3());
-            rays.push(point.origin, frame.to_world(cosine_hemisphere(u)).normalize());
+            rays.push(point.origin, above(point.normal.as_vec3(), (seed, row as u64)));
         }
         rays
     }
@@ -162,29 +160,14 @@ impl Point {
     }
 }
 
-/// Rays of a pinhole camera to which the whole scene is as large as fits, from a corner or from
-/// above.
-fn camera(scene: SceneName, spheres: &Columns, side: u32, order: Order) -> Rays {
-    let (low, high) = extent(spheres);
-    let (middle, size) = ((low + high) / 2.0, (high - low).length());
-    let toward = if scene.is_flat() { [0.0, -1.0, -0.4] } else { [-0.5, -0.6, -0.6] };
-    let forward = Vec3::from(toward).normalize();
-    let right = forward.cross(Vec3::Y).normalize();
-    let up = right.cross(forward);
-    let eye = middle - forward * (1.5 * size);
-    let corners = (0..8).map(|corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-        let to = Vec3::new(pick(0), pick(1), pick(2)) - eye;
-        Vec2::new(to.dot(right), to.dot(up)) / to.dot(forward)
-    });
-    let (least, greatest) = corners
-        .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-    let (center, half) = ((least + greatest) / 2.0, (greatest - least).max_element() / 2.0);
+/// Rays through all pixels.
+fn camera(flat: bool, spheres: &Columns, side: u32, order: Order) -> Rays {
+    let Columns { x, y, z, radius } = spheres;
+    let view = View::new([x, y, z, radius], flat);
     let mut rays = Rays::default();
-    for (x, y) in (0..side * side).map(|i| order.pixel(i, side)) {
-        let across = |pixel: u32| (pixel as f32 + 0.5) / side as f32 * 2.0 - 1.0;
-        let at = center + Vec2::new(across(x), -across(y)) * half;
-        rays.push(eye, (forward + right * at.x + up * at.y).normalize());
+    for i in 0..side * side {
+        let (eye, direction) = view.ray(order.pixel(i, side), side);
+        rays.push(eye, direction);
     }
     rays
 }
@@ -192,33 +175,17 @@ fn camera(scene: SceneName, spheres: &Columns, side: u32, order: Order) -> Rays 
 impl Order {
     /// Column and row of pixel `i`; `side` is a multiple of 4.
     fn pixel(self, i: u32, side: u32) -> (u32, u32) {
-        let blocks = side / 4;
-        let (block, inside) = (i / 16, i % 16);
         match self {
             Self::Rows => (i % side, i / side),
-            Self::Blocks => (block % blocks * 4 + inside % 4, block / blocks * 4 + inside / 4),
+            Self::Blocks => View::in_blocks(i, side),
         }
     }
-}
-
-/// Corners of the box that holds the middle 98 percent of the centers on each axis, made larger by
-/// 5 percent and the median radius: all of a scene but the strays of a cloud.
-fn extent(spheres: &Columns) -> (Vec3, Vec3) {
-    let percentile = |column: &[f32], share: f64| {
-        let mut values = column.to_vec();
-        let at = ((values.len() - 1) as f64 * share) as usize;
-        *values.select_nth_unstable_by(at, f32::total_cmp).1
-    };
-    let columns = [&spheres.x, &spheres.y, &spheres.z];
-    let low = Vec3::from(columns.map(|column| percentile(column, 0.01)));
-    let high = Vec3::from(columns.map(|column| percentile(column, 0.99)));
-    let margin = (high - low) * 0.025 + percentile(&spheres.radius, 0.5);
-    (low - margin, high + margin)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spherule::workload::SphereScene;
 
     #[test]
     fn every_order_has_every_pixel() {
@@ -232,10 +199,10 @@ mod tests {
 
     #[test]
     fn rays_leave_what_they_start_from() {
-        let spheres = SceneName::Paper400.spheres().unwrap();
+        let spheres = Columns::of(SphereScene::PAPER400).unwrap();
         let Columns { x, y, z, radius } = &spheres;
         let tree = SphereTree::from_columns(x, y, z, radius).unwrap();
-        let seen = Seen::new(SceneName::Paper400, &spheres, &tree, (64, Order::Blocks)).unwrap();
+        let seen = Seen::new(true, &spheres, &tree, (64, Order::Blocks)).unwrap();
         assert!(seen.points.len() > 400);
         assert_eq!(seen.rays(Class::Ao).len(), 4 * seen.points.len());
         let rays = seen.rays(Class::Diffuse);

@@ -35,7 +35,7 @@ fn rates(out: &mut impl Write, options: &Options, outcomes: &[Outcome]) -> io::R
         writeln!(
             out,
             "| {}, {} | {} | {:.0} % | {:.2} | {} | {:.2} | {:.2} |",
-            name(&outcome.scene),
+            outcome.scene,
             name(&outcome.class),
             outcome.rays,
             outcome.hits * 100.0,
@@ -70,7 +70,7 @@ fn costs(out: &mut impl Write, builds: &[Builds]) -> io::Result<()> {
     writeln!(out, "|---|---|--:|--:|--:|--:|")?;
     for build in builds {
         for (system, cost) in [("Embree", build.embree), ("Spherule", build.spherule)] {
-            let ([one, two], scene) = (cost.seconds.map(|s| s * 1e3), name(&build.scene));
+            let ([one, two], scene) = (cost.seconds.map(|s| s * 1e3), build.scene);
             let (bytes, peak) = (cost.bytes, cost.peak);
             writeln!(out, "| {scene} | {system} | {one:.2} | {two:.2} | {bytes:.1} | {peak:.1} |")?;
         }
@@ -86,7 +86,7 @@ fn differences(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
         writeln!(
             out,
             "| {}, {} | {} | {} | {} | {} | {} |",
-            name(&outcome.scene),
+            outcome.scene,
             name(&outcome.class),
             verdicts.differ,
             verdicts.embree_wrong,

@@ -1,30 +1,6 @@
-//! The seven scenes.
+//! The spheres of both systems.
 
-use clap::ValueEnum;
-use serde::Serialize;
-use spherule::sampling::{mix, stream, unit_pair};
-use spherule::scene::generate::{Field, GenerateError, Generator, Lattice, Volume};
-use std::f64::consts::TAU;
-
-/// Name of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum SceneName {
-    /// 20 x 20 spheres of random size on a plane.
-    Paper400,
-    /// Random spheres in a cube, ten thousand.
-    Volume10k,
-    /// Random spheres in a cube, a million.
-    Volume1m,
-    /// Random spheres in a cube, ten million.
-    Volume10m,
-    /// 500 x 500 spheres of random size on a plane.
-    Layer250k,
-    /// A warm crystal of a million touching spheres.
-    Fcc1m,
-    /// A Gaussian cloud of a million spheres whose radii are log-normal.
-    Lognormal1m,
-}
+use spherule::workload::{SphereScene, WorkloadError};
 
 /// Spheres in columns, as both systems get them.
 #[derive(Debug, Default)]
@@ -35,67 +11,17 @@ pub struct Columns {
     pub radius: Vec<f32>,
 }
 
-const SEED: u64 = 1;
-
-impl SceneName {
-    /// Makes the spheres.
+impl Columns {
+    /// Makes the spheres of a scene.
     ///
     /// # Errors
     /// They are more than memory holds.
-    pub fn spheres(self) -> Result<Columns, GenerateError> {
-        let volume = |count| Generator::Volume(Volume { count, ..Volume::default() });
-        let field = |count| Generator::Field(Field { count, colors: false, ..Field::default() });
-        let generator = match self {
-            Self::Paper400 => field(20),
-            Self::Layer250k => field(500),
-            Self::Volume10k => volume(10_000),
-            Self::Volume1m => volume(1_000_000),
-            Self::Volume10m => volume(10_000_000),
-            // 63 cells along each edge, four spheres in each.
-            Self::Fcc1m => {
-                Generator::Lattice(Lattice { count: 63, jitter: 0.03, ..Lattice::default() })
-            }
-            Self::Lognormal1m => return Ok(cloud(1_000_000)),
-        };
-        let spheres = generator.generate(SEED)?.spheres;
-        let column = |values: &[f64]| values.iter().map(|&value| value as f32).collect();
-        Ok(Columns {
-            x: column(&spheres.x),
-            y: column(&spheres.y),
-            z: column(&spheres.z),
-            radius: column(&spheres.radius),
-        })
+    pub fn of(scene: SphereScene) -> Result<Self, WorkloadError> {
+        let column = |values: Vec<f64>| values.into_iter().map(|value| value as f32).collect();
+        let [x, y, z, radius] = scene.columns()?.map(column);
+        Ok(Self { x, y, z, radius })
     }
 
-    /// Whether the spheres lie on a plane, which is seen from above.
-    pub fn is_flat(self) -> bool {
-        matches!(self, Self::Paper400 | Self::Layer250k)
-    }
-}
-
-/// Centers with a standard deviation of 50 on each axis; radii whose logarithms have one of 1.2,
-/// about a median of 0.05: in the middle a ray goes about 14 before it hits, and the largest of a
-/// million spheres are some 300 times larger than the median.
-fn cloud(count: u64) -> Columns {
-    let mut columns = Columns::default();
-    for row in 0..count {
-        let normal = |column: u64| f64::from(normal(4 * row + column));
-        columns.x.push((50.0 * normal(0)) as f32);
-        columns.y.push((50.0 * normal(1)) as f32);
-        columns.z.push((50.0 * normal(2)) as f32);
-        columns.radius.push((0.05 * (1.2 * normal(3)).exp()) as f32);
-    }
-    columns
-}
-
-/// Normal number `position` (Box, Muller, "A Note on the Generation of Random Normal Deviates",
-/// Annals of Mathematical Statistics 1958).
-fn normal(position: u64) -> f32 {
-    let [u, v] = unit_pair(stream(mix(SEED), position)).map(f64::from);
-    ((-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()) as f32
-}
-
-impl Columns {
     pub fn len(&self) -> usize {
         self.radius.len()
     }

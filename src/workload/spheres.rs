@@ -1,9 +1,8 @@
-//! Spheres alone, without light or materials: what rays and builders are measured on.
+//! Spheres alone, made by generators.
 
-use super::BenchError;
-use crate::memory;
+use crate::memory::{self, Shortage};
 use crate::sampling::{mix, stream, unit_pair};
-use crate::scene::generate::{Field, Generator, Lattice, Volume};
+use crate::scene::generate::{Field, GenerateError, Generator, Lattice, Volume};
 use crate::spheres::Spheres;
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -30,6 +29,17 @@ enum Kind {
     Crystal(u64),
     /// A Gaussian cloud, radii log-normal.
     Cloud,
+}
+
+/// Why spheres to measure on cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum WorkloadError {
+    /// A generator refuses.
+    #[error("{0}: {1}")]
+    Generate(&'static str, GenerateError),
+    /// There is not the memory for them.
+    #[error("{0} needs {1}; leave it out of --scenes")]
+    Memory(&'static str, Shortage),
 }
 
 const SEED: u64 = 1;
@@ -77,14 +87,18 @@ impl SphereScene {
         Self::VOLUME10M,
     ];
 
-    /// Makes the spheres, moved to the origin and scaled by a power of two to coordinates of about
-    /// 1, as in a world.
+    /// The scene of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scene| scene.name == name)
+    }
+
+    /// Makes the spheres: columns of x, y, z and radius, as the generator has them.
     ///
     /// # Errors
     /// There is not the memory for them.
-    pub fn spheres(&self) -> Result<Spheres, BenchError> {
+    pub fn columns(&self) -> Result<[Vec<f64>; 4], WorkloadError> {
         memory::check(self.count * BYTES)
-            .map_err(|shortage| BenchError::Memory(self.name.to_owned(), shortage))?;
+            .map_err(|shortage| WorkloadError::Memory(self.name, shortage))?;
         let generator = match self.kind {
             Kind::Field(count) => {
                 Generator::Field(Field { count, colors: false, ..Field::default() })
@@ -93,11 +107,20 @@ impl SphereScene {
             Kind::Crystal(count) => {
                 Generator::Lattice(Lattice { count, jitter: 0.03, ..Lattice::default() })
             }
-            Kind::Cloud => return Ok(columns(&cloud(self.count))),
+            Kind::Cloud => return Ok(cloud(self.count)),
         };
         let made = generator.generate(SEED);
-        let from = made.map_err(|error| BenchError::Generate(self.name.to_owned(), error))?.spheres;
-        Ok(columns(&[from.x, from.y, from.z, from.radius]))
+        let from = made.map_err(|error| WorkloadError::Generate(self.name, error))?.spheres;
+        Ok([from.x, from.y, from.z, from.radius])
+    }
+
+    /// The same, moved to the origin and scaled by a power of two to coordinates of about 1, as in a
+    /// world.
+    ///
+    /// # Errors
+    /// There is not the memory for them.
+    pub fn spheres(&self) -> Result<Spheres, WorkloadError> {
+        Ok(near_origin(&self.columns()?))
     }
 }
 
@@ -118,7 +141,7 @@ fn normal(position: u64) -> f64 {
     (-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()
 }
 
-fn columns([x, y, z, radius]: &[Vec<f64>; 4]) -> Spheres {
+fn near_origin([x, y, z, radius]: &[Vec<f64>; 4]) -> Spheres {
     let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let centers = x.iter().zip(y).zip(z).map(|((&x, &y), &z)| DVec3::new(x, y, z));
     let [low, high] = centers.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
@@ -147,6 +170,7 @@ mod tests {
             let reach = (0..spheres.len()).map(|i| spheres.center(i).abs().max_element());
             let reach = reach.fold(0.0, f32::max);
             assert!((0.5..=1.0).contains(&reach), "{}: {reach}", scene.name);
+            assert_eq!(SphereScene::named(scene.name), Some(scene));
         }
     }
 

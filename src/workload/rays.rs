@@ -1,13 +1,12 @@
 //! Rays of four classes, made beforehand, from what a camera sees.
 
-use super::spheres::SphereScene;
+use super::{LIGHT, SphereScene, View, above};
 use crate::bvh::Bvh;
 use crate::bvh::walk::{Closest, Method, trace};
 use crate::lanes::F32x16;
 use crate::ray::{Hits, MISS, Rays};
-use crate::sampling::{Frame, cosine_hemisphere, mix, stream, unit_pair};
 use crate::spheres::Spheres;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 
 /// A class of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,13 +53,10 @@ impl Views {
         let camera = camera(scene, spheres, side);
         let mut hits = Hits::with_capacity(camera.len());
         trace::<F32x16, Closest>(Method::Auto, bvh, spheres, &camera, &mut hits);
-        let light = Vec3::new(0.5, 1.0, 0.3).normalize();
+        let light = LIGHT.normalize();
         let shadow = leaving(spheres, (&camera, &hits), |_, _| light);
         let scattered = |seed: u64| {
-            leaving(spheres, (&camera, &hits), |row, normal| {
-                let u = unit_pair(stream(mix(seed), row as u64));
-                Frame::new(normal).to_world(cosine_hemisphere(u)).normalize()
-            })
+            leaving(spheres, (&camera, &hits), |row, normal| above(normal, (seed, row as u64)))
         };
         let (occlusion, diffuse) = (scattered(2), scattered(3));
         Self { rays: [camera, shadow, occlusion, diffuse] }
@@ -93,49 +89,18 @@ fn leaving(
     rays
 }
 
-/// Rays of a pinhole camera to which the whole scene is as large as fits, from a corner or from
-/// above, in blocks of 4 x 4 pixels.
+/// Rays through all pixels, in blocks of 4 x 4.
 fn camera(scene: SphereScene, spheres: &Spheres, side: u32) -> Rays {
-    let (low, high) = extent(spheres);
-    let (middle, size) = ((low + high) / 2.0, (high - low).length());
-    let toward = if scene.flat { [0.0, -1.0, -0.4] } else { [-0.5, -0.6, -0.6] };
-    let forward = Vec3::from(toward).normalize();
-    let right = forward.cross(Vec3::Y).normalize();
-    let up = right.cross(forward);
-    let eye = middle - forward * (1.5 * size);
-    let corners = (0..8).map(|corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-        let to = Vec3::new(pick(0), pick(1), pick(2)) - eye;
-        Vec2::new(to.dot(right), to.dot(up)) / to.dot(forward)
-    });
-    let (least, greatest) = corners
-        .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-    let (center, half) = ((least + greatest) / 2.0, (greatest - least).max_element() / 2.0);
+    let column = |axis: usize| (0..spheres.len()).map(|row| spheres.center(row)[axis]).collect();
+    let [x, y, z]: [Vec<f32>; 3] = [0, 1, 2].map(column);
+    let radius: Vec<f32> = (0..spheres.len()).map(|row| spheres.radius(row)).collect();
+    let view = View::new([&x, &y, &z, &radius], scene.flat);
     let mut rays = Rays::with_capacity((side * side) as usize);
     for i in 0..side * side {
-        let (block, inside) = (i / 16, i % 16);
-        let (x, y) = (block % (side / 4) * 4 + inside % 4, block / (side / 4) * 4 + inside / 4);
-        let across = |pixel: u32| (pixel as f32 + 0.5) / side as f32 * 2.0 - 1.0;
-        let at = center + Vec2::new(across(x), -across(y)) * half;
-        rays.push(eye, (forward + right * at.x + up * at.y).normalize(), MISS);
+        let (eye, direction) = view.ray(View::in_blocks(i, side), side);
+        rays.push(eye, direction, MISS);
     }
     rays
-}
-
-/// Corners of the box that holds the middle 98 percent of the centers on each axis, made larger by
-/// 5 percent and the median radius: all of a scene but the strays of a cloud.
-fn extent(spheres: &Spheres) -> (Vec3, Vec3) {
-    let percentile = |value: &dyn Fn(usize) -> f32, share: f64| {
-        let mut values: Vec<f32> = (0..spheres.len()).map(value).collect();
-        let at = ((values.len() - 1) as f64 * share) as usize;
-        *values.select_nth_unstable_by(at, f32::total_cmp).1
-    };
-    let corner = |share| {
-        Vec3::from([0, 1, 2].map(|axis| percentile(&|row| spheres.center(row)[axis], share)))
-    };
-    let (low, high) = (corner(0.01), corner(0.99));
-    let margin = (high - low) * 0.025 + percentile(&|row| spheres.radius(row), 0.5);
-    (low - margin, high + margin)
 }
 
 #[cfg(test)]
