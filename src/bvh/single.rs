@@ -76,9 +76,13 @@ impl Single {
     #[inline(always)]
     fn is_hit_for_certain<Q: Query>(&self, decider: &Decider<Q>, sphere: usize) -> bool {
         let row = self.row as usize;
+        // A ray that nothing stops always comes to the light that it is aimed at: first of all that.
+        if decider.rays.target[row] == sphere as u32 {
+            return false;
+        }
         let (center, radius) = (decider.spheres.center(sphere), decider.spheres.radius(sphere));
         let chord = Chord::new(&self.filter, center.into(), radius);
         let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
-        certain && far < decider.bounds(row).0 && decider.rays.target[row] != sphere as u32
+        certain && far < decider.bounds(row).0
     }
 }
