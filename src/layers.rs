@@ -176,7 +176,7 @@ pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[L
     let features: Vec<Vec<Features>> = tiles
         .par_iter_mut()
         .map_init(
-            || Workspace::new(world, &sampler),
+            || Workspace::new(world, &sampler, skips),
             |work, tile| {
                 if job.tracer.method != Method::Brute {
                     tile.view = view(&job, tile);

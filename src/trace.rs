@@ -4,7 +4,7 @@ use crate::bvh::walk::{self, Any, Closest, Method, Query};
 use crate::intersect;
 use crate::lanes::{F32x4, F32x8, F32x16};
 use crate::ray::{GROUND, Hits, MISS, Rays};
-use crate::world::World;
+use crate::world::{Ground, World};
 
 /// How rays find spheres: never what they find.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,15 +39,7 @@ impl Tracer {
     /// [`Tracer::closest`] for rays that hit no sphere.
     pub fn ground(self, world: &World, rays: &Rays, hits: &mut Hits) {
         if let Some(ground) = &world.ground {
-            for row in 0..rays.len() {
-                if rays.own[row] == GROUND {
-                    continue;
-                }
-                let t = intersect::plane(&rays.exact(row), ground.normal, ground.height);
-                if let Some(t) = t.filter(|&t| t < hits.t[row]) {
-                    hits.set(row, t, GROUND);
-                }
-            }
+            stop_at(ground, rays, hits);
         }
     }
 
@@ -55,15 +47,7 @@ impl Tracer {
     /// nothing is. On entry it is `MISS` for every ray that is to be traced.
     pub fn occluded(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
         if let Some(ground) = &world.ground {
-            for row in 0..rays.len() {
-                if rays.own[row] == GROUND || hits.sphere[row] != MISS {
-                    continue;
-                }
-                let t = intersect::plane(&rays.exact(row), ground.normal, ground.height);
-                if t.is_some_and(|t| t < hits.t[row]) {
-                    hits.sphere[row] = GROUND;
-                }
-            }
+            hide_behind(ground, rays, hits);
         }
         self.walk::<Any>(world, rays, hits)
     }
@@ -75,6 +59,32 @@ impl Tracer {
             Width::Four => walk::trace::<F32x4, Q>(self.method, bvh, spheres, rays, hits),
             Width::Eight => walk::trace::<F32x8, Q>(self.method, bvh, spheres, rays, hits),
             Width::Sixteen => walk::trace::<F32x16, Q>(self.method, bvh, spheres, rays, hits),
+        }
+    }
+}
+
+/// Ends rays at the ground, where they reach it.
+pub(crate) fn stop_at(ground: &Ground, rays: &Rays, hits: &mut Hits) {
+    for row in 0..rays.len() {
+        if rays.own[row] == GROUND {
+            continue;
+        }
+        let t = intersect::plane(&rays.exact(row), ground.normal, ground.height);
+        if let Some(t) = t.filter(|&t| t < hits.t[row]) {
+            hits.set(row, t, GROUND);
+        }
+    }
+}
+
+/// The same where it only counts whether they do.
+pub(crate) fn hide_behind(ground: &Ground, rays: &Rays, hits: &mut Hits) {
+    for row in 0..rays.len() {
+        if rays.own[row] == GROUND || hits.sphere[row] != MISS {
+            continue;
+        }
+        let t = intersect::plane(&rays.exact(row), ground.normal, ground.height);
+        if t.is_some_and(|t| t < hits.t[row]) {
+            hits.sphere[row] = GROUND;
         }
     }
 }

@@ -18,7 +18,8 @@ pub mod workspace;
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::trace::Tracer;
-use crate::world::World;
+use crate::world::{Ground, MaterialId, World};
+use glam::DVec3;
 use skips::Skips;
 use workspace::Workspace;
 
@@ -53,6 +54,13 @@ impl Job<'_> {
     /// Whether lights are sampled.
     pub fn has_lights(&self) -> bool {
         self.world.features.lights || !self.skips.lights
+    }
+
+    /// A ground that no ray reaches, where there is none and tests against it are not left out.
+    pub fn unseen_ground(&self) -> Option<Ground> {
+        let (normal, material) = (DVec3::Z, MaterialId::default());
+        let far = Ground { normal, height: f64::NEG_INFINITY, material };
+        (self.world.ground.is_none() && !self.skips.plane).then_some(far)
     }
 
     /// Follows the paths that were generated to their ends.

@@ -14,6 +14,10 @@ pub struct Skips {
     pub lens: bool,
     /// Samples of lights, where there is none.
     pub lights: bool,
+    /// Tests against a ground, where there is none.
+    pub plane: bool,
+    /// Room in each path for the glass that it is in, where there is no glass.
+    pub glass: bool,
     /// The search for the nearest of the spheres that hide a light, once one is found.
     pub nearest_occluder: bool,
 }
@@ -25,6 +29,8 @@ impl Skips {
         even_background: true,
         lens: true,
         lights: true,
+        plane: true,
+        glass: true,
         nearest_occluder: true,
     };
 }

@@ -8,6 +8,7 @@ use crate::lanes::{F64x8, Lanes, MAX_LANES, load_doubles};
 use crate::ray::{ExactRay, GROUND, MISS};
 use crate::sampling::{self, Sampler};
 use crate::shade::{Bsdf, dielectric};
+use crate::trace;
 use crate::vec3;
 use crate::world::{Kind, MaterialId, World};
 use glam::{DVec3, Vec3};
@@ -55,7 +56,7 @@ pub fn generate_centers(job: &Job, tile: &Tile, work: &mut Workspace) {
 fn start_at_camera(job: &Job, work: &mut Workspace) {
     aim_camera(job, work);
     let count = work.len();
-    if !job.world.features.glass_at_camera.is_empty() {
+    if !job.world.features.glass_at_camera.is_empty() || !job.skips.glass {
         (0..count).for_each(|path| enter_glass(job.world, work, path));
     }
     work.counters.camera_rays += count as u64;
@@ -120,6 +121,9 @@ fn enter_glass(world: &World, work: &mut Workspace, path: usize) {
 
 /// Finds what each path hits next, where, and sorts the rows by what it is.
 pub fn intersect(job: &Job, work: &mut Workspace) {
+    if let Some(ground) = job.unseen_ground() {
+        trace::stop_at(&ground, &work.rays, &mut work.hits);
+    }
     match std::mem::replace(&mut work.view, View::Anything) {
         View::Background => job.tracer.ground(job.world, &work.rays, &mut work.hits),
         View::Anything => {
@@ -214,6 +218,9 @@ impl Local {
 pub fn occlude(job: &Job, work: &mut Workspace) {
     work.clock.end(Stage::Shade);
     let shadows = &mut work.shadows;
+    if let Some(ground) = job.unseen_ground() {
+        trace::hide_behind(&ground, &shadows.rays, &mut shadows.hits);
+    }
     work.counters.exact_decisions += if job.skips.nearest_occluder {
         job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits)
     } else {

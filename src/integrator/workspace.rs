@@ -2,6 +2,7 @@
 
 use super::clock::Clock;
 use super::shadows::Shadows;
+use super::skips::Skips;
 use crate::film::View;
 use crate::lanes::MAX_LANES;
 use crate::ray::{GROUND, Hits, MISS, Rays};
@@ -155,9 +156,9 @@ impl Arrival {
 
 impl Workspace {
     /// Room for [`BATCH`] paths through `world`.
-    pub fn new(world: &World, sampler: &Sampler) -> Self {
+    pub fn new(world: &World, sampler: &Sampler, skips: Skips) -> Self {
         let glass = world.features.spheres_by_kind[Kind::Dielectric as usize];
-        let nesting = NESTING.min(glass as usize);
+        let nesting = if skips.glass { NESTING.min(glass as usize) } else { NESTING };
         Self {
             rays: Rays::with_capacity(BATCH),
             hits: Hits::with_capacity(BATCH),

@@ -25,7 +25,7 @@ pub(super) fn run(job: &Job, state: &mut State, watch: &Watch) -> End {
     let tasks = tiles.len() * rounds;
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(all.saturating_sub(waiting)));
     rayon::broadcast(|_| {
-        let mut work = Workspace::new(job.world, job.sampler);
+        let mut work = Workspace::new(job.world, job.sampler, job.skips);
         while !watch.cancelled() {
             let task = next.fetch_add(1, Ordering::Relaxed);
             let Some(Ok(mut tile)) = (task < tasks).then(|| tiles[task % tiles.len()].lock())

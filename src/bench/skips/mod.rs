@@ -1,19 +1,26 @@
 //! What is saved by leaving out what a scene does not need: each saving is turned off by itself, in
 //! a scene that allows it, and the picture stays the same to the byte.
 
+mod converged;
+mod tables;
+
+use self::tables::{plot, table};
 use super::rounds::Times;
 use super::scenes::{FIELD, NamedScene};
 use super::{BenchError, Options, Tell};
 use crate::image::Image;
 use crate::render::{self, Skips, render};
-use crate::report::{Axis, Column, Plot, Point, Report, Series, Spread, Style, Table};
-use crate::scene::{EnvironmentMap, Integrator, Rgb, Scene};
+use crate::report::Report;
+use crate::scene::{EnvironmentMap, Integrator, Material, Rgb, Scene};
 use crate::world::World;
 
 const EXPLANATION: &str = "Each saving is turned off by itself, in a scene that allows it; with and \
-    without it the scene is rendered by turns. Pictures are compared byte by byte. What a census of \
-    the scene leaves out without a choice (shading stages of materials that do not occur, columns of \
-    colors, the plane test without a ground) costs nothing that could be turned on.";
+    without it the scene is rendered by turns. Pictures are compared byte by byte. Converged tiles are \
+    another matter: there a picture that gives samples to the tiles where they help most, and ends at \
+    an error, is held against one with as many samples of every pixel as have the same error, which \
+    pictures of other seeds tell; byte by byte, each of its tiles is compared with a plain render of as \
+    many samples. What a census of the scene leaves out without a choice (shading stages of materials \
+    that do not occur, columns of colors) costs nothing that could be turned on.";
 
 /// A saving: what it is, in which scene it is measured, and what that scene is changed to.
 struct Saving {
@@ -24,7 +31,7 @@ struct Saving {
     without: Skips,
 }
 
-const SAVINGS: [Saving; 5] = [
+const SAVINGS: [Saving; 7] = [
     Saving {
         name: "empty tiles",
         about: "no tests against spheres where the tile sees none",
@@ -54,6 +61,20 @@ const SAVINGS: [Saving; 5] = [
         without: Skips { lights: false, ..Skips::ALL },
     },
     Saving {
+        name: "no plane",
+        about: "no tests against a ground, in the field without one",
+        scene: FIELD,
+        change: |scene| scene.ground = None,
+        without: Skips { plane: false, ..Skips::ALL },
+    },
+    Saving {
+        name: "no glass",
+        about: "no lists of the glass that paths are in, in the field with chalk for glass",
+        scene: FIELD,
+        change: chalk_for_glass,
+        without: Skips { glass: false, ..Skips::ALL },
+    },
+    Saving {
         name: "any occluder",
         about: "shadow rays end at the first sphere found, whether or not it is the nearest",
         scene: "paper-field-20",
@@ -69,9 +90,19 @@ fn floating(scene: &mut Scene) {
     scene.environment.map = EnvironmentMap::Constant(Rgb::ONE);
 }
 
+/// The field without glass.
+fn chalk_for_glass(scene: &mut Scene) {
+    for row in &mut scene.materials {
+        if let Material::Dielectric { color, .. } = row.material {
+            row.material = Material::Lambertian { color };
+        }
+    }
+}
+
 /// What was measured: with the saving, and without it.
 struct Outcome {
-    saving: &'static Saving,
+    name: &'static str,
+    about: String,
     scene: String,
     times: Times,
 }
@@ -87,6 +118,10 @@ pub fn measure(options: &Options, tell: Tell) -> Result<Report, BenchError> {
             tell(&format!("skips: {}, {}", saving.name, scene.name));
             outcomes.push(of_saving(saving, scene, options)?);
         }
+    }
+    for scene in NamedScene::choose(options, &[FIELD])? {
+        tell(&format!("skips: {}, {}", converged::NAME, scene.name));
+        outcomes.push(converged::measure(scene, options)?);
     }
     Ok(Report {
         name: "skips".to_owned(),
@@ -117,57 +152,14 @@ fn of_saving(
         let name = format!("{}: the picture without the saving \"{}\"", scene.name, saving.name);
         Err(BenchError::Differ(format!("{name} is another one")))
     })?;
-    Ok(Outcome { saving, scene: scene.stem(), times })
+    let Saving { name, about, .. } = saving;
+    Ok(Outcome { name, about: (*about).to_owned(), scene: scene.stem(), times })
 }
 
 fn draw(world: &World, scene: &NamedScene, skips: Skips) -> (f64, Image) {
     let options = render::Options { skips, ..render::Options::default() };
     let render = render(world, &scene.scene.settings, &options);
     (render.elapsed.as_secs_f64(), render.image)
-}
-
-fn table(outcomes: &[Outcome]) -> Table {
-    let columns = vec![
-        Column::new("saving", "What is left out."),
-        Column::new("scene", "Where, changed so that it may be left out."),
-        Column::new("with", "Time to render, the work left out.").unit("ms"),
-        Column::new("without", "Time to render, the work done for nothing.").unit("ms"),
-        Column::new("times as fast", "Time without by time with, round by round.")
-            .style(Style::Fixed(3)),
-        Column::new("what it is", "In words."),
-    ];
-    let mut table = Table::new("skips", "Savings", columns);
-    for Outcome { saving, scene, times } in outcomes {
-        table.push([
-            saving.name.into(),
-            scene.as_str().into(),
-            times.seconds(0).times(1e3).into(),
-            times.seconds(1).times(1e3).into(),
-            times.ratio(0, 1).into(),
-            saving.about.into(),
-        ]);
-    }
-    table
-}
-
-fn plot(outcomes: &[Outcome]) -> Plot {
-    let percent = |outcome: &Outcome| {
-        let Spread { median, least, greatest } = outcome.times.ratio(0, 1);
-        let saved = |ratio: f64| 100.0 * (1.0 - 1.0 / ratio);
-        Spread { median: saved(median), least: saved(least), greatest: saved(greatest) }
-    };
-    let points =
-        outcomes.iter().enumerate().map(|(i, outcome)| Point::spread(i as f64, percent(outcome)));
-    let name = |outcome: &Outcome| format!("{}: {}", outcome.saving.name, outcome.scene);
-    Plot {
-        name: "skips".to_owned(),
-        title: "What leaving out saves".to_owned(),
-        about: "Share of the time without it; medians and ranges over the rounds".to_owned(),
-        note: "The picture is the same to the byte.".to_owned(),
-        place: Axis::names(outcomes.iter().map(name)),
-        value: Axis::linear("time saved", "%"),
-        series: vec![Series::marks("time saved", points)],
-    }
 }
 
 #[cfg(test)]
@@ -178,10 +170,10 @@ mod tests {
     #[test]
     fn pictures_do_not_depend_on_what_is_left_out() {
         let report = measure(&quick(&[]), &|_| ()).unwrap();
-        assert_eq!(report.tables[0].rows.len(), SAVINGS.len());
+        assert_eq!(report.tables[0].rows.len(), SAVINGS.len() + 1);
         // Scenes with lens, lights, glass and ground take no harm either.
         let report = measure(&quick(&["field", "smallpt", "veach"]), &|_| ()).unwrap();
-        assert_eq!(report.tables[0].rows.len(), 3 * SAVINGS.len());
+        assert_eq!(report.tables[0].rows.len(), 3 * (SAVINGS.len() + 1));
     }
 
     #[test]

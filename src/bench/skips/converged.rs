@@ -1,0 +1,95 @@
+//! What it saves to leave tiles alone that are good: samples where they help most, up to an error,
+//! beside as many samples of every pixel as have the same error.
+
+use super::Outcome;
+use crate::bench::rounds::Times;
+use crate::bench::scenes::NamedScene;
+use crate::bench::{BenchError, Options};
+use crate::film::{Region, TILE};
+use crate::image::Image;
+use crate::render::{self, Render, render};
+use crate::scene::{SamplerKind, Settings};
+use crate::world::World;
+
+pub(super) const NAME: &str = "converged tiles";
+
+/// Seed of pictures that are only there to tell errors, apart from all others.
+const OTHER: u64 = 0x6f74_6865_7273;
+
+pub(super) fn measure(scene: NamedScene, options: &Options) -> Result<Outcome, BenchError> {
+    let scene = scene.resized(options.pick([32, 240, 640]));
+    let world = scene.world()?;
+    // Sets of strata depend on how many samples there are in all.
+    let plain = Settings { sampler: SamplerKind::Sobol, ..scene.scene.settings.clone() };
+    let until_error = options.pick([0.3, 0.03, 0.01]);
+    let spp = options.pick([64, Settings::HARD_SAMPLES, Settings::HARD_SAMPLES]);
+    let adaptive = Settings { until_error: Some(until_error), spp, ..plain.clone() };
+    let first = draw(&world, &adaptive, true);
+    check(&world, &plain, &first)
+        .map_err(|why| BenchError::Differ(format!("{}: {why}", scene.name)))?;
+    let spp = as_good(&world, &plain, squared_error(&world, &adaptive));
+    let even = Settings { spp, ..plain };
+    let times = Times::by_turns(options.rounds, 2, |contestant| {
+        let render = draw(&world, if contestant == 0 { &adaptive } else { &even }, false);
+        if contestant == 1 || render.image == first.image {
+            return Ok(render.elapsed.as_secs_f64());
+        }
+        let name = &scene.name;
+        Err(BenchError::Differ(format!("{name}: statistics make another picture of it")))
+    })?;
+    let percent = 100.0 * until_error;
+    let about = format!(
+        "samples where they help most, to an error of {percent} %, beside {spp} of every pixel, \
+         which have the same error"
+    );
+    Ok(Outcome { name: NAME, about, scene: scene.stem(), times })
+}
+
+fn draw(world: &World, settings: &Settings, statistics: bool) -> Render {
+    render(world, settings, &render::Options { statistics, ..render::Options::default() })
+}
+
+/// Whether each tile is what a plain render of as many samples makes of it, byte by byte.
+fn check(world: &World, plain: &Settings, found: &Render) -> Result<(), String> {
+    let samples = found.statistics.iter().flat_map(|statistics| &statistics.samples);
+    let samples: Vec<u32> = samples.copied().collect();
+    let Settings { width, height, .. } = *plain;
+    let steps = |end: u32| (0..end).step_by(TILE as usize).map(move |at| (at, TILE.min(end - at)));
+    for (y, height) in steps(height) {
+        for (x, width_of) in steps(width) {
+            let region = Region { x, y, width: width_of, height };
+            let spp = samples.get((y * width + x) as usize).copied().unwrap_or(0);
+            let options = render::Options { region: Some(region), ..render::Options::default() };
+            let tile = render(world, &Settings { spp, ..plain.clone() }, &options).image;
+            if tile.pixels != part(&found.image, region) {
+                return Err(format!("{spp} samples in the tile at {x}, {y} are not plain ones"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn part(image: &Image, Region { x, y, width, height }: Region) -> Vec<[f32; 3]> {
+    let rows = (y..y + height).map(|y| (y * image.width + x) as usize);
+    rows.flat_map(|first| &image.pixels[first..first + width as usize]).copied().collect()
+}
+
+/// Samples of every pixel that have this squared error; between powers of two it falls by a power.
+fn as_good(world: &World, plain: &Settings, wanted: f64) -> u32 {
+    let error = |spp: u32| squared_error(world, &Settings { spp, ..plain.clone() });
+    let (mut spp, mut before, mut after) = (1, f64::INFINITY, error(1));
+    while after > wanted && spp < Settings::HARD_SAMPLES {
+        spp *= 2;
+        (before, after) = (after, error(spp));
+    }
+    let back = (wanted / after).log2() / (before / after).log2();
+    (f64::from(spp) * (-back).exp2()).round().max(1.0) as u32
+}
+
+/// Mean squared error of a picture: half of the mean squared difference of two with other seeds.
+fn squared_error(world: &World, settings: &Settings) -> f64 {
+    let picture = |seed| draw(world, &Settings { seed, ..settings.clone() }, false).image.pixels;
+    let (one, other) = (picture(OTHER).into_flattened(), picture(OTHER + 1).into_flattened());
+    let squares = one.iter().zip(&other).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2));
+    squares.sum::<f64>() / (2.0 * one.len() as f64)
+}
