@@ -2,7 +2,8 @@
 
 use super::looks::LookArgs;
 use super::names::{
-    BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, PPM, SAMPLERS, TONES, Traversal,
+    BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
+    Traversal,
 };
 use super::particles::ParticleArgs;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
@@ -12,7 +13,7 @@ use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
 use spherule::image::{Depth, PpmEncoding};
 use spherule::layers::Layer;
-use spherule::scene::{Filter, Integrator, Roulette, SamplerKind, Tone};
+use spherule::scene::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Tone};
 use spherule::trace::Width;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -117,6 +118,9 @@ pub(super) struct PictureArgs {
     /// How paths end by chance: none, throughput, or the probability P to survive each bounce
     #[arg(long, value_name = "none|throughput|P", value_parser = values::roulette)]
     pub(super) roulette: Option<Roulette>,
+    /// How a path chooses the light that it looks for, for the integrator path
+    #[arg(long, value_parser = LIGHT_CHOICES.parser())]
+    pub(super) light_choice: Option<LightChoice>,
     /// Render this part alone: column and row of its top left corner, its width and height
     #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true, value_parser = values::region)]
     pub(super) region: Option<Region>,

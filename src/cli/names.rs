@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule::image::{Depth, PpmEncoding};
 use spherule::layers::Layer;
-use spherule::scene::{Filter, Integrator, SamplerKind, Tone};
+use spherule::scene::{Filter, Integrator, LightChoice, SamplerKind, Tone};
 use spherule::stress::{REGIMES, Regime};
 use spherule::trace::Width;
 use std::mem::discriminant;
@@ -49,6 +49,13 @@ pub(super) const SAMPLERS: Names<SamplerKind> = Names(&[
     ("sobol", SamplerKind::Sobol, "Owen-scrambled Sobol points: least noise"),
     ("stratified", SamplerKind::Stratified, "Jittered strata"),
     ("independent", SamplerKind::Independent, "Independent random numbers"),
+]);
+
+/// Choices of the light that a path looks for.
+pub(super) const LIGHT_CHOICES: Names<LightChoice> = Names(&[
+    ("tree", LightChoice::Tree, "By what each would give where it is looked for: least noise"),
+    ("power", LightChoice::Power, "By power, the same everywhere"),
+    ("uniform", LightChoice::Uniform, "All alike"),
 ]);
 
 /// Pixel filters.

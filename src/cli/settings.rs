@@ -2,7 +2,7 @@
 //! reports.
 
 use super::args::PictureArgs;
-use super::names::{FILTERS, INTEGRATORS, PPM, SAMPLERS, TONES};
+use super::names::{FILTERS, INTEGRATORS, LIGHT_CHOICES, PPM, SAMPLERS, TONES};
 use super::values::Target;
 use serde_json::{Map, Value, json};
 use spherule::film::Region;
@@ -26,6 +26,7 @@ impl PictureArgs {
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         settings.filter = self.filter.unwrap_or(settings.filter);
         settings.roulette = self.roulette.unwrap_or(settings.roulette);
+        settings.light_choice = self.light_choice.unwrap_or(settings.light_choice);
         settings.integrator = self.integrator(settings.integrator);
     }
 
@@ -84,7 +85,7 @@ pub(super) fn list(settings: &Settings, region: Region) -> List {
     put("seed", json!(settings.seed));
     put("integrator", json!(INTEGRATORS.name(&settings.integrator)));
     match settings.integrator {
-        Integrator::Path => None,
+        Integrator::Path => put("light_choice", json!(LIGHT_CHOICES.name(&settings.light_choice))),
         Integrator::Whitted { shadow_samples } => put("shadow_samples", json!(shadow_samples)),
         Integrator::Ao { distance } if distance.is_finite() => put("ao_distance", json!(distance)),
         Integrator::Ao { .. } => put("ao_distance", json!("inf")),

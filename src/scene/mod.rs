@@ -26,7 +26,7 @@ pub(crate) use light::is_radiance;
 pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
 pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
 pub use preset::Preset;
-pub use settings::{Filter, Integrator, Roulette, SamplerKind, Settings, Tone};
+pub use settings::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Settings, Tone};
 pub use spheres::Spheres;
 pub use write::write;
 

@@ -30,6 +30,8 @@ pub struct Settings {
     pub filter: Filter,
     /// How paths end before `depth`.
     pub roulette: Roulette,
+    /// How a path chooses the light that it looks for.
+    pub light_choice: LightChoice,
     /// Stops: radiance is multiplied by 2 to this power when it becomes a picture of 8 or 16 bits.
     pub exposure: f64,
     /// From radiance to a displayable value, before the sRGB curve.
@@ -88,6 +90,17 @@ pub enum Roulette {
     Fixed(f64),
 }
 
+/// How a path chooses the light that it looks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightChoice {
+    /// By what each would give where it is looked for, if nothing stood between.
+    Tree,
+    /// By power, the same everywhere.
+    Power,
+    /// All alike.
+    Uniform,
+}
+
 /// From linear radiance to display-linear 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tone {
@@ -125,6 +138,7 @@ impl Default for Settings {
             sampler: SamplerKind::Sobol,
             filter: Filter::BlackmanHarris,
             roulette: Roulette::Throughput,
+            light_choice: LightChoice::Tree,
             exposure: 0.0,
             tone: Tone::Linear,
         }

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::scene::{Integrator, Light, Material, Rgb, Scene};
+use spherule::scene::{Integrator, Light, LightChoice, Material, Rgb, Scene, Settings};
 use std::f64::consts::PI;
 
 const WHITTED: Integrator = Integrator::Whitted { shadow_samples: 16 };
@@ -191,5 +191,41 @@ fn many_lights_are_those_of_all_together() {
                 },
             );
         assert_agree(path, whitted, &format!("{count} {made_of:?}"));
+    }
+}
+
+/// Lamps of very different sizes and powers over surfaces of several kinds, beside a point and a sun.
+fn crowd() -> Scene {
+    let mut scene = dark();
+    ground(&mut scene, lambertian(0.5));
+    for i in 0..40_u32 {
+        let place = DVec3::new(f64::from(i * 7 % 12) - 6.0, f64::from(i * 5 % 11) - 5.0, 2.0);
+        let power = 0.25_f32 * f32::from(i as u8 % 7).exp();
+        sphere(&mut scene, place, 0.05 + 0.02 * f64::from(i % 4), emitter(power, 0.25));
+    }
+    sphere(&mut scene, [0.0, 0.0, 1.0], 0.75, metal(0.5));
+    sphere(&mut scene, [2.0, -2.0, 1.0], 0.75, Material::Plastic { color: Rgb::ONE, ior: 1.5 });
+    sphere(&mut scene, [-2.0, 1.0, 1.0], 0.75, lambertian(0.75));
+    let position = DVec3::new(1.0, -5.0, 3.0);
+    let (direction, irradiance) = (DVec3::new(0.6, 0.0, 0.8), Rgb::splat(0.25));
+    scene.lights = vec![
+        Light::Point { position, intensity: Rgb::splat(4.0), falloff: true },
+        Light::Sun { direction, irradiance, angular_radius: 2.0 },
+    ];
+    look(&mut scene, DVec3::new(4.0, -9.0, 6.0), DVec3::new(0.0, 0.0, 0.5), 45.0);
+    (scene.settings.depth, scene.settings.spp) = (Some(3), 16);
+    scene
+}
+
+#[test]
+fn whichever_way_lights_are_chosen_there_is_as_much_light() {
+    for scene in [crowd(), menagerie()] {
+        let by = |light_choice| {
+            let settings = Settings { light_choice, ..scene.settings.clone() };
+            Scene { settings, ..scene.clone() }
+        };
+        let tree = by(LightChoice::Tree);
+        assert_alike(&tree, &by(LightChoice::Power), "by power");
+        assert_alike(&tree, &by(LightChoice::Uniform), "all alike");
     }
 }

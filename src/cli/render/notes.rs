@@ -29,6 +29,10 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     let one_bounce = "the integrator ao follows no paths";
     note(picture.depth.is_some(), ao, "--depth", one_bounce);
     note(picture.roulette.is_some(), ao, "--roulette", one_bounce);
+    let chosen = picture.light_choice.is_some();
+    note(chosen, ao || whitted, "--light-choice", "only the integrator path chooses a light");
+    let lone = world.lights.len() < 2;
+    note(chosen, lone, "--light-choice", "the scene has no two lights");
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);
     let late = !ao && short && picture.roulette == Some(Roulette::Throughput);
     note(late, true, "--roulette throughput", "it begins at the fourth scattering, past --depth");

@@ -2,7 +2,9 @@
 
 use super::block::Block;
 use super::value::{Limits, Value};
-use crate::scene::{Filter, Integrator, Roulette, SamplerKind, SceneError, Settings, Tone};
+use crate::scene::{
+    Filter, Integrator, LightChoice, Roulette, SamplerKind, SceneError, Settings, Tone,
+};
 use std::time::Duration;
 use toml::de::DeValue;
 
@@ -42,6 +44,9 @@ pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
         sampler: block.value("sampler").map_or(Ok(usual.sampler), |value| sampler(&value))?,
         filter: block.value("filter").map_or(Ok(usual.filter), |value| filter(&value))?,
         roulette: block.value("roulette").map_or(Ok(usual.roulette), |value| roulette(&value))?,
+        light_choice: block
+            .value("light_choice")
+            .map_or(Ok(usual.light_choice), |value| light_choice(&value))?,
         exposure,
         tone: block.value("tone").map_or(Ok(usual.tone), |value| tone(&value))?,
     })
@@ -101,6 +106,14 @@ fn roulette(value: &Value) -> Result<Roulette, SceneError> {
         }),
         _ => value.number(Limits::AboveTo(0.0, 1.0)).map(Roulette::Fixed),
     }
+}
+
+fn light_choice(value: &Value) -> Result<LightChoice, SceneError> {
+    Ok(match value.choice(&["tree", "power", "uniform"])? {
+        "power" => LightChoice::Power,
+        "uniform" => LightChoice::Uniform,
+        _ => LightChoice::Tree,
+    })
 }
 
 fn tone(value: &Value) -> Result<Tone, SceneError> {

@@ -64,6 +64,7 @@ pub(super) const RENDER: Schema = Schema {
         ("sampler", &[]),
         ("filter", &[]),
         ("roulette", &[]),
+        ("light_choice", &[]),
         ("exposure", &[]),
         ("tone", &[]),
     ],

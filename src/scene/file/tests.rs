@@ -98,7 +98,7 @@ fn sections_in_the_wrong_brackets_are_told() {
 /// Texts with one value each that is out of its range, and one that is just inside.
 #[test]
 fn every_range_is_kept() {
-    let cases: [(&str, &[&str], &str); 38] = [
+    let cases: [(&str, &[&str], &str); 39] = [
         ("[render]\nsize = ?", &["[0, 5]", "[5, 65536]", "[5]", "5", "[1.5, 2]"], "[65535, 1]"),
         ("[render]\nspp = ?", &["0", "-1", "16777217", "1.5", "\"many\""], "16777216"),
         ("[render]\nuntil_error = ?", &["0", "-1", "1.1", "nan", "\"1%\""], "1"),
@@ -106,6 +106,7 @@ fn every_range_is_kept() {
         ("[render]\ndepth = ?", &["-1", "1.5", "\"infinite\"", "4294967296"], "\"unlimited\""),
         ("[render]\nseed = ?", &["-1", "18446744073709551616"], "18446744073709551615"),
         ("[render]\nroulette = ?", &["0", "1.1", "nan", "\"maybe\""], "1"),
+        ("[render]\nlight_choice = ?", &["\"random\"", "1"], "\"power\""),
         ("[render]\nexposure = ?", &["101", "inf", "\"1\""], "-100"),
         ("[render]\nsampler = ?", &["\"halton\"", "1"], "\"stratified\""),
         ("[render]\nfilter = ?", &["\"tent\""], "\"box\""),

@@ -115,8 +115,8 @@ mod tests {
     use super::*;
     use crate::scene::generate::default_scene;
     use crate::scene::{
-        BRIGHTEST, ConductorFresnel, Filter, Ground, Integrator, Lens, Light, Material, Projection,
-        Roulette, SamplerKind,
+        BRIGHTEST, ConductorFresnel, Filter, Ground, Integrator, Lens, Light, LightChoice,
+        Material, Projection, Roulette, SamplerKind,
     };
     use glam::DVec3;
 
@@ -196,8 +196,10 @@ mod tests {
             Projection::Orthographic { height: None },
             Projection::Orthographic { height: Some(1e-9) },
         ];
+        let lights = [LightChoice::Tree, LightChoice::Power, LightChoice::Uniform];
         for choice in 0..4 {
             scene.settings.integrator = integrators[choice];
+            scene.settings.light_choice = lights[choice % 3];
             scene.settings.roulette = roulettes[choice % 3];
             scene.settings.sampler = samplers[choice % 3];
             scene.settings.filter = filters[choice % 3];

@@ -2,7 +2,7 @@
 
 use crate::scene::{
     Camera, ConductorFresnel, Environment, EnvironmentMap, Filter, Integrator, Lens, Light,
-    Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings, Tone,
+    LightChoice, Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings, Tone,
 };
 use glam::DVec3;
 
@@ -34,6 +34,11 @@ pub(super) fn render(settings: &Settings) -> String {
         Roulette::Throughput => "\"throughput\"".to_owned(),
         Roulette::Fixed(probability) => format!("{probability:?}"),
     };
+    let light_choice = match settings.light_choice {
+        LightChoice::Tree => "tree",
+        LightChoice::Power => "power",
+        LightChoice::Uniform => "uniform",
+    };
     let tone = match settings.tone {
         Tone::Linear => "linear",
         Tone::Filmic => "filmic",
@@ -46,7 +51,7 @@ pub(super) fn render(settings: &Settings) -> String {
     format!(
         "[render]\nsize = [{width}, {height}]\nspp = {spp}\n{error}{time}depth = {depth}\nseed = {seed}\n\
          integrator = {integrator}\nsampler = \"{sampler}\"\nfilter = \"{filter}\"\n\
-         roulette = {roulette}\nexposure = {exposure:?}\ntone = \"{tone}\"\n\n"
+         roulette = {roulette}\nlight_choice = \"{light_choice}\"\nexposure = {exposure:?}\ntone = \"{tone}\"\n\n"
     )
 }
 

@@ -1,11 +1,45 @@
 //! The choice of the light to sample.
 
 use super::Lights;
-use super::tree::{BRANCHES, Ball, FAR, Receiver};
-use crate::scene::Rgb;
+use super::tree::{BRANCHES, Ball, FAR, Receiver, Tree};
+use crate::sampling::Distribution;
+use crate::scene::{LightChoice, Rgb};
 use crate::spheres::Spheres;
 use crate::world::environment::{Environment, luminance};
 use std::f64::consts::PI;
+
+/// How the light to sample is chosen, among emitters, points, suns and sky, in this order.
+#[derive(Clone, Debug, Default)]
+#[expect(clippy::large_enum_variant, reason = "a world has one of them")]
+pub(super) enum Choice {
+    /// None of them shines.
+    #[default]
+    None,
+    /// There is but one.
+    Lone,
+    /// By what each gives to the receiver.
+    Tree(Tree),
+    /// The same everywhere.
+    Table(Distribution),
+}
+
+impl Choice {
+    /// The choice among these lights.
+    pub(super) fn new(lights: &[Ball], by: LightChoice) -> Self {
+        let weights = |of: fn(&Ball) -> f64| lights.iter().map(of).collect::<Vec<_>>();
+        let table = |weights: Vec<f64>| Distribution::new(&weights).map(Self::Table);
+        let choice = match by {
+            LightChoice::Tree => Tree::new(lights).map(Self::Tree),
+            LightChoice::Power => table(weights(Ball::whole)),
+            LightChoice::Uniform => table(weights(|light| f64::from(u8::from(light.shines())))),
+        };
+        match choice {
+            Some(_) if lights.len() == 1 => Self::Lone,
+            Some(choice) => choice,
+            None => Self::None,
+        }
+    }
+}
 
 impl Lights {
     /// Each light as the choice sees it.
@@ -44,9 +78,9 @@ impl Lights {
         emitters.chain(points).chain(suns).chain(sky).collect()
     }
 
-    /// Whether the choice depends on the receiver: a lone light is no choice.
+    /// Whether the choice depends on the receiver.
     pub fn by_receiver(&self) -> bool {
-        self.choice.as_ref().is_some_and(|tree| tree.leaf.len() > 1)
+        matches!(self.choice, Choice::Tree(_))
     }
 
     /// Radii from its center within which a diffuse surface looks for an emissive sphere by its own
@@ -59,27 +93,31 @@ impl Lights {
     /// surface: with a third of 10 000 spheres glowing, variance times time is 0.7 of what it is
     /// without.
     pub(super) fn close_within(&self) -> f64 {
-        let crowd = self.choice.as_ref().is_some_and(|tree| tree.leaf.len() > BRANCHES);
-        if crowd { f64::INFINITY } else { 1.15 }
+        if self.len() > BRANCHES { f64::INFINITY } else { 1.15 }
     }
 
     /// Chooses a light to sample, by a draw in [0, 1): its index and the probability of the choice.
     #[inline]
     pub fn choose(&self, at: &Receiver, draw: f64) -> Option<(usize, f32)> {
-        let tree = self.choice.as_ref()?;
-        if tree.leaf.len() == 1 {
-            return Some((0, 1.0));
+        match &self.choice {
+            Choice::None => None,
+            Choice::Lone => Some((0, 1.0)),
+            Choice::Tree(tree) => Some(tree.choose(at, draw)),
+            Choice::Table(table) => {
+                let choice = table.sample(draw as f32);
+                Some((choice.index, choice.pmf))
+            }
         }
-        Some(tree.choose(at, draw))
     }
 
     /// The probability that [`Lights::choose`] chooses light `index`.
     #[inline]
     pub(super) fn probability(&self, at: &Receiver, index: usize) -> f32 {
         match &self.choice {
-            Some(tree) if tree.leaf.len() == 1 => 1.0,
-            Some(tree) => tree.probability(at, index),
-            None => 0.0,
+            Choice::None => 0.0,
+            Choice::Lone => 1.0,
+            Choice::Tree(tree) => tree.probability(at, index),
+            Choice::Table(table) => table.pmf(index),
         }
     }
 }

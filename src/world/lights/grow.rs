@@ -8,7 +8,13 @@ use std::ops::Range;
 const BINS: usize = 16;
 
 impl Ball {
-    fn whole(&self) -> f64 {
+    /// Whether it gives any light that can be reckoned with.
+    pub(super) fn shines(&self) -> bool {
+        self.whole() > 0.0 && self.whole().is_finite()
+    }
+
+    /// All that it gives from a distance of 1.
+    pub(super) fn whole(&self) -> f64 {
         self.power + self.steady
     }
 }
@@ -22,10 +28,10 @@ struct Cluster {
 
 /// The tree of the lights that shine; `None` if none does.
 pub(super) fn grow(lights: &[Ball]) -> Option<Tree> {
-    let shines = |light: &&Ball| light.whole() > 0.0 && light.whole().is_finite();
-    let brightest = lights.iter().filter(shines).map(Ball::whole).fold(0.0, f64::max);
+    let brightest =
+        lights.iter().filter(|light| light.shines()).map(Ball::whole).fold(0.0, f64::max);
     let mut order: Vec<u32> = (0..lights.len() as u32).collect();
-    order.retain(|&light| shines(&&lights[light as usize]));
+    order.retain(|&light| lights[light as usize].shines());
     if order.is_empty() {
         return None;
     }

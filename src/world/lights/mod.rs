@@ -21,12 +21,12 @@ use super::{Frame, World};
 use crate::ray::MISS;
 use crate::scene::{self, Rgb, Scene};
 use crate::spheres::Spheres;
+use choice::Choice;
 use disc::toward_sphere;
 use glam::Vec3;
-use tree::Tree;
 
-/// The lights, each with a share of the samples in proportion to what it would give to the point
-/// that looks for light if nothing stood between.
+/// The lights, each with a share of the samples: in proportion to what it would give to the point
+/// that looks for light if nothing stood between, unless the settings say otherwise.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
     /// Rows of emissive spheres, in the order of [`Spheres::key`]: what is sampled does not depend on
@@ -40,8 +40,7 @@ pub struct Lights {
     pub suns: Vec<Sun>,
     /// Whether the environment is sampled as well, as the last light.
     pub sky: bool,
-    /// Chooses among emitters, points, suns and sky, in this order; `None` if there is none.
-    choice: Option<Tree>,
+    choice: Choice,
     /// Radii from its center within which an emissive sphere is close.
     reach: f64,
 }
@@ -108,8 +107,10 @@ impl Lights {
             }
         }
         let sky = environment.illuminates && environment.picture().is_some();
-        let mut lights = Self { emitters, radiance, points, suns, sky, choice: None, reach: 0.0 };
-        lights.choice = Tree::new(&lights.balls(spheres, environment));
+        let choice = Choice::None;
+        let mut lights = Self { emitters, radiance, points, suns, sky, choice, reach: 0.0 };
+        let balls = lights.balls(spheres, environment);
+        lights.choice = Choice::new(&balls, scene.settings.light_choice);
         lights.reach = lights.close_within();
         lights
     }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::ray::MISS;
 use crate::sampling::statistics::{assert_chi_squared, random_pairs};
+use crate::world::lights::choice::Choice;
 use crate::world::lights::tests::world;
 
 /// Draws of more digits than single precision has.
@@ -59,7 +60,7 @@ fn lights_are_chosen_by_their_probability() {
 #[test]
 fn lights_of_every_kind_are_chosen_by_their_probability() {
     let world = world();
-    let tree = world.lights.choice.as_ref().expect("there are lights");
+    let Choice::Tree(tree) = &world.lights.choice else { panic!("there are lights") };
     receivers().for_each(|at| check(tree, &at));
     // Next to, on and inside of lamps.
     for row in &world.lights.emitters {
