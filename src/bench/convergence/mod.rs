@@ -6,20 +6,23 @@
 
 mod cache;
 mod fit;
+mod outcome;
 mod reference;
 mod tables;
+mod variants;
 
 pub use reference::{Reference, Squares};
 
-use self::tables::{levels, over_samples, over_time, references, summary};
+use self::outcome::{Outcome, Picture};
+use self::tables::{levels, plots, references, summary};
+use self::variants::{Case, Variant, cases};
 use super::rounds::Times;
-use super::scenes::{FIELD, NamedScene};
+use super::scenes::NamedScene;
 use super::{BenchError, Options, Tell};
-use crate::bvh::walk::Method;
 use crate::render::{self, render};
-use crate::report::{Point, Report, Spread};
-use crate::scene::{Roulette, SamplerKind, Settings};
-use crate::trace::{Tracer, Width};
+use crate::report::Report;
+use crate::scene::{Scene, Settings};
+use crate::trace::Tracer;
 use crate::world::World;
 
 const EXPLANATION: &str = "Each variant renders with more and more samples, by turns, with another \
@@ -28,156 +31,98 @@ const EXPLANATION: &str = "Each variant renders with more and more samples, by t
     halves' difference is the reference's own mean squared error; it is taken off, and what is left \
     is shown where it is more than the reference's own. Relative errors are divided by the square of \
     the reference and 0.01. Times are of rendering alone, on all threads. Efficiency is \
-    1 / (mean squared error x time).";
-
-/// A set of settings: what differs from the scene's own. All of them lead to the same picture.
-#[derive(Clone, Copy)]
-pub struct Variant {
-    /// What differs, in a few words.
-    pub name: &'static str,
-    /// Changes the settings.
-    pub change: fn(&mut Settings, &mut Tracer),
-}
-
-/// What is compared: one line adds one. The first is what the others are held against.
-pub const VARIANTS: [Variant; 7] = [
-    Variant { name: "as shipped", change: |_, _| () },
-    Variant {
-        name: "stratified",
-        change: |settings, _| settings.sampler = SamplerKind::Stratified,
-    },
-    Variant {
-        name: "independent",
-        change: |settings, _| settings.sampler = SamplerKind::Independent,
-    },
-    Variant { name: "no roulette", change: |settings, _| settings.roulette = Roulette::None },
-    Variant {
-        name: "roulette 0.5",
-        change: |settings, _| settings.roulette = Roulette::Fixed(0.5),
-    },
-    Variant { name: "stream", change: |_, tracer| tracer.method = Method::Stream },
-    Variant {
-        name: "single rays",
-        change: |_, tracer| *tracer = Tracer { method: Method::Single, width: Width::One },
-    },
-];
-
-/// What was measured in a scene: by variant, then by level of samples.
-struct Outcome {
-    scene: String,
-    reference: Reference,
-    levels: Vec<u32>,
-    times: Times,
-    /// By contestant and round.
-    squares: Vec<Vec<Squares>>,
-}
+    1 / (mean squared error x time). What is adaptive gives samples to the tiles where they help most, \
+    and ends when it is 95 % sure to have the error that the first variant was measured to have: it \
+    takes 16 samples of each pixel at least. With the suffix -direct paths scatter once, and integrators \
+    are compared, by their shadow samples; -sky is that with diffuse spheres under a white sky alone; \
+    -lights compares ways to choose among lights, in the field at night with every eighth sphere a lamp.";
 
 /// Measures errors.
 ///
 /// # Errors
 /// A scene is wrong, or a reference cannot be kept.
 pub fn measure(options: &Options, tell: Tell) -> Result<Report, BenchError> {
-    let usual = [FIELD, "smallpt", "veach", "paper-field-20"];
-    let scenes = NamedScene::choose(options, &usual[..options.pick([1, 2, 4])])?;
     let mut outcomes = Vec::new();
-    for scene in scenes {
-        let scene = scene.resized(options.pick([24, 64, 160]));
-        outcomes.push(of_scene(&scene, options, tell)?);
+    for case in cases(options)? {
+        outcomes.push(of_case(&case, options, tell)?);
     }
-    let plots = outcomes.iter().flat_map(|outcome| [over_time(outcome), over_samples(outcome)]);
     Ok(Report {
         name: "error".to_owned(),
         title: "Error against time and samples".to_owned(),
         about: EXPLANATION.to_owned(),
         settings: options.settings(),
-        plots: plots.collect(),
+        plots: outcomes.iter().flat_map(plots).collect(),
         tables: vec![levels(&outcomes), summary(&outcomes), references(&outcomes)],
     })
 }
 
-fn of_scene(scene: &NamedScene, options: &Options, tell: Tell) -> Result<Outcome, BenchError> {
+/// A variant with the world that it needs, which is the scene's own but for the choice of lights.
+struct Contestant<'a> {
+    variant: &'a Variant,
+    settings: Settings,
+    tracer: Tracer,
+    world: Option<World>,
+}
+
+impl<'a> Contestant<'a> {
+    fn new(scene: &NamedScene, variant: &'a Variant) -> Result<Self, BenchError> {
+        let (mut settings, mut tracer) = (scene.scene.settings.clone(), Tracer::default());
+        (variant.change)(&mut settings, &mut tracer);
+        let own = || {
+            let scene = Scene { settings: settings.clone(), ..scene.scene.clone() };
+            NamedScene { name: String::new(), scene }.world()
+        };
+        let other = settings.light_choice != scene.scene.settings.light_choice;
+        let world = other.then(own).transpose()?;
+        Ok(Self { variant, settings, tracer, world })
+    }
+
+    /// Renders once, as told: returns the time in seconds and how good the picture is.
+    fn turn(&self, told: &Settings, world: &World, reference: &Reference) -> (f64, Picture) {
+        let Settings { spp, until_error, seed, .. } = *told;
+        let settings = Settings { spp, until_error, seed, ..self.settings.clone() };
+        let options = render::Options { tracer: self.tracer, ..render::Options::default() };
+        let render = render(self.world.as_ref().unwrap_or(world), &settings, &options);
+        let pixels = render.image.pixels.len() as f64;
+        let picture = Picture {
+            squares: reference.squares(&render.image),
+            samples: render.samples.total as f64 / pixels,
+            rays: render.counters.rays() as f64 / pixels,
+        };
+        (render.elapsed.as_secs_f64(), picture)
+    }
+}
+
+fn of_case(case: &Case, options: &Options, tell: Tell) -> Result<Outcome, BenchError> {
+    let Case { scene, variants } = case;
     let world = scene.world()?;
     let samples = options.pick([64, 1024, 1 << 14]);
     tell(&format!("error: {}, reference of 2 x {samples} samples per pixel", scene.name));
     let reference = Reference::of(scene, &world, samples, options.references.as_deref())?;
+    let contestants = variants.iter().map(|variant| Contestant::new(scene, variant));
+    let contestants: Vec<Contestant> = contestants.collect::<Result<_, _>>()?;
     let most = options.pick([2, 5, 6]);
     let levels: Vec<u32> = (0..most).map(|i| 4_u32.pow(i)).collect();
-    let mut squares = vec![Vec::new(); VARIANTS.len() * levels.len()];
+    let mut pictures: Vec<Vec<Picture>> = vec![Vec::new(); variants.len() * levels.len()];
     let mut round = 0;
-    let times = Times::by_turns(options.rounds, squares.len(), |i| {
+    let times = Times::by_turns(options.rounds, pictures.len(), |i| {
         if i == 0 {
-            tell(&format!("error: {}, round {}", scene.name, round + 1));
             round += 1;
+            tell(&format!("error: {}, round {round}", scene.name));
         }
-        let (variant, spp) = (&VARIANTS[i / levels.len()], levels[i % levels.len()]);
-        let (seconds, found) =
-            turn(&world, &scene.scene.settings, (variant, spp, round), &reference);
-        squares[i].push(found);
+        let (contestant, level) = (&contestants[i / levels.len()], i % levels.len());
+        let own = &scene.scene.settings;
+        let seed = own.seed.wrapping_add(round);
+        let mut told = Settings { spp: levels[level], seed, until_error: None, ..own.clone() };
+        if let Some(first) = pictures[level].last().filter(|_| contestant.variant.adaptive) {
+            told.until_error = Some(reference.relative_to_mean(first.squares).max(1e-6));
+            told.spp = options.pick([64, Settings::HARD_SAMPLES, Settings::HARD_SAMPLES]);
+        }
+        let (seconds, picture) = contestant.turn(&told, &world, &reference);
+        pictures[i].push(picture);
         Ok::<_, BenchError>(seconds)
     })?;
-    Ok(Outcome { scene: scene.stem(), reference, levels, times, squares })
-}
-
-/// Renders once; returns the time in seconds and the errors.
-fn turn(
-    world: &World,
-    settings: &Settings,
-    (variant, spp, round): (&Variant, u32, u64),
-    reference: &Reference,
-) -> (f64, Squares) {
-    let (mut settings, mut tracer) = (settings.clone(), Tracer::default());
-    (variant.change)(&mut settings, &mut tracer);
-    (settings.spp, settings.seed) = (spp, settings.seed.wrapping_add(round));
-    let options = render::Options { tracer, ..render::Options::default() };
-    let render = render(world, &settings, &options);
-    (render.elapsed.as_secs_f64(), reference.squares(&render.image))
-}
-
-impl Outcome {
-    fn contestant(&self, variant: usize, level: usize) -> usize {
-        variant * self.levels.len() + level
-    }
-
-    fn seconds(&self, variant: usize, level: usize) -> Spread {
-        self.times.seconds(self.contestant(variant, level))
-    }
-
-    /// Errors without the reference's own; `None` if that is more.
-    fn error(&self, variant: usize, level: usize, of: fn(&Squares) -> f64) -> Option<Spread> {
-        let own = of(&self.reference.error);
-        let squares = self.squares[self.contestant(variant, level)].iter();
-        let left = Spread::of(&squares.map(|squares| of(squares) - own).collect::<Vec<_>>());
-        (left.median > own).then_some(Spread { least: left.least.max(0.0), ..left })
-    }
-
-    fn rmse(&self, variant: usize, level: usize) -> Option<Spread> {
-        self.error(variant, level, |squares| squares.absolute).map(root)
-    }
-
-    /// Places and root mean squared errors of all levels that count.
-    fn curve(&self, variant: usize, place: impl Fn(usize) -> f64) -> Vec<Point> {
-        let point = |level| Some(Point::spread(place(level), self.rmse(variant, level)?));
-        (0..self.levels.len()).filter_map(point).collect()
-    }
-
-    fn over_time(&self, variant: usize) -> Vec<Point> {
-        self.curve(variant, |level| self.seconds(variant, level).median)
-    }
-
-    fn over_samples(&self, variant: usize) -> Vec<Point> {
-        self.curve(variant, |level| f64::from(self.levels[level]))
-    }
-
-    /// 1 / (mean squared error x time), by medians.
-    fn efficiency(&self, variant: usize, level: usize) -> Option<f64> {
-        let square = self.error(variant, level, |squares| squares.absolute)?.median;
-        Some(1.0 / (square * self.seconds(variant, level).median))
-    }
-}
-
-fn root(squares: Spread) -> Spread {
-    let Spread { median, least, greatest } = squares;
-    Spread { median: median.sqrt(), least: least.sqrt(), greatest: greatest.sqrt() }
+    Ok(Outcome { scene: scene.stem(), reference, variants, levels, times, pictures })
 }
 
 #[cfg(test)]
@@ -192,17 +137,24 @@ mod tests {
         let references = Some(folder.path().join("references"));
         let options = Options { references, ..quick(&["field"]) };
         let report = measure(&options, &|_| ()).unwrap();
-        assert_eq!(report.tables[0].rows.len(), 2 * VARIANTS.len());
-        let rmse = |row: usize| match report.tables[0].rows[row][4] {
-            Cell::Spread(rmse) => rmse.median,
+        let variants =
+            cases(&options).unwrap().iter().map(|case| case.variants.len()).sum::<usize>();
+        assert_eq!(report.tables[0].rows.len(), 2 * variants);
+        let cell = |row: usize, column: usize| match report.tables[0].rows[row][column] {
+            Cell::Spread(cell) => cell.median,
             _ => f64::NAN,
         };
+        let rmse = |row: usize| cell(row, 5);
         assert!(rmse(0) > rmse(1) && rmse(1) > 0.0);
+        // Samples: of every pixel, and where they help.
+        assert_eq!((cell(0, 2), cell(1, 2)), (1.0, 4.0));
+        assert!(cell(2, 2) >= 16.0 && rmse(2) < rmse(1));
         let kept = || std::fs::read_dir(folder.path().join("references")).unwrap().count();
-        assert_eq!(kept(), 2);
+        assert_eq!(kept(), 4);
         let again = measure(&options, &|_| ()).unwrap();
-        assert_eq!((kept(), &again.tables[2]), (2, &report.tables[2]));
+        assert_eq!((kept(), &again.tables[2]), (4, &report.tables[2]));
         // What walks find is the same, so the errors are.
-        assert_eq!(rmse(0), rmse(2 * 5));
+        let single = report.tables[0].rows.iter().position(|row| row[1] == "single rays".into());
+        assert_eq!(rmse(0), rmse(single.unwrap()));
     }
 }

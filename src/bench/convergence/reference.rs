@@ -47,12 +47,17 @@ impl Reference {
         samples: u32,
         folder: Option<&Path>,
     ) -> Result<Self, BenchError> {
+        let own = &scene.scene.settings;
+        let picture =
+            |settings: &Settings| render(world, settings, &render::Options::default()).image;
+        let sample = folder.map(|_| picture(&Settings { spp: 1, ..own.clone() }));
         let half = |seed: u64| {
-            let settings = Settings { spp: samples, seed, ..scene.scene.settings.clone() };
-            let picture = || render(world, &settings, &render::Options::default()).image;
-            match folder {
-                Some(folder) => cache::kept(folder, scene, &settings, picture),
-                None => Ok(picture()),
+            let settings = Settings { spp: samples, seed, ..own.clone() };
+            match folder.zip(sample.as_ref()) {
+                Some((folder, sample)) => {
+                    cache::kept(folder, scene, (&settings, sample), || picture(&settings))
+                }
+                None => Ok(picture(&settings)),
             }
         };
         let [first, second] = [half(SEEDS[0])?, half(SEEDS[1])?];
@@ -65,6 +70,12 @@ impl Reference {
         let Squares { absolute, relative } = squares(&first, &second, &mean);
         let error = Squares { absolute: absolute / 4.0, relative: relative / 4.0 };
         Ok(Self { mean, error, samples })
+    }
+
+    /// The root of mean squares by the mean radiance: what [`Settings::until_error`] is about.
+    pub fn relative_to_mean(&self, squares: Squares) -> f64 {
+        let values = self.mean.pixels.iter().flatten().map(|&value| f64::from(value));
+        squares.absolute.sqrt() * 3.0 * self.mean.pixels.len() as f64 / values.sum::<f64>()
     }
 
     /// How far a picture is from the reference.

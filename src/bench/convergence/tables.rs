@@ -1,13 +1,16 @@
 //! What was found about errors, as tables and plots.
 
-use super::{Outcome, VARIANTS, Variant, fit};
+use super::fit;
+use super::outcome::Outcome;
+use super::variants::Variant;
 use crate::report::{Axis, Column, Plot, Point, Series, Style, Table};
 
 pub(super) fn levels(outcomes: &[Outcome]) -> Table {
     let columns = vec![
         Column::new("scene", "What is rendered."),
         Column::new("variant", "What differs from the scene's own settings."),
-        Column::new("samples", "Per pixel."),
+        Column::new("samples", "Per pixel: the mean."),
+        Column::new("rays", "Per pixel, those of probes too: the mean."),
         Column::new("time", "Of rendering.").unit("ms"),
         Column::new("RMSE", "Root of the mean squared error, without the reference's own."),
         Column::new("relative MSE", "Mean of squared errors by the squares of the reference."),
@@ -15,12 +18,13 @@ pub(super) fn levels(outcomes: &[Outcome]) -> Table {
     ];
     let mut table = Table::new("error", "Errors", columns);
     for outcome in outcomes {
-        for (variant, Variant { name, .. }) in VARIANTS.iter().enumerate() {
-            for (level, &spp) in outcome.levels.iter().enumerate() {
+        for (variant, Variant { name, .. }) in outcome.variants.iter().enumerate() {
+            for level in 0..outcome.levels.len() {
                 table.push([
                     outcome.scene.as_str().into(),
                     (*name).into(),
-                    u64::from(spp).into(),
+                    outcome.samples(variant, level).into(),
+                    outcome.rays(variant, level).into(),
                     outcome.seconds(variant, level).times(1e3).into(),
                     outcome.rmse(variant, level).into(),
                     outcome.error(variant, level, |squares| squares.relative).into(),
@@ -57,7 +61,7 @@ pub(super) fn summary(outcomes: &[Outcome]) -> Table {
     let mut table = Table::new("error-slopes", "Slopes, and times to equal error", columns);
     for outcome in outcomes {
         let first = pairs(&outcome.over_time(0));
-        for (variant, Variant { name, .. }) in VARIANTS.iter().enumerate() {
+        for (variant, Variant { name, .. }) in outcome.variants.iter().enumerate() {
             let own = pairs(&outcome.over_time(variant));
             let equal = fit::equal(&first, &own);
             table.push([
@@ -99,24 +103,20 @@ fn pairs(points: &[Point]) -> Vec<(f64, f64)> {
     points.iter().map(|point| (point.place, point.value.median)).collect()
 }
 
-pub(super) fn over_time(outcome: &Outcome) -> Plot {
-    let place = Axis::log("time to render", "s");
-    plot(outcome, ("time", "time"), place, |variant| outcome.over_time(variant))
+/// Error over time, samples and rays.
+pub(super) fn plots(outcome: &Outcome) -> [Plot; 3] {
+    let time = Axis::log("time to render", "s");
+    let [samples, rays] = ["samples per pixel", "rays per pixel"].map(|label| Axis::log(label, ""));
+    [
+        plot(outcome, "time", time, |variant| outcome.over_time(variant)),
+        plot(outcome, "samples", samples, |variant| outcome.over_samples(variant)),
+        plot(outcome, "rays", rays, |variant| outcome.over_rays(variant)),
+    ]
 }
 
-pub(super) fn over_samples(outcome: &Outcome) -> Plot {
-    let place = Axis::log("samples per pixel", "");
-    plot(outcome, ("samples", "samples"), place, |variant| outcome.over_samples(variant))
-}
-
-fn plot(
-    outcome: &Outcome,
-    (name, words): (&str, &str),
-    place: Axis,
-    curve: impl Fn(usize) -> Vec<Point>,
-) -> Plot {
+fn plot(outcome: &Outcome, name: &str, place: Axis, curve: impl Fn(usize) -> Vec<Point>) -> Plot {
     let series = |(i, variant): (usize, &Variant)| Series::joined(variant.name, curve(i));
-    let mut series: Vec<_> = VARIANTS.iter().enumerate().map(series).collect();
+    let mut series: Vec<_> = outcome.variants.iter().enumerate().map(series).collect();
     let ends = series.first().map(|series| series.points.as_slice());
     if let Some([first, .., last]) = ends {
         let (at, value) = (first.place, first.value.median);
@@ -126,7 +126,7 @@ fn plot(
     let error = Style::Usual.write(outcome.reference.error.absolute.sqrt());
     Plot {
         name: format!("error-{name}-{}", outcome.scene),
-        title: format!("Error against {words}: {}", outcome.scene),
+        title: format!("Error against {name}: {}", outcome.scene),
         about: "Medians and ranges over seeds; farther down and to the left is better".to_owned(),
         note: format!("The reference's own RMSE, {error}, is taken off."),
         place,

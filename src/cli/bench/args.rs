@@ -153,13 +153,22 @@ Examples:
   spherule bench build --scenes layer250k volume1m --threads 1";
 
 const SKIPS: &str = "\
+The picture is the same to the byte with each saving and without it. Converged tiles alone are
+compared otherwise: a picture that ends at an error, and gives samples to the tiles where they help
+most, with one that has as many samples of every pixel and the same error.
+
 Examples:
   spherule bench skips
   spherule bench skips --rounds 15 --scenes veach my-scene.toml";
 
 const ERROR: &str = "\
-References are kept in the folder `references` of the output: the next run with the same scene and
-settings takes them from there.
+Compared are, by error against time, samples and rays:
+  in each scene            samplers, roulette, single rays, and samples where they help (adaptive)
+  where there are lights   choices among them: by the tree, by power, all alike (-lights)
+  where paths scatter once path tracing and whitted with 1 to 16 shadow samples (-direct)
+  without --scenes, too    those and ambient occlusion on chalk under a white sky (-sky)
+All of a group lead to the same picture. References are kept in the folder `references` of the output:
+the next run with the same scene, settings and renderer takes them from there.
 
 Examples:
   spherule bench error

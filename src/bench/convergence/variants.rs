@@ -1,0 +1,162 @@
+//! What is compared, and in which scenes: sets of settings that all lead to the same picture.
+
+use crate::bench::scenes::{FIELD, NamedScene};
+use crate::bench::{BenchError, Options};
+use crate::bvh::walk::Method;
+use crate::scene::{
+    EnvironmentMap, Integrator, LightChoice, Material, NamedMaterial, Rgb, Roulette, SamplerKind,
+    Scene, Settings,
+};
+use crate::trace::{Tracer, Width};
+
+/// A set of settings: what differs from the scene's own.
+#[derive(Clone, Copy)]
+pub(super) struct Variant {
+    /// What differs, in a few words.
+    pub(super) name: &'static str,
+    /// Changes the settings.
+    pub(super) change: fn(&mut Settings, &mut Tracer),
+    /// Whether the picture ends at the error that the first variant has, wherever that takes which
+    /// samples; or else has as many samples of every pixel.
+    pub(super) adaptive: bool,
+}
+
+/// A scene, and what is compared there: the first is what the others are held against.
+pub(super) struct Case {
+    pub(super) scene: NamedScene,
+    pub(super) variants: &'static [Variant],
+}
+
+const fn variant(name: &'static str, change: fn(&mut Settings, &mut Tracer)) -> Variant {
+    Variant { name, change, adaptive: false }
+}
+
+/// In every scene as it is.
+const SETTINGS: [Variant; 7] = [
+    variant("as shipped", |_, _| ()),
+    Variant { adaptive: true, ..variant("adaptive", |_, _| ()) },
+    variant("stratified", |settings, _| settings.sampler = SamplerKind::Stratified),
+    variant("independent", |settings, _| settings.sampler = SamplerKind::Independent),
+    variant("no roulette", |settings, _| settings.roulette = Roulette::None),
+    variant("roulette 0.5", |settings, _| settings.roulette = Roulette::Fixed(0.5)),
+    variant("single rays", |_, tracer| {
+        *tracer = Tracer { method: Method::Single, width: Width::One };
+    }),
+];
+
+/// Where there are several lights.
+const LIGHTS: [Variant; 3] = [
+    variant("by the tree", |_, _| ()),
+    variant("by power", |settings, _| settings.light_choice = LightChoice::Power),
+    variant("all alike", |settings, _| settings.light_choice = LightChoice::Uniform),
+];
+
+/// Where paths scatter once: then both integrators make the same picture.
+const DIRECT: [Variant; 4] = [
+    variant("path", |_, _| ()),
+    variant("whitted, 1", |settings, _| settings.integrator = whitted(1)),
+    variant("whitted, 4", |settings, _| settings.integrator = whitted(4)),
+    variant("whitted, 16", |settings, _| settings.integrator = whitted(16)),
+];
+
+/// The same of diffuse spheres under a white sky: that is ambient occlusion.
+const SKY: [Variant; 4] = [
+    variant("path", |_, _| ()),
+    variant("ao", |settings, _| settings.integrator = Integrator::Ao { distance: f64::INFINITY }),
+    variant("whitted, 1", |settings, _| settings.integrator = whitted(1)),
+    variant("whitted, 16", |settings, _| settings.integrator = whitted(16)),
+];
+
+const fn whitted(shadow_samples: u32) -> Integrator {
+    Integrator::Whitted { shadow_samples }
+}
+
+/// All that is compared.
+///
+/// # Errors
+/// A scene is wrong.
+pub(super) fn cases(options: &Options) -> Result<Vec<Case>, BenchError> {
+    let usual = [FIELD, "smallpt", "veach", "paper-field-20"];
+    let scenes = NamedScene::choose(options, &usual[..options.pick([1, 2, 4])])?;
+    let resized = |scene: NamedScene| scene.resized(options.pick([24, 64, 160]));
+    let scenes: Vec<_> = scenes.into_iter().map(resized).collect();
+    let mut cases = Vec::new();
+    for scene in &scenes {
+        cases.push(Case { scene: scene.clone(), variants: &SETTINGS });
+        if !options.scenes.is_empty() {
+            cases.extend(several_lights(scene)?);
+            cases.push(direct(scene));
+        }
+    }
+    if options.scenes.is_empty() {
+        let field = &scenes[0];
+        cases.extend(several_lights(&changed(field, "night", night))?);
+        cases.push(direct(field));
+        cases.push(Case { scene: changed(field, "sky", chalk_under_the_sky), variants: &SKY });
+    }
+    Ok(cases)
+}
+
+fn changed(scene: &NamedScene, suffix: &str, change: impl Fn(&mut Scene)) -> NamedScene {
+    let mut scene = NamedScene { name: format!("{}-{suffix}", scene.stem()), ..scene.clone() };
+    change(&mut scene.scene);
+    scene
+}
+
+/// Choices of lights, if there is any choice.
+fn several_lights(scene: &NamedScene) -> Result<Option<Case>, BenchError> {
+    let by_path = |scene: &mut Scene| scene.settings.integrator = Integrator::Path;
+    let scene = changed(scene, "lights", by_path);
+    Ok((scene.world()?.lights.len() > 1).then_some(Case { scene, variants: &LIGHTS }))
+}
+
+fn direct(scene: &NamedScene) -> Case {
+    let change = |scene: &mut Scene| {
+        (scene.settings.integrator, scene.settings.depth) = (Integrator::Path, Some(1));
+    };
+    Case { scene: changed(scene, "direct", change), variants: &DIRECT }
+}
+
+/// Every eighth sphere is a lamp, and there is no other light.
+fn night(scene: &mut Scene) {
+    scene.lights.clear();
+    scene.environment.map = EnvironmentMap::Constant(Rgb::ZERO);
+    let lamp = scene.materials.len() as u32;
+    let material = Material::Emitter { radiance: Rgb::splat(8.0), albedo: Rgb::ZERO };
+    scene.materials.push(NamedMaterial { name: "lamp".to_owned(), material });
+    scene.spheres.material.iter_mut().step_by(8).for_each(|material| *material = lamp);
+}
+
+fn chalk_under_the_sky(scene: &mut Scene) {
+    scene.lights.clear();
+    scene.environment.map = EnvironmentMap::Constant(Rgb::ONE);
+    for row in &mut scene.materials {
+        row.material = Material::Lambertian { color: Rgb::splat(0.8) };
+    }
+    scene.settings.depth = Some(1);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::convergence::reference::Reference;
+    use crate::bench::tests::quick;
+
+    /// Pictures of all variants differ by as much as their halves tell.
+    #[test]
+    fn variants_lead_to_the_same_picture() {
+        for case in cases(&quick(&[])).unwrap() {
+            let scene = case.scene.resized(16);
+            let truth = Reference::of(&scene, &scene.world().unwrap(), 512, None).unwrap();
+            for variant in case.variants {
+                let mut other = scene.clone();
+                (variant.change)(&mut other.scene.settings, &mut Tracer::default());
+                let world = other.world().unwrap();
+                let found = Reference::of(&other, &world, 512, None).unwrap();
+                let off = truth.squares(&found.mean).absolute;
+                let told = truth.error.absolute + found.error.absolute;
+                assert!(off < 6.0 * told, "{}, {}: {off} {told}", scene.name, variant.name);
+            }
+        }
+    }
+}
