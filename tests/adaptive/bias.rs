@@ -1,0 +1,109 @@
+//! Whether stopping biases any pixel: its mean over many renders against that over plain renders.
+
+use crate::common::*;
+use crate::{caustic, with_target};
+use spherule::image::Image;
+use spherule::render::{End, Options, Render, render};
+use spherule::scene::{Scene, Settings};
+use spherule::world::World;
+
+/// Chance that a test fails although nothing is biased: one in a million for either number, with the normal
+/// quantile that belongs to it.
+const QUANTILE: f64 = 4.75;
+
+/// Light that only few paths find, in two tiles: of 32 pixels and of four.
+fn scene() -> Scene {
+    let mut scene = caustic();
+    (scene.settings.width, scene.settings.height) = (18, 2);
+    scene
+}
+
+/// Mean and squared standard error of each pixel.
+struct Means(Vec<[f64; 2]>);
+
+impl Means {
+    fn of(pictures: impl Iterator<Item = Image>) -> Self {
+        let (mut sums, mut count) = (Vec::new(), 0.0);
+        for picture in pictures {
+            sums.resize(picture.pixels.len(), [0.0; 2]);
+            for (sum, pixel) in sums.iter_mut().zip(&picture.pixels) {
+                let value = f64::from(pixel[0]);
+                *sum = [sum[0] + value, sum[1] + value * value];
+            }
+            count += 1.0;
+        }
+        let of_sum = |[sum, squares]: [f64; 2]| {
+            let mean: f64 = sum / count;
+            [mean, (squares / count - mean * mean) / (count - 1.0)]
+        };
+        Self(sums.into_iter().map(of_sum).collect())
+    }
+
+    /// Two numbers that are normal if both have the same expectations: the sum of the squared differences of pixels, each
+    /// by its error (by the cube root, after Wilson and Hilferty, "The Distribution of Chi-Square", PNAS 1931), and that
+    /// of the differences.
+    fn against(&self, other: &Self) -> [f64; 2] {
+        let pairs = self.0.iter().zip(&other.0);
+        let off = pairs.map(|(a, b)| (a[0] - b[0]) / (a[1] + b[1]).sqrt());
+        let (count, spread) = (self.0.len() as f64, 2.0 / (9.0 * self.0.len() as f64));
+        let squares: f64 = off.clone().map(|off| off * off).sum();
+        let cube = ((squares / count).cbrt() - (1.0 - spread)) / spread.sqrt();
+        [cube, off.sum::<f64>() / count.sqrt()]
+    }
+}
+
+fn shots(scene: &Scene, settings: Settings, statistics: bool) -> impl Fn(u64) -> Render + use<> {
+    let world = World::build(scene).expect("the scene is sound");
+    move |seed| {
+        let settings = Settings { seed, ..settings.clone() };
+        render(&world, &settings, &Options { statistics, ..Options::default() })
+    }
+}
+
+fn plain(scene: &Scene, spp: u32, statistics: bool) -> impl Fn(u64) -> Render + use<> {
+    shots(scene, Settings { spp, ..scene.settings.clone() }, statistics)
+}
+
+/// Of many samples of every pixel.
+fn truth(scene: &Scene) -> Means {
+    let shot = plain(scene, 1024, false);
+    Means::of((0..100).map(|seed| shot(1_000_000 + seed).image))
+}
+
+#[test]
+fn no_pixel_is_biased_by_stopping() {
+    let scene = scene();
+    let adaptive = with_target(scene.clone(), 0.4);
+    let shot = shots(&adaptive, adaptive.settings.clone(), false);
+    let (mut fewest, mut most) = (u32::MAX, 0);
+    let pictures = (0..600).map(|seed| {
+        let render = shot(seed);
+        assert_eq!(render.end, End::Error);
+        (fewest, most) = (fewest.min(render.samples.least), most.max(render.samples.most));
+        render.image
+    });
+    let found = Means::of(pictures).against(&truth(&scene));
+    assert!(found[0] < QUANTILE && found[1].abs() < QUANTILE, "{found:?}");
+    assert!(most >= 8 * fewest, "{fewest} to {most} samples decide nothing");
+}
+
+/// The same numbers tell at once when samples have a say in how many there are: here a picture ends at its first 32 if
+/// these themselves say that its error is small.
+#[test]
+fn bias_would_be_seen() {
+    let scene = scene();
+    let (few, many) = (plain(&scene, 32, true), plain(&scene, 256, false));
+    let mut early = 0;
+    let pictures = (0..600).map(|seed| {
+        let first = few(seed);
+        let variance = first.statistics.as_ref().map_or(0.0, |all| mean(&all.variance));
+        if variance.sqrt() > 0.5 * mean(&first.image) {
+            return many(seed).image;
+        }
+        early += 1;
+        first.image
+    });
+    let found = Means::of(pictures).against(&truth(&scene));
+    assert!(found[0] > 1.5 * QUANTILE && found[1] < -QUANTILE, "{found:?}");
+    assert!((60..540).contains(&early), "{early}");
+}
