@@ -17,6 +17,7 @@ Examples:
   spherule render scene.toml --until-error 1%       as many samples as that takes
   spherule render particles.xyz -o figure.png --integrator ao
   spherule render run.lammpstrj.gz --frame last --radii 0.5 -o last.png
+  spherule render run.lammpstrj.gz --frame all -o frame-%04d.png
   spherule render run.dump --color-by c_pe --color-map inferno --color-bar energy.svg
   spherule render protein.pdb --select 'element != H and chain == A' -o chain.png
   spherule render salt.xyz --type Na:radius=1,material=glass --type Cl:color=#30a030

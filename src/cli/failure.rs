@@ -44,6 +44,8 @@ pub(crate) enum Failure {
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error("{}: cannot be written: {}", .0.display(), .1)]
     Write(PathBuf, io::Error),
+    #[error("frame {0}: {1}")]
+    Frame(u64, Box<Self>),
     #[error("{0}")]
     Drawing(#[from] DrawingError),
     #[error("{0}")]
@@ -83,6 +85,17 @@ impl Failure {
         Self::Usage(command.clone().error(ErrorKind::ValueValidation, message))
     }
 
+    /// The same, of a frame among many.
+    pub(super) fn of_frame(self, number: u64) -> Self {
+        match self {
+            Self::Scene(error) => {
+                let message = format!("frame {number}: {}", error.message);
+                Self::Scene(Box::new(SceneError { message, ..*error }))
+            }
+            other => Self::Frame(number, Box::new(other)),
+        }
+    }
+
     /// Tells the user, and says with which code to exit: 2 for a wrong command line, 1 for all
     /// else.
     pub(crate) fn report(self) -> ExitCode {
@@ -92,6 +105,7 @@ impl Failure {
                 let _ = error.print();
                 return ExitCode::from(2);
             }
+            Self::Frame(_, error) if matches!(*error, Self::Usage(_)) => return error.report(),
             Self::Scene(error) => report_scene(*error),
             other => output::error(other),
         }

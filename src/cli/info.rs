@@ -73,6 +73,7 @@ const SHOWN: usize = 12;
 
 /// Looks and tells.
 pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
+    args.particles.refuse_frames("info")?;
     let source = Source::of_path("info", &args.scene, &args.particles)?;
     let (scene, particles) = load(&source)?;
     let world =

@@ -10,6 +10,7 @@ mod examples;
 mod failure;
 mod field;
 mod field_scene;
+mod frames;
 mod info;
 mod looks;
 mod names;

@@ -1,6 +1,7 @@
 //! How the command line has files of particles read, and what it says of them.
 
-use super::output;
+use super::frames::{FrameArg, FrameRange};
+use super::{Failure, output};
 use indicatif::HumanCount;
 use serde::Serialize;
 use spherule::scene::particles::{
@@ -19,9 +20,10 @@ pub(super) struct ParticleArgs {
     /// What columns are, as in x=px,radius=size,type=species
     #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<Columns>())]
     columns: Option<Columns>,
-    /// The frame: first, last or a number from 0
-    #[arg(long, value_name = "N|first|last", value_parser = |text: &str| text.parse::<FrameChoice>())]
-    frame: Option<FrameChoice>,
+    /// The frame: first, last or a number from 0; or a numbered picture of each of many, from one
+    /// camera: all, A-B or A..B..STEP
+    #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<FrameArg>())]
+    frame: Option<FrameArg>,
     /// Radii: vdw or covalent by element, a column's, or one for all
     #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<Radii>())]
     radii: Option<Radii>,
@@ -50,7 +52,7 @@ impl ParticleArgs {
         ReadOptions {
             format: self.format,
             columns: self.columns.clone().unwrap_or_default(),
-            frame: self.frame.unwrap_or_default(),
+            frame: self.frame.map_or_else(FrameChoice::default, FrameArg::first),
             radii: self.radii.clone().unwrap_or_default(),
             radius_scale: self.radius_scale.unwrap_or(1.0),
             atom_style: self.atom_style.clone(),
@@ -60,7 +62,21 @@ impl ParticleArgs {
 
     /// Whether anything was typed.
     pub(super) fn any(&self) -> bool {
-        self.options() != ReadOptions::default()
+        self.frames().is_some() || self.options() != ReadOptions::default()
+    }
+
+    /// Which frames, if they are many.
+    pub(super) fn frames(&self) -> Option<FrameRange> {
+        self.frame.and_then(FrameArg::range)
+    }
+
+    /// Refuses many frames where one is meant.
+    pub(super) fn refuse_frames(&self, command: &str) -> Result<(), Failure> {
+        if self.frames().is_some() {
+            let message = "--frame names one frame here: first, last or a number from 0";
+            return Err(Failure::usage(command, message));
+        }
+        Ok(())
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod bench;
 mod folder;
+mod frames;
 mod inputs;
 mod layers;
 mod looks;

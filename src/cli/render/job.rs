@@ -1,6 +1,7 @@
 //! What is to be rendered, how, and where to: validated as far as it can be without the scene.
 
 use super::looks::with_columns;
+use super::numbers::numbered;
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
 use crate::cli::looks::BarFile;
@@ -14,10 +15,10 @@ use spherule::bvh::build::Builder;
 use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Format;
-use spherule::scene::Settings;
 use spherule::scene::particles::Looks;
+use spherule::scene::{Camera, Settings};
 use spherule::trace::{Tracer, Width};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A render to be done.
 #[derive(Clone)]
@@ -32,6 +33,10 @@ pub(super) struct Job<'a> {
     pub(super) style: &'a StyleArgs,
     /// Which picture of a turn it is, from 0.
     pub(super) turn: Option<u32>,
+    /// Which of many frames it is.
+    pub(super) frame: Option<u64>,
+    /// Of an earlier picture of the same sequence.
+    pub(super) camera: Option<Camera>,
     pub(super) encoding: &'a EncodingArgs,
     pub(super) speed: &'a SpeedArgs,
     pub(super) tracer: Tracer,
@@ -72,6 +77,8 @@ impl<'a> Job<'a> {
             views: &args.views,
             style: &args.style,
             turn: None,
+            frame: None,
+            camera: None,
             encoding: &args.encoding,
             speed: &args.speed,
             tracer: tracer(args.speed.traversal, args.speed.lanes),
@@ -89,7 +96,7 @@ impl<'a> Job<'a> {
         }
         let digits = (pictures - 1).to_string().len().max(3);
         let job = |turn: u32| Self {
-            output: numbered(&self.output, turn, digits),
+            output: numbered(&self.output, turn.into(), digits),
             turn: Some(turn),
             ..self.clone()
         };
@@ -137,17 +144,6 @@ impl<'a> Job<'a> {
     }
 }
 
-/// `a-007.png` of `a.png`.
-fn numbered(path: &Path, number: u32, digits: usize) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(format!("-{number:0digits$}"));
-    if let Some(suffix) = path.extension() {
-        name.push(".");
-        name.push(suffix);
-    }
-    path.with_file_name(name)
-}
-
 fn tracer(typed: Traversal, lanes: Option<Width>) -> Tracer {
     let width = lanes.unwrap_or(Tracer::default().width);
     let method = match typed {
@@ -163,11 +159,6 @@ fn tracer(typed: Traversal, lanes: Option<Width>) -> Tracer {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_go_before_the_suffix() {
-        assert_eq!(numbered(Path::new("a/b.c.png"), 7, 3), Path::new("a/b.c-007.png"));
-    }
 
     #[test]
     fn traversals_are_what_they_are_called() {

@@ -8,7 +8,7 @@ use crate::cli::source::Source;
 use spherule::atomic::{check_destination, write_atomically};
 use spherule::color::bar::{Bar, Direction};
 use spherule::scene::Scene;
-use spherule::scene::particles::{self, Cell, Legend, Looks};
+use spherule::scene::particles::{self, Cell, Legend, Looks, Particles};
 
 /// The source, with the columns that the looks need; only particles have such looks.
 pub(super) fn with_columns(source: Source, looks: &Looks) -> Result<Source, Failure> {
@@ -35,12 +35,17 @@ pub(super) struct Loaded {
 }
 
 /// Loads what is to be rendered: particles as they are to look, in as many copies as there are to be.
-pub(super) fn load(job: &Job) -> Result<Loaded, Failure> {
+///
+/// `given` is a frame that was read before.
+pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failure> {
     let Source::Particles(path, options) = &job.source else {
         job.views.refuse_cells()?;
         return Ok(Loaded { scene: job.source.load()?, legend: None, cell: None });
     };
-    let mut particles = particles::read(path, options)?;
+    let mut particles = match given {
+        Some(particles) => particles,
+        None => particles::read(path, options)?,
+    };
     let legend = job.looks.apply(path, &mut particles)?;
     let cell = job.views.repeat(path, &mut particles)?;
     let title = job.source.title(&Scene::default()).into_owned();

@@ -7,7 +7,9 @@ mod looks;
 mod metadata;
 mod noise;
 mod notes;
+mod numbers;
 mod prepare;
+mod sequence;
 mod summary;
 
 use self::job::Job;
@@ -28,6 +30,9 @@ const INTERRUPTED: u8 = 130;
 pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
     looks::check_bar(&job)?;
+    if let Some(range) = args.particles.frames() {
+        return job.pool()?.install(|| sequence::run(&job, range));
+    }
     let Some(pictures) = args.views.turntable() else {
         check_writable(&job.output)?;
         return job.pool()?.install(|| make_picture(&job));
@@ -49,10 +54,13 @@ fn make_turn(jobs: &[Job]) -> Result<ExitCode, Failure> {
 }
 
 fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
-    let prepared = Prepared::load(job)?;
+    finish_picture(job, &Prepared::load(job, None)?)
+}
+
+fn finish_picture(job: &Job, prepared: &Prepared) -> Result<ExitCode, Failure> {
     prepared.tell(job);
-    looks::write_bar(job, &prepared)?;
-    let mut render = trace(job, &prepared);
+    looks::write_bar(job, prepared)?;
+    let mut render = trace(job, prepared);
     if render.samples.total == 0 {
         output::warn("interrupted before the first sample: nothing is written");
         return Ok(ExitCode::from(INTERRUPTED));
@@ -60,10 +68,10 @@ fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
     let (cell, region) = (prepared.cell.as_ref(), prepared.region);
     let over = Over { views: job.views, style: job.style, cell, region };
     over.draw(&prepared.world, &prepared.scene.settings, &mut render);
-    let options = metadata::write_options(job, &prepared, &render);
-    let channels = layers::channels(job, &prepared, &render);
+    let options = metadata::write_options(job, prepared, &render);
+    let channels = layers::channels(job, prepared, &render);
     render.image.write_layers(&job.output, &channels, &options)?;
-    Summary::new(job, &prepared, &render, &options).tell(job.report);
+    Summary::new(job, prepared, &render, &options).tell(job.report);
     if render.complete {
         return Ok(ExitCode::SUCCESS);
     }

@@ -12,8 +12,9 @@ use spherule::film::{Film, Region};
 use spherule::layers::Layers;
 use spherule::memory;
 use spherule::render::Render;
-use spherule::scene::particles::{Cell, Legend};
+use spherule::scene::particles::{Cell, Legend, Particles};
 use spherule::scene::{Scene, Settings, Spheres};
+use spherule::world::framing;
 use std::time::{Duration, Instant};
 
 /// A world that can be rendered, and how it came about.
@@ -41,14 +42,15 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    /// Loads the scene, puts in the job's settings, and builds the world.
-    pub(super) fn load(job: &Job) -> Result<Self, Failure> {
+    /// Loads the scene, puts in the job's settings, and builds the world; `given` are its particles,
+    /// if they were read before.
+    pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let looks::Loaded { mut scene, legend, cell } = looks::load(job)?;
+        let looks::Loaded { mut scene, legend, cell } = looks::load(job, given)?;
         let load = start.elapsed();
         job.style.set(&mut scene);
         job.picture.replace(&mut scene.settings);
-        job.views.frame(&mut scene, cell.as_ref(), job.turn)?;
+        place_camera(job, &mut scene, cell.as_ref())?;
         job.style.light(&mut scene);
         let region = job.region(&scene.settings)?;
         let layered = !job.encoding.layers.is_empty() || job.draws_over();
@@ -104,6 +106,20 @@ impl Prepared {
     pub(super) fn share(&self, render: &Render) -> f64 {
         render.samples.total as f64 / self.samples() as f64
     }
+}
+
+/// Places the camera, or leaves it where it stood in an earlier picture of a sequence.
+fn place_camera(job: &Job, scene: &mut Scene, cell: Option<&Cell>) -> Result<(), Failure> {
+    if let Some(camera) = &job.camera {
+        scene.camera = camera.clone();
+        return Ok(());
+    }
+    job.views.frame(scene, cell, job.turn)?;
+    if job.frame.is_none() {
+        return Ok(());
+    }
+    let failure = |error| Failure::World(job.source.name().into_owned(), error);
+    framing::hold(scene, &[]).map_err(failure)
 }
 
 /// Samples of a part of the picture.

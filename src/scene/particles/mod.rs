@@ -64,7 +64,20 @@ use std::path::Path;
 ///
 /// The file cannot be read, is cut off, or holds something that is not a particle.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Particles, SceneError> {
-    spheres::spheres(path, read_frame(path, options)?, options)
+    of_frame(path, read_frame(path, options)?, options)
+}
+
+/// Makes spheres of a frame that was read from `path`; whatever frame the options choose.
+///
+/// # Errors
+///
+/// It holds no particles, or the radii that are asked for are not there.
+pub fn of_frame(
+    path: &Path,
+    frame: ParticleFrame,
+    options: &ReadOptions,
+) -> Result<Particles, SceneError> {
+    spheres::spheres(path, frame, options)
 }
 
 #[cfg(test)]

@@ -55,6 +55,17 @@ impl Frames {
         };
         Ok(Self { reader, failed: false })
     }
+
+    /// Passes over the next frame, with as little work as the format allows; whether there was one.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or holds something that is not a particle, as far as it is looked at.
+    pub fn skip_frame(&mut self) -> Result<bool, SceneError> {
+        let skipped = if self.failed { Ok(false) } else { self.reader.skip() };
+        self.failed |= skipped.is_err();
+        skipped
+    }
 }
 
 impl Iterator for Frames {

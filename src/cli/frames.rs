@@ -1,0 +1,115 @@
+//! Which frames of a file are drawn, as typed.
+
+use spherule::scene::particles::FrameChoice;
+use std::str::FromStr;
+
+/// One frame, or many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FrameArg {
+    One(FrameChoice),
+    Many(FrameRange),
+}
+
+/// Every so many frames from a first to a last one, which may be whatever is the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct FrameRange {
+    pub(super) first: u64,
+    /// Included; `None` for all that there are.
+    pub(super) last: Option<u64>,
+    pub(super) step: u64,
+}
+
+impl FrameRange {
+    const ALL: Self = Self { first: 0, last: None, step: 1 };
+
+    /// Whether it includes a frame that is not after its last one.
+    pub(super) fn has(self, number: u64) -> bool {
+        number >= self.first && (number - self.first).is_multiple_of(self.step)
+    }
+}
+
+impl FrameArg {
+    pub(super) fn first(self) -> FrameChoice {
+        match self {
+            Self::One(choice) => choice,
+            Self::Many(range) => FrameChoice::Index(range.first),
+        }
+    }
+
+    pub(super) fn range(self) -> Option<FrameRange> {
+        match self {
+            Self::One(_) => None,
+            Self::Many(range) => Some(range),
+        }
+    }
+}
+
+impl FromStr for FrameArg {
+    type Err = String;
+
+    /// `all`, `A-B`, `A..B`, `A..B..STEP`, `A..` or what [`FrameChoice`] is read from.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let range = match text {
+            "all" => Some(FrameRange::ALL),
+            _ if text.contains("..") => dotted(text),
+            _ => text.split_once('-').and_then(|(first, last)| between(first, last, "1")),
+        };
+        match range {
+            Some(range) => Ok(Self::Many(range)),
+            None => text.parse().map(Self::One).map_err(|_| {
+                format!(
+                    "`{text}` are no frames: write first, last, a number from 0, or all, A-B or \
+                     A..B..STEP, with A no more than B and STEP 1 or more"
+                )
+            }),
+        }
+    }
+}
+
+fn dotted(text: &str) -> Option<FrameRange> {
+    let parts: Vec<&str> = text.split("..").collect();
+    match *parts.as_slice() {
+        [first, last] => between(first, last, "1"),
+        [first, last, step] => between(first, last, step),
+        _ => None,
+    }
+}
+
+fn between(first: &str, last: &str, step: &str) -> Option<FrameRange> {
+    let first = first.parse().ok()?;
+    let last = if last.is_empty() { None } else { Some(last.parse().ok()?) };
+    let step = step.parse().ok().filter(|&step| step > 0)?;
+    last.is_none_or(|last| first <= last).then_some(FrameRange { first, last, step })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_read() {
+        let range = |first, last, step| Ok(FrameArg::Many(FrameRange { first, last, step }));
+        for (text, expected) in [
+            ("all", range(0, None, 1)),
+            ("3-7", range(3, Some(7), 1)),
+            ("3..7", range(3, Some(7), 1)),
+            ("3..7..2", range(3, Some(7), 2)),
+            ("3....2", range(3, None, 2)),
+            ("3..", range(3, None, 1)),
+            ("5", Ok(FrameArg::One(FrameChoice::Index(5)))),
+            ("last", Ok(FrameArg::One(FrameChoice::Last))),
+        ] {
+            assert_eq!(text.parse(), expected, "{text}");
+        }
+        for text in ["", "-1", "7-3", "1..5..0", "..", "..3", "1..2..3..4", "all..3", "1.5"] {
+            assert!(text.parse::<FrameArg>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn steps_begin_with_the_first() {
+        let range = FrameRange { first: 3, last: None, step: 4 };
+        let frames: Vec<u64> = (0..13).filter(|&number| range.has(number)).collect();
+        assert_eq!(frames, [3, 7, 11]);
+    }
+}
