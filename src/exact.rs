@@ -198,6 +198,12 @@ impl Distance {
     }
 }
 
+/// Whether a point is inside a sphere, not on its surface; all numbers are finite.
+pub fn is_inside(point: DVec3, center: DVec3, radius: f64) -> bool {
+    let ray = ExactRay { origin: point, direction: DVec3::ZERO, origin_error: 0.0 };
+    Encounter::new(&ray, center, radius).outside.sign() < 0
+}
+
 /// Compares two distances along a ray, exactly.
 pub fn compare(ray: &ExactRay, first: &Distance, second: &Distance) -> Ordering {
     let (p, s, q) = first.value(ray);

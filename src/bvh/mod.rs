@@ -8,6 +8,7 @@
 pub mod build;
 mod certain;
 mod decide;
+mod hold;
 mod order;
 mod packet;
 mod single;

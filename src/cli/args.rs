@@ -6,6 +6,7 @@ use super::names::{
     Traversal,
 };
 use super::particles::ParticleArgs;
+use super::slices::SliceArgs;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
 use super::views::{StyleArgs, ViewArgs};
 use super::{bench, examples, stress};
@@ -63,6 +64,8 @@ pub(super) struct RenderArgs {
     pub(super) particles: ParticleArgs,
     #[command(flatten)]
     pub(super) looks: LookArgs,
+    #[command(flatten)]
+    pub(super) slices: SliceArgs,
     #[command(flatten)]
     pub(super) views: ViewArgs,
     #[command(flatten)]

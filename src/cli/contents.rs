@@ -26,6 +26,10 @@ pub(super) fn found(world: &World) -> Vec<String> {
     find(features.lights, &format!("{} to sample", plural(world.lights.len() as u64, "light")));
     find(features.environment, "an environment that can be seen");
     find(features.lens, "a lens");
+    find(features.cuts > 0, &format!("{} at which spheres end", plural(features.cuts, "plane")));
+    find(features.unseen > 0, &format!("{} hidden from the camera", spheres(features.unseen)));
+    let cut_away = features.cut_away;
+    find(cut_away > 0, &format!("slices without {}", spheres(cut_away)));
     let around = features.glass_at_camera.len() as u64;
     find(around > 0, &format!("{} of glass around the camera", spheres(around)));
     found

@@ -24,6 +24,7 @@ Examples:
   spherule render crystal.cif --wrap --replicate 3,3,2 --cell --view auto -o crystal.png
   spherule render protein.pdb --projection orthographic --turntable 90 -o turn.png
   spherule render protein.pdb --preset outline --background white -o outline.png
+  spherule render grains.data --slice 'z>50%' --slice-mode caps -o section.png
   spherule render scene.toml --region 100,50,64x64 -o detail.png
   spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id
   spherule render scene.toml --json --quiet > statistics.json

@@ -4,12 +4,12 @@ use super::args::InfoArgs;
 use super::contents::{dropped, found, plural, spheres};
 use super::particles::ParticleInfo;
 use super::source::Source;
-use super::{Failure, output, settings};
+use super::{Failure, output, settings, slices};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule::World;
 use spherule::film::Region;
-use spherule::scene::{EnvironmentMap, Projection, Scene};
+use spherule::scene::{EnvironmentMap, Projection, Scene, bounds};
 use spherule::world::Kind;
 use std::process::ExitCode;
 
@@ -26,6 +26,8 @@ struct Info {
     bounds: Option<[[f64; 3]; 2]>,
     /// Least and greatest; null without spheres.
     radius: Option<[f64; 2]>,
+    /// What is cut away.
+    slices: Vec<String>,
     materials: Vec<MaterialInfo>,
     ground: bool,
     lights: LightInfo,
@@ -104,8 +106,9 @@ impl Info {
             particles: None,
             spheres: scene.spheres.len(),
             dropped_spheres: world.features.vanished + world.features.hidden,
-            bounds: bounds(scene),
+            bounds: bounds(&scene.spheres).map(|ends| ends.map(|end| end.to_array())),
             radius: radii(scene),
+            slices: scene.slices.iter().map(slices::text).collect(),
             materials: materials(scene),
             ground: scene.ground.is_some(),
             lights: LightInfo::new(world),
@@ -126,6 +129,9 @@ impl Info {
         if let (Some([low, high]), Some([least, greatest])) = (self.bounds, self.radius) {
             output::print(format_args!("bounds       {low:?} to {high:?}"));
             output::print(format_args!("radius       {least} to {greatest}"));
+        }
+        for slice in &self.slices {
+            output::print(format_args!("cut away     {slice}"));
         }
         for MaterialInfo { name, kind, spheres: count } in self.materials.iter().take(SHOWN) {
             output::print(format_args!("material     {name}: {kind}, {}", spheres(*count)));
@@ -209,17 +215,6 @@ impl MemoryInfo {
             self.bytes_per_sphere
         )
     }
-}
-
-/// The box of all spheres.
-fn bounds(scene: &Scene) -> Option<[[f64; 3]; 2]> {
-    let spheres = &scene.spheres;
-    let boxes = (0..spheres.len()).map(|row| {
-        let (center, radius) = (spheres.center(row), spheres.radius[row]);
-        (center - radius, center + radius)
-    });
-    let all = boxes.reduce(|(low, high), (lower, upper)| (low.min(lower), high.max(upper)));
-    all.map(|(low, high)| [low.to_array(), high.to_array()])
 }
 
 fn radii(scene: &Scene) -> Option<[f64; 2]> {

@@ -20,6 +20,7 @@ mod processor;
 mod progress;
 mod render;
 mod settings;
+mod slices;
 mod source;
 mod stress;
 mod threads;

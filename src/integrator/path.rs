@@ -12,7 +12,7 @@ use super::clock::Stage;
 use super::diffuse;
 use super::look::Look;
 use super::stages::{self, Local, ShadeKind};
-use super::workspace::{Arrival, Workspace, chord};
+use super::workspace::{Arrival, Workspace};
 use crate::lanes::MAX_LANES;
 use crate::ray::GROUND;
 use crate::sampling::ScatterDraw;
@@ -247,7 +247,7 @@ pub fn faint(world: &World) -> f32 {
 /// Whether a sphere hides a light from a point of its inside: what lies behind its far side.
 pub fn hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
     let own = work.hits.sphere[row];
-    own != GROUND && chord(world, own, work.surface.normal[row], sample.direction) < sample.t
+    own != GROUND && work.chord(world, row, sample.direction) < sample.t
 }
 
 /// Queues the shadow ray of a light sample; traces the queue when it is full.

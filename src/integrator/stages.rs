@@ -156,9 +156,12 @@ fn solve(world: &World, work: &Workspace, row: usize, hit: u32) -> (Vec3, DVec3)
         let off = normal.dot(point) - height;
         return ((point - normal * off).as_vec3(), normal);
     }
+    if let Some(normal) = world.cut.cap(&ray, work.rays.own[row], work.hits.t[row]) {
+        return (ray.at(work.hits.t[row]).as_vec3(), normal);
+    }
     let center = world.spheres.center(hit as usize).as_dvec3();
     let radius = f64::from(world.spheres.radius(hit as usize));
-    let normal = if work.rays.own[row] == hit {
+    let normal = if work.rays.own[row] == hit && !world.cut.divides(center, radius) {
         exit_normal(&ray, work.surface.normal[row])
     } else {
         // Of a sphere that is smaller than rounding, the ray is all that is known.

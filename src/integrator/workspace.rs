@@ -221,11 +221,23 @@ impl Workspace {
         let own = self.hits.sphere[row];
         self.rays.set(row, self.surface.point[row], direction, own);
         if inward && own != GROUND {
-            let t = chord(world, own, self.surface.normal[row], direction);
+            let t = self.chord(world, row, direction);
             self.hits.set(row, t, own);
         } else {
             self.hits.set(row, f64::INFINITY, MISS);
         }
+    }
+
+    /// Distance from the point of a sphere that `row` has hit, or of the sphere's cap, through the
+    /// inside to where `direction` leaves the sphere.
+    #[inline]
+    pub fn chord(&self, world: &World, row: usize, direction: Vec3) -> f64 {
+        let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
+        let direction = direction.as_dvec3();
+        if world.cut.divides(center, radius) {
+            return far_end(self.surface.point[row].as_dvec3() - center, radius, direction);
+        }
+        chord(self.surface.normal[row], radius, direction)
     }
 
     /// Ends the path in `row`.
@@ -253,13 +265,18 @@ impl Workspace {
     }
 }
 
-/// Distance from a point of sphere `row`, with outward unit `normal`, through the inside to where
+/// Distance from a point of a sphere, with outward unit `normal`, through the inside to where
 /// `direction` leaves.
 #[inline]
-pub fn chord(world: &World, row: u32, normal: DVec3, direction: Vec3) -> f64 {
-    let direction = direction.as_dvec3();
-    let radius = f64::from(world.spheres.radius(row as usize));
+pub fn chord(normal: DVec3, radius: f64, direction: DVec3) -> f64 {
     (-2.0 * radius * normal.dot(direction) / direction.length_squared()).max(0.0)
+}
+
+/// The same from a point of the inside, `offset` from the center.
+fn far_end(offset: DVec3, radius: f64, direction: DVec3) -> f64 {
+    let (a, b) = (direction.length_squared(), -offset.dot(direction));
+    let outside = offset.length_squared() - radius * radius;
+    ((b + (b * b - a * outside).max(0.0).sqrt()) / a).max(0.0)
 }
 
 impl Paths {

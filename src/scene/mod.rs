@@ -15,6 +15,7 @@ mod material;
 pub mod particles;
 mod preset;
 mod settings;
+mod slice;
 mod spheres;
 mod write;
 
@@ -27,6 +28,7 @@ pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
 pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
 pub use preset::Preset;
 pub use settings::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Settings, Tone};
+pub use slice::{Slice, SliceMode, SlicePlane, bounds};
 pub use spheres::Spheres;
 pub use write::write;
 
@@ -42,6 +44,8 @@ pub struct Scene {
     pub materials: Vec<NamedMaterial>,
     /// The infinite ground plane, if there is one.
     pub ground: Option<Ground>,
+    /// Half spaces that are cut away.
+    pub slices: Vec<Slice>,
     /// Lights that are not spheres.
     pub lights: Vec<Light>,
     /// What a ray sees that hits nothing.

@@ -91,9 +91,10 @@ pub enum Roulette {
 }
 
 /// How a path chooses the light that it looks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LightChoice {
     /// By what each would give where it is looked for, if nothing stood between.
+    #[default]
     Tree,
     /// By power, the same everywhere.
     Power,

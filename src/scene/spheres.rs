@@ -63,6 +63,15 @@ impl Spheres {
         self.radius.push(radius);
     }
 
+    /// Keeps the rows that `keep` is true for: one entry for each.
+    pub fn retain(&mut self, keep: &[bool]) {
+        for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.radius] {
+            retain(column, keep);
+        }
+        retain(&mut self.material, keep);
+        retain(&mut self.color, keep);
+    }
+
     /// Appends all of `other`; its material `i` becomes `rows[i]` here, and what `rows` lacks
     /// becomes 0.
     pub fn append(&mut self, mut other: Self, rows: &[u32]) {
@@ -87,6 +96,12 @@ impl Spheres {
             .into_iter()
             .try_for_each(|column| column.try_reserve_exact(additional))
     }
+}
+
+/// Keeps the rows of a column that `keep` is true for.
+pub(super) fn retain<T>(column: &mut Vec<T>, keep: &[bool]) {
+    let mut rows = keep.iter();
+    column.retain(|_| rows.next().copied().unwrap_or(true));
 }
 
 /// Appends `values` to a column that may be empty where all of its `before` values are `usual`.

@@ -41,6 +41,9 @@ pub struct Appearance {
 }
 
 impl Appearance {
+    /// Of no sphere.
+    pub(super) const NONE: Self = Self { material: Column::Rows(Vec::new()), color: None };
+
     /// For the spheres whose places in the user's scene are `ids`.
     pub(super) fn build(from: &scene::Spheres, ids: &[u32], materials: &Materials) -> Self {
         let material = |id: u32| from.material_of(id as usize);

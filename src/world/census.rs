@@ -14,6 +14,14 @@ pub struct Features {
     pub vanished: u64,
     /// Spheres that coincide with an earlier one, in a crowd about one center, left out.
     pub hidden: u64,
+    /// Spheres that slices leave nothing of.
+    pub cut_away: u64,
+    /// Planes at which spheres end.
+    pub cuts: u64,
+    /// Whether the camera may be inside a sphere that is cut; looked for only where there are cuts.
+    pub around_camera: bool,
+    /// Spheres that the camera does not see, though they are there.
+    pub unseen: u64,
     /// The ground's kind of material; `None` if there is no ground, and rays are not tested against
     /// it.
     pub ground_kind: Option<Kind>,
@@ -38,7 +46,12 @@ impl Features {
         }
         Self {
             spheres_by_kind,
-            vanished: (scene.spheres.len() - placed) as u64,
+            vanished: (scene.shown().count() - placed) as u64,
+            cut_away: (scene.spheres.len() - scene.shown().count()) as u64,
+            cuts: world.cut.len() as u64,
+            around_camera: around_camera(world),
+            unseen: world.seen.as_ref().map_or(0, |seen| world.spheres.len() - seen.spheres.len())
+                as u64,
             hidden: (placed - world.spheres.len()) as u64,
             ground_kind: world.ground.map(|ground| ground.material.kind()),
             colors: world.appearance.color.is_some(),
@@ -62,6 +75,7 @@ impl Features {
                 skipped.push(what.to_owned());
             }
         };
+        skip(self.cuts == 0, "no flat cuts: no ray is clipped");
         skip(self.ground_kind.is_none(), "no ground: no plane test");
         skip(!self.lights, "no lights to sample: no shadow rays");
         skip(!self.lens, "no lens: no lens samples");
@@ -76,6 +90,17 @@ impl Features {
         }
         skipped
     }
+}
+
+/// Whether a sphere that is cut touches the ball in which camera rays start.
+fn around_camera(world: &World) -> bool {
+    let (at, reach) = world.camera.origins();
+    let around = |row: usize| {
+        let (center, radius) = world.spheres.exact(row);
+        let near = center.distance(at) <= (radius + reach) * (1.0 + 1e-6);
+        near && world.cut.divides(center, radius)
+    };
+    !world.cut.is_empty() && (0..world.spheres.len()).any(around)
 }
 
 /// Glass spheres that touch the ball in which camera rays start.

@@ -4,7 +4,7 @@ use super::WorldError;
 use crate::image::Image;
 use crate::scene::{
     BRIGHTEST, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Integrator, Light,
-    Material, NamedMaterial, Pose, Projection, Rgb, Roulette, Scene, Settings, is_radiance,
+    Material, NamedMaterial, Pose, Projection, Rgb, Roulette, Scene, Settings, Slice, is_radiance,
 };
 use glam::DVec3;
 
@@ -16,6 +16,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
     camera(&scene.camera)?;
     scene.materials.iter().try_for_each(material)?;
     scene.lights.iter().try_for_each(light)?;
+    scene.slices.iter().try_for_each(slice)?;
     environment(&scene.environment)?;
     scene.ground.as_ref().map_or(Ok(()), |plane| ground(plane, &scene.materials))?;
     let colors = scene.spheres.color.iter().all(|&color| share(color));
@@ -150,6 +151,12 @@ fn light(light: &Light) -> Result<(), WorldError> {
             })
         }
     }
+}
+
+fn slice(slice: &Slice) -> Result<(), WorldError> {
+    unit("the normal of a slice", slice.normal)?;
+    let distance = slice.distance;
+    number(distance.is_finite(), "the distance of a slice", distance, "finite")
 }
 
 fn environment(environment: &Environment) -> Result<(), WorldError> {

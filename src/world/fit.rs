@@ -82,6 +82,11 @@ pub(super) fn pose(scene: &Scene) -> Result<Placement, WorldError> {
     Err(camera_error(placement.eye, "its distances overflow; scale the scene down"))
 }
 
+/// Whether there is nothing to frame.
+fn is_empty(scene: &Scene) -> bool {
+    scene.shown().next().is_none()
+}
+
 fn camera_error(eye: DVec3, why: &'static str) -> WorldError {
     WorldError::Camera { eye: eye.to_array(), why }
 }
@@ -112,10 +117,10 @@ fn look_at(scene: &Scene, eye: DVec3, target: DVec3) -> Result<Placement, WorldE
         Projection::Orthographic { height } => {
             let half = match height {
                 Some(height) => height / 2.0,
-                None if scene.spheres.is_empty() => return Err(WorldError::NothingToFit),
+                None if is_empty(scene) => return Err(WorldError::NothingToFit),
                 // As much as all spheres need around the point that is looked at.
                 None => {
-                    let box3 = ViewBox::of(&scene.spheres, &axes);
+                    let box3 = ViewBox::of(scene, &axes);
                     let at = axes.coordinates(eye);
                     let reach = (box3.high - at).max(at - box3.low);
                     reach.y.max(reach.x / aspect)
@@ -127,12 +132,12 @@ fn look_at(scene: &Scene, eye: DVec3, target: DVec3) -> Result<Placement, WorldE
 }
 
 fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldError> {
-    if scene.spheres.is_empty() {
+    if is_empty(scene) {
         return Err(WorldError::NothingToFit);
     }
     let axes = Axes::new(direction, scene.camera.up)
         .ok_or_else(|| camera_error(DVec3::ZERO, "its `direction` is zero; give it a length"))?;
-    let extent = ViewBox::of(&scene.spheres, &axes);
+    let extent = ViewBox::of(scene, &axes);
     let used = 1.0 - margin;
     let aspect = aspect(scene);
     let lens = lens_radius(scene) + scene.camera.near;
@@ -142,7 +147,7 @@ fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldE
             let half_height = (fov.to_radians() / 2.0).tan();
             let half_width = half_height * aspect;
             let tangents = (half_width * used, half_height * used);
-            let at = nearest_eye(&scene.spheres, &axes, tangents);
+            let at = nearest_eye(scene, &axes, tangents);
             let eye = axes.point(at);
             let distance = (middle.z - at.z).max(0.0);
             Placement { eye, axes, half_height, half_width, distance, reach: lens }
@@ -172,9 +177,10 @@ struct ViewBox {
 }
 
 impl ViewBox {
-    fn of(spheres: &Spheres, axes: &Axes) -> Self {
+    fn of(scene: &Scene, axes: &Axes) -> Self {
+        let spheres = &scene.spheres;
         let mut bounds = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        for i in 0..spheres.len() {
+        for i in scene.shown() {
             let center = axes.coordinates(center(spheres, i));
             bounds.low = bounds.low.min(center - spheres.radius[i]);
             bounds.high = bounds.high.max(center + spheres.radius[i]);
@@ -189,11 +195,12 @@ impl ViewBox {
 /// A sphere is inside a plane through the eye with inward unit normal `n` if
 /// `n . eye <= n . center - radius`: the least right side over all spheres bounds the eye. The two
 /// planes of an axis give its coordinate, and each pair gives how far forward it may go.
-fn nearest_eye(spheres: &Spheres, axes: &Axes, (tan_x, tan_y): (f64, f64)) -> DVec3 {
+fn nearest_eye(scene: &Scene, axes: &Axes, (tan_x, tan_y): (f64, f64)) -> DVec3 {
+    let spheres = &scene.spheres;
     let normal = |tangent: f64| (tangent.atan().cos(), tangent.atan().sin());
     let ((cos_x, sin_x), (cos_y, sin_y)) = (normal(tan_x), normal(tan_y));
     let mut slack = [f64::INFINITY; 4];
-    for i in 0..spheres.len() {
+    for i in scene.shown() {
         let c = axes.coordinates(center(spheres, i));
         let r = spheres.radius[i];
         let planes = [

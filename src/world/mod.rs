@@ -10,6 +10,7 @@ mod appearance;
 mod camera;
 mod census;
 pub(crate) mod check;
+mod cut;
 mod environment;
 mod fit;
 mod frame;
@@ -17,11 +18,13 @@ pub mod framing;
 mod ground;
 mod lights;
 mod materials;
+mod seen;
 mod spheres;
 
 pub use appearance::{Appearance, Column};
 pub use camera::Camera;
 pub use census::Features;
+pub use cut::{Cut, Span};
 pub use environment::{Environment, Picture, Radiance, SkySample};
 pub use frame::Frame;
 pub use ground::Ground;
@@ -29,12 +32,13 @@ pub use lights::{Aim, Disc, LightRow, LightSample, Lights, Point, ROW, Receiver,
 pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };
+pub use seen::Seen;
 
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
 use crate::memory::{self, Shortage};
 use crate::ray::GROUND;
-use crate::scene::{Material, NamedMaterial, Rgb, Scene, Settings};
+use crate::scene::{Material, NamedMaterial, Rgb, Scene, Settings, SliceMode};
 use crate::spheres::Spheres;
 use glam::Vec3;
 
@@ -58,6 +62,10 @@ pub struct World {
     pub appearance: Appearance,
     /// The tree over them.
     pub bvh: Bvh,
+    /// Where spheres are cut off.
+    pub cut: Cut,
+    /// What the camera sees, if it does not see all spheres.
+    pub seen: Option<Seen>,
     /// The ground plane, if there is one.
     pub ground: Option<Ground>,
     /// One table for each kind of material.
@@ -84,9 +92,14 @@ pub enum WorldError {
     /// The distribution of the light of a picture of the sky.
     #[error("the environment's picture needs {0}; use a smaller one")]
     Environment(Shortage),
+    /// A cap would need a surface that light passes.
+    #[error(
+        "a slice cuts sphere {0}, which is of glass, but flat caps are opaque; use the mode remove or hide, or another material"
+    )]
+    Glass(u32),
     /// `fit` without spheres.
     #[error(
-        "the camera has nothing to frame: the scene has no spheres; give it spheres, or give the camera `eye` and `target`"
+        "the camera has nothing to frame: the scene has no spheres, or slices cut all of them away; give it spheres, or give the camera `eye` and `target`"
     )]
     NothingToFit,
     /// The camera is closer to its target than double precision resolves, or similar.
@@ -129,7 +142,9 @@ impl World {
     /// Those of [`World::build`].
     pub fn build_with(scene: &Scene, builder: Builder) -> Result<Self, WorldError> {
         let count = scene.spheres.len();
-        memory::check(Self::bytes(count as u64, &scene.materials))
+        // The camera may have a tree of its own.
+        let hides = scene.slices.iter().any(|slice| slice.mode == SliceMode::Hide);
+        memory::check(Self::bytes(count as u64 * (1 + u64::from(hides)), &scene.materials))
             .map_err(|shortage| WorldError::Memory(count, shortage))?;
         memory::check(Environment::bytes(&scene.environment)).map_err(WorldError::Environment)?;
         spheres::validate(scene)?;
@@ -137,20 +152,25 @@ impl World {
         let pose = fit::pose(scene)?;
         let frame = Frame::of(&scene.spheres, &pose);
         let materials = Materials::build(&scene.materials);
-        let mut spheres = spheres::build(&scene.spheres, &frame);
+        let cut = Cut::build(&scene.slices, &frame);
+        let mut spheres = spheres::build(scene, &frame);
         let placed = spheres.len();
         let bvh = build(&mut spheres, builder);
         let appearance = Appearance::build(&scene.spheres, &spheres.id, &materials);
+        cut::refuse_glass(&cut, &spheres, &appearance)?;
+        let seen = Seen::build(scene, &spheres, builder);
         let camera = Camera::build(scene, &pose, &frame);
         let environment = Environment::build(&scene.environment);
         let ground = scene.ground.as_ref().map(|ground| Ground::build(ground, &frame, &materials));
         let lights =
-            Lights::build(scene, &frame, (&spheres, &appearance), &materials, &environment);
+            Lights::build(scene, (&frame, &cut), (&spheres, &appearance), &materials, &environment);
         let mut world = Self {
             frame,
             spheres,
             appearance,
             bvh,
+            cut,
+            seen,
             ground,
             materials,
             lights,
@@ -160,6 +180,26 @@ impl World {
         };
         world.features = Features::census(&world, scene, placed);
         Ok(world)
+    }
+
+    /// The same world without its spheres, and so without the light of those that glow.
+    pub fn without_spheres(&self) -> Self {
+        let mut features = self.features.clone();
+        features.glass_at_camera.clear();
+        Self {
+            frame: self.frame,
+            spheres: Spheres::default(),
+            appearance: Appearance::NONE,
+            bvh: Bvh::default(),
+            cut: Cut::default(),
+            seen: None,
+            ground: self.ground,
+            materials: self.materials.clone(),
+            lights: self.lights.without_spheres(&self.environment),
+            environment: self.environment.clone(),
+            camera: self.camera,
+            features,
+        }
     }
 
     /// Bytes that the world of so many spheres takes while it is built, at most: columns, and the

@@ -1,13 +1,15 @@
 //! From the user's spheres to columns in world space.
 
 use super::{Frame, WorldError};
-use crate::scene::{self, Scene};
+use crate::scene::Scene;
 use crate::spheres::Spheres;
 
-/// The spheres in world space, in the user's order, without those that vanish in single precision.
-pub(super) fn build(from: &scene::Spheres, frame: &Frame) -> Spheres {
+/// The spheres in world space, in the user's order, without those that are cut away or vanish in
+/// single precision.
+pub(super) fn build(scene: &Scene, frame: &Frame) -> Spheres {
+    let from = &scene.spheres;
     let mut spheres = Spheres::with_capacity(from.len());
-    for row in 0..from.len() {
+    for row in scene.shown() {
         let radius = frame.length(from.radius[row]) as f32;
         if radius > 0.0 {
             let center = frame.point(from.center(row)).as_vec3();

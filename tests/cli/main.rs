@@ -12,5 +12,6 @@ mod pictures;
 mod processes;
 mod refusals;
 mod reports;
+mod slices;
 mod stress;
 mod views;

@@ -7,6 +7,7 @@ use crate::cli::failure::Failure;
 use crate::cli::looks::BarFile;
 use crate::cli::names::{self, Traversal};
 use crate::cli::settings::region_text;
+use crate::cli::slices::SliceArgs;
 use crate::cli::source::Source;
 use crate::cli::threads;
 use crate::cli::views::{StyleArgs, ViewArgs};
@@ -29,6 +30,7 @@ pub(super) struct Job<'a> {
     pub(super) output: PathBuf,
     pub(super) format: Format,
     pub(super) picture: &'a PictureArgs,
+    pub(super) slices: &'a SliceArgs,
     pub(super) views: &'a ViewArgs,
     pub(super) style: &'a StyleArgs,
     /// Which picture of a turn it is, from 0.
@@ -74,6 +76,7 @@ impl<'a> Job<'a> {
             output: args.output.clone(),
             format,
             picture: &args.picture,
+            slices: &args.slices,
             views: &args.views,
             style: &args.style,
             turn: None,

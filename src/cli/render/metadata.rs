@@ -32,7 +32,8 @@ fn metadata(job: &Job, prepared: &Prepared, render: &Render, options: &WriteOpti
         metadata.push("Title", prepared.title.replace('\0', " "));
     }
     let listed = settings::list(&prepared.scene.settings, prepared.region);
-    let listed = listed.into_iter().chain(job.views.list()).chain(job.style.list());
+    let listed =
+        listed.into_iter().chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
     for (name, value) in listed.chain(settings::list_encoding(job.format, options)) {
         let text = match value {
             Value::String(text) => text,

@@ -15,6 +15,7 @@ use spherule::render::Render;
 use spherule::scene::particles::{Cell, Legend, Particles};
 use spherule::scene::{Scene, Settings, Spheres};
 use spherule::world::framing;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// A world that can be rendered, and how it came about.
@@ -47,6 +48,8 @@ impl Prepared {
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
         let looks::Loaded { mut scene, legend, cell } = looks::load(job, given)?;
+        let box_of = cell.as_ref().map(Cell::bounds);
+        job.slices.cut(&mut scene, Path::new(&*job.source.name()), box_of)?;
         let load = start.elapsed();
         job.style.set(&mut scene);
         job.picture.replace(&mut scene.settings);

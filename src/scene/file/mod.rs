@@ -12,6 +12,7 @@ mod lights;
 mod materials;
 mod render;
 mod schema;
+mod slices;
 mod spheres;
 mod value;
 
@@ -115,6 +116,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, SceneError> {
         title: title.to_owned(),
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
         camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
+        slices: slices::read(root)?,
         lights: lights::read(root)?,
         ..Scene::default()
     };

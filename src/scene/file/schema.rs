@@ -39,6 +39,7 @@ pub(super) const ROOT: Schema = plain(
         ("camera", &[]),
         ("environment", &[]),
         ("ground", &[]),
+        ("slice", &[]),
         ("light", &[]),
         ("material", &[]),
         ("sphere", &[]),
@@ -110,6 +111,9 @@ pub(super) const ENVIRONMENT: Schema = Schema {
 pub(super) const GROUND: Schema =
     plain("[ground]", &[("normal", &[]), ("height", &[]), ("material", &[])]);
 
+pub(super) const SLICE: Schema =
+    plain("[[slice]]", &[("normal", &[]), ("distance", &[]), ("mode", &[])]);
+
 pub(super) const LIGHT: Schema = Schema {
     section: "[[light]]",
     selector: "kind",
@@ -175,12 +179,13 @@ pub(super) const FILE: Schema = plain(
 mod tests {
     use super::*;
 
-    const ALL: [&Schema; 10] = [
+    const ALL: [&Schema; 11] = [
         &ROOT,
         &RENDER,
         &CAMERA,
         &ENVIRONMENT,
         &GROUND,
+        &SLICE,
         &LIGHT,
         &MATERIAL,
         &SPHERE,

@@ -29,6 +29,7 @@ pub fn default_scene(seed: u64) -> Scene {
         spheres,
         materials,
         ground: Some(ground),
+        slices: Vec::new(),
         lights: vec![sun()],
         environment: sky(),
         camera: camera(),

@@ -1,6 +1,7 @@
 //! Columns of names: few names, and for each row a code in as few bytes as tell them apart.
 
 use super::element::Element;
+use crate::scene::spheres::retain;
 use std::collections::HashMap;
 
 /// Row numbers of a table of names, in the narrowest type that holds them.
@@ -76,12 +77,6 @@ impl Codes {
             Self::Words(codes) => retain(codes, keep),
         }
     }
-}
-
-/// Keeps the rows of a column that `keep` is true for.
-pub(super) fn retain<T>(column: &mut Vec<T>, keep: &[bool]) {
-    let mut rows = keep.iter();
-    column.retain(|_| rows.next().copied().unwrap_or(true));
 }
 
 /// What particles of one type have in common.

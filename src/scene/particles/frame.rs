@@ -1,8 +1,9 @@
 //! What a frame of a file of particles holds, in columns.
 
-use super::categories::{Kinds, TextColumn, retain};
+use super::categories::{Kinds, TextColumn};
 use super::options::{Format, Role};
 use crate::scene::Rgb;
+use crate::scene::spheres::retain;
 use glam::DVec3;
 
 /// The particles of one frame, and what the file says of them all. Row `i` of every column belongs

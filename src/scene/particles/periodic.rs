@@ -64,6 +64,12 @@ impl Cell {
         std::array::from_fn(|corner| self.point([0, 1, 2].map(|edge| share(corner, edge))))
     }
 
+    /// The box of the corners: the lower and the upper one.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let [first, rest @ ..] = self.corners();
+        rest.iter().fold([first; 2], |[low, high], corner| [low.min(*corner), high.max(*corner)])
+    }
+
     /// The twelve edges, each from one corner to another.
     pub fn edges(&self) -> [[DVec3; 2]; 12] {
         let corners = self.corners();

@@ -1,12 +1,13 @@
 //! From a frame of particles to spheres: radii and colors are found, and what is no sphere dropped.
 
-use super::categories::{Kinds, TextColumn, retain};
+use super::categories::{Kinds, TextColumn};
 use super::frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
 use super::looks::ElementColors;
 use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
 use crate::color::category;
 use crate::scene::error::clipped;
+use crate::scene::spheres::retain;
 use crate::scene::{NamedMaterial, Rgb, SceneError, Spheres};
 use std::path::Path;
 
@@ -52,12 +53,8 @@ pub struct Particles {
 impl Particles {
     /// Keeps the rows that `keep` is true for.
     pub(super) fn retain(&mut self, keep: &[bool]) {
-        let spheres = &mut self.spheres;
-        let values = self.numbers.iter_mut().map(|column| &mut column.values);
-        let columns = [&mut spheres.x, &mut spheres.y, &mut spheres.z, &mut spheres.radius];
-        columns.into_iter().chain(values).for_each(|column| retain(column, keep));
-        retain(&mut spheres.material, keep);
-        retain(&mut spheres.color, keep);
+        self.spheres.retain(keep);
+        self.numbers.iter_mut().for_each(|column| retain(&mut column.values, keep));
         let texts = self.texts.iter_mut().map(|column| &mut column.codes);
         texts.chain([&mut self.kinds.codes]).for_each(|codes| codes.retain(keep));
     }

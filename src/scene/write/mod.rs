@@ -3,7 +3,7 @@
 
 pub(super) mod sections;
 
-use self::sections::{camera, environment, light, material, quoted, render, vector};
+use self::sections::{camera, environment, light, material, quoted, render, slice, vector};
 use super::{NamedMaterial, Rgb, Scene, SceneError, Spheres};
 use crate::atomic::write_atomically;
 use std::collections::HashSet;
@@ -79,6 +79,7 @@ fn document(scene: &Scene, columns: &Path) -> Result<String, String> {
             "[ground]\nnormal = {normal}\nheight = {height:?}\nmaterial = {material}\n\n"
         );
     }
+    scene.slices.iter().for_each(|row| text += &slice(row));
     scene.lights.iter().for_each(|row| text += &light(row));
     if !scene.spheres.is_empty() {
         let name = columns.file_name().unwrap_or_default().to_string_lossy();
@@ -116,7 +117,7 @@ mod tests {
     use crate::scene::generate::default_scene;
     use crate::scene::{
         BRIGHTEST, ConductorFresnel, Filter, Ground, Integrator, Lens, Light, LightChoice,
-        Material, Projection, Roulette, SamplerKind,
+        Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
     };
     use glam::DVec3;
 
@@ -160,6 +161,10 @@ mod tests {
             height: -1e-300,
             material: 6,
         });
+        for (_, mode) in SliceMode::ALL {
+            let normal = DVec3::new(-0.2, 0.7, 0.3).normalize();
+            scene.slices.push(Slice { normal, distance: 1.0 / 3.0, mode });
+        }
         scene.lights.push(Light::Point {
             position: DVec3::new(1e300, -0.1, 5e-324),
             intensity: Rgb::new(f32::MAX, 1e-45, 0.0),

@@ -2,7 +2,7 @@
 
 use crate::scene::{
     Camera, ConductorFresnel, Environment, EnvironmentMap, Filter, Integrator, Lens, Light,
-    LightChoice, Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings, Tone,
+    LightChoice, Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings, Slice, Tone,
 };
 use glam::DVec3;
 
@@ -131,6 +131,11 @@ pub(in crate::scene) fn material(material: &Material) -> String {
             format!("kind = \"emitter\"\nradiance = {radiance}\nalbedo = {albedo}\n")
         }
     }
+}
+
+pub(in crate::scene) fn slice(slice: &Slice) -> String {
+    let (normal, distance, mode) = (vector(slice.normal), slice.distance, slice.mode.name());
+    format!("[[slice]]\nnormal = {normal}\ndistance = {distance:?}\nmode = \"{mode}\"\n\n")
 }
 
 pub(in crate::scene) fn light(light: &Light) -> String {

@@ -17,9 +17,9 @@ pub use tree::Receiver;
 use super::appearance::Appearance;
 use super::environment::{Environment, Picture};
 use super::materials::{Kind, Materials};
-use super::{Frame, World};
+use super::{Cut, Frame, World};
 use crate::ray::MISS;
-use crate::scene::{self, Rgb, Scene};
+use crate::scene::{self, LightChoice, Rgb, Scene};
 use crate::spheres::Spheres;
 use choice::Choice;
 use disc::toward_sphere;
@@ -41,6 +41,7 @@ pub struct Lights {
     /// Whether the environment is sampled as well, as the last light.
     pub sky: bool,
     choice: Choice,
+    by: LightChoice,
     /// Radii from its center within which an emissive sphere is close.
     reach: f64,
 }
@@ -87,12 +88,12 @@ enum Light {
 impl Lights {
     pub(super) fn build(
         scene: &Scene,
-        frame: &Frame,
+        (frame, cut): (&Frame, &Cut),
         (spheres, appearance): (&Spheres, &Appearance),
         materials: &Materials,
         environment: &Environment,
     ) -> Self {
-        let (emitters, radiance) = emitters(spheres, appearance, materials);
+        let (emitters, radiance) = emitters((spheres, cut), appearance, materials);
         let (mut points, mut suns) = (Vec::new(), Vec::new());
         for light in &scene.lights {
             match *light {
@@ -107,11 +108,21 @@ impl Lights {
             }
         }
         let sky = environment.illuminates && environment.picture().is_some();
-        let choice = Choice::None;
-        let mut lights = Self { emitters, radiance, points, suns, sky, choice, reach: 0.0 };
-        let balls = lights.balls(spheres, environment);
-        lights.choice = Choice::new(&balls, scene.settings.light_choice);
+        let (choice, by) = (Choice::None, scene.settings.light_choice);
+        let mut lights = Self { emitters, radiance, points, suns, sky, by, choice, reach: 0.0 };
+        lights.choice = Choice::new(&lights.balls(spheres, environment), by);
         lights.reach = lights.close_within();
+        lights
+    }
+
+    /// Those that are no spheres: the same where none is.
+    pub(super) fn without_spheres(&self, environment: &Environment) -> Self {
+        if self.emitters.is_empty() {
+            return self.clone();
+        }
+        let (emitters, radiance) = (Vec::new(), Vec::new());
+        let mut lights = Self { emitters, radiance, choice: Choice::None, ..self.clone() };
+        lights.choice = Choice::new(&lights.balls(&Spheres::default(), environment), self.by);
         lights
     }
 
@@ -229,21 +240,26 @@ impl Lights {
     }
 }
 
-/// Rows and radiance of the spheres that emit.
+/// Rows and radiance of the spheres that emit and are whole: paths find the light of the others by
+/// chance alone.
 fn emitters(
-    spheres: &Spheres,
+    (spheres, cut): (&Spheres, &Cut),
     appearance: &Appearance,
     materials: &Materials,
 ) -> (Vec<u32>, Vec<Rgb>) {
     if materials.emitter.is_empty() {
         return Default::default();
     }
+    let whole = |row: u32| {
+        let (center, radius) = spheres.exact(row as usize);
+        !cut.divides(center, radius)
+    };
     let radiance = |row: u32| {
         let id = appearance.material.row(row as usize);
         (id.kind() == Kind::Emitter).then(|| materials.emitter[id.row()].radiance)
     };
     let emits = |row: u32| Some((row, radiance(row).filter(|&radiance| radiance != Rgb::ZERO)?));
-    let emitters = (0..spheres.len() as u32).filter(|&row| emits(row).is_some());
+    let emitters = (0..spheres.len() as u32).filter(|&row| emits(row).is_some() && whole(row));
     spheres.first_of_equals(emitters).into_iter().filter_map(emits).unzip()
 }
 

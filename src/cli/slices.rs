@@ -1,0 +1,71 @@
+//! Slices on the command line.
+
+use super::settings::List;
+use glam::DVec3;
+use serde_json::json;
+use spherule::scene::{Scene, SceneError, Slice, SliceMode, SlicePlane, bounds};
+use std::path::Path;
+
+/// What is cut away.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[command(next_help_heading = "Slices")]
+pub(super) struct SliceArgs {
+    /// Cut away what a condition is true of, as in 'z>10', 'x+y<3' or 'z>50%', a share of the cell
+    /// or else of the box of all spheres; also z=50% and NX,NY,NZ,D, a normal and a distance along
+    /// it, which cut away the side that the normal points to; again for further planes
+    #[arg(long = "slice", value_name = "PLANE", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<SlicePlane>())]
+    planes: Vec<SlicePlane>,
+    /// What becomes of spheres: remove drops those whose centers are cut away, caps cuts spheres
+    /// with flat caps of their own color, hide hides those whose centers are cut away from the
+    /// camera, but not their shadows [default: remove]
+    #[arg(long, value_name = "MODE", requires = "planes", value_parser = mode)]
+    slice_mode: Option<SliceMode>,
+}
+
+fn mode(name: &str) -> Result<SliceMode, String> {
+    let found = SliceMode::ALL.iter().find(|(own, _)| *own == name).map(|(_, mode)| *mode);
+    let names = || SliceMode::ALL.map(|(name, _)| name).join(", ");
+    found.ok_or_else(|| format!("modes are {}", names()))
+}
+
+impl SliceArgs {
+    /// Cuts a scene from `path`: by its own slices and by those that were typed, whose shares are of
+    /// `cell` if there is one.
+    pub(super) fn cut(
+        &self,
+        scene: &mut Scene,
+        path: &Path,
+        cell: Option<[DVec3; 2]>,
+    ) -> Result<(), SceneError> {
+        if !self.planes.is_empty() {
+            let whole = cell.or_else(|| bounds(&scene.spheres)).unwrap_or_default();
+            let mode = self.slice_mode.unwrap_or_default();
+            scene.slices.extend(self.planes.iter().map(|plane| plane.slice(whole, mode)));
+        }
+        let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
+        if dropped > 0 && scene.spheres.is_empty() {
+            let message = format!("the slices cut all of its {dropped} spheres away");
+            return Err(SceneError::whole_file(path, message)
+                .with_help("a slice names what is cut away: the other side is z<10, not z>10"));
+        }
+        Ok(())
+    }
+
+    /// What makes the picture, for its file.
+    pub(super) fn list(&self) -> List {
+        let mut list = List::new();
+        if !self.planes.is_empty() {
+            let planes: Vec<&str> = self.planes.iter().map(SlicePlane::text).collect();
+            list.insert("slice".to_owned(), json!(planes.join("; ")));
+            let mode = self.slice_mode.unwrap_or_default();
+            list.insert("slice_mode".to_owned(), json!(mode.name()));
+        }
+        list
+    }
+}
+
+/// A slice in words: `normal [0.0, 0.0, 1.0] from 10: caps`.
+pub(super) fn text(slice: &Slice) -> String {
+    let Slice { normal, distance, mode } = slice;
+    format!("beyond {distance} along {:?}: {}", normal.to_array(), mode.name())
+}

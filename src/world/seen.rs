@@ -1,0 +1,42 @@
+//! What the camera sees, where slices hide spheres from it: a tree of the other spheres.
+
+use crate::bvh::Bvh;
+use crate::bvh::build::{Builder, build};
+use crate::scene::Scene;
+use crate::spheres::Spheres;
+
+/// The spheres that camera rays are tested against.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    /// In the order of the tree's leaves.
+    pub spheres: Spheres,
+    /// The tree over them.
+    pub bvh: Bvh,
+    /// Which of the world's spheres each of them is.
+    pub row: Vec<u32>,
+}
+
+impl Seen {
+    /// Those of a world's spheres that no slice hides; `None` if none does.
+    pub(super) fn build(scene: &Scene, all: &Spheres, builder: Builder) -> Option<Self> {
+        let hidden = |row: usize| {
+            let center = scene.spheres.center(all.id[row] as usize);
+            scene.slices.iter().any(|slice| slice.hides(center))
+        };
+        let rows: Vec<usize> = (0..all.len()).filter(|&row| !hidden(row)).collect();
+        if rows.len() == all.len() {
+            return None;
+        }
+        let mut spheres = Spheres::with_capacity(rows.len());
+        for &row in &rows {
+            spheres.push(all.center(row), all.radius(row), all.id[row]);
+        }
+        let bvh = build(&mut spheres, builder);
+        let mut of_id = vec![0; scene.spheres.len()];
+        for &row in &rows {
+            of_id[all.id[row] as usize] = row as u32;
+        }
+        let row = spheres.id.iter().map(|&id| of_id[id as usize]).collect();
+        Some(Self { spheres, bvh, row })
+    }
+}

@@ -1,0 +1,104 @@
+//! Slices on the command line and in scene files.
+
+use crate::folder::{Folder, SMALL, text};
+use spherule::image::Image;
+
+/// A row of balls along x, in a cell that is longer.
+const ROW: &str = "\
+5
+Lattice=\"20 0 0 0 4 0 0 0 4\" Properties=species:S:1:pos:R:3
+C 1 2 2
+C 3 2 2
+C 5 2 2
+C 7 2 2
+C 9 2 2
+";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("a.xyz", ROW);
+    folder
+}
+
+fn spheres(folder: &Folder, args: &[&str]) -> u64 {
+    let all = [&SMALL[..], &["a.xyz", "--radii", "1", "--json", "-o", "b.png"], args].concat();
+    folder.json(&all)["statistics"]["spheres"].as_u64().expect("a count")
+}
+
+#[test]
+fn planes_cut_particles_away() {
+    let folder = folder();
+    for (plane, left) in [
+        ("x>4", 2),
+        ("x<4", 3),
+        ("x=20%", 2),
+        ("x<20%", 3),
+        ("1,0,0,4", 2),
+        ("-x>-4", 3),
+        ("x+y>7", 3),
+    ] {
+        assert_eq!(spheres(&folder, &["--slice", plane]), left, "{plane}");
+    }
+    assert_eq!(spheres(&folder, &["--slice", "x>6", "--slice", "x<2"]), 2);
+    assert_eq!(spheres(&folder, &["--slice", "x>5.5", "--slice-mode", "caps"]), 3);
+    assert_eq!(spheres(&folder, &["--slice", "x>5.5", "--slice-mode", "hide"]), 5);
+    assert_eq!(spheres(&folder, &["--replicate", "2,1,1", "--slice", "x>50%"]), 5);
+}
+
+#[test]
+fn removal_is_selection() {
+    let folder = folder();
+    let view = ["a.xyz", "--radii", "1", "--view", "z"];
+    let slice = folder.picture("a.png", &[&view[..], &["--slice", "x>4"]].concat());
+    let select = folder.picture("b.png", &[&view[..], &["--select", "x <= 4"]].concat());
+    let image = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    assert_eq!(image("a.png"), image("b.png"));
+    let said = |bytes: &[u8]| text(bytes).contains("slice");
+    assert!(said(&slice) && !said(&select));
+}
+
+#[test]
+fn scene_files_hold_slices() {
+    let folder = folder();
+    folder.write(
+        "a.toml",
+        "[[file]]\npath = \"a.xyz\"\nradius = 1.0\n[[slice]]\nnormal = [2, 0, 0]\ndistance = 5.5\nmode = \"caps\"\n",
+    );
+    let said = folder.succeed(&["info", "a.toml"]);
+    assert!(said.contains("beyond 5.5 along [1.0, 0.0, 0.0]: caps"), "{said}");
+    assert!(said.contains("1 plane at which spheres end"), "{said}");
+    assert!(said.contains("slices without 2 spheres"), "{said}");
+    let all = [&SMALL[..], &["a.toml", "--slice", "x<2", "--json", "-o", "b.png"]].concat();
+    assert_eq!(folder.json(&all)["statistics"]["spheres"], 2);
+    folder.write(
+        "b.toml",
+        "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n[[slice]]\nmode = \"caps\"\n",
+    );
+    folder.write("c.toml", "[[slice]]\nnormal = [0, 0, 1]\nmode = \"cap\"\n");
+    for (name, message) in [("b.toml", "normal = [x, y, z]"), ("c.toml", "unknown mode")] {
+        let said = text(&folder.run(&["info", name]).stderr);
+        assert!(said.contains(message), "{said}");
+    }
+}
+
+#[test]
+fn planes_that_make_no_sense_are_refused() {
+    let folder = folder();
+    for (args, code, message) in [
+        (&["--slice", "x>-1"][..], 1, "cut all of its 5 spheres away"),
+        (&["--slice", "w>1"], 2, "true of what is cut away"),
+        (&["--slice", "x=200%"], 2, "true of what is cut away"),
+        (&["--slice", "x>1", "--slice-mode", "cap"], 2, "modes are remove, caps, hide"),
+        (&["--slice-mode", "caps"], 2, "--slice"),
+        (
+            &["--slice", "x>1.5", "--slice-mode", "caps", "--type", "C:material=glass"],
+            1,
+            "of glass",
+        ),
+    ] {
+        let output = folder.run(&[&SMALL[..], &["a.xyz", "--radii", "1"], args].concat());
+        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
+        assert!(said.contains(message), "{args:?}: {said}");
+    }
+}
