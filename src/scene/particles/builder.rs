@@ -1,8 +1,9 @@
 //! Where readers put particles: columns that grow, and nothing that a file only claims.
 
-use super::categories::{Codebook, Kind, TextColumn};
+use super::categories::{Codebook, Kind};
 use super::element::{Element, is_virtual_site};
-use super::frame::{NumberColumn, ParticleFrame};
+use super::extra::Extra;
+use super::frame::ParticleFrame;
 use super::lines::Line;
 use super::schema::{Naming, Schema, Slot};
 use super::{Format, number};
@@ -31,24 +32,6 @@ pub(super) struct Builder {
     room: usize,
 }
 
-/// A column that is kept.
-enum Extra {
-    /// Before the first row tells whether they are numbers.
-    Unknown(String),
-    Number(NumberColumn),
-    Text(TextColumn, Box<Codebook>),
-}
-
-impl Extra {
-    fn number(name: String) -> Self {
-        Self::Number(NumberColumn { name, values: Vec::new() })
-    }
-
-    fn text(name: String) -> Self {
-        Self::Text(TextColumn { name, ..TextColumn::default() }, Box::default())
-    }
-}
-
 impl Builder {
     pub(super) fn new(path: &Arc<Path>, format: Format, schema: &Arc<Schema>) -> Self {
         let mut frame = ParticleFrame { format, ..ParticleFrame::default() };
@@ -62,7 +45,7 @@ impl Builder {
             kinds: Codebook::default(),
             kind_rows: HashMap::new(),
             materials: Codebook::default(),
-            extras: schema.extras.iter().cloned().map(Extra::Unknown).collect(),
+            extras: schema.extras.iter().map(|name| Extra::new(name)).collect(),
             schema: schema.clone(),
             room: 1 << 16,
         }
@@ -74,14 +57,7 @@ impl Builder {
 
     /// Says of columns that may be kept whether they are texts or numbers.
     pub(super) fn declare(&mut self, texts: &[&str], numbers: &[&str]) {
-        for extra in &mut self.extras {
-            let Extra::Unknown(name) = extra else { continue };
-            if texts.contains(&name.as_str()) {
-                *extra = Extra::text(std::mem::take(name));
-            } else if numbers.contains(&name.as_str()) {
-                *extra = Extra::number(std::mem::take(name));
-            }
-        }
+        self.extras.iter_mut().for_each(|extra| extra.declare(texts, numbers));
     }
 
     /// Reads a row by the schema; fields beyond it may follow.
@@ -114,7 +90,7 @@ impl Builder {
             Slot::Kind => self.kind(field),
             Slot::Color(channel) => self.channel(channel, line, field)?,
             Slot::Material => self.material(field),
-            Slot::Extra(extra) => self.extra(extra, line, field)?,
+            Slot::Extra(extra) => self.extras[extra].put(line, field)?,
         }
         Ok(())
     }
@@ -127,7 +103,7 @@ impl Builder {
             Slot::Radius(factor) => self.frame.radius.push(value * factor),
             Slot::Kind => self.kind(value.to_string().as_bytes()),
             Slot::Color(channel) => self.color[channel] = share(value),
-            Slot::Extra(extra) => self.extra_number(extra, value),
+            Slot::Extra(extra) => self.extras[extra].put_number(value),
         }
     }
 
@@ -192,36 +168,6 @@ impl Builder {
         column.codes.push(code);
     }
 
-    fn extra(&mut self, at: usize, line: &Line, field: &[u8]) -> Result<(), SceneError> {
-        let extra = &mut self.extras[at];
-        if let Extra::Unknown(name) = extra {
-            let name = std::mem::take(name);
-            let is_number = number::parse(field).is_some();
-            *extra = if is_number { Extra::number(name) } else { Extra::text(name) };
-        }
-        match extra {
-            Extra::Unknown(_) => (),
-            Extra::Number(column) if matches!(field, b"" | b"." | b"?") => {
-                column.values.push(f64::NAN);
-            }
-            Extra::Number(column) => column.values.push(line.number(field)?),
-            Extra::Text(TextColumn { names, codes, .. }, book) => {
-                codes.push(book.code(field, |name| add(names, name)));
-            }
-        }
-        Ok(())
-    }
-
-    fn extra_number(&mut self, at: usize, value: f64) {
-        let extra = &mut self.extras[at];
-        if let Extra::Unknown(name) = extra {
-            *extra = Extra::number(std::mem::take(name));
-        }
-        if let Extra::Number(column) = extra {
-            column.values.push(value);
-        }
-    }
-
     /// Before columns grow, which take twice the memory then: whether there is so much.
     fn check_room(&mut self) -> Result<(), SceneError> {
         let count = self.frame.x.len() as u64;
@@ -246,13 +192,7 @@ impl Builder {
         };
         forget_elements(&mut self.frame, limit);
         for extra in self.extras {
-            match extra {
-                Extra::Unknown(name) => {
-                    self.frame.numbers.push(NumberColumn { name, values: Vec::new() });
-                }
-                Extra::Number(column) => self.frame.numbers.push(column),
-                Extra::Text(column, _) => self.frame.texts.push(column),
-            }
+            extra.finish(&mut self.frame.numbers, &mut self.frame.texts);
         }
         self.frame.shrink();
         self.frame

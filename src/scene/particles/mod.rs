@@ -18,6 +18,7 @@ mod categories;
 mod cif;
 mod csv;
 mod element;
+mod extra;
 mod fields;
 mod frame;
 mod gro;

@@ -245,3 +245,18 @@ fn what_is_no_file_of_particles_is_called_by_its_name() {
         assert!(fault(content).2.contains(message), "{message}");
     }
 }
+
+#[test]
+fn the_first_value_that_is_not_missing_tells_what_a_column_is() {
+    let content = "x,y,z,q,name,none\n0,0,0,,.,\n1,0,0,?,?,\n2,0,0,2.5,A,.\n3,0,0,,.,\n";
+    let frame = frame_with(content, &columns("q,name,none")).expect("a frame");
+    let [q] = frame.numbers.as_slice() else { panic!("one of numbers: {:?}", frame.numbers) };
+    assert!(q.name == "q" && q.values[0].is_nan() && q.values[1].is_nan() && q.values[3].is_nan());
+    assert_eq!(q.values[2], 2.5);
+    let [name, none] = frame.texts.as_slice() else { panic!("two of texts: {:?}", frame.texts) };
+    let texts = |column: &TextColumn| -> Vec<String> {
+        (0..4).map(|row| column.names[column.codes.code(row) as usize].clone()).collect()
+    };
+    assert_eq!(texts(name), [".", "?", "A", "."]);
+    assert_eq!(texts(none), ["", "", ".", ""]);
+}
