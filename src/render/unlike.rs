@@ -63,6 +63,7 @@ pub(super) fn check(then: &Settings, now: &Settings) -> Result<(), Unlike> {
     same("sampler", &then.sampler, &now.sampler)?;
     same("filter", &then.filter, &now.filter)?;
     same("roulette", &then.roulette, &now.roulette)?;
+    same("light_choice", &then.light_choice, &now.light_choice)?;
     same_target("until_error", then.until_error.is_some(), now.until_error.is_some())?;
     same_target("time", then.time.is_some(), now.time.is_some())?;
     no_less(then, now)
