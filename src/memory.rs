@@ -32,6 +32,15 @@ pub fn left() -> Option<u64> {
     Some(within.map_or(whole, |within| whole.min(within)))
 }
 
+/// Bytes of memory that this process has held at most until now; `None` if the system does not tell.
+pub fn peak() -> Option<u64> {
+    // What Linux calls the high-water mark, in KiB.
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes << 10)
+}
+
 /// Finds out whether `need` more bytes can be had.
 ///
 /// # Errors
@@ -112,6 +121,14 @@ mod tests {
         // Other processes may take or free some in between.
         assert!(check(left / 2).is_ok());
         assert!(check(left.saturating_mul(2)).is_err());
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn the_peak_grows_with_what_is_held() {
+        let before = peak().expect("Linux tells");
+        let held = vec![1_u8; before as usize + (1 << 20)];
+        assert!(peak().is_some_and(|peak| peak >= held.len() as u64));
     }
 
     #[test]

@@ -25,8 +25,11 @@ impl Spheres {
     /// The most spheres a scene may hold: row numbers are `u32`, and a few of them are reserved.
     pub const MAX: u64 = (1 << 32) - 17;
 
+    /// Bytes that the center and the radius of a sphere take.
+    pub const POSITION_BYTES: u64 = 4 * size_of::<f64>() as u64;
+
     /// Bytes that a sphere takes in all columns together.
-    pub const BYTES: u64 = (4 * size_of::<f64>() + size_of::<u32>() + size_of::<Rgb>()) as u64;
+    pub const BYTES: u64 = Self::POSITION_BYTES + (size_of::<u32>() + size_of::<Rgb>()) as u64;
 
     /// Number of spheres.
     pub fn len(&self) -> usize {

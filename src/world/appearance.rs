@@ -1,7 +1,9 @@
 //! What spheres look like: columns beside those that rays meet, in the same order.
 
 use super::materials::{MaterialId, Materials};
-use crate::scene;
+use crate::scene::Rgb;
+use std::borrow::Cow;
+use std::collections::HashMap;
 
 /// A component that every sphere has: one value for all, or one for each.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,13 +33,97 @@ impl<T: Copy> Column<T> {
     }
 }
 
+/// A color for each sphere: three numbers, or where few colors are different, a byte.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Colors {
+    /// Row `i` belongs to sphere `i`.
+    Rows(Vec<[f32; 3]>),
+    /// Row `i` of `codes` is the place in `table` of the color of sphere `i`.
+    Coded {
+        /// The different colors, at most 256.
+        table: Vec<[f32; 3]>,
+        /// A place in `table` for each sphere.
+        codes: Vec<u8>,
+    },
+}
+
+impl Colors {
+    /// In as few bytes as they fit.
+    fn new(colors: &[Rgb]) -> Self {
+        coded(colors).unwrap_or_else(|| Self::Rows(colors.iter().map(Rgb::to_array).collect()))
+    }
+
+    /// The color of sphere `i`.
+    #[inline(always)]
+    pub fn row(&self, i: usize) -> [f32; 3] {
+        match self {
+            Self::Rows(rows) => rows[i],
+            Self::Coded { table, codes } => table[usize::from(codes[i])],
+        }
+    }
+
+    /// Those of the spheres whose places are `ids`.
+    fn picked(self, ids: &[u32]) -> Self {
+        match self {
+            Self::Rows(rows) => Self::Rows(picked(&rows, ids)),
+            Self::Coded { table, codes } => Self::Coded { table, codes: picked(&codes, ids) },
+        }
+    }
+
+    /// Bytes that the columns occupy.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Rows(rows) => size_of_val(rows.as_slice()),
+            Self::Coded { table, codes } => size_of_val(table.as_slice()) + codes.len(),
+        }
+    }
+}
+
+/// The colors by numbers, if there are at most 256.
+fn coded(colors: &[Rgb]) -> Option<Colors> {
+    let (mut table, mut known) = (Vec::new(), HashMap::new());
+    let mut last = None;
+    let mut code = |color: &Rgb| {
+        let bits = color.to_array().map(f32::to_bits);
+        if let Some((_, code)) = last.filter(|(same, _)| *same == bits) {
+            return Some(code);
+        }
+        let code = *known.entry(bits).or_insert_with(|| {
+            table.push(color.to_array());
+            table.len() - 1
+        });
+        let code = u8::try_from(code).ok()?;
+        last = Some((bits, code));
+        Some(code)
+    };
+    let codes = colors.iter().map(&mut code).collect::<Option<_>>()?;
+    Some(Colors::Coded { table, codes })
+}
+
+fn picked<T: Copy>(rows: &[T], ids: &[u32]) -> Vec<T> {
+    ids.iter().map(|&id| rows[id as usize]).collect()
+}
+
+/// What a scene's spheres look like, in its own order: what is needed once their places are known.
+pub(super) struct Looks<'s> {
+    /// Rows of the scene's materials; empty if every one is 0.
+    pub(super) material: Cow<'s, [u32]>,
+    color: Option<Colors>,
+}
+
+impl<'s> Looks<'s> {
+    pub(super) fn new(material: Cow<'s, [u32]>, color: &[Rgb]) -> Self {
+        Self { material, color: (!color.is_empty()).then(|| Colors::new(color)) }
+    }
+}
+
 /// What each sphere is made of, and its color.
 #[derive(Clone, Debug)]
 pub struct Appearance {
     /// What the sphere is made of.
     pub material: Column<MaterialId>,
     /// Factor on the material's color; none if every one is white.
-    pub color: Option<Vec<[f32; 3]>>,
+    pub color: Option<Colors>,
 }
 
 impl Appearance {
@@ -45,22 +131,39 @@ impl Appearance {
     pub(super) const NONE: Self = Self { material: Column::Rows(Vec::new()), color: None };
 
     /// For the spheres whose places in the user's scene are `ids`.
-    pub(super) fn build(from: &scene::Spheres, ids: &[u32], materials: &Materials) -> Self {
-        let material = |id: u32| from.material_of(id as usize);
+    pub(super) fn build(looks: Looks, ids: &[u32], materials: &Materials) -> Self {
+        let material = |id: u32| looks.material.get(id as usize).copied().unwrap_or(0);
         let first = ids.first().map_or(0, |&id| material(id));
-        let material = if ids.iter().all(|&id| material(id) == first) {
+        let column = if ids.iter().all(|&id| material(id) == first) {
             Column::Uniform(materials.id(first))
         } else {
             Column::Rows(ids.iter().map(|&id| materials.id(material(id))).collect())
         };
-        let color = (!from.color.is_empty())
-            .then(|| ids.iter().map(|&id| from.color_of(id as usize).to_array()).collect());
-        Self { material, color }
+        Self { material: column, color: looks.color.map(|colors| colors.picked(ids)) }
     }
 
     /// Bytes that the columns occupy.
     pub fn bytes(&self) -> usize {
-        let colors = self.color.as_ref().map_or(0, |colors| size_of_val(colors.as_slice()));
-        self.material.bytes() + colors
+        self.material.bytes() + self.color.as_ref().map_or(0, Colors::bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_colors_take_a_byte_and_all_stay_what_they_are() {
+        for (count, each) in [(1, 1), (256, 1), (257, 12)] {
+            let own: Vec<Rgb> =
+                (0..1000).map(|row| Rgb::new(0.1, (row % count) as f32 / 300.0, 1.0)).collect();
+            let ids: Vec<u32> = (0..700).rev().collect();
+            let colors = Colors::new(&own).picked(&ids);
+            let table = if each == 1 { 12 * count } else { 0 };
+            assert_eq!(colors.bytes(), each * 700 + table, "{count}");
+            for (row, &id) in ids.iter().enumerate() {
+                assert_eq!(colors.row(row), own[id as usize].to_array(), "{count}");
+            }
+        }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::World;
 use super::materials::Kind;
-use crate::scene::Scene;
 
 /// What there is in a world. What is not, is not run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -39,15 +38,17 @@ pub struct Features {
 }
 
 impl Features {
-    pub(super) fn census(world: &World, scene: &Scene, placed: usize) -> Self {
+    /// Of a world of so many spheres of the user's, of which slices leave so many there, so many of
+    /// which have a radius in it.
+    pub(super) fn census(world: &World, [given, shown, placed]: [usize; 3]) -> Self {
         let mut spheres_by_kind = [0; Kind::COUNT];
         for row in 0..world.spheres.len() {
             spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
         }
         Self {
             spheres_by_kind,
-            vanished: (scene.shown().count() - placed) as u64,
-            cut_away: (scene.spheres.len() - scene.shown().count()) as u64,
+            vanished: (shown - placed) as u64,
+            cut_away: (given - shown) as u64,
             cuts: world.cut.len() as u64,
             around_camera: around_camera(world),
             unseen: world.seen.as_ref().map_or(0, |seen| world.spheres.len() - seen.spheres.len())

@@ -21,7 +21,7 @@ mod materials;
 mod seen;
 mod spheres;
 
-pub use appearance::{Appearance, Column};
+pub use appearance::{Appearance, Colors, Column};
 pub use camera::Camera;
 pub use census::Features;
 pub use cut::{Cut, Span};
@@ -38,9 +38,12 @@ use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
 use crate::memory::{self, Shortage};
 use crate::ray::GROUND;
-use crate::scene::{Material, NamedMaterial, Rgb, Scene, Settings, SliceMode};
+use crate::scene::{self, Material, NamedMaterial, Rgb, Scene, Settings, SliceMode};
 use crate::spheres::Spheres;
+use fit::Placement;
 use glam::Vec3;
+use spheres::Placed;
+use std::borrow::Cow;
 
 /// Bytes that a sphere takes while a world is built, at most.
 const SPHERE_BYTES: u64 = 64;
@@ -141,31 +144,52 @@ impl World {
     /// # Errors
     /// Those of [`World::build`].
     pub fn build_with(scene: &Scene, builder: Builder) -> Result<Self, WorldError> {
-        let count = scene.spheres.len();
+        let at = place(scene, Self::bytes_for(scene))?;
+        Self::assemble(scene, Cow::Borrowed(&scene.spheres), &at, builder)
+    }
+
+    /// Builds the world of a scene whose spheres nobody needs any more: their memory is given back
+    /// while the world is built, which halves what both take at most.
+    ///
+    /// # Errors
+    /// Those of [`World::build`]; for all but [`WorldError::Glass`] the scene still has its spheres.
+    pub fn build_taking(scene: &mut Scene, builder: Builder) -> Result<Self, WorldError> {
+        let given_back = scene.spheres.len() as u64 * scene::Spheres::POSITION_BYTES;
+        let at = place(scene, Self::bytes_for(scene).saturating_sub(given_back))?;
+        let spheres = std::mem::take(&mut scene.spheres);
+        Self::assemble(scene, Cow::Owned(spheres), &at, builder)
+    }
+
+    fn bytes_for(scene: &Scene) -> u64 {
         // The camera may have a tree of its own.
         let hides = scene.slices.iter().any(|slice| slice.mode == SliceMode::Hide);
-        memory::check(Self::bytes(count as u64 * (1 + u64::from(hides)), &scene.materials))
-            .map_err(|shortage| WorldError::Memory(count, shortage))?;
-        memory::check(Environment::bytes(&scene.environment)).map_err(WorldError::Environment)?;
-        spheres::validate(scene)?;
-        check::check(scene)?;
-        let pose = fit::pose(scene)?;
-        let frame = Frame::of(&scene.spheres, &pose);
+        Self::bytes(scene.spheres.len() as u64 * (1 + u64::from(hides)), &scene.materials)
+    }
+
+    /// Builds what is in its place.
+    fn assemble(
+        scene: &Scene,
+        from: Cow<scene::Spheres>,
+        (frame, pose): &(Frame, Placement),
+        builder: Builder,
+    ) -> Result<Self, WorldError> {
+        let given = from.len();
         let materials = Materials::build(&scene.materials);
-        let cut = Cut::build(&scene.slices, &frame);
-        let mut spheres = spheres::build(scene, &frame);
+        let cut = Cut::build(&scene.slices, frame);
+        let Placed { mut spheres, looks, shown, hidden } =
+            Placed::build(from, &scene.slices, frame);
         let placed = spheres.len();
         let bvh = build(&mut spheres, builder);
-        let appearance = Appearance::build(&scene.spheres, &spheres.id, &materials);
+        let appearance = Appearance::build(looks, &spheres.id, &materials);
         cut::refuse_glass(&cut, &spheres, &appearance)?;
-        let seen = Seen::build(scene, &spheres, builder);
-        let camera = Camera::build(scene, &pose, &frame);
+        let seen = Seen::build(&hidden, &spheres, builder);
+        let camera = Camera::build(scene, pose, frame);
         let environment = Environment::build(&scene.environment);
-        let ground = scene.ground.as_ref().map(|ground| Ground::build(ground, &frame, &materials));
+        let ground = scene.ground.as_ref().map(|ground| Ground::build(ground, frame, &materials));
         let lights =
-            Lights::build(scene, (&frame, &cut), (&spheres, &appearance), &materials, &environment);
+            Lights::build(scene, (frame, &cut), (&spheres, &appearance), &materials, &environment);
         let mut world = Self {
-            frame,
+            frame: *frame,
             spheres,
             appearance,
             bvh,
@@ -178,7 +202,7 @@ impl World {
             camera,
             features: Features::default(),
         };
-        world.features = Features::census(&world, scene, placed);
+        world.features = Features::census(&world, [given, shown, placed]);
         Ok(world)
     }
 
@@ -223,7 +247,7 @@ impl World {
     #[inline(always)]
     pub fn color(&self, hit: u32) -> Rgb {
         match &self.appearance.color {
-            Some(colors) if hit != GROUND => Vec3::from(colors[hit as usize]),
+            Some(colors) if hit != GROUND => Vec3::from(colors.row(hit as usize)),
             _ => Rgb::ONE,
         }
     }
@@ -233,4 +257,14 @@ impl World {
     pub fn albedo(&self, hit: u32) -> Rgb {
         self.materials.albedo(self.material(hit)) * self.color(hit)
     }
+}
+
+/// Finds where everything is, once nothing is wrong with it and so many bytes can be had.
+fn place(scene: &Scene, bytes: u64) -> Result<(Frame, Placement), WorldError> {
+    memory::check(bytes).map_err(|shortage| WorldError::Memory(scene.spheres.len(), shortage))?;
+    memory::check(Environment::bytes(&scene.environment)).map_err(WorldError::Environment)?;
+    spheres::validate(scene)?;
+    check::check(scene)?;
+    let pose = fit::pose(scene)?;
+    Ok((Frame::of(&scene.spheres, &pose), pose))
 }

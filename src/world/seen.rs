@@ -2,7 +2,6 @@
 
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
-use crate::scene::Scene;
 use crate::spheres::Spheres;
 
 /// The spheres that camera rays are tested against.
@@ -17,22 +16,20 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Those of a world's spheres that no slice hides; `None` if none does.
-    pub(super) fn build(scene: &Scene, all: &Spheres, builder: Builder) -> Option<Self> {
-        let hidden = |row: usize| {
-            let center = scene.spheres.center(all.id[row] as usize);
-            scene.slices.iter().any(|slice| slice.hides(center))
-        };
-        let rows: Vec<usize> = (0..all.len()).filter(|&row| !hidden(row)).collect();
-        if rows.len() == all.len() {
+    /// Those of a world's spheres that are not hidden, by their places in the user's scene; `None`
+    /// if none is.
+    pub(super) fn build(hidden: &[bool], all: &Spheres, builder: Builder) -> Option<Self> {
+        let is_hidden = |row: &usize| hidden[all.id[*row] as usize];
+        if hidden.is_empty() || !(0..all.len()).any(|row| is_hidden(&row)) {
             return None;
         }
+        let rows: Vec<usize> = (0..all.len()).filter(|row| !is_hidden(row)).collect();
         let mut spheres = Spheres::with_capacity(rows.len());
         for &row in &rows {
             spheres.push(all.center(row), all.radius(row), all.id[row]);
         }
         let bvh = build(&mut spheres, builder);
-        let mut of_id = vec![0; scene.spheres.len()];
+        let mut of_id = vec![0; hidden.len()];
         for &row in &rows {
             of_id[all.id[row] as usize] = row as u32;
         }

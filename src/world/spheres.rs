@@ -1,22 +1,58 @@
 //! From the user's spheres to columns in world space.
 
+use super::appearance::Looks;
 use super::{Frame, WorldError};
-use crate::scene::Scene;
+use crate::scene::{self, Scene, Slice, SliceMode};
 use crate::spheres::Spheres;
+use std::borrow::Cow;
+use std::mem::take;
 
-/// The spheres in world space, in the user's order, without those that are cut away or vanish in
-/// single precision.
-pub(super) fn build(scene: &Scene, frame: &Frame) -> Spheres {
-    let from = &scene.spheres;
-    let mut spheres = Spheres::with_capacity(from.len());
-    for row in scene.shown() {
-        let radius = frame.length(from.radius[row]) as f32;
-        if radius > 0.0 {
-            let center = frame.point(from.center(row)).as_vec3();
-            spheres.push(center, radius, row as u32);
+/// The user's spheres, placed in the world.
+pub(super) struct Placed<'s> {
+    /// In the user's order, without those that are cut away or vanish in single precision.
+    pub(super) spheres: Spheres,
+    /// What all of the user's look like.
+    pub(super) looks: Looks<'s>,
+    /// How many of the user's slices leave there.
+    pub(super) shown: usize,
+    /// Which of the user's the camera does not see; empty if it sees all.
+    pub(super) hidden: Vec<bool>,
+}
+
+impl<'s> Placed<'s> {
+    /// Places spheres; of those that are given away the memory is given back on the way.
+    pub(super) fn build(from: Cow<'s, scene::Spheres>, slices: &[Slice], frame: &Frame) -> Self {
+        match from {
+            Cow::Borrowed(from) => {
+                let looks = Looks::new(Cow::Borrowed(&from.material), &from.color);
+                Self::of(from, looks, slices, frame)
+            }
+            Cow::Owned(mut from) => {
+                let (material, color) = (take(&mut from.material), take(&mut from.color));
+                let looks = Looks::new(Cow::Owned(material), &color);
+                drop(color);
+                Self::of(&from, looks, slices, frame)
+            }
         }
     }
-    spheres
+
+    fn of(from: &scene::Spheres, looks: Looks<'s>, slices: &[Slice], frame: &Frame) -> Self {
+        let hides = |row: usize| slices.iter().any(|slice| slice.hides(from.center(row)));
+        let any = slices.iter().any(|slice| slice.mode == SliceMode::Hide);
+        let hidden = if any { (0..from.len()).map(hides).collect() } else { Vec::new() };
+        let drops =
+            |row: usize| slices.iter().any(|slice| slice.drops(from.center(row), from.radius[row]));
+        let (mut spheres, mut shown) = (Spheres::with_capacity(from.len()), 0);
+        for row in (0..from.len()).filter(|&row| !drops(row)) {
+            shown += 1;
+            let radius = frame.length(from.radius[row]) as f32;
+            if radius > 0.0 {
+                let center = frame.point(from.center(row)).as_vec3();
+                spheres.push(center, radius, row as u32);
+            }
+        }
+        Self { spheres, looks, shown, hidden }
+    }
 }
 
 /// Checks what only code can get wrong: files are checked when they are read, with their lines.
@@ -55,4 +91,34 @@ pub(super) fn validate(scene: &Scene) -> Result<(), WorldError> {
         ));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::bvh::build::Builder;
+    use crate::scene::generate::default_scene;
+    use crate::world::{World, WorldError};
+
+    #[test]
+    fn a_world_that_takes_the_spheres_is_the_one_that_leaves_them() {
+        let mut scene = default_scene(3);
+        scene.spheres.radius[5] = 1e-60;
+        for builder in Builder::ALL {
+            let left = World::build_with(&scene, builder).unwrap();
+            let mut given = scene.clone();
+            let taken = World::build_taking(&mut given, builder).unwrap();
+            assert_eq!(format!("{taken:?}"), format!("{left:?}"));
+            assert_eq!((taken.features.vanished, given.spheres.len()), (1, 0));
+        }
+    }
+
+    #[test]
+    fn what_is_refused_keeps_its_spheres() {
+        let mut scene = default_scene(3);
+        scene.spheres.radius[5] = -1.0;
+        let before = scene.spheres.clone();
+        let refused = World::build_taking(&mut scene, Builder::default());
+        assert!(matches!(refused, Err(WorldError::Invalid(_))));
+        assert_eq!(scene.spheres, before);
+    }
 }

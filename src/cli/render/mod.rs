@@ -4,6 +4,7 @@ mod interrupt;
 mod job;
 mod layers;
 mod looks;
+mod memory;
 mod metadata;
 mod noise;
 mod notes;

@@ -13,7 +13,7 @@ use spherule::layers::Layers;
 use spherule::memory;
 use spherule::render::Render;
 use spherule::scene::particles::{Cell, Legend, Particles};
-use spherule::scene::{Scene, Settings, Spheres};
+use spherule::scene::{Scene, Settings};
 use spherule::world::framing;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -63,11 +63,9 @@ impl Prepared {
         let start = Instant::now();
         let samples = samples(region, &scene.settings);
         let builder = job.builder(scene.spheres.len(), samples);
-        let world = World::build_with(&scene, builder)
+        let world = World::build_taking(&mut scene, builder)
             .map_err(|error| Failure::World(job.source.name().into_owned(), error))?;
         let build = start.elapsed();
-        // Gigabytes, in large scenes.
-        scene.spheres = Spheres::default();
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
         Ok(Self {

@@ -1,6 +1,7 @@
 //! How a render went: the same facts as lines and as JSON.
 
 use super::job::Job;
+use super::memory;
 use super::noise::{NoiseSummary, missed};
 use super::prepare::Prepared;
 use crate::cli::args::ReportArgs;
@@ -58,6 +59,8 @@ struct Statistics {
     dropped_spheres: u64,
     sphere_bytes: usize,
     tree_bytes: usize,
+    /// Of the process until now, all else included; null where the system does not tell.
+    peak_bytes: Option<u64>,
     load_seconds: f64,
     build_seconds: f64,
     render_seconds: f64,
@@ -148,13 +151,15 @@ impl<'a> Summary<'a> {
     fn print(&self) {
         let statistics = &self.statistics;
         let render = Duration::from_secs_f64(statistics.render_seconds);
+        let columns = statistics.sphere_bytes + statistics.tree_bytes;
         output::print(format_args!(
             "{}: {}\n\
              load    {:.3} s, {}\n\
              build   {:.3} s, tree of {}\n\
              render  {:.3} s on {}, {}\n\
              rays    {} camera, {} bounce, {} shadow\n\
-             exact   {} without rounding",
+             exact   {} without rounding\n\
+             memory  {}",
             self.output,
             plural(statistics.samples, "sample"),
             statistics.load_seconds,
@@ -168,6 +173,7 @@ impl<'a> Summary<'a> {
             HumanCount(statistics.bounce_rays),
             HumanCount(statistics.shadow_rays),
             plural(statistics.exact_decisions, "decision"),
+            memory::told(statistics.spheres, columns, statistics.peak_bytes),
         ));
         self.noise.iter().for_each(NoiseSummary::print);
     }
@@ -214,6 +220,7 @@ impl Statistics {
             dropped_spheres: world.features.vanished + world.features.hidden,
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),
+            peak_bytes: spherule::memory::peak(),
             load_seconds: prepared.load.as_secs_f64(),
             build_seconds: prepared.build.as_secs_f64(),
             render_seconds: seconds,

@@ -188,6 +188,7 @@ fn drop_rows(
         warnings.add(&format!("{dropped} of {count} rows were dropped: {reasons}"));
     }
     frame.retain(&keep);
+    frame.shrink();
     Ok(())
 }
 
