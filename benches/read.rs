@@ -28,6 +28,7 @@ fn write(path: &Path, format: Format) -> std::io::Result<()> {
         )?,
         Format::Gro => write!(file, "title\n{COUNT}\n")?,
         Format::Xyz => write!(file, "{COUNT}\ncomment\n")?,
+        Format::Csv => writeln!(file, "type,x,y,z")?,
         _ => (),
     }
     for row in 0..COUNT {
@@ -45,6 +46,7 @@ fn write(path: &Path, format: Format) -> std::io::Result<()> {
                  {symbol:>12}",
                 row % 10_000
             )?,
+            Format::Csv => writeln!(file, "{symbol},{x:.8},{y:.8},{z:.8}")?,
             _ => writeln!(file, "{symbol} {x:.8} {y:.8} {z:.8}")?,
         }
     }
@@ -58,7 +60,7 @@ fn read(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut group = criterion.benchmark_group("read");
     group.sample_size(10);
-    for format in [Format::Xyz, Format::LammpsDump, Format::Gro, Format::Pdb] {
+    for format in [Format::Csv, Format::Xyz, Format::LammpsDump, Format::Gro, Format::Pdb] {
         let path = folder.path().join(format.name());
         write(&path, format).expect("a file");
         let bytes = path.metadata().expect("a file").len();
