@@ -14,7 +14,7 @@ use std::path::Path;
 #[command(next_help_heading = "Files of particles")]
 pub(super) struct ParticleArgs {
     /// The format, where the content does not tell it: xyzr, csv, xyz, lammps-dump, lammps-data,
-    /// gro, pdb, mmcif, gsd, ply, npy or npz
+    /// gro, pdb, mmcif, cif, gsd, ply, npy or npz
     #[arg(long, value_parser = format)]
     format: Option<Format>,
     /// What columns are, as in x=px,radius=size,type=species

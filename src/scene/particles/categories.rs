@@ -77,6 +77,22 @@ impl Codes {
             Self::Words(codes) => retain(codes, keep),
         }
     }
+
+    /// Has row `rows[i]` in the place of row `i`, for each of `rows`.
+    pub(super) fn pick(&mut self, rows: &[u32]) {
+        match self {
+            Self::Bytes(codes) => pick(codes, rows),
+            Self::Shorts(codes) => pick(codes, rows),
+            Self::Words(codes) => pick(codes, rows),
+        }
+    }
+}
+
+/// Has row `rows[i]` of a column in the place of row `i`; columns without rows stay so.
+pub(super) fn pick<T: Copy>(column: &mut Vec<T>, rows: &[u32]) {
+    if !column.is_empty() {
+        *column = rows.iter().map(|&row| column[row as usize]).collect();
+    }
 }
 
 /// What particles of one type have in common.

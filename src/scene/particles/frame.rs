@@ -1,6 +1,6 @@
 //! What a frame of a file of particles holds, in columns.
 
-use super::categories::{Kinds, TextColumn};
+use super::categories::{Kinds, TextColumn, pick};
 use super::options::{Format, Role};
 use crate::scene::Rgb;
 use crate::scene::spheres::retain;
@@ -176,6 +176,17 @@ impl ParticleFrame {
         let texts = self.texts.iter_mut().chain([&mut self.materials]);
         let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
         codes.for_each(|codes| codes.retain(keep));
+    }
+
+    /// Has row `rows[i]` in the place of row `i`, for each of `rows`.
+    pub(super) fn pick(&mut self, rows: &[u32]) {
+        let values = self.numbers.iter_mut().map(|column| &mut column.values);
+        let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];
+        columns.into_iter().chain(values).for_each(|column| pick(column, rows));
+        pick(&mut self.color, rows);
+        let texts = self.texts.iter_mut().chain([&mut self.materials]);
+        let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
+        codes.for_each(|codes| codes.pick(rows));
     }
 
     /// Gives back the memory that columns have beyond their rows.

@@ -27,7 +27,6 @@ mod lammps;
 mod line;
 mod lines;
 mod looks;
-mod mmcif;
 mod number;
 mod numpy;
 mod options;

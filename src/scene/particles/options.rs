@@ -25,6 +25,8 @@ pub enum Format {
     Pdb,
     /// mmCIF of the Protein Data Bank.
     MmCif,
+    /// CIF of a crystal: the atoms that differ, in shares of the cell's edges, and its symmetry.
+    Cif,
     /// GSD of HOOMD-blue.
     Gsd,
     /// Points of PLY, in text or binary.
@@ -37,7 +39,7 @@ pub enum Format {
 
 impl Format {
     /// All formats, with the names that scene files and commands have for them.
-    pub const ALL: [(&'static str, Self); 12] = [
+    pub const ALL: [(&'static str, Self); 13] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
         ("xyz", Self::Xyz),
@@ -46,6 +48,7 @@ impl Format {
         ("gro", Self::Gro),
         ("pdb", Self::Pdb),
         ("mmcif", Self::MmCif),
+        ("cif", Self::Cif),
         ("gsd", Self::Gsd),
         ("ply", Self::Ply),
         ("npy", Self::Npy),

@@ -3,7 +3,7 @@
 use super::frame::ParticleFrame;
 use super::options::{Format, FrameChoice, ReadOptions};
 use super::source::{Source, is_standard_input};
-use super::{csv, gro, gsd, lammps, mmcif, numpy, pdb, ply, sniff, text, xyz};
+use super::{cif, csv, gro, gsd, lammps, numpy, pdb, ply, sniff, text, xyz};
 use crate::scene::SceneError;
 use std::path::Path;
 
@@ -47,7 +47,8 @@ impl Frames {
             Format::LammpsData => Box::new(lammps::Data::new(source, options)),
             Format::Gro => Box::new(gro::Gro::new(source, options)),
             Format::Pdb => Box::new(pdb::Pdb::new(source, options)),
-            Format::MmCif => Box::new(mmcif::MmCif::new(source, options)),
+            Format::MmCif => Box::new(cif::MmCif::new(source, options)),
+            Format::Cif => Box::new(cif::Crystal::new(source, options)),
             Format::Gsd => Box::new(gsd::Gsd::new(source, options)?),
             Format::Ply => Box::new(ply::Ply::new(source, options)),
             Format::Npy => Box::new(numpy::Npy::new(source, options)?),

@@ -3,13 +3,13 @@
 use super::fields::Fields;
 use super::options::{Format, ReadOptions, Role};
 use super::source::Source;
-use super::{csv, gro, gsd, number, numpy, pdb, ply};
+use super::{cif, csv, gro, gsd, number, numpy, pdb, ply};
 use crate::scene::SceneError;
 
 /// What the formats are that can be told.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, CSV with a header that \
-                     names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, GSD, \
-                     PLY and arrays of NumPy";
+                     names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
+                     of crystals, GSD, PLY and arrays of NumPy";
 
 /// Lines within which a data file of LAMMPS tells its number of atoms.
 const DATA_HEADER: usize = 40;
@@ -87,7 +87,8 @@ fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
     let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
     let Some(first) = lines.next() else { return Err("holds no particles".to_owned()) };
     if let Some(format) = told_by_words(first, lines) {
-        return Ok(format);
+        let crystal = format == Format::MmCif && cif::is_crystal(head);
+        return Ok(if crystal { Format::Cif } else { format });
     }
     if number::whole(first).is_some() {
         return Ok(Format::Xyz);
@@ -155,6 +156,7 @@ mod tests {
         assert_eq!(told("REMARK  made by hand\n"), Ok(Format::Pdb));
         assert_eq!(told("ATOM      1  N   MET"), Ok(Format::Pdb));
         assert_eq!(told("# comment\ndata_3KPR\n"), Ok(Format::MmCif));
+        assert_eq!(told("data_x\n_cell_length_a 4\n"), Ok(Format::Cif));
         assert!(told("BEGIN_SCENE\n").is_err());
         assert!(told("50 pct water\n").is_err());
     }

@@ -3,6 +3,7 @@
 use super::bounds::tilted;
 use super::style::{self, STYLES};
 use super::unit;
+use super::velocities::Velocities;
 use crate::scene::SceneError;
 use crate::scene::particles::builder::Builder;
 use crate::scene::particles::element::Element;
@@ -163,6 +164,7 @@ impl FrameReader for Data {
         }
         let Some(title) = self.lines.next()? else { return Ok(None) };
         let mut head = Head { title: title.text().trim().to_owned(), ..Head::default() };
+        let mut velocities = Velocities::take(&mut self.options);
         let mut frame = None;
         while let Some(line) = Self::line(&mut self.lines)? {
             if !is_section(line.bytes) {
@@ -175,13 +177,20 @@ impl FrameReader for Data {
             match name.trim() {
                 "Masses" => self.masses(&mut head)?,
                 "Atoms" => frame = Some(self.atoms(&head, style)?),
+                "Velocities" if velocities.any() => {
+                    while !self.at_section()? {
+                        let line = Self::line(&mut self.lines)?;
+                        line.iter().try_for_each(|line| velocities.row(line))?;
+                    }
+                }
                 // Their rows are passed over one by one, by the next turns of this loop.
                 _ => while !self.at_section()? && Self::line(&mut self.lines)?.is_some() {},
             }
         }
-        let frame = frame.ok_or_else(|| {
+        let mut frame = frame.ok_or_else(|| {
             self.lines.ended("no section `Atoms`").with_help("the file is cut off, or no data file")
         })?;
+        velocities.complete(&mut frame, &self.lines)?;
         Ok(Some(head.complete(frame)))
     }
 }

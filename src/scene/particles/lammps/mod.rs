@@ -4,6 +4,7 @@ mod bounds;
 mod data;
 mod dump;
 mod style;
+mod velocities;
 
 pub(super) use data::Data;
 pub(super) use dump::Dump;

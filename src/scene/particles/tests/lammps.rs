@@ -145,3 +145,54 @@ fn faulty_data_files_are_refused() {
         assert_eq!(kinds(&frame(&text)), [("1", "-")], "{masses}");
     }
 }
+
+const MOVING: &str = "\
+a title
+
+3 atoms
+1 atom types
+
+Atoms # atomic
+
+7 1 1.0 2.0 3.0
+3 1 4.0 5.0 6.0
+5 1 7.0 8.0 9.0
+
+Velocities
+
+5 0.5 -1 2e1
+7 1.5 -2 3e1
+
+Bonds
+
+1 1 3 5
+";
+
+#[test]
+fn velocities_are_told_by_ids() {
+    let frame = frame_with(MOVING, &columns("vz,VX")).expect("a frame");
+    let column = |at: usize| (&frame.numbers[at].name[..], &frame.numbers[at].values[..]);
+    let (name, vz) = column(0);
+    assert!(name == "vz" && (vz[0], vz[2]) == (30.0, 20.0) && vz[1].is_nan(), "{vz:?}");
+    assert_eq!((column(1).0, column(1).1[2], frame.numbers.len()), ("VX", 0.5, 2));
+    assert_eq!(frame.columns, ["id", "type", "x", "y", "z", "vx", "vy", "vz"]);
+    let ids = frame_with(MOVING, &columns("id,vy")).expect("a frame").numbers;
+    assert_eq!((&ids[0].values[..], ids[1].values[0]), (&[7.0, 3.0, 5.0][..], -2.0));
+    // Nobody asks, so nobody looks.
+    assert!(super::frame(MOVING.replace("5 0.5", "5 what")).numbers.is_empty());
+}
+
+#[test]
+fn velocities_that_are_missing_or_broken_are_told() {
+    let asked = columns("vx");
+    let message = |text: &str| match frame_with(text, &asked) {
+        Err(error) => (error.line().unwrap_or(0), error.message),
+        Ok(frame) => panic!("this is accepted: {frame:?}"),
+    };
+    let none = MOVING.replace("Velocities", "Forces");
+    assert!(message(&none).1.starts_with("no column is named `vx`; there are id, type, x"));
+    let broken = message(&MOVING.replace("7 1.5", "7 1,5"));
+    assert_eq!(broken, (15, "`1,5` is not a number".to_owned()));
+    let short = message(&MOVING.replace(" 2e1", ""));
+    assert_eq!(short, (14, "a row of velocities has an id and vx, vy, vz".to_owned()));
+}

@@ -1,3 +1,4 @@
+mod crystals;
 mod gsd;
 mod lammps;
 mod molecules;

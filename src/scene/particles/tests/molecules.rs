@@ -202,7 +202,11 @@ fn faulty_mmcif_is_refused() {
         (&lines[..33].join("\n"), 34, "a row of 6 values, but there are 9 columns"),
         (&lines[..11].join("\n"), 12, "the text that begins at line 11 does not end"),
         (&lines[..19].join("\n"), 0, "holds no particles"),
-        ("data_a\nloop_\n_atom_site_fract_x\n0.5\n", 4, "no _atom_site.Cartn_x"),
+        (
+            "data_a\nloop_\n_atom_site_fract_x\n0.5\n",
+            4,
+            "no _atom_site_fract_y in this loop of atoms",
+        ),
     ] {
         let (found, _, said) = fault(text);
         assert_eq!((found, said.as_str()), (line, message));

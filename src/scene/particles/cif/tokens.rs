@@ -1,7 +1,7 @@
 //! The words of a CIF file.
 
-use super::lines::{Line, Lines};
 use crate::scene::SceneError;
+use crate::scene::particles::lines::{Line, Lines};
 use std::path::Path;
 use std::sync::Arc;
 

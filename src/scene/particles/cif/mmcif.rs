@@ -1,18 +1,16 @@
 //! mmCIF: the loop `_atom_site` of a file of the Protein Data Bank, lengths in angstrom.
-//!
-//! The crate `pdbtbx` builds a tree of models, chains and residues, many times as large as columns
-//! are, so this is our own, on the syntax of CIF (Hall, Allen and Brown, "The crystallographic
-//! information file (CIF)", Acta Crystallographica A47, 1991).
 
-use super::builder::Builder;
-use super::cif::{Token, Tokens};
-use super::frame::{Cell, LengthUnit, ParticleFrame};
-use super::lines::Lines;
-use super::options::{Format, ReadOptions};
-use super::reader::FrameReader;
-use super::schema::Schema;
-use super::{number, source::Source};
+use super::rows::Rows;
+use super::tokens::{Token, Tokens};
 use crate::scene::SceneError;
+use crate::scene::particles::builder::Builder;
+use crate::scene::particles::frame::{Cell, LengthUnit, ParticleFrame};
+use crate::scene::particles::lines::Lines;
+use crate::scene::particles::number;
+use crate::scene::particles::options::{Format, ReadOptions};
+use crate::scene::particles::reader::FrameReader;
+use crate::scene::particles::schema::Schema;
+use crate::scene::particles::source::Source;
 use std::sync::Arc;
 
 /// What the names of the columns begin with.
@@ -22,7 +20,7 @@ const SITE: &str = "_atom_site.";
 const NUMBERS: [&str; 3] = ["occupancy", "B_iso_or_equiv", "pdbx_formal_charge"];
 
 /// Reads the models of a file, one frame each.
-pub(super) struct MmCif {
+pub(in super::super) struct MmCif {
     tokens: Tokens,
     options: ReadOptions,
     sites: Option<Sites>,
@@ -34,35 +32,16 @@ pub(super) struct MmCif {
 /// The loop that is being read.
 struct Sites {
     schema: Arc<Schema>,
-    columns: usize,
     /// Columns of the model's number and of the letter of an alternative place.
     model: Option<usize>,
     place: Option<usize>,
-    row: Row,
+    rows: Rows,
     /// Whether the row belongs to the next frame.
     pending: bool,
 }
 
-/// The values of a row, one after another.
-#[derive(Default)]
-struct Row {
-    bytes: Vec<u8>,
-    ends: Vec<usize>,
-}
-
-impl Row {
-    fn field(&self, column: usize) -> &[u8] {
-        let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.bytes[start..self.ends[column]]
-    }
-
-    fn fields(&self) -> impl Iterator<Item = &[u8]> {
-        (0..self.ends.len()).map(|column| self.field(column))
-    }
-}
-
 impl MmCif {
-    pub(super) fn new(source: Source, options: &ReadOptions) -> Self {
+    pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
         Self {
             tokens: Tokens::new(Lines::new(source)),
             options: options.clone(),
@@ -124,7 +103,7 @@ impl MmCif {
         };
         if !tags.first().is_some_and(is_site) {
             if tags.iter().any(|tag| tag.starts_with("_atom_site_fract")) {
-                let help = "this is a crystal in shares of its cell; write it as mmCIF, PDB or XYZ";
+                let help = "this is a crystal in shares of its cell: say that its format is cif";
                 return Err(self.tokens.error("no _atom_site.Cartn_x").with_help(help));
             }
             return Ok(None);
@@ -133,13 +112,12 @@ impl MmCif {
             tags.iter().map(|tag| tag.get(SITE.len()..).unwrap_or(tag).to_owned()).collect();
         let column = |wanted: &str| names.iter().position(|name| name == wanted);
         let (model, place) = (column("pdbx_PDB_model_num"), column("label_alt_id"));
-        let columns = names.len();
+        let rows = Rows::new(names.len());
         let schema = Schema::new(names, &self.options).map_err(|message| {
             let help = "atoms of mmCIF have _atom_site.Cartn_x, Cartn_y and Cartn_z";
             self.tokens.error(message).with_help(help)
         })?;
-        let (schema, row) = (Arc::new(schema), Row::default());
-        Ok(Some(Sites { schema, columns, model, place, row, pending: false }))
+        Ok(Some(Sites { schema: Arc::new(schema), model, place, rows, pending: false }))
     }
 
     /// The atoms of the next model; they are put into a builder, if there is one. Whether there
@@ -148,8 +126,8 @@ impl MmCif {
         let Some(sites) = &mut self.sites else { return Ok((false, 0)) };
         let mut model: Option<Vec<u8>> = None;
         let mut elsewhere = 0;
-        while std::mem::take(&mut sites.pending) || sites.read(&mut self.tokens)? {
-            let own = sites.model.map_or(&b""[..], |column| sites.row.field(column));
+        while std::mem::take(&mut sites.pending) || sites.rows.read(&mut self.tokens)? {
+            let own = sites.model.map_or(&b""[..], |column| sites.rows.field(column));
             if model.as_deref().is_some_and(|model| model != own) {
                 sites.pending = true;
                 return Ok((true, elsewhere));
@@ -158,9 +136,9 @@ impl MmCif {
                 model = Some(own.to_vec());
             }
             let Some(builder) = &mut builder else { continue };
-            let place = sites.place.map_or(&b"."[..], |column| sites.row.field(column));
+            let place = sites.place.map_or(&b"."[..], |column| sites.rows.field(column));
             if matches!(place, b"." | b"?" | b"A" | b"1") {
-                builder.row(&self.tokens.line(), sites.row.fields())?;
+                builder.row(&self.tokens.line(), sites.rows.fields())?;
             } else {
                 elsewhere += 1;
             }
@@ -175,29 +153,6 @@ impl MmCif {
             self.sites = self.find()?;
         }
         Ok(self.sites.is_some())
-    }
-}
-
-impl Sites {
-    /// Reads a row; whether there is one more.
-    fn read(&mut self, tokens: &mut Tokens) -> Result<bool, SceneError> {
-        self.row.bytes.clear();
-        self.row.ends.clear();
-        while self.row.ends.len() < self.columns {
-            let Some(Token::Value(value)) = tokens.next()? else {
-                tokens.back();
-                if self.row.ends.is_empty() {
-                    return Ok(false);
-                }
-                let (count, columns) = (self.row.ends.len(), self.columns);
-                let error = tokens
-                    .error(format!("a row of {count} values, but there are {columns} columns"));
-                return Err(error.with_help("the file is cut off, or a quote is not closed"));
-            };
-            self.row.bytes.extend_from_slice(value);
-            self.row.ends.push(self.row.bytes.len());
-        }
-        Ok(true)
     }
 }
 
