@@ -1,21 +1,17 @@
 //! Where readers put particles: columns that grow, and nothing that a file only claims.
 
+use super::Format;
 use super::categories::{Codebook, Kind};
-use super::element::{Element, is_virtual_site};
 use super::extra::Extra;
 use super::frame::ParticleFrame;
 use super::lines::Line;
-use super::schema::{Naming, Schema, Slot};
-use super::{Format, number};
+use super::naming::{forget_elements, kind};
+use super::schema::{Schema, Slot};
 use crate::memory;
 use crate::scene::{Rgb, SceneError, Spheres};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Share of particles without an element from which on names are not taken for elements.
-const NO_SYMBOLS: f64 = 0.5;
-const NO_NAMES: f64 = 0.1;
 
 /// A frame that is being read.
 pub(super) struct Builder {
@@ -107,6 +103,16 @@ impl Builder {
         }
     }
 
+    /// Takes a text that is no number, where no number is needed.
+    pub(super) fn put_text(&mut self, slot: Slot, text: &str) {
+        match slot {
+            Slot::Skip | Slot::Position(_) | Slot::Radius(_) | Slot::Color(_) => (),
+            Slot::Kind => self.kind(text.as_bytes()),
+            Slot::Material => self.material(text.as_bytes()),
+            Slot::Extra(extra) => self.extras[extra].put_text(text),
+        }
+    }
+
     /// Takes the row that the last fields make up.
     #[inline]
     pub(super) fn end_row(&mut self) -> Result<(), SceneError> {
@@ -185,12 +191,7 @@ impl Builder {
 
     /// What was read.
     pub(super) fn finish(mut self) -> ParticleFrame {
-        let limit = match self.schema.naming {
-            Naming::Symbols => NO_SYMBOLS,
-            Naming::Types => 0.0,
-            Naming::Names => NO_NAMES,
-        };
-        forget_elements(&mut self.frame, limit);
+        forget_elements(&mut self.frame.kinds, self.schema.naming);
         for extra in self.extras {
             extra.finish(&mut self.frame.numbers, &mut self.frame.texts);
         }
@@ -204,30 +205,8 @@ pub(super) fn share(value: f64) -> f32 {
     if value > 0.0 { value.min(1.0) as f32 } else { 0.0 }
 }
 
-fn add(names: &mut Vec<String>, name: &str) -> u32 {
+/// Appends a name; returns its place.
+pub(super) fn add(names: &mut Vec<String>, name: &str) -> u32 {
     names.push(name.to_owned());
     names.len() as u32 - 1
-}
-
-fn kind(name: &str, naming: Naming) -> Kind {
-    let virtual_site = is_virtual_site(name, "");
-    let is_number = number::whole(name.as_bytes()).is_some();
-    let is_type = is_number && naming == Naming::Types;
-    let element = if virtual_site || is_type { None } else { Element::from_label(name) };
-    Kind { name: name.to_owned(), element, virtual_site }
-}
-
-/// Takes the elements back where more than this share of the particles has none: then names that
-/// look like symbols are something else, such as beads of a coarse-grained model.
-fn forget_elements(frame: &mut ParticleFrame, limit: f64) {
-    let kinds = &mut frame.kinds;
-    let mut counts = vec![0_u64; kinds.table.len()];
-    (0..kinds.codes.len()).for_each(|row| counts[kinds.codes.code(row) as usize] += 1);
-    let none = |(kind, count): (&Kind, &u64)| {
-        if kind.element.is_none() && !kind.virtual_site { *count } else { 0 }
-    };
-    let unknown: u64 = kinds.table.iter().zip(&counts).map(none).sum();
-    if unknown as f64 > limit * kinds.codes.len() as f64 {
-        kinds.table.iter_mut().for_each(|kind| kind.element = None);
-    }
 }

@@ -1,5 +1,6 @@
 //! Columns that are kept besides the usual ones: of numbers or of texts, as their first value tells.
 
+use super::builder::add;
 use super::categories::{Codebook, TextColumn};
 use super::frame::NumberColumn;
 use super::lines::Line;
@@ -66,6 +67,16 @@ impl Extra {
         }
     }
 
+    /// Takes a text; nothing if it is a column of numbers.
+    pub(super) fn put_text(&mut self, text: &str) {
+        if matches!(self, Self::Unknown(..)) {
+            self.become_text();
+        }
+        if let Self::Text(column, book) = self {
+            push_text(column, book, text.as_bytes());
+        }
+    }
+
     fn become_number(&mut self) {
         let Self::Unknown(name, tokens) = self else { return };
         let values = vec![f64::NAN; tokens.len()];
@@ -99,8 +110,5 @@ impl Extra {
 
 fn push_text(column: &mut TextColumn, book: &mut Codebook, field: &[u8]) {
     let TextColumn { names, codes, .. } = column;
-    codes.push(book.code(field, |name| {
-        names.push(name.to_owned());
-        names.len() as u32 - 1
-    }));
+    codes.push(book.code(field, |name| add(names, name)));
 }

@@ -27,6 +27,7 @@ mod lammps;
 mod line;
 mod lines;
 mod looks;
+mod naming;
 mod number;
 mod numpy;
 mod options;

@@ -2,7 +2,8 @@
 
 use super::array::Array;
 use super::schema;
-use crate::scene::particles::builder::{Builder, share};
+use crate::scene::particles::builder::{Builder, add, share};
+use crate::scene::particles::categories::{Codebook, Kind, TextColumn};
 use crate::scene::particles::frame::{NumberColumn, ParticleFrame};
 use crate::scene::particles::options::{Format, Radii, ReadOptions, Role};
 use crate::scene::particles::reader::FrameReader;
@@ -21,7 +22,7 @@ const POSITIONS: [&str; 9] =
 const RADII: [&str; 3] = ["radius", "radii", "r"];
 const DIAMETERS: [&str; 2] = ["diameter", "diameters"];
 const COLORS: [&str; 2] = ["color", "colors"];
-const TYPES: [&str; 3] = ["typeid", "type", "types"];
+const TYPES: [&str; 7] = ["typeid", "type", "types", "element", "elements", "species", "symbols"];
 
 /// Reads positions, radii and colors from arrays of one archive.
 pub(in super::super) struct Npz {
@@ -85,7 +86,7 @@ impl Npz {
         let schema = Arc::new(schema);
         let mut builder = Builder::new(&path, Format::Npz, &schema);
         array.rows(&path, |row| {
-            for (slot, &value) in schema.slots.iter().zip(row) {
+            for (slot, &value) in schema.slots.iter().zip(row.numbers) {
                 builder.put_number(*slot, value);
             }
             builder.end_row()
@@ -98,22 +99,72 @@ impl Npz {
     fn rows(&mut self, name: &str, columns: usize, count: usize) -> Result<Vec<f64>, SceneError> {
         let path = self.path.clone();
         let mut array = self.open(name)?;
-        let fault = |found: String| {
-            let message =
-                format!("the array `{name}` has {found}, but there are {count} particles");
-            SceneError::whole_file(&path, message)
-        };
+        let fault = |found: &str| number_of(&path, name, found, count);
+        if array.is_text(0) {
+            let message = format!("the array `{name}` holds texts, but numbers are needed");
+            return Err(SceneError::whole_file(&path, message));
+        }
         let mut values = Vec::new();
         array.rows(&path, |row| {
-            values.extend_from_slice(row);
-            if values.len() > count * columns { Err(fault("more rows".to_owned())) } else { Ok(()) }
+            values.extend_from_slice(row.numbers);
+            if values.len() > count * columns { Err(fault("more rows")) } else { Ok(()) }
         })?;
         if values.len() == count * columns {
             Ok(values)
         } else {
-            Err(fault(format!("{} numbers", values.len())))
+            Err(fault(&format!("{} numbers", values.len())))
         }
     }
+}
+
+impl Npz {
+    /// An array of as many texts as there are particles; `None` if it holds numbers.
+    fn texts(&mut self, name: &str, count: usize) -> Result<Option<TextColumn>, SceneError> {
+        let path = self.path.clone();
+        let mut array = self.open(name)?;
+        if !array.is_text(0) {
+            return Ok(None);
+        }
+        let (mut book, mut rows) = (Codebook::default(), 0);
+        let mut column = TextColumn { name: name.to_owned(), ..TextColumn::default() };
+        array.rows(&path, |row| {
+            let names = &mut column.names;
+            let text = row.text(0).unwrap_or_default();
+            column.codes.push(book.code(text.as_bytes(), |text| add(names, text)));
+            rows += 1;
+            if rows > count { Err(number_of(&path, name, "more texts", count)) } else { Ok(()) }
+        })?;
+        if rows == count {
+            Ok(Some(column))
+        } else {
+            Err(number_of(&path, name, &format!("{rows} texts"), count))
+        }
+    }
+
+    /// Gives particles the types of an array.
+    fn kinds(&mut self, builder: &mut Builder) -> Result<(), SceneError> {
+        let count = builder.frame.len();
+        let Some(name) = self.find(Role::Kind, &TYPES) else { return Ok(()) };
+        if let Some(texts) = self.texts(&name, count)? {
+            (0..count).for_each(|row| builder.kind(texts.text(row).as_bytes()));
+        } else {
+            // Numbers of types are no elements.
+            for kind in self.rows(&name, 1, count)? {
+                builder.kind_of(kind.to_string().as_bytes(), |name| Kind {
+                    name: name.to_owned(),
+                    element: None,
+                    virtual_site: false,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// That an array has not as many rows as there are particles.
+fn number_of(path: &Path, name: &str, found: &str, count: usize) -> SceneError {
+    let message = format!("the array `{name}` has {found}, but there are {count} particles");
+    SceneError::whole_file(path, message)
 }
 
 impl FrameReader for Npz {
@@ -123,13 +174,8 @@ impl FrameReader for Npz {
         }
         let mut builder = self.positions()?;
         let count = builder.frame.len();
-        if let Some(name) = self.find(Role::Kind, &TYPES) {
-            for kind in self.rows(&name, 1, count)? {
-                builder.kind(kind.to_string().as_bytes());
-            }
-        }
+        self.kinds(&mut builder)?;
         let mut frame = builder.finish();
-        frame.kinds.table.iter_mut().for_each(|kind| kind.element = None);
         let radius = match &self.options.radii {
             Radii::Column(name) => Some((name.clone(), 1.0)),
             _ => self.find(Role::Radius, &RADII).map(|name| (name, 1.0)),
@@ -149,8 +195,12 @@ impl FrameReader for Npz {
         let wanted = columns.wanted.iter().filter(|name| there.contains(name));
         let names: Vec<String> = columns.kept.iter().chain(wanted).cloned().collect();
         for name in names {
-            let values = self.rows(&name, 1, count)?;
-            frame.numbers.push(NumberColumn { name, values });
+            if let Some(texts) = self.texts(&name, count)? {
+                frame.texts.push(texts);
+            } else {
+                let values = self.rows(&name, 1, count)?;
+                frame.numbers.push(NumberColumn { name, values });
+            }
         }
         Ok(Some(frame))
     }

@@ -1,8 +1,8 @@
 //! One array (<https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>).
 
 use super::MAGIC;
+use super::header::{Field, Item, ROW, after, fields, shape};
 use crate::scene::SceneError;
-use crate::scene::particles::scalar::{Order, Scalar};
 use std::io::{self, BufReader, Read};
 use std::path::Path;
 
@@ -21,12 +21,19 @@ pub(super) struct Array<R> {
     shape: Vec<u64>,
 }
 
-/// A number of each row, or of each element.
-#[derive(Clone, Debug, PartialEq)]
-struct Field {
-    name: String,
-    scalar: Scalar,
-    order: Order,
+/// A row of an array.
+#[derive(Clone, Copy)]
+pub(super) struct Row<'r> {
+    /// Its numbers; NaN where there is a text.
+    pub(super) numbers: &'r [f64],
+    texts: &'r [Option<String>],
+}
+
+impl Row<'_> {
+    /// The text of a column; `None` if it holds numbers.
+    pub(super) fn text(&self, column: usize) -> Option<&str> {
+        self.texts.get(column)?.as_deref()
+    }
 }
 
 impl<R: Read> Array<R> {
@@ -59,10 +66,24 @@ impl<R: Read> Array<R> {
             let shape = array.shape;
             return Err(format!("is an array of shape {shape:?}, but rows are (count, 3 or 4)"));
         }
-        if by_columns && (rank > 2 || structured) {
-            return Err("is an array in Fortran's order of more than two dimensions".to_owned());
+        if by_columns && (rank > 2 || structured || array.is_text(0)) {
+            let what = "is an array in Fortran's order of texts or of more than two dimensions";
+            return Err(what.to_owned());
+        }
+        let row = (0..array.columns()).map(|column| array.field(column).kind.size()).sum::<usize>();
+        if row > ROW {
+            return Err(format!("has rows of {row} bytes"));
         }
         Ok(array)
+    }
+
+    fn field(&self, column: usize) -> &Field {
+        &self.fields[if self.structured { column } else { 0 }]
+    }
+
+    /// Whether a column holds texts.
+    pub(super) fn is_text(&self, column: usize) -> bool {
+        column < self.columns() && self.field(column).kind.is_text()
     }
 
     /// Names of the columns of a structured array.
@@ -102,7 +123,7 @@ impl<R: Read> Array<R> {
     pub(super) fn rows(
         &mut self,
         path: &Path,
-        mut take: impl FnMut(&[f64]) -> Result<(), SceneError>,
+        mut take: impl FnMut(Row) -> Result<(), SceneError>,
     ) -> Result<(), SceneError> {
         let fault = |error: io::Error| {
             let error = SceneError::whole_file(path, format!("ends before its last row: {error}"));
@@ -114,32 +135,37 @@ impl<R: Read> Array<R> {
             let all = all.map_err(fault)?;
             let rows = 0..all.first().map_or(0, Vec::len);
             return rows.into_iter().try_for_each(|row| {
-                take(&all.iter().map(|column| column[row]).collect::<Vec<_>>())
+                let numbers: Vec<f64> = all.iter().map(|column| column[row]).collect();
+                take(Row { numbers: &numbers, texts: &[] })
             });
         }
-        let field = |column: usize| &self.fields[if self.structured { column } else { 0 }];
-        let fields: Vec<(Scalar, Order)> =
-            (0..columns).map(|column| (field(column).scalar, field(column).order)).collect();
-        let mut bytes = vec![0; fields.iter().map(|(scalar, _)| scalar.size()).sum()];
+        let kinds: Vec<Item> = (0..columns).map(|column| self.field(column).kind).collect();
+        let mut bytes = vec![0; kinds.iter().map(|kind| kind.size()).sum()];
         // Rows without a byte could be as many as the header likes.
         let count = if bytes.is_empty() { 0 } else { count };
-        let mut row = vec![0.0; columns];
+        let mut numbers = vec![0.0; columns];
+        let any_text = kinds.iter().any(|kind| kind.is_text());
+        let text = |kind: &Item| kind.is_text().then(String::new);
+        let mut texts: Vec<Option<String>> =
+            if any_text { kinds.iter().map(text).collect() } else { Vec::new() };
         for _ in 0..count {
             self.reader.read_exact(&mut bytes).map_err(fault)?;
-            let mut at = 0;
-            for (value, &(scalar, order)) in row.iter_mut().zip(&fields) {
-                *value = scalar.read(&bytes[at..], order);
-                at += scalar.size();
+            let mut rest = &bytes[..];
+            for (column, kind) in kinds.iter().enumerate() {
+                let (own, after) = rest.split_at(kind.size());
+                let text = texts.get_mut(column).and_then(Option::as_mut);
+                numbers[column] = kind.read(own, text);
+                rest = after;
             }
-            take(&row)?;
+            take(Row { numbers: &numbers, texts: &texts })?;
         }
         Ok(())
     }
 
     /// The next numbers of an array in Fortran's order.
     fn column(&mut self, count: u64) -> io::Result<Vec<f64>> {
-        let Field { scalar, order, .. } = self.fields[0];
         let mut column = Vec::new();
+        let Item::Number(scalar, order) = self.fields[0].kind else { return Ok(column) };
         let mut block = vec![0; 1 << 16];
         let mut left = count.saturating_mul(scalar.size() as u64);
         while left > 0 {
@@ -150,92 +176,5 @@ impl<R: Read> Array<R> {
             left -= length as u64;
         }
         Ok(column)
-    }
-}
-
-/// What stands in a header after a key.
-fn after<'h>(header: &'h str, key: &str) -> Option<&'h str> {
-    let rest = header.split_once(&format!("'{key}'"))?.1;
-    Some(rest.trim_start().strip_prefix(':')?.trim_start())
-}
-
-/// `(5, 3)`.
-fn shape(text: &str) -> Option<Vec<u64>> {
-    let inner = text.strip_prefix('(')?.split_once(')')?.0;
-    let numbers = inner.split(',').map(|number| number.trim().trim_end_matches('L'));
-    numbers.filter(|number| !number.is_empty()).map(|number| number.parse().ok()).collect()
-}
-
-/// The type of the numbers, or those of a structured array's columns.
-fn fields(header: &str) -> Result<(Vec<Field>, bool), String> {
-    let descr = after(header, "descr").unwrap_or_default();
-    if !descr.starts_with('[') {
-        let name = descr.split('\'').nth(1).unwrap_or_default();
-        return Ok((vec![field("", name)?], false));
-    }
-    let list = descr.split_once(']').map_or(descr, |(list, _)| list);
-    let mut fields = Vec::new();
-    for tuple in list.split('(').skip(1) {
-        let mut quoted = tuple.split('\'');
-        let (Some(name), Some(kind)) = (quoted.nth(1), quoted.nth(1)) else {
-            return Err(format!("has columns of a type that is not read: {}", list.trim()));
-        };
-        fields.push(field(name, kind)?);
-    }
-    // Parentheses within a tuple are columns of vectors.
-    if list.contains("((")
-        || list.contains(", (") && list.matches('(').count() != list.matches("('").count()
-    {
-        return Err("has columns that hold arrays".to_owned());
-    }
-    Ok((fields, true))
-}
-
-/// `<f4` and the like.
-fn field(name: &str, kind: &str) -> Result<Field, String> {
-    let unknown =
-        || format!("has numbers of the type `{kind}`, but types are f4, f8, i1 to i8 and u1 to u8");
-    let mut letters = kind.chars();
-    let order = match letters.next() {
-        Some('>') => Order::Big,
-        Some('<' | '|' | '=') => Order::Little,
-        _ => return Err(unknown()),
-    };
-    let scalar = match letters.as_str() {
-        "i1" => Scalar::I8,
-        "u1" | "b1" => Scalar::U8,
-        "i2" => Scalar::I16,
-        "u2" => Scalar::U16,
-        "i4" => Scalar::I32,
-        "u4" => Scalar::U32,
-        "i8" => Scalar::I64,
-        "u8" => Scalar::U64,
-        "f4" => Scalar::F32,
-        "f8" => Scalar::F64,
-        _ => return Err(unknown()),
-    };
-    Ok(Field { name: name.to_owned(), scalar, order })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn headers_are_read() {
-        let header = "{'descr': '>f4', 'fortran_order': False, 'shape': (6912, 3), }";
-        assert_eq!(after(header, "shape").and_then(shape), Some(vec![6912, 3]));
-        let (plain, structured) = fields(header).expect("a type");
-        assert_eq!((plain[0].scalar, plain[0].order, structured), (Scalar::F32, Order::Big, false));
-        let header =
-            "{'descr': [('x', '<f8'), ('id', '|u1')], 'fortran_order': False, 'shape': (2,)}";
-        let (columns, structured) = fields(header).expect("types");
-        assert_eq!((columns[1].name.as_str(), columns[1].scalar), ("id", Scalar::U8));
-        assert!(structured);
-        assert_eq!(after(header, "shape").and_then(shape), Some(vec![2]));
-        for kind in ["<c16", "|O", "<U3", "", "f4"] {
-            assert!(field("", kind).is_err(), "{kind}");
-        }
-        assert!(fields("{'descr': [('p', '<f8', (3,))]}").is_err());
     }
 }

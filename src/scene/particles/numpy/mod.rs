@@ -5,6 +5,7 @@
 
 mod archive;
 mod array;
+mod header;
 
 pub(super) use archive::Npz;
 
@@ -13,7 +14,7 @@ use super::builder::Builder;
 use super::frame::ParticleFrame;
 use super::options::{Format, ReadOptions, Role};
 use super::reader::FrameReader;
-use super::schema::Schema;
+use super::schema::{Schema, Slot};
 use super::source::Source;
 use crate::scene::SceneError;
 use std::io::{Cursor, Read};
@@ -47,6 +48,17 @@ impl Npy {
 
 /// What the columns of an array are.
 fn schema<R: Read>(array: &Array<R>, options: &ReadOptions) -> Result<Schema, String> {
+    let schema = columns(array, options)?;
+    let is_number =
+        |slot: &Slot| matches!(slot, Slot::Position(_) | Slot::Radius(_) | Slot::Color(_));
+    let mut slots = schema.slots.iter().enumerate();
+    match slots.find(|(column, slot)| is_number(slot) && array.is_text(*column)) {
+        Some((column, _)) => Err(format!("holds texts in its column `{}`", schema.names[column])),
+        None => Ok(schema),
+    }
+}
+
+fn columns<R: Read>(array: &Array<R>, options: &ReadOptions) -> Result<Schema, String> {
     if let Some(names) = array.names() {
         return Schema::new(names, options);
     }
@@ -75,8 +87,11 @@ impl FrameReader for Npy {
         let mut builder = Builder::new(&self.path, Format::Npy, &self.schema);
         let schema = self.schema.clone();
         self.array.rows(&self.path, |row| {
-            for (slot, &value) in schema.slots.iter().zip(row) {
-                builder.put_number(*slot, value);
+            for (column, (slot, &value)) in schema.slots.iter().zip(row.numbers).enumerate() {
+                match row.text(column) {
+                    Some(text) => builder.put_text(*slot, text),
+                    None => builder.put_number(*slot, value),
+                }
             }
             builder.end_row()
         })?;

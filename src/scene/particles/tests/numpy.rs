@@ -126,3 +126,48 @@ fn arrays_that_are_wanted_are_kept_where_they_are() {
     let frame = frame_with(npz(&arrays), &options).expect("a frame");
     assert_eq!((frame.numbers.len(), &frame.numbers[0].values), (1, &vec![1.0, -1.0]));
 }
+
+fn letters(text: &str, count: usize) -> Vec<u8> {
+    let codes = text.chars().map(|letter| letter as u32).chain([0; 8]).take(count);
+    codes.flat_map(u32::to_le_bytes).collect()
+}
+
+#[test]
+fn structures_and_archives_may_have_texts() {
+    let kind = "[('name', '|S4'), ('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('element', '<U2')]";
+    let row = |name: &[u8], x: f32, element: &str| {
+        [name, &floats(&[x, 2.0, 3.0]), &letters(element, 2)].concat()
+    };
+    let rows = [row(b"CA\0\0", 1.0, "C"), row(b"NA12", 2.0, "Na")].concat();
+    let frame = frame_with(npy(kind, "(2,)", false, &rows), &columns("name")).expect("a frame");
+    assert_eq!((&frame.x[..], kinds(&frame)), (&[1.0, 2.0][..], vec![("C", "C"), ("Na", "Na")]));
+    assert_eq!((frame.texts[0].text(0), frame.texts[0].text(1)), ("CA", "NA12"));
+    let arrays = |count: usize| {
+        npz(&[
+            ("position", npy("<f4", "(2, 3)", false, &floats(&[0.0, 0.0, 0.0, 3.0, 0.0, 0.0]))),
+            (
+                "species",
+                npy("<U3", "(2,)", false, &[letters("O", 3), letters("\u{3b1}x", 3)].concat()),
+            ),
+            ("chain", npy("|S1", &format!("({count},)"), false, &b"ABB"[..count])),
+        ])
+    };
+    let frame = frame_with(arrays(2), &columns("chain")).expect("a frame");
+    assert_eq!((kinds(&frame)[1], frame.texts[0].text(1)), (("\u{3b1}x", "-"), "B"));
+    for (count, found) in [(1, "1 texts"), (3, "more texts")] {
+        let error = frame_with(arrays(count), &columns("chain")).expect_err("too few or too many");
+        assert!(error.message.contains(found), "{}", error.message);
+    }
+    let radii = ReadOptions { radii: "column:chain".parse().expect("radii"), ..columns("") };
+    let error = frame_with(arrays(2), &radii).expect_err("texts");
+    assert_eq!(error.message, "the array `chain` holds texts, but numbers are needed");
+}
+
+#[test]
+fn texts_are_no_places() {
+    let kind = "[('x', '|S4'), ('y', '<f4'), ('z', '<f4')]";
+    assert_eq!(fault(npy(kind, "(1,)", false, &[0; 12])).2, "holds texts in its column `x`");
+    assert_eq!(fault(npy("|S4", "(1, 3)", false, &[0; 12])).2, "holds texts in its column `1`");
+    let many = "[('x', '|S9999999'), ('y', '|S9999999'), ('z', '<f4')]";
+    assert_eq!(fault(npy(many, "(1,)", false, &[])).2, "has rows of 20000002 bytes");
+}
