@@ -1,7 +1,8 @@
-//! Every scene of `scenes/` renders, and those with closed forms give them.
+//! Every scene of `scenes/` and of its gallery renders, and those with closed forms give them.
 
 use spherule::render::{Options, Render, render};
 use spherule::scene::Scene;
+use spherule::scene::particles::{self, ReadOptions};
 use spherule::world::World;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +22,8 @@ fn picture(path: &Path, (width, height): (u32, u32), spp: u32) -> Render {
 #[test]
 fn every_scene_renders_and_shows_something() {
     let mut count = 0;
-    for entry in std::fs::read_dir(folder()).expect("the folder is there").flatten() {
+    let entries = |path: PathBuf| std::fs::read_dir(path).expect("the folder is there").flatten();
+    for entry in entries(folder()).chain(entries(folder().join("gallery"))) {
         let path = entry.path();
         if path.extension().is_some_and(|suffix| suffix == "toml") {
             let Render { image, counters, .. } = picture(&path, (40, 30), 2);
@@ -32,7 +34,26 @@ fn every_scene_renders_and_shows_something() {
             count += 1;
         }
     }
-    assert!(count >= 12, "{count} scenes");
+    assert!(count >= 14, "{count} scenes");
+}
+
+#[test]
+fn the_quartz_of_the_gallery_is_whole() {
+    let path = folder().join("gallery/quartz.cif");
+    let read = particles::read(&path, &ReadOptions::default()).expect("a crystal");
+    let (spheres, cell) = (read.spheres, read.cell.expect("a cell"));
+    assert_eq!(spheres.len(), 9);
+    // Every silicon has four neighbors of oxygen at 1.60 to 1.62 angstrom, across faces too.
+    for silicon in 0..3 {
+        let bond = |oxygen: usize, shift: usize| {
+            let neighbor = [shift % 3, shift / 3 % 3, shift / 9].map(|share| share as f64 - 1.0);
+            let shift = cell.point(neighbor) - cell.origin;
+            (spheres.center(oxygen) + shift).distance(spheres.center(silicon))
+        };
+        let bonds = (3..9).flat_map(|oxygen| (0..27).map(move |shift| bond(oxygen, shift)));
+        let lengths: Vec<f64> = bonds.filter(|length| *length < 2.5).collect();
+        assert!(lengths.len() == 4 && lengths.iter().all(|length| (1.60..1.62).contains(length)));
+    }
 }
 
 #[test]

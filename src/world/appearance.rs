@@ -37,11 +37,11 @@ impl<T: Copy> Column<T> {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colors {
     /// Row `i` belongs to sphere `i`.
-    Rows(Vec<[f32; 3]>),
+    Rows(Vec<Rgb>),
     /// Row `i` of `codes` is the place in `table` of the color of sphere `i`.
     Coded {
         /// The different colors, at most 256.
-        table: Vec<[f32; 3]>,
+        table: Vec<Rgb>,
         /// A place in `table` for each sphere.
         codes: Vec<u8>,
     },
@@ -49,13 +49,13 @@ pub enum Colors {
 
 impl Colors {
     /// In as few bytes as they fit.
-    fn new(colors: &[Rgb]) -> Self {
-        coded(colors).unwrap_or_else(|| Self::Rows(colors.iter().map(Rgb::to_array).collect()))
+    fn new(colors: Cow<[Rgb]>) -> Self {
+        coded(&colors).unwrap_or_else(|| Self::Rows(colors.into_owned()))
     }
 
     /// The color of sphere `i`.
     #[inline(always)]
-    pub fn row(&self, i: usize) -> [f32; 3] {
+    pub fn row(&self, i: usize) -> Rgb {
         match self {
             Self::Rows(rows) => rows[i],
             Self::Coded { table, codes } => table[usize::from(codes[i])],
@@ -89,7 +89,7 @@ fn coded(colors: &[Rgb]) -> Option<Colors> {
             return Some(code);
         }
         let code = *known.entry(bits).or_insert_with(|| {
-            table.push(color.to_array());
+            table.push(*color);
             table.len() - 1
         });
         let code = u8::try_from(code).ok()?;
@@ -112,7 +112,7 @@ pub(super) struct Looks<'s> {
 }
 
 impl<'s> Looks<'s> {
-    pub(super) fn new(material: Cow<'s, [u32]>, color: &[Rgb]) -> Self {
+    pub(super) fn new(material: Cow<'s, [u32]>, color: Cow<[Rgb]>) -> Self {
         Self { material, color: (!color.is_empty()).then(|| Colors::new(color)) }
     }
 }
@@ -158,11 +158,11 @@ mod tests {
             let own: Vec<Rgb> =
                 (0..1000).map(|row| Rgb::new(0.1, (row % count) as f32 / 300.0, 1.0)).collect();
             let ids: Vec<u32> = (0..700).rev().collect();
-            let colors = Colors::new(&own).picked(&ids);
+            let colors = Colors::new(Cow::Borrowed(&own)).picked(&ids);
             let table = if each == 1 { 12 * count } else { 0 };
             assert_eq!(colors.bytes(), each * 700 + table, "{count}");
             for (row, &id) in ids.iter().enumerate() {
-                assert_eq!(colors.row(row), own[id as usize].to_array(), "{count}");
+                assert_eq!(colors.row(row), own[id as usize], "{count}");
             }
         }
     }

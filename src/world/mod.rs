@@ -41,7 +41,6 @@ use crate::ray::GROUND;
 use crate::scene::{self, Material, NamedMaterial, Rgb, Scene, Settings, SliceMode};
 use crate::spheres::Spheres;
 use fit::Placement;
-use glam::Vec3;
 use spheres::Placed;
 use std::borrow::Cow;
 
@@ -247,7 +246,7 @@ impl World {
     #[inline(always)]
     pub fn color(&self, hit: u32) -> Rgb {
         match &self.appearance.color {
-            Some(colors) if hit != GROUND => Vec3::from(colors.row(hit as usize)),
+            Some(colors) if hit != GROUND => colors.row(hit as usize),
             _ => Rgb::ONE,
         }
     }

@@ -24,13 +24,12 @@ impl<'s> Placed<'s> {
     pub(super) fn build(from: Cow<'s, scene::Spheres>, slices: &[Slice], frame: &Frame) -> Self {
         match from {
             Cow::Borrowed(from) => {
-                let looks = Looks::new(Cow::Borrowed(&from.material), &from.color);
+                let looks = Looks::new(Cow::Borrowed(&from.material), Cow::Borrowed(&from.color));
                 Self::of(from, looks, slices, frame)
             }
             Cow::Owned(mut from) => {
                 let (material, color) = (take(&mut from.material), take(&mut from.color));
-                let looks = Looks::new(Cow::Owned(material), &color);
-                drop(color);
+                let looks = Looks::new(Cow::Owned(material), Cow::Owned(color));
                 Self::of(&from, looks, slices, frame)
             }
         }
