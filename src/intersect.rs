@@ -263,17 +263,33 @@ fn decide(ray: &ExactRay, center: DVec3, radius: f64, away: bool) -> Option<Root
     Some(Root { t, error: 16.0 * E * t, exact: true })
 }
 
-/// Distance at which a ray crosses the plane `normal . p = height`; `None` if it does not.
-///
-/// Where the origin is on the plane, within its own rounding, a ray against the normal hits it at
-/// once and any other misses.
-#[inline(always)]
-pub fn plane(ray: &ExactRay, normal: DVec3, height: f64) -> Option<f64> {
-    let above = normal.dot(ray.origin) - height;
-    let descent = -normal.dot(ray.direction);
-    let t = above / descent;
-    if above.abs() <= ray.origin_error {
-        return (descent > 0.0).then_some(t.max(0.0));
+/// A plane, `normal . p = height`.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane<D> {
+    /// A unit vector, up to rounding.
+    pub normal: Vec3<D>,
+    /// Distance from the coordinates' origin.
+    pub height: D,
+}
+
+impl<D: Doubles> Plane<D> {
+    /// The rays that cross it, of origins, directions and [`ExactRay::origin_error`]; and the distances.
+    ///
+    /// Where the origin is on the plane, within its own rounding, a ray against the normal hits it at
+    /// once and any other misses.
+    #[inline(always)]
+    pub fn crossed(
+        &self,
+        (origin, direction): (Vec3<D>, Vec3<D>),
+        origin_error: D,
+    ) -> (D::Mask, D) {
+        let zero = D::splat(0.0);
+        let above = self.normal.dot_unfused(origin) - self.height;
+        let descent = -self.normal.dot_unfused(direction);
+        let t = above / descent;
+        let ahead = zero.lt(t);
+        let apart = origin_error.lt(above.abs());
+        let crossed = apart & ahead & t.lt(D::splat(f64::INFINITY)) | !apart & zero.lt(descent);
+        (crossed, D::select(ahead, t, zero))
     }
-    (t > 0.0 && t < f64::INFINITY).then_some(t)
 }

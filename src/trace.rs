@@ -1,16 +1,17 @@
 //! Finding what rays hit: the ground first, if there is one, then the tree, or what slices leave of
 //! it.
 
+mod ground;
 mod pieces;
 
+pub(crate) use self::ground::{hide_behind, stop_at};
 use self::pieces::Pieces;
 use crate::bvh::Bvh;
 use crate::bvh::walk::{self, Any, Closest, Method, Query};
-use crate::intersect;
 use crate::lanes::{F32x4, F32x8, F32x16};
-use crate::ray::{GROUND, Hits, MISS, Rays};
+use crate::ray::{Hits, MISS, Rays};
 use crate::spheres::Spheres;
-use crate::world::{Ground, World};
+use crate::world::World;
 
 /// How rays find spheres: never what they find.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,32 +99,6 @@ impl Tracer {
             Width::Four => walk::trace::<F32x4, Q>(self.method, bvh, spheres, rays, hits),
             Width::Eight => walk::trace::<F32x8, Q>(self.method, bvh, spheres, rays, hits),
             Width::Sixteen => walk::trace::<F32x16, Q>(self.method, bvh, spheres, rays, hits),
-        }
-    }
-}
-
-/// Ends rays at the ground, where they reach it.
-pub(crate) fn stop_at(ground: &Ground, rays: &Rays, hits: &mut Hits) {
-    for row in 0..rays.len() {
-        if rays.own[row] == GROUND {
-            continue;
-        }
-        let t = intersect::plane(&rays.exact(row), ground.normal, ground.height);
-        if let Some(t) = t.filter(|&t| t < hits.t[row]) {
-            hits.set(row, t, GROUND);
-        }
-    }
-}
-
-/// The same where it only counts whether they do.
-pub(crate) fn hide_behind(ground: &Ground, rays: &Rays, hits: &mut Hits) {
-    for row in 0..rays.len() {
-        if rays.own[row] == GROUND || hits.sphere[row] != MISS {
-            continue;
-        }
-        let t = intersect::plane(&rays.exact(row), ground.normal, ground.height);
-        if t.is_some_and(|t| t < hits.t[row]) {
-            hits.sphere[row] = GROUND;
         }
     }
 }

@@ -23,6 +23,8 @@ pub trait Doubles:
     fn abs(self) -> Self;
     /// `self < other`; false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
+    /// `yes` where `mask` is true, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 }
 
 impl Doubles for f64 {
@@ -43,6 +45,10 @@ impl Doubles for f64 {
     #[inline(always)]
     fn lt(self, other: Self) -> bool {
         self < other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
     }
 }
 
@@ -71,6 +77,10 @@ impl Doubles for F64x8 {
     #[inline(always)]
     fn lt(self, other: Self) -> Self::Mask {
         WideMask(self.simd_lt(other))
+    }
+    #[inline(always)]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        wide::Select::select(mask.0, yes, no)
     }
 }
 
