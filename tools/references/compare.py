@@ -9,10 +9,10 @@
 Both render every scene several times with other seeds, so the spread of the pictures tells the errors of their means. For each scene
 it prints the means, their difference in standard errors, and the mean over squares of 4 x 4 pixels of the squared difference by its
 variance, which is 1 if no place differs, with how many standard errors it is off that; then the processor's time for a picture, its
-relative mean squared error, and how many times as much time Mitsuba takes to the same error. It fails if anything differs by more than five standard
-errors, or without noise by 1e-4 of the mean.
+relative mean squared error, and how many times as much time Mitsuba takes to the same error. It fails if anything differs by more than
+five standard errors, or without noise by 1e-4 of the mean.
 
-Mitsuba is fastest with LLVM 16 or later (DRJIT_LIBLLVM_PATH says where it is); without, --variant scalar_rgb.
+Mitsuba is fastest with a late LLVM, such as 19 (DRJIT_LIBLLVM_PATH says where it is); without, --variant scalar_rgb.
 """
 
 import argparse
