@@ -21,7 +21,7 @@ pub(super) fn measure(scene: NamedScene, options: &Options) -> Result<Outcome, B
     let world = scene.world()?;
     // Sets of strata depend on how many samples there are in all.
     let plain = Settings { sampler: SamplerKind::Sobol, ..scene.scene.settings.clone() };
-    let until_error = options.pick([0.3, 0.03, 0.01]);
+    let until_error = options.pick([0.3, 0.15, 0.03]);
     let spp = options.pick([64, Settings::HARD_SAMPLES, Settings::HARD_SAMPLES]);
     let adaptive = Settings { until_error: Some(until_error), spp, ..plain.clone() };
     let first = draw(&world, &adaptive, true);
