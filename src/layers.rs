@@ -60,6 +60,8 @@ pub struct Features {
     pub depth: f32,
     /// Share of the rays that hit a sphere or the ground, 0..=1.
     pub coverage: f32,
+    /// Share of the rays that hit the ground, 0..=1: a part of `coverage`.
+    pub ground: f32,
     /// The sphere that the pixel's center sees, through the center of the lens: its place in the
     /// scene's order, from 0; or else [`NOTHING`] or [`GROUND_PLANE`].
     pub id: u32,
@@ -228,12 +230,20 @@ struct Sums {
     normal: DVec3,
     depth: f64,
     hits: u32,
+    ground: u32,
     id: u32,
 }
 
 impl Default for Sums {
     fn default() -> Self {
-        Self { albedo: DVec3::ZERO, normal: DVec3::ZERO, depth: 0.0, hits: 0, id: NOTHING }
+        Self {
+            albedo: DVec3::ZERO,
+            normal: DVec3::ZERO,
+            depth: 0.0,
+            hits: 0,
+            ground: 0,
+            id: NOTHING,
+        }
     }
 }
 
@@ -249,6 +259,7 @@ impl Sums {
         self.normal += if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
         self.depth += world.camera.distance(ray.at(work.hits.t[row])) / world.frame.scale;
         self.hits += 1;
+        self.ground += u32::from(hit == GROUND);
     }
 
     /// What they come to, of so many samples.
@@ -260,6 +271,7 @@ impl Sums {
             normal: (self.normal * share).as_vec3().to_array(),
             depth: depth as f32,
             coverage: (f64::from(self.hits) * share) as f32,
+            ground: (f64::from(self.ground) * share) as f32,
             id: self.id,
         }
     }

@@ -1,10 +1,13 @@
 //! How the command line has particles look.
 
+use super::settings::List;
+use super::typed::{self, Typed};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde_json::{Value, json};
 use spherule::color::{Map, Spacing};
 use spherule::drawing::Format;
 use spherule::scene::particles::{
-    Coloring, ColumnColors, ElementColors, Looks, Selection, TypeLook,
+    Coloring, ColumnColors, ElementColors, Legend, Looks, Selection, TypeLook,
 };
 use std::path::PathBuf;
 
@@ -15,8 +18,8 @@ pub(super) struct LookArgs {
     /// Draw those alone that a condition on columns holds for, as in 'element != H and z > 10':
     /// == != < <= > >=, and, or, not, + - * /, parentheses; texts as words or in quotes, names with
     /// other signs than _ . : [ ] in backticks
-    #[arg(long, value_name = "CONDITION", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<Selection>())]
-    select: Option<Selection>,
+    #[arg(long, value_name = "CONDITION", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<Typed<Selection>>())]
+    select: Option<Typed<Selection>>,
     /// Colors of elements, also where the file has colors [default: the file's, or else jmol]
     #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
     colors: Option<Scheme>,
@@ -45,20 +48,43 @@ pub(super) struct LookArgs {
     #[arg(
         long = "type",
         value_name = "NAME:radius=R,color=#RRGGBB,material=M",
-        value_parser = |text: &str| text.parse::<TypeLook>()
+        value_parser = |text: &str| text.parse::<Typed<TypeLook>>()
     )]
-    types: Vec<TypeLook>,
-    /// A picture of the map and its numbers, .png or .svg
-    #[arg(long, value_name = "FILE", requires = "color_by", value_parser = bar)]
-    pub(super) color_bar: Option<BarFile>,
+    types: Vec<Typed<TypeLook>>,
+    /// A picture of the map and its numbers: a file, .png or .svg, or inside, in the picture's lower
+    /// right corner, or inside:CORNER, one of top-left, top-right, bottom-left and bottom-right
+    #[arg(
+        long,
+        value_name = "FILE|inside[:CORNER]",
+        requires = "color_by",
+        value_parser = bar
+    )]
+    pub(super) color_bar: Option<BarPlace>,
 }
 
 /// Where a color bar goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct BarFile {
-    pub(super) path: PathBuf,
-    pub(super) format: Format,
+pub(super) enum BarPlace {
+    /// Into a file of its own.
+    File(PathBuf, Format),
+    /// Into a corner of the picture.
+    Inside(Corner),
 }
+
+/// A corner of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Corner {
+    pub(super) top: bool,
+    pub(super) left: bool,
+}
+
+/// What corners are called; the first is meant where none is named.
+const CORNERS: [(&str, Corner); 4] = [
+    ("bottom-right", Corner { top: false, left: false }),
+    ("bottom-left", Corner { top: false, left: true }),
+    ("top-right", Corner { top: true, left: false }),
+    ("top-left", Corner { top: true, left: true }),
+];
 
 /// Schemes of colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -67,6 +93,15 @@ enum Scheme {
     Jmol,
     /// Corey, Pauling and Koltun's
     Cpk,
+}
+
+impl Scheme {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Jmol => "jmol",
+            Self::Cpk => "cpk",
+        }
+    }
 }
 
 /// What the ends of a map stand for; `None` for what there is.
@@ -91,22 +126,54 @@ fn ends(text: &str) -> Result<Ends, String> {
         .ok_or_else(|| "give two numbers, the lower one first, as in -1,2.5; or auto".to_owned())
 }
 
-/// A name that ends in `.png` or `.svg`.
-fn bar(text: &str) -> Result<BarFile, String> {
+/// `inside`, with or without a corner, or a name that ends in `.png` or `.svg`.
+fn bar(text: &str) -> Result<BarPlace, String> {
+    let corner = match text.strip_prefix("inside") {
+        Some("") => Some(CORNERS[0].1),
+        Some(rest) => rest.strip_prefix(':').and_then(|name| {
+            CORNERS.iter().find(|(own, _)| *own == name).map(|(_, corner)| *corner)
+        }),
+        None => None,
+    };
     let path = PathBuf::from(text);
-    match Format::of_suffix(&path) {
-        Some(format) => Ok(BarFile { path, format }),
-        None => Err("end the name in .png or .svg".to_owned()),
+    match (corner, Format::of_suffix(&path)) {
+        (Some(corner), _) => Ok(BarPlace::Inside(corner)),
+        (None, Some(format)) => Ok(BarPlace::File(path, format)),
+        (None, None) => {
+            let names = CORNERS.map(|(name, _)| name).join(", ");
+            Err(format!("end the name in .png or .svg, or write inside or inside:CORNER: {names}"))
+        }
     }
 }
 
 impl LookArgs {
     /// The same for the library, with a factor on radii.
     pub(super) fn looks(&self, radius_scale: f64) -> Looks {
-        let mut types = self.types.clone();
+        let mut types: Vec<TypeLook> = self.types.iter().map(|look| (**look).clone()).collect();
         let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
         radii.for_each(|radius| *radius *= radius_scale);
-        Looks { select: self.select.clone(), coloring: self.coloring(), types }
+        let select = self.select.as_deref().cloned();
+        Looks { select, coloring: self.coloring(), types }
+    }
+
+    /// What makes the picture, for its file; ends of colors are those of the `legend`.
+    pub(super) fn list(&self, legend: Option<&Legend>) -> List {
+        let mut list = List::new();
+        typed::insert(&mut list, "select", &self.select);
+        let mut put = |name: &str, value: Value| list.insert(name.to_owned(), value);
+        match &self.color_by {
+            Some(column) => put("color_by", json!(column)),
+            None => self.colors.and_then(|scheme| put("colors", json!(scheme.name()))),
+        };
+        if let Some(Legend { scale, .. }) = legend {
+            put("color_map", json!(scale.map.name()));
+            put("color_range", json!(format!("{},{}", scale.range.low(), scale.range.high())));
+            if self.color_log {
+                put("color_log", json!(true));
+            }
+        }
+        typed::insert(&mut list, "type", &self.types);
+        list
     }
 
     fn coloring(&self) -> Coloring {
@@ -129,6 +196,16 @@ impl LookArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bars_go_to_files_and_corners() {
+        let corner = |top, left| Ok(BarPlace::Inside(Corner { top, left }));
+        assert_eq!(bar("inside"), corner(false, false));
+        assert_eq!(bar("inside:top-left"), corner(true, true));
+        assert_eq!(bar("inside:top-right"), corner(true, false));
+        assert_eq!(bar("inside.svg"), Ok(BarPlace::File("inside.svg".into(), Format::Svg)));
+        assert!(bar("inside:left").is_err() && bar("a.pdf").is_err() && bar("insider").is_err());
+    }
 
     #[test]
     fn ends_are_two_numbers() {

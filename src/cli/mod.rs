@@ -24,6 +24,7 @@ mod slices;
 mod source;
 mod stress;
 mod threads;
+mod typed;
 mod values;
 mod views;
 

@@ -1,9 +1,12 @@
 //! How the command line has files of particles read, and what it says of them.
 
 use super::frames::{FrameArg, FrameRange};
+use super::settings::List;
+use super::typed::{self, Typed};
 use super::{Failure, output};
 use indicatif::HumanCount;
 use serde::Serialize;
+use serde_json::json;
 use spherule::scene::particles::{
     Columns, Element, Format, FrameChoice, LengthUnit, Particles, Radii, ReadOptions, count_frames,
 };
@@ -18,15 +21,15 @@ pub(super) struct ParticleArgs {
     #[arg(long, value_parser = format)]
     format: Option<Format>,
     /// What columns are, as in x=px,radius=size,type=species
-    #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<Columns>())]
-    columns: Option<Columns>,
+    #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<Typed<Columns>>())]
+    columns: Option<Typed<Columns>>,
     /// The frame: first, last or a number from 0; or a numbered picture of each of many, from one
     /// camera: all, A-B or A..B..STEP
-    #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<FrameArg>())]
-    frame: Option<FrameArg>,
+    #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<Typed<FrameArg>>())]
+    frame: Option<Typed<FrameArg>>,
     /// Radii: vdw or covalent by element, a column's, or one for all
-    #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<Radii>())]
-    radii: Option<Radii>,
+    #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<Typed<Radii>>())]
+    radii: Option<Typed<Radii>>,
     /// Factor on all radii
     #[arg(long, value_name = "FACTOR", value_parser = positive)]
     radius_scale: Option<f64>,
@@ -51,9 +54,13 @@ impl ParticleArgs {
     pub(super) fn options(&self) -> ReadOptions {
         ReadOptions {
             format: self.format,
-            columns: self.columns.clone().unwrap_or_default(),
-            frame: self.frame.map_or_else(FrameChoice::default, FrameArg::first),
-            radii: self.radii.clone().unwrap_or_default(),
+            columns: self.columns.as_deref().cloned().unwrap_or_default(),
+            frame: self
+                .frame
+                .as_deref()
+                .copied()
+                .map_or_else(FrameChoice::default, FrameArg::first),
+            radii: self.radii.as_deref().cloned().unwrap_or_default(),
             radius_scale: self.radius_scale.unwrap_or(1.0),
             atom_style: self.atom_style.clone(),
             ..ReadOptions::default()
@@ -67,7 +74,28 @@ impl ParticleArgs {
 
     /// Which frames, if they are many.
     pub(super) fn frames(&self) -> Option<FrameRange> {
-        self.frame.and_then(FrameArg::range)
+        self.frame.as_deref().copied().and_then(FrameArg::range)
+    }
+
+    /// What makes the picture, for its file; `frame` is the one of many that it shows.
+    pub(super) fn list(&self, frame: Option<u64>) -> List {
+        let mut list = List::new();
+        if let Some(format) = self.format {
+            list.insert("format".to_owned(), json!(format.name()));
+        }
+        typed::insert(&mut list, "columns", &self.columns);
+        match frame {
+            Some(number) => _ = list.insert("frame".to_owned(), json!(number)),
+            None => typed::insert(&mut list, "frame", &self.frame),
+        }
+        typed::insert(&mut list, "radii", &self.radii);
+        if let Some(scale) = self.radius_scale {
+            list.insert("radius_scale".to_owned(), json!(scale));
+        }
+        if let Some(style) = &self.atom_style {
+            list.insert("atom_style".to_owned(), json!(style));
+        }
+        list
     }
 
     /// Refuses many frames where one is meant.

@@ -39,6 +39,9 @@ impl Values {
     }
 }
 
+/// The name of the channel that holds alpha: how much of each pixel is not background, 0..=1.
+pub(super) const ALPHA: &str = "A";
+
 /// Refuses channels that cannot lie beside a picture of so many pixels.
 pub(super) fn check(channels: &[Channel], pixels: usize) -> Result<(), ImageError> {
     for (i, Channel { name, values }) in channels.iter().enumerate() {

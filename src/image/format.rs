@@ -1,6 +1,7 @@
 //! File formats: how they are told apart, and the way to their codecs.
 
-use super::{Channel, Image, ImageError, WriteOptions, exr, pfm, png, ppm, radiance};
+use super::channel::ALPHA;
+use super::{Channel, Image, ImageError, Values, WriteOptions, exr, pfm, png, ppm, radiance};
 use crate::memory;
 use std::{
     fmt,
@@ -69,6 +70,15 @@ impl Format {
         }
     }
 
+    /// Whether files of this format have room for these channels.
+    pub(super) fn holds(self, channels: &[Channel]) -> bool {
+        match (self, channels) {
+            (Self::Exr, _) | (_, []) => true,
+            (Self::Png, [Channel { name, values: Values::Floats(_) }]) => name == ALPHA,
+            _ => false,
+        }
+    }
+
     /// Decodes a whole file; the error says what is wrong with it.
     ///
     /// A decoder of another crate that panics on a damaged file (integer overflow in a debug build,
@@ -95,11 +105,19 @@ impl Format {
         match self {
             Self::Exr => exr::encode(image, channels, &options.metadata),
             Self::Pfm => Ok(pfm::encode(image)),
-            Self::Png => png::encode(image, options),
+            Self::Png => png::encode(image, alpha(channels), options),
             Self::Ppm => Ok(ppm::encode(image, options)),
             Self::Radiance => Err("Radiance HDR is only read".into()),
         }
     }
+}
+
+/// The values of alpha among channels, if they are there.
+fn alpha(channels: &[Channel]) -> Option<&[f32]> {
+    channels.iter().find_map(|channel| match &channel.values {
+        Values::Floats(values) if channel.name == ALPHA => Some(values.as_slice()),
+        _ => None,
+    })
 }
 
 impl fmt::Display for Format {

@@ -111,8 +111,11 @@ impl Image {
         self.write_layers(path, &[], options)
     }
 
-    /// Writes an EXR file that has more channels than `R`, `G` and `B`; without any, what
-    /// [`Image::write`] writes.
+    /// Writes an EXR file that has more channels than `R`, `G` and `B`, or a PNG file that has `A`
+    /// besides; without any, what [`Image::write`] writes.
+    ///
+    /// With the channel `A`, alpha, the picture's colors are premultiplied: their share of each pixel
+    /// is in them. EXR holds them like this, and PNG the color that each share has.
     ///
     /// # Errors
     /// Those of [`Image::write`]; [`ImageError::Layers`] for another format, and
@@ -129,7 +132,7 @@ impl Image {
         self.check_shape()?;
         options.check()?;
         channel::check(channels, self.pixels.len())?;
-        if !channels.is_empty() && format != Format::Exr {
+        if !format.holds(channels) {
             return Err(ImageError::Layers { path: path.to_owned(), format });
         }
         let bytes = format

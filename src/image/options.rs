@@ -74,7 +74,7 @@ impl Depth {
 
     /// The bytes of samples in file order, the high byte first where there are two (PNG and PPM
     /// agree).
-    pub(super) fn pack(self, codes: &[[u16; 3]]) -> Vec<u8> {
+    pub(super) fn pack<const N: usize>(self, codes: &[[u16; N]]) -> Vec<u8> {
         let codes = codes.iter().flatten();
         match self {
             Self::Eight => codes.map(|&code| code as u8).collect(),

@@ -92,11 +92,19 @@ pub(super) fn metadata(bytes: &[u8]) -> Result<Metadata, String> {
         .map_err(|error| damaged(&error))
 }
 
-/// Encodes a picture as RGB.
-pub(super) fn encode(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, String> {
-    let samples = options.depth.pack(&tone::codes(&image.pixels, options));
+/// Encodes a picture as RGB, or with alpha as RGBA: then its colors are premultiplied, and the file's
+/// are not.
+pub(super) fn encode(
+    image: &Image,
+    alpha: Option<&[f32]>,
+    options: &WriteOptions,
+) -> Result<Vec<u8>, String> {
     let mut info = Info::with_size(image.width, image.height);
-    info.color_type = ColorType::Rgb;
+    let samples = match alpha {
+        None => options.depth.pack(&tone::codes(&image.pixels, options)),
+        Some(alpha) => options.depth.pack(&codes_with_alpha(image, alpha, options)),
+    };
+    info.color_type = if alpha.is_some() { ColorType::Rgba } else { ColorType::Rgb };
     info.bit_depth = match options.depth {
         Depth::Eight => BitDepth::Eight,
         Depth::Sixteen => BitDepth::Sixteen,
@@ -104,6 +112,18 @@ pub(super) fn encode(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, S
     let mut bytes = Vec::new();
     compress(&mut bytes, info, &options.metadata, &samples).map_err(|error| error.to_string())?;
     Ok(bytes)
+}
+
+/// The codes of the colors that shares of pixels have, and of the shares: alpha is linear.
+fn codes_with_alpha(image: &Image, alpha: &[f32], options: &WriteOptions) -> Vec<[u16; 4]> {
+    let straight = |(pixel, &alpha): (&[f32; 3], &f32)| {
+        if alpha > 0.0 { pixel.map(|value| value / alpha) } else { [0.0; 3] }
+    };
+    let colors: Vec<[f32; 3]> = image.pixels.iter().zip(alpha).map(straight).collect();
+    let maximum = f32::from(options.depth.maximum());
+    let share = |alpha: f32| (alpha.clamp(0.0, 1.0) * maximum).round() as u16;
+    let codes = tone::codes(&colors, options).into_iter().zip(alpha);
+    codes.map(|([red, green, blue], &alpha)| [red, green, blue, share(alpha)]).collect()
 }
 
 fn compress(
@@ -157,13 +177,13 @@ mod tests {
             let table = tone::decode_table(depth.maximum());
             let pixels = table.into_iter().map(|value| [value, 0.0, 1.0]).collect();
             let image = Image::new(256, u32::from(depth.maximum()) / 256 + 1, pixels).unwrap();
-            assert_eq!(decode(&encode(&image, &options).unwrap()), Ok(image));
+            assert_eq!(decode(&encode(&image, None, &options).unwrap()), Ok(image));
         }
     }
 
     #[test]
     fn files_say_that_they_are_srgb() {
-        let bytes = encode(&ramp(3, 2), &WriteOptions::default()).unwrap();
+        let bytes = encode(&ramp(3, 2), None, &WriteOptions::default()).unwrap();
         let reader = open(&bytes).unwrap();
         assert_eq!(reader.info().srgb, Some(SrgbRenderingIntent::RelativeColorimetric));
         assert_eq!(reader.info().size(), (3, 2));

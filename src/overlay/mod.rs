@@ -1,5 +1,5 @@
 //! What is drawn over a finished picture: thin lines at the places in the scene where they belong,
-//! contours of spheres, a fog, another background.
+//! contours of spheres, a fog, another background or none.
 //!
 //! Lines have no thickness in the scene, so no ray is traced for them. They are projected through
 //! the camera, drawn in pixels with smooth edges, and hidden by what the [layers](crate::layers) say
@@ -7,9 +7,13 @@
 
 mod contours;
 mod lines;
+mod matte;
+mod shadow;
 mod sky;
 
 pub use lines::{Line, Pen};
+pub use matte::{Matte, draw_alpha};
+pub use shadow::{Ground, ground};
 
 use crate::film::Region;
 use crate::image::Image;

@@ -23,7 +23,8 @@ impl Overlay<'_> {
         }
     }
 
-    fn sky(&self, x: usize, y: usize) -> [f32; 3] {
+    /// What the middle of a pixel would see of the sky.
+    pub(super) fn sky(&self, x: usize, y: usize) -> [f32; 3] {
         let at = |first: u32, offset: usize| f64::from(first) + offset as f64 + 0.5;
         let place = [at(self.region.x, x), at(self.region.y, y)];
         let (_, direction) = self.world.camera.rays::<f64>(place, None);

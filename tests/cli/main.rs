@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod bench;
+mod figures;
 mod folder;
 mod frames;
 mod inputs;

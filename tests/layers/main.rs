@@ -3,6 +3,7 @@
 mod channels;
 #[path = "../common/mod.rs"]
 mod common;
+mod mattes;
 
 use common::*;
 use glam::DVec3;
@@ -104,6 +105,7 @@ fn an_empty_scene_has_nothing_anywhere() {
         normal: [0.0; 3],
         depth: f32::INFINITY,
         coverage: 0.0,
+        ground: 0.0,
         id: NOTHING,
     };
     assert_eq!(all_of(&dark()).pixels, vec![nothing; 256]);

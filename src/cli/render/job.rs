@@ -4,8 +4,9 @@ use super::looks::with_columns;
 use super::numbers::numbered;
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
-use crate::cli::looks::BarFile;
+use crate::cli::looks::{BarPlace, LookArgs};
 use crate::cli::names::{self, Traversal};
+use crate::cli::particles::ParticleArgs;
 use crate::cli::settings::region_text;
 use crate::cli::slices::SliceArgs;
 use crate::cli::source::Source;
@@ -26,7 +27,9 @@ use std::path::PathBuf;
 pub(super) struct Job<'a> {
     pub(super) source: Source,
     pub(super) looks: Looks,
-    pub(super) color_bar: Option<&'a BarFile>,
+    /// What of it was typed.
+    pub(super) typed: (&'a ParticleArgs, &'a LookArgs),
+    pub(super) color_bar: Option<&'a BarPlace>,
     pub(super) output: PathBuf,
     pub(super) format: Format,
     pub(super) picture: &'a PictureArgs,
@@ -56,6 +59,18 @@ impl<'a> Job<'a> {
                 format!("{format} has no room for --layers; end the name of --output in .exr");
             return Err(Failure::usage("render", message));
         }
+        if args.style.is_transparent() && !matches!(format, Format::Png | Format::Exr) {
+            let message = format!(
+                "{format} has no room for --background transparent; end the name of --output in \
+                 .png or .exr"
+            );
+            return Err(Failure::usage("render", message));
+        }
+        let inside = matches!(&args.looks.color_bar, Some(BarPlace::Inside(_)));
+        if inside && args.picture.region.is_some() {
+            let message = "--color-bar inside is for a whole picture: leave --region out";
+            return Err(Failure::usage("render", message));
+        }
         let source = match &args.scene {
             Some(path) => Source::of_path("render", path, &args.particles)?,
             None if args.particles.any() => {
@@ -72,6 +87,7 @@ impl<'a> Job<'a> {
         Ok(Self {
             source: with_columns(source, &looks)?,
             looks,
+            typed: (&args.particles, &args.looks),
             color_bar: args.looks.color_bar.as_ref(),
             output: args.output.clone(),
             format,
@@ -108,7 +124,7 @@ impl<'a> Job<'a> {
 
     /// Whether something is drawn over the picture, which takes layers.
     pub(super) fn draws_over(&self) -> bool {
-        self.views.draws_cell() || self.style.background().is_some()
+        self.views.draws_cell() || self.style.background().is_some() || self.style.is_transparent()
     }
 
     /// The threads that do it.

@@ -2,7 +2,7 @@
 
 use super::job::Job;
 use super::prepare::Prepared;
-use spherule::image::Channel;
+use spherule::image::{Channel, Values};
 use spherule::layers::{Layer, layers};
 use spherule::render::{Options, Render};
 use spherule::scene::Settings;
@@ -25,6 +25,11 @@ pub(super) fn channels(job: &Job, prepared: &Prepared, render: &Render) -> Vec<C
     let mut layers = layers(&prepared.world, &settings, &options, &wanted);
     layers.statistics.clone_from(&render.statistics);
     layers.channels(&wanted)
+}
+
+/// Alpha as a channel.
+pub(super) fn alpha(values: Vec<f32>) -> Channel {
+    Channel { name: "A".to_owned(), values: Values::Floats(values) }
 }
 
 /// Those that were typed, each once; all if one is `None`.

@@ -3,12 +3,18 @@
 use super::job::Job;
 use super::prepare::Prepared;
 use crate::cli::failure::Failure;
-use crate::cli::looks::BarFile;
+use crate::cli::looks::BarPlace;
 use crate::cli::source::Source;
+use crate::cli::views::Canvas;
 use spherule::atomic::{check_destination, write_atomically};
 use spherule::color::bar::{Bar, Direction};
-use spherule::scene::Scene;
+use spherule::drawing::{DrawingError, Picture};
+use spherule::image::Image;
 use spherule::scene::particles::{self, Cell, Legend, Looks, Particles};
+use spherule::scene::{Rgb, Scene};
+
+/// How long a color bar in a picture is, by the picture's height.
+const BAR_SHARE: f64 = 0.35;
 
 /// The source, with the columns that the looks need; only particles have such looks.
 pub(super) fn with_columns(source: Source, looks: &Looks) -> Result<Source, Failure> {
@@ -54,20 +60,46 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
 
 /// Finds out whether the color bar can be written, and changes nothing.
 pub(super) fn check_bar(job: &Job) -> Result<(), Failure> {
-    let Some(BarFile { path, .. }) = job.color_bar else { return Ok(()) };
+    let Some(BarPlace::File(path, _)) = job.color_bar else { return Ok(()) };
     check_destination(path).map_err(|error| Failure::Write(path.clone(), error))
 }
 
-/// Writes the color bar, as high as the picture.
+/// Writes the color bar, as high as the picture, if it has a file; refuses one of no numbers.
 pub(super) fn write_bar(job: &Job, prepared: &Prepared) -> Result<(), Failure> {
-    let Some(BarFile { path, format }) = job.color_bar else { return Ok(()) };
-    let Some(Legend { scale, label }) = &prepared.legend else {
+    let Some(place) = job.color_bar else { return Ok(()) };
+    let Some(legend) = &prepared.legend else {
         let message = "--color-bar tells what numbers have which colors: --color-by a column of \
                        numbers";
         return Err(Failure::usage("render", message));
     };
-    let height = prepared.scene.settings.height;
-    let bar = Bar::new(scale, label, height, Direction::Up)?.file(*format)?;
+    let BarPlace::File(path, format) = place else { return Ok(()) };
+    let bar = bar(legend, prepared.scene.settings.height)?.file(*format)?;
     write_atomically(path, |writer| writer.write_all(&bar))
         .map_err(|error| Failure::Write(path.clone(), error))
+}
+
+/// Draws the color bar into its corner, if it has one.
+pub(super) fn draw_bar(
+    job: &Job,
+    legend: Option<&Legend>,
+    canvas: &mut Canvas,
+    ink: [f32; 3],
+) -> Result<(), Failure> {
+    let (Some(BarPlace::Inside(corner)), Some(legend)) = (job.color_bar, legend) else {
+        return Ok(());
+    };
+    let (width, height) = (canvas.image.width, canvas.image.height);
+    let bar = bar(legend, (f64::from(height) * BAR_SHARE) as u32)?;
+    let size = bar.size();
+    let x = if corner.left { 0 } else { width.saturating_sub(size.0) };
+    let y = if corner.top { 0 } else { height.saturating_sub(size.1) };
+    let draw = |image: &mut Image| bar.draw_over(image, (x, y), Rgb::from_array(ink));
+    draw(&mut Image { width: 1, height: 1, pixels: vec![[0.0; 3]] })?;
+    // What succeeds once does so again.
+    canvas.draw(|image| _ = draw(image));
+    Ok(())
+}
+
+fn bar(legend: &Legend, length: u32) -> Result<Bar, DrawingError> {
+    Bar::new(&legend.scale, &legend.label, length, Direction::Up)
 }

@@ -32,8 +32,10 @@ fn metadata(job: &Job, prepared: &Prepared, render: &Render, options: &WriteOpti
         metadata.push("Title", prepared.title.replace('\0', " "));
     }
     let listed = settings::list(&prepared.scene.settings, prepared.region);
-    let listed =
-        listed.into_iter().chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
+    let (particles, looks) = job.typed;
+    let looks = looks.list(prepared.legend.as_ref());
+    let listed = listed.into_iter().chain(particles.list(job.frame)).chain(looks);
+    let listed = listed.chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
     for (name, value) in listed.chain(settings::list_encoding(job.format, options)) {
         let text = match value {
             Value::String(text) => text,

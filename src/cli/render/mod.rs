@@ -55,10 +55,10 @@ fn make_turn(jobs: &[Job]) -> Result<ExitCode, Failure> {
 }
 
 fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
-    finish_picture(job, &Prepared::load(job, None)?)
+    finish_picture(job, &mut Prepared::load(job, None)?)
 }
 
-fn finish_picture(job: &Job, prepared: &Prepared) -> Result<ExitCode, Failure> {
+fn finish_picture(job: &Job, prepared: &mut Prepared) -> Result<ExitCode, Failure> {
     prepared.tell(job);
     looks::write_bar(job, prepared)?;
     let mut render = trace(job, prepared);
@@ -66,11 +66,10 @@ fn finish_picture(job: &Job, prepared: &Prepared) -> Result<ExitCode, Failure> {
         output::warn("interrupted before the first sample: nothing is written");
         return Ok(ExitCode::from(INTERRUPTED));
     }
-    let (cell, region) = (prepared.cell.as_ref(), prepared.region);
-    let over = Over { views: job.views, style: job.style, cell, region };
-    over.draw(&prepared.world, &prepared.scene.settings, &mut render);
+    let alpha = draw_over(job, prepared, &mut render)?;
     let options = metadata::write_options(job, prepared, &render);
-    let channels = layers::channels(job, prepared, &render);
+    let mut channels = layers::channels(job, prepared, &render);
+    channels.extend(alpha.map(layers::alpha));
     render.image.write_layers(&job.output, &channels, &options)?;
     Summary::new(job, prepared, &render, &options).tell(job.report);
     if render.complete {
@@ -84,6 +83,24 @@ fn finish_picture(job: &Job, prepared: &Prepared) -> Result<ExitCode, Failure> {
         output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
     }
     Ok(ExitCode::from(INTERRUPTED))
+}
+
+/// Draws what is drawn over pictures. Returns alpha, if the background is transparent.
+fn draw_over(
+    job: &Job,
+    prepared: &mut Prepared,
+    render: &mut Render,
+) -> Result<Option<Vec<f32>>, Failure> {
+    let over = Over {
+        views: job.views,
+        style: job.style,
+        cell: prepared.cell.as_ref(),
+        region: prepared.region,
+        format: job.format,
+    };
+    let mut canvas = over.draw(&mut prepared.world, &prepared.scene.settings, render);
+    looks::draw_bar(job, prepared.legend.as_ref(), &mut canvas, over.ink())?;
+    Ok(canvas.alpha)
 }
 
 fn trace(job: &Job, prepared: &Prepared) -> Render {

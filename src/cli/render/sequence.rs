@@ -10,6 +10,7 @@ use super::numbers::numbered;
 use super::prepare::Prepared;
 use crate::cli::failure::Failure;
 use crate::cli::frames::FrameRange;
+use crate::cli::looks::BarPlace;
 use crate::cli::source::Source;
 use spherule::image::check_writable;
 use spherule::scene::SceneError;
@@ -81,8 +82,8 @@ impl Sequence<'_> {
         check_writable(&job.output)?;
         let particles = of_frame(path, frame, &self.options)?;
         let radius = guessed(&particles, &self.options);
-        let prepared = Prepared::load(&job, Some(particles))?;
-        let code = finish_picture(&job, &prepared)?;
+        let mut prepared = Prepared::load(&job, Some(particles))?;
+        let code = finish_picture(&job, &mut prepared)?;
         self.options.radii = radius.map_or(self.options.radii.clone(), Radii::Missing);
         self.keep(prepared);
         Ok(code)
@@ -91,7 +92,7 @@ impl Sequence<'_> {
     /// Makes the next pictures like this one.
     fn keep(&mut self, prepared: Prepared) {
         self.job.camera = Some(prepared.scene.camera);
-        self.job.color_bar = None;
+        self.job.color_bar = inside(self.job.color_bar);
         if let (Coloring::Column(colors), Some(legend)) =
             (&mut self.job.looks.coloring, prepared.legend)
         {
@@ -99,6 +100,11 @@ impl Sequence<'_> {
             colors.ends.get_or_insert([range.low(), range.high()]);
         }
     }
+}
+
+/// A color bar that every picture has.
+fn inside(bar: Option<&BarPlace>) -> Option<&BarPlace> {
+    bar.filter(|bar| matches!(bar, BarPlace::Inside(_)))
 }
 
 /// The radius of all particles, before it is scaled, if it may have been guessed.

@@ -6,7 +6,7 @@ mod periodic;
 mod style;
 
 use self::camera::View;
-pub(super) use self::over::Over;
+pub(super) use self::over::{Canvas, Over};
 pub(super) use self::style::StyleArgs;
 use super::names::Names;
 use super::settings::List;

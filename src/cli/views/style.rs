@@ -14,16 +14,18 @@ pub(in crate::cli) struct StyleArgs {
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<Preset>,
     /// In the sky's place, which goes on lighting the scene: white, black or #rrggbb, before
-    /// --exposure [default: white with --preset, or else the sky]
+    /// --exposure; or transparent, for PNG and EXR, where of the ground only shadows are left
+    /// [default: white with --preset, or else the sky]
     #[arg(long, value_name = "COLOR", value_parser = color)]
     background: Option<Background>,
 }
 
-/// A color, and how it was typed.
+/// A color, or none, and how it was typed.
 #[derive(Clone, Debug, PartialEq)]
 struct Background {
     typed: String,
-    color: Rgb,
+    /// `None`: it is transparent.
+    color: Option<Rgb>,
 }
 
 fn preset(name: &str) -> Result<Preset, String> {
@@ -40,10 +42,10 @@ fn color(text: &str) -> Result<Background, String> {
         "black" => Some(Rgb::ZERO),
         _ => text.strip_prefix('#').filter(six).and_then(hex).map(srgb),
     };
-    let typed = text.to_owned();
-    color
-        .map(|color| Background { typed, color })
-        .ok_or_else(|| "give white, black, or six digits as in \"#f0f4ff\"".to_owned())
+    if color.is_none() && text != "transparent" {
+        return Err("give white, black, transparent, or six digits as in \"#f0f4ff\"".to_owned());
+    }
+    Ok(Background { typed: text.to_owned(), color })
 }
 
 impl StyleArgs {
@@ -53,8 +55,15 @@ impl StyleArgs {
 
     /// What is seen in the sky's place, linear.
     pub(in crate::cli) fn background(&self) -> Option<Rgb> {
-        let typed = self.background.as_ref().map(|background| background.color);
-        typed.or(self.preset.map(|_| Rgb::ONE))
+        match &self.background {
+            Some(background) => background.color,
+            None => self.preset.map(|_| Rgb::ONE),
+        }
+    }
+
+    /// Whether nothing is.
+    pub(in crate::cli) fn is_transparent(&self) -> bool {
+        self.background.as_ref().is_some_and(|background| background.color.is_none())
     }
 
     /// Sets what the look says of settings, before others are typed.
@@ -91,8 +100,15 @@ mod tests {
     #[test]
     fn colors_and_looks_are_read() {
         let read = |text: &str| color(text).map(|background| background.color);
-        assert_eq!((read("white"), read("#ffffff")), (Ok(Rgb::ONE), Ok(Rgb::ONE)));
-        assert_eq!((read("black"), read("#FF0000")), (Ok(Rgb::ZERO), Ok(Rgb::X)));
+        for (text, color) in [
+            ("white", Some(Rgb::ONE)),
+            ("#ffffff", Some(Rgb::ONE)),
+            ("black", Some(Rgb::ZERO)),
+            ("#FF0000", Some(Rgb::X)),
+            ("transparent", None),
+        ] {
+            assert_eq!(read(text), Ok(color));
+        }
         for text in ["", "#", "#fff", "#-fffff", "#+fffff", "ffffff", "red", "#ggffff"] {
             assert!(read(text).is_err(), "{text}");
         }

@@ -1,0 +1,71 @@
+//! Pictures without their background: the colors of spheres, and how much of each pixel they and
+//! their shadows take.
+
+use super::{Ground, Overlay};
+use crate::image::{Image, tone};
+
+/// How much of each pixel is no background, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matte {
+    /// The share that spheres cover, 0..=1.
+    pub coverage: Vec<f32>,
+    /// The share of its light that the rest has lost to shadows, 0..=1; empty if there is no ground
+    /// that could lose any.
+    pub shadow: Vec<f32>,
+}
+
+impl Matte {
+    /// Alpha where linear values are blended, as compositors do: a background times 1 - alpha is as
+    /// much darker as the ground is in the shadow.
+    pub fn linear(&self) -> Vec<f32> {
+        self.alpha(|shadow| shadow)
+    }
+
+    /// Alpha where sRGB codes are blended, as browsers and presentations do: black over white gets
+    /// the code that white has in the shadow.
+    pub fn encoded(&self) -> Vec<f32> {
+        self.alpha(|shadow| 1.0 - tone::srgb_encode(f64::from(1.0 - shadow)) as f32)
+    }
+
+    fn alpha(&self, darkness: impl Fn(f32) -> f32) -> Vec<f32> {
+        let through = |row: usize| self.shadow.get(row).map_or(1.0, |&dark| 1.0 - darkness(dark));
+        let alpha = |(row, covered): (usize, &f32)| 1.0 - (1.0 - covered) * through(row);
+        self.coverage.iter().enumerate().map(alpha).collect()
+    }
+}
+
+impl Overlay<'_> {
+    /// Takes sky and ground out of a picture: what is left is what spheres give to each pixel, in
+    /// proportion to their share of it. `ground` is what is known of the ground, if there is one.
+    pub fn lift(&self, image: &mut Image, ground: Option<Ground>) -> Matte {
+        let width = self.region.width as usize;
+        let mut coverage = Vec::with_capacity(image.pixels.len());
+        for (row, (pixel, seen)) in image.pixels.iter_mut().zip(&self.layers.pixels).enumerate() {
+            let covered = (seen.coverage - seen.ground).clamp(0.0, 1.0);
+            coverage.push(covered);
+            let behind = match &ground {
+                Some(ground) => ground.lit.pixels[row],
+                None => self.sky(row % width, row / width),
+            };
+            let rest = |i: usize| (pixel[i] - (1.0 - covered) * behind[i]).max(0.0);
+            *pixel = if covered > 0.0 { std::array::from_fn(rest) } else { [0.0; 3] };
+        }
+        Matte { coverage, shadow: ground.map_or_else(Vec::new, |ground| ground.shadow) }
+    }
+}
+
+/// Raises the alpha of a picture of this size by what is drawn over it: `draw` does so with any
+/// picture.
+///
+/// What it leaves of black and of white tells how much it covers.
+pub fn draw_alpha(alpha: &mut [f32], (width, height): (u32, u32), draw: impl Fn(&mut Image)) {
+    let over = |paper: f32| {
+        let mut image = Image { width, height, pixels: vec![[paper; 3]; alpha.len()] };
+        draw(&mut image);
+        image.pixels
+    };
+    let (black, white) = (over(0.0), over(1.0));
+    for (alpha, (black, white)) in alpha.iter_mut().zip(black.iter().zip(&white)) {
+        *alpha = 1.0 - (1.0 - *alpha) * (white[1] - black[1]).clamp(0.0, 1.0);
+    }
+}

@@ -1,0 +1,134 @@
+//! What figures need: no background, a color bar in the picture, and files that say how they came
+//! about.
+
+use crate::folder::{Folder, SMALL, text};
+use spherule::image::{Image, read_metadata};
+use std::fs::File;
+use std::io::BufReader;
+
+/// Three balls in a row, with a column of numbers.
+const BALLS: &str = "\
+3
+Properties=species:S:1:pos:R:3:q:R:1
+C 0 0 0 1
+C 1 0 0 2
+O 2 0 0 4
+";
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("a.xyz", BALLS);
+    folder
+}
+
+fn picture(folder: &Folder, args: &[&str]) {
+    folder.succeed(&[&SMALL[..], &["a.xyz", "--radii", "0.5", "--view", "z"], args].concat());
+}
+
+/// Red, green, blue and alpha of each pixel.
+fn codes(folder: &Folder, name: &str) -> Vec<[u8; 4]> {
+    let file = BufReader::new(File::open(folder.path(name)).expect("a file"));
+    let mut reader = png::Decoder::new(file).read_info().expect("a header");
+    let mut codes = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut codes).expect("pixels");
+    codes.as_chunks().0.to_vec()
+}
+
+#[test]
+fn transparent_pictures_have_no_sky_and_keep_shadows() {
+    let folder = folder();
+    picture(&folder, &["--background", "transparent", "-o", "a.png"]);
+    let plain = codes(&folder, "a.png");
+    assert_eq!(plain.len(), 40 * 24);
+    // The margin is empty, the middle full, and nothing between is brighter than white balls are.
+    assert_eq!((plain[0], plain[12 * 40 + 20][3]), ([0; 4], 255));
+    picture(&folder, &["--background", "transparent", "--preset", "studio", "-o", "b.png"]);
+    let studio = codes(&folder, "b.png");
+    let faint = |pixel: &&[u8; 4]| pixel[..3] == [0; 3] && (10..250).contains(&pixel[3]);
+    let shadowy = |codes: &[[u8; 4]]| codes.iter().filter(faint).count();
+    assert!(shadowy(&studio) > shadowy(&plain) + 20, "shadows on the ground");
+    picture(&folder, &["--background", "transparent", "-o", "c.exr"]);
+    let linear = Image::read(folder.path("c.exr")).expect("a picture");
+    assert_eq!(linear.pixel(0, 0), Some([0.0; 3]));
+    for look in ["depthcue", "outline", "chalk"] {
+        picture(&folder, &["--background", "transparent", "--preset", look, "-o", "d.png"]);
+        let codes = codes(&folder, "d.png");
+        assert_eq!((codes[0][3], codes[12 * 40 + 20][3]), (0, 255), "{look}");
+    }
+}
+
+#[test]
+fn color_bars_stand_in_their_corner() {
+    let folder = folder();
+    let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    let fixed = "render a.xyz --radii 0.5 --view z --color-by q --size 240x400 --spp 1 --quiet";
+    let fixed: Vec<&str> = fixed.split(' ').collect();
+    let render = |args: &[&str]| folder.succeed(&[&fixed[..], args].concat());
+    render(&["-o", "plain.png"]);
+    let plain = read("plain.png");
+    for (place, corner) in [
+        ("inside", [true, true]),
+        ("inside:bottom-right", [true, true]),
+        ("inside:bottom-left", [false, true]),
+        ("inside:top-right", [true, false]),
+        ("inside:top-left", [false, false]),
+    ] {
+        render(&["--color-bar", place, "-o", "b.png"]);
+        let image = read("b.png");
+        let changed = |i: &usize| image.pixels[*i] != plain.pixels[*i];
+        let changed: Vec<usize> = (0..image.pixels.len()).filter(changed).collect();
+        assert!(changed.len() > 300, "{place}");
+        for i in changed {
+            assert_eq!([i % 240 >= 120, i / 240 >= 200], corner, "{place}");
+        }
+    }
+    render(&["--color-bar", "inside", "--background", "transparent", "-o", "c.png"]);
+    let opaque =
+        codes(&folder, "c.png").iter().skip(200 * 240).filter(|code| code[3] == 255).count();
+    assert!(opaque > 300, "the bar is not transparent");
+}
+
+#[test]
+fn files_say_what_particles_look_like() {
+    let folder = folder();
+    let looks = ["--color-by", "q", "--color-log", "--select", "q > 0.5", "--type", "O:radius=0.7"];
+    picture(&folder, &[&looks[..], &["--slice", "z > 3", "-o", "a.png"]].concat());
+    let metadata = read_metadata(folder.path("a.png")).expect("metadata");
+    for (name, value) in [
+        ("color_by", "q"),
+        ("color_map", "viridis"),
+        ("color_range", "1,4"),
+        ("color_log", "true"),
+        ("select", "q > 0.5"),
+        ("type", "O:radius=0.7"),
+        ("radii", "0.5"),
+        ("slice", "z > 3"),
+        ("slice_mode", "remove"),
+        ("view", "z"),
+    ] {
+        assert_eq!(metadata.value(name), Some(value), "{name}");
+    }
+    picture(&folder, &["--colors", "cpk", "--radius-scale", "2", "--frame", "all", "-o", "b.png"]);
+    let metadata = read_metadata(folder.path("b-0000.png")).expect("metadata");
+    for (name, value) in [("colors", "cpk"), ("radius_scale", "2.0"), ("frame", "0")] {
+        assert_eq!(metadata.value(name), Some(value), "{name}");
+    }
+    assert_eq!(metadata.value("select"), None);
+}
+
+#[test]
+fn figures_that_cannot_be_are_refused() {
+    let folder = folder();
+    for (args, message) in [
+        (&["--background", "transparent", "-o", "a.ppm"][..], "end the name of --output in .png"),
+        (&["--background", "clear"], "white, black, transparent"),
+        (&["--color-by", "q", "--color-bar", "inside:left"], "top-left"),
+        (&["--color-by", "q", "--color-bar", "inside", "--region", "0,0,8x8"], "whole picture"),
+        (&["--color-by", "species", "--color-bar", "inside"], "a column of numbers"),
+    ] {
+        let output = folder.run(&[&SMALL[..], &["a.xyz"], args].concat());
+        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
+        assert!(said.contains(message), "{args:?}: {said}");
+    }
+}
