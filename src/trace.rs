@@ -68,6 +68,15 @@ impl Tracer {
 
     /// Finds what is hit of the spheres that are there for these rays.
     fn spheres<Q: Query>(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+        if world.seen.is_none() && world.cut.is_empty() {
+            return self.walk::<Q>(Tree { bvh: &world.bvh, spheres: &world.spheres }, rays, hits);
+        }
+        self.sliced::<Q>(world, rays, hits)
+    }
+
+    /// The same where slices hide spheres from the camera, or cut them.
+    #[cold]
+    fn sliced<Q: Query>(self, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
         // Rays that start on nothing are the camera's, and never mixed with others.
         let from_camera = rays.own.first() == Some(&MISS);
         let Some(seen) = world.seen.as_ref().filter(|_| from_camera) else {
@@ -93,6 +102,7 @@ impl Tracer {
         exact
     }
 
+    #[inline(never)]
     fn walk<Q: Query>(self, Tree { bvh, spheres }: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
         match self.width {
             Width::One => walk::trace::<f32, Q>(self.method, bvh, spheres, rays, hits),

@@ -232,10 +232,11 @@ impl Workspace {
     /// inside to where `direction` leaves the sphere.
     #[inline]
     pub fn chord(&self, world: &World, row: usize, direction: Vec3) -> f64 {
-        let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
-        let direction = direction.as_dvec3();
-        if world.cut.divides(center, radius) {
-            return far_end(self.surface.point[row].as_dvec3() - center, radius, direction);
+        let sphere = self.hits.sphere[row] as usize;
+        let (radius, direction) = (f64::from(world.spheres.radius(sphere)), direction.as_dvec3());
+        let center = || world.spheres.center(sphere).as_dvec3();
+        if !world.cut.is_empty() && world.cut.divides(center(), radius) {
+            return far_end(self.surface.point[row].as_dvec3() - center(), radius, direction);
         }
         chord(self.surface.normal[row], radius, direction)
     }
