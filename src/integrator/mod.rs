@@ -12,6 +12,7 @@ pub mod path;
 pub mod shadows;
 pub mod skips;
 pub mod stages;
+pub mod surface;
 pub mod whitted;
 pub mod workspace;
 

@@ -2,16 +2,17 @@
 
 use super::Job;
 use super::clock::Stage;
+use super::surface::{solve, solve_cut};
 use super::workspace::{Arrival, Workspace};
 use crate::film::{Tile, View};
 use crate::lanes::{F64x8, Lanes, MAX_LANES, load_doubles};
-use crate::ray::{ExactRay, GROUND, MISS};
+use crate::ray::MISS;
 use crate::sampling::{self, Sampler};
 use crate::shade::{Bsdf, dielectric};
 use crate::trace;
 use crate::vec3;
 use crate::world::{Kind, MaterialId, World};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::ops::Range;
 
 /// Begins a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
@@ -132,10 +133,13 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
         }
     }
     work.clock.end(Stage::Trace);
+    let cut = !job.world.cut.is_empty();
     for row in 0..work.len() {
         let hit = work.hits.sphere[row];
         if hit != MISS {
-            let (point, normal) = solve(job.world, work, row, hit);
+            let world = job.world;
+            let (point, normal) =
+                if cut { solve_cut(world, work, row, hit) } else { solve(world, work, row, hit) };
             work.surface.point[row] = point;
             work.surface.normal[row] = normal;
         }
@@ -143,38 +147,6 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
     let count = work.len();
     work.bins.sort(job.world, &work.hits, count);
     work.clock.end(Stage::Surface);
-}
-
-/// Point and outward normal of a hit, in double precision from the surface itself: the point is no
-/// farther off it than rounding takes it.
-fn solve(world: &World, work: &Workspace, row: usize, hit: u32) -> (Vec3, DVec3) {
-    let ray = work.rays.exact(row);
-    if hit == GROUND {
-        let normal = world.ground.map_or(DVec3::Z, |ground| ground.normal);
-        let height = world.ground.map_or(0.0, |ground| ground.height);
-        let point = ray.at(work.hits.t[row]);
-        let off = normal.dot(point) - height;
-        return ((point - normal * off).as_vec3(), normal);
-    }
-    if let Some(normal) = world.cut.cap(&ray, work.rays.own[row], work.hits.t[row]) {
-        return (ray.at(work.hits.t[row]).as_vec3(), normal);
-    }
-    let center = world.spheres.center(hit as usize).as_dvec3();
-    let radius = f64::from(world.spheres.radius(hit as usize));
-    let normal = if work.rays.own[row] == hit && !world.cut.divides(center, radius) {
-        exit_normal(&ray, work.surface.normal[row])
-    } else {
-        // Of a sphere that is smaller than rounding, the ray is all that is known.
-        ray.at_from(center, work.hits.t[row]).normalize_or(-ray.direction.normalize())
-    };
-    ((center + normal * radius).as_vec3(), normal)
-}
-
-/// Where a chord leaves a sphere, from where it entered: mirrored at the plane across the chord's
-/// middle. It does not use the origin, which was rounded.
-fn exit_normal(ray: &ExactRay, entry: DVec3) -> DVec3 {
-    let d = ray.direction;
-    (entry - d * (2.0 * entry.dot(d) / d.length_squared())).normalize()
 }
 
 /// The surface that a row has hit, as its material sees it.

@@ -3,6 +3,7 @@
 use super::clock::Clock;
 use super::shadows::Shadows;
 use super::skips::Skips;
+use super::surface::{chord, far_end};
 use crate::film::View;
 use crate::lanes::MAX_LANES;
 use crate::ray::{GROUND, Hits, MISS, Rays};
@@ -232,11 +233,20 @@ impl Workspace {
     /// inside to where `direction` leaves the sphere.
     #[inline]
     pub fn chord(&self, world: &World, row: usize, direction: Vec3) -> f64 {
-        let sphere = self.hits.sphere[row] as usize;
-        let (radius, direction) = (f64::from(world.spheres.radius(sphere)), direction.as_dvec3());
-        let center = || world.spheres.center(sphere).as_dvec3();
-        if !world.cut.is_empty() && world.cut.divides(center(), radius) {
-            return far_end(self.surface.point[row].as_dvec3() - center(), radius, direction);
+        if !world.cut.is_empty() {
+            return self.chord_cut(world, row, direction);
+        }
+        let radius = f64::from(world.spheres.radius(self.hits.sphere[row] as usize));
+        chord(self.surface.normal[row], radius, direction.as_dvec3())
+    }
+
+    /// The same where spheres are cut; apart, so that it is not in the way elsewhere.
+    #[cold]
+    fn chord_cut(&self, world: &World, row: usize, direction: Vec3) -> f64 {
+        let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
+        let direction = direction.as_dvec3();
+        if world.cut.divides(center, radius) {
+            return far_end(self.surface.point[row].as_dvec3() - center, radius, direction);
         }
         chord(self.surface.normal[row], radius, direction)
     }
@@ -264,20 +274,6 @@ impl Workspace {
         }
         self.rays.truncate(kept);
     }
-}
-
-/// Distance from a point of a sphere, with outward unit `normal`, through the inside to where
-/// `direction` leaves.
-#[inline]
-pub fn chord(normal: DVec3, radius: f64, direction: DVec3) -> f64 {
-    (-2.0 * radius * normal.dot(direction) / direction.length_squared()).max(0.0)
-}
-
-/// The same from a point of the inside, `offset` from the center.
-fn far_end(offset: DVec3, radius: f64, direction: DVec3) -> f64 {
-    let (a, b) = (direction.length_squared(), -offset.dot(direction));
-    let outside = offset.length_squared() - radius * radius;
-    ((b + (b * b - a * outside).max(0.0).sqrt()) / a).max(0.0)
 }
 
 impl Paths {

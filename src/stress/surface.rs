@@ -11,7 +11,7 @@ use super::rays::Ray;
 use super::report::RegimeReport;
 use super::scenes::parts;
 use crate::bvh::walk::{Closest, Method, trace};
-use crate::integrator::workspace::chord;
+use crate::integrator::surface::chord;
 use crate::lanes::F32x16;
 use crate::ray::{Hits, MISS, Rays};
 use crate::scene::{Material, NamedMaterial, Rgb, Scene};

@@ -94,14 +94,7 @@ impl Cut {
     }
 
     /// Whether a plane goes through a sphere.
-    #[inline(always)]
     pub fn divides(&self, center: DVec3, radius: f64) -> bool {
-        !self.is_empty() && self.one_divides(center, radius)
-    }
-
-    /// Apart, so that it is not in the way where there are no planes.
-    #[cold]
-    fn one_divides(&self, center: DVec3, radius: f64) -> bool {
         self.planes.iter().any(|plane| (plane.normal.dot(center) - plane.height).abs() < radius)
     }
 
@@ -134,13 +127,7 @@ impl Cut {
 
     /// The outward normal of the cap that a ray, which starts on `own`, has hit at distance `t`;
     /// `None` if what it has hit there is a sphere's own surface.
-    #[inline(always)]
     pub fn cap(&self, ray: &ExactRay, own: u32, t: f64) -> Option<DVec3> {
-        if self.is_empty() { None } else { self.one_cap(ray, own, t) }
-    }
-
-    #[cold]
-    fn one_cap(&self, ray: &ExactRay, own: u32, t: f64) -> Option<DVec3> {
         self.clip(ray, own).normal(t)
     }
 }
