@@ -51,9 +51,12 @@ where
             writer.flush()
         }
         Destination::Regular { path, folder, old } => {
-            let mut writer = BufWriter::new(create_temporary(&path, &folder)?);
+            let mut file = create_temporary(&path, &folder)?;
+            // To the file alone: errors would name the temporary file, which is no help.
+            let mut writer = BufWriter::new(file.as_file_mut());
             fill(&mut writer)?;
-            let file = writer.into_inner()?;
+            writer.flush()?;
+            drop(writer);
             if let Some(old) = old {
                 file.as_file().set_permissions(old.permissions())?;
             }

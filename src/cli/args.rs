@@ -1,5 +1,6 @@
 //! The command line as typed.
 
+use super::keep::KeepArgs;
 use super::looks::LookArgs;
 use super::names::{
     BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
@@ -74,6 +75,8 @@ pub(super) struct RenderArgs {
     pub(super) picture: PictureArgs,
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
+    #[command(flatten)]
+    pub(super) keep: KeepArgs,
     #[command(flatten)]
     pub(super) speed: SpeedArgs,
     #[command(flatten)]

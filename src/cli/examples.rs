@@ -7,7 +7,8 @@ Examples:
   spherule render scenes/weekend.toml -o weekend.png
   spherule info scenes/weekend.toml
 
-Exit codes: 0 done, 1 failed, 2 command line not understood, 130 interrupted";
+Exit codes: 0 done, 1 failed, 2 command line not understood, 130 interrupted,
+143 terminated";
 
 /// Of `spherule render`.
 pub(super) const RENDER: &str = "\
@@ -28,8 +29,12 @@ Examples:
   spherule render scene.toml --region 100,50,64x64 -o detail.png
   spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id
   spherule render scene.toml --json --quiet > statistics.json
+  spherule render scene.toml --spp 100000 -o long.exr --checkpoint long.checkpoint
+  spherule render --resume long.checkpoint          to the same picture as if it had never stopped
+  spherule render --resume long.checkpoint --spp 200000 --threads 8
 
-Ctrl-C saves the picture so far and exits with code 130.";
+Ctrl-C and SIGTERM save the picture so far, and the checkpoint, and exit with code 130 and 143. A
+second one ends the program at once; files are whole then too.";
 
 /// Of `spherule field`.
 pub(super) const FIELD: &str = "\

@@ -10,6 +10,7 @@ use miette::{
     SpanContents,
 };
 use spherule::bench::BenchError;
+use spherule::checkpoint::{CheckpointError, LockError};
 use spherule::drawing::DrawingError;
 use spherule::film::Region;
 use spherule::image::{CompareError, ImageError};
@@ -46,6 +47,17 @@ pub(crate) enum Failure {
     Write(PathBuf, io::Error),
     #[error("frame {0}: {1}")]
     Frame(u64, Box<Self>),
+    #[error("{0}")]
+    Checkpoint(#[from] CheckpointError),
+    #[error("{0}")]
+    Lock(#[from] LockError),
+    #[error(
+        "{}: is there already; go on with it by --resume, or remove it, or choose another name",
+        .0.display()
+    )]
+    Kept(PathBuf),
+    #[error("{}: cannot be gone on with: {}", .0.display(), .1)]
+    Resume(PathBuf, String),
     #[error("{0}")]
     Drawing(#[from] DrawingError),
     #[error("{0}")]

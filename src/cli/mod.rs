@@ -3,6 +3,7 @@
 
 mod args;
 mod bench;
+mod command;
 mod compare;
 mod completions;
 mod contents;
@@ -12,6 +13,7 @@ mod field;
 mod field_scene;
 mod frames;
 mod info;
+mod keep;
 mod looks;
 mod names;
 mod output;
@@ -20,6 +22,7 @@ mod processor;
 mod progress;
 mod render;
 mod settings;
+mod signals;
 mod slices;
 mod source;
 mod stress;
@@ -35,6 +38,7 @@ use std::process::ExitCode;
 /// Does what the command line says.
 pub(crate) fn run() -> Result<ExitCode, Failure> {
     processor::check()?;
+    signals::survive_large_files();
     match Args::of_process() {
         Command::Render(args) => render::run(&args),
         Command::Field(args) => field::run(&args),

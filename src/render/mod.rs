@@ -95,6 +95,9 @@ pub struct Render {
     pub elapsed: Duration,
     /// Why it ended.
     pub end: End,
+    /// What was to be reached with a target, in order: more than one if something was asked for
+    /// later.
+    pub stages: Vec<Stage>,
     /// Whether all samples are in it; if not, it was cancelled.
     pub complete: bool,
 }

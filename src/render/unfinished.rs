@@ -134,6 +134,7 @@ impl Unfinished {
             tasks,
             elapsed,
             end: self.end,
+            stages: self.stages.clone(),
             complete: self.end != End::Cancelled,
         }
     }

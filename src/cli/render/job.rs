@@ -4,6 +4,7 @@ use super::looks::with_columns;
 use super::numbers::numbered;
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
+use crate::cli::keep::KeepArgs;
 use crate::cli::looks::{BarPlace, LookArgs};
 use crate::cli::names::{self, Traversal};
 use crate::cli::particles::ParticleArgs;
@@ -43,6 +44,7 @@ pub(super) struct Job<'a> {
     /// Of an earlier picture of the same sequence.
     pub(super) camera: Option<Camera>,
     pub(super) encoding: &'a EncodingArgs,
+    pub(super) keep: &'a KeepArgs,
     pub(super) speed: &'a SpeedArgs,
     pub(super) tracer: Tracer,
     pub(super) threads: usize,
@@ -83,6 +85,7 @@ impl<'a> Job<'a> {
             let message = "--preset is for a file of particles: a scene says how it looks";
             return Err(Failure::usage("render", message));
         }
+        args.keep.check(args.views.turntable().is_some() || args.particles.frames().is_some())?;
         let looks = args.looks.looks(args.particles.options().radius_scale);
         Ok(Self {
             source: with_columns(source, &looks)?,
@@ -99,6 +102,7 @@ impl<'a> Job<'a> {
             frame: None,
             camera: None,
             encoding: &args.encoding,
+            keep: &args.keep,
             speed: &args.speed,
             tracer: tracer(args.speed.traversal, args.speed.lanes),
             threads: threads::count(args.speed.threads),

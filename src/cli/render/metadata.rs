@@ -8,7 +8,7 @@ use super::prepare::Prepared;
 use crate::cli::settings;
 use serde_json::Value;
 use spherule::image::{Metadata, WriteOptions};
-use spherule::render::Render;
+use spherule::render::{Render, Stage};
 
 /// All that the picture's file needs besides the picture.
 pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> WriteOptions {
@@ -46,6 +46,12 @@ fn metadata(job: &Job, prepared: &Prepared, render: &Render, options: &WriteOpti
     if prepared.scene.settings.has_target() {
         metadata.push("rounds", render.samples.rounds.to_string());
     }
+    if let [earlier @ .., _] = &render.stages[..]
+        && !earlier.is_empty()
+    {
+        let words: Vec<String> = earlier.iter().map(stage).collect();
+        metadata.push("earlier targets", words.join("; "));
+    }
     if prepared.scene.settings.has_target() || !render.complete {
         metadata.push("samples taken", render.samples.total.to_string());
     }
@@ -54,4 +60,10 @@ fn metadata(job: &Job, prepared: &Prepared, render: &Render, options: &WriteOpti
         metadata.push("error bound", noise.bound.to_string());
     }
     metadata
+}
+
+/// What was to be reached before.
+fn stage(stage: &Stage) -> String {
+    let error = stage.until_error.map(|error| format!("until_error {error}, "));
+    format!("{}spp {}", error.unwrap_or_default(), stage.spp)
 }

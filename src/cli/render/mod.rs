@@ -1,7 +1,7 @@
 //! `spherule render`: a scene becomes a picture in a file.
 
-mod interrupt;
 mod job;
+mod keeper;
 mod layers;
 mod looks;
 mod memory;
@@ -10,25 +10,52 @@ mod noise;
 mod notes;
 mod numbers;
 mod prepare;
+mod resume;
 mod sequence;
 mod summary;
 
 use self::job::Job;
+use self::keeper::Keeper;
 use self::prepare::Prepared;
+use self::resume::Resumed;
 use self::summary::Summary;
 use super::args::RenderArgs;
+use super::command::Given;
 use super::progress::Meter;
 use super::views::Over;
-use super::{Failure, output};
+use super::{Failure, output, signals};
 use spherule::image::check_writable;
-use spherule::render::{Options, Render, Skips, render};
+use spherule::render::{End, Options, Render, Unfinished};
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
 
-/// What a shell reports of a process that Ctrl-C ended.
-const INTERRUPTED: u8 = 130;
+/// How a render ended.
+struct Traced {
+    render: Render,
+    /// The code to exit with, if a signal ended it.
+    signal: Option<u8>,
+    /// How it is gone on with, if it is kept.
+    advice: Option<String>,
+}
 
 /// Renders and writes the picture, and tells how it went.
 pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+    // Before the file is read: who goes on from it goes on from what was written last.
+    let Some(keeper) = Keeper::new(&args.keep)? else { return run_as(args, None, None) };
+    let now = Given::of_process();
+    let Some(path) = &args.keep.resume else {
+        return run_as(args, Some(&keeper.with(now, &args.output)), None);
+    };
+    let (resumed, args, given) = Resumed::read(path, now)?;
+    run_as(&args, Some(&keeper.with(given, &args.output)), Some(resumed))
+}
+
+fn run_as(
+    args: &RenderArgs,
+    keeper: Option<&Keeper>,
+    resumed: Option<Resumed>,
+) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
     looks::check_bar(&job)?;
     if let Some(range) = args.particles.frames() {
@@ -36,7 +63,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     }
     let Some(pictures) = args.views.turntable() else {
         check_writable(&job.output)?;
-        return job.pool()?.install(|| make_picture(&job));
+        return job.pool()?.install(|| make_picture(&job, keeper, resumed));
     };
     let jobs = job.turns(pictures)?;
     jobs.iter().try_for_each(|job| check_writable(&job.output))?;
@@ -46,7 +73,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
 /// Makes the pictures of a turn, until one is interrupted.
 fn make_turn(jobs: &[Job]) -> Result<ExitCode, Failure> {
     for job in jobs {
-        let code = make_picture(job)?;
+        let code = make_picture(job, None, None)?;
         if code != ExitCode::SUCCESS {
             return Ok(code);
         }
@@ -54,35 +81,44 @@ fn make_turn(jobs: &[Job]) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn make_picture(job: &Job) -> Result<ExitCode, Failure> {
-    finish_picture(job, &mut Prepared::load(job, None)?)
+fn make_picture(
+    job: &Job,
+    keeper: Option<&Keeper>,
+    resumed: Option<Resumed>,
+) -> Result<ExitCode, Failure> {
+    let mut prepared = Prepared::load(job, None)?;
+    let unfinished = resumed.map(|resumed| resumed.go_on(job, &prepared)).transpose()?;
+    finish_picture(job, &mut prepared, keeper, unfinished)
 }
 
-fn finish_picture(job: &Job, prepared: &mut Prepared) -> Result<ExitCode, Failure> {
+fn finish_picture(
+    job: &Job,
+    prepared: &mut Prepared,
+    keeper: Option<&Keeper>,
+    unfinished: Option<Unfinished>,
+) -> Result<ExitCode, Failure> {
     prepared.tell(job);
     looks::write_bar(job, prepared)?;
-    let mut render = trace(job, prepared);
-    if render.samples.total == 0 {
+    let mut traced = trace(job, prepared, keeper, unfinished);
+    let code = traced.signal.map_or(ExitCode::SUCCESS, ExitCode::from);
+    if traced.render.samples.total == 0 {
         output::warn("interrupted before the first sample: nothing is written");
-        return Ok(ExitCode::from(INTERRUPTED));
+        return Ok(code);
     }
-    let alpha = draw_over(job, prepared, &mut render)?;
-    let options = metadata::write_options(job, prepared, &render);
-    let mut channels = layers::channels(job, prepared, &render);
+    write(job, prepared, &mut traced.render)?;
+    traced.tell(job, prepared);
+    Ok(code)
+}
+
+/// Writes the picture, with what is drawn over it and beside it, and tells how it went.
+fn write(job: &Job, prepared: &mut Prepared, render: &mut Render) -> Result<(), Failure> {
+    let alpha = draw_over(job, prepared, render)?;
+    let options = metadata::write_options(job, prepared, render);
+    let mut channels = layers::channels(job, prepared, render);
     channels.extend(alpha.map(layers::alpha));
     render.image.write_layers(&job.output, &channels, &options)?;
-    Summary::new(job, prepared, &render, &options).tell(job.report);
-    if render.complete {
-        return Ok(ExitCode::SUCCESS);
-    }
-    let output = job.output.display();
-    if prepared.scene.settings.has_target() {
-        output::warn(format_args!("interrupted: {output} holds what there was"));
-    } else {
-        let share = 100.0 * prepared.share(&render);
-        output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
-    }
-    Ok(ExitCode::from(INTERRUPTED))
+    Summary::new(job, prepared, render, &options).tell(job.report);
+    Ok(())
 }
 
 /// Draws what is drawn over pictures. Returns alpha, if the background is transparent.
@@ -103,18 +139,60 @@ fn draw_over(
     Ok(canvas.alpha)
 }
 
-fn trace(job: &Job, prepared: &Prepared) -> Render {
+/// Renders from the beginning, or from where a render was stopped.
+fn trace(
+    job: &Job,
+    prepared: &Prepared,
+    keeper: Option<&Keeper>,
+    unfinished: Option<Unfinished>,
+) -> Traced {
     let meter = Meter::new(job.report.quiet);
-    let show = |progress| meter.show(progress);
     let options = Options {
         tracer: job.tracer,
         region: Some(prepared.region),
-        progress: Some(&show),
-        cancel: Some(interrupt::flag()),
         statistics: layers::need_statistics(job),
-        skips: Skips::ALL,
+        cancel: Some(signals::stop()),
+        ..Options::default()
     };
-    let render = render(&prepared.world, &prepared.scene.settings, &options);
+    signals::catch();
+    let begin = || Unfinished::begin(&prepared.world, &prepared.scene.settings, &options);
+    let mut render = unfinished.unwrap_or_else(begin);
+    let mut pause = keeper.and_then(|_| job.keep.pause(Duration::ZERO));
+    let (signal, kept) = loop {
+        let due = pause.map(|pause| Instant::now() + pause);
+        let show = |progress| {
+            meter.show(progress);
+            if due.is_some_and(|due| due <= Instant::now()) {
+                signals::stop().store(true, Ordering::SeqCst);
+            }
+        };
+        let end = render.run(&prepared.world, &Options { progress: Some(&show), ..options });
+        let took = keeper.zip(prepared.identity.as_ref());
+        let took = took.and_then(|(keeper, scene)| keeper.keep(scene, &render));
+        pause = keeper.and_then(|_| job.keep.pause(took.unwrap_or_default()));
+        let signal = signals::go_on();
+        if end != End::Cancelled || signal.is_some() {
+            break (signal.filter(|_| end == End::Cancelled), took.is_some());
+        }
+    };
     meter.finish();
-    render
+    let advice = keeper.filter(|_| kept).map(Keeper::advice);
+    Traced { render: render.render(), signal, advice }
+}
+
+impl Traced {
+    /// Tells of a picture that is not all that was asked for.
+    fn tell(&self, job: &Job, prepared: &Prepared) {
+        let output = job.output.display();
+        if !self.render.complete && prepared.scene.settings.has_target() {
+            output::warn(format_args!("interrupted: {output} holds what there was"));
+        } else if !self.render.complete {
+            let share = 100.0 * prepared.share(&self.render);
+            output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
+        }
+        let stopped = matches!(self.render.end, End::Cancelled | End::Time);
+        if let Some(advice) = self.advice.as_ref().filter(|_| stopped && !job.report.quiet) {
+            output::note(advice);
+        }
+    }
 }

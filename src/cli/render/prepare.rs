@@ -13,7 +13,7 @@ use spherule::layers::Layers;
 use spherule::memory;
 use spherule::render::Render;
 use spherule::scene::particles::{Cell, Legend, Particles};
-use spherule::scene::{Scene, Settings};
+use spherule::scene::{Identity, Scene, Settings};
 use spherule::world::framing;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -38,6 +38,8 @@ pub(super) struct Prepared {
     pub(super) notes: Vec<String>,
     /// What colors stand for, if they stand for numbers.
     pub(super) legend: Option<Legend>,
+    /// What the scene is told by, if the render is kept.
+    pub(super) identity: Option<Identity>,
     /// What is wrong with the input.
     pub(super) warnings: Vec<String>,
 }
@@ -60,6 +62,7 @@ impl Prepared {
         let bytes = if layered { Layers::bytes(region) } else { 0 };
         memory::check(Film::bytes(region) + bytes)
             .map_err(|shortage| Failure::Film(region, shortage))?;
+        let identity = job.keep.file().map(|_| Identity::of(&scene));
         let start = Instant::now();
         let samples = samples(region, &scene.settings);
         let builder = job.builder(scene.spheres.len(), samples);
@@ -79,6 +82,7 @@ impl Prepared {
             load,
             build,
             legend,
+            identity,
             warnings,
         })
     }

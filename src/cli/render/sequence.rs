@@ -83,7 +83,7 @@ impl Sequence<'_> {
         let particles = of_frame(path, frame, &self.options)?;
         let radius = guessed(&particles, &self.options);
         let mut prepared = Prepared::load(&job, Some(particles))?;
-        let code = finish_picture(&job, &mut prepared)?;
+        let code = finish_picture(&job, &mut prepared, None, None)?;
         self.options.radii = radius.map_or(self.options.radii.clone(), Radii::Missing);
         self.keep(prepared);
         Ok(code)

@@ -1,0 +1,92 @@
+//! Checkpoints of a render that goes on.
+
+use crate::cli::command::{Given, render_command};
+use crate::cli::keep::KeepArgs;
+use crate::cli::{Failure, output};
+use spherule::atomic::{check_destination, remove_leftovers};
+use spherule::checkpoint::{self, Lock, Origin};
+use spherule::render::Unfinished;
+use spherule::scene::Identity;
+use std::ffi::OsString;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Keeps a render in a file, which no other process writes meanwhile.
+pub(super) struct Keeper {
+    path: PathBuf,
+    _lock: Option<Lock>,
+    folder: OsString,
+    arguments: Vec<OsString>,
+    /// Why it could not be written last time, which is told once.
+    failure: Mutex<Option<String>>,
+}
+
+impl Keeper {
+    /// Finds out whether a render can be kept, if it is to be, before anything is read.
+    pub(super) fn new(keep: &KeepArgs) -> Result<Option<Self>, Failure> {
+        let Some(path) = keep.file().cloned() else { return Ok(None) };
+        check(&path).map_err(|error| Failure::Write(path.clone(), error))?;
+        let lock = Lock::take(&path)?;
+        if lock.is_none() {
+            output::warn(format_args!(
+                "{}: its file system has no locks: let no other process write it",
+                path.display()
+            ));
+        }
+        if path.is_file() && keep.resume.as_ref() != Some(&path) {
+            return Err(Failure::Kept(path));
+        }
+        // They cost some space, no more.
+        let _ = remove_leftovers(&path);
+        let (folder, arguments, failure) = (OsString::new(), Vec::new(), Mutex::default());
+        Ok(Some(Self { path, _lock: lock, folder, arguments, failure }))
+    }
+
+    /// The same with the command that is kept, and where the picture goes.
+    pub(super) fn with(self, given: Given, output: &Path) -> Self {
+        let arguments = given.typed.lasting(output).arguments(&render_command());
+        Self { folder: given.folder.into(), arguments, ..self }
+    }
+
+    /// Writes a checkpoint, or says why it could not be: the render goes on. How long that took;
+    /// `None` if it failed.
+    pub(super) fn keep(&self, scene: &Identity, render: &Unfinished) -> Option<Duration> {
+        let start = Instant::now();
+        let (folder, arguments) = (self.folder.clone(), self.arguments.clone());
+        let origin = Origin { scene: scene.clone(), folder, arguments };
+        let written = checkpoint::write(&self.path, &origin, render);
+        self.tell(written.as_ref().err());
+        written.ok().map(|()| start.elapsed())
+    }
+
+    /// Tells why there is no new checkpoint, unless it is why there was none before.
+    fn tell(&self, error: Option<&io::Error>) {
+        let now = error.map(ToString::to_string);
+        let Ok(mut before) = self.failure.lock() else { return };
+        if let Some(why) = now.as_ref().filter(|_| *before != now) {
+            let left = if self.path.is_file() { "the last one is kept" } else { "there is none" };
+            let path = self.path.display();
+            output::warn(format_args!(
+                "{path}: no checkpoint can be written, {left}: {why}; the render goes on"
+            ));
+        }
+        *before = now;
+    }
+
+    /// How the render is gone on with.
+    pub(super) fn advice(&self) -> String {
+        format!("go on with: spherule render --resume {}", self.path.display())
+    }
+}
+
+/// Whether a file can be there, or a new one be made.
+fn check(path: &Path) -> io::Result<()> {
+    check_destination(path)?;
+    if path.exists() && !path.is_file() {
+        let message = "it is a device or a pipe; name a file";
+        return Err(io::Error::new(ErrorKind::InvalidInput, message));
+    }
+    Ok(())
+}
