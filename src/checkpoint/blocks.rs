@@ -48,6 +48,9 @@ pub(super) fn unpack(block: &[u8], tiles: &mut [Tile]) -> Option<()> {
     for number in tiles.iter_mut().flat_map(Tile::columns_mut).flatten() {
         let at = at.next()?;
         *number = f64::from_le_bytes(array::from_fn(|place| bytes[place * count + at]));
+        if !number.is_finite() {
+            return None;
+        }
     }
     Some(())
 }

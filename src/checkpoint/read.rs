@@ -2,7 +2,6 @@
 
 use super::blocks::{PACKED, TILES, unpack};
 use super::{FORMAT, HASH, MAGIC, Origin, PROGRAM};
-use crate::film::Film;
 use crate::memory::{self, Shortage};
 use crate::render::{Outline, Unfinished};
 use std::fs::File;
@@ -146,8 +145,7 @@ fn check_size(outline: &Outline, length: u64) -> Result<(), Fault> {
     if sums / PACKED > length {
         return Err(Fault::Damaged("it is too short for its picture"));
     }
-    let squares = if outline.statistics { sums } else { 0 };
-    memory::check(Film::bytes(outline.region) + squares).map_err(Fault::Memory)
+    memory::check(outline.film_bytes()).map_err(Fault::Memory)
 }
 
 /// The next bytes, of which there are no more than `length`.

@@ -1,6 +1,7 @@
 //! What is kept of a film outside the program, and a film made of it.
 
-use super::{Density, Film, Pilot, Probes, Tile, View};
+use super::exact::LEVELS;
+use super::{Density, ExactSums, Film, Pilot, Probes, Tile, View};
 use serde::{Deserialize, Serialize};
 
 /// What is kept of a tile besides its sums.
@@ -12,6 +13,20 @@ pub(crate) struct KeptTile {
     pub(crate) probe_samples: u32,
     pub(crate) probe_rays: u64,
     pilot: Option<Pilot>,
+    /// Levels of each of its sums, in the order of [`Tile::columns`].
+    levels: [u8; 4],
+}
+
+impl KeptTile {
+    /// Whether it has as many levels of sums as there can be.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.levels.iter().all(|&levels| (1..=LEVELS).contains(&usize::from(levels)))
+    }
+
+    /// Levels of sums of its pixels, all kinds taken together.
+    pub(crate) fn levels(&self) -> u64 {
+        self.levels[..2].iter().map(|&levels| u64::from(levels)).sum()
+    }
 }
 
 impl Film {
@@ -24,6 +39,7 @@ impl Film {
             probe_samples: tile.probes.samples,
             probe_rays: tile.probes.rays,
             pilot: tile.probes.pilot,
+            levels: tile.kept().map(|sums| sums.levels().len() as u8),
         };
         self.tiles.iter().map(kept).collect()
     }
@@ -39,20 +55,32 @@ impl Film {
             tile.probes.samples = kept.probe_samples;
             tile.probes.rays = kept.probe_rays;
             tile.probes.pilot = kept.pilot;
+            for (sums, levels) in tile.kept_mut().into_iter().zip(kept.levels) {
+                sums.restore(levels.into());
+            }
         }
     }
 }
 
 impl Tile {
-    /// All sums of the tile and of its probes, in an order that is always the same.
-    pub(crate) fn columns(&self) -> [&[f64]; 4] {
-        let ([a, b], [c, d]) = (self.sums.columns(), self.probes.sums.columns());
-        [a, b, c, d]
+    /// All sums of the tile and of its probes, level by level and in an order that is always the same.
+    pub(crate) fn columns(&self) -> impl Iterator<Item = &[f64]> {
+        self.kept().into_iter().flat_map(ExactSums::levels).map(|level| level.as_flattened())
     }
 
     /// The same, to be filled.
-    pub(crate) fn columns_mut(&mut self) -> [&mut [f64]; 4] {
-        let ([a, b], [c, d]) = (self.sums.columns_mut(), self.probes.sums.columns_mut());
+    pub(crate) fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
+        let levels = self.kept_mut().into_iter().flat_map(ExactSums::levels_mut);
+        levels.map(|level| level.as_flattened_mut())
+    }
+
+    fn kept(&self) -> [&ExactSums; 4] {
+        let ([a, b], [c, d]) = (self.sums.kept(), self.probes.sums.kept());
+        [a, b, c, d]
+    }
+
+    fn kept_mut(&mut self) -> [&mut ExactSums; 4] {
+        let ([a, b], [c, d]) = (self.sums.kept_mut(), self.probes.sums.kept_mut());
         [a, b, c, d]
     }
 }

@@ -1,15 +1,16 @@
-//! Where samples become pixels: tiles of sums in double precision.
+//! Where samples become pixels: tiles of exact sums.
 //!
-//! Each pixel's samples are added up in the order of their index, by the one task that owns its
-//! tile, so the sum does not depend on threads, on tile order, or on how the samples are divided
-//! into passes. A filter that is sampled gives every sample weight 1: a pixel is the mean of its
-//! own.
+//! Each pixel's samples are added up without rounding, so the sum does not depend on threads, on tile
+//! order, or on how the samples are divided into passes and over machines. A filter that is sampled
+//! gives every sample weight 1: a pixel is the mean of its own.
 
+mod exact;
 mod kept;
 mod probes;
 mod sums;
 mod tile;
 
+pub use exact::ExactSums;
 pub(crate) use kept::KeptTile;
 pub use probes::{Density, Pilot, Probes, Reading, Role};
 pub use sums::Sums;

@@ -1,80 +1,107 @@
-//! Sums of radiance in double precision, and of its squares where someone asks how it spreads.
+//! Sums of radiance, and of its squares where someone asks how it spreads.
+//!
+//! They are exact, so that samples may come in any order and from any number of machines. That costs
+//! next to nothing: single precision has 24 bits and double precision 53, so a few samples add up
+//! without rounding unless their sum is more than 2^29 times the least of them.
 
+use super::exact::{ExactSums, two_sum};
 use crate::scene::Rgb;
+
+/// How many times the least of them a sum of samples may be and is not rounded for certain: the bits of
+/// double precision that single precision leaves free.
+const FREE: f64 = (1_u32 << 29) as f64;
+
+/// Most equal squares, of 48 bits each, whose sum has no more bits than double precision.
+const EVEN: u32 = 32;
 
 /// Sums of the samples of several places, each of as many.
 #[derive(Clone, Debug, Default)]
 pub struct Sums {
-    totals: Vec<[f64; 3]>,
-    /// Empty if nobody asks for them.
-    squares: Vec<[f64; 3]>,
+    totals: ExactSums,
+    /// Of no place if nobody asks for them.
+    squares: ExactSums,
 }
 
 impl Sums {
     /// Of `count` places; with sums of squares if `squared`.
     pub fn new(count: usize, squared: bool) -> Self {
-        let squares = vec![[0.0; 3]; if squared { count } else { 0 }];
-        Self { totals: vec![[0.0; 3]; count], squares }
+        let squares = ExactSums::new(if squared { count } else { 0 });
+        Self { totals: ExactSums::new(count), squares }
     }
 
     /// Adds `count` samples to every place: `radiance` holds those of the first place, then those of
     /// the next. Returns how many were negative or not finite: these count as black.
     pub fn add(&mut self, radiance: &[Rgb], count: u32) -> u64 {
-        let count = count as usize;
         let mut bad = 0;
-        for (sum, samples) in self.totals.iter_mut().zip(radiance.chunks_exact(count)) {
-            for sample in samples {
-                let sound = is_sound(sample);
-                debug_assert!(sound, "{sample}");
-                if sound {
-                    for (sum, channel) in sum.iter_mut().zip(sample.to_array()) {
-                        *sum += f64::from(channel);
-                    }
-                } else {
-                    bad += 1;
-                }
+        for (place, samples) in radiance.chunks_exact(count as usize).enumerate() {
+            match plain_sum(samples) {
+                Some(sum) => self.totals.add(place, sum),
+                None => bad += self.add_each(place, samples),
             }
-        }
-        for (sum, samples) in self.squares.iter_mut().zip(radiance.chunks_exact(count)) {
-            for sample in samples.iter().filter(|sample| is_sound(sample)) {
-                for (sum, channel) in sum.iter_mut().zip(sample.to_array()) {
-                    *sum += f64::from(channel) * f64::from(channel);
+            if !self.squares.is_empty() {
+                let squares = || samples.iter().filter(|s| is_sound(s)).map(|s| square(*s));
+                match double_sum(squares()) {
+                    Some(sums) => sums.into_iter().for_each(|sum| self.squares.add(place, sum)),
+                    None => squares().for_each(|square| self.squares.add(place, square)),
                 }
             }
         }
         bad
     }
 
-    /// Makes all that every place has `samples` of the same radiance, finite and not negative: what
-    /// they are does not depend on how many came at a time.
-    pub fn set_even(&mut self, radiance: Rgb, samples: u32) {
-        let radiance = radiance.to_array().map(f64::from);
-        // Sums of so few equal numbers of single precision do not round.
-        self.totals.fill(radiance.map(|channel| channel * f64::from(samples)));
-        self.squares.fill(radiance.map(|channel| channel * channel * f64::from(samples)));
+    /// Adds samples to a place one by one, and says how many are not sound.
+    #[cold]
+    fn add_each(&mut self, place: usize, samples: &[Rgb]) -> u64 {
+        let mut bad = 0;
+        for sample in samples {
+            debug_assert!(is_sound(sample), "{sample}");
+            if is_sound(sample) {
+                self.totals.add(place, double(*sample));
+            } else {
+                bad += 1;
+            }
+        }
+        bad
+    }
+
+    /// Adds `count` samples of the same radiance, finite and not negative, to every place.
+    pub fn add_even(&mut self, radiance: Rgb, count: u32) {
+        for first in (0..count).step_by(EVEN as usize) {
+            let count = f64::from(EVEN.min(count - first));
+            let each = |sums: &mut ExactSums, value: [f64; 3]| {
+                (0..sums.len()).for_each(|place| sums.add(place, value.map(|x| x * count)));
+            };
+            each(&mut self.totals, double(radiance));
+            each(&mut self.squares, square(radiance));
+        }
+    }
+
+    /// Adds the sums of other samples of the same places; whether there are as many of these.
+    pub fn merge(&mut self, other: &Self) -> bool {
+        self.totals.merge(&other.totals) && self.squares.merge(&other.squares)
     }
 
     /// Totals and squares.
-    pub(super) fn columns(&self) -> [&[f64]; 2] {
-        [self.totals.as_flattened(), self.squares.as_flattened()]
+    pub(super) fn kept(&self) -> [&ExactSums; 2] {
+        [&self.totals, &self.squares]
     }
 
     /// The same, to be filled.
-    pub(super) fn columns_mut(&mut self) -> [&mut [f64]; 2] {
-        [self.totals.as_flattened_mut(), self.squares.as_flattened_mut()]
+    pub(super) fn kept_mut(&mut self) -> [&mut ExactSums; 2] {
+        [&mut self.totals, &mut self.squares]
     }
 
     /// Mean of each place's samples, of which there are `samples` each; 0 if there are none.
     pub fn means(&self, samples: u32) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
         let samples = f64::from(samples.max(1));
-        self.totals.iter().map(move |sum| sum.map(|channel| channel / samples))
+        self.totals.rounded().map(move |sum| sum.map(|channel| channel / samples))
     }
 
     /// Variance of a sample at each place, of which there are `samples` each: the unbiased estimate
     /// from sums of squares. Nothing without these, 0 of fewer than two samples.
     pub fn variances(&self, samples: u32) -> impl Iterator<Item = [f64; 3]> + '_ {
         let (count, degrees) = (f64::from(samples.max(1)), f64::from(samples.max(2) - 1));
-        self.totals.iter().zip(&self.squares).map(move |(total, squares)| {
+        self.totals.rounded().zip(self.squares.rounded()).map(move |(total, squares)| {
             let spread = |channel: usize| squares[channel] - total[channel].powi(2) / count;
             std::array::from_fn(|channel| spread(channel).max(0.0) / degrees)
         })
@@ -85,9 +112,91 @@ fn is_sound(sample: &Rgb) -> bool {
     sample.is_finite() && sample.min_element() >= 0.0
 }
 
+fn double(color: Rgb) -> [f64; 3] {
+    color.to_array().map(f64::from)
+}
+
+/// Exact: twice 24 bits.
+fn square(color: Rgb) -> [f64; 3] {
+    double(color).map(|channel| channel * channel)
+}
+
+/// The sum of samples, unless it might be rounded or one of them is not sound.
+fn plain_sum(samples: &[Rgb]) -> Option<[f64; 3]> {
+    let mut sum = [0.0; 3];
+    let (mut low, mut least) = ([0.0_f32; 3], [f32::INFINITY; 3]);
+    for sample in samples {
+        for (channel, value) in sample.to_array().into_iter().enumerate() {
+            sum[channel] += f64::from(value);
+            low[channel] = low[channel].min(value);
+            let more = if value > 0.0 { value } else { f32::INFINITY };
+            least[channel] = least[channel].min(more);
+        }
+    }
+    // All samples, and so all sums of some, are whole multiples of the last place of the least.
+    let exact = |channel: usize| sum[channel] <= FREE * f64::from(least[channel]);
+    let sound = |channel: usize| low[channel] >= 0.0 && sum[channel].is_finite();
+    (0..3).all(|channel| exact(channel) && sound(channel)).then_some(sum)
+}
+
+/// The sum of numbers in two levels, unless the second might be rounded.
+fn double_sum(terms: impl Iterator<Item = [f64; 3]>) -> Option<[[f64; 3]; 2]> {
+    let (mut high, mut low, mut lost) = ([0.0; 3], [0.0; 3], false);
+    for terms in terms {
+        for (channel, term) in terms.into_iter().enumerate() {
+            let (error, rest);
+            (high[channel], error) = two_sum(high[channel], term);
+            (low[channel], rest) = two_sum(low[channel], error);
+            lost |= rest != 0.0;
+        }
+    }
+    (!lost).then_some([high, low])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shares_of_samples_add_up_to_the_same_bits() {
+        // Over forty decades, so that every way of adding is taken.
+        let sample = |i: u32| {
+            let size = |k: u32| 10f32.powi((i * k % 41) as i32 - 20);
+            Rgb::new(size(7), 0.1 * size(1), 1.0 / (1 + i) as f32)
+        };
+        let samples: Vec<Rgb> = (0..240).map(sample).collect();
+        let mut whole = Sums::new(1, true);
+        whole.add(&samples, 240);
+        let mut merged = Sums::new(1, true);
+        for share in samples.chunks(17).rev() {
+            let mut part = Sums::new(1, true);
+            share.chunks(5).for_each(|few| assert_eq!(part.add(few, few.len() as u32), 0));
+            assert!(merged.merge(&part));
+        }
+        assert!(whole.means(240).eq(merged.means(240)));
+        assert!(whole.variances(240).eq(merged.variances(240)));
+    }
+
+    #[test]
+    fn samples_that_differ_much_are_added_without_rounding() {
+        let [large, small] = [1e20_f32, 1e-20];
+        for samples in [[large, small, small], [small, large, small], [small, small, large]] {
+            let mut sums = Sums::new(1, false);
+            sums.add(&samples.map(Rgb::splat), 3);
+            sums.add(&[Rgb::ZERO; 3], 3);
+            let parts: f64 = sums.totals.levels().iter().skip(1).map(|level| level[0][0]).sum();
+            assert_eq!(parts, 2.0 * f64::from(small));
+        }
+    }
+
+    #[test]
+    fn even_samples_in_any_steps_are_the_same() {
+        let color = Rgb::new(0.1, 123.456, 7e-30);
+        let [mut a, mut b] = [Sums::new(2, true), Sums::new(2, true)];
+        a.add_even(color, 1000);
+        (0..1000).for_each(|_| b.add_even(color, 1));
+        assert!(a.means(1000).eq(b.means(1000)) && a.variances(1000).eq(b.variances(1000)));
+    }
 
     #[test]
     fn means_and_variances_are_those_of_the_samples() {
@@ -103,8 +212,8 @@ mod tests {
     #[test]
     fn even_samples_do_not_spread() {
         let mut sums = Sums::new(1, true);
-        sums.set_even(Rgb::new(0.1, 0.2, 0.3), 5);
-        sums.set_even(Rgb::new(0.1, 0.2, 0.3), 16);
+        sums.add_even(Rgb::new(0.1, 0.2, 0.3), 5);
+        sums.add_even(Rgb::new(0.1, 0.2, 0.3), 11);
         let [mean] = sums.means(16).collect::<Vec<_>>()[..] else { panic!("one place") };
         assert_eq!(mean.map(|channel| channel as f32), [0.1, 0.2, 0.3]);
         assert!(sums.variances(16).all(|variance| variance.iter().all(|v| *v < 1e-16)));

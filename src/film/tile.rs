@@ -64,11 +64,10 @@ impl Tile {
         self.len() == 0
     }
 
-    /// Adds `count` samples of the same radiance, finite and not negative, to every pixel; those that
-    /// it has are of this radiance too.
+    /// Adds `count` samples of the same radiance, finite and not negative, to every pixel.
     pub fn add_even(&mut self, radiance: Rgb, count: u32) {
+        self.sums.add_even(radiance, count);
         self.samples += count;
-        self.sums.set_even(radiance, self.samples);
     }
 
     /// Adds `count` samples to every pixel: `radiance` holds those of the first pixel, then those

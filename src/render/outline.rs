@@ -3,7 +3,7 @@
 use super::state::{State, Step};
 use super::target::Stage;
 use super::{End, Totals, Unfinished};
-use crate::film::{Film, KeptTile, Region};
+use crate::film::{Film, KeptTile, Region, TILE};
 use crate::noise::Slope;
 use crate::scene::Settings;
 use crate::world::check;
@@ -75,6 +75,7 @@ impl Outline {
             tile.samples.max(tile.probe_samples) <= most && tile.probe_rays <= MOST
         };
         demand(self.tiles.iter().all(sound), "more samples than were asked for")?;
+        demand(self.tiles.iter().all(KeptTile::is_sound), "sums of no or too many numbers")?;
         self.check_plan(most)?;
         demand(is_small(&self.totals), "counts that no render has")
     }
@@ -87,6 +88,12 @@ impl Outline {
         let last = self.stages.last().copied();
         let expected = self.settings.has_target().then(|| Stage::of(&self.settings));
         demand(last == expected && self.met <= self.stages.len(), "other targets than it has")
+    }
+
+    /// Bytes of the sums of the film, at most.
+    pub(crate) fn film_bytes(&self) -> u64 {
+        let tile = u64::from(TILE * TILE) * size_of::<[f64; 3]>() as u64;
+        self.tiles.iter().map(|kept| kept.levels() * tile).sum()
     }
 
     /// The render, with a film whose sums are still to be filled. It has passed [`Outline::check`].
