@@ -148,7 +148,7 @@ impl Layers {
     /// Bytes that the layers of a region take, their channels included, at most.
     pub fn bytes(region: Region) -> u64 {
         let pixel = 2 * size_of::<Features>() as u64;
-        Film::bytes(region) + u64::from(region.width) * u64::from(region.height) * pixel
+        Film::bytes(region, false) + u64::from(region.width) * u64::from(region.height) * pixel
     }
 
     /// The channels of some layers, for [`Image::write_layers`](crate::Image::write_layers); none for

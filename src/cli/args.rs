@@ -2,6 +2,7 @@
 
 use super::keep::KeepArgs;
 use super::looks::LookArgs;
+use super::memory::MemoryArgs;
 use super::names::{
     BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
     Traversal,
@@ -79,6 +80,8 @@ pub(super) struct RenderArgs {
     pub(super) keep: KeepArgs,
     #[command(flatten)]
     pub(super) speed: SpeedArgs,
+    #[command(flatten)]
+    pub(super) memory: MemoryArgs,
     #[command(flatten)]
     pub(super) report: ReportArgs,
 }

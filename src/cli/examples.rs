@@ -28,6 +28,7 @@ Examples:
   spherule render grains.data --slice 'z>50%' --slice-mode caps -o section.png
   spherule render scene.toml --region 100,50,64x64 -o detail.png
   spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id
+  spherule render scene.toml --memory-limit 4GB     refused at once if it would take more
   spherule render scene.toml --json --quiet > statistics.json
   spherule render scene.toml --spp 100000 -o long.exr --checkpoint long.checkpoint
   spherule render --resume long.checkpoint          to the same picture as if it had never stopped

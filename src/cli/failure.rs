@@ -3,6 +3,7 @@
 
 use super::args::Args;
 use super::output;
+use super::render::Estimate;
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use miette::{
@@ -12,7 +13,6 @@ use miette::{
 use spherule::bench::BenchError;
 use spherule::checkpoint::{CheckpointError, LockError};
 use spherule::drawing::DrawingError;
-use spherule::film::Region;
 use spherule::image::{CompareError, ImageError};
 use spherule::memory::Shortage;
 use spherule::scene::generate::GenerateError;
@@ -62,10 +62,8 @@ pub(crate) enum Failure {
     Drawing(#[from] DrawingError),
     #[error("{0}")]
     Bench(BenchError),
-    #[error(
-        "{} x {} pixels need {}; give --size or --region smaller numbers", .0.width, .0.height, .1
-    )]
-    Film(Region, Shortage),
+    #[error("{}", .0.message(.1))]
+    Memory(Estimate, Shortage),
     #[error(
         "this program was compiled for a processor with {0}, which this one does not have; build \
          it on this machine: cargo build --release"

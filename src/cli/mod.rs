@@ -15,6 +15,7 @@ mod frames;
 mod info;
 mod keep;
 mod looks;
+mod memory;
 mod names;
 mod output;
 mod particles;

@@ -42,9 +42,12 @@ pub struct Film {
 }
 
 impl Film {
-    /// Bytes that a film of so many pixels takes, and the picture that it becomes.
-    pub fn bytes(region: Region) -> u64 {
-        let pixel = size_of::<([f64; 3], [f32; 3])>() as u64;
+    /// Bytes that a film of so many pixels takes, at most, and the picture that it becomes; with sums
+    /// of squares, and the variance that they become, if `squared`.
+    pub fn bytes(region: Region, squared: bool) -> u64 {
+        // More than two levels are rare.
+        let (sums, picture) = (2 * size_of::<[f64; 3]>() as u64, size_of::<[f32; 3]>() as u64);
+        let pixel = (sums + picture) * (1 + u64::from(squared));
         u64::from(region.width) * u64::from(region.height) * pixel
     }
 
@@ -160,9 +163,9 @@ mod tests {
     fn films_of_any_size_are_measured() {
         let side = u32::from(u16::MAX);
         let region = Region { x: 0, y: 0, width: side, height: side };
-        assert!(Film::bytes(region) > 150_000_000_000);
-        let region = Region { width: u32::MAX, height: u32::MAX >> 6, ..region };
-        assert!(Film::bytes(region) > 1 << 62);
+        assert!(Film::bytes(region, false) > 150_000_000_000);
+        let region = Region { width: u32::MAX, height: u32::MAX >> 8, ..region };
+        assert!(Film::bytes(region, true) > 1 << 62);
     }
 
     #[test]

@@ -142,7 +142,7 @@ pub(super) fn read_file(path: &Path) -> Result<(Format, Vec<u8>), ImageError> {
     let format = Format::of_content(&bytes)
         .ok_or_else(|| ImageError::UnknownContent { path: path.to_owned() })?;
     // While it is read it moves to twice as much memory.
-    let limit = memory::left().map_or(LONGEST, |left| LONGEST.min(left / 3));
+    let limit = memory::left().map_or(LONGEST, |left| LONGEST.min(left.bytes / 3));
     bytes.append(&mut memory::read_at_most(file, limit).map_err(unreadable)?);
     Ok((format, bytes))
 }

@@ -153,10 +153,15 @@ impl World {
     /// # Errors
     /// Those of [`World::build`]; for all but [`WorldError::Glass`] the scene still has its spheres.
     pub fn build_taking(scene: &mut Scene, builder: Builder) -> Result<Self, WorldError> {
-        let given_back = scene.spheres.len() as u64 * scene::Spheres::POSITION_BYTES;
-        let at = place(scene, Self::bytes_for(scene).saturating_sub(given_back))?;
+        let at = place(scene, Self::bytes_beside(scene))?;
         let spheres = std::mem::take(&mut scene.spheres);
         Self::assemble(scene, Cow::Owned(spheres), &at, builder)
+    }
+
+    /// Bytes that [`World::build_taking`] takes at most, beside those of the scene.
+    pub fn bytes_beside(scene: &Scene) -> u64 {
+        let given_back = scene.spheres.len() as u64 * scene::Spheres::POSITION_BYTES;
+        Self::bytes_for(scene).saturating_sub(given_back)
     }
 
     fn bytes_for(scene: &Scene) -> u64 {

@@ -4,6 +4,19 @@ use crate::folder::{Folder, text};
 use spherule::image::{Image, read_metadata};
 
 #[test]
+fn pictures_of_any_proportions_are_made() {
+    let folder = Folder::new();
+    for size in ["65535x1", "1x65535"] {
+        let output = folder.succeed(&["render", "--size", size, "--spp", "1", "-q", "-o", "a.exr"]);
+        assert!(output.is_empty(), "{output}");
+        let picture = Image::read(folder.path("a.exr")).expect("a picture");
+        assert_eq!(format!("{}x{}", picture.width, picture.height), size);
+        let lit = picture.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+        assert!(lit > picture.pixels.len() / 2, "{size}: {lit}");
+    }
+}
+
+#[test]
 fn speed_settings_never_change_the_file() {
     let folder = Folder::new();
     for name in ["a.png", "a.exr"] {

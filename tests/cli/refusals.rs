@@ -32,6 +32,22 @@ fn bad_input_is_refused_in_words() {
         ("render --region 1,2,0x4", 2, &["--region", "1 or more"]),
         ("render --region 900,0,100x10", 2, &["--region", "960x540"]),
         ("render --region 4294967295,0,1x1", 2, &["--region", "960x540"]),
+        ("render --memory-limit 4", 2, &["--memory-limit", "4GB"]),
+        (
+            "render --memory-limit 90MB --size 2000x2000",
+            1,
+            &["400 spheres (", "2000 x 2000 pixels (240.0 MB)", "of the memory limit", "--size"],
+        ),
+        (
+            "render --size 65535x65535",
+            1,
+            &["65535 x 65535 pixels (257.7 GB) need 257.7 GB", "left", "--size or --region"],
+        ),
+        (
+            "render --size 65535x65535 --layers all -o a.exr",
+            1,
+            &["their layers", "--size or --region"],
+        ),
         ("render --quiet --verbose", 2, &["--quiet", "--verbose"]),
         ("render missing.toml", 1, &["missing.toml", "cannot be read"]),
         ("render missing.csv", 1, &["missing.csv", "cannot be read"]),

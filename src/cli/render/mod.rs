@@ -1,5 +1,6 @@
 //! `spherule render`: a scene becomes a picture in a file.
 
+mod estimate;
 mod job;
 mod keeper;
 mod layers;
@@ -14,6 +15,7 @@ mod resume;
 mod sequence;
 mod summary;
 
+pub(super) use self::estimate::Estimate;
 use self::job::Job;
 use self::keeper::Keeper;
 use self::prepare::Prepared;
@@ -41,6 +43,7 @@ struct Traced {
 
 /// Renders and writes the picture, and tells how it went.
 pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+    args.memory.obey();
     // Before the file is read: who goes on from it goes on from what was written last.
     let Some(keeper) = Keeper::new(&args.keep)? else { return run_as(args, None, None) };
     let now = Given::of_process();

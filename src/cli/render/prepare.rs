@@ -1,16 +1,15 @@
 //! From a job to a world that can be rendered.
 
+use super::estimate::Estimate;
 use super::job::Job;
-use super::looks;
 use super::notes::notes;
+use super::{layers, looks};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use spherule::World;
 use spherule::bvh::build::Builder;
-use spherule::film::{Film, Region};
-use spherule::layers::Layers;
-use spherule::memory;
+use spherule::film::Region;
 use spherule::render::Render;
 use spherule::scene::particles::{Cell, Legend, Particles};
 use spherule::scene::{Identity, Scene, Settings};
@@ -59,9 +58,7 @@ impl Prepared {
         job.style.light(&mut scene);
         let region = job.region(&scene.settings)?;
         let layered = !job.encoding.layers.is_empty() || job.draws_over();
-        let bytes = if layered { Layers::bytes(region) } else { 0 };
-        memory::check(Film::bytes(region) + bytes)
-            .map_err(|shortage| Failure::Film(region, shortage))?;
+        Estimate::new(&scene, region, layers::need_statistics(job), layered).check()?;
         let identity = job.keep.file().map(|_| Identity::of(&scene));
         let start = Instant::now();
         let samples = samples(region, &scene.settings);

@@ -2,34 +2,80 @@
 //!
 //! Systems promise more memory than they have, and end programs that believe them. So whatever may
 //! take gigabytes, spheres in their columns, the world with its tree, the sums of a film, pictures,
-//! is held against what the system says is left, and refused in words if it is more.
+//! is held against what the system, its control groups and the user leave, and refused in words if it
+//! is more.
+
+mod group;
 
 use std::fmt;
 use std::io::{self, Read};
-use sysinfo::{MemoryRefreshKind, System};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use sysinfo::{MemoryRefreshKind, ProcessRefreshKind, ProcessesToUpdate, System};
 
 /// Less than this is taken without a question: every machine has it, and asking takes longer.
 const SMALL: u64 = 1 << 26;
 
+/// Bytes that this process may take in all.
+static LIMIT: AtomicU64 = AtomicU64::new(u64::MAX);
+
 /// More memory is needed than there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{} of memory, where {}", Size(*.need), Left(*.left))]
+#[error("{} of memory, where {}", Size(*.need), Told(*.left))]
 pub struct Shortage {
     /// Bytes that are needed.
     pub need: u64,
-    /// Bytes that are left; `None` if the system does not tell, but refused them.
-    pub left: Option<u64>,
+    /// What is left; `None` if the system does not tell, but refused them.
+    pub left: Option<Left>,
 }
 
-/// Bytes that this process can still take without swapping, within the limit of its container;
-/// `None` if the system does not tell.
-pub fn left() -> Option<u64> {
+/// Memory that can be taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Left {
+    /// In bytes.
+    pub bytes: u64,
+    /// Why not more.
+    pub bound: Bound,
+}
+
+/// What bounds the memory of a process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// What the machine has, less what is in use.
+    Machine,
+    /// The limit of its container or of its job, version 1 or 2 of control groups.
+    ControlGroup,
+    /// The limit of [`limit_to`].
+    Limit,
+}
+
+/// Bounds what this process takes in all to so many bytes, as far as it asks before it takes them:
+/// whatever grows with the input does.
+pub fn limit_to(bytes: u64) {
+    LIMIT.store(bytes, Ordering::Relaxed);
+}
+
+/// What this process can still take without swapping; `None` if the system does not tell.
+pub fn left() -> Option<Left> {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    let whole = Some(system.available_memory()).filter(|&bytes| bytes > 0)?;
-    // What a container has cached of files counts as used there, but is given up when needed.
-    let within = system.cgroup_limits().map(|at| at.total_memory.saturating_sub(at.rss));
-    Some(within.map_or(whole, |within| whole.min(within)))
+    let machine = Some(system.available_memory()).filter(|&bytes| bytes > 0);
+    let limit = Some(LIMIT.load(Ordering::Relaxed)).filter(|&limit| limit < u64::MAX);
+    let bounds = [
+        (Bound::Machine, machine),
+        (Bound::ControlGroup, group::left(Path::new("/"))),
+        (Bound::Limit, limit.map(|limit| limit.saturating_sub(taken(&mut system)))),
+    ];
+    let left = bounds.into_iter().filter_map(|(bound, bytes)| Some(Left { bytes: bytes?, bound }));
+    left.min_by_key(|left| left.bytes)
+}
+
+/// Bytes that this process has in memory; 0 if the system does not tell.
+fn taken(system: &mut System) -> u64 {
+    let Ok(process) = sysinfo::get_current_pid() else { return 0 };
+    let memory = ProcessRefreshKind::nothing().with_memory().without_tasks();
+    system.refresh_processes_specifics(ProcessesToUpdate::Some(&[process]), false, memory);
+    system.process(process).map_or(0, sysinfo::Process::memory)
 }
 
 /// Bytes of memory that this process has held at most until now; `None` if the system does not tell.
@@ -46,11 +92,11 @@ pub fn peak() -> Option<u64> {
 /// # Errors
 /// There are fewer.
 pub fn check(need: u64) -> Result<(), Shortage> {
-    if need <= SMALL {
+    if need <= SMALL && LIMIT.load(Ordering::Relaxed) == u64::MAX {
         return Ok(());
     }
     let left = left();
-    let enough = left.is_none_or(|left| need <= left) && reservable(need);
+    let enough = left.is_none_or(|left| need <= left.bytes) && reservable(need);
     if enough { Ok(()) } else { Err(Shortage { need, left }) }
 }
 
@@ -76,7 +122,8 @@ fn reservable(need: u64) -> bool {
 }
 
 /// Bytes, for people.
-struct Size(u64);
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub u64);
 
 impl fmt::Display for Size {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -89,14 +136,23 @@ impl fmt::Display for Size {
     }
 }
 
-struct Left(Option<u64>);
+struct Told(Option<Left>);
 
-impl fmt::Display for Left {
+impl fmt::Display for Told {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Some(bytes) => write!(formatter, "{} are left", Size(bytes)),
-            None => formatter.write_str("less is left"),
-        }
+        let Some(left) = self.0.filter(|left| left.bytes > 0) else {
+            return formatter.write_str(if self.0.is_some() {
+                "none is left"
+            } else {
+                "less is left"
+            });
+        };
+        let of = match left.bound {
+            Bound::Machine => "",
+            Bound::ControlGroup => " in the control group",
+            Bound::Limit => " of the memory limit",
+        };
+        write!(formatter, "{} are left{of}", Size(left.bytes))
     }
 }
 
@@ -117,7 +173,7 @@ mod tests {
     #[test]
     #[cfg(target_os = "linux")]
     fn what_is_left_is_the_bound() {
-        let left = left().expect("Linux tells");
+        let left = left().expect("Linux tells").bytes;
         // Other processes may take or free some in between.
         assert!(check(left / 2).is_ok());
         assert!(check(left.saturating_mul(2)).is_err());
@@ -141,9 +197,25 @@ mod tests {
 
     #[test]
     fn shortages_tell_both_amounts() {
-        let shortage = Shortage { need: 192_000_000_000, left: Some(22_460_000_000) };
-        assert_eq!(shortage.to_string(), "192.0 GB of memory, where 22.5 GB are left");
+        let told = |bytes, bound| {
+            let left = Some(Left { bytes, bound });
+            Shortage { need: 192_000_000_000, left }.to_string()
+        };
+        let machine = told(22_460_000_000, Bound::Machine);
+        assert_eq!(machine, "192.0 GB of memory, where 22.5 GB are left");
+        let group = told(22_460_000_000, Bound::ControlGroup);
+        assert_eq!(group, machine.clone() + " in the control group");
+        assert_eq!(told(22_460_000_000, Bound::Limit), machine + " of the memory limit");
+        assert_eq!(told(0, Bound::Limit), "192.0 GB of memory, where none is left");
         let unknown = Shortage { need: 1_500_000, left: None };
         assert_eq!(unknown.to_string(), "1.5 MB of memory, where less is left");
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_this_process_has_taken_is_known() {
+        let column = vec![1_u8; 1 << 27];
+        let bytes = taken(&mut System::new());
+        assert!(bytes > column.len() as u64 && bytes < 1 << 40, "{bytes}");
     }
 }
