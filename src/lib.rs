@@ -104,6 +104,7 @@ pub mod layers;
 pub mod noise;
 pub mod overlay;
 pub mod render;
+pub mod split;
 
 #[cfg(feature = "cli")]
 pub mod drawing;

@@ -9,7 +9,7 @@
 //! | 20 | `spherule-checkpoint` and a line feed |
 //! | 4 | version of the format |
 //! | 8 | length of the head |
-//! | | the head, by [postcard](https://postcard.jamesmunns.com): version of the program, identity of the scene, the command, the render without its sums |
+//! | | the head, by [postcard](https://postcard.jamesmunns.com): version of the program, identity of the scene, the command, caption, the render without its sums |
 //! | 4, ... | length and bytes of each block: the sums of 64 tiles, compressed |
 //! | 32 | BLAKE3 hash of all that comes before |
 //!
@@ -29,9 +29,11 @@ pub use lock::{Lock, LockError};
 pub use read::{CheckpointError, read};
 pub use write::write;
 
+use crate::layers::{Features, Layer};
 use crate::scene::Identity;
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
+use std::ops::Range;
 
 /// What such files begin with.
 const MAGIC: [u8; 20] = *b"spherule-checkpoint\n";
@@ -46,7 +48,7 @@ const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 const HASH: u64 = 32;
 
 /// Where a render comes from: what it takes to begin it again.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
     /// What is rendered.
     pub scene: Identity,
@@ -54,6 +56,25 @@ pub struct Origin {
     pub folder: OsString,
     /// What the command says, in its own words; empty if a render comes from code.
     pub arguments: Vec<OsString>,
+    /// What it takes to write the picture when the scene is gone.
+    pub caption: Caption,
+}
+
+/// What belongs to a picture besides its pixels: what its file says, and layers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Caption {
+    /// The scene's title; empty if there is none.
+    pub title: String,
+    /// How the scene is looked at: names and values.
+    pub looks: Vec<(String, String)>,
+    /// Whether something is drawn over the picture that takes the scene: a cell, a background.
+    pub drawn_over: bool,
+    /// The layers that are wanted.
+    pub layers: Vec<Layer>,
+    /// The tiles whose features are known, by their numbers.
+    pub tiles: Range<u32>,
+    /// The features of their pixels, as [`crate::layers::features`] gives them.
+    pub features: Vec<Features>,
 }
 
 #[cfg(test)]

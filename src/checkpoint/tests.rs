@@ -35,9 +35,16 @@ fn stopped(world: &World, settings: &Settings, tasks: u64) -> Unfinished {
     render
 }
 
+fn caption() -> Caption {
+    let looks = vec![("view".to_owned(), "auto".to_owned())];
+    let (layers, features) = (vec![Layer::Albedo], vec![Features::NONE; 256]);
+    let title = "A field".to_owned();
+    Caption { title, looks, drawn_over: true, layers, tiles: 0..1, features }
+}
+
 fn origin(scene: &Scene) -> Origin {
     let arguments = vec!["render".into(), "a b".into()];
-    Origin { scene: Identity::of(scene), folder: "somewhere".into(), arguments }
+    Origin { scene: Identity::of(scene), folder: "somewhere".into(), arguments, caption: caption() }
 }
 
 /// A render that was stopped after so many tasks, and its file.

@@ -18,6 +18,7 @@ pub use tile::{TILE, Tile, View};
 
 use crate::image::Image;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// A rectangle of pixels of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,23 +54,59 @@ impl Film {
 
     /// A black film; with sums of squares, which tell how samples spread, if `squared`.
     pub fn new(region: Region, squared: bool) -> Self {
+        Self::with_tiles(region, 0..u32::MAX, squared)
+    }
+
+    /// The same of some of the region's tiles alone, by their numbers, row by row from 0.
+    pub fn with_tiles(region: Region, tiles: Range<u32>, squared: bool) -> Self {
+        let regions = Self::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
+        let tiles = regions.map(|region| Tile::new(region, squared)).collect();
+        Self { region, tiles }
+    }
+
+    /// Where the tiles of a region are, row by row.
+    pub(crate) fn tile_regions(region: Region) -> impl Iterator<Item = Region> {
         let steps = |first: u32, count: u32| {
             (first..first + count)
                 .step_by(TILE as usize)
                 .map(move |from| (from, TILE.min(first + count - from)))
         };
-        let tiles = steps(region.y, region.height)
-            .flat_map(|(y, height)| {
-                steps(region.x, region.width).map(move |(x, width)| Region { x, y, width, height })
-            })
-            .map(|region| Tile::new(region, squared))
-            .collect();
-        Self { region, tiles }
+        steps(region.y, region.height).flat_map(move |(y, height)| {
+            steps(region.x, region.width).map(move |(x, width)| Region { x, y, width, height })
+        })
     }
 
-    /// Tiles that a film of a region has.
-    pub(crate) fn tiles_of(region: Region) -> u64 {
-        u64::from(region.width.div_ceil(TILE)) * u64::from(region.height.div_ceil(TILE))
+    /// How many tiles a region of a picture has.
+    pub fn tile_count(region: Region) -> u32 {
+        region.width.div_ceil(TILE) * region.height.div_ceil(TILE)
+    }
+
+    /// Adds what a film of the same region has: other samples, other tiles, or both. Whether all that
+    /// they have in common is of the same kind; if not, this film is of no use any more.
+    pub fn merge(&mut self, other: Self) -> bool {
+        let mut alike = self.region == other.region;
+        let mut new = Vec::new();
+        for tile in other.tiles {
+            match self.tiles.binary_search_by_key(&tile.place(), Tile::place) {
+                Ok(at) => alike &= self.tiles[at].merge(&tile),
+                Err(_) => new.push(tile),
+            }
+        }
+        self.tiles.append(&mut new);
+        self.tiles.sort_by_key(Tile::place);
+        alike
+    }
+
+    /// Puts black tiles without samples where there are none.
+    pub fn fill(&mut self, squared: bool) {
+        if self.tiles.len() < Self::tile_count(self.region) as usize {
+            let mut missing = Self::new(self.region, squared).tiles;
+            let there =
+                |tile: &Tile| self.tiles.binary_search_by_key(&tile.place(), Tile::place).is_ok();
+            missing.retain(|tile| !there(tile));
+            self.tiles.append(&mut missing);
+            self.tiles.sort_by_key(Tile::place);
+        }
     }
 
     /// Tiles in a row of them.

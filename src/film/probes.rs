@@ -9,7 +9,6 @@ use super::{Sums, Tile};
 use crate::sampling::{Sampler, mix, stream};
 use crate::scene::Rgb;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// Sets the hashes that place probes apart from those that make samples.
 const PLACES: u64 = 0x6a09_e667_f3bc_c909;
@@ -134,10 +133,17 @@ impl Probes {
         both.zip(replicas).map(|(place, number)| (place.x, place.y, sampler.replica(number)))
     }
 
-    /// Adds samples to every stream, as [`Sums::add`] does.
-    pub fn add(&mut self, radiance: &[Rgb], samples: &Range<u32>) -> u64 {
-        self.samples = samples.end;
-        self.sums.add(radiance, samples.end - samples.start)
+    /// Adds `count` samples to every stream, as [`Sums::add`] does.
+    pub fn add(&mut self, radiance: &[Rgb], count: u32) -> u64 {
+        self.samples += count;
+        self.sums.add(radiance, count)
+    }
+
+    /// Adds what the same probes have seen in other samples; whether they are as many.
+    pub(super) fn merge(&mut self, other: &Self) -> bool {
+        self.samples += other.samples;
+        self.rays += other.rays;
+        self.places.len() == other.places.len() && self.sums.merge(&other.sums)
     }
 
     /// What the probes of one role say.
@@ -273,7 +279,7 @@ mod tests {
         let mut film = film(1, 1);
         let probes = &mut film.tiles[0].probes;
         let samples: Vec<Rgb> = (0..probes.streams()).map(|i| Rgb::splat((i % 2) as f32)).collect();
-        probes.add(&samples, &(0..1));
+        probes.add(&samples, 1);
         for reading in probes.readings(Role::Judge) {
             assert_eq!((reading.squared, reading.radiance, reading.independent), (0.5, 0.5, 0.0));
         }

@@ -46,12 +46,8 @@ impl Tile {
 
     /// The pixels as columns and rows of the picture, along a Morton curve: the first four are a
     /// square, and so are the first sixteen.
-    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        let inside = |&(x, y): &(u32, u32)| x < self.region.width && y < self.region.height;
-        (0..TILE * TILE)
-            .map(|i| (even_bits(i), even_bits(i >> 1)))
-            .filter(inside)
-            .map(|(x, y)| (self.region.x + x, self.region.y + y))
+    pub fn pixels(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        self.region.morton()
     }
 
     /// How many pixels it has.
@@ -70,12 +66,33 @@ impl Tile {
         self.samples += count;
     }
 
+    /// By which tiles of a film are in order.
+    pub(super) fn place(&self) -> (u32, u32) {
+        (self.region.y, self.region.x)
+    }
+
+    /// Adds other samples of the same pixels; whether they are of the same kinds.
+    pub(super) fn merge(&mut self, other: &Self) -> bool {
+        self.samples += other.samples;
+        self.sums.merge(&other.sums) && self.probes.merge(&other.probes)
+    }
+
     /// Adds `count` samples to every pixel: `radiance` holds those of the first pixel, then those
     /// of the next. Returns how many were negative or not finite: these count as black, and are
     /// told of in the statistics.
     pub fn add(&mut self, radiance: &[Rgb], count: u32) -> u64 {
         self.samples += count;
         self.sums.add(radiance, count)
+    }
+}
+
+impl Region {
+    /// The pixels of a region no larger than a tile, as [`Tile::pixels`] gives them.
+    pub(crate) fn morton(self) -> impl Iterator<Item = (u32, u32)> {
+        (0..TILE * TILE)
+            .map(|i| (even_bits(i), even_bits(i >> 1)))
+            .filter(move |&(x, y)| x < self.width && y < self.height)
+            .map(move |(x, y)| (self.x + x, self.y + y))
     }
 }
 

@@ -225,7 +225,7 @@ mod tests {
                 Rgb::splat(if odd { 2.0 } else { 1.0 })
             });
             tile.samples = 16;
-            tile.probes.add(&samples.collect::<Vec<_>>(), &(0..16));
+            tile.probes.add(&samples.collect::<Vec<_>>(), 16);
             tile.probes.rays = 16 * streams as u64;
         }
         film

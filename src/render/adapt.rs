@@ -110,7 +110,7 @@ fn advance(job: &Job, tile: &mut Tile, to: u32, watch: &Watch, work: &mut Worksp
         let first = tile.samples;
         pass::tile_pass(job, tile, first..to.min(first.saturating_add(PASS)), work);
     }
-    pass::probe_pass(job, tile, to, work, || !watch.cancelled());
+    pass::probe_pass(job, tile, 0..to, work, || !watch.cancelled());
 }
 
 /// Does something with each of the tiles, on all threads.

@@ -7,6 +7,7 @@
 mod adapt;
 mod outline;
 mod pass;
+mod share;
 mod state;
 mod target;
 mod unfinished;
@@ -17,9 +18,11 @@ mod watch;
 pub use crate::integrator::skips::Skips;
 pub(crate) use outline::Outline;
 pub(crate) use pass::view;
+pub use share::Share;
 pub use target::{End, Stage};
 pub use unfinished::Unfinished;
 pub use unlike::Unlike;
+pub(crate) use unlike::difference;
 pub use watch::{Tasks, Totals};
 
 use self::pass::PASS;

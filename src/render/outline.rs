@@ -1,5 +1,6 @@
 //! All of an unfinished render but the sums of its film, as it is kept outside the program.
 
+use super::share::Share;
 use super::state::{State, Step};
 use super::target::Stage;
 use super::{End, Totals, Unfinished};
@@ -26,6 +27,7 @@ pub(crate) struct Outline {
     totals: Totals,
     end: End,
     pub(crate) region: Region,
+    share: Share,
     round: u32,
     plan: Vec<Step>,
     begun: usize,
@@ -47,6 +49,7 @@ impl Outline {
             totals: render.totals,
             end: render.end,
             region: state.film.region,
+            share: render.share.clone(),
             round: state.round,
             plan: state.plan.clone(),
             begun: state.begun,
@@ -67,10 +70,13 @@ impl Outline {
         };
         let inside = fits(x, width, self.settings.width) && fits(y, height, self.settings.height);
         demand(inside, "a region that is not in the picture")?;
-        let tiles = self.tiles.len();
-        demand(tiles as u64 == Film::tiles_of(self.region), "other tiles than the region has")?;
+        let whole = Share::whole(self.region, self.settings.spp);
+        let share = self.share.common(&whole).filter(|common| *common == self.share);
+        let share = share.filter(|share| !self.settings.has_target() || *share == whole);
+        let tiles = share.map(|share| share.tiles.len());
+        demand(tiles == Some(self.tiles.len()), "other tiles than its share has")?;
         let stages = self.stages.iter().map(|stage| stage.spp);
-        let most = stages.chain([self.settings.spp]).max().unwrap_or(0);
+        let most = stages.chain([self.share.samples.len() as u32]).max().unwrap_or(0);
         let sound = |tile: &KeptTile| {
             tile.samples.max(tile.probe_samples) <= most && tile.probe_rays <= MOST
         };
@@ -98,7 +104,7 @@ impl Outline {
 
     /// The render, with a film whose sums are still to be filled. It has passed [`Outline::check`].
     pub(crate) fn begin(self) -> Unfinished {
-        let mut film = Film::new(self.region, self.statistics);
+        let mut film = Film::with_tiles(self.region, self.share.tiles.clone(), self.statistics);
         film.restore_tiles(&self.tiles, self.settings.seed);
         let state = State {
             film,
@@ -114,6 +120,7 @@ impl Outline {
             stages: self.stages,
             met: self.met,
             statistics: self.statistics,
+            share: self.share,
             state,
             totals: self.totals,
             end: self.end,

@@ -47,24 +47,26 @@ pub(super) fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &
     work.clock.end(Stage::Film);
 }
 
-/// Gives the probes of a tile as many samples as are asked for; `go_on` may end it before.
+/// Gives the probes of a tile those of the samples that they lack, up to the end; `go_on` may end it
+/// before.
 pub(super) fn probe_pass(
     job: &Job,
     tile: &mut Tile,
-    samples: u32,
+    samples: Range<u32>,
     work: &mut Workspace,
     go_on: impl Fn() -> bool,
 ) {
     let Some(batch) = BATCH.checked_div(tile.probes.streams()) else { return };
-    while tile.probes.samples < samples && go_on() {
-        let first = tile.probes.samples;
-        let range = first..samples.min(first + batch as u32);
+    while samples.start + tile.probes.samples < samples.end && go_on() {
+        let first = samples.start + tile.probes.samples;
+        let range = first..samples.end.min(first.saturating_add(batch as u32));
+        let count = range.len() as u32;
         work.clock.restart();
         work.view = tile.view;
         let rays = work.counters.rays();
-        stages::generate_streams(job, tile.probes.starts(job.sampler), range.clone(), work);
+        stages::generate_streams(job, tile.probes.starts(job.sampler), range, work);
         let paths = integrate(job, work);
-        work.counters.bad_samples += tile.probes.add(&work.paths.radiance[..paths], &range);
+        work.counters.bad_samples += tile.probes.add(&work.paths.radiance[..paths], count);
         tile.probes.rays += work.counters.rays() - rays;
         work.clock.end(Stage::Film);
     }

@@ -1,5 +1,6 @@
 //! Renders that can be stopped, kept, and gone on with.
 
+use super::share::Share;
 use super::state::State;
 use super::target::{self, End, Stage, Target};
 use super::watch::{Totals, Watch};
@@ -18,8 +19,8 @@ use rayon::prelude::*;
 /// # What is the same
 ///
 /// However often a render is cancelled, and with however many threads and whatever tracer it goes
-/// on, it comes to the same bytes as one that never stopped: samples of a pixel are added up in the
-/// order of their index, and what a target decides is a function of what is kept here. Renders to a
+/// on, it comes to the same bytes as one that never stopped: samples of a pixel are added up without
+/// rounding, and what a target decides is a function of what is kept here. Renders to a
 /// time go through one sequence of steps, of which the time decides how many there are.
 ///
 /// # Asking for more
@@ -41,6 +42,8 @@ pub struct Unfinished {
     pub(super) met: usize,
     /// Whether sums of squares are kept.
     pub(super) statistics: bool,
+    /// What of the picture it is to render.
+    pub(super) share: Share,
     pub(super) state: State,
     pub(super) totals: Totals,
     pub(super) end: End,
@@ -50,10 +53,21 @@ impl Unfinished {
     /// A render that has no samples yet, of `world` by `settings`, both as [`super::render()`] takes
     /// them. Of the options, region and statistics are those of the whole render.
     pub fn begin(world: &World, settings: &Settings, options: &Options) -> Self {
-        let camera = &world.camera;
-        let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
-        let mut film = Film::new(options.region.unwrap_or(whole), options.statistics);
+        let share = Share::whole(region(world, options), settings.spp);
+        Self::begin_share(world, settings, options, share)
+    }
+
+    /// The same of a share of the render, to be merged with others. The settings, which are those of
+    /// the whole, have no target: no share knows how much is enough.
+    pub fn begin_share(
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+        share: Share,
+    ) -> Self {
         let statistics = options.statistics;
+        let region = region(world, options);
+        let mut film = Film::with_tiles(region, share.tiles.clone(), statistics);
         let state = with_job(world, settings, options, |job| {
             if options.tracer.method != Method::Brute && options.skips.empty_tiles {
                 film.tiles.par_iter_mut().for_each(|tile| tile.view = pass::view(job, tile));
@@ -63,7 +77,23 @@ impl Unfinished {
         });
         let stages = if settings.has_target() { vec![Stage::of(settings)] } else { Vec::new() };
         let (settings, totals, end) = (settings.clone(), Totals::default(), End::Cancelled);
-        Self { settings, stages, met: 0, statistics, state, totals, end }
+        Self { settings, stages, met: 0, statistics, share, state, totals, end }
+    }
+
+    /// Adds what another share of the same render has. Whether they are of the same kind; if not,
+    /// this one is of no use any more.
+    pub(crate) fn merge(&mut self, other: Self) -> bool {
+        self.totals.add(&other.totals);
+        self.statistics == other.statistics && self.state.film.merge(other.state.film)
+    }
+
+    /// Makes the merged shares the whole, with black tiles where there are none.
+    pub(crate) fn become_whole(&mut self) {
+        self.share = Share::whole(self.region(), self.settings.spp);
+        self.state.film.fill(self.statistics);
+        self.state.round = uniform::rounds_taken(&self.state.film);
+        let complete = self.samples().least == self.settings.spp;
+        self.end = if complete { End::Samples } else { End::Cancelled };
     }
 
     /// Goes on until everything that was asked for is there, time is up, or `options.cancel` is set,
@@ -78,7 +108,7 @@ impl Unfinished {
             if settings.has_target() {
                 self.meet(job, &watch)
             } else {
-                uniform::run(job, &mut self.state, &watch)
+                uniform::run(job, self.share.samples.clone(), &mut self.state, &watch)
             }
         });
         self.totals = watch.totals();
@@ -107,9 +137,15 @@ impl Unfinished {
     /// in a number of strata that would be another.
     pub fn raise(&mut self, settings: &Settings) -> Result<(), Unlike> {
         unlike::check(&self.settings, settings)?;
+        if settings.spp != self.settings.spp && !self.is_whole() {
+            return Err(Unlike::Share { then: self.settings.spp, now: settings.spp });
+        }
         let stage = Stage::of(settings);
         if settings.has_target() && self.stages.last() != Some(&stage) {
             self.stages.push(stage);
+        }
+        if settings.spp != self.settings.spp {
+            self.share = Share::whole(self.region(), settings.spp);
         }
         self.settings = settings.clone();
         Ok(())
@@ -135,8 +171,23 @@ impl Unfinished {
             elapsed,
             end: self.end,
             stages: self.stages.clone(),
-            complete: self.end != End::Cancelled,
+            complete: self.is_complete(),
         }
+    }
+
+    /// What of the picture it is to render.
+    pub fn share(&self) -> &Share {
+        &self.share
+    }
+
+    /// Whether that is all of it.
+    pub fn is_whole(&self) -> bool {
+        self.share == Share::whole(self.region(), self.settings.spp)
+    }
+
+    /// Whether everything that was asked for is there, or time was up.
+    pub fn is_complete(&self) -> bool {
+        self.end != End::Cancelled
     }
 
     /// Samples that there are.
@@ -186,6 +237,13 @@ impl Unfinished {
     pub fn totals(&self) -> &Totals {
         &self.totals
     }
+}
+
+/// The part of the picture that is wanted.
+fn region(world: &World, options: &Options) -> Region {
+    let camera = &world.camera;
+    let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
+    options.region.unwrap_or(whole)
 }
 
 /// Does something with what all tasks of a render share.

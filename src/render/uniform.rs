@@ -7,16 +7,17 @@ use super::watch::Watch;
 use crate::film::{Film, Tile};
 use crate::integrator::Job;
 use crate::integrator::workspace::Workspace;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Gives every pixel the samples that the settings say.
+/// Gives every pixel the samples that it lacks of a share.
 ///
 /// A task is a pass over a tile, and threads take them off one counter: none ever waits for a whole pass
 /// over the picture to end. Whoever comes to a tile takes the samples that are next there, so their
 /// order does not depend on that of the tasks, nor on how often the render was stopped.
-pub(super) fn run(job: &Job, state: &mut State, watch: &Watch) -> End {
-    let spp = job.settings.spp;
+pub(super) fn run(job: &Job, share: Range<u32>, state: &mut State, watch: &Watch) -> End {
+    let spp = share.len() as u32;
     let left = |tile: &Tile| passes_left(tile.samples, spp);
     let all = state.film.tiles.len() * spp.div_ceil(PASS) as usize;
     let rounds = state.film.tiles.iter().map(left).max().unwrap_or(0);
@@ -33,9 +34,10 @@ pub(super) fn run(job: &Job, state: &mut State, watch: &Watch) -> End {
                 return;
             };
             if left(&tile) > 0 {
-                let samples = tile.samples..pass_end(tile.samples, spp);
-                pass::tile_pass(job, &mut tile, samples.clone(), &mut work);
-                pass::probe_pass(job, &mut tile, samples.end, &mut work, || true);
+                let first = share.start + tile.samples;
+                let end = share.start + pass_end(tile.samples, spp);
+                pass::tile_pass(job, &mut tile, first..end, &mut work);
+                pass::probe_pass(job, &mut tile, share.start..end, &mut work, || true);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 watch.report(&mut work, done as f64 / all as f64, None);
             }
@@ -59,7 +61,7 @@ fn passes_left(samples: u32, spp: u32) -> usize {
 }
 
 /// Passes of the tile that has had most.
-fn rounds_taken(film: &Film) -> u32 {
+pub(super) fn rounds_taken(film: &Film) -> u32 {
     film.tiles.iter().map(|tile| tile.samples.div_ceil(PASS)).max().unwrap_or(0)
 }
 

@@ -1,6 +1,6 @@
 //! Whether a render can go on by other settings.
 
-use super::target;
+use super::{Unfinished, target};
 use crate::scene::{SamplerKind, Settings};
 use std::fmt::Debug;
 use std::time::Duration;
@@ -36,6 +36,16 @@ pub enum Unlike {
         /// What would be.
         now: String,
     },
+    /// A share of a render is a share of so many samples.
+    #[error(
+        "spp is {now}, but this is a part of a render of {then}; leave it as it was, or render          all parts anew"
+    )]
+    Share {
+        /// Samples per pixel that were asked for.
+        then: u32,
+        /// What would be.
+        now: u32,
+    },
     /// The samples that there are lie in other strata.
     #[error(
         "spp is {now}, but the samples were stratified for {then}; leave it as it was, or begin \
@@ -51,22 +61,54 @@ pub enum Unlike {
 
 /// Finds out whether a render that was to reach `then` can go on to `now`.
 pub(super) fn check(then: &Settings, now: &Settings) -> Result<(), Unlike> {
-    let same = |name, then: &dyn Debug, now: &dyn Debug| {
-        let (then, now) = (format!("{then:?}"), format!("{now:?}"));
-        if then == now { Ok(()) } else { Err(Unlike::Setting { name, then, now }) }
-    };
-    same("width", &then.width, &now.width)?;
-    same("height", &then.height, &now.height)?;
-    same("depth", &then.depth, &now.depth)?;
-    same("seed", &then.seed, &now.seed)?;
-    same("integrator", &then.integrator, &now.integrator)?;
-    same("sampler", &then.sampler, &now.sampler)?;
-    same("filter", &then.filter, &now.filter)?;
-    same("roulette", &then.roulette, &now.roulette)?;
-    same("light_choice", &then.light_choice, &now.light_choice)?;
+    if let Some((name, then, now)) = first_difference(&samples(then), &samples(now)) {
+        return Err(Unlike::Setting { name, then, now });
+    }
     same_target("until_error", then.until_error.is_some(), now.until_error.is_some())?;
     same_target("time", then.time.is_some(), now.time.is_some())?;
     no_less(then, now)
+}
+
+/// In what two renders differ, if their shares do not belong together: by which name, and what it is in
+/// both.
+pub(crate) fn difference(a: &Unfinished, b: &Unfinished) -> Option<(&'static str, String, String)> {
+    let all = |render: &Unfinished| -> Vec<(&'static str, String)> {
+        let settings = render.settings();
+        let rest: [(&'static str, &dyn Debug); 5] = [
+            ("spp", &settings.spp),
+            ("exposure", &settings.exposure),
+            ("tone", &settings.tone),
+            ("region", &render.region()),
+            ("whether statistics are kept", &render.statistics()),
+        ];
+        let rest = rest.map(|(name, value)| (name, format!("{value:?}")));
+        samples(settings).into_iter().chain(rest).collect()
+    };
+    first_difference(&all(a), &all(b))
+}
+
+/// What every sample depends on, by name.
+fn samples(settings: &Settings) -> Vec<(&'static str, String)> {
+    let all: [(&'static str, &dyn Debug); 9] = [
+        ("width", &settings.width),
+        ("height", &settings.height),
+        ("depth", &settings.depth),
+        ("seed", &settings.seed),
+        ("integrator", &settings.integrator),
+        ("sampler", &settings.sampler),
+        ("filter", &settings.filter),
+        ("roulette", &settings.roulette),
+        ("light_choice", &settings.light_choice),
+    ];
+    all.map(|(name, value)| (name, format!("{value:?}"))).into()
+}
+
+fn first_difference(
+    a: &[(&'static str, String)],
+    b: &[(&'static str, String)],
+) -> Option<(&'static str, String, String)> {
+    let (a, b) = a.iter().zip(b).find(|(a, b)| a != b)?;
+    Some((a.0, a.1.clone(), b.1.clone()))
 }
 
 fn same_target(name: &'static str, then: bool, now: bool) -> Result<(), Unlike> {

@@ -48,6 +48,18 @@ pub struct Totals {
     pub elapsed: Duration,
 }
 
+impl Totals {
+    /// Adds what another share of the render took, on another machine or at another time.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.counters.add(&other.counters);
+        self.times.add(&other.times);
+        self.tasks.count += other.tasks.count;
+        self.tasks.longest = self.tasks.longest.max(other.tasks.longest);
+        self.tasks.total += other.tasks.total;
+        self.elapsed += other.elapsed;
+    }
+}
+
 /// What all threads of a render share.
 pub(super) struct Watch<'a> {
     options: &'a Options<'a>,

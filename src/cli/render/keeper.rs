@@ -4,7 +4,7 @@ use crate::cli::command::{Given, render_command};
 use crate::cli::keep::KeepArgs;
 use crate::cli::{Failure, output};
 use spherule::atomic::{check_destination, remove_leftovers};
-use spherule::checkpoint::{self, Lock, Origin};
+use spherule::checkpoint::{self, Caption, Lock, Origin};
 use spherule::render::Unfinished;
 use spherule::scene::Identity;
 use std::ffi::OsString;
@@ -55,7 +55,8 @@ impl Keeper {
     pub(super) fn keep(&self, scene: &Identity, render: &Unfinished) -> Option<Duration> {
         let start = Instant::now();
         let (folder, arguments) = (self.folder.clone(), self.arguments.clone());
-        let origin = Origin { scene: scene.clone(), folder, arguments };
+        let caption = Caption::default();
+        let origin = Origin { scene: scene.clone(), folder, arguments, caption };
         let written = checkpoint::write(&self.path, &origin, render);
         self.tell(written.as_ref().err());
         written.ok().map(|()| start.elapsed())

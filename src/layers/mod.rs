@@ -4,6 +4,9 @@
 //! without them does nothing for them. The rays are the picture's: the same samples of the same
 //! filter through the same lens, so that edges and blur lie where the picture has them.
 
+mod sums;
+
+use self::sums::Sums;
 use crate::bvh::walk::Method;
 use crate::film::{Film, Region, Tile, View};
 use crate::image::{Channel, Values};
@@ -14,8 +17,9 @@ use crate::render::{Options, Statistics, passes, view};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::Settings;
 use crate::world::World;
-use glam::DVec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The most samples of a pixel that layers take: with so many an edge is smooth to 1/256.
 pub const SAMPLES: u32 = 256;
@@ -27,7 +31,7 @@ pub const NOTHING: u32 = MISS;
 pub const GROUND_PLANE: u32 = GROUND;
 
 /// What can be known of a pixel besides its color.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Layer {
     /// [`Features::albedo`]: channels `albedo.R`, `albedo.G`, `albedo.B`.
     Albedo,
@@ -47,7 +51,7 @@ pub enum Layer {
 }
 
 /// What is known of a pixel: of what its rays hit first, whatever it is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Features {
     /// Mean of [`World::albedo`], linear RGB, 0..=1; rays that hit nothing count as black.
     pub albedo: [f32; 3],
@@ -144,7 +148,34 @@ impl Layer {
     }
 }
 
+impl Features {
+    /// Of a pixel that sees nothing, or of which nothing is known.
+    pub const NONE: Self = Self {
+        albedo: [0.0; 3],
+        normal: [0.0; 3],
+        depth: f32::INFINITY,
+        coverage: 0.0,
+        ground: 0.0,
+        id: NOTHING,
+    };
+}
+
 impl Layers {
+    /// The layers of a region whose tiles are given in pieces, as [`features`] gives them; where there
+    /// are none, nothing is known.
+    pub fn gather(region: Region, pieces: &[(Range<u32>, Vec<Features>)]) -> Self {
+        let Region { x: left, y: top, width, height } = region;
+        let mut pixels = vec![Features::NONE; width as usize * height as usize];
+        for (tiles, features) in pieces {
+            let tiles = Film::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
+            let places = tiles.flat_map(Region::morton);
+            for ((x, y), &features) in places.zip(features) {
+                pixels[(y - top) as usize * width as usize + (x - left) as usize] = features;
+            }
+        }
+        Self { width, height, pixels, statistics: None }
+    }
+
     /// Bytes that the layers of a region take, their channels included, at most.
     pub fn bytes(region: Region) -> u64 {
         let pixel = 2 * size_of::<Features>() as u64;
@@ -164,6 +195,23 @@ impl Layers {
 /// for any number of threads and any tracer, in a region and in the whole. If `wanted` has nothing but
 /// [`Layer::Id`] and statistics, one ray for each pixel does, and only the ids are of use.
 pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[Layer]) -> Layers {
+    let camera = &world.camera;
+    let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
+    let region = options.region.unwrap_or(whole);
+    let tiles = 0..Film::tile_count(region);
+    let features = features(world, settings, options, wanted, tiles.clone());
+    Layers::gather(region, &[(tiles, features)])
+}
+
+/// The same of some tiles of the region, by their numbers: the features of their pixels, tile by tile
+/// and in each in the order of [`Tile::pixels`].
+pub fn features(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    wanted: &[Layer],
+    tiles: Range<u32>,
+) -> Vec<Features> {
     let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
     let filter = PixelFilter::new(settings.filter);
     let (tracer, skips) = (options.tracer, options.skips);
@@ -173,8 +221,7 @@ pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[L
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
     let camera = &world.camera;
     let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
-    let region = options.region.unwrap_or(whole);
-    let mut tiles = Film::new(region, false).tiles;
+    let mut tiles = Film::with_tiles(options.region.unwrap_or(whole), tiles, false).tiles;
     let features: Vec<Vec<Features>> = tiles
         .par_iter_mut()
         .map_init(
@@ -187,14 +234,7 @@ pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[L
             },
         )
         .collect();
-    let mut pixels = vec![Sums::default().mean(0); region.width as usize * region.height as usize];
-    for (tile, features) in tiles.iter().zip(features) {
-        for ((x, y), features) in tile.pixels().zip(features) {
-            let (column, row) = ((x - region.x) as usize, (y - region.y) as usize);
-            pixels[row * region.width as usize + column] = features;
-        }
-    }
-    Layers { width: region.width, height: region.height, pixels, statistics: None }
+    features.into_iter().flatten().collect()
 }
 
 /// The features of a tile's pixels, in the order of [`Tile::pixels`].
@@ -221,58 +261,4 @@ fn of_tile(job: &Job, tile: &Tile, samples: u32, work: &mut Workspace) -> Vec<Fe
 fn see(job: &Job, tile: &Tile, work: &mut Workspace) {
     work.view = tile.view;
     stages::intersect(job, work);
-}
-
-/// What the samples of a pixel have added up to.
-#[derive(Clone, Copy)]
-struct Sums {
-    albedo: DVec3,
-    normal: DVec3,
-    depth: f64,
-    hits: u32,
-    ground: u32,
-    id: u32,
-}
-
-impl Default for Sums {
-    fn default() -> Self {
-        Self {
-            albedo: DVec3::ZERO,
-            normal: DVec3::ZERO,
-            depth: 0.0,
-            hits: 0,
-            ground: 0,
-            id: NOTHING,
-        }
-    }
-}
-
-impl Sums {
-    /// Adds what row `row` has hit, if anything.
-    fn add(&mut self, world: &World, work: &Workspace, row: usize) {
-        let hit = work.hits.sphere[row];
-        if hit == MISS {
-            return;
-        }
-        let (ray, normal) = (work.rays.exact(row), work.surface.normal[row]);
-        self.albedo += world.albedo(hit).as_dvec3();
-        self.normal += if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
-        self.depth += world.camera.distance(ray.at(work.hits.t[row])) / world.frame.scale;
-        self.hits += 1;
-        self.ground += u32::from(hit == GROUND);
-    }
-
-    /// What they come to, of so many samples.
-    fn mean(&self, samples: u32) -> Features {
-        let share = 1.0 / f64::from(samples.max(1));
-        let depth = if self.hits > 0 { self.depth / f64::from(self.hits) } else { f64::INFINITY };
-        Features {
-            albedo: (self.albedo * share).as_vec3().to_array(),
-            normal: (self.normal * share).as_vec3().to_array(),
-            depth: depth as f32,
-            coverage: (f64::from(self.hits) * share) as f32,
-            ground: (f64::from(self.ground) * share) as f32,
-            id: self.id,
-        }
-    }
 }

@@ -1,0 +1,55 @@
+//! What the samples of a pixel have added up to.
+
+use super::{Features, NOTHING};
+use crate::integrator::workspace::Workspace;
+use crate::ray::{GROUND, MISS};
+use crate::world::World;
+use glam::DVec3;
+
+/// What the samples of a pixel have added up to.
+#[derive(Clone, Copy)]
+pub(super) struct Sums {
+    albedo: DVec3,
+    normal: DVec3,
+    depth: f64,
+    hits: u32,
+    ground: u32,
+    pub(super) id: u32,
+}
+
+impl Default for Sums {
+    fn default() -> Self {
+        let zero = DVec3::ZERO;
+        Self { albedo: zero, normal: zero, depth: 0.0, hits: 0, ground: 0, id: NOTHING }
+    }
+}
+
+impl Sums {
+    /// Adds what row `row` has hit, if anything.
+    pub(super) fn add(&mut self, world: &World, work: &Workspace, row: usize) {
+        let hit = work.hits.sphere[row];
+        if hit == MISS {
+            return;
+        }
+        let (ray, normal) = (work.rays.exact(row), work.surface.normal[row]);
+        self.albedo += world.albedo(hit).as_dvec3();
+        self.normal += if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
+        self.depth += world.camera.distance(ray.at(work.hits.t[row])) / world.frame.scale;
+        self.hits += 1;
+        self.ground += u32::from(hit == GROUND);
+    }
+
+    /// What they come to, of so many samples.
+    pub(super) fn mean(&self, samples: u32) -> Features {
+        let share = 1.0 / f64::from(samples.max(1));
+        let depth = if self.hits > 0 { self.depth / f64::from(self.hits) } else { f64::INFINITY };
+        Features {
+            albedo: (self.albedo * share).as_vec3().to_array(),
+            normal: (self.normal * share).as_vec3().to_array(),
+            depth: depth as f32,
+            coverage: (f64::from(self.hits) * share) as f32,
+            ground: (f64::from(self.ground) * share) as f32,
+            id: self.id,
+        }
+    }
+}
