@@ -7,11 +7,12 @@ use super::names::{
     BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
     Traversal,
 };
+use super::part::PartArgs;
 use super::particles::ParticleArgs;
 use super::slices::SliceArgs;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
 use super::views::{StyleArgs, ViewArgs};
-use super::{bench, examples, stress};
+use super::{bench, compare, examples, merge, stress};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
 use spherule::image::{Depth, PpmEncoding};
@@ -34,6 +35,9 @@ pub(super) enum Command {
     /// Render a scene or a particle file to a picture (the default command)
     #[command(allow_negative_numbers = true, after_help = examples::RENDER)]
     Render(Box<RenderArgs>),
+    /// Put the parts of a render together that several machines have made
+    #[command(allow_negative_numbers = true, after_help = examples::MERGE)]
+    Merge(merge::Args),
     /// Write a generated scene: a TOML file, and its spheres in a CSV file beside it
     #[command(allow_negative_numbers = true, after_help = examples::FIELD)]
     Field(FieldArgs),
@@ -42,7 +46,7 @@ pub(super) enum Command {
     Info(InfoArgs),
     /// Measure how far a picture is from a reference
     #[command(after_help = examples::COMPARE)]
-    Compare(CompareArgs),
+    Compare(compare::Args),
     /// Count wrong decisions of this program, and of usual forms, where rounding is at its worst
     #[command(after_help = stress::EXAMPLES)]
     Stress(stress::Args),
@@ -82,6 +86,8 @@ pub(super) struct RenderArgs {
     pub(super) speed: SpeedArgs,
     #[command(flatten)]
     pub(super) memory: MemoryArgs,
+    #[command(flatten)]
+    pub(super) part: PartArgs,
     #[command(flatten)]
     pub(super) report: ReportArgs,
 }
@@ -267,19 +273,6 @@ pub(super) struct InfoArgs {
     #[command(flatten)]
     pub(super) particles: ParticleArgs,
     /// One JSON object on standard output
-    #[arg(long)]
-    pub(super) json: bool,
-}
-
-#[derive(Debug, clap::Args)]
-pub(super) struct CompareArgs {
-    /// The picture: EXR, PFM, PNG, PPM or Radiance HDR
-    #[arg(value_name = "A")]
-    pub(super) picture: PathBuf,
-    /// The reference
-    #[arg(value_name = "B")]
-    pub(super) reference: PathBuf,
-    /// One JSON object on standard output; what is infinite is null
     #[arg(long)]
     pub(super) json: bool,
 }

@@ -8,7 +8,8 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 /// What is said of the moment, not of the picture: it is not kept.
-const MOMENTARY: [&str; 6] = ["checkpoint", "resume", "quiet", "verbose", "stats", "json"];
+const MOMENTARY: [&str; 7] =
+    ["checkpoint", "resume", "memory_limit", "quiet", "verbose", "stats", "json"];
 
 /// Options that are the paths of files.
 const PATHS: [&str; 3] = ["scene", "output", "color_bar"];
@@ -25,22 +26,22 @@ pub(super) fn render_command() -> Command {
 
 /// Options and their values; those without are switches.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Typed(Vec<(String, Vec<OsString>)>);
+pub(super) struct TypedOptions(Vec<(String, Vec<OsString>)>);
 
 /// A command, and the folder in which it was typed.
 pub(super) struct Given {
     pub(super) folder: PathBuf,
-    pub(super) typed: Typed,
+    pub(super) typed: TypedOptions,
 }
 
 impl Given {
     /// The command of this process.
     pub(super) fn of_process() -> Self {
-        Self { folder: env::current_dir().unwrap_or_default(), typed: Typed::of_process() }
+        Self { folder: env::current_dir().unwrap_or_default(), typed: TypedOptions::of_process() }
     }
 }
 
-impl Typed {
+impl TypedOptions {
     /// What was typed of the command that renders, if this process was called with it.
     fn of_process() -> Self {
         let matches = Args::command().try_get_matches_from(env::args_os());
@@ -85,6 +86,12 @@ impl Typed {
         self
     }
 
+    /// This, but with a value of an option.
+    pub(super) fn set(&mut self, id: &str, value: impl Into<OsString>) {
+        self.0.retain(|(other, _)| other != id);
+        self.0.push((id.to_owned(), vec![value.into()]));
+    }
+
     /// This, but for what was typed later.
     pub(super) fn with(mut self, later: Self) -> Self {
         let again = |id: &String| later.0.iter().any(|(other, _)| other == id);
@@ -127,8 +134,8 @@ fn option(name: &str, value: &OsStr) -> OsString {
 mod tests {
     use super::*;
 
-    fn typed(arguments: &[&str]) -> Typed {
-        Typed::of(&render_command(), &matches(arguments))
+    fn typed(arguments: &[&str]) -> TypedOptions {
+        TypedOptions::of(&render_command(), &matches(arguments))
     }
 
     fn matches(arguments: &[impl Into<OsString> + Clone]) -> ArgMatches {
@@ -156,7 +163,7 @@ mod tests {
         for line in lines {
             let first = typed(line);
             let again = first.arguments(&render_command());
-            let second = Typed::of(&render_command(), &matches(&again));
+            let second = TypedOptions::of(&render_command(), &matches(&again));
             assert_eq!(first, second, "{again:?}");
         }
         assert_eq!(typed(&["--cell", "x"]).arguments(&render_command()).len(), 3);
@@ -168,7 +175,7 @@ mod tests {
         let later = typed(&["--spp", "9", "--type", "B:radius=2", "--cell"]);
         let both =
             typed(&["a.toml", "--seed", "3", "--spp", "9", "--type", "B:radius=2", "--cell"]);
-        let sorted = |typed: Typed| {
+        let sorted = |typed: TypedOptions| {
             let mut arguments = typed.arguments(&render_command());
             arguments.sort();
             arguments

@@ -1,13 +1,27 @@
 //! `spherule compare`: how far a picture is from a reference.
 
 use super::Failure;
-use super::args::CompareArgs;
 use super::output;
 use indicatif::HumanCount;
 use serde::Serialize;
 use spherule::image::{Comparison, Image, compare};
 use std::borrow::Cow;
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Two pictures.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// The picture: EXR, PFM, PNG, PPM or Radiance HDR
+    #[arg(value_name = "A")]
+    picture: PathBuf,
+    /// The reference
+    #[arg(value_name = "B")]
+    reference: PathBuf,
+    /// One JSON object on standard output; what is infinite is null
+    #[arg(long)]
+    json: bool,
+}
 
 /// A comparison and what was compared.
 #[derive(Serialize)]
@@ -21,7 +35,7 @@ struct Report<'a> {
 }
 
 /// Measures and tells.
-pub(super) fn run(args: &CompareArgs) -> Result<ExitCode, Failure> {
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let picture = Image::read(&args.picture)?;
     let reference = Image::read(&args.reference)?;
     let report = Report {

@@ -27,6 +27,9 @@ Examples:
   spherule render protein.pdb --preset outline --background white -o outline.png
   spherule render grains.data --slice 'z>50%' --slice-mode caps -o section.png
   spherule render scene.toml --region 100,50,64x64 -o detail.png
+  spherule render scene.toml -o picture.exr --part 3/8     to picture.3-of-8.part, for merge
+  spherule render scene.toml -o picture.exr --part from-env     in a job array or under mpirun
+  parallel spherule render scene.toml -o picture.exr --part {}/8 ::: $(seq 8)
   spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id
   spherule render scene.toml --memory-limit 4GB     refused at once if it would take more
   spherule render scene.toml --json --quiet > statistics.json
@@ -36,6 +39,14 @@ Examples:
 
 Ctrl-C and SIGTERM save the picture so far, and the checkpoint, and exit with code 130 and 143. A
 second one ends the program at once; files are whole then too.";
+
+/// Of `spherule merge`.
+pub(super) const MERGE: &str = "\
+The picture has the bytes of one that was rendered as a whole, and the layers of the parts.
+
+Examples:
+  spherule merge picture.*.part -o picture.exr
+  spherule merge picture.1-of-3.part picture.3-of-3.part --partial -o preview.png";
 
 /// Of `spherule field`.
 pub(super) const FIELD: &str = "\

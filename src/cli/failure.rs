@@ -17,6 +17,7 @@ use spherule::image::{CompareError, ImageError};
 use spherule::memory::Shortage;
 use spherule::scene::generate::GenerateError;
 use spherule::scene::{Place, SceneError};
+use spherule::split::MergeError;
 use spherule::world::WorldError;
 use std::fmt;
 use std::io;
@@ -47,6 +48,10 @@ pub(crate) enum Failure {
     Write(PathBuf, io::Error),
     #[error("frame {0}: {1}")]
     Frame(u64, Box<Self>),
+    #[error("{0}")]
+    Merge(#[from] MergeError),
+    #[error("{0}: has other layers than {1}; render all parts with the same --layers")]
+    Layers(String, String),
     #[error("{0}")]
     Checkpoint(#[from] CheckpointError),
     #[error("{0}")]

@@ -16,8 +16,10 @@ mod info;
 mod keep;
 mod looks;
 mod memory;
+mod merge;
 mod names;
 mod output;
+mod part;
 mod particles;
 mod processor;
 mod progress;
@@ -41,7 +43,8 @@ pub(crate) fn run() -> Result<ExitCode, Failure> {
     processor::check()?;
     signals::survive_large_files();
     match Args::of_process() {
-        Command::Render(args) => render::run(&args),
+        Command::Render(args) => render::run(*args),
+        Command::Merge(args) => merge::run(&args),
         Command::Field(args) => field::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),

@@ -4,6 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule::image::{Depth, PpmEncoding};
 use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, LightChoice, SamplerKind, Tone};
+use spherule::split::Split;
 use spherule::stress::{REGIMES, Regime};
 use spherule::trace::Width;
 use std::mem::discriminant;
@@ -108,6 +109,12 @@ pub(super) const LANES: Names<Width> = Names(&[
     ("4", Width::Four, "Packets of four"),
     ("8", Width::Eight, "Packets of eight"),
     ("16", Width::Sixteen, "Packets of sixteen"),
+]);
+
+/// What parts of a render differ in.
+pub(super) const SPLITS: Names<Split> = Names(&[
+    ("samples", Split::Samples, "Each part has some samples of every pixel"),
+    ("tiles", Split::Tiles, "Each part has some of the tiles, and takes less memory"),
 ]);
 
 /// Reads the name of a regime.

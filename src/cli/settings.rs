@@ -1,7 +1,7 @@
 //! A picture's settings: what the command line replaces, and how they are listed in files and
 //! reports.
 
-use super::args::PictureArgs;
+use super::args::{EncodingArgs, PictureArgs};
 use super::names::{FILTERS, INTEGRATORS, LIGHT_CHOICES, PPM, SAMPLERS, TONES};
 use super::values::Target;
 use serde_json::{Map, Value, json};
@@ -60,6 +60,14 @@ impl PictureArgs {
                 Integrator::Ao { distance: self.ao_distance.unwrap_or(distance) }
             }
         }
+    }
+}
+
+impl EncodingArgs {
+    /// Puts what was typed in the place of what the scene says.
+    pub(super) fn replace(&self, settings: &mut Settings) {
+        settings.exposure = self.exposure.unwrap_or(settings.exposure);
+        settings.tone = self.tone.unwrap_or(settings.tone);
     }
 }
 

@@ -9,6 +9,7 @@ mod inputs;
 mod layers;
 mod looks;
 mod particles;
+mod parts;
 mod pictures;
 mod processes;
 mod refusals;

@@ -35,6 +35,15 @@ impl Estimate {
         }
     }
 
+    /// The same of so many of the region's tiles.
+    pub(super) fn of_tiles(self, tiles: usize) -> Self {
+        let part = |bytes: u64| {
+            let share = u128::from(bytes) * tiles as u128;
+            (share / u128::from(Film::tile_count(self.region)).max(1)) as u64
+        };
+        Self { film: part(self.film), layers: part(self.layers), ..self }
+    }
+
     /// Refuses a render that there is no memory for.
     pub(super) fn check(self) -> Result<(), Failure> {
         let Self { world, film, layers, .. } = self;

@@ -20,6 +20,7 @@ use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::particles::Looks;
 use spherule::scene::{Camera, Settings};
+use spherule::split::{Part, Split};
 use spherule::trace::{Tracer, Width};
 use std::path::PathBuf;
 
@@ -45,6 +46,9 @@ pub(super) struct Job<'a> {
     pub(super) camera: Option<Camera>,
     pub(super) encoding: &'a EncodingArgs,
     pub(super) keep: &'a KeepArgs,
+    /// Which part of the render it is, if it is but one.
+    pub(super) part: Option<Part>,
+    pub(super) split: Option<Split>,
     pub(super) speed: &'a SpeedArgs,
     pub(super) tracer: Tracer,
     pub(super) threads: usize,
@@ -103,6 +107,8 @@ impl<'a> Job<'a> {
             camera: None,
             encoding: &args.encoding,
             keep: &args.keep,
+            part: args.part.settled(),
+            split: args.part.split,
             speed: &args.speed,
             tracer: tracer(args.speed.traversal, args.speed.lanes),
             threads: threads::count(args.speed.threads),
@@ -129,6 +135,11 @@ impl<'a> Job<'a> {
     /// Whether something is drawn over the picture, which takes layers.
     pub(super) fn draws_over(&self) -> bool {
         self.views.draws_cell() || self.style.background().is_some() || self.style.is_transparent()
+    }
+
+    /// Whether a color bar is drawn into the picture.
+    pub(super) fn draws_bar(&self) -> bool {
+        matches!(self.color_bar, Some(BarPlace::Inside(_)))
     }
 
     /// The threads that do it.

@@ -1,12 +1,12 @@
 //! Checkpoints of a render that goes on.
 
+use super::prepare::Prepared;
 use crate::cli::command::{Given, render_command};
 use crate::cli::keep::KeepArgs;
 use crate::cli::{Failure, output};
 use spherule::atomic::{check_destination, remove_leftovers};
 use spherule::checkpoint::{self, Caption, Lock, Origin};
 use spherule::render::Unfinished;
-use spherule::scene::Identity;
 use std::ffi::OsString;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -52,12 +52,14 @@ impl Keeper {
 
     /// Writes a checkpoint, or says why it could not be: the render goes on. How long that took;
     /// `None` if it failed.
-    pub(super) fn keep(&self, scene: &Identity, render: &Unfinished) -> Option<Duration> {
+    pub(super) fn keep(
+        &self,
+        prepared: &Prepared,
+        caption: &Caption,
+        render: &Unfinished,
+    ) -> Option<Duration> {
         let start = Instant::now();
-        let (folder, arguments) = (self.folder.clone(), self.arguments.clone());
-        let caption = Caption::default();
-        let origin = Origin { scene: scene.clone(), folder, arguments, caption };
-        let written = checkpoint::write(&self.path, &origin, render);
+        let written = self.write(prepared, caption, render);
         self.tell(written.as_ref().err());
         written.ok().map(|()| start.elapsed())
     }
@@ -74,6 +76,25 @@ impl Keeper {
             ));
         }
         *before = now;
+    }
+
+    /// Writes a checkpoint.
+    pub(super) fn write(
+        &self,
+        prepared: &Prepared,
+        caption: &Caption,
+        render: &Unfinished,
+    ) -> io::Result<()> {
+        let (folder, arguments) = (self.folder.clone(), self.arguments.clone());
+        let missing = || io::Error::other("the scene was not identified");
+        let scene = prepared.identity.clone().ok_or_else(missing)?;
+        let origin = Origin { scene, folder, arguments, caption: caption.clone() };
+        checkpoint::write(&self.path, &origin, render)
+    }
+
+    /// Where checkpoints go.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// How the render is gone on with.

@@ -33,7 +33,7 @@ pub(super) fn alpha(values: Vec<f32>) -> Channel {
 }
 
 /// Those that were typed, each once; all if one is `None`.
-fn wanted(typed: &[Option<Layer>]) -> Vec<Layer> {
+pub(super) fn wanted(typed: &[Option<Layer>]) -> Vec<Layer> {
     let all = typed.contains(&None);
     Layer::ALL.into_iter().filter(|layer| all || typed.contains(&Some(*layer))).collect()
 }

@@ -5,61 +5,100 @@
 
 use super::job::Job;
 use super::prepare::Prepared;
-use crate::cli::settings;
+use crate::cli::args::EncodingArgs;
+use crate::cli::settings::{self, List};
 use serde_json::Value;
-use spherule::image::{Metadata, WriteOptions};
+use spherule::film::Region;
+use spherule::image::{Format, Metadata, WriteOptions};
 use spherule::render::{Render, Stage};
+use spherule::scene::Settings;
+
+/// What a picture is of.
+pub(in crate::cli) struct Subject<'a> {
+    /// The scene's title; empty if it has none.
+    pub(in crate::cli) title: &'a str,
+    pub(in crate::cli) settings: &'a Settings,
+    pub(in crate::cli) region: Region,
+    /// How particles are looked at: names and values.
+    pub(in crate::cli) looks: &'a [(String, String)],
+}
 
 /// All that the picture's file needs besides the picture.
 pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> WriteOptions {
-    let (typed, scene) = (job.encoding, &prepared.scene.settings);
-    let mut options = WriteOptions {
-        depth: typed.bits.unwrap_or_default(),
-        ppm: typed.ppm.unwrap_or_default(),
-        exposure: typed.exposure.unwrap_or(scene.exposure),
-        tone: typed.tone.unwrap_or(scene.tone),
-        metadata: Metadata::new(),
+    let subject = Subject {
+        title: &prepared.title,
+        settings: &prepared.scene.settings,
+        region: prepared.region,
+        looks: &looks(job, prepared),
     };
-    options.metadata = metadata(job, prepared, render, &options);
-    options
+    subject.write_options(job.encoding, job.format, render)
 }
 
-fn metadata(job: &Job, prepared: &Prepared, render: &Render, options: &WriteOptions) -> Metadata {
-    let mut metadata = Metadata::new();
-    metadata.push("Software", concat!("spherule ", env!("CARGO_PKG_VERSION")));
-    if !prepared.title.is_empty() {
-        // NUL is the one character that files have no room for.
-        metadata.push("Title", prepared.title.replace('\0', " "));
-    }
-    let listed = settings::list(&prepared.scene.settings, prepared.region);
+/// How particles are looked at, as a file says it.
+pub(super) fn looks(job: &Job, prepared: &Prepared) -> Vec<(String, String)> {
     let (particles, looks) = job.typed;
-    let looks = looks.list(prepared.legend.as_ref());
-    let listed = listed.into_iter().chain(particles.list(job.frame)).chain(looks);
+    let listed = particles.list(job.frame).into_iter().chain(looks.list(prepared.legend.as_ref()));
     let listed = listed.chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
-    for (name, value) in listed.chain(settings::list_encoding(job.format, options)) {
-        let text = match value {
-            Value::String(text) => text,
-            other => other.to_string(),
+    texts(listed.collect())
+}
+
+fn texts(list: List) -> Vec<(String, String)> {
+    let text = |value| match value {
+        Value::String(text) => text,
+        other => other.to_string(),
+    };
+    list.into_iter().map(|(name, value)| (name, text(value))).collect()
+}
+
+impl Subject<'_> {
+    /// How its picture is written, as typed or else as the scene says.
+    pub(in crate::cli) fn write_options(
+        &self,
+        typed: &EncodingArgs,
+        format: Format,
+        render: &Render,
+    ) -> WriteOptions {
+        let mut options = WriteOptions {
+            depth: typed.bits.unwrap_or_default(),
+            ppm: typed.ppm.unwrap_or_default(),
+            exposure: typed.exposure.unwrap_or(self.settings.exposure),
+            tone: typed.tone.unwrap_or(self.settings.tone),
+            metadata: Metadata::new(),
         };
-        metadata.push(name, text);
+        let encoding = texts(settings::list_encoding(format, &options));
+        options.metadata = self.metadata(&encoding, render);
+        options
     }
-    if prepared.scene.settings.has_target() {
-        metadata.push("rounds", render.samples.rounds.to_string());
+
+    fn metadata(&self, encoding: &[(String, String)], render: &Render) -> Metadata {
+        let mut metadata = Metadata::new();
+        metadata.push("Software", concat!("spherule ", env!("CARGO_PKG_VERSION")));
+        if !self.title.is_empty() {
+            // NUL is the one character that files have no room for.
+            metadata.push("Title", self.title.replace('\0', " "));
+        }
+        let listed = texts(settings::list(self.settings, self.region));
+        for (name, text) in listed.iter().chain(self.looks).chain(encoding) {
+            metadata.push(name, text);
+        }
+        if self.settings.has_target() {
+            metadata.push("rounds", render.samples.rounds.to_string());
+        }
+        if let [earlier @ .., _] = &render.stages[..]
+            && !earlier.is_empty()
+        {
+            let words: Vec<String> = earlier.iter().map(stage).collect();
+            metadata.push("earlier targets", words.join("; "));
+        }
+        if self.settings.has_target() || !render.complete {
+            metadata.push("samples taken", render.samples.total.to_string());
+        }
+        if let Some(noise) = render.noise {
+            metadata.push("error", noise.error.to_string());
+            metadata.push("error bound", noise.bound.to_string());
+        }
+        metadata
     }
-    if let [earlier @ .., _] = &render.stages[..]
-        && !earlier.is_empty()
-    {
-        let words: Vec<String> = earlier.iter().map(stage).collect();
-        metadata.push("earlier targets", words.join("; "));
-    }
-    if prepared.scene.settings.has_target() || !render.complete {
-        metadata.push("samples taken", render.samples.total.to_string());
-    }
-    if let Some(noise) = render.noise {
-        metadata.push("error", noise.error.to_string());
-        metadata.push("error bound", noise.bound.to_string());
-    }
-    metadata
 }
 
 /// What was to be reached before.

@@ -10,6 +10,7 @@ mod metadata;
 mod noise;
 mod notes;
 mod numbers;
+mod part;
 mod prepare;
 mod resume;
 mod sequence;
@@ -18,9 +19,11 @@ mod summary;
 pub(super) use self::estimate::Estimate;
 use self::job::Job;
 use self::keeper::Keeper;
+pub(super) use self::metadata::Subject;
 use self::prepare::Prepared;
 use self::resume::Resumed;
 use self::summary::Summary;
+pub(super) use self::summary::warnings;
 use super::args::RenderArgs;
 use super::command::Given;
 use super::progress::Meter;
@@ -34,7 +37,7 @@ use std::time::{Duration, Instant};
 
 /// How a render ended.
 struct Traced {
-    render: Render,
+    render: Unfinished,
     /// The code to exit with, if a signal ended it.
     signal: Option<u8>,
     /// How it is gone on with, if it is kept.
@@ -42,13 +45,14 @@ struct Traced {
 }
 
 /// Renders and writes the picture, and tells how it went.
-pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+pub(super) fn run(mut args: RenderArgs) -> Result<ExitCode, Failure> {
     args.memory.obey();
+    let mut now = Given::of_process();
+    part::keep(&mut args, &mut now.typed)?;
     // Before the file is read: who goes on from it goes on from what was written last.
-    let Some(keeper) = Keeper::new(&args.keep)? else { return run_as(args, None, None) };
-    let now = Given::of_process();
+    let Some(keeper) = Keeper::new(&args.keep)? else { return run_as(&args, None, None) };
     let Some(path) = &args.keep.resume else {
-        return run_as(args, Some(&keeper.with(now, &args.output)), None);
+        return run_as(&args, Some(&keeper.with(now, &args.output)), None);
     };
     let (resumed, args, given) = Resumed::read(path, now)?;
     run_as(&args, Some(&keeper.with(given, &args.output)), Some(resumed))
@@ -102,14 +106,19 @@ fn finish_picture(
 ) -> Result<ExitCode, Failure> {
     prepared.tell(job);
     looks::write_bar(job, prepared)?;
-    let mut traced = trace(job, prepared, keeper, unfinished);
+    let traced = trace(job, prepared, keeper, unfinished);
     let code = traced.signal.map_or(ExitCode::SUCCESS, ExitCode::from);
-    if traced.render.samples.total == 0 {
+    if let (Some(part), Some(keeper)) = (job.part, keeper) {
+        part::finish(job, part, prepared, keeper, &traced.render)?;
+        return Ok(code);
+    }
+    if traced.render.samples().total == 0 {
         output::warn("interrupted before the first sample: nothing is written");
         return Ok(code);
     }
-    write(job, prepared, &mut traced.render)?;
-    traced.tell(job, prepared);
+    let mut render = traced.render.render();
+    write(job, prepared, &mut render)?;
+    traced.tell(job, prepared, &render);
     Ok(code)
 }
 
@@ -158,8 +167,10 @@ fn trace(
         ..Options::default()
     };
     signals::catch();
-    let begin = || Unfinished::begin(&prepared.world, &prepared.scene.settings, &options);
+    let (world, settings) = (&prepared.world, &prepared.scene.settings);
+    let begin = || Unfinished::begin_share(world, settings, &options, prepared.share.clone());
     let mut render = unfinished.unwrap_or_else(begin);
+    let caption = part::caption(job, prepared);
     let mut pause = keeper.and_then(|_| job.keep.pause(Duration::ZERO));
     let (signal, kept) = loop {
         let due = pause.map(|pause| Instant::now() + pause);
@@ -170,8 +181,7 @@ fn trace(
             }
         };
         let end = render.run(&prepared.world, &Options { progress: Some(&show), ..options });
-        let took = keeper.zip(prepared.identity.as_ref());
-        let took = took.and_then(|(keeper, scene)| keeper.keep(scene, &render));
+        let took = keeper.and_then(|keeper| keeper.keep(prepared, &caption, &render));
         pause = keeper.and_then(|_| job.keep.pause(took.unwrap_or_default()));
         let signal = signals::go_on();
         if end != End::Cancelled || signal.is_some() {
@@ -180,20 +190,20 @@ fn trace(
     };
     meter.finish();
     let advice = keeper.filter(|_| kept).map(Keeper::advice);
-    Traced { render: render.render(), signal, advice }
+    Traced { render, signal, advice }
 }
 
 impl Traced {
     /// Tells of a picture that is not all that was asked for.
-    fn tell(&self, job: &Job, prepared: &Prepared) {
+    fn tell(&self, job: &Job, prepared: &Prepared, render: &Render) {
         let output = job.output.display();
-        if !self.render.complete && prepared.scene.settings.has_target() {
+        if !render.complete && prepared.scene.settings.has_target() {
             output::warn(format_args!("interrupted: {output} holds what there was"));
-        } else if !self.render.complete {
-            let share = 100.0 * prepared.share(&self.render);
+        } else if !render.complete {
+            let share = 100.0 * prepared.taken(render);
             output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
         }
-        let stopped = matches!(self.render.end, End::Cancelled | End::Time);
+        let stopped = matches!(render.end, End::Cancelled | End::Time);
         if let Some(advice) = self.advice.as_ref().filter(|_| stopped && !job.report.quiet) {
             output::note(advice);
         }

@@ -49,6 +49,9 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     note(exposed(job, settings), linear, "exposure", &holds);
     note(toned(job, settings), linear, "tone", &holds);
     note(encoding.bits.is_some(), linear, "--bits", "EXR and PFM files hold 32-bit floats");
+    let part = job.part.is_some();
+    note(encoding.bits.is_some(), part, "--bits", "parts have no bits; say it to merge");
+    note(encoding.ppm.is_some(), part, "--ppm", "parts are no pictures; say it to merge");
     note(encoding.ppm.is_some(), job.format != Format::Ppm, "--ppm", "the file is no PPM");
     notes
 }

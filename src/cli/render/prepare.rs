@@ -3,14 +3,14 @@
 use super::estimate::Estimate;
 use super::job::Job;
 use super::notes::notes;
-use super::{layers, looks};
+use super::{layers, looks, part};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::film::Region;
-use spherule::render::Render;
+use spherule::render::{Render, Share};
 use spherule::scene::particles::{Cell, Legend, Particles};
 use spherule::scene::{Identity, Scene, Settings};
 use spherule::world::framing;
@@ -27,6 +27,8 @@ pub(super) struct Prepared {
     pub(super) world: World,
     /// The part of the picture that is rendered.
     pub(super) region: Region,
+    /// What of that is rendered here.
+    pub(super) share: Share,
     /// How the tree was built.
     pub(super) builder: Builder,
     /// Time for reading or generating.
@@ -54,15 +56,23 @@ impl Prepared {
         let load = start.elapsed();
         job.style.set(&mut scene);
         job.picture.replace(&mut scene.settings);
+        if job.part.is_some() {
+            // The picture is written elsewhere, from what the part's settings say.
+            job.encoding.replace(&mut scene.settings);
+        }
         place_camera(job, &mut scene, cell.as_ref())?;
         job.style.light(&mut scene);
         let region = job.region(&scene.settings)?;
         let layered = !job.encoding.layers.is_empty() || job.draws_over();
-        Estimate::new(&scene, region, layers::need_statistics(job), layered).check()?;
+        let share = part::share(job, region, &scene.settings)?;
+        Estimate::new(&scene, region, layers::need_statistics(job), layered)
+            .of_tiles(share.tiles.len())
+            .check()?;
         let identity = job.keep.file().map(|_| Identity::of(&scene));
         let start = Instant::now();
-        let samples = samples(region, &scene.settings);
-        let builder = job.builder(scene.spheres.len(), samples);
+        let part = share.size() as f64 / Share::whole(region, scene.settings.spp).size() as f64;
+        let samples = samples(region, &scene.settings) as f64 * part;
+        let builder = job.builder(scene.spheres.len(), samples as u64);
         let world = World::build_taking(&mut scene, builder)
             .map_err(|error| Failure::World(job.source.name().into_owned(), error))?;
         let build = start.elapsed();
@@ -75,6 +85,7 @@ impl Prepared {
             cell,
             world,
             region,
+            share,
             builder,
             load,
             build,
@@ -105,7 +116,7 @@ impl Prepared {
     }
 
     /// Share of the samples that a render has taken, 0..=1.
-    pub(super) fn share(&self, render: &Render) -> f64 {
+    pub(super) fn taken(&self, render: &Render) -> f64 {
         render.samples.total as f64 / self.samples() as f64
     }
 }

@@ -5,7 +5,7 @@ use super::layers;
 use super::prepare::Prepared;
 use crate::cli::Failure;
 use crate::cli::args::RenderArgs;
-use crate::cli::command::{Given, Typed, render_command};
+use crate::cli::command::{Given, TypedOptions, render_command};
 use crate::cli::settings::region_text;
 use clap::{ArgMatches, FromArgMatches};
 use spherule::checkpoint::{self, Origin};
@@ -26,7 +26,7 @@ impl Resumed {
     pub(super) fn read(path: &Path, now: Given) -> Result<(Self, RenderArgs, Given), Failure> {
         let (origin, render) = checkpoint::read(path)?;
         let command = render_command();
-        let then = Typed::of(&command, &parse(origin.arguments.clone())?);
+        let then = TypedOptions::of(&command, &parse(origin.arguments.clone())?);
         let folder = PathBuf::from(&origin.folder);
         // If it is gone, all may have moved to where this is typed.
         let found = if folder.is_dir() { then.clone().typed_in(&folder) } else { then.clone() };
@@ -53,6 +53,13 @@ impl Resumed {
         if then != now {
             let (then, now) = (region_text(then), region_text(now));
             return Some(format!("the region is {now}, but was {then}; leave it as it was"));
+        }
+        let (then, now) = (self.render.share(), &prepared.share);
+        if then != now {
+            return Some(format!(
+                "it has {then}, and this command would render {now}; leave --part and --split as \
+                 they were, or remove the file"
+            ));
         }
         if layers::need_statistics(job) && !self.render.statistics() {
             let why = "--layers variance and samples take what was not measured from the \

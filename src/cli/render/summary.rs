@@ -253,7 +253,7 @@ fn lanes(width: Width) -> u32 {
 }
 
 /// What is wrong with the picture.
-fn warnings(counters: &Counters, settings: &Settings) -> Vec<String> {
+pub(in crate::cli) fn warnings(counters: &Counters, settings: &Settings) -> Vec<String> {
     let mut warnings = Vec::new();
     let mut warn = |count: u64, text: &dyn Fn(String) -> String| {
         if count > 0 {

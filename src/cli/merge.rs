@@ -1,0 +1,205 @@
+//! `spherule merge`: parts of a render become the picture of the whole.
+
+use super::args::EncodingArgs;
+use super::contents::plural;
+use super::memory::MemoryArgs;
+use super::render::{Subject, warnings};
+use super::settings::{self, List};
+use super::{Failure, output};
+use indicatif::HumanCount;
+use serde::Serialize;
+use spherule::checkpoint::{self, Caption};
+use spherule::film::Region;
+use spherule::image::{Channel, Format, check_writable};
+use spherule::layers::{Features, Layer, Layers};
+use spherule::render::{Render, Share, Unfinished};
+use spherule::split::{Merge, MergeError};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Parts, and what becomes of them.
+#[derive(Debug, clap::Args)]
+pub(super) struct Args {
+    /// What `spherule render --part` wrote, in any order
+    #[arg(required = true, value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// The picture: .png, .ppm, .pfm or .exr
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Merge what there is, though parts are missing or were interrupted: every pixel is the mean of the
+    /// samples that it has, and black if it has none
+    #[arg(long)]
+    partial: bool,
+    #[command(flatten)]
+    encoding: EncodingArgs,
+    #[command(flatten)]
+    memory: MemoryArgs,
+    /// Nothing but warnings and errors
+    #[arg(short, long)]
+    quiet: bool,
+    /// Statistics and settings as one JSON object on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+/// What parts come to.
+struct Merged {
+    whole: Unfinished,
+    /// What the first of them says of the picture.
+    caption: Caption,
+    /// What is known of tiles, from all of them.
+    pieces: Vec<(Range<u32>, Vec<Features>)>,
+    missing: Vec<Share>,
+}
+
+/// How it went.
+#[derive(Serialize)]
+struct Summary {
+    program: &'static str,
+    version: &'static str,
+    output: String,
+    parts: usize,
+    complete: bool,
+    /// What no part has.
+    missing: Vec<String>,
+    settings: List,
+    samples: u64,
+    rays: u64,
+    /// Time that the parts took, one after the other.
+    render_seconds: f64,
+}
+
+/// Merges, writes and tells.
+pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    args.memory.obey();
+    let format = Format::of_suffix(&args.output)?;
+    if !args.encoding.layers.is_empty() && format != Format::Exr {
+        let message =
+            format!("{format} has no room for --layers; end the name of --output in .exr");
+        return Err(Failure::usage("merge", message));
+    }
+    check_writable(&args.output)?;
+    let merged = merge(args)?;
+    let render = merged.whole.render();
+    let channels = merged.channels(args, format, &render)?;
+    let (region, settings) = (merged.whole.region(), merged.whole.settings());
+    let Caption { title, looks, .. } = &merged.caption;
+    let subject = Subject { title, settings, region, looks };
+    let options = subject.write_options(&args.encoding, format, &render);
+    render.image.write_layers(&args.output, &channels, &options)?;
+    let mut listed = settings::list(settings, region);
+    listed.extend(settings::list_encoding(format, &options));
+    tell(args, &merged, &render, listed);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Reads one part after the other: no more than one is in memory beside the sums.
+fn merge(args: &Args) -> Result<Merged, Failure> {
+    let mut merge = Merge::new(args.partial);
+    let mut caption: Option<Caption> = None;
+    let mut pieces = Vec::new();
+    for path in &args.parts {
+        let (origin, part) = checkpoint::read(path)?;
+        let name = path.display().to_string();
+        merge.add(&name, &origin.scene, part)?;
+        let mut known = origin.caption;
+        pieces.push((known.tiles.clone(), std::mem::take(&mut known.features)));
+        let first = caption.get_or_insert_with(|| known.clone());
+        if first.layers != known.layers {
+            let first = args.parts[0].display().to_string();
+            return Err(Failure::Layers(name, first));
+        }
+    }
+    let (whole, missing) = merge.finish()?;
+    let caption = caption.ok_or(MergeError::Nothing)?;
+    Ok(Merged { whole, caption, pieces, missing })
+}
+
+impl Merged {
+    /// Channels of the layers that were typed, or else of those of the parts, if the file has room.
+    fn channels(
+        &self,
+        args: &Args,
+        format: Format,
+        render: &Render,
+    ) -> Result<Vec<Channel>, Failure> {
+        let there = &self.caption.layers;
+        let typed = &args.encoding.layers;
+        let missing = typed.iter().flatten().find(|layer| !there.contains(layer));
+        if let Some(layer) = missing {
+            let message = format!(
+                "the parts have no layer {}; render them with --layers {}",
+                layer.name(),
+                layer.name()
+            );
+            return Err(Failure::usage("merge", message));
+        }
+        if format != Format::Exr {
+            return Ok(Vec::new());
+        }
+        let all = typed.is_empty() || typed.contains(&None);
+        let wanted: Vec<Layer> =
+            there.iter().copied().filter(|layer| all || typed.contains(&Some(*layer))).collect();
+        if wanted.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut layers = Layers::gather(self.whole.region(), &self.pieces);
+        layers.statistics.clone_from(&render.statistics);
+        if !self.knows_everything() && wanted.iter().any(|layer| !layer.is_statistic()) {
+            output::warn("layers are empty where the parts that know them are missing");
+        }
+        Ok(layers.channels(&wanted))
+    }
+
+    /// Whether the features of all pixels are there.
+    fn knows_everything(&self) -> bool {
+        let Region { width, height, .. } = self.whole.region();
+        let known: usize = self.pieces.iter().map(|(_, features)| features.len()).sum();
+        known as u64 == u64::from(width) * u64::from(height)
+    }
+}
+
+fn tell(args: &Args, merged: &Merged, render: &Render, settings: List) {
+    let summary = Summary {
+        program: "spherule",
+        version: env!("CARGO_PKG_VERSION"),
+        output: args.output.display().to_string(),
+        parts: args.parts.len(),
+        complete: render.complete,
+        missing: merged.missing.iter().map(Share::to_string).collect(),
+        settings,
+        samples: render.samples.total,
+        rays: render.counters.rays(),
+        render_seconds: render.elapsed.as_secs_f64(),
+    };
+    if args.json {
+        output::print_json(&summary);
+    } else if !args.quiet {
+        output::print(format_args!(
+            "{}: {} of {}\nrays    {} in {:.3} s of all parts together",
+            summary.output,
+            plural(summary.samples, "sample"),
+            plural(summary.parts as u64, "part"),
+            HumanCount(summary.rays),
+            summary.render_seconds,
+        ));
+    }
+    warnings(&render.counters, merged.whole.settings()).iter().for_each(output::warn);
+    if merged.caption.drawn_over {
+        output::warn(
+            "--cell, --background and --color-bar inside take the scene: they are left out",
+        );
+    }
+    for missing in &summary.missing {
+        output::warn(format_args!("no part has {missing}"));
+    }
+    if !render.complete {
+        let (least, most) = (render.samples.least, render.samples.most);
+        output::warn(format_args!(
+            "{} holds what there was: {least} to {most} samples of each pixel, of {}",
+            summary.output,
+            merged.whole.settings().spp
+        ));
+    }
+}

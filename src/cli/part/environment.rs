@@ -1,0 +1,295 @@
+//! `--part from-env`: which part this process is to render, by what schedulers and launchers tell.
+//!
+//! Job arrays number their tasks from what the user says and in steps, launchers their processes from
+//! 0. Arrays go first: their tasks have a launcher's variables too.
+
+use spherule::split::Part;
+use std::fmt;
+
+/// How one scheduler or launcher tells which task this is.
+struct Dialect {
+    /// As its users know it.
+    name: &'static str,
+    /// The variable with the number of this task.
+    task: &'static str,
+    /// A value that says that there is none.
+    none: &'static str,
+    row: Row,
+}
+
+/// Which numbers tasks have.
+enum Row {
+    /// From a first to a last one, by variables; without the first they begin at 1, and without the
+    /// third the step is 1.
+    Array { first: Option<&'static str>, last: &'static str, step: Option<&'static str> },
+    /// From 0, and so many.
+    Ranks { size: &'static str },
+    /// From here, and nobody tells how many.
+    Endless { first: i64 },
+}
+
+/// How many tasks Slurm's array has, which need not be a row.
+const SLURM_COUNT: &str = "SLURM_ARRAY_TASK_COUNT";
+
+const ARRAYS: [Dialect; 5] = [
+    Dialect {
+        name: "Slurm",
+        task: "SLURM_ARRAY_TASK_ID",
+        none: "",
+        row: Row::Array {
+            first: Some("SLURM_ARRAY_TASK_MIN"),
+            last: "SLURM_ARRAY_TASK_MAX",
+            step: Some("SLURM_ARRAY_TASK_STEP"),
+        },
+    },
+    Dialect { name: "PBS", task: "PBS_ARRAY_INDEX", none: "", row: Row::Endless { first: 1 } },
+    Dialect { name: "Torque", task: "PBS_ARRAYID", none: "", row: Row::Endless { first: 1 } },
+    Dialect {
+        name: "Grid Engine",
+        task: "SGE_TASK_ID",
+        none: "undefined",
+        row: Row::Array {
+            first: Some("SGE_TASK_FIRST"),
+            last: "SGE_TASK_LAST",
+            step: Some("SGE_TASK_STEPSIZE"),
+        },
+    },
+    Dialect {
+        name: "LSF",
+        task: "LSB_JOBINDEX",
+        none: "0",
+        row: Row::Array { first: None, last: "LSB_JOBINDEX_END", step: Some("LSB_JOBINDEX_STEP") },
+    },
+];
+
+/// `PMIx` tells no size, but Slurm does, which is among those that use it.
+const LAUNCHERS: [Dialect; 6] = [
+    Dialect {
+        name: "Open MPI",
+        task: "OMPI_COMM_WORLD_RANK",
+        none: "",
+        row: Row::Ranks { size: "OMPI_COMM_WORLD_SIZE" },
+    },
+    Dialect {
+        name: "MVAPICH",
+        task: "MV2_COMM_WORLD_RANK",
+        none: "",
+        row: Row::Ranks { size: "MV2_COMM_WORLD_SIZE" },
+    },
+    Dialect { name: "PMI", task: "PMI_RANK", none: "", row: Row::Ranks { size: "PMI_SIZE" } },
+    Dialect { name: "PMIx", task: "PMIX_RANK", none: "", row: Row::Ranks { size: "SLURM_NTASKS" } },
+    Dialect {
+        name: "srun",
+        task: "SLURM_PROCID",
+        none: "",
+        row: Row::Ranks { size: "SLURM_NTASKS" },
+    },
+    Dialect {
+        name: "GNU parallel",
+        task: "PARALLEL_SEQ",
+        none: "",
+        row: Row::Endless { first: 1 },
+    },
+];
+
+/// Why the environment does not tell which part this is.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(super) enum Silence {
+    #[error("no scheduler or launcher tells which task this is ({}); write --part K/N", names())]
+    Nothing,
+    #[error("{0} is `{1}`, which is no whole number")]
+    NoNumber(&'static str, String),
+    #[error(
+        "{name} tells by {task} that this is task {number}, but not of how many; write --part \
+         from-env/N"
+    )]
+    NoCount { name: &'static str, task: &'static str, number: i64 },
+    #[error(
+        "{task} is {number}, but tasks go from {first} to {last}{}; write --part from-env/N, and \
+         number them from {first} to {first} + N - 1", steps(*.step)
+    )]
+    Beyond { task: &'static str, number: i64, first: i64, last: i64, step: i64 },
+    #[error(
+        "{SLURM_COUNT} is {count}, but there are {row} numbers from {first} to {last}{}: write \
+         --part from-env/N, and number tasks from 1 to N", steps(*.step)
+    )]
+    Gaps { count: i64, row: i64, first: i64, last: i64, step: i64 },
+    #[error(
+        "{array} is set, and {rank} is {number}: several processes would render the same part; \
+         start one process in each task of the array"
+    )]
+    Both { array: &'static str, rank: &'static str, number: i64 },
+}
+
+fn names() -> String {
+    let names: Vec<_> = ARRAYS.iter().chain(&LAUNCHERS).map(|dialect| dialect.task).collect();
+    format!("none of {} is set", names.join(", "))
+}
+
+fn steps(step: i64) -> impl fmt::Display {
+    if step == 1 { String::new() } else { format!(" in steps of {step}") }
+}
+
+/// The part that this process is to render, by a function that gives the values of variables: of as
+/// many as `count` says, or else as the environment does.
+///
+/// With a `count`, tasks of arrays have the numbers 1 to `count`, so that some of them can be rendered
+/// again by an array of these alone.
+pub(super) fn part(
+    variable: &dyn Fn(&str) -> Option<String>,
+    count: Option<u32>,
+) -> Result<Part, Silence> {
+    let is_set = |dialect: &&Dialect| {
+        variable(dialect.task).is_some_and(|value| !value.is_empty() && value != dialect.none)
+    };
+    let launcher = LAUNCHERS.iter().find(is_set);
+    let Some(array) = ARRAYS.iter().find(is_set) else {
+        return launcher.ok_or(Silence::Nothing)?.part(variable, count);
+    };
+    if let Some(Dialect { task: rank, row: Row::Ranks { .. }, .. }) = launcher {
+        let number = number(variable, rank)?.unwrap_or(0);
+        if number > 0 {
+            return Err(Silence::Both { array: array.task, rank, number });
+        }
+    }
+    array.part(variable, count)
+}
+
+impl Dialect {
+    fn part(
+        &self,
+        variable: &dyn Fn(&str) -> Option<String>,
+        count: Option<u32>,
+    ) -> Result<Part, Silence> {
+        let Self { name, task, .. } = *self;
+        let read = |name: &'static str| number(variable, name);
+        let told = |name: Option<&'static str>| name.map_or(Ok(None), read);
+        let number = read(task)?.unwrap_or(0);
+        let (first, last, step) = match (&self.row, count) {
+            (Row::Ranks { .. }, Some(count)) => (0, Some(i64::from(count) - 1), 1),
+            (_, Some(count)) => (1, Some(i64::from(count)), 1),
+            (Row::Ranks { size }, None) => (0, read(size)?.map(|size| size - 1), 1),
+            (Row::Endless { first }, None) => (*first, None, 1),
+            (Row::Array { first, last, step }, None) => {
+                (told(*first)?.unwrap_or(1), read(last)?, told(*step)?.unwrap_or(1).max(1))
+            }
+        };
+        let last = last.ok_or(Silence::NoCount { name, task, number })?;
+        let row = (last.saturating_sub(first) / step).saturating_add(1);
+        if let (None, "Slurm", Some(count)) = (count, name, read(SLURM_COUNT)?)
+            && count != row
+        {
+            return Err(Silence::Gaps { count, row, first, last, step });
+        }
+        let place = number.saturating_sub(first);
+        let within = |value: i64| u32::try_from(value).ok();
+        let part = within((place / step).saturating_add(1)).zip(within(row));
+        let part = part.filter(|_| place >= 0 && place % step == 0);
+        part.and_then(|(number, count)| Part::new(number, count)).ok_or(Silence::Beyond {
+            task,
+            number,
+            first,
+            last,
+            step,
+        })
+    }
+}
+
+/// The number that a variable is, if it is set.
+fn number(
+    variable: &dyn Fn(&str) -> Option<String>,
+    name: &'static str,
+) -> Result<Option<i64>, Silence> {
+    let Some(text) = variable(name).filter(|text| !text.is_empty()) else { return Ok(None) };
+    text.trim().parse().map(Some).map_err(|_| Silence::NoNumber(name, text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What variables, written as a shell would, say.
+    fn told(variables: &str, count: Option<u32>) -> Result<String, String> {
+        let value = |name: &str| {
+            let mut pairs = variables.split(' ').filter_map(|pair| pair.split_once('='));
+            pairs.find(|pair| pair.0 == name).map(|pair| pair.1.to_owned())
+        };
+        part(&value, count).map(|part| part.to_string()).map_err(|error| error.to_string())
+    }
+
+    const SLURM: &str = "SLURM_ARRAY_TASK_MIN=2 SLURM_ARRAY_TASK_MAX=10 SLURM_ARRAY_TASK_STEP=4";
+
+    #[test]
+    fn every_dialect_is_understood() {
+        for (variables, expected) in [
+            ("SLURM_ARRAY_TASK_ID=6 SLURM_ARRAY_TASK_COUNT=3 SLURM_PROCID=0 SLURM_NTASKS=1", "2/3"),
+            ("SLURM_ARRAY_TASK_ID=10", "3/3"),
+            ("SGE_TASK_ID=5 SGE_TASK_FIRST=1 SGE_TASK_LAST=9 SGE_TASK_STEPSIZE=2", "3/5"),
+            ("SGE_TASK_ID=undefined SLURM_PROCID=3 SLURM_NTASKS=4", "4/4"),
+            ("LSB_JOBINDEX=8 LSB_JOBINDEX_END=8", "8/8"),
+            ("LSB_JOBINDEX=0 OMPI_COMM_WORLD_RANK=0 OMPI_COMM_WORLD_SIZE=2", "1/2"),
+            ("PMI_RANK=1 PMI_SIZE=2 SLURM_PROCID=0 SLURM_NTASKS=1", "2/2"),
+            ("MV2_COMM_WORLD_RANK=1 MV2_COMM_WORLD_SIZE=3", "2/3"),
+            ("PMIX_RANK=2 SLURM_NTASKS=4", "3/4"),
+        ] {
+            assert_eq!(told(&format!("{SLURM} {variables}"), None), Ok(expected.to_owned()));
+        }
+    }
+
+    #[test]
+    fn a_count_may_be_given() {
+        for (variables, expected) in [
+            ("PBS_ARRAY_INDEX=3", "3/7"),
+            ("PBS_ARRAYID=7", "7/7"),
+            ("PARALLEL_SEQ=1", "1/7"),
+            ("PMIX_RANK=0", "1/7"),
+            // Two of seven, once more.
+            (
+                "SLURM_ARRAY_TASK_ID=5 SLURM_ARRAY_TASK_MIN=5 SLURM_ARRAY_TASK_MAX=6 \
+                 SLURM_ARRAY_TASK_COUNT=2",
+                "5/7",
+            ),
+        ] {
+            assert_eq!(told(variables, Some(7)), Ok(expected.to_owned()));
+        }
+    }
+
+    #[track_caller]
+    fn refused(variables: &str, count: Option<u32>, words: &[&str]) {
+        let message = told(variables, count).expect_err("it does not tell");
+        assert!(words.iter().all(|word| message.contains(word)), "{variables}: {message}");
+    }
+
+    #[test]
+    fn what_does_not_tell_is_named() {
+        refused("", None, &["SLURM_ARRAY_TASK_ID", "PARALLEL_SEQ", "--part K/N"]);
+        refused("SLURM_ARRAY_TASK_ID=", None, &["no scheduler"]);
+        refused("PMI_RANK=x PMI_SIZE=2", None, &["PMI_RANK is `x`"]);
+        refused("PMI_RANK=1 PMI_SIZE=1e3", None, &["PMI_SIZE is `1e3`"]);
+        for task in ["PBS_ARRAY_INDEX", "PARALLEL_SEQ", "PMIX_RANK", "SLURM_ARRAY_TASK_ID"] {
+            refused(&format!("{task}=3"), None, &[task, "task 3", "from-env/N"]);
+        }
+    }
+
+    #[test]
+    fn numbers_that_no_task_has_are_refused() {
+        let at = |number: &str| format!("{SLURM} SLURM_ARRAY_TASK_ID={number}");
+        for number in ["1", "3", "14", "-2", "99999999999"] {
+            refused(&at(number), None, &[number, "from 2 to 10 in steps of 4"]);
+        }
+        refused("PMI_RANK=2 PMI_SIZE=2", None, &["PMI_RANK is 2", "from 0 to 1"]);
+        refused("PMI_RANK=0 PMI_SIZE=0", None, &["PMI_RANK is 0"]);
+        refused("PBS_ARRAY_INDEX=0", Some(7), &["from 1 to 7"]);
+        let list = format!("{} SLURM_ARRAY_TASK_COUNT=2", at("2"));
+        refused(&list, None, &["SLURM_ARRAY_TASK_COUNT is 2", "3 numbers", "from-env/N"]);
+        let wide = "SLURM_ARRAY_TASK_ID=9223372036854775807 SLURM_ARRAY_TASK_MIN=-9 \
+                    SLURM_ARRAY_TASK_MAX=9223372036854775807";
+        refused(wide, None, &["SLURM_ARRAY_TASK_ID is"]);
+    }
+
+    #[test]
+    fn processes_of_one_task_do_not_render_the_same_part() {
+        let second = format!("{SLURM} SLURM_ARRAY_TASK_ID=2 SLURM_PROCID=1 SLURM_NTASKS=2");
+        refused(&second, None, &["SLURM_ARRAY_TASK_ID is set", "SLURM_PROCID is 1"]);
+    }
+}
