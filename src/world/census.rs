@@ -2,6 +2,7 @@
 
 use super::World;
 use super::materials::Kind;
+use rayon::prelude::*;
 
 /// What there is in a world. What is not, is not run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -50,16 +51,27 @@ impl Features {
             vanished: (shown - placed) as u64,
             cut_away: (given - shown) as u64,
             cuts: world.cut.len() as u64,
-            around_camera: around_camera(world),
+            around_camera: false,
             unseen: world.seen.as_ref().map_or(0, |seen| world.spheres.len() - seen.spheres.len())
                 as u64,
             hidden: (placed - world.spheres.len()) as u64,
             ground_kind: world.ground.map(|ground| ground.material.kind()),
             colors: world.appearance.color.is_some(),
             lights: !world.lights.is_empty(),
-            lens: world.camera.has_lens(),
+            lens: false,
             environment: !world.environment.is_black(),
+            glass_at_camera: Vec::new(),
+        }
+        .seen_by(world)
+    }
+
+    /// The same for the camera that the world has now.
+    pub(super) fn seen_by(self, world: &World) -> Self {
+        Self {
+            lens: world.camera.has_lens(),
+            around_camera: around_camera(world),
             glass_at_camera: glass_at_camera(world),
+            ..self
         }
     }
 
@@ -101,7 +113,7 @@ fn around_camera(world: &World) -> bool {
         let near = center.distance(at) <= (radius + reach) * (1.0 + 1e-6);
         near && world.cut.divides(center, radius)
     };
-    !world.cut.is_empty() && (0..world.spheres.len()).any(around)
+    !world.cut.is_empty() && (0..world.spheres.len()).into_par_iter().any(around)
 }
 
 /// Glass spheres that touch the ball in which camera rays start.
@@ -116,8 +128,9 @@ fn glass_at_camera(world: &World) -> Vec<u32> {
         let (at, radius) = world.spheres.exact(*row as usize);
         at.distance(center) <= (radius + reach) * (1.0 + 1e-6)
     };
-    let rows = (0..world.spheres.len() as u32).filter(|row| is_glass(row) && near(row));
-    let mut rows = world.spheres.first_of_equals(rows);
+    let rows = (0..world.spheres.len() as u32).into_par_iter();
+    let rows: Vec<u32> = rows.filter(|row| is_glass(row) && near(row)).collect();
+    let mut rows = world.spheres.first_of_equals(rows.into_iter());
     rows.retain(is_glass);
     rows
 }

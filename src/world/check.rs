@@ -11,9 +11,14 @@ use glam::DVec3;
 /// How far a unit vector's squared length may be from 1.
 const UNIT: f64 = 1e-6;
 
-pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
+/// What does not ask how many spheres there are.
+pub(super) fn check_view(scene: &Scene) -> Result<(), WorldError> {
     settings(&scene.settings)?;
-    camera(&scene.camera)?;
+    camera(&scene.camera)
+}
+
+pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
+    check_view(scene)?;
     scene.materials.iter().try_for_each(material)?;
     scene.lights.iter().try_for_each(light)?;
     scene.slices.iter().try_for_each(slice)?;

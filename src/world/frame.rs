@@ -7,6 +7,10 @@ use glam::DVec3;
 /// How many spheres at most are looked at to find where the scene is.
 const SAMPLES: usize = 1 << 16;
 
+/// How small spheres may be beside the way to the camera for a world to suit any other. Rays may start
+/// 2^20 times as far away as the largest coordinate (see [`crate::filter`]).
+const LEAST_EXTENT: f64 = 1.0 / (1 << 16) as f64;
+
 /// Maps the user's coordinates to the world's: `world = (user - shift) * scale`.
 ///
 /// Single precision is finest near the origin, so the scene's middle goes there. The middle is a
@@ -20,6 +24,8 @@ pub struct Frame {
     pub shift: DVec3,
     /// A power of two, after which the largest coordinate is in 0.5..=1.
     pub scale: f64,
+    /// The largest coordinate of spheres after the shift, in the user's unit; 0 if there is none.
+    reach: f64,
 }
 
 impl Frame {
@@ -27,9 +33,31 @@ impl Frame {
         let shift = if spheres.is_empty() { DVec3::ZERO } else { middle(spheres) };
         let reach = (0..spheres.len())
             .map(|i| (center(spheres, i) - shift).abs().max_element() + spheres.radius[i])
-            .fold((camera.eye - shift).abs().max_element() + camera.reach, f64::max);
-        let scale = power_of_two_above(reach).recip();
-        Self { shift, scale: if scale.is_finite() && scale > 0.0 { scale } else { 1.0 } }
+            .fold(0.0, f64::max);
+        Self { shift, scale: 1.0, reach }.seen_from(camera)
+    }
+
+    /// The frame of the same spheres with another camera.
+    fn seen_from(self, camera: &Placement) -> Self {
+        let eye = (camera.eye - self.shift).abs().max_element() + camera.reach;
+        let scale = power_of_two_above(self.reach.max(eye)).recip();
+        Self { scale: if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }, ..self }
+    }
+
+    /// Whether a world of this frame may be seen by another camera: the frame that is the camera's own
+    /// is the same but for a power of two, and the spheres are in either so large that single
+    /// precision holds them alike, and the camera so near that the filter allows rays to start there.
+    pub(super) fn suits(&self, camera: &Placement) -> bool {
+        let own = self.seen_from(camera);
+        let near = |frame: &Self| frame.reach > 0.0 && frame.extent() >= LEAST_EXTENT;
+        own.scale == self.scale || near(&own) && near(self)
+    }
+
+    /// The spheres' largest coordinate in the world, as a power of two not below it; 1 if there is no
+    /// sphere. What is decided in this unit does not depend on the camera.
+    pub(super) fn extent(&self) -> f64 {
+        let extent = power_of_two_above(self.reach) * self.scale;
+        if self.reach > 0.0 && extent > 0.0 { extent } else { 1.0 }
     }
 
     /// A point.
@@ -107,6 +135,16 @@ mod tests {
             let (p, q) = (a.point(DVec3::from(*p)), b.point(DVec3::from(*q)));
             assert_eq!((p - q) / a.scale % 1.0, DVec3::ZERO, "moved by whole units only");
         }
+    }
+
+    #[test]
+    fn cameras_that_are_not_too_far_away_share_a_frame() {
+        let frame = frame(&[[0.2, 0.1, 0.0], [-3.0, 1.0, 2.0], [1.0, -1.0, 0.5]], &[1.0, 1.0, 0.5]);
+        let suits = |x: f64| {
+            frame.suits(&Placement { eye: DVec3::new(x, 0.0, 0.0), ..Placement::default() })
+        };
+        assert!(suits(0.0) && suits(1e3) && suits(-2e5));
+        assert!(!suits(3e5) && !suits(1e300));
     }
 
     #[test]

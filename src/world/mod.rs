@@ -230,6 +230,26 @@ impl World {
         }
     }
 
+    /// Lets the camera of `scene`, and its picture's size, take the place of this world's; all else of
+    /// the scene is as the world was built. Pictures are the same to the last bit as those of a world
+    /// that is built anew, at a small part of the time.
+    ///
+    /// False, and nothing is changed, where the camera is so far away that the world has to be built
+    /// anew.
+    ///
+    /// # Errors
+    /// The camera sees nothing, or has values out of their ranges.
+    pub fn look(&mut self, scene: &Scene) -> Result<bool, WorldError> {
+        check::check_view(scene)?;
+        let pose = fit::pose(scene)?;
+        if !self.frame.suits(&pose) {
+            return Ok(false);
+        }
+        self.camera = Camera::build(scene, &pose, &self.frame);
+        self.features = std::mem::take(&mut self.features).seen_by(self);
+        Ok(true)
+    }
+
     /// Bytes that the world of so many spheres takes while it is built, at most: columns, and the
     /// rows that the tree is made of.
     pub fn bytes(spheres: u64, materials: &[NamedMaterial]) -> u64 {

@@ -2,6 +2,8 @@
 
 use crate::common::*;
 use glam::DVec3;
+use spherule::World;
+use spherule::render::{Options, render};
 use spherule::scene::{Camera, Light, Pose, Projection, Scene};
 
 /// Everything of a scene that has a place or a length: moved, then scaled. Light that falls off grows with the square.
@@ -52,6 +54,26 @@ fn scaling_by_a_power_of_two_changes_nothing() {
         let scaled = transformed(&scene, DVec3::ZERO, f64::from(exponent).exp2());
         assert!(shoot(&scaled).image == shoot(&scene).image, "2^{exponent}");
     }
+}
+
+/// A camera that comes into a world that is there finds what a world finds that is built for it.
+#[test]
+fn a_world_is_the_same_through_another_camera() {
+    let mut world = World::build(&menagerie()).expect("a valid scene");
+    for (distance, fov) in [(0.1, 90.0), (7.0, 40.0), (9.0, 20.0), (100.0, 7.0), (9000.0, 0.1)] {
+        let mut scene = menagerie();
+        (scene.settings.width, scene.settings.height) = (19, 23);
+        let direction = DVec3::new(0.3, -0.2, 1.0).normalize();
+        look(&mut scene, DVec3::Z * 7.0 + direction * distance, DVec3::Z * 7.0, fov);
+        assert!(world.look(&scene).expect("a camera that sees something"));
+        let picture = render(&world, &scene.settings, &Options::default()).image;
+        assert!(picture == shoot(&scene).image, "from {distance}");
+    }
+    let mut scene = menagerie();
+    look(&mut scene, DVec3::Z * 1e9, DVec3::ZERO, 1e-6);
+    assert!(!world.look(&scene).expect("a camera that sees something"), "too far");
+    look(&mut scene, DVec3::Z, DVec3::Z, 40.0);
+    assert!(world.look(&scene).is_err(), "a camera on its target");
 }
 
 /// No light in these that falls off: single precision cannot hold an intensity of 1e60.

@@ -24,12 +24,16 @@ pub(super) enum Choice {
 }
 
 impl Choice {
-    /// The choice among these lights.
-    pub(super) fn new(lights: &[Ball], by: LightChoice) -> Self {
+    /// The choice among these lights, with a unit of length, a power of two: where some lights fall
+    /// off and others do not, it decides on which are the brightest.
+    pub(super) fn new(lights: &[Ball], by: LightChoice, unit: f64) -> Self {
+        let lights: Vec<Ball> = lights.iter().map(|light| light.scaled(unit.recip())).collect();
         let weights = |of: fn(&Ball) -> f64| lights.iter().map(of).collect::<Vec<_>>();
         let table = |weights: Vec<f64>| Distribution::new(&weights).map(Self::Table);
         let choice = match by {
-            LightChoice::Tree => Tree::new(lights).map(Self::Tree),
+            LightChoice::Tree => {
+                Tree::new(&lights).map(|tree| Self::Tree(tree.scaled(unit as f32)))
+            }
             LightChoice::Power => table(weights(Ball::whole)),
             LightChoice::Uniform => table(weights(|light| f64::from(u8::from(light.shines())))),
         };
@@ -44,6 +48,7 @@ impl Choice {
 impl Lights {
     /// Each light as the choice sees it.
     pub(super) fn balls(&self, spheres: &Spheres, sky: &Environment) -> Vec<Ball> {
+        let far = FAR * self.unit;
         let power = |color: Rgb| f64::from(luminance(color));
         let dark = Ball::default();
         let emitters = self.emitters.iter().zip(&self.radiance).map(|(&row, &radiance)| {
@@ -66,14 +71,14 @@ impl Lights {
         });
         let suns = self.suns.iter().map(|sun| {
             let height = sun.disc.map_or(0.0, |cone| f64::from(cone.height()));
-            let radius = FAR * (height * (2.0 - height)).sqrt();
-            let center = sun.direction.as_dvec3() * FAR;
+            let radius = far * (height * (2.0 - height)).sqrt();
+            let center = sun.direction.as_dvec3() * far;
             Ball { center, radius, steady: power(sun.irradiance), ..dark }
         });
         let sky = sky.picture().filter(|_| self.sky).map(|picture| {
             let irradiance = PI * f64::from(picture.mean_luminance());
             // From the middle of a ball a quarter arrives.
-            Ball { radius: FAR, steady: 4.0 * irradiance, ..dark }
+            Ball { radius: far, steady: 4.0 * irradiance, ..dark }
         });
         emitters.chain(points).chain(suns).chain(sky).collect()
     }

@@ -42,6 +42,8 @@ pub struct Lights {
     pub sky: bool,
     choice: Choice,
     by: LightChoice,
+    /// [`Frame::extent`].
+    unit: f64,
     /// Radii from its center within which an emissive sphere is close.
     reach: f64,
 }
@@ -109,8 +111,10 @@ impl Lights {
         }
         let sky = environment.illuminates && environment.picture().is_some();
         let (choice, by) = (Choice::None, scene.settings.light_choice);
-        let mut lights = Self { emitters, radiance, points, suns, sky, by, choice, reach: 0.0 };
-        lights.choice = Choice::new(&lights.balls(spheres, environment), by);
+        let unit = frame.extent();
+        let mut lights =
+            Self { emitters, radiance, points, suns, sky, by, choice, reach: 0.0, unit };
+        lights.choice = Choice::new(&lights.balls(spheres, environment), by, unit);
         lights.reach = lights.close_within();
         lights
     }
@@ -122,7 +126,8 @@ impl Lights {
         }
         let (emitters, radiance) = (Vec::new(), Vec::new());
         let mut lights = Self { emitters, radiance, choice: Choice::None, ..self.clone() };
-        lights.choice = Choice::new(&lights.balls(&Spheres::default(), environment), self.by);
+        let balls = lights.balls(&Spheres::default(), environment);
+        lights.choice = Choice::new(&balls, self.by, self.unit);
         lights
     }
 

@@ -17,7 +17,7 @@ use glam::{DVec3, Vec3};
 /// Branches of a node, at most.
 pub(super) const BRANCHES: usize = 16;
 
-/// Distance of what is infinitely far, in world units, of which a scene is about one wide.
+/// Distance of what is infinitely far, in units of which the spheres are about one wide.
 pub(super) const FAR: f64 = 1e6;
 
 /// What a light below the horizon counts, beside one at the zenith: chances stay above 0, so that
@@ -40,6 +40,17 @@ pub(super) struct Ball {
     pub(super) steady: f64,
     /// Whether it is dark inside, as far as light samples go: an emissive sphere.
     pub(super) hollow: bool,
+}
+
+impl Ball {
+    pub(super) fn scaled(self, factor: f64) -> Self {
+        Self {
+            center: self.center * factor,
+            radius: self.radius * factor,
+            power: self.power * factor * factor,
+            ..self
+        }
+    }
 }
 
 /// A point that is lit.
@@ -88,6 +99,15 @@ impl Tree {
     /// The tree of these lights; `None` if none of them shines.
     pub(super) fn new(lights: &[Ball]) -> Option<Self> {
         grow(lights)
+    }
+
+    /// The same tree where the unit of length is another.
+    pub(super) fn scaled(mut self, factor: f32) -> Self {
+        for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.radius] {
+            column.iter_mut().for_each(|length| *length *= factor);
+        }
+        self.power.iter_mut().for_each(|power| *power *= factor * factor);
+        self
     }
 
     /// Chooses a light by a draw in [0, 1): its index, and the probability of the choice. The next
