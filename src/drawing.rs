@@ -116,8 +116,11 @@ fn broken(error: impl Display) -> DrawingError {
     DrawingError(error.to_string())
 }
 
-/// A file of pixels.
-pub(crate) fn encode(codes: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, DrawingError> {
+/// The content of a PNG file of pixels: sRGB codes, three bytes each, row by row.
+///
+/// # Errors
+/// [`DrawingError`] if there are not as many as the size says.
+pub fn encode(codes: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, DrawingError> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);

@@ -12,7 +12,7 @@ use super::particles::ParticleArgs;
 use super::slices::SliceArgs;
 use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
 use super::views::{StyleArgs, ViewArgs};
-use super::{bench, compare, examples, merge, stress};
+use super::{bench, compare, examples, merge, stress, view};
 use clap::{Parser, Subcommand, ValueEnum, value_parser};
 use spherule::film::Region;
 use spherule::image::{Depth, PpmEncoding};
@@ -35,6 +35,9 @@ pub(super) enum Command {
     /// Render a scene or a particle file to a picture (the default command)
     #[command(allow_negative_numbers = true, after_help = examples::RENDER)]
     Render(Box<RenderArgs>),
+    /// Look at a scene or a particle file while it refines: turn it, color it, name its spheres
+    #[command(allow_negative_numbers = true, after_help = view::examples())]
+    View(Box<view::ViewerArgs>),
     /// Put the parts of a render together that several machines have made
     #[command(allow_negative_numbers = true, after_help = examples::MERGE)]
     Merge(merge::Args),
@@ -197,6 +200,9 @@ pub(super) struct ReportArgs {
     /// Statistics and settings as one JSON object on standard output
     #[arg(long)]
     pub(super) json: bool,
+    /// Draw the picture in the terminal too, while it refines
+    #[arg(long, conflicts_with = "json")]
+    pub(super) terminal: bool,
 }
 
 #[derive(Debug, clap::Args)]

@@ -69,6 +69,8 @@ pub(crate) enum Failure {
     Bench(BenchError),
     #[error("{}", .0.message(.1))]
     Memory(Estimate, Shortage),
+    #[error("{0}")]
+    Window(String),
     #[error(
         "this program was compiled for a processor with {0}, which this one does not have; build \
          it on this machine: cargo build --release"

@@ -32,6 +32,7 @@ mod stress;
 mod threads;
 mod typed;
 mod values;
+mod view;
 mod views;
 
 use self::args::{Args, Command};
@@ -45,6 +46,7 @@ pub(crate) fn run() -> Result<ExitCode, Failure> {
     match Args::of_process() {
         Command::Render(args) => render::run(*args),
         Command::Merge(args) => merge::run(&args),
+        Command::View(args) => view::run(args),
         Command::Field(args) => field::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Compare(args) => compare::run(&args),

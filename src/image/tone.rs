@@ -62,6 +62,49 @@ impl DisplayTransform {
     }
 }
 
+/// [`DisplayTransform::code`] for codes of 8 bits, fast: the least radiance of each code, found once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Codes8 {
+    /// Code `i + 1` is that of radiances from the bits `least[i]` on. Bits of floats that are not
+    /// negative are in the order of the floats.
+    least: [u32; 255],
+    /// The code of the least radiance whose bits begin like this.
+    first: Vec<u8>,
+}
+
+/// Bits that [`Codes8`] looks at only where a radiance is near the end of a code.
+const FINE: u32 = 19;
+
+impl Codes8 {
+    /// The table of a transform.
+    pub fn new(transform: DisplayTransform) -> Self {
+        let code = |bits: u32| transform.code(f32::from_bits(bits), 255);
+        let infinity = f32::INFINITY.to_bits();
+        let least = std::array::from_fn(|i| {
+            let (mut low, mut high) = (0, infinity + 1);
+            while low < high {
+                let middle = low + (high - low) / 2;
+                if usize::from(code(middle)) > i { high = middle } else { low = middle + 1 }
+            }
+            low
+        });
+        let first = (0..=infinity >> FINE).map(|bits| code(bits << FINE) as u8).collect();
+        Self { least, first }
+    }
+
+    /// The code of a radiance, 0..=255.
+    #[inline]
+    pub fn code(&self, radiance: f32) -> u8 {
+        // The maximum of NaN and 0 is 0.
+        let bits = radiance.max(0.0).to_bits();
+        let mut code = self.first.get((bits >> FINE) as usize).copied().unwrap_or(0);
+        while self.least.get(usize::from(code)).is_some_and(|least| bits >= *least) {
+            code += 1;
+        }
+        code
+    }
+}
+
 /// The codes of pixels, as the options ask.
 pub(super) fn codes(pixels: &[[f32; 3]], options: &WriteOptions) -> Vec<[u16; 3]> {
     let transform = DisplayTransform::new(options.exposure, options.tone);
@@ -127,6 +170,21 @@ mod tests {
         assert!(filmic(1e6) < 1.0);
         // Narkowicz: 1 becomes 0.8038 before the division.
         assert!((filmic(1.0) * 2.51 / 2.43 - 2.54 / 3.16).abs() < 1e-12);
+    }
+
+    #[test]
+    fn tables_tell_the_same_codes() {
+        for (exposure, tone) in [(0.0, Tone::Linear), (-7.3, Tone::Filmic), (300.0, Tone::Linear)] {
+            let transform = DisplayTransform::new(exposure, tone);
+            let table = Codes8::new(transform);
+            let odd = [-1.0, -0.0, f32::NAN, f32::INFINITY, f32::MAX, f32::MIN_POSITIVE];
+            let ends = table.least.iter().flat_map(|&bits| [bits.saturating_sub(1), bits]);
+            let all = (0..=u16::MAX).map(|bits| u32::from(bits) << 15).chain(ends);
+            for radiance in all.map(f32::from_bits).chain(odd) {
+                let code = transform.code(radiance, 255);
+                assert_eq!(u16::from(table.code(radiance)), code, "{radiance} {tone:?}");
+            }
+        }
     }
 
     #[test]

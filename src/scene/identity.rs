@@ -81,8 +81,8 @@ fn environment(scene: &Scene) -> [u8; 32] {
         hasher.update(words.as_bytes());
         add(&mut hasher, image.pixels.as_flattened(), |value| value.to_le_bytes());
     } else {
-        // Only pictures cannot be said in words.
-        let words = sections::environment(&scene.environment).unwrap_or_default();
+        // All but pictures can be said in words.
+        let words = sections::environment(&scene.environment, "");
         hasher.update(words.as_bytes());
     }
     *hasher.finalize().as_bytes()

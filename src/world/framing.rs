@@ -9,13 +9,16 @@ use glam::{DMat3, DQuat, DVec3};
 const SWEEPS: usize = 20;
 
 /// Fixes the scene's camera, which may be one that frames all spheres, so that it frames these
-/// points too. A camera with an `eye` of its own stays there.
+/// points too. A camera with an `eye` of its own stays there; in parallel projection it gets the
+/// height that shows them, if it has none.
 ///
 /// # Errors
 /// [`WorldError::NothingToFit`] without spheres, and [`WorldError::Camera`] for a camera that sees
 /// nothing.
 pub fn hold(scene: &mut Scene, points: &[DVec3]) -> Result<(), WorldError> {
-    if matches!(scene.camera.pose, Pose::LookAt { .. }) || scene.spheres.is_empty() {
+    let open = matches!(scene.camera.projection, Projection::Orthographic { height: None });
+    let placed = matches!(scene.camera.pose, Pose::LookAt { .. }) && !open;
+    if placed || scene.spheres.is_empty() {
         return Ok(());
     }
     let count = scene.spheres.len();

@@ -16,4 +16,5 @@ mod refusals;
 mod reports;
 mod slices;
 mod stress;
+mod viewer;
 mod views;

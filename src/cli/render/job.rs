@@ -26,38 +26,38 @@ use std::path::PathBuf;
 
 /// A render to be done.
 #[derive(Clone)]
-pub(super) struct Job<'a> {
-    pub(super) source: Source,
-    pub(super) looks: Looks,
+pub(in crate::cli) struct Job<'a> {
+    pub(in crate::cli) source: Source,
+    pub(in crate::cli) looks: Looks,
     /// What of it was typed.
-    pub(super) typed: (&'a ParticleArgs, &'a LookArgs),
-    pub(super) color_bar: Option<&'a BarPlace>,
-    pub(super) output: PathBuf,
-    pub(super) format: Format,
-    pub(super) picture: &'a PictureArgs,
-    pub(super) slices: &'a SliceArgs,
-    pub(super) views: &'a ViewArgs,
-    pub(super) style: &'a StyleArgs,
+    pub(in crate::cli) typed: (&'a ParticleArgs, &'a LookArgs),
+    pub(in crate::cli) color_bar: Option<&'a BarPlace>,
+    pub(in crate::cli) output: PathBuf,
+    pub(in crate::cli) format: Format,
+    pub(in crate::cli) picture: &'a PictureArgs,
+    pub(in crate::cli) slices: &'a SliceArgs,
+    pub(in crate::cli) views: &'a ViewArgs,
+    pub(in crate::cli) style: &'a StyleArgs,
     /// Which picture of a turn it is, from 0.
-    pub(super) turn: Option<u32>,
+    pub(in crate::cli) turn: Option<u32>,
     /// Which of many frames it is.
-    pub(super) frame: Option<u64>,
+    pub(in crate::cli) frame: Option<u64>,
     /// Of an earlier picture of the same sequence.
-    pub(super) camera: Option<Camera>,
-    pub(super) encoding: &'a EncodingArgs,
-    pub(super) keep: &'a KeepArgs,
+    pub(in crate::cli) camera: Option<Camera>,
+    pub(in crate::cli) encoding: &'a EncodingArgs,
+    pub(in crate::cli) keep: &'a KeepArgs,
     /// Which part of the render it is, if it is but one.
-    pub(super) part: Option<Part>,
-    pub(super) split: Option<Split>,
-    pub(super) speed: &'a SpeedArgs,
-    pub(super) tracer: Tracer,
-    pub(super) threads: usize,
-    pub(super) report: ReportArgs,
+    pub(in crate::cli) part: Option<Part>,
+    pub(in crate::cli) split: Option<Split>,
+    pub(in crate::cli) speed: &'a SpeedArgs,
+    pub(in crate::cli) tracer: Tracer,
+    pub(in crate::cli) threads: usize,
+    pub(in crate::cli) report: ReportArgs,
 }
 
 impl<'a> Job<'a> {
     /// What was typed, made sense of.
-    pub(super) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
+    pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
         let seed = args.picture.seed.unwrap_or(0);
         let format = Format::of_suffix(&args.output)?;
         if !args.encoding.layers.is_empty() && format != Format::Exr {
@@ -117,7 +117,7 @@ impl<'a> Job<'a> {
     }
 
     /// The renders of a turn of so many pictures, which are numbered.
-    pub(super) fn turns(&self, pictures: u32) -> Result<Vec<Self>, Failure> {
+    pub(in crate::cli) fn turns(&self, pictures: u32) -> Result<Vec<Self>, Failure> {
         if matches!(&self.source, Source::Particles(path, _) if path.as_os_str() == "-") {
             let message = "--turntable reads its file for every picture, but standard input can \
                            be read once: write it to a file";
@@ -133,22 +133,22 @@ impl<'a> Job<'a> {
     }
 
     /// Whether something is drawn over the picture, which takes layers.
-    pub(super) fn draws_over(&self) -> bool {
+    pub(in crate::cli) fn draws_over(&self) -> bool {
         self.views.draws_cell() || self.style.background().is_some() || self.style.is_transparent()
     }
 
     /// Whether a color bar is drawn into the picture.
-    pub(super) fn draws_bar(&self) -> bool {
+    pub(in crate::cli) fn draws_bar(&self) -> bool {
         matches!(self.color_bar, Some(BarPlace::Inside(_)))
     }
 
     /// The threads that do it.
-    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
+    pub(in crate::cli) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         threads::pool(self.threads)
     }
 
     /// The tree for a render of so many spheres and samples.
-    pub(super) fn builder(&self, spheres: usize, samples: u64) -> Builder {
+    pub(in crate::cli) fn builder(&self, spheres: usize, samples: u64) -> Builder {
         match self.speed.builder {
             names::Builder::Auto => World::builder(spheres, samples),
             names::Builder::Median => Builder::Median,
@@ -158,7 +158,7 @@ impl<'a> Job<'a> {
     }
 
     /// The part of the picture that is rendered, once its size is known.
-    pub(super) fn region(&self, settings: &Settings) -> Result<Region, Failure> {
+    pub(in crate::cli) fn region(&self, settings: &Settings) -> Result<Region, Failure> {
         let (width, height) = (settings.width, settings.height);
         let Some(part) = self.picture.region else {
             return Ok(Region { x: 0, y: 0, width, height });

@@ -65,12 +65,12 @@ impl Subject<'_> {
             tone: typed.tone.unwrap_or(self.settings.tone),
             metadata: Metadata::new(),
         };
-        let encoding = texts(settings::list_encoding(format, &options));
-        options.metadata = self.metadata(&encoding, render);
+        options.metadata = self.metadata(format, &options, render);
         options
     }
 
-    fn metadata(&self, encoding: &[(String, String)], render: &Render) -> Metadata {
+    /// What the file says of the picture, but for how it was rendered.
+    pub(in crate::cli) fn describe(&self, format: Format, options: &WriteOptions) -> Metadata {
         let mut metadata = Metadata::new();
         metadata.push("Software", concat!("spherule ", env!("CARGO_PKG_VERSION")));
         if !self.title.is_empty() {
@@ -78,9 +78,15 @@ impl Subject<'_> {
             metadata.push("Title", self.title.replace('\0', " "));
         }
         let listed = texts(settings::list(self.settings, self.region));
-        for (name, text) in listed.iter().chain(self.looks).chain(encoding) {
+        let encoding = texts(settings::list_encoding(format, options));
+        for (name, text) in listed.iter().chain(self.looks).chain(&encoding) {
             metadata.push(name, text);
         }
+        metadata
+    }
+
+    fn metadata(&self, format: Format, options: &WriteOptions, render: &Render) -> Metadata {
+        let mut metadata = self.describe(format, options);
         if self.settings.has_target() {
             metadata.push("rounds", render.samples.rounds.to_string());
         }

@@ -15,15 +15,17 @@ mod prepare;
 mod resume;
 mod sequence;
 mod summary;
+mod terminal;
 
 pub(super) use self::estimate::Estimate;
-use self::job::Job;
+pub(super) use self::job::Job;
 use self::keeper::Keeper;
 pub(super) use self::metadata::Subject;
 use self::prepare::Prepared;
 use self::resume::Resumed;
 use self::summary::Summary;
 pub(super) use self::summary::warnings;
+use self::terminal::Terminal;
 use super::args::RenderArgs;
 use super::command::Given;
 use super::progress::Meter;
@@ -158,7 +160,7 @@ fn trace(
     keeper: Option<&Keeper>,
     unfinished: Option<Unfinished>,
 ) -> Traced {
-    let meter = Meter::new(job.report.quiet);
+    let meter = Meter::new(job.report.quiet || job.report.terminal);
     let options = Options {
         tracer: job.tracer,
         region: Some(prepared.region),
@@ -171,20 +173,30 @@ fn trace(
     let begin = || Unfinished::begin_share(world, settings, &options, prepared.share.clone());
     let mut render = unfinished.unwrap_or_else(begin);
     let caption = part::caption(job, prepared);
-    let mut pause = keeper.and_then(|_| job.keep.pause(Duration::ZERO));
+    let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
+    let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
+    let mut due = after(keeper.and_then(|_| job.keep.pause(Duration::ZERO)));
     let (signal, kept) = loop {
-        let due = pause.map(|pause| Instant::now() + pause);
+        let drawn = after(terminal.as_ref().map(Terminal::pause));
+        let stop = due.into_iter().chain(drawn).min();
         let show = |progress| {
             meter.show(progress);
-            if due.is_some_and(|due| due <= Instant::now()) {
+            if stop.is_some_and(|stop| stop <= Instant::now()) {
                 signals::stop().store(true, Ordering::SeqCst);
             }
         };
         let end = render.run(&prepared.world, &Options { progress: Some(&show), ..options });
-        let took = keeper.and_then(|keeper| keeper.keep(prepared, &caption, &render));
-        pause = keeper.and_then(|_| job.keep.pause(took.unwrap_or_default()));
         let signal = signals::go_on();
-        if end != End::Cancelled || signal.is_some() {
+        let ended = end != End::Cancelled || signal.is_some();
+        if let Some(terminal) = &mut terminal {
+            terminal.draw(&render.film().resolve());
+        }
+        let keep = keeper.filter(|_| ended || due.is_some_and(|due| due <= Instant::now()));
+        let took = keep.and_then(|keeper| keeper.keep(prepared, &caption, &render));
+        if keep.is_some() {
+            due = after(job.keep.pause(took.unwrap_or_default()));
+        }
+        if ended {
             break (signal.filter(|_| end == End::Cancelled), took.is_some());
         }
     };

@@ -96,7 +96,7 @@ impl ViewArgs {
     }
 }
 
-fn of_view(view: View, scene: &Scene) -> Camera {
+pub(super) fn of_view(view: View, scene: &Scene) -> Camera {
     let mut camera = scene.camera.clone();
     if let Projection::Orthographic { height } = &mut camera.projection {
         *height = None;

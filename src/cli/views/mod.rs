@@ -12,13 +12,18 @@ use super::names::Names;
 use super::settings::List;
 use clap::value_parser;
 use serde_json::json;
-use spherule::scene::Projection;
+use spherule::scene::{Camera, Projection, Scene};
 
 /// Projections, with their usual parameters.
 const PROJECTIONS: Names<Projection> = Names(&[
     ("perspective", Projection::Perspective { fov: 40.0 }, "What is nearer is larger"),
     ("orthographic", Projection::Orthographic { height: None }, "Parallel rays: sizes compare"),
 ]);
+
+/// The camera that frames all of a scene from a side of `--view`; `None` for another word.
+pub(super) fn from_side(side: &str, scene: &Scene) -> Option<Camera> {
+    camera::view(side).ok().map(|view| camera::of_view(view, scene))
+}
 
 /// Pictures of a turn: a day of film, at most.
 const PICTURES: std::ops::RangeInclusive<i64> = 1..=100_000;

@@ -4,21 +4,23 @@
 pub(super) mod sections;
 
 use self::sections::{camera, environment, light, material, quoted, render, slice, vector};
-use super::{NamedMaterial, Rgb, Scene, SceneError, Spheres};
+use super::{EnvironmentMap, NamedMaterial, Rgb, Scene, SceneError, Spheres};
 use crate::atomic::write_atomically;
+use crate::image::WriteOptions;
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::io;
 use std::path::Path;
 
-/// Writes a scene to `path`, and its spheres to a file of the same name that ends in `.csv`.
-/// Loading it gives the same scene to the last bit, but for its warnings.
+/// Writes a scene to `path`, its spheres to a file of the same name that ends in `.csv`, and the
+/// picture of its environment, if it has one, to one that ends in `.pfm`. Loading it gives the same
+/// scene to the last bit, but for its warnings.
 ///
 /// # Errors
 ///
-/// A file cannot be written, or the scene has what a scene file cannot say: a picture for an
-/// environment, materials whose names are empty, framed by blanks or not unique, or rows of
-/// materials that are not there.
+/// A file cannot be written, or the scene has what a scene file cannot say: materials whose names are
+/// empty, framed by blanks or not unique, or rows of materials that are not there.
 pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     let columns = path.with_extension("csv");
     if columns == path {
@@ -26,8 +28,12 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
         return Err(error.with_help("name it .toml: the spheres go to a .csv file beside it"));
     }
     check(scene).map_err(|message| SceneError::whole_file(path, message))?;
-    let text =
-        document(scene, &columns).map_err(|message| SceneError::whole_file(path, message))?;
+    let sky = path.with_extension("pfm");
+    if let EnvironmentMap::Picture { image, .. } = &scene.environment.map {
+        let written = image.write(&sky, &WriteOptions::default());
+        written.map_err(|error| failed(&sky, &error))?;
+    }
+    let text = document(scene, &columns, &sky);
     if !scene.spheres.is_empty() {
         write_atomically(&columns, |file| write_columns(scene, file))
             .map_err(|error| failed(&columns, &error))?;
@@ -62,11 +68,11 @@ fn check(scene: &Scene) -> Result<(), String> {
 }
 
 /// The whole TOML file.
-fn document(scene: &Scene, columns: &Path) -> Result<String, String> {
+fn document(scene: &Scene, columns: &Path, sky: &Path) -> String {
     let mut text = format!("title = {}\n\n", quoted(&scene.title));
     text += &render(&scene.settings);
     text += &camera(&scene.camera);
-    text += &environment(&scene.environment)?;
+    text += &environment(&scene.environment, &name(sky));
     for NamedMaterial { name, material: surface } in &scene.materials {
         let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
     }
@@ -82,10 +88,14 @@ fn document(scene: &Scene, columns: &Path) -> Result<String, String> {
     scene.slices.iter().for_each(|row| text += &slice(row));
     scene.lights.iter().for_each(|row| text += &light(row));
     if !scene.spheres.is_empty() {
-        let name = columns.file_name().unwrap_or_default().to_string_lossy();
-        let _ = write!(text, "[[file]]\npath = {}\nformat = \"csv\"\n", quoted(&name));
+        let path = quoted(&name(columns));
+        let _ = write!(text, "[[file]]\npath = {path}\nformat = \"csv\"\n");
     }
-    Ok(text)
+    text
+}
+
+fn name(path: &Path) -> Cow<'_, str> {
+    path.file_name().unwrap_or_default().to_string_lossy()
 }
 
 /// Every sphere's row; the columns of colors only where there are colors.
@@ -120,6 +130,7 @@ mod tests {
         Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
     };
     use glam::DVec3;
+    use std::sync::Arc;
 
     fn same(first: &Scene, second: &Scene) -> bool {
         // Floats print as what they are to the last bit, but for the payloads of NaN, which no
@@ -216,6 +227,17 @@ mod tests {
             let again = round_trip(&scene);
             assert!(same(&scene, &again), "{scene:?}\n{again:?}");
         }
+    }
+
+    #[test]
+    fn pictures_of_the_sky_come_back() {
+        let pixels = vec![[0.1, 1e-30, 3e8], [0.0, 1.0 / 3.0, 2.0]];
+        let image = Arc::new(crate::Image { width: 2, height: 1, pixels });
+        let mut scene = default_scene(1);
+        scene.environment.map =
+            EnvironmentMap::Picture { image, up: DVec3::Z, rotation: -12.3, scale: 0.7 };
+        let again = round_trip(&scene);
+        assert!(same(&scene, &again), "{:?}", again.environment);
     }
 
     #[test]

@@ -82,19 +82,23 @@ pub(in crate::scene) fn camera(camera: &Camera) -> String {
     format!("[camera]\nprojection = {projection}\n{pose}\nup = {up}\nnear = {near:?}\n{lens}\n")
 }
 
-pub(in crate::scene) fn environment(environment: &Environment) -> Result<String, String> {
+/// `picture` is the name of the picture's file, if there is one.
+pub(in crate::scene) fn environment(environment: &Environment, picture: &str) -> String {
     let map = match &environment.map {
         EnvironmentMap::Constant(color) => format!("kind = \"constant\"\ncolor = {}", rgb(*color)),
         EnvironmentMap::Gradient { bottom, top, up } => {
             let (bottom, top, up) = (rgb(*bottom), rgb(*top), vector(*up));
             format!("kind = \"gradient\"\nbottom = {bottom}\ntop = {top}\nup = {up}")
         }
-        EnvironmentMap::Picture { .. } => {
-            return Err("the environment is a picture, which is not written".to_owned());
+        EnvironmentMap::Picture { up, rotation, scale, .. } => {
+            let (file, up) = (quoted(picture), vector(*up));
+            format!(
+                "kind = \"picture\"\nfile = {file}\nup = {up}\nrotation = {rotation:?}\nscale = {scale:?}"
+            )
         }
     };
     let illuminates = environment.illuminates;
-    Ok(format!("[environment]\n{map}\nilluminates = {illuminates}\n\n"))
+    format!("[environment]\n{map}\nilluminates = {illuminates}\n\n")
 }
 
 pub(in crate::scene) fn material(material: &Material) -> String {

@@ -53,6 +53,12 @@ impl Ball {
     }
 }
 
+fn scale(column: &mut [f32], factor: f32) {
+    for value in column {
+        *value *= factor;
+    }
+}
+
 /// A point that is lit.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
@@ -104,9 +110,9 @@ impl Tree {
     /// The same tree where the unit of length is another.
     pub(super) fn scaled(mut self, factor: f32) -> Self {
         for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.radius] {
-            column.iter_mut().for_each(|length| *length *= factor);
+            scale(column, factor);
         }
-        self.power.iter_mut().for_each(|power| *power *= factor * factor);
+        scale(&mut self.power, factor * factor);
         self
     }
 

@@ -1,0 +1,80 @@
+//! What is shown, but for who looks and how: what takes a new world.
+
+use glam::DVec3;
+use spherule::scene::{Camera, Preset};
+
+/// What is shown.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Content {
+    /// Which frame of a trajectory; `None` for what the command line says.
+    pub(super) frame: Option<u64>,
+    /// Types that are not drawn.
+    pub(super) hidden: Vec<String>,
+    /// Planes beyond which nothing is drawn.
+    pub(super) cuts: Vec<Cut>,
+    /// The column that colors stand for; `None` for what the command line says.
+    pub(super) color: Option<String>,
+    /// A look by name, and the camera that its lights stand by.
+    pub(super) preset: Option<(Preset, Camera)>,
+    /// Whether all columns of the file are to be read, for what is said of single spheres.
+    pub(super) columns: bool,
+}
+
+/// A plane: what is beyond it, by its center, is not drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cut {
+    /// Toward what is cut off.
+    pub(super) normal: DVec3,
+    /// On the plane.
+    pub(super) point: DVec3,
+}
+
+impl Content {
+    /// What holds for those that are drawn, as `--select` has it; `None` if all are.
+    pub(super) fn condition(&self) -> Option<String> {
+        let hidden = self.hidden.iter().map(|name| {
+            let quote = if name.contains('"') { '\'' } else { '"' };
+            format!("type != {quote}{name}{quote}")
+        });
+        let cuts = self.cuts.iter().map(|Cut { normal: n, point }| {
+            // Differences first: far from the origin products would lose what they differ by.
+            let term = |axis: char, i: usize| format!("({axis} - {:?}) * {:?}", point[i], n[i]);
+            format!("{} + {} + {} <= 0", term('x', 0), term('y', 1), term('z', 2))
+        });
+        let parts: Vec<String> = hidden.chain(cuts).collect();
+        (!parts.is_empty()).then(|| parts.join(" and "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spherule::scene::particles::{Looks, Particles, Selection};
+    use spherule::scene::{Rgb, Spheres};
+    use std::path::Path;
+
+    #[test]
+    fn cuts_keep_what_is_on_this_side_of_them() {
+        assert_eq!(Content::default().condition(), None);
+        let mut spheres = Spheres::default();
+        for x in [-2.0, -1e-9, 0.5, 3.0] {
+            spheres.push(DVec3::new(1e6 + x, 0.0, 1.0), 1.0, 0, Rgb::ONE);
+        }
+        let mut particles = Particles { spheres, ..Particles::default() };
+        let cut = Cut { normal: DVec3::new(1e-20, 0.0, -0.0), point: DVec3::new(1e6, -3.0, 7.5) };
+        let content = Content { cuts: vec![cut], ..Content::default() };
+        let select: Selection = content.condition().unwrap().parse().unwrap();
+        let looks = Looks { select: Some(select), ..Looks::default() };
+        looks.apply(Path::new("test"), &mut particles).unwrap();
+        assert_eq!(particles.spheres.len(), 2);
+    }
+
+    #[test]
+    fn names_of_types_are_quoted() {
+        let hidden = vec!["Na".to_owned(), "H\"".to_owned()];
+        let content = Content { hidden, ..Content::default() };
+        let condition = content.condition().unwrap();
+        assert_eq!(condition, "type != \"Na\" and type != 'H\"'");
+        assert!(condition.parse::<Selection>().is_ok());
+    }
+}

@@ -1,0 +1,188 @@
+//! A viewer without a window: it does what a script says, one thing after the other.
+
+use super::command::{Action, Event, Held};
+use super::load::Base;
+use super::pace::Pace;
+use super::save::{Seen, save_picture, save_scene};
+use super::script::Step;
+use super::session::Session;
+use super::times::Times;
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use crate::cli::render::Job;
+use glam::DVec2;
+use spherule::atomic::write_atomically;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// A viewer, and all that a window's threads do for it.
+pub(super) struct Headless<'a> {
+    session: Session,
+    job: &'a Job<'a>,
+    base: Option<Base>,
+    times: Times,
+}
+
+impl<'a> Headless<'a> {
+    /// Loads what the job speaks of.
+    pub(super) fn new(job: &'a Job<'a>) -> Result<Self, Failure> {
+        let mut session = Session::new(Pace::Whole);
+        let base = Base::load(job, &session.viewer.content, None)?;
+        let stage = base.stage(job, &session.viewer.content)?;
+        session.begin(stage, job);
+        Ok(Self { session, job, base: Some(base), times: Times::default() })
+    }
+
+    /// Does all that a script says.
+    pub(super) fn run(mut self, steps: &[(usize, Step)], json: bool) -> Result<(), Failure> {
+        for (_, step) in steps {
+            if !self.step(step)? {
+                break;
+            }
+        }
+        self.times.tell(self.session.viewer.facts.spheres, json);
+        Ok(())
+    }
+
+    /// Does one step; false if it is the last.
+    fn step(&mut self, step: &Step) -> Result<bool, Failure> {
+        match step {
+            Step::Size(width, height) => return self.event(Event::Resize(*width, *height)),
+            Step::Key(key) => return self.event(Event::Key(key.clone())),
+            Step::Click { place, held, double } => self.click(*place, *held, *double)?,
+            Step::Drag { from, to, button, held, steps } => {
+                self.event(Event::Pointer(*from))?;
+                self.event(Event::Press { button: *button, held: *held, double: false })?;
+                for step in 1..=*steps {
+                    let place = from.lerp(*to, f64::from(step) / f64::from(*steps));
+                    self.event(Event::Pointer(place))?;
+                    self.show_motion()?;
+                }
+                self.event(Event::Release)?;
+            }
+            Step::Wheel { steps, place, held } => {
+                self.event(Event::Pointer(*place))?;
+                self.event(Event::Wheel(*steps, *held))?;
+            }
+            Step::Turn(degrees) => {
+                let viewer = &mut self.session.viewer;
+                viewer.rig.orbit(degrees * std::f64::consts::PI / 180.0);
+                viewer.change();
+            }
+            Step::Wait(samples) => self.wait(*samples)?,
+            Step::Save(path) => self.save(path)?,
+            Step::Window(path) => self.capture(path)?,
+            Step::Adapt => self.session.viewer.pace = Pace::measured(),
+            Step::Quit => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Lets something happen; false if it ends the viewer.
+    fn event(&mut self, event: Event) -> Result<bool, Failure> {
+        match self.session.viewer.handle(event) {
+            None => (),
+            Some(Action::Quit) => return Ok(false),
+            Some(Action::Save) => {
+                let path = self.job.output.clone();
+                self.wait(1)?;
+                self.save(&path)?;
+                self.save(&path.with_extension("toml"))?;
+            }
+            Some(Action::Load) => {
+                let content = self.session.viewer.content.clone();
+                let base = Base::load(self.job, &content, self.base.take())?;
+                self.session.set(base.stage(self.job, &content)?);
+                self.base = Some(base);
+            }
+            Some(Action::Frame(side)) => self.session.frame(side),
+            Some(Action::Pick(pixel, purpose)) => {
+                let viewer = &self.session.viewer;
+                let (camera, settings) = (viewer.rig.camera.clone(), viewer.settings.clone());
+                let picked = match &mut self.session.studio {
+                    Some(studio) => studio.pick(&camera, &settings, pixel)?,
+                    None => None,
+                };
+                if let Some(line) = self.session.picked(picked, purpose) {
+                    output::print(line);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    fn click(&mut self, place: DVec2, held: Held, double: bool) -> Result<(), Failure> {
+        use super::command::Button::Left;
+        self.event(Event::Pointer(place))?;
+        self.event(Event::Press { button: Left, held, double: false })?;
+        self.event(Event::Release)?;
+        if double {
+            self.event(Event::Press { button: Left, held, double })?;
+            self.event(Event::Release)?;
+        }
+        Ok(())
+    }
+
+    /// Renders and draws what a window would show next.
+    fn expose(&mut self) -> Result<bool, Failure> {
+        let Some(order) = self.session.viewer.order() else { return Ok(false) };
+        let Some(studio) = &mut self.session.studio else { return Ok(false) };
+        let picture = studio.expose(&order, &AtomicBool::new(false))?;
+        if let Some(picture) = picture {
+            self.session.viewer.accept(picture);
+        }
+        Ok(true)
+    }
+
+    fn show_motion(&mut self) -> Result<(), Failure> {
+        let start = Instant::now();
+        self.expose()?;
+        self.session.canvas.draw(&self.session.viewer);
+        self.times.moving.push(start.elapsed());
+        Ok(())
+    }
+
+    fn wait(&mut self, samples: u32) -> Result<(), Failure> {
+        self.session.viewer.settings.spp = samples;
+        while self.session.viewer.whole().is_none_or(|picture| picture.samples < samples) {
+            if !self.expose()? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Saves the picture or the scene, as the name says.
+    fn save(&mut self, path: &Path) -> Result<(), Failure> {
+        if self.session.viewer.whole().is_none() {
+            self.wait(1)?;
+        }
+        let (Some(settings), Some(studio)) =
+            (self.session.viewer.settings_of_picture(), &self.session.studio)
+        else {
+            return Ok(());
+        };
+        let viewer = &self.session.viewer;
+        let Some(picture) = viewer.whole() else { return Ok(()) };
+        let seen = Seen {
+            title: &viewer.facts.title,
+            camera: &viewer.rig.camera,
+            settings: &settings,
+            image: &picture.image,
+        };
+        if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
+            return save_scene(&seen, &studio.stage.scene, path);
+        }
+        save_picture(&seen, path)
+    }
+
+    /// Writes what a window would show.
+    fn capture(&mut self, path: &Path) -> Result<(), Failure> {
+        self.session.canvas.draw(&self.session.viewer);
+        let canvas = &self.session.canvas;
+        let file = spherule::drawing::encode(&canvas.codes(), (canvas.width, canvas.height))?;
+        write_atomically(path, |writer| writer.write_all(&file))
+            .map_err(|error| Failure::Write(path.to_owned(), error))
+    }
+}

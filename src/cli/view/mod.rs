@@ -1,0 +1,113 @@
+//! `spherule view`: a scene in a window, or as a script without a display goes through it.
+//!
+//! ```text
+//! window or script -> events -> Viewer -> orders -> Studio -> pictures -> Viewer -> Canvas
+//! ```
+//!
+//! The [`viewer`] is a state machine without clock, threads and files; [`headless`] drives it step by
+//! step, and `window`, the only file that knows of windows, with two threads for it: one loads what
+//! is to be seen, the other renders it.
+
+mod args;
+mod canvas;
+mod command;
+mod content;
+mod headless;
+mod keys;
+mod load;
+mod obey;
+mod pace;
+mod refine;
+mod rig;
+mod save;
+mod script;
+mod session;
+mod studio;
+mod times;
+mod viewer;
+#[cfg(feature = "view")]
+mod window;
+#[cfg(feature = "view")]
+mod worker;
+
+pub(super) use self::args::ViewerArgs;
+
+use self::headless::Headless;
+use super::Failure;
+use super::render::Job;
+use std::fmt::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// What `--help` ends with.
+pub(super) fn examples() -> String {
+    let mut text = "\
+Examples:
+  spherule view                              the random field
+  spherule view scene.toml --size 1280x720
+  spherule view run.lammpstrj --color-by c_pe
+  spherule view scene.toml --headless-script turn.txt
+
+Keys and mouse:
+"
+    .to_owned();
+    for (keys, what) in keys::HELP {
+        // Strings take what is written to them.
+        let _ = writeln!(text, "  {keys:<26} {what}");
+    }
+    text + "\n" + script::MANUAL
+}
+
+/// Shows a scene until the user has seen enough.
+pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
+    // A thread that reads or builds when the window closes is not waited for: what it refers to
+    // lives as long as the process.
+    let args: &'static ViewerArgs = Box::leak(args);
+    let job = Job::new(&args.render)?;
+    refuse(args, &job)?;
+    if let Some(path) = &args.headless_script {
+        let steps = read_script(path)?;
+        let json = args.render.report.json;
+        return job
+            .pool()?
+            .install(|| Headless::new(&job)?.run(&steps, json))
+            .map(|()| ExitCode::SUCCESS);
+    }
+    open(job, args)
+}
+
+#[cfg(feature = "view")]
+fn open(job: Job<'static>, args: &ViewerArgs) -> Result<ExitCode, Failure> {
+    window::run(job, args.render.report.json).map(|()| ExitCode::SUCCESS)
+}
+
+#[cfg(not(feature = "view"))]
+fn open(_: Job<'static>, _: &ViewerArgs) -> Result<ExitCode, Failure> {
+    let message = "this program was built without windows: build it with `cargo install --path . \
+                   --features view`; --headless-script FILE needs none";
+    Err(Failure::Window(message.to_owned()))
+}
+
+fn read_script(path: &Path) -> Result<Vec<(usize, script::Step)>, Failure> {
+    let failed = |message: String| Failure::Window(format!("{}: {message}", path.display()));
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| failed(format!("cannot be read: {error}")))?;
+    script::parse(&text).map_err(failed)
+}
+
+/// Refuses options that say what to do with a picture once it is there.
+fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
+    let has = [
+        ("--region", args.render.picture.region.is_some()),
+        ("--layers", !args.render.encoding.layers.is_empty()),
+        ("--color-bar", job.color_bar.is_some()),
+        ("--turntable", job.views.turntable().is_some()),
+        ("--cell", job.views.draws_cell()),
+    ];
+    match has.into_iter().find(|(_, has)| *has) {
+        Some((name, _)) => {
+            Err(Failure::usage("view", format!("{name} is for `spherule render`; leave it out")))
+        }
+        None => Ok(()),
+    }
+}

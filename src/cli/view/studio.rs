@@ -1,0 +1,152 @@
+//! Who makes the pictures that the viewer orders, and knows what is at a pixel.
+
+use super::load::Stage;
+use super::rig::Rig;
+use super::viewer::{Order, Picture};
+use crate::cli::failure::Failure;
+use glam::{DVec2, DVec3};
+use spherule::World;
+use spherule::bvh::build::Builder;
+use spherule::film::Region;
+use spherule::layers::{Layer, layers};
+use spherule::render::{End, Options, Unfinished};
+use spherule::scene::{Camera, Scene, Settings};
+use spherule::trace::Tracer;
+use std::sync::PoisonError;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// The world, and the picture that is being made of it.
+pub(super) struct Studio {
+    pub(super) stage: Stage,
+    pub(super) tracer: Tracer,
+    pub(super) builder: Builder,
+    /// The camera and settings that the world has, without its spheres.
+    aimed: Scene,
+    /// Of the camera, by these settings.
+    film: Option<(Camera, Unfinished)>,
+}
+
+/// What is at a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Picked {
+    /// What there is to say of it, in a line.
+    pub(super) text: String,
+    pub(super) kind: Option<String>,
+    /// Where the ray through the pixel meets it.
+    pub(super) point: DVec3,
+}
+
+impl Studio {
+    pub(super) fn new(stage: Stage, tracer: Tracer, builder: Builder) -> Self {
+        Self { stage, tracer, builder, aimed: Scene::default(), film: None }
+    }
+
+    /// Goes on with another scene.
+    pub(super) fn set(&mut self, stage: Stage) {
+        (self.stage, self.film, self.aimed) = (stage, None, Scene::default());
+    }
+
+    /// Makes the picture that is ordered, from the last one if that was of the same; nothing if it is
+    /// cancelled.
+    ///
+    /// # Errors
+    /// The camera sees nothing.
+    pub(super) fn expose(
+        &mut self,
+        order: &Order,
+        cancel: &AtomicBool,
+    ) -> Result<Option<Picture>, Failure> {
+        self.aim(&order.camera, &order.settings)?;
+        let start = Instant::now();
+        let options = Options { tracer: self.tracer, cancel: Some(cancel), ..Options::default() };
+        let mut film = self.film.take().filter(|(camera, _)| *camera == order.camera);
+        let goes_on = |(_, film): &mut (Camera, Unfinished)| film.raise(&order.settings).is_ok();
+        film = film.and_then(|mut film| goes_on(&mut film).then_some(film));
+        let world = &self.stage.world;
+        let begin = || {
+            let film = Unfinished::begin(world, &order.settings, &options);
+            (order.camera.clone(), film)
+        };
+        let (_, film) = self.film.insert(film.unwrap_or_else(begin));
+        let before = film.totals().counters.rays();
+        if film.run(world, &options) == End::Cancelled {
+            return Ok(None);
+        }
+        Ok(Some(Picture {
+            version: order.version,
+            samples: order.settings.spp,
+            image: film.film().resolve(),
+            rays: film.totals().counters.rays() - before,
+            elapsed: start.elapsed(),
+        }))
+    }
+
+    /// Lets the camera into the world; where it is too far away for that, builds the world for it.
+    fn aim(&mut self, camera: &Camera, settings: &Settings) -> Result<(), Failure> {
+        let same = self.aimed.camera == *camera
+            && (self.aimed.settings.width, self.aimed.settings.height)
+                == (settings.width, settings.height);
+        if same {
+            return Ok(());
+        }
+        self.film = None;
+        (self.aimed.camera, self.aimed.settings) = (camera.clone(), settings.clone());
+        let title = self.stage.facts.title.clone();
+        let failed = |error| Failure::World(title.clone(), error);
+        if self.stage.world.look(&self.aimed).map_err(failed)? {
+            return Ok(());
+        }
+        let mut scene = self.stage.scene.write().unwrap_or_else(PoisonError::into_inner);
+        (scene.camera, scene.settings) = (camera.clone(), settings.clone());
+        self.stage.world = World::build_with(&scene, self.builder).map_err(failed)?;
+        Ok(())
+    }
+
+    /// What is at a pixel of the whole picture, if anything but the ground and the sky.
+    ///
+    /// # Errors
+    /// The camera sees nothing.
+    pub(super) fn pick(
+        &mut self,
+        camera: &Camera,
+        settings: &Settings,
+        (x, y): (u32, u32),
+    ) -> Result<Option<Picked>, Failure> {
+        self.aim(camera, settings)?;
+        let region = Region { x, y, width: 1, height: 1 };
+        let options = Options { tracer: self.tracer, region: Some(region), ..Options::default() };
+        let found = layers(&self.stage.world, settings, &options, &[Layer::Id]);
+        let row = found.pixels.first().map_or(usize::MAX, |pixel| pixel.id as usize);
+        let scene = self.stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+        if row >= scene.spheres.len() {
+            return Ok(None);
+        }
+        let (center, radius) = (scene.spheres.center(row), scene.spheres.radius[row]);
+        let labels = &self.stage.labels;
+        let id = labels.id(row).unwrap_or(row as f64);
+        let kind = labels.kind(row).map(str::to_owned);
+        let [a, b, c] = center.to_array();
+        let named = kind.as_ref().map_or(String::new(), |kind| format!("type {kind}, "));
+        let mut text = format!("sphere {id}: {named}at {a} {b} {c}, radius {radius}");
+        for column in labels.columns(row) {
+            text += ", ";
+            text += &column;
+        }
+        let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let size = DVec2::new(f64::from(settings.width), f64::from(settings.height));
+        let offset = (place - size / 2.0) / size.y;
+        let ray =
+            Rig::new(camera.clone(), self.stage.facts.size).ray(offset * DVec2::new(1.0, -1.0));
+        Ok(Some(Picked { text, kind, point: meet(ray, center, radius) }))
+    }
+}
+
+/// Where a ray meets a sphere that it is known to meet.
+fn meet((origin, direction): (DVec3, DVec3), center: DVec3, radius: f64) -> DVec3 {
+    let along = (center - origin).dot(direction);
+    let across = (origin + direction * along).distance_squared(center);
+    let half = (radius * radius - across).max(0.0).sqrt();
+    let distance = if along > half { along - half } else { along + half };
+    origin + direction * distance
+}

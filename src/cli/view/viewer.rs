@@ -1,0 +1,280 @@
+//! The viewer without a window: what happens goes in, what is to be rendered comes out, and pictures
+//! become what the window shows. It knows no clock, no threads and no files, so that a window, a
+//! script and a test see the same.
+
+use super::command::{Action, Button, Event, Held, Purpose};
+use super::content::{Content, Cut};
+use super::keys;
+use super::pace::Pace;
+use super::rig::Rig;
+use glam::DVec2;
+use spherule::image::Image;
+use spherule::scene::{Camera, Settings};
+use std::time::Duration;
+
+/// Least and most pixels on a side of the window.
+const SIDES: (u32, u32) = (16, 16_384);
+
+/// Pixels that the pointer may move in a click.
+const CLICK: f64 = 4.0;
+
+/// Radians that a drag over the height of the window turns by.
+const TURN: f64 = 4.0;
+
+/// Factor on the distance for a step of the wheel, and for a drag over the height of the window.
+const WHEEL: f64 = 0.88;
+const DRAG: f64 = 8.0;
+
+/// Factor on the field of view for a step of the wheel.
+pub(super) const WIDER: f64 = 1.1;
+
+/// What the viewer knows of what it shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Facts {
+    pub(super) title: String,
+    /// Spheres that are drawn.
+    pub(super) spheres: usize,
+    /// Names by which spheres can be hidden.
+    pub(super) types: Vec<String>,
+    /// Columns by which spheres can be colored.
+    pub(super) columns: Vec<String>,
+    /// The frame of a trajectory, from 0, if it was chosen by number, and how many there are.
+    pub(super) frame: u64,
+    pub(super) frames: Option<u64>,
+    /// Radius of the ball about all spheres.
+    pub(super) size: f64,
+}
+
+/// A picture to be rendered.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Order {
+    /// Of what the viewer shows: grows with every change.
+    pub(super) version: u64,
+    pub(super) camera: Camera,
+    /// With the size and the samples of this picture.
+    pub(super) settings: Settings,
+    /// Whether it is the first of its version, which is not to be broken off.
+    pub(super) first: bool,
+}
+
+/// A picture that was ordered.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    pub(super) version: u64,
+    pub(super) samples: u32,
+    pub(super) image: Image,
+    /// Rays of the last samples, and how long they took.
+    pub(super) rays: u64,
+    pub(super) elapsed: Duration,
+}
+
+impl Picture {
+    pub(super) fn size(&self) -> (u32, u32) {
+        (self.image.width, self.image.height)
+    }
+}
+
+/// What the pointer does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Drag {
+    /// A button went down here and nothing was moved yet.
+    Click(DVec2, Button, Held),
+    Turn,
+    Pan,
+    Zoom,
+    Roll,
+    /// A cut that begins here.
+    Cut(DVec2),
+}
+
+/// The viewer.
+#[derive(Clone, Debug)]
+pub(super) struct Viewer {
+    pub(super) rig: Rig,
+    pub(super) home: Camera,
+    /// With the size of the window, and the samples at which the picture is finished.
+    pub(super) settings: Settings,
+    pub(super) content: Content,
+    pub(super) facts: Facts,
+    pub(super) pace: Pace,
+    /// Of the sphere that was named last, its type.
+    pub(super) named: Option<String>,
+    /// What was done last, for the status line.
+    pub(super) message: String,
+    pub(super) help: bool,
+    pub(super) status: bool,
+    /// Whether the next drag cuts.
+    pub(super) cutting: bool,
+    pub(super) shown: Option<Picture>,
+    /// Root of the mean squared error by the mean, estimated.
+    pub(super) noise: Option<f64>,
+    /// Grows with every change of what is to be seen.
+    pub(super) version: u64,
+    /// A picture of half as many samples, for the noise.
+    pub(super) half: Option<Picture>,
+    pointer: DVec2,
+    drag: Option<Drag>,
+}
+
+impl Viewer {
+    /// A viewer of a scene whose camera is placed by its eye.
+    pub(super) fn new(camera: &Camera, settings: &Settings, pace: Pace) -> Self {
+        Self {
+            rig: Rig::new(camera.clone(), 1.0),
+            home: camera.clone(),
+            settings: Settings { until_error: None, time: None, ..settings.clone() },
+            content: Content::default(),
+            facts: Facts::default(),
+            pace,
+            named: None,
+            message: "press ? for help".to_owned(),
+            help: false,
+            status: true,
+            cutting: false,
+            shown: None,
+            noise: None,
+            version: 0,
+            half: None,
+            pointer: DVec2::ZERO,
+            drag: None,
+        }
+    }
+
+    /// Takes note of what there is to see now.
+    pub(super) fn loaded(&mut self, facts: Facts) {
+        self.rig.resize(facts.size);
+        self.facts = facts;
+        self.change();
+    }
+
+    /// What is shown is not what it was: pictures begin anew.
+    pub(super) fn change(&mut self) {
+        self.version += 1;
+    }
+
+    /// What is shown, if it is the whole picture of what is to be seen now.
+    pub(super) fn whole(&self) -> Option<&Picture> {
+        let whole = (self.settings.width, self.settings.height);
+        let now = |picture: &&Picture| picture.version == self.version && picture.size() == whole;
+        self.shown.as_ref().filter(now)
+    }
+
+    /// The settings by which a render makes the whole picture that is shown.
+    pub(super) fn settings_of_picture(&self) -> Option<Settings> {
+        self.whole().map(|picture| Settings { spp: picture.samples, ..self.settings.clone() })
+    }
+
+    /// Whether the pointer is moving the camera.
+    #[cfg(feature = "view")]
+    pub(super) fn is_dragging(&self) -> bool {
+        matches!(self.drag, Some(Drag::Turn | Drag::Pan | Drag::Zoom | Drag::Roll))
+    }
+
+    /// The line from where a cut begins to where it would end now.
+    pub(super) fn cut(&self) -> Option<[DVec2; 2]> {
+        match self.drag {
+            Some(Drag::Cut(start)) => Some([start, self.pointer]),
+            _ => None,
+        }
+    }
+
+    /// Takes in what happened, and says what others have to do for it.
+    pub(super) fn handle(&mut self, event: Event) -> Option<Action> {
+        match event {
+            Event::Pointer(place) => self.point(place),
+            Event::Press { button, held, double } => return self.press(button, held, double),
+            Event::Release => return self.release(),
+            Event::Wheel(steps, held) if held.shift => {
+                self.rig.widen(WIDER.powf(-steps));
+                self.change();
+            }
+            Event::Wheel(steps, _) => {
+                self.rig.zoom(WHEEL.powf(steps), self.in_heights(self.pointer));
+                self.change();
+            }
+            Event::Key(key) => return keys::command(&key).and_then(|command| self.obey(command)),
+            Event::Resize(width, height) => {
+                let side = |side: u32| side.clamp(SIDES.0, SIDES.1);
+                (self.settings.width, self.settings.height) = (side(width), side(height));
+                self.change();
+            }
+            #[cfg(feature = "view")]
+            Event::Close => return Some(Action::Quit),
+        }
+        None
+    }
+
+    /// A place in heights of the picture from its middle, to the right and upward.
+    fn in_heights(&self, place: DVec2) -> DVec2 {
+        let size = DVec2::new(f64::from(self.settings.width), f64::from(self.settings.height));
+        let offset = (place - size / 2.0) / size.y;
+        DVec2::new(offset.x, -offset.y)
+    }
+
+    fn point(&mut self, place: DVec2) {
+        let moved = self.in_heights(place) - self.in_heights(self.pointer);
+        if let Some(Drag::Click(start, button, held)) = self.drag {
+            if place.distance(start) <= CLICK {
+                return;
+            }
+            self.drag = Some(drag_of(button, held));
+        }
+        self.pointer = place;
+        match self.drag {
+            Some(Drag::Turn) => self.rig.orbit(DVec2::new(moved.x, -moved.y) * TURN),
+            Some(Drag::Pan) => self.rig.pan(moved),
+            Some(Drag::Zoom) => self.rig.zoom(DRAG.powf(-moved.y), DVec2::ZERO),
+            Some(Drag::Roll) => self.rig.roll(-moved.x * TURN),
+            Some(Drag::Click(..) | Drag::Cut(_)) | None => return,
+        }
+        self.change();
+    }
+
+    fn press(&mut self, button: Button, held: Held, double: bool) -> Option<Action> {
+        if std::mem::take(&mut self.cutting) {
+            self.drag = Some(Drag::Cut(self.pointer));
+            return None;
+        }
+        self.drag = Some(Drag::Click(self.pointer, button, held));
+        (double && button == Button::Left)
+            .then(|| Action::Pick(self.pixel(self.pointer), Purpose::Pivot))
+    }
+
+    fn release(&mut self) -> Option<Action> {
+        match self.drag.take()? {
+            Drag::Click(place, Button::Left, held) => {
+                let purpose = if held.control { Purpose::Focus } else { Purpose::Name };
+                Some(Action::Pick(self.pixel(place), purpose))
+            }
+            Drag::Cut(start) => self.cut_off(start),
+            _ => None,
+        }
+    }
+
+    fn pixel(&self, place: DVec2) -> (u32, u32) {
+        let last =
+            DVec2::new(f64::from(self.settings.width), f64::from(self.settings.height)) - 1.0;
+        let place = place.clamp(DVec2::ZERO, last);
+        (place.x as u32, place.y as u32)
+    }
+
+    /// Cuts off what is to the right of the way from `start` to the pointer.
+    fn cut_off(&mut self, start: DVec2) -> Option<Action> {
+        let [a, b] = [start, self.pointer].map(|place| self.rig.ray(self.in_heights(place)));
+        // In perspective both rays start at the eye, in parallel projection they go the same way.
+        let across = (b.0 + b.1) - (a.0 + a.1);
+        let normal = a.1.cross(across).try_normalize()?;
+        self.content.cuts.push(Cut { normal, point: a.0 });
+        Some(Action::Load)
+    }
+}
+
+fn drag_of(button: Button, held: Held) -> Drag {
+    match button {
+        _ if held.alt => Drag::Roll,
+        _ if held.control => Drag::Zoom,
+        _ if held.shift => Drag::Pan,
+        Button::Right => Drag::Pan,
+        Button::Left | Button::Middle => Drag::Turn,
+    }
+}

@@ -1,0 +1,253 @@
+//! The window: the only file that knows of displays.
+//!
+//! `winit` opens windows on X11 and Wayland, `softbuffer` puts pixels into them: neither needs a
+//! graphics processor, and both look for the display's libraries when they run.
+
+mod hear;
+mod input;
+
+use self::input::Input;
+use super::canvas::Canvas;
+use super::command::{Action, Event};
+use super::pace::Pace;
+use super::save::{Seen, free_name, save_picture, save_scene};
+use super::session;
+use super::times::Times;
+use super::viewer::Viewer;
+use super::worker::{News, Workers};
+use crate::cli::failure::Failure;
+use crate::cli::render::Job;
+use softbuffer::{Context, Surface};
+use spherule::scene::{Scene, Settings};
+use std::num::NonZeroU32;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::{Arc, RwLock};
+use std::thread::JoinHandle;
+use std::time::Instant;
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, EventLoop};
+use winit::window::{Window, WindowId};
+
+type Screen = Surface<Rc<Window>, Rc<Window>>;
+
+struct App {
+    viewer: Viewer,
+    canvas: Canvas,
+    input: Input,
+    workers: Workers,
+    screen: Option<(Rc<Window>, Screen)>,
+    /// What is saved; `None` until something was loaded.
+    scene: Option<Arc<RwLock<Scene>>>,
+    savers: Vec<JoinHandle<()>>,
+    tell: Arc<dyn Fn(News) + Send + Sync>,
+    output: PathBuf,
+    samples: u32,
+    /// Whether the window's size was typed.
+    sized: bool,
+    /// Whether the picture is to be saved as soon as it is whole.
+    saving: bool,
+    times: Times,
+    clock: Clock,
+    failure: Option<Failure>,
+}
+
+/// When things happened that are timed.
+#[derive(Default)]
+struct Clock {
+    /// The last motion, until a finer picture follows it.
+    moved: Option<Instant>,
+    /// The last picture of the drag that goes on.
+    shown: Option<Instant>,
+}
+
+/// Opens a window and shows what the job speaks of until it is closed.
+pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
+    let events = event_loop()?;
+    let proxy = events.create_proxy();
+    let (output, sized) = (job.output.clone(), job.picture.size);
+    let samples = job.picture.spp.unwrap_or(session::SAMPLES);
+    let told = proxy.clone();
+    let workers = Workers::start(job, move |news| told.send_event(news).is_ok())?;
+    let mut settings = Settings { width: 1280, height: 720, ..Settings::default() };
+    if let Some(size) = sized {
+        (settings.width, settings.height) = (size.width, size.height);
+    }
+    let camera = spherule::scene::Camera::default();
+    let mut app = App {
+        viewer: Viewer::new(&camera, &settings, Pace::measured()),
+        canvas: Canvas::default(),
+        input: Input::default(),
+        workers,
+        screen: None,
+        scene: None,
+        savers: Vec::new(),
+        tell: Arc::new(move |news| drop(proxy.send_event(news))),
+        output,
+        samples,
+        sized: sized.is_some(),
+        saving: false,
+        times: Times::default(),
+        clock: Clock::default(),
+        failure: None,
+    };
+    app.viewer.say("loading");
+    app.workers.load(&app.viewer.content);
+    let ended = events.run_app(&mut app).map_err(|error| no_display(&error));
+    app.workers.cancel();
+    for saver in app.savers.drain(..) {
+        // One that panicked has said so.
+        let _ = saver.join();
+    }
+    ended?;
+    app.times.tell(app.viewer.facts.spheres, json);
+    app.failure.map_or(Ok(()), Err)
+}
+
+/// The connection to the display. Libraries that are not there make `winit` panic: it is told in a
+/// line, as all else is.
+fn event_loop() -> Result<EventLoop<News>, Failure> {
+    let hook = take_hook();
+    set_hook(Box::new(|_| ()));
+    let opened = catch_unwind(AssertUnwindSafe(|| EventLoop::<News>::with_user_event().build()));
+    set_hook(hook);
+    match opened {
+        Ok(opened) => opened.map_err(|error| no_display(&error)),
+        Err(panic) => {
+            let why = panic.downcast_ref::<String>().map_or("a library is missing", String::as_str);
+            Err(no_display(&why))
+        }
+    }
+}
+
+fn no_display(why: &dyn std::fmt::Display) -> Failure {
+    Failure::Window(format!(
+        "no window can be opened: {why}; set DISPLAY or WAYLAND_DISPLAY, or use --headless-script \
+         FILE, or `spherule render`"
+    ))
+}
+
+impl App {
+    fn handle(&mut self, events: &ActiveEventLoop, event: Event) {
+        let before = self.viewer.version;
+        let action = self.viewer.handle(event);
+        if self.viewer.version != before {
+            self.clock.moved = Some(Instant::now());
+        }
+        match action {
+            None => (),
+            Some(Action::Quit) => events.exit(),
+            Some(Action::Load) => self.workers.load(&self.viewer.content),
+            Some(Action::Save) => {
+                self.saving = true;
+                self.viewer.say("saving as soon as the picture is whole");
+            }
+            Some(Action::Frame(side)) => {
+                if let Some(scene) = &self.scene {
+                    session::frame(&mut self.viewer, scene, side);
+                }
+            }
+            Some(Action::Pick(pixel, purpose)) => {
+                let at = (self.viewer.rig.camera.clone(), self.viewer.settings.clone());
+                self.workers.pick(at, pixel, purpose);
+            }
+        }
+        self.go_on();
+    }
+
+    /// Orders the next picture and shows what is new.
+    fn go_on(&mut self) {
+        if self.scene.is_some() {
+            self.workers.order(self.viewer.order());
+        }
+        if self.saving && self.viewer.whole().is_some() {
+            self.saving = false;
+            self.save();
+        }
+        if let Some((window, _)) = &self.screen {
+            window.request_redraw();
+        }
+    }
+
+    /// Saves picture and scene in a thread of its own: large scenes take seconds.
+    fn save(&mut self) {
+        let (Some(scene), Some(picture), Some(settings)) =
+            (&self.scene, self.viewer.whole(), self.viewer.settings_of_picture())
+        else {
+            return;
+        };
+        let (scene, image, path) =
+            (Arc::clone(scene), picture.image.clone(), free_name(&self.output));
+        let (title, camera) = (self.viewer.facts.title.clone(), self.viewer.rig.camera.clone());
+        let tell = Arc::clone(&self.tell);
+        self.viewer.say(format!("saving {}", path.display()));
+        let saver = std::thread::spawn(move || {
+            let seen = Seen { title: &title, camera: &camera, settings: &settings, image: &image };
+            let saved = save_picture(&seen, &path)
+                .and_then(|()| save_scene(&seen, &scene, &path.with_extension("toml")));
+            tell(News::Saved(saved.map(|()| path)));
+        });
+        self.savers.push(saver);
+    }
+}
+
+impl App {
+    /// Puts the canvas into the window.
+    fn redraw(&mut self) -> Result<(), softbuffer::SoftBufferError> {
+        let Some((window, screen)) = &mut self.screen else { return Ok(()) };
+        self.canvas.draw(&self.viewer);
+        let (width, height) = (self.canvas.width, self.canvas.height);
+        if let (Some(wide), Some(high)) = (NonZeroU32::new(width), NonZeroU32::new(height)) {
+            screen.resize(wide, high)?;
+            let mut buffer = screen.buffer_mut()?;
+            buffer.copy_from_slice(&self.canvas.pixels);
+            window.pre_present_notify();
+            buffer.present()?;
+        }
+        Ok(())
+    }
+
+    fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
+        let Settings { width, height, .. } = self.viewer.settings;
+        let attributes = Window::default_attributes()
+            .with_title("Spherule")
+            .with_inner_size(PhysicalSize::new(width, height));
+        let window = Rc::new(events.create_window(attributes).map_err(|error| no_display(&error))?);
+        let context = Context::new(Rc::clone(&window)).map_err(|error| no_display(&error))?;
+        let screen =
+            Surface::new(&context, Rc::clone(&window)).map_err(|error| no_display(&error))?;
+        let size = window.inner_size();
+        self.viewer.handle(Event::Resize(size.width, size.height));
+        self.screen = Some((window, screen));
+        Ok(())
+    }
+}
+
+impl ApplicationHandler<News> for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.screen.is_none()
+            && let Err(failure) = self.open(events)
+        {
+            self.failure = Some(failure);
+            events.exit();
+        }
+    }
+
+    fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
+        self.hear(events, news);
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if matches!(event, WindowEvent::RedrawRequested) {
+            if let Err(error) = self.redraw() {
+                self.failure = Some(no_display(&error));
+                events.exit();
+            }
+        } else if let Some(event) = self.input.event(&event) {
+            self.handle(events, event);
+        }
+    }
+}

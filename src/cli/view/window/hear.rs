@@ -1,0 +1,104 @@
+//! What the window's threads tell it.
+
+use super::App;
+use crate::cli::output;
+use crate::cli::view::command::Event;
+use crate::cli::view::load::Stage;
+use crate::cli::view::session;
+use crate::cli::view::viewer::Picture;
+use crate::cli::view::worker::News;
+use std::sync::Arc;
+use std::time::Instant;
+use winit::dpi::PhysicalSize;
+use winit::event_loop::ActiveEventLoop;
+
+/// The largest window that a scene asks for, in pixels.
+const LARGEST: (u32, u32) = (1600, 1000);
+
+impl App {
+    pub(super) fn hear(&mut self, events: &ActiveEventLoop, news: News) {
+        match news {
+            News::Staged(Ok(stage)) => self.set(stage),
+            News::Staged(Err(failure)) if self.scene.is_none() => {
+                self.failure = Some(failure);
+                events.exit();
+            }
+            News::Picture(Ok(None)) => (),
+            News::Picture(Ok(Some(picture))) => {
+                self.take_times(&picture);
+                self.viewer.accept(picture);
+            }
+            News::Picked(Ok(picked), purpose) => {
+                if let Some(line) = session::picked_by(&mut self.viewer, picked, purpose) {
+                    if let Some((window, _)) = &self.screen {
+                        window.set_title(&format!("{} - {line}", self.viewer.facts.title));
+                    }
+                    output::print(line);
+                }
+            }
+            News::Saved(Ok(path)) => {
+                let scene = path.with_extension("toml");
+                output::print(format_args!("{} {}", path.display(), scene.display()));
+                self.viewer.say(format!("saved {} and {}", path.display(), scene.display()));
+            }
+            News::Staged(Err(failure))
+            | News::Picture(Err(failure))
+            | News::Picked(Err(failure), _)
+            | News::Saved(Err(failure)) => {
+                let message = failure.to_string();
+                output::warn(&message);
+                self.viewer.say(message);
+            }
+        }
+        self.go_on();
+    }
+
+    /// Shows what was loaded.
+    fn set(&mut self, stage: Box<Stage>) {
+        stage.warnings.iter().for_each(output::warn);
+        let size = (self.viewer.settings.width, self.viewer.settings.height);
+        if self.scene.is_none() {
+            session::begin(&mut self.viewer, &stage, self.samples);
+            self.resize(size);
+        } else {
+            self.viewer.loaded(stage.facts.clone());
+        }
+        if let Some((window, _)) = &self.screen {
+            window.set_title(&self.viewer.facts.title);
+        }
+        self.scene = Some(Arc::clone(&stage.scene));
+        self.workers.set(stage);
+    }
+
+    /// Gives the window the size of the first scene, or the picture that of the window.
+    fn resize(&mut self, now: (u32, u32)) {
+        let settings = &mut self.viewer.settings;
+        let wanted = (settings.width, settings.height);
+        (settings.width, settings.height) = now;
+        let fits = wanted.0 <= LARGEST.0 && wanted.1 <= LARGEST.1;
+        if let Some((window, _)) = self.screen.as_ref().filter(|_| fits && !self.sized) {
+            let granted = window.request_inner_size(PhysicalSize::new(wanted.0, wanted.1));
+            if let Some(size) = granted {
+                self.viewer.handle(Event::Resize(size.width, size.height));
+            }
+        }
+    }
+
+    fn take_times(&mut self, picture: &Picture) {
+        let now = Instant::now();
+        let dragging = self.viewer.is_dragging();
+        let first = self.viewer.shown.as_ref().is_none_or(|shown| shown.version < picture.version);
+        let newest = picture.version == self.viewer.version;
+        if newest
+            && !first
+            && let Some(moved) = self.clock.moved.take()
+        {
+            self.times.rest.push(now - moved);
+        }
+        let before = self.clock.shown.take();
+        if first && dragging {
+            self.times.moving.extend(before.map(|before| now - before));
+            self.clock.shown = Some(now);
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The two threads behind a window: one reads and builds what is to be seen, the other renders it.
+//!
+//! Neither is waited for. The newest order wins: what is being rendered is cancelled by its flag, at
+//! the grain of a tile.
+
+use super::command::Purpose;
+use super::content::Content;
+use super::load::{Base, Stage};
+use super::studio::{Picked, Studio};
+use super::viewer::{Order, Picture};
+use crate::cli::failure::Failure;
+use crate::cli::render::Job;
+use rayon::ThreadPool;
+use spherule::scene::{Camera, Settings};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+
+/// What a window hears of.
+pub(super) enum News {
+    /// There is something else to be seen.
+    Staged(Result<Box<Stage>, Failure>),
+    /// An order is done; nothing if it was cancelled.
+    Picture(Result<Option<Picture>, Failure>),
+    Picked(Result<Option<Picked>, Failure>, Purpose),
+    /// A file is there, or why not.
+    Saved(Result<PathBuf, Failure>),
+}
+
+/// What is to be rendered.
+enum Task {
+    Set(Box<Stage>),
+    Expose(Order, Arc<AtomicBool>),
+    Pick((Camera, Settings), (u32, u32), Purpose),
+}
+
+/// The threads, as the window sees them.
+pub(super) struct Workers {
+    contents: Sender<Content>,
+    tasks: Sender<Task>,
+    /// What was ordered last, and the flag that cancels it.
+    ordered: Option<(Order, Arc<AtomicBool>)>,
+}
+
+impl Workers {
+    /// Starts the threads; what they have done they tell by `tell`, which returns false when nobody
+    /// listens any more.
+    ///
+    /// # Errors
+    /// The pools of threads cannot be started.
+    pub(super) fn start(
+        job: Job<'static>,
+        tell: impl Fn(News) -> bool + Clone + Send + 'static,
+    ) -> Result<Self, Failure> {
+        let (contents, wanted) = channel();
+        let (tasks, todo) = channel();
+        // A render waits for all threads of its pool: it does not share them with a reader.
+        let (loaders, renderers) = (job.pool()?, job.pool()?);
+        let (tracer, builder) = (job.tracer, job.builder(usize::MAX, u64::MAX));
+        let loaded = tell.clone();
+        thread::spawn(move || load(&loaders, &job, &wanted, loaded));
+        thread::spawn(move || {
+            let studio = |stage| Studio::new(stage, tracer, builder);
+            render(&renderers, &todo, studio, tell);
+        });
+        Ok(Self { contents, tasks, ordered: None })
+    }
+
+    /// Has something loaded.
+    pub(super) fn load(&self, content: &Content) {
+        // Who does not receive has ended, and so does the window.
+        let _ = self.contents.send(content.clone());
+    }
+
+    /// Has pictures made of what was loaded.
+    pub(super) fn set(&mut self, stage: Box<Stage>) {
+        self.cancel();
+        let _ = self.tasks.send(Task::Set(stage));
+    }
+
+    /// Has a picture made. An older order is cancelled, unless it is the first picture of what a
+    /// moving camera sees: else nothing would be seen of its way.
+    pub(super) fn order(&mut self, order: Option<Order>) {
+        match (&order, &self.ordered) {
+            (Some(new), Some((old, _))) if new == old => return,
+            (_, Some((old, _))) if !old.first => self.cancel(),
+            _ => (),
+        }
+        let Some(order) = order else { return };
+        let flag = Arc::new(AtomicBool::new(false));
+        let _ = self.tasks.send(Task::Expose(order.clone(), Arc::clone(&flag)));
+        self.ordered = Some((order, flag));
+    }
+
+    /// Asks what is at a pixel: before the picture goes on.
+    pub(super) fn pick(&mut self, at: (Camera, Settings), pixel: (u32, u32), purpose: Purpose) {
+        self.cancel();
+        let _ = self.tasks.send(Task::Pick(at, pixel, purpose));
+    }
+
+    /// Cancels what is being rendered.
+    pub(super) fn cancel(&mut self) {
+        if let Some((_, flag)) = self.ordered.take() {
+            flag.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+/// Loads the newest of what is wanted, again and again.
+fn load(pool: &ThreadPool, job: &Job, wanted: &Receiver<Content>, tell: impl Fn(News) -> bool) {
+    let mut base = None;
+    while let Ok(mut content) = wanted.recv() {
+        while let Ok(newer) = wanted.try_recv() {
+            content = newer;
+        }
+        let before = base.take();
+        let staged = pool.install(|| {
+            let read = Base::load(job, &content, before)?;
+            let stage = read.stage(job, &content);
+            base = Some(read);
+            stage.map(Box::new)
+        });
+        if !tell(News::Staged(staged)) {
+            return;
+        }
+    }
+}
+
+/// Does what is to be done in order, but of orders only the newest.
+fn render(
+    pool: &ThreadPool,
+    todo: &Receiver<Task>,
+    new: impl Fn(Stage) -> Studio,
+    tell: impl Fn(News) -> bool,
+) {
+    let mut studio: Option<Studio> = None;
+    while let Ok(first) = todo.recv() {
+        let mut last = None;
+        for task in std::iter::once(first).chain(todo.try_iter()) {
+            match (task, &mut studio) {
+                (Task::Set(stage), None) => studio = Some(new(*stage)),
+                (Task::Set(stage), Some(studio)) => studio.set(*stage),
+                (Task::Expose(order, cancel), _) => last = Some((order, cancel)),
+                (Task::Pick((camera, settings), pixel, purpose), Some(studio)) => {
+                    let picked = pool.install(|| studio.pick(&camera, &settings, pixel));
+                    if !tell(News::Picked(picked, purpose)) {
+                        return;
+                    }
+                }
+                (Task::Pick(..), None) => (),
+            }
+        }
+        if let (Some((order, cancel)), Some(studio)) = (last, &mut studio)
+            && !tell(News::Picture(pool.install(|| studio.expose(&order, &cancel))))
+        {
+            return;
+        }
+    }
+}

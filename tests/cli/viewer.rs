@@ -1,0 +1,156 @@
+//! The viewer without a window: scripts of events, and what they save.
+
+use crate::folder::{Folder, text};
+use spherule::image::Image;
+
+/// Three types, one of them in two places, a column, and two frames.
+const SALT: &str = "\
+4
+Properties=species:S:1:pos:R:3:q:R:1
+Na 0 0 0 1
+Cl 3 0 0 -1
+Cl 0 3 0 -2
+K 0 0 3 1
+4
+Properties=species:S:1:pos:R:3:q:R:1
+Na 1 0 0 1
+Cl 3 0 0 -1
+Cl 0 3 0 -2
+K 0 0 3 1
+";
+
+/// Does what a script says, and returns what the program prints.
+fn view(folder: &Folder, args: &[&str], script: &str) -> String {
+    folder.write("script.txt", script);
+    folder.succeed(&[&["view", "--headless-script", "script.txt", "--quiet"], args].concat())
+}
+
+/// Fails unless the scene `a.toml` renders to the bytes of the picture `a.png`, and goes on to them in a
+/// viewer.
+#[track_caller]
+fn assert_comes_back(folder: &Folder, samples: u32) {
+    folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.png"]);
+    assert!(folder.read("a.png") == folder.read("b.png"), "rendered");
+    view(folder, &["a.toml"], &format!("wait {samples}\nsave c.png"));
+    assert!(folder.read("a.png") == folder.read("c.png"), "seen again");
+}
+
+#[test]
+fn saved_scenes_render_to_what_was_seen() {
+    let folder = Folder::new();
+    let motions = [
+        "drag 10,10 40,20\nwheel 3 5,30\nkey e\nkey E\nkey e",
+        "key 5\ndrag 20,10 25,30 shift\nkey .\nkey i",
+        "click 32,30 ctrl\nkey L\nkey f\nkey m",
+        "key 3\nkey home\ndrag 1,1 60,40 alt steps=3\nkey i\nkey i\nkey -",
+    ];
+    for motion in motions {
+        let script = format!("size 64x48\n{motion}\nwait 3\nsave a.png\nsave a.toml\n");
+        view(&folder, &[], &script);
+        assert_comes_back(&folder, 3);
+    }
+}
+
+#[test]
+fn what_is_hidden_cut_colored_and_lit_is_saved_so() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let salt = ["salt.xyz", "--radii", "1"];
+    let mut pictures: Vec<Vec<u8>> = Vec::new();
+    for key in ["key tab", "key c", "key p\nkey p", "key right", "key x\ndrag 32,47 32,0", "key 7"]
+    {
+        let script = format!("size 64x48\n{key}\nwait 2\nsave a.png\nsave a.toml\n");
+        view(&folder, &salt, &script);
+        assert_comes_back(&folder, 2);
+        let picture = folder.read("a.png");
+        assert!(!pictures.contains(&picture), "{key}");
+        pictures.push(picture);
+    }
+}
+
+#[test]
+fn clicks_name_spheres_and_their_types_can_be_hidden() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let salt = ["salt.xyz", "--radii", "1", "--view", "z"];
+    // From above the potassium is in front, and sodium right behind it.
+    let first = view(&folder, &salt, "size 60x60\nclick 17,43\nclick 1,1");
+    assert_eq!(first, "sphere 3: type K, at 0 0 3, radius 1, q = 1\n");
+    let second = view(&folder, &salt, "size 60x60\nclick 17,43\nkey h\nclick 17,43\nkey c");
+    assert!(second.contains("sphere 0: type Na, at 0 0 0, radius 1, q = 1"), "{second}");
+    let again = view(&folder, &salt, "size 60x60\nclick 17,43\nkey h\nkey H\nclick 17,43");
+    assert_eq!(again.lines().next_back(), first.lines().next());
+}
+
+#[test]
+fn looks_can_be_undone() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let seen = |keys: &str| {
+        view(&folder, &["salt.xyz"], &format!("size 40x30\n{keys}\nwait 1\nsave a.png"));
+        folder.read("a.png")
+    };
+    let plain = seen("");
+    assert!(plain == seen("key 1\nkey r"), "the camera");
+    assert!(plain == seen("key c\nkey C"), "colors");
+    assert!(plain == seen("key right\nkey left"), "frames");
+    assert!(plain == seen("key e\nkey E"), "exposure");
+    assert!(plain == seen("key m\nkey m\nkey m\nkey i\nkey i\nkey i"), "sampler and integrator");
+    assert!(plain == seen("key x\ndrag 20,0 20,29\nkey H"), "cuts");
+    assert!(plain != seen("key right\nkey right"));
+}
+
+#[test]
+fn turns_are_numbered_and_windows_are_drawn() {
+    let folder = Folder::new();
+    let script = "size 64x48\nrepeat 3\nturn 120 0\nwait 1\nsave turn-{}.png\nend\nwindow w.png\n\
+                  key ?\nwindow help.png\nquit\njust nonsense";
+    folder.write("script.txt", script);
+    let output = folder.run(&["view", "--headless-script", "script.txt"]);
+    assert!(text(&output.stderr).contains("line 11"), "{}", text(&output.stderr));
+    view(&folder, &[], script.trim_end_matches("just nonsense"));
+    let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    let turn = ["turn-000.png", "turn-001.png", "turn-002.png"].map(read);
+    assert!(turn[0] != turn[1] && turn[1] != turn[2]);
+    let (window, help) = (read("w.png"), read("help.png"));
+    // The status line is below the picture's upper part, which help hides.
+    assert_eq!(window.pixels[..64 * 20], turn[2].pixels[..64 * 20]);
+    assert_ne!(window.pixels, turn[2].pixels);
+    assert_ne!(window.pixels[..64 * 20], help.pixels[..64 * 20]);
+}
+
+#[test]
+fn times_of_motion_are_told() {
+    let folder = Folder::new();
+    folder.write("script.txt", "size 64x48\nadapt\ndrag 5,5 50,40 steps=20");
+    let json = folder.json(&["view", "--headless-script", "script.txt", "--json"]);
+    assert_eq!((&json["spheres"], &json["moving"]["count"]), (&400.into(), &20.into()));
+}
+
+#[test]
+fn what_cannot_be_seen_is_refused() {
+    let folder = Folder::new();
+    folder.write("script.txt", "wait 1");
+    for (args, message) in [
+        (&["--region", "0,0,1x1"][..], "--region"),
+        (&["--turntable", "4"], "--turntable"),
+        (&["--headless-script", "nowhere.txt"], "nowhere.txt"),
+        (&["--headless-script", "script.txt", "missing.toml"], "missing.toml"),
+    ] {
+        let output = folder.run(&[&["view"], args].concat());
+        assert!(!output.status.success());
+        assert!(text(&output.stderr).contains(message), "{}", text(&output.stderr));
+    }
+}
+
+#[test]
+fn without_a_display_the_message_says_what_to_do() {
+    let folder = Folder::new();
+    let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"));
+    let program = program.arg("view").current_dir(folder.root());
+    let output = program.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").output();
+    let output = output.expect("a program that runs");
+    assert_eq!(output.status.code(), Some(1));
+    let message = text(&output.stderr);
+    assert!(message.contains("--headless-script") && message.lines().count() == 1, "{message}");
+}
