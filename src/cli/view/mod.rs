@@ -33,8 +33,8 @@ mod worker;
 pub(super) use self::args::ViewerArgs;
 
 use self::headless::Headless;
-use super::Failure;
 use super::render::Job;
+use super::{Failure, output};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -65,6 +65,11 @@ pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
     let args: &'static ViewerArgs = Box::leak(args);
     let job = Job::new(&args.render)?;
     refuse(args, &job)?;
+    if job.style.background().is_some() && !args.render.report.quiet {
+        output::note(
+            "what is drawn over pictures (background, contours, fading) only render draws",
+        );
+    }
     if let Some(path) = &args.headless_script {
         let steps = read_script(path)?;
         let json = args.render.report.json;

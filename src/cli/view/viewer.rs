@@ -235,9 +235,11 @@ impl Viewer {
             self.drag = Some(Drag::Cut(self.pointer));
             return None;
         }
+        if double && button == Button::Left {
+            return Some(Action::Pick(self.pixel(self.pointer), Purpose::Pivot));
+        }
         self.drag = Some(Drag::Click(self.pointer, button, held));
-        (double && button == Button::Left)
-            .then(|| Action::Pick(self.pixel(self.pointer), Purpose::Pivot))
+        None
     }
 
     fn release(&mut self) -> Option<Action> {
