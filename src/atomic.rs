@@ -81,8 +81,8 @@ pub fn check_destination(path: impl AsRef<Path>) -> io::Result<()> {
     }
 }
 
-/// Removes what programs that were killed while they wrote a file have left beside it. Nobody else may
-/// write it meanwhile.
+/// Removes what programs that were killed while they wrote a file have left beside it. Nobody else
+/// may write it meanwhile.
 ///
 /// # Errors
 /// The folder cannot be read, or a file in it not be removed.
@@ -177,8 +177,8 @@ fn sync(folder: &Path) {
     }
 }
 
-/// An empty file in the folder of `path` with the permissions of any new file, which goes when it is
-/// dropped.
+/// An empty file in the folder of `path` with the permissions of any new file, which goes when it
+/// is dropped.
 fn create_temporary(path: &Path, folder: &Path) -> io::Result<NamedTempFile<File>> {
     let mut builder = tempfile::Builder::new();
     let prefix = temporary_prefix(path);

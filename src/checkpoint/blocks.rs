@@ -1,7 +1,7 @@
 //! Sums of tiles, packed.
 //!
-//! Sums of single-precision numbers have many zeros at their ends, and exponents that are alike: the
-//! bytes of the same place in all of them go together, where LZ4 finds them.
+//! Sums of single-precision numbers have many zeros at their ends, and exponents that are alike:
+//! the bytes of the same place in all of them go together, where LZ4 finds them.
 
 use crate::film::Tile;
 use std::array;

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 
 /// The right to write a file: no other process has it as long as this is there.
 ///
-/// It is a lock of the system on a file beside it, whose name has `.lock` at its end: not on the file
-/// itself, which is replaced each time that it is written. The system takes it back from processes
-/// that are killed; the file of the lock goes when the lock is dropped.
+/// It is a lock of the system on a file beside it, whose name has `.lock` at its end: not on the
+/// file itself, which is replaced each time that it is written. The system takes it back from
+/// processes that are killed; the file of the lock goes when the lock is dropped.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
@@ -32,8 +32,8 @@ pub enum LockError {
 }
 
 impl Lock {
-    /// Takes the lock on a file, which need not be there yet; symbolic links are followed. `None` on
-    /// file systems that have no locks.
+    /// Takes the lock on a file, which need not be there yet; symbolic links are followed. `None`
+    /// on file systems that have no locks.
     ///
     /// # Errors
     /// Another process has it, or the file of the lock cannot be made.

@@ -13,9 +13,9 @@
 //! | 4, ... | length and bytes of each block: the sums of 64 tiles, compressed |
 //! | 32 | BLAKE3 hash of all that comes before |
 //!
-//! Whatever byte is missing or another one, the hash tells, and the file is refused; nothing of it is
-//! believed before. A file that was made to deceive, hash and all, is refused too if it says what no
-//! render is, and takes no more memory than it is entitled to by its own length.
+//! Whatever byte is missing or another one, the hash tells, and the file is refused; nothing of it
+//! is believed before. A file that was made to deceive, hash and all, is refused too if it says
+//! what no render is, and takes no more memory than it is entitled to by its own length.
 //!
 //! A file is written beside the one that it replaces and takes its name in one step (see
 //! [`crate::atomic`]): whenever the program is killed, the old one is whole, or the new one.

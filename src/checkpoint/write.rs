@@ -11,7 +11,8 @@ use std::path::Path;
 /// Blocks that are packed before they are written, for each thread.
 const AHEAD: usize = 4;
 
-/// Writes a render to a file that [`super::read()`] reads, with the threads of the current rayon pool.
+/// Writes a render to a file that [`super::read()`] reads, with the threads of the current rayon
+/// pool.
 ///
 /// # Errors
 /// What [`write_atomically`] says; the old file is then untouched.

@@ -13,16 +13,16 @@ const EVERY: (Duration, u32) = (Duration::from_secs(60), 100);
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Long renders")]
 pub(super) struct KeepArgs {
-    /// Keep all that it takes to go on with the render in this file: now and then, and when it ends,
-    /// be it by Ctrl-C, SIGTERM or --time
+    /// Keep all that it takes to go on with the render in this file: now and then, and when it
+    /// ends, be it by Ctrl-C, SIGTERM or --time
     #[arg(long, value_name = "FILE")]
     pub(super) checkpoint: Option<PathBuf>,
     /// Time between two checkpoints, as in 60s or 10m; none for one at the end alone [default: 60s]
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = values::time)]
     checkpoint_every: Option<Target<Duration>>,
-    /// Go on from such a file, to the same picture as if nothing had been, and keep what comes in it.
-    /// Nothing need be said again; more samples, more time, a smaller error, and all that does not
-    /// change samples may be
+    /// Go on from such a file, to the same picture as if nothing had been, and keep what comes in
+    /// it. Nothing need be said again; more samples, more time, a smaller error, and all that does
+    /// not change samples may be
     #[arg(long, value_name = "FILE")]
     pub(super) resume: Option<PathBuf>,
 }

@@ -41,8 +41,8 @@ fn terminating() -> Vec<i32> {
     vec![SIGINT, SIGTERM]
 }
 
-/// Signals that ask a program to end. That the terminal was closed is none if it was started to outlive
-/// that, as by `nohup`.
+/// Signals that ask a program to end. That the terminal was closed is none if it was started to
+/// outlive that, as by `nohup`.
 #[cfg(unix)]
 fn terminating() -> Vec<i32> {
     use signal_hook::consts::signal::SIGHUP;
@@ -67,8 +67,8 @@ pub(super) fn go_on() -> Option<u8> {
     (signal != 0).then_some(ENDED + signal as u8)
 }
 
-/// Has files that grow beyond the limit of the process (`ulimit -f`) fail, as on a full disk, instead
-/// of ending the program.
+/// Has files that grow beyond the limit of the process (`ulimit -f`) fail, as on a full disk,
+/// instead of ending the program.
 pub(super) fn survive_large_files() {
     #[cfg(unix)]
     {

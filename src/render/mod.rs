@@ -1,8 +1,8 @@
 //! A render: passes over tiles, tiles over threads.
 //!
-//! A plain render takes the same samples of every pixel. One that is to reach an error, or to end at
-//! a time, goes by rounds over the tiles that need more: see [`crate::noise`]. Either can be stopped
-//! and go on as if nothing had been: see [`Unfinished`].
+//! A plain render takes the same samples of every pixel. One that is to reach an error, or to end
+//! at a time, goes by rounds over the tiles that need more: see [`crate::noise`]. Either can be
+//! stopped and go on as if nothing had been: see [`Unfinished`].
 
 mod adapt;
 mod outline;

@@ -60,8 +60,8 @@ impl Outline {
         }
     }
 
-    /// What is wrong with it, if it is none that any render has: whatever it says, a render that goes
-    /// on from it may show nonsense, but does not fail.
+    /// What is wrong with it, if it is none that any render has: whatever it says, a render that
+    /// goes on from it may show nonsense, but does not fail.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         demand(check::settings(&self.settings).is_ok(), "settings that no render has")?;
         let Region { x, y, width, height } = self.region;

@@ -7,8 +7,8 @@ use crate::integrator::Job;
 use crate::noise::{self, Estimate, Noise, Slope};
 use serde::{Deserialize, Serialize};
 
-/// All that makes what comes next: a render that goes on from a kept state makes the same picture as
-/// one that never stopped.
+/// All that makes what comes next: a render that goes on from a kept state makes the same picture
+/// as one that never stopped.
 #[derive(Clone, Debug)]
 pub(super) struct State {
     /// Sums, probes and counts.
@@ -17,8 +17,8 @@ pub(super) struct State {
     pub(super) round: u32,
     /// What is left of this round, in order.
     pub(super) plan: Vec<Step>,
-    /// Steps at the plan's head that were in hand when the render was cancelled: they come first, all
-    /// of them, so that whatever ends later is a part of the one sequence of steps.
+    /// Steps at the plan's head that were in hand when the render was cancelled: they come first,
+    /// all of them, so that whatever ends later is a part of the one sequence of steps.
     pub(super) begun: usize,
     /// Tiles of this round whose samples it doubles.
     pub(super) doubled: Vec<u32>,
@@ -59,8 +59,8 @@ impl State {
         }
     }
 
-    /// How far the picture is from its limit, once all pixels have samples. For a decision, `alone`,
-    /// the mean radiance is what pilot and probes say.
+    /// How far the picture is from its limit, once all pixels have samples. For a decision,
+    /// `alone`, the mean radiance is what pilot and probes say.
     pub(super) fn noise(&self, alone: bool) -> Option<Noise> {
         let begun = self.film.tiles.iter().all(|tile| tile.samples > 0);
         let mean = if alone {

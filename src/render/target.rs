@@ -59,8 +59,8 @@ impl Target {
     }
 }
 
-/// Samples of which sets are well distributed: of strata, only sets that are complete are better than
-/// independent samples.
+/// Samples of which sets are well distributed: of strata, only sets that are complete are better
+/// than independent samples.
 pub(super) fn strata(settings: &Settings) -> u32 {
     if settings.has_target() { FIRST.min(settings.spp) } else { settings.spp }
 }

@@ -29,10 +29,10 @@ use rayon::prelude::*;
 ///
 /// * More samples without a target: the result is that of a render of so many from the start.
 /// * More time: the sequence of steps goes on.
-/// * A smaller error, or more samples with a target: what was asked for before is reached first, and
-///   the new target from there. So the result is a function of all that was asked for, in order,
-///   and not of the moments at which that was; a render to the last target alone may have taken other
-///   samples, and is as right.
+/// * A smaller error, or more samples with a target: what was asked for before is reached first,
+///   and the new target from there. So the result is a function of all that was asked for, in
+///   order, and not of the moments at which that was; a render to the last target alone may have
+///   taken other samples, and is as right.
 #[derive(Clone, Debug)]
 pub struct Unfinished {
     pub(super) settings: Settings,
@@ -50,8 +50,8 @@ pub struct Unfinished {
 }
 
 impl Unfinished {
-    /// A render that has no samples yet, of `world` by `settings`, both as [`super::render()`] takes
-    /// them. Of the options, region and statistics are those of the whole render.
+    /// A render that has no samples yet, of `world` by `settings`, both as [`super::render()`]
+    /// takes them. Of the options, region and statistics are those of the whole render.
     pub fn begin(world: &World, settings: &Settings, options: &Options) -> Self {
         let share = Share::whole(region(world, options), settings.spp);
         Self::begin_share(world, settings, options, share)
@@ -96,8 +96,8 @@ impl Unfinished {
         self.end = if complete { End::Samples } else { End::Cancelled };
     }
 
-    /// Goes on until everything that was asked for is there, time is up, or `options.cancel` is set,
-    /// with the threads of the current rayon pool. A pass over a tile is not broken off.
+    /// Goes on until everything that was asked for is there, time is up, or `options.cancel` is
+    /// set, with the threads of the current rayon pool. A pass over a tile is not broken off.
     ///
     /// `world` is that of the beginning. Of the options, region and statistics are those of the
     /// beginning too, whatever is said here.
@@ -129,8 +129,8 @@ impl Unfinished {
         end
     }
 
-    /// Asks for what `settings` say: more samples, a smaller error, more time, or the same. Exposure
-    /// and tone may be any.
+    /// Asks for what `settings` say: more samples, a smaller error, more time, or the same.
+    /// Exposure and tone may be any.
     ///
     /// # Errors
     /// Anything else is other than at the beginning, or it asks for less; or samples are stratified

@@ -9,9 +9,9 @@ const CHUNK: usize = 1024;
 
 /// A hash of each part of a scene: of everything that its picture is made of, but for the settings.
 ///
-/// Two scenes of the same identity look the same to the last bit, whatever their files and the names
-/// of their materials: nobody has found two texts of the same hash (O'Connor, Aumasson, Neves,
-/// Wilcox-O'Hearn, "BLAKE3", 2020).
+/// Two scenes of the same identity look the same to the last bit, whatever their files and the
+/// names of their materials: nobody has found two texts of the same hash (O'Connor, Aumasson,
+/// Neves, Wilcox-O'Hearn, "BLAKE3", 2020).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     spheres: [u8; 32],

@@ -21,8 +21,8 @@ pub(super) struct Resumed {
 }
 
 impl Resumed {
-    /// Reads a render, and what is to be done: what was typed when it began, but for what is given now;
-    /// and how that is given in the folder of the beginning.
+    /// Reads a render, and what is to be done: what was typed when it began, but for what is given
+    /// now; and how that is given in the folder of the beginning.
     pub(super) fn read(path: &Path, now: Given) -> Result<(Self, RenderArgs, Given), Failure> {
         let (origin, render) = checkpoint::read(path)?;
         let command = render_command();
