@@ -144,6 +144,14 @@ fn what_cannot_be_seen_is_refused() {
 }
 
 #[test]
+fn pictures_in_the_terminal_need_one() {
+    let folder = Folder::new();
+    let output = folder.run(&["render", "--terminal", "--size", "8x8"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("--terminal is for a terminal"));
+}
+
+#[test]
 fn without_a_display_the_message_says_what_to_do() {
     let folder = Folder::new();
     let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"));

@@ -67,6 +67,7 @@ fn run_as(
 ) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
     looks::check_bar(&job)?;
+    terminal::check(job.report.terminal)?;
     if let Some(range) = args.particles.frames() {
         return job.pool()?.install(|| sequence::run(&job, range));
     }

@@ -3,12 +3,13 @@
 //! `viuer` finds out what the terminal can: the protocols of Kitty and iTerm, sixels, or else two
 //! pixels in each character, one above the other.
 
+use crate::cli::failure::Failure;
 use crate::cli::output;
 use image::{DynamicImage, RgbImage};
 use spherule::image::Image;
 use spherule::image::tone::{Codes8, DisplayTransform};
 use spherule::scene::Settings;
-use std::io::Write;
+use std::io::{IsTerminal, Write, stdin, stdout};
 use std::time::{Duration, Instant};
 use viuer::Config;
 
@@ -24,6 +25,15 @@ pub(super) struct Terminal {
     took: Duration,
     /// Whether there was something wrong, and no more is drawn.
     failed: bool,
+}
+
+/// Refuses to draw where nothing answers the question what can be drawn.
+pub(super) fn check(wanted: bool) -> Result<(), Failure> {
+    if wanted && !(stdin().is_terminal() && stdout().is_terminal()) {
+        let message = "--terminal is for a terminal, not for files and pipes";
+        return Err(Failure::usage("render", message));
+    }
+    Ok(())
 }
 
 impl Terminal {
@@ -47,7 +57,7 @@ impl Terminal {
         let codes = image.pixels.iter().flatten().map(|value| self.table.code(*value)).collect();
         let Some(pixels) = RgbImage::from_raw(image.width, image.height, codes) else { return };
         if self.lines > 0 {
-            let mut output = std::io::stdout().lock();
+            let mut output = stdout().lock();
             let _ = write!(output, "\x1b[{}A", self.lines).and_then(|()| output.flush());
         }
         let config = Config { absolute_offset: false, transparent: false, ..Config::default() };

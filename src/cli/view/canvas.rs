@@ -18,7 +18,7 @@ const LETTERS: u32 = 14;
 const LINE: u32 = 20;
 
 /// Pixels from the first part of a line to the second.
-const INDENT: i32 = 190;
+const INDENT: i32 = 180;
 
 const PAPER: RGBColor = RGBColor(24, 24, 28);
 const LIGHT: RGBColor = RGBColor(230, 230, 230);

@@ -67,7 +67,7 @@ pub(super) const HELP: [(&str, &str); 33] = [
     ("right drag, shift+drag", "move across"),
     ("wheel, ctrl+drag", "nearer, farther; the wheel, toward the pointer"),
     ("alt+drag, shift+wheel", "roll; field of view"),
-    ("click", "name the sphere, in the title and on standard output"),
+    ("click", "name the sphere, on standard output too"),
     ("double click", "turn about this sphere from now on"),
     ("ctrl+click", "sharpen the lens on this sphere"),
     ("home a", "fit everything into the picture"),
@@ -94,7 +94,7 @@ pub(super) const HELP: [(&str, &str); 33] = [
     ("ctrl+right ctrl+left", "last, first frame"),
     ("] [", "twice, half as many samples in the end"),
     ("tab", "status line on, off"),
-    ("s ctrl+s", "save the picture, and the scene that renders to it"),
+    ("s ctrl+s", "save the picture and its scene"),
     ("? f1 esc q ctrl+q ctrl+w", "this help; close it, quit"),
 ];
 

@@ -267,6 +267,7 @@ impl Viewer {
         let across = (b.0 + b.1) - (a.0 + a.1);
         let normal = a.1.cross(across).try_normalize()?;
         self.content.cuts.push(Cut { normal, point: a.0 });
+        self.say("cut; H undoes it");
         Some(Action::Load)
     }
 }

@@ -124,6 +124,10 @@ fn event_loop() -> Result<EventLoop<News>, Failure> {
 }
 
 fn no_display(why: &dyn std::fmt::Display) -> Failure {
+    let why = why.to_string();
+    // Errors of the system begin with a place in the source of `winit`.
+    let place = why.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+    let why = place.map_or(why.as_str(), |(_, rest)| rest).trim_end_matches('.');
     Failure::Window(format!(
         "no window can be opened: {why}; set DISPLAY or WAYLAND_DISPLAY, or use --headless-script \
          FILE, or `spherule render`"
