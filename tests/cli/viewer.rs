@@ -134,6 +134,7 @@ fn what_cannot_be_seen_is_refused() {
     for (args, message) in [
         (&["--region", "0,0,1x1"][..], "--region"),
         (&["--turntable", "4"], "--turntable"),
+        (&["--terminal"], "--terminal"),
         (&["--headless-script", "nowhere.txt"], "nowhere.txt"),
         (&["--headless-script", "script.txt", "missing.toml"], "missing.toml"),
     ] {

@@ -108,6 +108,10 @@ fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
         ("--color-bar", job.color_bar.is_some()),
         ("--turntable", job.views.turntable().is_some()),
         ("--cell", job.views.draws_cell()),
+        ("--checkpoint", args.render.keep.checkpoint.is_some()),
+        ("--resume", args.render.keep.resume.is_some()),
+        ("--terminal", args.render.report.terminal),
+        ("--frame with several", args.render.particles.frames().is_some()),
     ];
     match has.into_iter().find(|(_, has)| *has) {
         Some((name, _)) => {
