@@ -4,7 +4,7 @@ mod common;
 
 use common::{
     assert_every_pixel, assert_truth, dark, emitter, furnace, glass, ground, lambertian, look,
-    look_parallel, material, mean, menagerie, probe, shoot, shoot_with, sphere,
+    look_parallel, material, mean, menagerie, noon, probe, shoot, shoot_with, sphere,
 };
 use glam::{DVec3, Vec3};
 use spherule::bvh::walk::Method;
@@ -12,7 +12,7 @@ use spherule::layers::{Layer, layers};
 use spherule::ray::{GROUND, Hits, MISS, Rays};
 use spherule::render::Options;
 use spherule::sampling::{stream, uniform_sphere, unit};
-use spherule::scene::{Light, Material, Rgb, Scene, Slice, SliceMode};
+use spherule::scene::{Material, Rgb, Scene, Slice, SliceMode};
 use spherule::trace::{Tracer, Width};
 use spherule::world::{World, WorldError};
 
@@ -306,12 +306,7 @@ fn a_section_through_a_crystal_is_flat() {
 
 #[test]
 fn what_is_hidden_keeps_its_shadow() {
-    let mut scene = dark();
-    sphere(&mut scene, [0.0, 0.0, 3.0], 1.0, lambertian(0.5));
-    ground(&mut scene, lambertian(0.5));
-    scene.lights =
-        vec![Light::Sun { direction: DVec3::Z, irradiance: Rgb::ONE, angular_radius: 0.0 }];
-    scene.settings.depth = Some(1);
+    let mut scene = noon();
     let radiance = |scene: &Scene, eye: DVec3, at: DVec3| {
         let mut scene = scene.clone();
         look_parallel(&mut scene, eye, at, 1e-3);

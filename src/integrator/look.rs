@@ -2,7 +2,7 @@
 
 use super::Job;
 use super::workspace::Workspace;
-use crate::lanes::MAX_LANES;
+use crate::lanes::{F32x16, MAX_LANES};
 use crate::sampling::{LightDraw, PathRow};
 use crate::world::{Aim, LightRow, LightSample, Receiver};
 use glam::Vec3;
@@ -24,7 +24,7 @@ impl Look {
         let sun = job.world.lights.lone_sun();
         Self {
             sun: sun.map(|sun| Aim::Sun(sun).sample_row([u, v], count)),
-            numbers: numbers.map(wide::f32x16::to_array),
+            numbers: numbers.map(F32x16::to_array),
         }
     }
 

@@ -80,6 +80,17 @@ pub(crate) fn assert_every_pixel(image: &Image, value: f32, what: &str) {
     }
 }
 
+/// A ball of radius 1 at height 3 over a ground under a sun in the zenith, in direct light alone.
+pub(crate) fn noon() -> Scene {
+    let mut scene = dark();
+    sphere(&mut scene, [0.0, 0.0, 3.0], 1.0, lambertian(0.5));
+    ground(&mut scene, lambertian(0.5));
+    scene.lights =
+        vec![Light::Sun { direction: DVec3::Z, irradiance: Rgb::ONE, angular_radius: 0.0 }];
+    scene.settings.depth = Some(1);
+    scene
+}
+
 /// An empty scene in the dark: 16 x 16 pixels, box filter, paths that end by nothing but depth.
 pub(crate) fn dark() -> Scene {
     let settings = Settings {

@@ -1,6 +1,6 @@
 //! Pictures without their background: what is left of them, and how much of each pixel it takes.
 
-use crate::common::{dark, emitter, furnace, ground, lambertian, look_parallel, shoot, sphere};
+use crate::common::{emitter, furnace, lambertian, look_parallel, noon, shoot, sphere};
 use glam::DVec3;
 use spherule::World;
 use spherule::film::Region;
@@ -8,7 +8,7 @@ use spherule::image::{Channel, Image, ImageError, Values, WriteOptions};
 use spherule::layers::{Layer, layers};
 use spherule::overlay::{self, Matte, Overlay, draw_alpha};
 use spherule::render::{Options, render};
-use spherule::scene::{Light, Rgb, Scene};
+use spherule::scene::Scene;
 use std::f64::consts::PI;
 
 const SIZE: u32 = 64;
@@ -27,15 +27,9 @@ fn lifted(scene: &Scene) -> ([Image; 2], Matte) {
     ([before, after], matte)
 }
 
-/// A ball of radius 1 at height 3 over a ground under a sun in the zenith, seen by parallel rays
-/// that go down at 45 degrees; the picture is 10 high.
-fn noon() -> Scene {
-    let mut scene = dark();
-    sphere(&mut scene, [0.0, 0.0, 3.0], 1.0, lambertian(0.5));
-    ground(&mut scene, lambertian(0.5));
-    scene.lights =
-        vec![Light::Sun { direction: DVec3::Z, irradiance: Rgb::ONE, angular_radius: 0.0 }];
-    scene.settings.depth = Some(1);
+/// Noon, seen by parallel rays that go down at 45 degrees; the picture is 10 high.
+fn slanted() -> Scene {
+    let mut scene = noon();
     look_parallel(&mut scene, DVec3::new(0.0, -20.0, 20.0), DVec3::ZERO, 10.0);
     (scene.settings.width, scene.settings.height) = (SIZE, SIZE);
     scene
@@ -50,7 +44,7 @@ fn pixel(scene: &Scene, point: DVec3) -> usize {
 
 #[test]
 fn the_umbra_is_black_and_as_large_as_the_sphere() {
-    let scene = noon();
+    let scene = slanted();
     let ([before, after], matte) = lifted(&scene);
     let area = |values: &[f32]| {
         values.iter().map(|&value| f64::from(value)).sum::<f64>() * (10.0 / f64::from(SIZE)).powi(2)
@@ -74,7 +68,7 @@ fn the_umbra_is_black_and_as_large_as_the_sphere() {
 
 #[test]
 fn over_the_ground_that_was_taken_out_it_is_the_picture_again() {
-    let mut scene = noon();
+    let mut scene = slanted();
     let bare =
         shoot(&Scene { spheres: spherule::scene::Spheres::default(), ..scene.clone() }).image;
     scene.settings.spp = 256;
@@ -102,7 +96,7 @@ fn where_there_is_no_ground_coverage_is_alpha() {
 
 #[test]
 fn light_is_no_shadow() {
-    let mut scene = noon();
+    let mut scene = slanted();
     sphere(&mut scene, [3.0, 0.0, 1.0], 0.5, emitter(2.0, 0.0));
     let (_, matte) = lifted(&scene);
     assert!(matte.shadow.iter().all(|shadow| (0.0..=1.0).contains(shadow)));
