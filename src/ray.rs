@@ -1,6 +1,6 @@
 //! Rays and hits in columns: row `i` of every column belongs to ray `i`.
 
-use crate::lanes::{F64x8, Lanes, MAX_LANES, store_rounded};
+use crate::lanes::{Doubles, F64x8, Lanes, MAX_LANES, store_rounded};
 use crate::vec3::Vec3;
 use glam::{DVec3, Vec3 as Point};
 
@@ -203,14 +203,20 @@ pub struct ExactRay {
     pub origin_error: f64,
 }
 
+/// How far points may be from where they were before they were rounded to single precision.
+#[inline(always)]
+pub fn rounding<D: Doubles>(point: Vec3<D>) -> D {
+    // Rounding moves a coordinate by at most 2^-24 of itself; twice that is the band.
+    let Vec3 { x, y, z } = point.map(D::abs);
+    D::splat(f64::from(f32::EPSILON)) * (x + y + z)
+}
+
 impl ExactRay {
     /// `on_surface`: the origin is a point of a surface, rounded to single precision.
     #[inline(always)]
     pub fn new(origin: Point, direction: Point, on_surface: bool) -> Self {
         let origin = origin.as_dvec3();
-        // Rounding moves a coordinate by at most 2^-24 of itself; twice that is the band.
-        let origin_error =
-            if on_surface { f64::from(f32::EPSILON) * origin.abs().element_sum() } else { 0.0 };
+        let origin_error = if on_surface { rounding(origin.into()) } else { 0.0 };
         Self { origin, direction: direction.as_dvec3(), origin_error }
     }
 

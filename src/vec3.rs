@@ -1,6 +1,6 @@
 //! Three coordinates, each one value or a row of lanes.
 
-use crate::lanes::{Doubles, Lanes};
+use crate::lanes::{Doubles, F32x16, F64x8, Lanes, narrow, widen};
 use glam::DVec3;
 use std::ops::{Add, Mul, Sub};
 
@@ -56,6 +56,51 @@ impl<L: Lanes> Vec3<L> {
             y: direction.y.mul_add(t, self.y),
             z: direction.z.mul_add(t, self.z),
         }
+    }
+}
+
+impl<L: Lanes> Vec3<L> {
+    /// One or the other, lane by lane.
+    #[inline(always)]
+    pub fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            x: L::select(mask, yes.x, no.x),
+            y: L::select(mask, yes.y, no.y),
+            z: L::select(mask, yes.z, no.z),
+        }
+    }
+
+    /// The product coordinate by coordinate: of colors.
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
+    }
+
+    /// The greatest coordinate.
+    #[inline(always)]
+    pub fn max_element(self) -> L {
+        self.x.max(self.y).max(self.z)
+    }
+
+    /// The same direction with length 1.
+    #[inline(always)]
+    pub fn normalize(self) -> Self {
+        self * (L::splat(1.0) / self.dot(self).sqrt())
+    }
+}
+
+impl Vec3<F32x16> {
+    /// The same in two rows of double precision.
+    #[inline(always)]
+    pub fn halves(self) -> [Vec3<F64x8>; 2] {
+        let Vec3 { x: [x, x2], y: [y, y2], z: [z, z2] } = self.map(widen);
+        [Vec3::new(x, y, z), Vec3::new(x2, y2, z2)]
+    }
+
+    /// Rounds two rows of double precision.
+    #[inline(always)]
+    pub fn narrow([low, high]: [Vec3<F64x8>; 2]) -> Self {
+        Self { x: narrow([low.x, high.x]), y: narrow([low.y, high.y]), z: narrow([low.z, high.z]) }
     }
 }
 

@@ -5,12 +5,15 @@
 //! by their color, whatever their material; rays that hit nothing see the environment.
 
 use super::Job;
-use super::path::cast_shadow;
-use super::stages::{self, Local};
+use super::gather::Gathered;
+use super::shadows::cast;
+use super::stages;
 use super::workspace::Workspace;
-use crate::ray::MISS;
-use crate::sampling::cosine_hemisphere;
-use crate::world::{Kind, LightSample};
+use crate::lanes::F32x16;
+use crate::sampling::cosine_hemispheres;
+use crate::scene::Rgb;
+use crate::vec3::Vec3;
+use crate::world::{Kind, LightRow, ROW};
 
 /// One direction for each path; `distance` is in world units.
 pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
@@ -23,23 +26,18 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
     }
     for kind in Kind::ALL {
         let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
-        for &row in &rows {
-            let row = row as usize;
-            let local = Local::new(work, row);
-            let sample = &work.paths.sample[work.place[row] as usize];
-            let draw = job.sampler.scatter(sample, 0);
-            let direction = local.to_world(cosine_hemisphere(draw.direction));
-            let hit = work.hits.sphere[row];
-            let color = job.world.albedo(hit);
-            let sky = LightSample {
-                direction,
-                t: distance,
-                target: MISS,
-                weight: color,
-                pdf: None,
-                close: false,
+        for rows in rows.chunks(ROW) {
+            let paths = Gathered::new(work, rows);
+            let draw = job.sampler.scatter_row(&paths.sample, 0, false);
+            let direction = paths.to_world(cosine_hemispheres(draw.direction));
+            let sky = LightRow {
+                t: [distance; ROW],
+                ..LightRow::distant(direction, Rgb::ONE, paths.lanes)
             };
-            cast_shadow(job, work, row, (&sky, color), local.inside);
+            let colors = paths.starts.at.own.map(|hit| job.world.albedo(hit));
+            let channel = |i: usize| F32x16::new(colors.map(|color| color[i]));
+            let light = Vec3::new(channel(0), channel(1), channel(2));
+            cast(job, work, &paths.starts, (&sky, paths.lanes), light);
         }
         work.bins.kind[kind as usize] = rows;
     }

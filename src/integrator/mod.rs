@@ -6,9 +6,9 @@
 
 pub mod ao;
 pub mod clock;
-mod diffuse;
-mod look;
+pub mod gather;
 pub mod path;
+mod scatter;
 pub mod shadows;
 pub mod skips;
 pub mod stages;

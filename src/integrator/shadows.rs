@@ -1,10 +1,14 @@
 //! Shadow rays that wait to be traced together.
 
-use crate::lanes::{F32x16, set_bits};
-use crate::ray::{Hits, MISS, Rays};
+use super::Job;
+use super::gather::Starts;
+use super::stages;
+use super::workspace::Workspace;
+use crate::lanes::{F32x16, Lanes, Mask, set_bits};
+use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::scene::Rgb;
-use crate::world::{LightRow, LightSample, ROW};
-use glam::Vec3;
+use crate::vec3::Vec3;
+use crate::world::{LightRow, LightSample, ROW, Receiver, ReceiverRow, World};
 
 /// Shadow rays that are traced together.
 pub const SHADOWS: usize = 4096;
@@ -40,43 +44,70 @@ impl Shadows {
 
     /// Appends a shadow ray toward a light, for the path and with the light given.
     #[inline]
-    pub fn push(&mut self, (origin, own): (Vec3, u32), sample: &LightSample, to: (u32, Rgb)) {
+    fn push(&mut self, from: &Receiver, sample: &LightSample, to: (u32, Rgb)) {
         let row = self.rays.len();
-        self.rays.push(origin, sample.direction, own);
+        self.rays.push(from.point, sample.direction, from.own);
         self.rays.target[row] = sample.target;
         self.hits.set(row, sample.t, MISS);
         (self.place[row], self.light[row]) = to;
     }
 
-    /// [`Shadows::push`] for the lanes given; there is room for a whole row.
+    /// Appends the shadow rays in `lanes` toward lights, for the paths and with the light given; there
+    /// is room for a whole row.
     #[inline]
-    pub fn push_row(
+    fn push_row(
         &mut self,
-        (origin, own): (Vec3, u32),
+        from: &ReceiverRow,
         (samples, lanes): (&LightRow, u32),
-        (place, light): (u32, &[Rgb; ROW]),
+        (place, light): (&[u32; ROW], &[Rgb; ROW]),
     ) {
         let count = lanes.trailing_ones() as usize;
         if lanes.count_ones() as usize != count {
             for lane in set_bits(lanes) {
-                self.push((origin, own), &samples.sample(lane), (place, light[lane]));
+                let to = (place[lane], light[lane]);
+                self.push(&from.receiver(lane), &samples.sample(lane), to);
             }
             return;
         }
         let rows = self.rays.len()..self.rays.len() + ROW;
-        let direction = samples.direction;
-        self.rays.append(
-            count,
-            &origin.to_array().map(F32x16::splat),
-            &[direction.x, direction.y, direction.z],
-        );
-        self.rays.own[rows.clone()].fill(own);
-        self.rays.target[rows.clone()].fill(samples.target);
+        let axes = |v: Vec3<F32x16>| [v.x, v.y, v.z];
+        self.rays.append(count, &axes(from.point), &axes(samples.direction));
+        self.rays.own[rows.clone()].copy_from_slice(&from.own);
+        self.rays.target[rows.clone()].copy_from_slice(&samples.target);
         self.hits.t[rows.clone()].copy_from_slice(&samples.t);
         self.hits.sphere[rows.clone()].fill(MISS);
-        self.place[rows.clone()].fill(place);
+        self.place[rows.clone()].copy_from_slice(place);
         self.light[rows].copy_from_slice(light);
     }
+}
+
+/// Queues the shadow rays in `lanes` of light samples, with the light that arrives if nothing is in
+/// between; traces the queue when it is full.
+#[inline(always)]
+pub fn cast(
+    job: &Job,
+    work: &mut Workspace,
+    starts: &Starts,
+    (samples, lanes): (&LightRow, u32),
+    light: Vec3<F32x16>,
+) {
+    let lit = Lanes::lt(F32x16::splat(0.0), light.max_element()).bits();
+    let hidden = set_bits(lanes & lit & starts.inside)
+        .filter(|&lane| hides(job.world, work, starts.rows[lane] as usize, &samples.sample(lane)));
+    let lanes = hidden.fold(lanes & lit, |lanes, lane| lanes & !(1 << lane));
+    if !work.shadows.has_room(ROW) {
+        stages::occlude(job, work);
+    }
+    let place = starts.rows.map(|row| work.place[row as usize]);
+    let Vec3 { x, y, z } = light.map(F32x16::to_array);
+    let light = std::array::from_fn(|lane| Rgb::new(x[lane], y[lane], z[lane]));
+    work.shadows.push_row(&starts.at, (samples, lanes), (&place, &light));
+}
+
+/// Whether a sphere hides a light from a point of its inside: what lies behind its far side.
+fn hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
+    let own = work.hits.sphere[row];
+    own != GROUND && work.chord(world, row, sample.direction) < sample.t
 }
 
 impl Default for Shadows {
@@ -88,21 +119,25 @@ impl Default for Shadows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vec3;
 
     #[test]
     fn rows_are_pushed_as_their_lanes_are() {
         let lanes: [f32; ROW] = std::array::from_fn(|lane| lane as f32);
         let [x, y, z] = [1.0, 2.0, 3.0].map(|factor| F32x16::new(lanes) * F32x16::splat(factor));
-        let mut samples = LightRow::distant(vec3::Vec3::new(x, y, z), Rgb::ONE, ROW);
-        (samples.t, samples.target) = (lanes.map(f64::from), 7);
-        let (from, light) = ((Vec3::new(0.1, 0.2, 0.3), 5), lanes.map(Rgb::splat));
+        let direction = Vec3::new(x, y, z);
+        let numbers: [u32; ROW] = std::array::from_fn(|lane| 7 + lane as u32);
+        let mut samples = LightRow::distant(direction, Rgb::ONE, u32::from(u16::MAX));
+        (samples.t, samples.target) = (lanes.map(f64::from), numbers);
+        let point = direction.map(|x| x + F32x16::splat(0.1));
+        let from = ReceiverRow { point, normal: direction, own: numbers.map(|x| 2 * x) };
+        let light = lanes.map(Rgb::splat);
         for bits in [0, 1, 0xffff, 0xff, 0xa5a5, 0x8000, 0xfffe] {
             let (mut rows, mut single) = (Shadows::new(), Shadows::new());
-            for place in 0..3 {
-                rows.push_row(from, (&samples, bits), (place, &light));
+            for _ in 0..3 {
+                rows.push_row(&from, (&samples, bits), (&numbers, &light));
                 for lane in set_bits(bits) {
-                    single.push(from, &samples.sample(lane), (place, light[lane]));
+                    let to = (numbers[lane], light[lane]);
+                    single.push(&from.receiver(lane), &samples.sample(lane), to);
                 }
             }
             assert_eq!(rows.rays.len(), single.rays.len());

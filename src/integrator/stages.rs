@@ -8,9 +8,8 @@ use crate::film::{Tile, View};
 use crate::lanes::{F64x8, Lanes, MAX_LANES, load_doubles};
 use crate::ray::MISS;
 use crate::sampling::{self, Sampler};
-use crate::shade::{Bsdf, dielectric};
+use crate::shade::{Material, dielectric};
 use crate::trace;
-use crate::vec3;
 use crate::world::{Kind, MaterialId, World};
 use glam::Vec3;
 use std::ops::Range;
@@ -180,13 +179,6 @@ impl Local {
     pub fn to_world(&self, incoming: Vec3) -> Vec3 {
         self.frame.to_world(incoming).normalize()
     }
-
-    /// [`Local::to_world`] for a row of directions.
-    #[inline(always)]
-    pub fn row_to_world<L: Lanes>(&self, incoming: vec3::Vec3<L>) -> vec3::Vec3<L> {
-        let direction = self.frame.row_to_world(incoming);
-        direction * (L::splat(1.0) / direction.dot(direction).sqrt())
-    }
 }
 
 /// Traces the shadow rays and gives their light to the paths that it reaches.
@@ -246,8 +238,13 @@ fn pass_glass(job: &Job, work: &mut Workspace, row: usize, lobe: f32) {
 
 /// A system that shades the rows of one kind of material.
 pub trait ShadeKind {
-    /// Shades the rows whose materials `bsdf` finds.
-    fn shade<B: Bsdf>(&mut self, work: &mut Workspace, kind: Kind, bsdf: impl Fn(MaterialId) -> B);
+    /// Shades the rows whose materials `material` finds.
+    fn shade<M: Material>(
+        &mut self,
+        work: &mut Workspace,
+        kind: Kind,
+        material: impl Fn(MaterialId) -> M,
+    );
 }
 
 /// Runs a system over every kind of material that was hit, but glass.

@@ -9,17 +9,18 @@
 
 use super::Job;
 use super::clock::Stage;
-use super::path::{faint, hides, survival};
+use super::gather::Starts;
+use super::path::{faint, survival};
+use super::shadows;
 use super::stages::{self, Local, ShadeKind};
 use super::workspace::{Arrival, Workspace};
-use crate::lanes::{F32x16, set_bits};
+use crate::lanes::{F32x16, Lanes, Mask};
 use crate::ray::MISS;
-use crate::sampling::cosine_hemispheres;
+use crate::sampling::{Frames, cosine_hemispheres};
 use crate::scene::Rgb;
-use crate::shade::{Bsdf, mirror};
+use crate::shade::{Bsdf, Material, mirror};
 use crate::vec3::Vec3 as Row3;
 use crate::world::{Kind, LightRow, MaterialId, ROW};
-use glam::Vec3;
 use std::f32::consts::PI;
 
 /// Follows all paths to their ends, with `samples` shadow samples per light and hit.
@@ -85,25 +86,54 @@ struct Shade<'a> {
 }
 
 impl ShadeKind for Shade<'_> {
-    fn shade<B: Bsdf>(&mut self, work: &mut Workspace, kind: Kind, bsdf: impl Fn(MaterialId) -> B) {
+    fn shade<M: Material>(
+        &mut self,
+        work: &mut Workspace,
+        kind: Kind,
+        material: impl Fn(MaterialId) -> M,
+    ) {
         let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
         for &row in &rows {
             let row = row as usize;
             let hit = work.hits.sphere[row];
             debug_assert_ne!(hit, MISS);
-            let bsdf = bsdf(self.job.world.material(hit)).tinted(self.job.world.color(hit));
+            let world = self.job.world;
+            let surface = material(world.material(hit)).tinted(world.color(hit));
             let local = Local::new(work, row);
-            if bsdf.mirrored(local.outgoing).is_some() && !bsdf.is_delta() {
+            if M::BASE && !surface.is_delta() {
+                let base = Base::<M>::new(work, row, (&surface, &local));
                 for light in 0..self.job.world.lights.len() {
-                    self.direct(work, row, light, (&bsdf, &local));
+                    self.direct(work, light, &base);
                 }
                 if self.sky {
-                    self.skylight(work, row, &bsdf, &local);
+                    self.skylight(work, &base);
                 }
             }
-            self.go_on(work, row, &bsdf, &local);
+            self.go_on(work, row, (&surface, &local));
         }
         work.bins.kind[kind as usize] = rows;
+    }
+}
+
+/// A surface that all of a row of shadow rays start from.
+struct Base<M: Material> {
+    row: usize,
+    bsdf: M::Bsdf<F32x16>,
+    frames: Frames<F32x16>,
+    outgoing: Row3<F32x16>,
+    starts: Starts,
+}
+
+impl<M: Material> Base<M> {
+    fn new(work: &Workspace, row: usize, (surface, local): (&M, &Local)) -> Self {
+        let starts = Starts::one(work, row, local);
+        Self {
+            row,
+            bsdf: M::row(&[*surface; ROW]),
+            frames: Frames::about(starts.at.normal),
+            outgoing: Row3::from(local.outgoing).map(F32x16::splat),
+            starts,
+        }
     }
 }
 
@@ -114,36 +144,30 @@ impl Shade<'_> {
     }
 
     /// Light from one light, by stratified samples; one is enough for a light without extent.
-    fn direct<B: Bsdf>(
-        &self,
-        work: &mut Workspace,
-        row: usize,
-        light: usize,
-        (bsdf, local): (&B, &Local),
-    ) {
+    fn direct<M: Material>(&self, work: &mut Workspace, light: usize, base: &Base<M>) {
         let world = self.job.world;
-        let place = work.place[row] as usize;
+        let place = work.place[base.row] as usize;
         let count = if world.lights.is_delta(light) { 1 } else { self.samples };
         let share = work.paths.throughput[place] / count as f32;
-        let origin = (work.surface.point[row], work.hits.sphere[row]);
+        let origin = (work.surface.point[base.row], work.hits.sphere[base.row]);
         let Some(aim) = world.lights.aim(world, light, origin) else { return };
         let points = self.job.sampler.split(&work.paths.sample[place], self.event(light), count);
         for (first, count) in rows(count) {
             let samples = aim.sample_row(points.row(first, count), count);
-            self.cast(work, row, (bsdf, local), (share, &samples));
+            self.cast(work, base, (share, &samples));
         }
     }
 
     /// Light from a constant or gradient environment, by stratified cosine-distributed samples.
-    fn skylight<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
-        let place = work.place[row] as usize;
+    fn skylight<M: Material>(&self, work: &mut Workspace, base: &Base<M>) {
+        let place = work.place[base.row] as usize;
         let share = work.paths.throughput[place] / self.samples as f32;
         let event = self.event(self.job.world.lights.len());
         let points = self.job.sampler.split(&work.paths.sample[place], event, self.samples);
         for (first, count) in rows(self.samples) {
             let incoming = cosine_hemispheres(points.row(first, count));
-            let direction = local.row_to_world(incoming);
-            let mut samples = LightRow::distant(direction, Rgb::ZERO, count);
+            let direction = base.frames.to_world(incoming).normalize();
+            let mut samples = LightRow::distant(direction, Rgb::ZERO, (1 << count) - 1);
             let mut weight = [[0.0; ROW]; 3];
             for (lane, cosine) in incoming.z.to_array().into_iter().enumerate().take(count) {
                 let radiance = self.job.world.environment.radiance(samples.sample(lane).direction);
@@ -152,63 +176,47 @@ impl Shade<'_> {
             }
             let [r, g, b] = weight.map(F32x16::new);
             samples.weight = Row3::new(r, g, b);
-            self.cast(work, row, (bsdf, local), (share, &samples));
+            self.cast(work, base, (share, &samples));
         }
     }
 
-    /// Queues the shadow rays of a row of light samples; traces the queue when it is full.
-    #[inline]
-    fn cast<B: Bsdf>(
+    /// Queues the shadow rays of a row of light samples.
+    #[inline(always)]
+    fn cast<M: Material>(
         &self,
         work: &mut Workspace,
-        row: usize,
-        (bsdf, local): (&B, &Local),
+        base: &Base<M>,
         (share, samples): (Rgb, &LightRow),
     ) {
-        let Row3 { x, y, z } = local.frame.row_to_local(samples.direction).map(F32x16::to_array);
-        let weight = samples.weight.map(F32x16::to_array);
-        let (mut light, mut lanes) = ([Rgb::ZERO; ROW], 0);
-        for lane in 0..samples.count {
-            let response = bsdf.eval(local.outgoing, Vec3::new(x[lane], y[lane], z[lane]));
-            let weight = Rgb::new(weight.x[lane], weight.y[lane], weight.z[lane]);
-            light[lane] = share * response * weight;
-            let arrives = z[lane] > 0.0 && light[lane].max_element() > 0.0;
-            lanes |= u32::from(arrives) << lane;
-        }
-        if local.inside {
-            let hidden = |&lane: &usize| hides(self.job.world, work, row, &samples.sample(lane));
-            lanes = set_bits(lanes).filter(hidden).fold(lanes, |lanes, lane| lanes ^ 1 << lane);
-        }
-        if !work.shadows.has_room(ROW) {
-            stages::occlude(self.job, work);
-        }
-        let from = (work.surface.point[row], work.hits.sphere[row]);
-        work.shadows.push_row(from, (samples, lanes), (work.place[row], &light));
+        let incoming = base.frames.to_local(samples.direction);
+        let response = base.bsdf.eval(base.outgoing, incoming);
+        let share = Row3::from(share).map(F32x16::splat);
+        let light = share.times(response).times(samples.weight);
+        let above = Lanes::lt(F32x16::splat(0.0), incoming.z).bits();
+        shadows::cast(self.job, work, &base.starts, (samples, samples.lanes & above), light);
     }
 
     /// Sends the mirrored share on, or what has no other share.
-    fn go_on<B: Bsdf>(&self, work: &mut Workspace, row: usize, bsdf: &B, local: &Local) {
-        let mirrored = bsdf.mirrored(local.outgoing);
-        if mirrored == Some(Rgb::ZERO) {
-            return work.end(row);
-        }
+    fn go_on<M: Material>(&self, work: &mut Workspace, row: usize, (surface, local): (&M, &Local)) {
+        let bsdf: M::Bsdf<f32> = M::row(&[*surface; ROW]);
+        let outgoing = local.outgoing.into();
         let place = work.place[row] as usize;
         let draw = self.job.sampler.scatter(&work.paths.sample[place], self.bounce);
-        let next = match mirrored {
-            Some(share) => Some((mirror(local.outgoing), share)),
-            None => bsdf
-                .sample(local.outgoing, draw.direction, draw.lobe)
-                .map(|scatter| (scatter.incoming, scatter.weight)),
+        let (incoming, weight) = if M::BASE {
+            (mirror(outgoing), bsdf.mirrored(outgoing))
+        } else {
+            let scatter = bsdf.sample(outgoing, draw.direction, draw.lobe);
+            (scatter.incoming, scatter.weight)
         };
-        let Some((incoming, weight)) = next else { return work.end(row) };
-        let throughput = work.paths.throughput[place] * weight;
-        let survival = survival(self.job.settings.roulette, throughput, self.bounce, self.faint);
+        let throughput = work.paths.throughput[place] * Rgb::from(weight);
+        let greatest = throughput.max_element();
+        let survival = survival(self.job.settings.roulette, greatest, self.bounce, self.faint);
         if throughput == Rgb::ZERO || draw.roulette >= survival {
             return work.end(row);
         }
         work.paths.throughput[place] = throughput / survival;
         work.paths.arrival[place] = Arrival::CAMERA;
-        let direction = local.to_world(incoming);
+        let direction = local.to_world(incoming.into());
         work.go_on(self.job.world, row, direction, local.inside);
     }
 }

@@ -113,6 +113,13 @@ pub fn store_where(mask: WideMask<F64x8>, row: F64x8, column: &mut [f64]) {
     *place = wide::Select::select(mask.0, row, F64x8::new(*place)).to_array();
 }
 
+/// Rounds two rows of eight to one of sixteen.
+#[inline(always)]
+pub fn narrow(halves: [F64x8; 2]) -> F32x16 {
+    let halves: [[f32; 8]; 2] = halves.map(|half| half.to_array().map(|x| x as f32));
+    bytemuck::cast(halves)
+}
+
 /// The same numbers in double precision.
 #[inline(always)]
 pub fn widen(row: F32x16) -> [F64x8; 2] {

@@ -15,7 +15,7 @@ mod doubles;
 
 pub use across::{greatest_of, look_up, reverse_bits, shuffle, shuffle_numbers};
 pub use bits::{bits, bits_of, numbers, set_bits};
-pub use doubles::{Doubles, load_doubles, store_rounded, store_where, widen};
+pub use doubles::{Doubles, load_doubles, narrow, store_rounded, store_where, widen};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub use wide::{
     f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8, u32x16 as U32x16,

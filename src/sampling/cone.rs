@@ -1,7 +1,7 @@
 //! Cones of directions: what a sphere or a sun looks like from a point.
 
 use super::warp::cap;
-use crate::lanes::Lanes;
+use crate::lanes::{Doubles, F32x16, F64x8, Lanes, Mask, narrow};
 use crate::vec3;
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -10,11 +10,11 @@ use std::f64::consts::PI;
 ///
 /// Kept is 1 - cos of the half-angle, which stays exact where the cosine itself would round to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cone {
+pub struct Cone<L = f32> {
     /// 1 - cos of the half-angle, more than 0, at most 2.
-    height: f32,
+    height: L,
     /// Per steradian.
-    pdf: f32,
+    pdf: L,
 }
 
 impl Cone {
@@ -25,13 +25,8 @@ impl Cone {
     /// A cone of less than about 1e-37 steradian is widened to that, so that its density stays
     /// finite.
     pub fn toward_sphere(distance2: f64, radius: f64) -> Option<Self> {
-        let distance = distance2.sqrt();
-        if !(radius > 0.0 && distance > radius && distance2.is_finite()) {
-            return None;
-        }
-        let sine = radius / distance;
-        let cosine2 = (distance - radius) / distance * ((distance + radius) / distance);
-        Some(Self::from_height(sine * sine / (1.0 + cosine2.sqrt())))
+        let (outside, height) = toward_sphere(distance2, radius);
+        outside.then(|| Self::from_height(height))
     }
 
     /// The cone of a half-angle in radians, 0 < angle <= pi.
@@ -41,8 +36,8 @@ impl Cone {
     }
 
     fn from_height(height: f64) -> Self {
-        let height = height.max(f64::from(f32::MIN_POSITIVE));
-        Self { height: height as f32, pdf: (1.0 / (2.0 * PI * height)) as f32 }
+        let [height, pdf] = measures(height);
+        Self { height: height as f32, pdf: pdf as f32 }
     }
 
     /// A unit direction in the cone, from two numbers in [0, 1).
@@ -54,7 +49,7 @@ impl Cone {
     /// [`Cone::sample`] for a row of numbers.
     #[inline(always)]
     pub fn sample_row<L: Lanes>(&self, u: [L; 2]) -> vec3::Vec3<L> {
-        cap(u, self.height)
+        cap(u, L::splat(self.height))
     }
 
     /// Density of [`Cone::sample`] per steradian, the same everywhere in the cone; always finite.
@@ -68,6 +63,48 @@ impl Cone {
     pub fn height(&self) -> f32 {
         self.height
     }
+}
+
+impl Cone<F32x16> {
+    /// [`Cone::toward_sphere`] in lanes, and the lanes where there is one.
+    #[inline(always)]
+    pub fn toward_spheres(distance2: [F64x8; 2], radius: [F64x8; 2]) -> (Self, u32) {
+        let [(low, a), (high, b)] = [0, 1].map(|half| toward_sphere(distance2[half], radius[half]));
+        let [[a, a_pdf], [b, b_pdf]] = [a, b].map(measures);
+        let cones = Self { height: narrow([a, b]), pdf: narrow([a_pdf, b_pdf]) };
+        (cones, low.bits() | high.bits() << 8)
+    }
+
+    /// [`Cone::sample`] in lanes.
+    #[inline(always)]
+    pub fn sample_each(&self, u: [F32x16; 2]) -> vec3::Vec3<F32x16> {
+        cap(u, self.height)
+    }
+
+    /// [`Cone::pdf`] in lanes.
+    #[inline(always)]
+    pub fn pdfs(&self) -> F32x16 {
+        self.pdf
+    }
+}
+
+/// Whether a point is outside of a sphere, and 1 - cos of the half-angle at which it is seen.
+#[inline(always)]
+fn toward_sphere<D: Doubles>(distance2: D, radius: D) -> (D::Mask, D) {
+    let (zero, one) = (D::splat(0.0), D::splat(1.0));
+    let distance = distance2.sqrt();
+    let outside = zero.lt(radius) & radius.lt(distance) & distance2.lt(D::splat(f64::INFINITY));
+    let sine = radius / distance;
+    let cosine2 = (distance - radius) / distance * ((distance + radius) / distance);
+    (outside, sine * sine / (one + cosine2.sqrt()))
+}
+
+/// Height and density of a cone of so much 1 - cos, or of the least there is.
+#[inline(always)]
+fn measures<D: Doubles>(height: D) -> [D; 2] {
+    let least = D::splat(f64::from(f32::MIN_POSITIVE));
+    let height = D::select(height.lt(least), least, height);
+    [height, D::splat(1.0) / (D::splat(2.0 * PI) * height)]
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ impl Frame {
     /// Revisited", JCGT 2017.
     #[inline]
     pub fn new(normal: Vec3) -> Self {
-        let [tangent, bitangent] = across::<f32>(normal.into());
+        let Frames { tangent, bitangent, .. } = Frames::<f32>::about(normal.into());
         Self { tangent: tangent.into(), bitangent: bitangent.into(), normal }
     }
 
@@ -35,8 +35,7 @@ impl Frame {
     /// [`Frame::to_world`] for a row of directions.
     #[inline(always)]
     pub fn row_to_world<L: Lanes>(&self, local: vec3::Vec3<L>) -> vec3::Vec3<L> {
-        let [tangent, bitangent, normal] = self.axes();
-        (normal * local.z).along(bitangent, local.y).along(tangent, local.x)
+        self.frames().to_world(local)
     }
 
     /// A world direction in local axes: the inverse of [`Frame::to_world`].
@@ -48,36 +47,53 @@ impl Frame {
     /// [`Frame::to_local`] for a row of directions.
     #[inline(always)]
     pub fn row_to_local<L: Lanes>(&self, world: vec3::Vec3<L>) -> vec3::Vec3<L> {
-        let [x, y, z] = self.axes().map(|axis| world.dot(axis));
-        vec3::Vec3::new(x, y, z)
+        self.frames().to_local(world)
     }
 
     #[inline(always)]
-    fn axes<L: Lanes>(&self) -> [vec3::Vec3<L>; 3] {
+    fn frames<L: Lanes>(&self) -> Frames<L> {
         let splat = |axis: Vec3| vec3::Vec3::splat(axis.x, axis.y, axis.z);
-        [splat(self.tangent), splat(self.bitangent), splat(self.normal)]
+        let [tangent, bitangent, normal] = [self.tangent, self.bitangent, self.normal].map(splat);
+        Frames { tangent, bitangent, normal }
     }
 }
 
-/// Tangents and bitangents of a row of unit normals, as [`Frame::new`].
-#[inline(always)]
-fn across<L: Lanes>(normal: vec3::Vec3<L>) -> [vec3::Vec3<L>; 2] {
-    let vec3::Vec3 { x, y, z } = normal;
-    let one = L::splat(1.0);
-    let sign = L::select(z.is_negative(), -one, one);
-    let a = -one / (sign + z);
-    let b = x * y * a;
-    [
-        vec3::Vec3::new(one + sign * x * x * a, sign * b, -sign * x),
-        vec3::Vec3::new(b, sign + y * y * a, -y),
-    ]
+/// A row of frames.
+#[derive(Clone, Copy, Debug)]
+pub struct Frames<L> {
+    tangent: vec3::Vec3<L>,
+    bitangent: vec3::Vec3<L>,
+    normal: vec3::Vec3<L>,
 }
 
-/// [`Frame::to_world`] for a row of directions, each about a normal of its own.
-#[inline(always)]
-pub fn to_world_about<L: Lanes>(normal: vec3::Vec3<L>, local: vec3::Vec3<L>) -> vec3::Vec3<L> {
-    let [tangent, bitangent] = across(normal);
-    (normal * local.z).along(bitangent, local.y).along(tangent, local.x)
+impl<L: Lanes> Frames<L> {
+    /// [`Frame::new`] for a row of unit normals.
+    #[inline(always)]
+    pub fn about(normal: vec3::Vec3<L>) -> Self {
+        let vec3::Vec3 { x, y, z } = normal;
+        let one = L::splat(1.0);
+        let sign = L::select(z.is_negative(), -one, one);
+        let a = -one / (sign + z);
+        let b = x * y * a;
+        Self {
+            tangent: vec3::Vec3::new(one + sign * x * x * a, sign * b, -sign * x),
+            bitangent: vec3::Vec3::new(b, sign + y * y * a, -y),
+            normal,
+        }
+    }
+
+    /// [`Frame::to_world`] for a row of directions.
+    #[inline(always)]
+    pub fn to_world(&self, local: vec3::Vec3<L>) -> vec3::Vec3<L> {
+        (self.normal * local.z).along(self.bitangent, local.y).along(self.tangent, local.x)
+    }
+
+    /// [`Frame::to_local`] for a row of directions.
+    #[inline(always)]
+    pub fn to_local(&self, world: vec3::Vec3<L>) -> vec3::Vec3<L> {
+        let [x, y, z] = [self.tangent, self.bitangent, self.normal].map(|axis| world.dot(axis));
+        vec3::Vec3::new(x, y, z)
+    }
 }
 
 #[cfg(test)]

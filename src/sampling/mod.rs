@@ -40,12 +40,12 @@ pub use cone::Cone;
 pub use distribution::{Choice, Distribution};
 pub use distribution2d::Distribution2d;
 pub use filter::PixelFilter;
-pub use frame::{Frame, to_world_about};
+pub use frame::{Frame, Frames};
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
 pub use plan::{LightDraw, ScatterDraw};
 pub use rows::{PathRow, ScatterRow};
 pub use sampler::{PathState, Sampler, Split};
 pub use warp::{
-    UNIFORM_SPHERE_PDF, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,
+    UNIFORM_SPHERE_PDF, cap, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,
     cosine_hemispheres, uniform_sphere,
 };

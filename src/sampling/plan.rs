@@ -3,6 +3,7 @@
 //! The table is in the [module's](super) documentation.
 
 use super::sampler::{PathState, Sampler};
+use crate::lanes::{Doubles, F32x16, F64x8, widen};
 
 /// The step of the numbers of a set, from one to the next.
 const FINE: f64 = 1.0 / (1 << 23) as f64;
@@ -86,9 +87,21 @@ impl LightDraw {
     /// From the numbers of a set.
     #[inline]
     pub fn new([u, v, coarse, fine]: [f32; 4]) -> Self {
-        let light = f64::from(coarse) + f64::from(fine) * FINE;
-        Self { point: [u, v], light: light.min(1.0 - f64::EPSILON) }
+        Self { point: [u, v], light: which(f64::from(coarse), f64::from(fine)) }
     }
+
+    /// [`LightDraw::light`] for a row of numbers of sets.
+    #[inline(always)]
+    pub fn light_row([_, _, coarse, fine]: [F32x16; 4]) -> [F64x8; 2] {
+        let ([a, b], [c, d]) = (widen(coarse), widen(fine));
+        [which(a, c), which(b, d)]
+    }
+}
+
+#[inline(always)]
+fn which<D: Doubles>(coarse: D, fine: D) -> D {
+    let (light, most) = (coarse + fine * D::splat(FINE), D::splat(1.0 - f64::EPSILON));
+    D::select(light.lt(most), light, most)
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ pub fn cosine_hemisphere_pdf(cosine: f32) -> f32 {
 /// A direction on the whole sphere with the density [`UNIFORM_SPHERE_PDF`].
 #[inline]
 pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
-    cap(u, 2.0).into()
+    cap::<f32>(u, 2.0).into()
 }
 
 /// A direction uniform over the spherical cap about +z of height `height`, 0..=2: 1 - cos of its
@@ -88,9 +88,8 @@ pub fn uniform_sphere(u: [f32; 2]) -> Vec3 {
 /// Lambert's azimuthal equal-area projection, inverted: the squared distance from the disk's center
 /// becomes 1 - cos.
 #[inline(always)]
-pub(super) fn cap<L: Lanes>(u: [L; 2], height: f32) -> vec3::Vec3<L> {
+pub fn cap<L: Lanes>(u: [L; 2], height: L) -> vec3::Vec3<L> {
     let ([x, y], radius) = concentric(u);
-    let height = L::splat(height);
     let drop = height * radius * radius;
     let scale = (height * (L::splat(2.0) - drop)).sqrt();
     vec3::Vec3::new(x * scale, y * scale, L::splat(1.0) - drop)

@@ -1,33 +1,107 @@
 //! Metals: smooth mirrors, or rough by GGX.
 
-use super::{Bsdf, Scatter, fresnel, ggx, mirror};
+use super::{Bsdf, Material, Scatter, colors, column, fresnel, ggx, in_doubles};
+use crate::lanes::{Lanes, MAX_LANES, Mask};
 use crate::scene::{ConductorFresnel, Rgb};
+use crate::vec3::Vec3;
 use crate::world::Conductor;
-use glam::Vec3;
+
+/// A row of metals.
+pub struct Metal<L: Lanes> {
+    /// What is reflected of light along the normal.
+    normal_incidence: Vec3<L>,
+    /// 1 where Schlick's curve takes that to white at grazing angles, 0 where it stays.
+    rises: L,
+    /// Those that have an index of refraction, if there are any.
+    exact: Option<Exact<L>>,
+    alpha: L,
+}
+
+/// Complex indices of refraction; black is the tint of lanes that have none.
+struct Exact<L> {
+    eta: Vec3<L>,
+    k: Vec3<L>,
+    tint: Vec3<L>,
+}
 
 impl Conductor {
     /// The color in which it reflects what is seen from above.
     pub fn color(&self) -> Rgb {
-        self.reflectance(1.0)
+        Self::row::<f32>(&[*self; MAX_LANES]).reflectance(1.0).into()
     }
 
-    /// Share that is reflected at this cosine between direction and facet.
-    fn reflectance(&self, cosine: f32) -> Rgb {
-        let reflectance = match self.fresnel {
-            // The tint is part of the color that Schlick's curve takes to white at grazing angles.
-            ConductorFresnel::Schlick(color) => fresnel::schlick(cosine, color * self.tint),
-            ConductorFresnel::Constant(color) => color * self.tint,
-            ConductorFresnel::Exact { eta, k } => {
-                let channel = |eta, k| fresnel::conductor(cosine, eta, k);
-                self.tint * Rgb::new(channel(eta.x, k.x), channel(eta.y, k.y), channel(eta.z, k.z))
+    /// Real and imaginary part of the index of refraction; anything if the color is told.
+    fn index(&self) -> [Rgb; 2] {
+        match self.fresnel {
+            ConductorFresnel::Exact { eta, k } => [eta, k],
+            ConductorFresnel::Schlick(_) | ConductorFresnel::Constant(_) => {
+                [Rgb::splat(2.0), Rgb::ZERO]
             }
-        };
-        reflectance.min(Rgb::ONE)
+        }
+    }
+
+    /// The tint is part of the color that Schlick's curve takes to white at grazing angles.
+    fn normal_incidence(&self) -> Rgb {
+        match self.fresnel {
+            ConductorFresnel::Schlick(color) | ConductorFresnel::Constant(color) => {
+                color * self.tint
+            }
+            ConductorFresnel::Exact { .. } => Rgb::ZERO,
+        }
     }
 }
 
-impl Bsdf for Conductor {
+impl<L: Lanes> Exact<L> {
+    /// Of these metals; `None` if none has an index of refraction.
+    #[inline(always)]
+    fn of(each: &[Conductor; MAX_LANES]) -> Option<Self> {
+        let exact = |metal: &Conductor| matches!(metal.fresnel, ConductorFresnel::Exact { .. });
+        each[..L::WIDTH].iter().any(exact).then(|| Self {
+            eta: colors(each, |metal| metal.index()[0]),
+            k: colors(each, |metal| metal.index()[1]),
+            tint: colors(each, |metal| if exact(metal) { metal.tint } else { Rgb::ZERO }),
+        })
+    }
+
+    /// Share that is reflected at this cosine between direction and facet.
+    #[inline(always)]
+    fn reflectance(&self, cosine: L) -> Vec3<L> {
+        let channel = |eta, k| {
+            in_doubles([cosine, eta, k], |[cosine, eta, k]| fresnel::conductor(cosine, eta, k))
+        };
+        let share = Vec3::new(
+            channel(self.eta.x, self.k.x),
+            channel(self.eta.y, self.k.y),
+            channel(self.eta.z, self.k.z),
+        );
+        share.times(self.tint)
+    }
+}
+
+impl<L: Lanes> Metal<L> {
+    /// Share that is reflected at this cosine between direction and facet.
+    #[inline(always)]
+    fn reflectance(&self, cosine: L) -> Vec3<L> {
+        let one = L::splat(1.0);
+        let rise = fresnel::schlick_rise(cosine) * self.rises;
+        let told = self.normal_incidence.map(|color| color + (one - color) * rise);
+        let all = match &self.exact {
+            Some(exact) => told + exact.reflectance(cosine),
+            None => told,
+        };
+        all.map(|channel| channel.min(one))
+    }
+
+    #[inline(always)]
+    fn smooth(&self) -> L::Mask {
+        self.alpha.le(L::splat(0.0))
+    }
+}
+
+impl Material for Conductor {
     const DIFFUSE: bool = false;
+    const BASE: bool = false;
+    type Bsdf<L: Lanes> = Metal<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { tint: self.tint * color, ..self }
@@ -37,49 +111,66 @@ impl Bsdf for Conductor {
         self.roughness == 0.0
     }
 
-    fn eval(&self, outgoing: Vec3, incoming: Vec3) -> Rgb {
-        if self.is_delta() || incoming.z <= 0.0 {
-            return Rgb::ZERO;
+    #[inline(always)]
+    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Metal<L> {
+        let rises = |metal: &Self| matches!(metal.fresnel, ConductorFresnel::Schlick(_));
+        Metal {
+            normal_incidence: colors(each, Self::normal_incidence),
+            rises: column(each, |metal| f32::from(u8::from(rises(metal)))),
+            exact: Exact::of(each),
+            alpha: column(each, |metal| metal.roughness),
         }
-        let normal = (outgoing + incoming).normalize_or(Vec3::Z);
-        let alpha = self.roughness;
-        let masking = 1.0 / (1.0 + ggx::lambda(alpha, outgoing) + ggx::lambda(alpha, incoming));
-        self.reflectance(outgoing.dot(normal))
-            * (ggx::distribution(alpha, normal) * masking / (4.0 * outgoing.z))
+    }
+}
+
+impl<L: Lanes> Bsdf<L> for Metal<L> {
+    #[inline(always)]
+    fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let normal = ggx::upward(outgoing + incoming);
+        let both = ggx::lambda(self.alpha, outgoing) + ggx::lambda(self.alpha, incoming);
+        let facets = ggx::distribution(self.alpha, normal);
+        let response = facets / ((one + both) * (L::splat(4.0) * outgoing.z));
+        let rough = zero.lt(self.alpha) & zero.lt(incoming.z);
+        self.reflectance(outgoing.dot(normal)) * L::select(rough, response, zero)
     }
 
-    fn pdf(&self, outgoing: Vec3, incoming: Vec3) -> f32 {
-        if self.is_delta() || incoming.z <= 0.0 {
-            return 0.0;
-        }
-        let normal = (outgoing + incoming).normalize_or(Vec3::Z);
-        ggx::visible_normal_pdf(self.roughness, outgoing, normal) / (4.0 * outgoing.dot(normal))
+    #[inline(always)]
+    fn pdf(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> L {
+        let zero = L::splat(0.0);
+        let normal = ggx::upward(outgoing + incoming);
+        let density = ggx::visible_normal_pdf(self.alpha, outgoing, normal)
+            / (L::splat(4.0) * outgoing.dot(normal));
+        L::select(zero.lt(self.alpha) & zero.lt(incoming.z), density, zero)
     }
 
-    fn sample(&self, outgoing: Vec3, direction: [f32; 2], _choice: f32) -> Option<Scatter> {
-        if self.is_delta() {
-            let weight = self.reflectance(outgoing.z);
-            return Some(Scatter { incoming: mirror(outgoing), weight, pdf: None });
+    #[inline(always)]
+    fn sample(&self, outgoing: Vec3<L>, direction: [L; 2], _choice: L) -> Scatter<L> {
+        let smooth = Scatter::mirrored(outgoing, self.reflectance(outgoing.z));
+        if (!self.smooth()).bits() == 0 {
+            return smooth;
         }
-        let alpha = self.roughness;
-        let normal = ggx::sample_visible_normal(alpha, outgoing, direction);
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let normal = ggx::sample_visible_normal(self.alpha, outgoing, direction);
         let cosine = outgoing.dot(normal);
-        let incoming = (normal * (2.0 * cosine) - outgoing).normalize();
-        if incoming.z <= 0.0 || cosine <= 0.0 {
-            return None;
-        }
+        let incoming = (normal * (cosine + cosine) - outgoing).normalize();
         // Masking of both directions given that of one: all that is left of response over density.
-        let one = 1.0 + ggx::lambda(alpha, outgoing);
-        let both = one + ggx::lambda(alpha, incoming);
-        Some(Scatter {
+        let seen = one + ggx::lambda(self.alpha, outgoing);
+        let both = seen + ggx::lambda(self.alpha, incoming);
+        let kept = zero.lt(incoming.z) & zero.lt(cosine);
+        let density =
+            ggx::visible_normal_pdf(self.alpha, outgoing, normal) / (L::splat(4.0) * cosine);
+        let rough = Scatter {
             incoming,
-            weight: self.reflectance(cosine) * (one / both),
-            pdf: Some(ggx::visible_normal_pdf(alpha, outgoing, normal) / (4.0 * cosine)),
-        })
+            weight: self.reflectance(cosine) * L::select(kept, seen / both, zero),
+            pdf: density.max(L::splat(f32::MIN_POSITIVE)),
+        };
+        Scatter::select(self.smooth(), &smooth, &rough)
     }
 
-    fn mirrored(&self, _outgoing: Vec3) -> Option<Rgb> {
-        None
+    #[inline(always)]
+    fn mirrored(&self, _outgoing: Vec3<L>) -> Vec3<L> {
+        Vec3::splat(0.0, 0.0, 0.0)
     }
 }
 
@@ -87,17 +178,39 @@ impl Bsdf for Conductor {
 mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
+    use crate::shade::mirror;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
-    use crate::shade::tests::{samples_follow_density, samples_match_density};
+    use crate::shade::tests::{
+        rows_are_what_their_lanes_are, sample, samples_follow_density, samples_match_density,
+    };
+    use glam::Vec3;
 
     fn rough(roughness: f32) -> Conductor {
         Conductor { fresnel: ConductorFresnel::Constant(Rgb::ONE), roughness, tint: Rgb::ONE }
     }
 
     #[test]
+    fn rows() {
+        let (eta, k) = (Rgb::new(0.143, 0.375, 1.442), Rgb::new(3.983, 2.386, 1.603));
+        let color = Rgb::new(0.9, 0.6, 0.3);
+        let fresnel = [
+            ConductorFresnel::Constant(color),
+            ConductorFresnel::Schlick(color),
+            ConductorFresnel::Exact { eta, k },
+        ];
+        for kinds in 1..=3 {
+            rows_are_what_their_lanes_are(&std::array::from_fn(|i| Conductor {
+                fresnel: fresnel[i % kinds],
+                roughness: 0.1 * (i % 7) as f32,
+                tint: Rgb::splat(0.06 * i as f32),
+            }));
+        }
+    }
+
+    #[test]
     fn a_smooth_mirror_mirrors() {
         let outgoing = Vec3::new(0.6, 0.0, 0.8);
-        let scatter = rough(0.0).sample(outgoing, [0.3, 0.4], 0.5).unwrap();
+        let scatter = sample(&rough(0.0), outgoing, [0.3, 0.4, 0.5]).unwrap();
         assert_eq!(scatter.incoming, Vec3::new(-0.6, 0.0, 0.8));
         assert_eq!((scatter.weight, scatter.pdf), (Rgb::ONE, None));
     }
@@ -107,7 +220,12 @@ mod tests {
         for roughness in [0.02, 0.1, 0.4, 1.0] {
             for cosine in [1.0, 0.7, 0.2, 0.05] {
                 let (bsdf, outgoing) = (rough(roughness), at(cosine));
-                samples_follow_density(&bsdf, outgoing, Grid::lobe(mirror(outgoing)), None);
+                samples_follow_density(
+                    &bsdf,
+                    outgoing,
+                    Grid::lobe(mirror::<f32>(outgoing.into()).into()),
+                    None,
+                );
                 samples_match_density(&bsdf, outgoing);
             }
         }

@@ -1,6 +1,6 @@
 //! Fresnel's equations.
 
-use crate::scene::Rgb;
+use crate::lanes::{Doubles, Lanes};
 
 /// Share of unpolarised light that a smooth interface reflects, and the cosine of the refracted
 /// direction.
@@ -8,36 +8,41 @@ use crate::scene::Rgb;
 /// `cosine` of the incident direction is in 0..=1; `eta` is the index of refraction on the incident
 /// side over that on the other. Total internal reflection gives 1 and 0.
 #[inline(always)]
-pub fn dielectric(cosine: f64, eta: f64) -> (f64, f64) {
-    let sine2 = eta * eta * ((1.0 - cosine) * (1.0 + cosine));
-    if sine2 >= 1.0 {
-        return (1.0, 0.0);
-    }
-    let refracted = (1.0 - sine2).sqrt();
+pub fn dielectric<D: Doubles>(cosine: D, eta: D) -> (D, D) {
+    let (zero, one) = (D::splat(0.0), D::splat(1.0));
+    let sine2 = eta * eta * ((one - cosine) * (one + cosine));
+    let passes = sine2.lt(one);
+    let refracted = D::select(passes, one - sine2, zero).sqrt();
     let s = (eta * cosine - refracted) / (eta * cosine + refracted);
     let p = (cosine - eta * refracted) / (cosine + eta * refracted);
-    (0.5 * (s * s + p * p), refracted)
+    (D::select(passes, D::splat(0.5) * (s * s + p * p), one), refracted)
 }
 
-/// Schlick's curve from the reflectance at normal incidence (Schlick, "An Inexpensive BRDF Model
-/// for Physically-based Rendering", Computer Graphics Forum 1994).
-pub fn schlick(cosine: f32, normal_incidence: Rgb) -> Rgb {
-    normal_incidence + (Rgb::ONE - normal_incidence) * (1.0 - cosine).clamp(0.0, 1.0).powi(5)
+/// How far Schlick's curve has risen from the reflectance at normal incidence to 1 (Schlick, "An
+/// Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 1994).
+#[inline(always)]
+pub fn schlick_rise<L: Lanes>(cosine: L) -> L {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let x = (one - cosine).max(zero).min(one);
+    let x2 = x * x;
+    x2 * x2 * x
 }
 
 /// Share of unpolarised light that a metal of complex index `eta + i k`, relative to the outside,
 /// reflects.
-pub fn conductor(cosine: f32, eta: f32, k: f32) -> f32 {
-    let (c, eta, k) = (f64::from(cosine), f64::from(eta), f64::from(k));
-    let (c2, s2) = (c * c, 1.0 - c * c);
+#[inline(always)]
+pub fn conductor<D: Doubles>(c: D, eta: D, k: D) -> D {
+    let (zero, half, two) = (D::splat(0.0), D::splat(0.5), D::splat(2.0));
+    let (c2, s2) = (c * c, D::splat(1.0) - c * c);
     let difference = eta * eta - k * k - s2;
-    let a2_plus_b2 = (difference * difference + 4.0 * eta * eta * k * k).sqrt();
-    let a = (0.5 * (a2_plus_b2 + difference)).max(0.0).sqrt();
-    let s = (a2_plus_b2 + c2 - 2.0 * a * c) / (a2_plus_b2 + c2 + 2.0 * a * c);
+    let a2_plus_b2 = (difference * difference + D::splat(4.0) * eta * eta * k * k).sqrt();
+    let a2 = half * (a2_plus_b2 + difference);
+    let a = D::select(zero.lt(a2), a2, zero).sqrt();
+    let s = (a2_plus_b2 + c2 - two * a * c) / (a2_plus_b2 + c2 + two * a * c);
     let along = c2 * a2_plus_b2 + s2 * s2;
-    let across = 2.0 * a * c * s2;
+    let across = two * a * c * s2;
     let p = s * (along - across) / (along + across);
-    (0.5 * (s + p)) as f32
+    half * (s + p)
 }
 
 /// Share of diffuse light from outside that an interface to index `ior` reflects: the
@@ -114,8 +119,7 @@ mod tests {
     #[test]
     fn a_conductor_without_absorption_is_a_dielectric() {
         for cosine in [1.0, 0.7, 0.3, 0.05] {
-            let difference =
-                f64::from(conductor(cosine as f32, 1.5, 0.0)) - dielectric(cosine, 1.0 / 1.5).0;
+            let difference = conductor(cosine, 1.5, 0.0) - dielectric(cosine, 1.0 / 1.5).0;
             assert!(difference.abs() < 1e-6);
         }
     }

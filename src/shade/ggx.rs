@@ -4,41 +4,54 @@
 //! "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 2014; Dupuy and
 //! Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023.
 
-use glam::Vec3;
-use std::f32::consts::{PI, TAU};
+use crate::lanes::Lanes;
+use crate::sampling::cap;
+use crate::vec3::Vec3;
+use std::f32::consts::PI;
 
 /// Density of microfacet normals by solid angle, projected: integrates to 1 with the cosine.
-pub fn distribution(alpha: f32, normal: Vec3) -> f32 {
+#[inline(always)]
+pub fn distribution<L: Lanes>(alpha: L, normal: Vec3<L>) -> L {
     let a2 = alpha * alpha;
     // x^2 + y^2 instead of 1 - z^2, which would cancel for small alpha.
     let slope2 = normal.x * normal.x + normal.y * normal.y;
     let t = normal.z * normal.z + slope2 / a2;
-    1.0 / (PI * a2 * t * t)
+    L::splat(1.0) / (L::splat(PI) * a2 * t * t)
 }
 
 /// Smith's auxiliary function.
-pub fn lambda(alpha: f32, direction: Vec3) -> f32 {
+#[inline(always)]
+pub fn lambda<L: Lanes>(alpha: L, direction: Vec3<L>) -> L {
+    let one = L::splat(1.0);
     let tangent2 =
         (direction.x * direction.x + direction.y * direction.y) / (direction.z * direction.z);
-    ((1.0 + alpha * alpha * tangent2).sqrt() - 1.0) / 2.0
+    ((one + alpha * alpha * tangent2).sqrt() - one) * L::splat(0.5)
 }
 
 /// Density of the normals that are visible from `outgoing`, by solid angle.
-pub fn visible_normal_pdf(alpha: f32, outgoing: Vec3, normal: Vec3) -> f32 {
-    let visible = outgoing.dot(normal).max(0.0) / (outgoing.z * (1.0 + lambda(alpha, outgoing)));
-    visible * distribution(alpha, normal)
+#[inline(always)]
+pub fn visible_normal_pdf<L: Lanes>(alpha: L, outgoing: Vec3<L>, normal: Vec3<L>) -> L {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let seen = outgoing.z * (one + lambda(alpha, outgoing));
+    outgoing.dot(normal).max(zero) / seen * distribution(alpha, normal)
 }
 
-/// A normal in proportion to how much it is visible from `outgoing`.
-pub fn sample_visible_normal(alpha: f32, outgoing: Vec3, u: [f32; 2]) -> Vec3 {
+/// Normals in proportion to how much they are visible from `outgoing`.
+#[inline(always)]
+pub fn sample_visible_normal<L: Lanes>(alpha: L, outgoing: Vec3<L>, u: [L; 2]) -> Vec3<L> {
     // As if the surface were the unit hemisphere.
     let stretched = Vec3::new(alpha * outgoing.x, alpha * outgoing.y, outgoing.z).normalize();
     // Mirroring a point of the cap that `stretched` is the axis' mirror image of gives the normal.
-    let z = (1.0 - u[1]).mul_add(1.0 + stretched.z, -stretched.z);
-    let sine = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
-    let (sin_phi, cos_phi) = (TAU * u[0]).sin_cos();
-    let halfway = Vec3::new(sine * cos_phi, sine * sin_phi, z) + stretched;
-    Vec3::new(alpha * halfway.x, alpha * halfway.y, halfway.z.max(0.0)).normalize_or(Vec3::Z)
+    let halfway = cap(u, L::splat(1.0) + stretched.z) + stretched;
+    let up = halfway.z.max(L::splat(0.0));
+    upward(Vec3::new(alpha * halfway.x, alpha * halfway.y, up))
+}
+
+/// Unit vectors; along z where there is no direction.
+#[inline(always)]
+pub fn upward<L: Lanes>(direction: Vec3<L>) -> Vec3<L> {
+    let long = L::splat(0.0).lt(direction.dot(direction));
+    Vec3::select(long, direction.normalize(), Vec3::splat(0.0, 0.0, 1.0))
 }
 
 #[cfg(test)]
@@ -47,6 +60,8 @@ mod tests {
     use crate::sampling::statistics::{Grid, random_pairs};
     use crate::sampling::uniform_sphere;
     use crate::shade::tests::{at, numbers};
+    use glam::Vec3;
+    use std::f32::consts::TAU;
 
     /// The projected area of the facets is that of the surface; visible ones have density 1.
     #[test]
@@ -58,8 +73,8 @@ mod tests {
             for u in numbers(7, n) {
                 let mut normal = uniform_sphere([u[0], u[1]]);
                 normal.z = normal.z.abs();
-                area += f64::from(distribution(alpha, normal) * normal.z);
-                visible += f64::from(visible_normal_pdf(alpha, outgoing, normal));
+                area += f64::from(distribution(alpha, normal.into()) * normal.z);
+                visible += f64::from(visible_normal_pdf(alpha, outgoing.into(), normal.into()));
             }
             let scale = f64::from(TAU) / n as f64;
             assert!((area * scale - 1.0).abs() < 0.05, "alpha {alpha}: {}", area * scale);
@@ -73,8 +88,8 @@ mod tests {
             for cosine in [1.0, 0.7, 0.2, 0.02] {
                 let outgoing = at(cosine);
                 let samples = random_pairs(400_000, 8)
-                    .map(|u| Some(sample_visible_normal(alpha, outgoing, u)));
-                let pdf = |normal| visible_normal_pdf(alpha, outgoing, normal);
+                    .map(|u| Some(sample_visible_normal(alpha, outgoing.into(), u).into()));
+                let pdf = |normal: Vec3| visible_normal_pdf(alpha, outgoing.into(), normal.into());
                 let grid = Grid { angle: 0.5 * f64::from(PI), ..Grid::lobe(Vec3::Z) };
                 grid.check(samples, pdf, Some(0.0));
             }

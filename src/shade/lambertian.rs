@@ -1,50 +1,58 @@
 //! Ideally diffuse surfaces: the lambertian material, and what emitters reflect.
 
-use super::{Bsdf, Scatter};
-use crate::sampling::cosine_hemisphere;
+use super::{Bsdf, Material, Scatter, colors};
+use crate::lanes::{Lanes, MAX_LANES};
+use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
+use crate::vec3::Vec3;
 use crate::world::{Emitter, Lambertian};
-use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-impl Bsdf for Lambertian {
+/// A row of diffuse surfaces.
+pub struct Diffuse<L> {
+    albedo: Vec3<L>,
+}
+
+impl Material for Lambertian {
     const DIFFUSE: bool = true;
+    const BASE: bool = true;
+    type Bsdf<L: Lanes> = Diffuse<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color }
-    }
-
-    fn albedo(&self) -> Rgb {
-        self.color
     }
 
     fn is_delta(&self) -> bool {
         self.color == Rgb::ZERO
     }
 
-    #[inline]
-    fn eval(&self, _outgoing: Vec3, incoming: Vec3) -> Rgb {
-        self.color * (FRAC_1_PI * incoming.z.max(0.0))
+    #[inline(always)]
+    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Diffuse<L> {
+        Diffuse { albedo: colors(each, |material| material.color) }
+    }
+}
+
+impl<L: Lanes> Bsdf<L> for Diffuse<L> {
+    #[inline(always)]
+    fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
+        self.albedo * self.pdf(outgoing, incoming)
     }
 
-    #[inline]
-    fn pdf(&self, _outgoing: Vec3, incoming: Vec3) -> f32 {
-        FRAC_1_PI * incoming.z.max(0.0)
+    #[inline(always)]
+    fn pdf(&self, _outgoing: Vec3<L>, incoming: Vec3<L>) -> L {
+        L::splat(FRAC_1_PI) * incoming.z.max(L::splat(0.0))
     }
 
     /// Cosine-weighted, so the weight is the albedo exactly.
-    #[inline]
-    fn sample(&self, _outgoing: Vec3, direction: [f32; 2], _choice: f32) -> Option<Scatter> {
-        let incoming = cosine_hemisphere(direction);
-        (self.color != Rgb::ZERO).then_some(Scatter {
-            incoming,
-            weight: self.color,
-            pdf: Some(FRAC_1_PI * incoming.z),
-        })
+    #[inline(always)]
+    fn sample(&self, _outgoing: Vec3<L>, direction: [L; 2], _choice: L) -> Scatter<L> {
+        let incoming = cosine_hemispheres(direction);
+        Scatter { incoming, weight: self.albedo, pdf: L::splat(FRAC_1_PI) * incoming.z }
     }
 
-    fn mirrored(&self, _outgoing: Vec3) -> Option<Rgb> {
-        Some(Rgb::ZERO)
+    #[inline(always)]
+    fn mirrored(&self, _outgoing: Vec3<L>) -> Vec3<L> {
+        Vec3::splat(0.0, 0.0, 0.0)
     }
 }
 
@@ -60,8 +68,17 @@ mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
     use crate::shade::tests::{
-        albedo_by_quadrature, samples_follow_density, samples_match_density,
+        albedo_by_quadrature, rows_are_what_their_lanes_are, samples_follow_density,
+        samples_match_density,
     };
+    use glam::Vec3;
+
+    #[test]
+    fn rows() {
+        rows_are_what_their_lanes_are(&std::array::from_fn(|i| Lambertian {
+            color: Rgb::new(0.05 * i as f32, 0.3, 0.9),
+        }));
+    }
 
     #[test]
     fn scatters_its_albedo() {

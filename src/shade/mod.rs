@@ -1,8 +1,9 @@
 //! What surfaces do with light: one file for each kind of material.
 //!
-//! A row of a material's table, tinted by the sphere's color, is a [`Bsdf`]. Directions are local:
-//! unit vectors that point away from the surface, with z along the normal on the side that is
-//! looked at. Glass is not a `Bsdf`: what it does depends on what surrounds it ([`dielectric`]).
+//! A row of a material's table, tinted by the sphere's color, is a [`Material`]; sixteen of them, or
+//! one, are a [`Bsdf`]. Directions are local: unit vectors that point away from the surface, with z
+//! along the normal on the side that is looked at. Glass is not a `Bsdf`: what it does depends on
+//! what surrounds it ([`dielectric`]).
 
 pub mod conductor;
 pub mod dielectric;
@@ -12,19 +13,21 @@ pub mod lambertian;
 pub mod plastic;
 pub mod reflective;
 
+use crate::lanes::{F64x8, Lanes, MAX_LANES, store_rounded};
 use crate::scene::Rgb;
-use glam::Vec3;
+use crate::vec3::Vec3;
 
-/// How a surface that lets nothing through scatters light.
-pub trait Bsdf: Copy {
+/// A surface that lets nothing through.
+pub trait Material: Copy {
     /// Whether it is so even that light is best looked for at the lights alone.
     const DIFFUSE: bool;
 
-    /// The albedo of a surface that is [`Bsdf::DIFFUSE`], all that there is to know of it; black for
-    /// others.
-    fn albedo(&self) -> Rgb {
-        Rgb::ZERO
-    }
+    /// Whether light samples take care of all but what is mirrored; otherwise its own directions
+    /// must be sampled.
+    const BASE: bool;
+
+    /// A row of such surfaces.
+    type Bsdf<L: Lanes>: Bsdf<L>;
 
     /// The same, with the sphere's color as a factor.
     #[must_use]
@@ -33,43 +36,93 @@ pub trait Bsdf: Copy {
     /// Whether it only mirrors, so that no light sample can contribute.
     fn is_delta(&self) -> bool;
 
-    /// Scattered radiance per irradiance, times the cosine of `incoming`; without any mirrored
-    /// part.
-    fn eval(&self, outgoing: Vec3, incoming: Vec3) -> Rgb;
+    /// The first of these surfaces, in lanes.
+    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Self::Bsdf<L>;
+}
+
+/// How each of a row of surfaces scatters light.
+pub trait Bsdf<L: Lanes> {
+    /// Scattered radiance per irradiance, times the cosine of `incoming`, by channel; without any
+    /// mirrored part, and 0 from below.
+    fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L>;
 
     /// Density by solid angle with which [`Bsdf::sample`] finds `incoming`; without any mirrored
     /// part.
-    fn pdf(&self, outgoing: Vec3, incoming: Vec3) -> f32;
+    fn pdf(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> L;
 
-    /// A direction that light may come from, from two numbers in [0, 1) for the direction and one
-    /// for the choice between parts; `None` if the light is lost.
-    fn sample(&self, outgoing: Vec3, direction: [f32; 2], choice: f32) -> Option<Scatter>;
+    /// Directions that light may come from, from two numbers in [0, 1) for the direction and one
+    /// for the choice between parts.
+    fn sample(&self, outgoing: Vec3<L>, direction: [L; 2], choice: L) -> Scatter<L>;
 
-    /// Share of the light that is mirrored, where the light samples of [`Bsdf::eval`] take care of
-    /// all the rest; `None` if the surface has no diffuse part and must be sampled.
-    fn mirrored(&self, outgoing: Vec3) -> Option<Rgb>;
+    /// Share of the light that is mirrored, by channel, of a material with a
+    /// [base](Material::BASE).
+    fn mirrored(&self, outgoing: Vec3<L>) -> Vec3<L>;
 }
 
-/// A sampled direction.
+/// Sampled directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scatter {
+pub struct Scatter<L> {
     /// Toward where the light comes from.
-    pub incoming: Vec3,
-    /// Response times cosine over density.
-    pub weight: Rgb,
-    /// Density by solid angle; `None` for a mirrored direction.
-    pub pdf: Option<f32>,
+    pub incoming: Vec3<L>,
+    /// Response times cosine over density, by channel; black where the light is lost.
+    pub weight: Vec3<L>,
+    /// Density by solid angle; 0 for a mirrored direction.
+    pub pdf: L,
 }
 
-/// The direction mirrored at the normal, z.
-#[inline]
-pub fn mirror(outgoing: Vec3) -> Vec3 {
+impl<L: Lanes> Scatter<L> {
+    /// One or the other, lane by lane.
+    #[inline(always)]
+    fn select(mask: L::Mask, yes: &Self, no: &Self) -> Self {
+        Self {
+            incoming: Vec3::select(mask, yes.incoming, no.incoming),
+            weight: Vec3::select(mask, yes.weight, no.weight),
+            pdf: L::select(mask, yes.pdf, no.pdf),
+        }
+    }
+
+    /// What is mirrored.
+    #[inline(always)]
+    fn mirrored(outgoing: Vec3<L>, weight: Vec3<L>) -> Self {
+        Self { incoming: mirror(outgoing), weight, pdf: L::splat(0.0) }
+    }
+}
+
+/// Directions mirrored at the normal, z.
+#[inline(always)]
+pub fn mirror<L: Lanes>(outgoing: Vec3<L>) -> Vec3<L> {
     Vec3::new(-outgoing.x, -outgoing.y, outgoing.z)
+}
+
+/// A number of each of a row of materials.
+#[inline(always)]
+fn column<M, L: Lanes>(each: &[M; MAX_LANES], number: impl Fn(&M) -> f32) -> L {
+    let mut row = [0.0; MAX_LANES];
+    row.iter_mut().zip(each).take(L::WIDTH).for_each(|(lane, material)| *lane = number(material));
+    L::load(&row)
+}
+
+/// A color of each of a row of materials.
+#[inline(always)]
+fn colors<M, L: Lanes>(each: &[M; MAX_LANES], color: impl Fn(&M) -> Rgb) -> Vec3<L> {
+    let channel = |i: usize| column(each, |material| color(material)[i]);
+    Vec3::new(channel(0), channel(1), channel(2))
+}
+
+/// What a formula gives in double precision, rounded.
+#[inline(always)]
+fn in_doubles<L: Lanes, const N: usize>(row: [L; N], of: impl Fn([F64x8; N]) -> F64x8) -> L {
+    let mut rounded = [0.0; MAX_LANES];
+    for first in (0..L::WIDTH).step_by(8) {
+        store_rounded(of(row.map(|column| column.doubles(first))), &mut rounded[first..]);
+    }
+    L::load(&rounded)
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::lanes::F32x16;
     use crate::sampling::statistics::Grid;
     use crate::sampling::{stream, uniform_sphere, unit};
     use std::f32::consts::PI;
@@ -83,32 +136,101 @@ pub(crate) mod tests {
     }
 
     /// A direction at an angle to the normal.
-    pub(crate) fn at(cosine: f32) -> Vec3 {
-        Vec3::new(0.6, 0.8, 0.0) * (1.0 - cosine * cosine).sqrt() + Vec3::Z * cosine
+    pub(crate) fn at(cosine: f32) -> glam::Vec3 {
+        glam::Vec3::new(0.6, 0.8, 0.0) * (1.0 - cosine * cosine).sqrt() + glam::Vec3::Z * cosine
+    }
+
+    /// A sampled direction of one surface.
+    pub(crate) struct One {
+        pub(crate) incoming: glam::Vec3,
+        pub(crate) weight: Rgb,
+        /// `None` for a mirrored direction.
+        pub(crate) pdf: Option<f32>,
+    }
+
+    /// What one surface does.
+    pub(crate) fn sample(
+        material: &impl Material,
+        outgoing: glam::Vec3,
+        [u, v, choice]: [f32; 3],
+    ) -> Option<One> {
+        let bsdf = Material::row::<f32>(&[*material; MAX_LANES]);
+        let Scatter { incoming, weight, pdf } = bsdf.sample(outgoing.into(), [u, v], choice);
+        let weight = Rgb::from(weight);
+        let pdf = (pdf > 0.0).then_some(pdf);
+        (weight != Rgb::ZERO).then_some(One { incoming: incoming.into(), weight, pdf })
+    }
+
+    pub(crate) fn eval(m: &impl Material, outgoing: glam::Vec3, incoming: glam::Vec3) -> Rgb {
+        lone(m).eval(outgoing.into(), incoming.into()).into()
+    }
+
+    pub(crate) fn pdf(m: &impl Material, outgoing: glam::Vec3, incoming: glam::Vec3) -> f32 {
+        lone(m).pdf(outgoing.into(), incoming.into())
+    }
+
+    fn lone<M: Material>(material: &M) -> M::Bsdf<f32> {
+        M::row(&[*material; MAX_LANES])
+    }
+
+    /// Sixteen surfaces at once do what each does alone, to the bit.
+    pub(crate) fn rows_are_what_their_lanes_are<M: Material>(each: &[M; MAX_LANES]) {
+        let row: M::Bsdf<F32x16> = M::row(each);
+        let u: Vec<[f32; 3]> = numbers(5, MAX_LANES).collect();
+        let direction = |seed| {
+            let directions: Vec<glam::Vec3> = numbers(seed, MAX_LANES)
+                .map(|[u, v, _]| crate::sampling::cosine_hemisphere([u, v]))
+                .collect();
+            directions
+        };
+        let lanes = |v: &[glam::Vec3]| {
+            let axis = |axis: usize| F32x16::new(std::array::from_fn(|lane| v[lane][axis]));
+            Vec3::new(axis(0), axis(1), axis(2))
+        };
+        let (outgoing, incoming) = (direction(6), direction(7));
+        let column = |i: usize| F32x16::new(std::array::from_fn(|lane| u[lane][i]));
+        let (wo, wi) = (lanes(&outgoing), lanes(&incoming));
+        let all = (row.eval(wo, wi), row.pdf(wo, wi), row.mirrored(wo));
+        let scatter = row.sample(wo, [column(0), column(1)], column(2));
+        for lane in 0..MAX_LANES {
+            let one = M::row::<f32>(&[each[lane]; MAX_LANES]);
+            let (wo, wi) = (outgoing[lane].into(), incoming[lane].into());
+            let at = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]);
+            assert_eq!(at(all.0), one.eval(wo, wi));
+            assert_eq!(all.1.to_array()[lane], one.pdf(wo, wi));
+            assert_eq!(at(all.2), one.mirrored(wo));
+            let [a, b, c] = u[lane];
+            let Scatter { incoming, weight, pdf } = one.sample(wo, [a, b], c);
+            assert_eq!((at(scatter.incoming), at(scatter.weight)), (incoming, weight));
+            assert_eq!(scatter.pdf.to_array()[lane], pdf);
+        }
     }
 
     /// Sampled directions follow the density, and what is mirrored comes as often as it should: none if
     /// that is not known. Around the mirrored direction where the lobe is narrow.
-    pub(crate) fn samples_follow_density<B: Bsdf>(
-        bsdf: &B,
-        outgoing: Vec3,
+    pub(crate) fn samples_follow_density<M: Material>(
+        material: &M,
+        outgoing: glam::Vec3,
         grid: Grid,
         none: Option<f64>,
     ) {
         let samples = numbers(9, 500_000).map(|u| {
-            let scatter = bsdf.sample(outgoing, [u[0], u[1]], u[2])?;
+            let scatter = sample(material, outgoing, u)?;
             scatter.pdf.map(|_| scatter.incoming)
         });
-        grid.check(samples, |incoming| bsdf.pdf(outgoing, incoming), none);
+        grid.check(samples, |incoming| pdf(material, outgoing, incoming), none);
     }
 
     /// The share of light that is scattered: by the surface's own sampling, and with a standard
     /// error.
-    pub(crate) fn albedo_by_sampling<B: Bsdf>(bsdf: &B, outgoing: Vec3) -> (f64, f64) {
+    pub(crate) fn albedo_by_sampling<M: Material>(
+        material: &M,
+        outgoing: glam::Vec3,
+    ) -> (f64, f64) {
         let n = 200_000;
         let (mut sum, mut sum2) = (0.0, 0.0);
         for u in numbers(1, n) {
-            let weight = bsdf.sample(outgoing, [u[0], u[1]], u[2]).map_or(0.0, |s| s.weight.x);
+            let weight = sample(material, outgoing, u).map_or(0.0, |s| s.weight.x);
             sum += f64::from(weight);
             sum2 += f64::from(weight).powi(2);
         }
@@ -118,13 +240,16 @@ pub(crate) mod tests {
 
     /// What is left after the mirrored part: by uniform directions on the hemisphere, and with a
     /// standard error.
-    pub(crate) fn albedo_by_quadrature<B: Bsdf>(bsdf: &B, outgoing: Vec3) -> (f64, f64) {
+    pub(crate) fn albedo_by_quadrature<M: Material>(
+        material: &M,
+        outgoing: glam::Vec3,
+    ) -> (f64, f64) {
         let n = 400_000;
         let (mut sum, mut sum2) = (0.0, 0.0);
         for u in numbers(2, n) {
             let mut incoming = uniform_sphere([u[0], u[1]]);
             incoming.z = incoming.z.abs();
-            let value = f64::from(bsdf.eval(outgoing, incoming).x * 2.0 * PI);
+            let value = f64::from(eval(material, outgoing, incoming).x * 2.0 * PI);
             sum += value;
             sum2 += value * value;
         }
@@ -134,16 +259,16 @@ pub(crate) mod tests {
 
     /// Sampled weights are response over density, and densities of what is not mirrored add up to
     /// at most 1.
-    pub(crate) fn samples_match_density<B: Bsdf>(bsdf: &B, outgoing: Vec3) {
+    pub(crate) fn samples_match_density<M: Material>(material: &M, outgoing: glam::Vec3) {
         for u in numbers(3, 20_000) {
-            let Some(scatter) = bsdf.sample(outgoing, [u[0], u[1]], u[2]) else { continue };
-            let Some(pdf) = scatter.pdf else { continue };
-            assert!(pdf > 0.0 && pdf.is_finite(), "{pdf} {scatter:?}");
+            let Some(scatter) = sample(material, outgoing, u) else { continue };
+            let Some(density) = scatter.pdf else { continue };
+            assert!(density.is_finite(), "{density} {u:?}");
             assert!(scatter.incoming.is_normalized() && scatter.incoming.z >= 0.0);
-            let (expected, density) =
-                (bsdf.eval(outgoing, scatter.incoming), bsdf.pdf(outgoing, scatter.incoming));
-            assert!((pdf - density).abs() <= 2e-3 * density, "{pdf} {density}");
-            let got = scatter.weight * pdf;
+            let expected = eval(material, outgoing, scatter.incoming);
+            let other = pdf(material, outgoing, scatter.incoming);
+            assert!((density - other).abs() <= 2e-3 * other, "{density} {other}");
+            let got = scatter.weight * density;
             assert!(
                 (got - expected).abs().max_element() <= 2e-3 * expected.max_element().max(1e-6)
             );

@@ -5,28 +5,35 @@
 //! reflections (Weidlich and Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", GRAPHITE 2007,
 //! with the series summed). A white base gives back exactly what it gets.
 
-use super::{Bsdf, Scatter, fresnel, mirror};
-use crate::sampling::cosine_hemisphere;
+use super::{Bsdf, Material, Scatter, colors, column, fresnel, in_doubles};
+use crate::lanes::{F64x8, Lanes, MAX_LANES};
+use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
+use crate::vec3::Vec3;
 use crate::world::Plastic;
-use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
 
-impl Plastic {
+/// A row of coated surfaces.
+pub struct Coated<L> {
+    ior: L,
+    /// Response of the base, times pi, without the coat's share for either direction.
+    base: Vec3<L>,
+}
+
+impl<L: Lanes> Coated<L> {
     /// Share that the coat mirrors at this cosine.
     #[inline(always)]
-    fn coat(&self, cosine: f32) -> f32 {
-        fresnel::dielectric(f64::from(cosine), f64::from(self.ior).recip()).0 as f32
-    }
-
-    /// Response of the base, times pi, without the coat's share for either direction.
-    fn base(&self) -> Rgb {
-        self.color / ((Rgb::ONE - self.color * self.internal_reflectance) * (self.ior * self.ior))
+    fn coat(&self, cosine: L) -> L {
+        in_doubles([cosine, self.ior], |[cosine, ior]| {
+            fresnel::dielectric(cosine, F64x8::splat(1.0) / ior).0
+        })
     }
 }
 
-impl Bsdf for Plastic {
+impl Material for Plastic {
     const DIFFUSE: bool = false;
+    const BASE: bool = true;
+    type Bsdf<L: Lanes> = Coated<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color, ..self }
@@ -37,37 +44,50 @@ impl Bsdf for Plastic {
     }
 
     #[inline(always)]
-    fn eval(&self, outgoing: Vec3, incoming: Vec3) -> Rgb {
-        if incoming.z <= 0.0 {
-            return Rgb::ZERO;
-        }
-        let passes = (1.0 - self.coat(outgoing.z)) * (1.0 - self.coat(incoming.z));
-        self.base() * (passes * FRAC_1_PI * incoming.z)
+    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Coated<L> {
+        let one = L::splat(1.0);
+        let color: Vec3<L> = colors(each, |material| material.color);
+        let ior: L = column(each, |material| material.ior);
+        let internal: L = column(each, |material| material.internal_reflectance);
+        let base = color.map(|albedo| albedo / ((one - albedo * internal) * (ior * ior)));
+        Coated { ior, base }
+    }
+}
+
+impl<L: Lanes> Bsdf<L> for Coated<L> {
+    #[inline(always)]
+    fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
+        let one = L::splat(1.0);
+        let cosine = incoming.z.max(L::splat(0.0));
+        let passes = (one - self.coat(outgoing.z)) * (one - self.coat(cosine));
+        self.base * (passes * L::splat(FRAC_1_PI) * cosine)
     }
 
     #[inline(always)]
-    fn pdf(&self, outgoing: Vec3, incoming: Vec3) -> f32 {
-        (1.0 - self.coat(outgoing.z)) * FRAC_1_PI * incoming.z.max(0.0)
+    fn pdf(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> L {
+        let base = L::splat(1.0) - self.coat(outgoing.z);
+        base * L::splat(FRAC_1_PI) * incoming.z.max(L::splat(0.0))
     }
 
     #[inline(always)]
-    fn sample(&self, outgoing: Vec3, direction: [f32; 2], choice: f32) -> Option<Scatter> {
-        let mirrored = self.coat(outgoing.z);
-        if choice < mirrored {
-            // Chosen as often as light is mirrored: the weight is 1.
-            return Some(Scatter { incoming: mirror(outgoing), weight: Rgb::ONE, pdf: None });
-        }
-        let incoming = cosine_hemisphere(direction);
-        let weight = self.base() * (1.0 - self.coat(incoming.z));
-        (weight != Rgb::ZERO).then_some(Scatter {
+    fn sample(&self, outgoing: Vec3<L>, direction: [L; 2], choice: L) -> Scatter<L> {
+        let one = L::splat(1.0);
+        let coat = self.coat(outgoing.z);
+        let incoming = cosine_hemispheres(direction);
+        let base = Scatter {
             incoming,
-            weight,
-            pdf: Some((1.0 - mirrored) * FRAC_1_PI * incoming.z),
-        })
+            weight: self.base * (one - self.coat(incoming.z)),
+            pdf: (one - coat) * L::splat(FRAC_1_PI) * incoming.z,
+        };
+        // Chosen as often as light is mirrored: the weight is 1.
+        let mirrored = Scatter::mirrored(outgoing, Vec3::splat(1.0, 1.0, 1.0));
+        Scatter::select(choice.lt(coat), &mirrored, &base)
     }
 
-    fn mirrored(&self, outgoing: Vec3) -> Option<Rgb> {
-        Some(Rgb::splat(self.coat(outgoing.z)))
+    #[inline(always)]
+    fn mirrored(&self, outgoing: Vec3<L>) -> Vec3<L> {
+        let coat = self.coat(outgoing.z);
+        Vec3::new(coat, coat, coat)
     }
 }
 
@@ -76,11 +96,23 @@ mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
-    use crate::shade::tests::{samples_follow_density, samples_match_density};
+    use crate::shade::tests::{
+        rows_are_what_their_lanes_are, samples_follow_density, samples_match_density,
+    };
+    use glam::Vec3;
 
     fn plastic(color: f32) -> Plastic {
         let internal_reflectance = fresnel::internal_diffuse_reflectance(1.5) as f32;
         Plastic { color: Rgb::splat(color), ior: 1.5, internal_reflectance }
+    }
+
+    fn coat(plastic: Plastic, cosine: f32) -> f64 {
+        f64::from(Plastic::row::<f32>(&[plastic; MAX_LANES]).coat(cosine))
+    }
+
+    #[test]
+    fn rows() {
+        rows_are_what_their_lanes_are(&std::array::from_fn(|i| plastic(0.06 * i as f32)));
     }
 
     #[test]
@@ -96,7 +128,7 @@ mod tests {
     fn directions_follow_the_density() {
         for cosine in [1.0, 0.5, 0.1, 0.01] {
             let (bsdf, outgoing) = (plastic(0.5), at(cosine));
-            let coat = f64::from(bsdf.coat(outgoing.z));
+            let coat = coat(bsdf, outgoing.z);
             samples_follow_density(&bsdf, outgoing, Grid::hemisphere(Vec3::Z), Some(coat));
             samples_match_density(&bsdf, outgoing);
         }
@@ -108,7 +140,7 @@ mod tests {
         samples_match_density(&plastic(0.5), outgoing);
         let (all, e1) = albedo_by_sampling(&plastic(0.5), outgoing);
         let (base, e2) = albedo_by_quadrature(&plastic(0.5), outgoing);
-        let coat = f64::from(plastic(0.5).coat(outgoing.z));
+        let coat = coat(plastic(0.5), outgoing.z);
         assert!((all - base - coat).abs() < 4.0 * e1.hypot(e2), "{all} {base} {coat}");
     }
 }

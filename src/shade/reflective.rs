@@ -1,11 +1,21 @@
 //! The paper's material: a diffuse and a mirror share of one color, weights given.
 
-use super::{Bsdf, Scatter, mirror};
-use crate::sampling::cosine_hemisphere;
+use super::{Bsdf, Material, Scatter, colors, column};
+use crate::lanes::{Lanes, MAX_LANES};
+use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
+use crate::vec3::Vec3;
 use crate::world::Reflective;
-use glam::Vec3;
 use std::f32::consts::FRAC_1_PI;
+
+/// A row of the paper's surfaces.
+pub struct Shares<L> {
+    color: Vec3<L>,
+    diffuse: L,
+    mirror: L,
+    /// How often the mirror is chosen.
+    mirrors: L,
+}
 
 impl Reflective {
     /// How often the mirror is chosen: by its part of what is reflected at all.
@@ -15,8 +25,10 @@ impl Reflective {
     }
 }
 
-impl Bsdf for Reflective {
+impl Material for Reflective {
     const DIFFUSE: bool = false;
+    const BASE: bool = true;
+    type Bsdf<L: Lanes> = Shares<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color, ..self }
@@ -26,29 +38,48 @@ impl Bsdf for Reflective {
         self.diffuse == 0.0
     }
 
-    fn eval(&self, _outgoing: Vec3, incoming: Vec3) -> Rgb {
-        self.color * (self.diffuse * FRAC_1_PI * incoming.z.max(0.0))
+    #[inline(always)]
+    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Shares<L> {
+        Shares {
+            color: colors(each, |material| material.color),
+            diffuse: column(each, |material| material.diffuse),
+            mirror: column(each, |material| material.mirror),
+            mirrors: column(each, Self::mirror_probability),
+        }
+    }
+}
+
+impl<L: Lanes> Shares<L> {
+    /// Density of a cosine, and of choosing the diffuse share.
+    #[inline(always)]
+    fn density(&self, cosine: L) -> L {
+        (L::splat(1.0) - self.mirrors) * L::splat(FRAC_1_PI) * cosine
+    }
+}
+
+impl<L: Lanes> Bsdf<L> for Shares<L> {
+    #[inline(always)]
+    fn eval(&self, _outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
+        self.color * (self.diffuse * L::splat(FRAC_1_PI) * incoming.z.max(L::splat(0.0)))
     }
 
-    fn pdf(&self, _outgoing: Vec3, incoming: Vec3) -> f32 {
-        (1.0 - self.mirror_probability()) * FRAC_1_PI * incoming.z.max(0.0)
+    #[inline(always)]
+    fn pdf(&self, _outgoing: Vec3<L>, incoming: Vec3<L>) -> L {
+        self.density(incoming.z.max(L::splat(0.0)))
     }
 
-    fn sample(&self, outgoing: Vec3, direction: [f32; 2], choice: f32) -> Option<Scatter> {
+    #[inline(always)]
+    fn sample(&self, outgoing: Vec3<L>, direction: [L; 2], choice: L) -> Scatter<L> {
         let weight = self.color * (self.diffuse + self.mirror);
-        if weight == Rgb::ZERO {
-            return None;
-        }
-        let mirrored = self.mirror_probability();
-        if choice < mirrored {
-            return Some(Scatter { incoming: mirror(outgoing), weight, pdf: None });
-        }
-        let incoming = cosine_hemisphere(direction);
-        Some(Scatter { incoming, weight, pdf: Some((1.0 - mirrored) * FRAC_1_PI * incoming.z) })
+        let incoming = cosine_hemispheres(direction);
+        let diffuse = Scatter { incoming, weight, pdf: self.density(incoming.z) };
+        let mirrored = Scatter::mirrored(outgoing, weight);
+        Scatter::select(choice.lt(self.mirrors), &mirrored, &diffuse)
     }
 
-    fn mirrored(&self, _outgoing: Vec3) -> Option<Rgb> {
-        Some(self.color * self.mirror)
+    #[inline(always)]
+    fn mirrored(&self, _outgoing: Vec3<L>) -> Vec3<L> {
+        self.color * self.mirror
     }
 }
 
@@ -57,7 +88,19 @@ mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling};
-    use crate::shade::tests::{samples_follow_density, samples_match_density};
+    use crate::shade::tests::{
+        rows_are_what_their_lanes_are, samples_follow_density, samples_match_density,
+    };
+    use glam::Vec3;
+
+    #[test]
+    fn rows() {
+        rows_are_what_their_lanes_are(&std::array::from_fn(|i| Reflective {
+            color: Rgb::new(0.9, 0.5, 0.05 * i as f32),
+            diffuse: 0.04 * (i % 7) as f32,
+            mirror: 0.1 * (i % 5) as f32,
+        }));
+    }
 
     #[test]
     fn shares_add_up() {

@@ -28,7 +28,9 @@ pub use cut::{Cut, Span};
 pub use environment::{Environment, Picture, Radiance, SkySample};
 pub use frame::Frame;
 pub use ground::Ground;
-pub use lights::{Aim, Disc, LightRow, LightSample, Lights, Point, ROW, Receiver, Sun};
+pub use lights::{
+    Aim, Disc, LightRow, LightSample, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
+};
 pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };

@@ -2,38 +2,63 @@
 
 use super::LightSample;
 use crate::intersect;
+use crate::lanes::Doubles;
 use crate::ray::ExactRay;
 use crate::sampling::{Cone, Frame};
 use crate::scene::Rgb;
 use crate::spheres::Spheres;
-use glam::{DVec3, Vec3};
+use crate::vec3::Vec3;
+use glam::DVec3;
 
 /// An emissive sphere as seen from a point: what fills a cone.
 pub struct Disc {
     pub(super) row: u32,
     pub(super) frame: Frame,
     pub(super) cone: Cone,
-    pub(super) origin: Vec3,
+    pub(super) origin: glam::Vec3,
     pub(super) center: DVec3,
     pub(super) radius: f64,
     pub(super) weight: Rgb,
-    close: bool,
+    pub(super) close: bool,
 }
 
-/// Direction to the center of sphere `row`, the cone that it fills as seen from `origin`, and
-/// whether it is close; `None` from inside.
-///
-/// Close is nearer than `reach` radii from the center.
+/// A sphere as seen from a point, or a row of both.
+pub(super) struct Toward<D: Doubles> {
+    /// Unit vector toward the center.
+    pub direction: Vec3<D>,
+    /// Squared distance of the center.
+    pub distance2: D,
+    /// Whether the center is nearer than the reach, in radii.
+    pub close: D::Mask,
+}
+
+/// How a sphere, by center and radius, is seen from `origin`; close is nearer than `reach` radii.
+#[inline(always)]
+pub(super) fn toward<D: Doubles>(
+    origin: Vec3<D>,
+    (center, radius): (Vec3<D>, D),
+    reach: f64,
+) -> Toward<D> {
+    let toward = center - origin;
+    let distance2 = toward.dot_unfused(toward);
+    let reach = D::splat(reach) * radius;
+    Toward {
+        direction: toward * (D::splat(1.0) / distance2.sqrt()),
+        distance2,
+        close: distance2.lt(reach * reach),
+    }
+}
+
+/// How sphere `row` is seen from `origin`, and the cone that it fills; `None` from inside.
 pub(super) fn toward_sphere(
     spheres: &Spheres,
     row: usize,
-    (origin, reach): (Vec3, f64),
-) -> Option<(DVec3, Cone, bool)> {
-    let toward = spheres.center(row).as_dvec3() - origin.as_dvec3();
-    let radius = f64::from(spheres.radius(row));
-    let distance2 = toward.length_squared();
-    let cone = Cone::toward_sphere(distance2, radius)?;
-    Some((toward, cone, distance2 < (reach * radius).powi(2)))
+    (origin, reach): (glam::Vec3, f64),
+) -> Option<(Toward<f64>, Cone)> {
+    let (center, radius) = (spheres.center(row).as_dvec3(), f64::from(spheres.radius(row)));
+    let seen = toward(origin.as_dvec3().into(), (center.into(), radius), reach);
+    let cone = Cone::toward_sphere(seen.distance2, radius)?;
+    Some((seen, cone))
 }
 
 impl Disc {
@@ -43,18 +68,18 @@ impl Disc {
         spheres: &Spheres,
         row: usize,
         radiance: Rgb,
-        (origin, reach): (Vec3, f64),
+        (origin, reach): (glam::Vec3, f64),
     ) -> Option<Self> {
-        let (toward, cone, close) = toward_sphere(spheres, row, (origin, reach))?;
+        let (seen, cone) = toward_sphere(spheres, row, (origin, reach))?;
         Some(Self {
             row: row as u32,
-            frame: Frame::new(toward.normalize().as_vec3()),
+            frame: Frame::new(seen.direction.map(|x| x as f32).into()),
             origin,
             center: spheres.center(row).as_dvec3(),
             radius: f64::from(spheres.radius(row)),
             weight: radiance / cone.pdf(),
             cone,
-            close,
+            close: seen.close,
         })
     }
 
@@ -64,21 +89,24 @@ impl Disc {
         let direction = self.frame.to_world(self.cone.sample(u));
         LightSample {
             direction,
-            t: self.distance(direction),
+            t: distance((self.origin, direction), (self.center, self.radius)),
             target: self.row,
             weight: self.weight,
             pdf: Some(self.cone.pdf()),
             close: self.close,
         }
     }
+}
 
-    /// Distance to the sphere. At the edge of its disc rounding may take the ray past it: then, to
-    /// the point where it is nearest.
-    pub(super) fn distance(&self, direction: Vec3) -> f64 {
-        let ray = ExactRay::new(self.origin, direction, true);
-        match intersect::confirm(&ray, self.center, self.radius, || false) {
-            Some(root) => root.t,
-            None => (self.center - ray.origin).dot(ray.direction) / ray.direction.length_squared(),
-        }
+/// Distance from a surface to a sphere, by center and radius. At the edge of its disc rounding may
+/// take the ray past it: then, to the point where it is nearest.
+pub(super) fn distance(
+    (origin, direction): (glam::Vec3, glam::Vec3),
+    (center, radius): (DVec3, f64),
+) -> f64 {
+    let ray = ExactRay::new(origin, direction, true);
+    match intersect::confirm(&ray, center, radius, || false) {
+        Some(root) => root.t,
+        None => (center - ray.origin).dot(ray.direction) / ray.direction.length_squared(),
     }
 }

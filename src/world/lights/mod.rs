@@ -2,6 +2,7 @@
 
 mod choice;
 mod disc;
+mod discs;
 mod grow;
 mod point;
 mod row;
@@ -10,7 +11,7 @@ mod tree;
 
 pub use disc::Disc;
 pub use point::Point;
-pub use row::{LightRow, ROW};
+pub use row::{LightRow, ROW, ReceiverRow};
 pub use sun::Sun;
 pub use tree::Receiver;
 
@@ -215,7 +216,7 @@ impl Lights {
             return (0.0, true);
         };
         match toward_sphere(spheres, row as usize, (at.point, self.reach)) {
-            Some((_, cone, close)) => (self.probability(at, index) * cone.pdf(), close),
+            Some((seen, cone)) => (self.probability(at, index) * cone.pdf(), seen.close),
             None => (0.0, true),
         }
     }

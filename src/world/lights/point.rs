@@ -1,9 +1,12 @@
 //! Point lights.
 
-use super::LightSample;
+use super::row::{LightRow, ROW, ReceiverRow};
+use super::{LightSample, Lights};
+use crate::lanes::{Doubles, F64x8, Mask, set_bits};
 use crate::ray::MISS;
 use crate::scene::{BRIGHTEST, Rgb};
-use glam::{DVec3, Vec3};
+use crate::vec3::Vec3;
+use glam::DVec3;
 
 /// A point light in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,25 +18,85 @@ pub struct Point {
     pub(super) falloff: Option<f64>,
 }
 
+/// Points, as seen from others: one, or a row.
+struct Seen<D: Doubles> {
+    /// Unit vectors toward them.
+    direction: Vec3<D>,
+    distance: D,
+    weight: Vec3<D>,
+    /// False at the light itself.
+    apart: D::Mask,
+}
+
+/// `scale` is that of the fall-off, 0 where there is none.
+#[inline(always)]
+fn see<D: Doubles>(
+    origin: Vec3<D>,
+    (position, intensity): (Vec3<D>, Vec3<D>),
+    scale: D,
+) -> Seen<D> {
+    let (zero, one) = (D::splat(0.0), D::splat(1.0));
+    let toward = position - origin;
+    let distance = toward.dot_unfused(toward).sqrt();
+    // In double precision: in units far from 1, intensity and fall-off may each leave single
+    // precision. Next to a surface, light has no bound but this.
+    let ratio = scale / distance;
+    let falloff = D::select(zero.lt(scale), ratio * ratio, one);
+    let most = D::splat(f64::from(BRIGHTEST));
+    let weight = (intensity * falloff).map(|channel| D::select(channel.lt(most), channel, most));
+    let direction = toward.map(|x| x / distance);
+    Seen { direction, distance, weight, apart: zero.lt(distance) }
+}
+
 impl Point {
     /// Light at a point; `None` at the light itself.
-    pub(super) fn sample(&self, origin: Vec3) -> Option<LightSample> {
-        let toward = self.position - origin.as_dvec3();
-        let distance = toward.length();
-        if distance == 0.0 {
-            return None;
-        }
-        // In double precision: in units far from 1, intensity and fall-off may each leave single
-        // precision. Next to a surface, light has no bound but this.
-        let falloff = self.falloff.map_or(1.0, |scale| (scale / distance).powi(2));
-        let most = DVec3::splat(f64::from(BRIGHTEST));
-        Some(LightSample {
-            direction: (toward / distance).as_vec3(),
-            t: distance,
+    pub(super) fn sample(&self, origin: glam::Vec3) -> Option<LightSample> {
+        let light = (self.position.into(), self.intensity.as_dvec3().into());
+        let seen: Seen<f64> = see(origin.as_dvec3().into(), light, self.falloff.unwrap_or(0.0));
+        seen.apart.then(|| LightSample {
+            direction: seen.direction.map(|x| x as f32).into(),
+            t: seen.distance,
             target: MISS,
-            weight: (self.intensity.as_dvec3() * falloff).min(most).as_vec3(),
+            weight: seen.weight.map(|x| x as f32).into(),
             pdf: None,
             close: false,
         })
+    }
+}
+
+impl Lights {
+    /// [`Point::sample`] for each receiver in `lanes`: point `light[lane]`, counted from `first`.
+    #[inline(always)]
+    pub(super) fn sample_points(
+        &self,
+        at: &ReceiverRow,
+        (light, lanes): (&[u32; ROW], u32),
+        first: usize,
+    ) -> LightRow {
+        let (mut position, mut intensity) = ([[0.0; ROW]; 3], [[0.0; ROW]; 3]);
+        let mut scale = [0.0; ROW];
+        for lane in set_bits(lanes) {
+            let point = &self.points[light[lane] as usize - first];
+            for axis in 0..3 {
+                position[axis][lane] = point.position[axis];
+                intensity[axis][lane] = f64::from(point.intensity[axis]);
+            }
+            scale[lane] = point.falloff.unwrap_or(0.0);
+        }
+        let origin = at.point.halves();
+        let [low, high] = [0, 1].map(|half| {
+            let part = |column: &[f64; ROW]| F64x8::from(&column[8 * half..8 * half + 8]);
+            let vector = |[x, y, z]: &[[f64; ROW]; 3]| Vec3::new(part(x), part(y), part(z));
+            see(origin[half], (vector(&position), vector(&intensity)), part(&scale))
+        });
+        let row = LightRow::distant(
+            Vec3::narrow([low.direction, high.direction]),
+            Rgb::ZERO,
+            lanes & (low.apart.bits() | high.apart.bits() << 8),
+        );
+        let mut t = [0.0; ROW];
+        t[..8].copy_from_slice(&low.distance.to_array());
+        t[8..].copy_from_slice(&high.distance.to_array());
+        LightRow { t, weight: Vec3::narrow([low.weight, high.weight]), ..row }
     }
 }

@@ -1,47 +1,148 @@
 //! Light samples in rows, sixteen at a time: each is a long chain of arithmetic, and in lanes the
 //! chains run side by side.
 
-use super::{Aim, Disc, LightSample};
-use crate::intersect::{self, Pairs};
-use crate::lanes::{F32x16, F64x8, Mask, set_bits, widen};
-use crate::ray::{ExactRay, MISS};
+use super::choice::Choice;
+use super::discs::distances;
+use super::{Aim, Disc, LightSample, Lights, Receiver};
+use crate::lanes::{F32x16, F64x8, Lanes, set_bits};
+use crate::ray::MISS;
+use crate::sampling::LightDraw;
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
+use crate::world::World;
+use std::ops::Range;
 
 /// Samples in a row.
 pub const ROW: usize = 16;
 
-/// Light that arrives from several directions, if nothing is in between; lane by lane what
-/// [`LightSample`] is.
+/// A row of points that are lit; lane by lane what [`Receiver`] is.
+#[derive(Clone, Copy, Debug)]
+pub struct ReceiverRow {
+    /// Where they are.
+    pub point: Vec3<F32x16>,
+    /// Unit normals, on the side that is lit.
+    pub normal: Vec3<F32x16>,
+    /// The spheres whose surface it is.
+    pub own: [u32; ROW],
+}
+
+/// Light that arrives, if nothing is in between; lane by lane what [`LightSample`] is.
 #[derive(Clone, Copy, Debug)]
 pub struct LightRow {
     /// Unit vectors toward the light.
     pub direction: Vec3<F32x16>,
     /// Distances of the light.
     pub t: [f64; ROW],
-    /// The light's row if it is a sphere, otherwise [`MISS`].
-    pub target: u32,
-    /// Radiance over density, by channel; black where there is no light.
+    /// Rows of lights that are spheres, otherwise [`MISS`].
+    pub target: [u32; ROW],
+    /// Radiance over density, by channel.
     pub weight: Vec3<F32x16>,
-    /// How many of the lanes are samples: the first.
-    pub count: usize,
+    /// Densities by solid angle; 0 for lights of no extent, and where they were not asked for.
+    pub pdf: F32x16,
+    /// Lanes of lights that are close.
+    pub close: u32,
+    /// Lanes that are samples: there is no light in the others.
+    pub lanes: u32,
+}
+
+/// The first `count` lanes.
+pub(super) fn first(count: usize) -> u32 {
+    (1_u32 << count) - 1
+}
+
+impl ReceiverRow {
+    /// The one in a lane.
+    #[inline(always)]
+    pub fn receiver(&self, lane: usize) -> Receiver {
+        let one = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]).into();
+        Receiver { point: one(self.point), normal: one(self.normal), own: self.own[lane] }
+    }
 }
 
 impl LightRow {
     /// Light from infinity, the same from everywhere.
     #[inline(always)]
-    pub fn distant(direction: Vec3<F32x16>, weight: Rgb, count: usize) -> Self {
-        Self { direction, t: [f64::INFINITY; ROW], target: MISS, weight: every(weight), count }
+    pub fn distant(direction: Vec3<F32x16>, weight: Rgb, lanes: u32) -> Self {
+        Self {
+            direction,
+            t: [f64::INFINITY; ROW],
+            target: [MISS; ROW],
+            weight: every(weight),
+            pdf: F32x16::splat(0.0),
+            close: 0,
+            lanes,
+        }
+    }
+
+    /// No light.
+    #[inline(always)]
+    fn dark() -> Self {
+        Self::distant(Vec3::splat(0.0, 0.0, 1.0), Rgb::ZERO, 0)
     }
 
     /// One of the samples.
     #[inline]
     pub fn sample(&self, lane: usize) -> LightSample {
-        let direction = self.direction.map(|lanes| lanes.to_array()[lane]).into();
-        let weight = self.weight.map(|lanes| lanes.to_array()[lane]).into();
-        let (t, target) = (self.t[lane], self.target);
-        LightSample { direction, t, target, weight, pdf: None, close: false }
+        let one = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]).into();
+        let pdf = self.pdf.to_array()[lane];
+        LightSample {
+            direction: one(self.direction),
+            t: self.t[lane],
+            target: self.target[lane],
+            weight: one(self.weight),
+            pdf: (pdf > 0.0).then_some(pdf),
+            close: self.close >> lane & 1 == 1,
+        }
     }
+
+    /// These samples, and others in their lanes.
+    #[inline(always)]
+    fn or(self, others: &Self) -> Self {
+        if self.lanes == 0 {
+            return *others;
+        }
+        let mask = <F32x16 as Lanes>::lanes(others.lanes);
+        let mut row = Self {
+            direction: Vec3::select(mask, others.direction, self.direction),
+            weight: Vec3::select(mask, others.weight, self.weight),
+            pdf: Lanes::select(mask, others.pdf, self.pdf),
+            close: self.close & !others.lanes | others.close & others.lanes,
+            lanes: self.lanes | others.lanes,
+            ..self
+        };
+        for lane in set_bits(others.lanes) {
+            (row.t[lane], row.target[lane]) = (others.t[lane], others.target[lane]);
+        }
+        row
+    }
+
+    /// Puts samples in lanes.
+    #[inline(always)]
+    fn with(mut self, samples: impl Iterator<Item = (usize, LightSample)>) -> Self {
+        for (lane, sample) in samples {
+            (self.t[lane], self.target[lane]) = (sample.t, sample.target);
+            set_lane(&mut self.direction, lane, sample.direction);
+            set_lane(&mut self.weight, lane, sample.weight);
+            self.pdf.as_mut_array()[lane] = sample.pdf.unwrap_or(0.0);
+            self.close |= u32::from(sample.close) << lane;
+            self.lanes |= 1 << lane;
+        }
+        self
+    }
+
+    /// The same of lights that were chosen with these probabilities.
+    #[inline(always)]
+    fn chosen(self, probability: F32x16) -> Self {
+        let weight = self.weight.map(|channel| channel / probability);
+        Self { weight, pdf: self.pdf * probability, ..self }
+    }
+}
+
+#[inline(always)]
+fn set_lane(row: &mut Vec3<F32x16>, lane: usize, value: glam::Vec3) {
+    row.x.as_mut_array()[lane] = value.x;
+    row.y.as_mut_array()[lane] = value.y;
+    row.z.as_mut_array()[lane] = value.z;
 }
 
 #[inline(always)]
@@ -49,75 +150,112 @@ fn every(color: Rgb) -> Vec3<F32x16> {
     Vec3::splat(color.x, color.y, color.z)
 }
 
-impl Aim<'_> {
-    /// [`Aim::sample`] for the first `count` lanes of a row of numbers; densities are left out.
+impl Lights {
+    /// One sample of one light for each of the receivers in `lanes`, from the numbers of a set for
+    /// each: [`Lights::choose`] and [`Lights::sample`], and the probability of the choice is in
+    /// weights and densities.
     #[inline(always)]
-    pub fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightRow {
-        match self {
-            Self::Disc(disc) => disc.sample_row(u, count),
-            Self::Sun(sun) => match &sun.disc {
-                Some(cone) => {
-                    let direction = sun.frame.row_to_world(cone.sample_row(u));
-                    LightRow::distant(direction, sun.weight, count)
-                }
-                None => self.sample_each(u, count),
-            },
-            Self::Delta(_) | Self::Sky(_) => self.sample_each(u, count),
+    pub fn sample_row(
+        &self,
+        world: &World,
+        at: &ReceiverRow,
+        numbers: [F32x16; 4],
+        lanes: u32,
+    ) -> LightRow {
+        let [u, v, ..] = numbers;
+        if let Some(sun) = self.lone_sun() {
+            return sun.sample_row([u, v], lanes);
         }
+        let draw = LightDraw::light_row(numbers);
+        let (light, probability) = match &self.choice {
+            Choice::None => return LightRow::dark(),
+            Choice::Lone => return self.sample_lights(world, at, (&[0; ROW], lanes), [u, v]),
+            Choice::Tree(tree) => tree.choose_row(at, draw, lanes),
+            Choice::Table(_) => self.choose_each(at, draw),
+        };
+        let samples = self.sample_lights(world, at, (&light, lanes), [u, v]);
+        samples.chosen(F32x16::new(probability))
     }
 
-    fn sample_each(&self, u: [F32x16; 2], count: usize) -> LightRow {
+    /// Samples of the lights that were chosen.
+    #[inline(always)]
+    fn sample_lights(
+        &self,
+        world: &World,
+        at: &ReceiverRow,
+        (light, lanes): (&[u32; ROW], u32),
+        u: [F32x16; 2],
+    ) -> LightRow {
+        let lanes_of = |kind: Range<usize>| {
+            let chosen = set_bits(lanes).filter(|&lane| kind.contains(&(light[lane] as usize)));
+            chosen.fold(0_u32, |lanes, lane| lanes | 1 << lane)
+        };
+        let emitters = self.emitters.len();
+        let discs = lanes_of(0..emitters);
+        let points = lanes_of(emitters..emitters + self.points.len());
+        let mut row = LightRow::dark();
+        if discs != 0 {
+            row = self.sample_discs(&world.spheres, at, (light, discs), u);
+        }
+        if points != 0 {
+            row = row.or(&self.sample_points(at, (light, points), emitters));
+        }
+        let others = lanes & !(discs | points);
+        if others == 0 {
+            return row;
+        }
         let [u, v] = u.map(F32x16::to_array);
-        let (mut direction, mut weight) = ([[0.0; ROW]; 3], [[0.0; ROW]; 3]);
-        let mut row = LightRow::distant(Vec3::splat(0.0, 0.0, 1.0), Rgb::ZERO, count);
-        for lane in 0..count {
-            let Some(sample) = self.sample([u[lane], v[lane]]) else { continue };
-            row.t[lane] = sample.t;
-            for axis in 0..3 {
-                direction[axis][lane] = sample.direction[axis];
-                weight[axis][lane] = sample.weight[axis];
+        row.with(set_bits(others).filter_map(|lane| {
+            let Receiver { point, own, .. } = at.receiver(lane);
+            let light = light[lane] as usize;
+            Some((lane, self.sample(world, light, (point, own), [u[lane], v[lane]])?))
+        }))
+    }
+
+    fn choose_each(&self, at: &ReceiverRow, draw: [F64x8; 2]) -> ([u32; ROW], [f32; ROW]) {
+        let draw = draw.map(F64x8::to_array);
+        let chosen: [(u32, f32); ROW] = std::array::from_fn(|lane| {
+            let chosen = self.choose(&at.receiver(lane), draw[lane / 8][lane % 8]);
+            chosen.map_or((0, 1.0), |(light, probability)| (light as u32, probability))
+        });
+        (chosen.map(|(light, _)| light), chosen.map(|(_, probability)| probability))
+    }
+}
+
+impl Aim<'_> {
+    /// [`Aim::sample`] for the first `count` lanes of a row of numbers.
+    #[inline(always)]
+    pub fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightRow {
+        let lanes = first(count);
+        match self {
+            Self::Disc(disc) => disc.sample_row(u, lanes),
+            Self::Sun(sun) => sun.sample_row(u, lanes),
+            Self::Delta(_) | Self::Sky(_) => {
+                let [u, v] = u.map(F32x16::to_array);
+                LightRow::dark().with(
+                    (0..count).filter_map(|lane| Some((lane, self.sample([u[lane], v[lane]])?))),
+                )
             }
         }
-        let lanes = |[x, y, z]: [[f32; ROW]; 3]| Vec3::new(x, y, z).map(F32x16::new);
-        LightRow { direction: lanes(direction), weight: lanes(weight), ..row }
     }
 }
 
 impl Disc {
     #[inline(always)]
-    fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightRow {
+    fn sample_row(&self, u: [F32x16; 2], lanes: u32) -> LightRow {
         let direction = self.frame.row_to_world(self.cone.sample_row(u));
+        let splat = |v: glam::DVec3| [Vec3::from(v).map(F64x8::splat); 2];
+        let origin = Vec3::from(self.origin).map(F32x16::splat);
+        let sphere = (&splat(self.center), &[F64x8::splat(self.radius); 2]);
         LightRow {
             direction,
-            t: self.distances(direction, count),
-            target: self.row,
+            t: distances((origin, direction), sphere, lanes),
+            target: [self.row; ROW],
             weight: every(self.weight),
-            count,
+            pdf: F32x16::splat(self.cone.pdf()),
+            close: if self.close { lanes } else { 0 },
+            lanes,
         }
-    }
-
-    /// [`Disc::distance`] for each of the first `count` lanes.
-    #[inline(always)]
-    fn distances(&self, direction: Vec3<F32x16>, count: usize) -> [f64; ROW] {
-        let splat = |v: glam::DVec3| Vec3::from(v).map(F64x8::splat);
-        let one = ExactRay::new(self.origin, glam::Vec3::Z, true);
-        let [x, y, z] = [direction.x, direction.y, direction.z].map(widen);
-        let mut t = [0.0; ROW];
-        for (half, t) in t.chunks_exact_mut(8).enumerate().take(count.div_ceil(8)) {
-            let (plain, near) = intersect::confirm_plain(&Pairs {
-                origin: splat(one.origin),
-                direction: Vec3::new(x[half], y[half], z[half]),
-                origin_error: F64x8::splat(one.origin_error),
-                center: splat(self.center),
-                radius: F64x8::splat(self.radius),
-            });
-            t.copy_from_slice(&near.to_array());
-            let samples = (1_u32 << (count - 8 * half).min(8)) - 1;
-            for lane in set_bits(!plain.bits() & samples) {
-                t[lane] = self.distance(direction.map(|c| c.to_array()[8 * half + lane]).into());
-            }
-        }
-        t
     }
 }
 
@@ -126,6 +264,7 @@ mod tests {
     use super::*;
     use crate::sampling::{mix, stream, unit_pair};
     use crate::spheres::Spheres;
+    use crate::vec3::Vec3 as Row3;
     use crate::world::Sun;
     use glam::{DVec3, Vec3};
 
@@ -134,7 +273,7 @@ mod tests {
             std::array::from_fn(|lane| unit_pair(stream(mix(seed), lane as u64)));
         let u = [0, 1].map(|axis| F32x16::new(draws.map(|draw| draw[axis])));
         let row = aim.sample_row(u, count);
-        assert_eq!(row.count, count);
+        assert_eq!(row.lanes, first(count));
         for (lane, &draw) in draws.iter().enumerate().take(count) {
             let (sample, one) = (row.sample(lane), aim.sample(draw).expect("there is light"));
             assert_eq!(sample.direction, one.direction, "lane {lane}");
@@ -158,5 +297,90 @@ mod tests {
             let sun = Sun::new(DVec3::new(0.6, 0.0, 0.8), Rgb::ONE, angle);
             check(&Aim::Sun(&sun), ROW, 1);
         }
+    }
+
+    /// Receivers about the origin, on many sides.
+    fn receivers(seed: u64) -> [Receiver; ROW] {
+        std::array::from_fn(|lane| {
+            let number = |k| stream(mix(seed), 8 * lane as u64 + k);
+            let [[a, b], [c, d]] = [0, 1].map(|k| unit_pair(number(k)));
+            let normal = crate::sampling::uniform_sphere([a, b]);
+            let point = crate::sampling::uniform_sphere([c, d]) * (4.0 * a * a);
+            Receiver { point, normal, own: if lane == 3 { 0 } else { MISS } }
+        })
+    }
+
+    fn rows_choose_and_sample_as_their_lanes_do(world: &World) {
+        for (seed, lanes) in [(1, 0xffff), (2, 0x0fff), (3, 0xa5a5), (4, 1), (5, 0x8000)] {
+            let each = receivers(seed);
+            let vector = |of: fn(&Receiver) -> Vec3| {
+                let axis = |axis: usize| F32x16::new(each.map(|at| of(&at)[axis]));
+                Row3::new(axis(0), axis(1), axis(2))
+            };
+            let (point, normal) = (vector(|at| at.point), vector(|at| at.normal));
+            let at = ReceiverRow { point, normal, own: each.map(|at| at.own) };
+            let numbers: [[f32; 4]; ROW] = std::array::from_fn(|lane| {
+                let pair = |k| unit_pair(stream(mix(seed + 9), 2 * lane as u64 + k));
+                let ([a, b], [c, d]) = (pair(0), pair(1));
+                [a, b, c, d]
+            });
+            let columns = std::array::from_fn(|i| F32x16::new(numbers.map(|draw| draw[i])));
+            let row = world.lights.sample_row(world, &at, columns, lanes);
+            assert_eq!(row.close & !row.lanes, 0);
+            for lane in 0..ROW {
+                let draw = LightDraw::new(numbers[lane]);
+                let from = (each[lane].point, each[lane].own);
+                let chosen = world.lights.choose(&each[lane], draw.light);
+                let one = chosen.filter(|_| lanes >> lane & 1 == 1).and_then(|(light, chance)| {
+                    Some((world.lights.sample(world, light, from, draw.point)?, chance))
+                });
+                assert_eq!(one.is_some(), row.lanes >> lane & 1 == 1, "{seed} {lane}");
+                let Some((one, chance)) = one else { continue };
+                let sample = row.sample(lane);
+                assert_eq!((sample.direction, sample.t), (one.direction, one.t));
+                assert_eq!((sample.target, sample.close), (one.target, one.close));
+                assert_eq!(sample.weight, one.weight / chance);
+                assert_eq!(sample.pdf, one.pdf.map(|pdf| pdf * chance));
+            }
+        }
+    }
+
+    #[test]
+    fn lights_of_every_kind_alone_and_together() {
+        use crate::scene::{Light, LightChoice, Material, NamedMaterial, Scene};
+        let lamps = |count: usize| {
+            let mut scene = Scene::default();
+            for i in 0..count {
+                let angle = i as f64;
+                let radiance = Rgb::new(1.0, 0.5, i as f32);
+                let material = Material::Emitter { radiance, albedo: Rgb::ZERO };
+                scene.materials.push(NamedMaterial { name: String::new(), material });
+                let center = DVec3::new(angle.sin(), angle.cos(), 0.1 * angle) * 1.5;
+                scene.spheres.push(center, 0.1 + 0.01 * angle, i as u32, Rgb::ONE);
+            }
+            scene
+        };
+        let mut scenes: Vec<Scene> = [1, 2, 16, 17, 60].map(lamps).into();
+        let dark = || {
+            let mut scene = lamps(1);
+            scene.materials[0].material = Material::Lambertian { color: Rgb::ONE };
+            scene
+        };
+        let lit = |light: Light| Scene { lights: vec![light], ..dark() };
+        let (position, intensity) = (DVec3::new(0.3, 2.0, -1.0), Rgb::new(1.0, 2.0, 3.0));
+        scenes.push(lit(Light::Point { position, intensity, falloff: true }));
+        scenes.push(lit(Light::Point { position, intensity, falloff: false }));
+        let (direction, irradiance) = (DVec3::new(0.6, 0.0, 0.8), Rgb::ONE);
+        scenes.push(lit(Light::Sun { direction, irradiance, angular_radius: 3.0 }));
+        scenes.push(lit(Light::Sun { direction, irradiance, angular_radius: 0.0 }));
+        for choice in [LightChoice::Tree, LightChoice::Power, LightChoice::Uniform] {
+            for scene in &scenes {
+                let mut scene = scene.clone();
+                scene.settings.light_choice = choice;
+                let world = World::build(&scene).expect("the scene is good");
+                rows_choose_and_sample_as_their_lanes_do(&world);
+            }
+        }
+        rows_choose_and_sample_as_their_lanes_do(&crate::world::lights::tests::world());
     }
 }

@@ -1,9 +1,11 @@
 //! Suns: discs at infinity.
 
-use super::LightSample;
+use super::{LightRow, LightSample};
+use crate::lanes::F32x16;
 use crate::ray::MISS;
 use crate::sampling::{Cone, Frame};
 use crate::scene::{BRIGHTEST, Rgb};
+use crate::vec3::Vec3 as Row3;
 use glam::{DVec3, Vec3};
 use std::f32::consts::PI;
 
@@ -60,5 +62,15 @@ impl Sun {
             pdf: self.disc.map(|cone| cone.pdf()),
             close: false,
         }
+    }
+
+    /// [`Sun::sample`] for `lanes` of a row of numbers.
+    #[inline(always)]
+    pub(super) fn sample_row(&self, u: [F32x16; 2], lanes: u32) -> LightRow {
+        let (direction, pdf) = match &self.disc {
+            None => (Row3::from(self.direction).map(F32x16::splat), 0.0),
+            Some(cone) => (self.frame.row_to_world(cone.sample_row(u)), cone.pdf()),
+        };
+        LightRow { pdf: F32x16::splat(pdf), ..LightRow::distant(direction, self.weight, lanes) }
     }
 }

@@ -9,10 +9,13 @@
 //! What is infinitely far is a ball [`FAR`] away, and what shines from everywhere is a ball as large
 //! as that about everything: one formula serves all.
 
+mod row;
+
 use super::grow::grow;
 use crate::lanes::{F32x16, Lanes};
 use crate::vec3;
 use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// Branches of a node, at most.
 pub(super) const BRANCHES: usize = 16;
@@ -95,6 +98,9 @@ pub(super) struct Tree {
 /// Instead of a node: what is above all.
 pub(super) const ROOT: u32 = u32::MAX;
 
+/// Sums of chances that are all well within single precision.
+const RESOLVED: Range<f64> = 1e-30..1e30;
+
 /// The chances of neighbors, up to a factor.
 struct Chances {
     each: [f32; BRANCHES],
@@ -120,8 +126,17 @@ impl Tree {
     /// draw chooses the same light or a neighbor.
     // Not where a lone light would have to go round it.
     #[inline(never)]
-    pub(super) fn choose(&self, at: &Receiver, mut draw: f64) -> (usize, f32) {
-        let (mut first, mut count, mut probability) = (0, usize::from(self.top), 1.0);
+    pub(super) fn choose(&self, at: &Receiver, draw: f64) -> (usize, f32) {
+        self.descend((0, usize::from(self.top)), at, (draw, 1.0))
+    }
+
+    /// Chooses among the `count` nodes from `first` on and below, which came with a probability.
+    fn descend(
+        &self,
+        (mut first, mut count): (usize, usize),
+        at: &Receiver,
+        (mut draw, mut probability): (f64, f64),
+    ) -> (usize, f32) {
         loop {
             let chances = self.chances(first, count, at);
             let (lane, rest) = chances.pick(count, draw);
@@ -163,7 +178,7 @@ impl Tree {
     #[inline(always)]
     fn chances(&self, first: usize, count: usize, at: &Receiver) -> Chances {
         let chances = Chances::new(self.irradiance(first, at), count);
-        if (1e-30..1e30).contains(&chances.total) {
+        if RESOLVED.contains(&chances.total) {
             return chances;
         }
         let row = |column: &[f32]| F32x16::load(&column[first..]);
@@ -172,19 +187,41 @@ impl Tree {
 
     /// About what each of the nodes from `first` on gives to a receiver, if nothing is in between.
     #[inline(always)]
-    fn irradiance<L: Lanes>(&self, first: usize, at: &Receiver) -> L {
-        let row = |column: &[f32]| L::load(&column[first..]);
+    fn irradiance(&self, first: usize, at: &Receiver) -> F32x16 {
+        let row = |column: &[f32]| F32x16::load(&column[first..]);
         let splat = |v: Vec3| vec3::Vec3::splat(v.x, v.y, v.z);
+        let nodes = Nodes {
+            center: vec3::Vec3::new(row(&self.x), row(&self.y), row(&self.z)),
+            radius: row(&self.radius),
+            power: row(&self.power),
+            steady: row(&self.steady),
+        };
+        nodes.irradiance(splat(at.point), splat(at.normal))
+    }
+}
+
+/// A row of nodes, or one in every lane.
+struct Nodes<L> {
+    center: vec3::Vec3<L>,
+    radius: L,
+    power: L,
+    steady: L,
+}
+
+impl<L: Lanes> Nodes<L> {
+    /// About what each gives to the receiver in its lane, if nothing is in between.
+    #[inline(always)]
+    fn irradiance(&self, point: vec3::Vec3<L>, normal: vec3::Vec3<L>) -> L {
         let (zero, four) = (L::splat(0.0), L::splat(4.0));
-        let toward = vec3::Vec3::new(row(&self.x), row(&self.y), row(&self.z)) - splat(at.point);
-        let (radius, distance2) = (row(&self.radius), toward.dot(toward));
+        let toward = self.center - point;
+        let (radius, distance2) = (self.radius, toward.dot(toward));
         let radius2 = radius * radius;
         let near = L::splat(1.0) / distance2.max(radius2 * L::splat(WITHIN)).sqrt();
-        let (cosine, sine) = (toward.dot(splat(at.normal)) * near, radius.abs() * near);
+        let (cosine, sine) = (toward.dot(normal) * near, radius.abs() * near);
         // Of a disc that the horizon cuts, about what the part above gives.
         let above = (cosine + sine).max(zero);
         let facing = L::select(cosine.lt(sine), above * above / (sine * four), cosine);
-        let whole = (near * near).mul_add(row(&self.power), row(&self.steady));
+        let whole = (near * near).mul_add(self.power, self.steady);
         // What is faint beyond single precision keeps a chance.
         let given = (whole * facing.max(L::splat(HIDDEN))).max(L::splat(f32::MIN_POSITIVE));
         L::select(radius.is_negative() & distance2.lt(radius2), zero, given)

@@ -1,0 +1,102 @@
+//! The choice of lights for a row of receivers.
+//!
+//! Near the root all of them look at the same nodes: there a lane is a receiver and not a node, which
+//! leaves sums and searches in lanes as well. What is below, each looks for alone.
+
+use super::super::row::{ROW, ReceiverRow};
+use super::{BRANCHES, Nodes, RESOLVED, Tree};
+use crate::lanes::{Doubles, F32x16, F64x8, Mask, set_bits, widen};
+use crate::vec3::Vec3;
+
+/// The nodes that half a row of receivers have chosen.
+struct Picked {
+    /// Places among their neighbors.
+    place: F64x8,
+    /// Where in the share of the node the draw has fallen.
+    rest: F64x8,
+    probability: F64x8,
+    /// Lanes whose chances single precision resolves.
+    resolved: u32,
+}
+
+impl Tree {
+    /// [`Tree::choose`] for each of the receivers in `lanes`: lights, and the probabilities of the
+    /// choices.
+    #[inline(always)]
+    pub(in super::super) fn choose_row(
+        &self,
+        at: &ReceiverRow,
+        draw: [F64x8; 2],
+        lanes: u32,
+    ) -> ([u32; ROW], [f32; ROW]) {
+        let chances = self.chances_row(at);
+        let (mut light, mut probability) = ([0; ROW], [1.0; ROW]);
+        for (half, draw) in draw.into_iter().enumerate() {
+            let wanted = lanes >> (8 * half) & 0xff;
+            if wanted == 0 {
+                continue;
+            }
+            let picked = pick(&chances.map(|row| widen(row)[half])[..usize::from(self.top)], draw);
+            let (place, chance) = (picked.place.to_array(), picked.probability.to_array());
+            for i in set_bits(wanted) {
+                let lane = 8 * half + i;
+                let node = place[i] as usize;
+                let below = usize::from(self.children[node]);
+                let (found, pdf) = if picked.resolved >> i & 1 == 0 {
+                    self.choose(&at.receiver(lane), draw.to_array()[i])
+                } else if below > 0 {
+                    let first = self.child[node] as usize;
+                    let rest = picked.rest.to_array()[i];
+                    self.descend((first, below), &at.receiver(lane), (rest, chance[i]))
+                } else {
+                    (self.child[node] as usize, chance[i] as f32)
+                };
+                (light[lane], probability[lane]) = (found as u32, pdf);
+            }
+        }
+        (light, probability)
+    }
+
+    /// What each of the uppermost nodes gives to each receiver.
+    #[inline(always)]
+    fn chances_row(&self, at: &ReceiverRow) -> [F32x16; BRANCHES] {
+        let mut chances = [F32x16::splat(0.0); BRANCHES];
+        for (node, chance) in chances.iter_mut().enumerate().take(usize::from(self.top)) {
+            let nodes = Nodes {
+                center: Vec3::splat(self.x[node], self.y[node], self.z[node]),
+                radius: F32x16::splat(self.radius[node]),
+                power: F32x16::splat(self.power[node]),
+                steady: F32x16::splat(self.steady[node]),
+            };
+            *chance = nodes.irradiance(at.point, at.normal);
+        }
+        chances
+    }
+}
+
+/// In each lane the node in whose share a draw falls, of those with these chances.
+#[inline(always)]
+fn pick(chances: &[F64x8], draw: F64x8) -> Picked {
+    let (zero, one) = (F64x8::splat(0.0), F64x8::splat(1.0));
+    let total = chances.iter().fold(zero, |sum, &chance| sum + chance);
+    let (mut left, mut open) = (draw * total, zero.lt(one));
+    let (mut place, mut part, mut share) = (zero, zero, one);
+    for (i, &chance) in chances.iter().enumerate() {
+        let here = open & zero.lt(chance);
+        place = Doubles::select(here, F64x8::splat(i as f64), place);
+        part = Doubles::select(here, left, part);
+        share = Doubles::select(here, chance, share);
+        open = open & !(here & left.lt(chance));
+        left -= chance;
+    }
+    let below_one = F64x8::splat(1.0 - f64::EPSILON);
+    let rest = part / share;
+    let rest = Doubles::select(rest.lt(below_one), rest, below_one);
+    let resolved = !total.lt(F64x8::splat(RESOLVED.start)) & total.lt(F64x8::splat(RESOLVED.end));
+    Picked {
+        place,
+        rest: Doubles::select(zero.lt(rest), rest, zero),
+        probability: share / total,
+        resolved: resolved.bits(),
+    }
+}
