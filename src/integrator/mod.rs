@@ -6,6 +6,7 @@
 
 pub mod ao;
 pub mod clock;
+pub mod counters;
 pub mod gather;
 pub mod path;
 mod scatter;

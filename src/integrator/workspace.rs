@@ -1,6 +1,7 @@
 //! The columns that a task works on: allocated once, used for tile after tile.
 
 use super::clock::Clock;
+use super::counters::Counters;
 use super::shadows::Shadows;
 use super::skips::Skips;
 use super::surface::{chord, far_end};
@@ -11,7 +12,6 @@ use crate::sampling::{PathRow, PathState, Sampler};
 use crate::scene::Rgb;
 use crate::world::{Kind, World};
 use glam::{DVec3, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// Paths that are followed together: 16 samples of each pixel of a tile. The columns of that many
 /// stay in the second-level cache.
@@ -94,60 +94,6 @@ pub struct Bins {
     pub escaped: Vec<u32>,
     /// A surface of each kind.
     pub kind: [Vec<u32>; Kind::COUNT],
-}
-
-/// What was done, for statistics.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Counters {
-    /// Samples that need no ray, for nothing but an even background can be seen there.
-    pub skipped_samples: u64,
-    /// Rays from the camera.
-    pub camera_rays: u64,
-    /// Rays from surfaces, looking for what comes next.
-    pub bounce_rays: u64,
-    /// Rays from surfaces toward light.
-    pub shadow_rays: u64,
-    /// Decisions about hits that took arithmetic without rounding.
-    pub exact_decisions: u64,
-    /// Paths that the depth limit ended.
-    pub cut_paths: u64,
-    /// Samples that were negative or not finite, and count as black.
-    pub bad_samples: u64,
-    /// Times that a path was in more glass spheres than it can remember.
-    pub nesting_overflows: u64,
-}
-
-impl Counters {
-    /// All rays.
-    pub fn rays(&self) -> u64 {
-        self.camera_rays + self.bounce_rays + self.shadow_rays
-    }
-
-    /// Adds what another task did.
-    pub fn add(&mut self, other: &Self) {
-        self.skipped_samples += other.skipped_samples;
-        self.camera_rays += other.camera_rays;
-        self.bounce_rays += other.bounce_rays;
-        self.shadow_rays += other.shadow_rays;
-        self.exact_decisions += other.exact_decisions;
-        self.cut_paths += other.cut_paths;
-        self.bad_samples += other.bad_samples;
-        self.nesting_overflows += other.nesting_overflows;
-    }
-
-    /// All of them.
-    pub(crate) fn all(&self) -> [u64; 8] {
-        [
-            self.skipped_samples,
-            self.camera_rays,
-            self.bounce_rays,
-            self.shadow_rays,
-            self.exact_decisions,
-            self.cut_paths,
-            self.bad_samples,
-            self.nesting_overflows,
-        ]
-    }
 }
 
 impl Arrival {

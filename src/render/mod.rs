@@ -30,7 +30,7 @@ use crate::bvh::walk::Method;
 use crate::film::Region;
 use crate::image::Image;
 use crate::integrator::clock::Times;
-use crate::integrator::workspace::Counters;
+use crate::integrator::counters::Counters;
 use crate::noise::Noise;
 use crate::scene::Settings;
 use crate::trace::{Tracer, Width};

@@ -2,7 +2,8 @@
 
 use super::{Options, Progress};
 use crate::integrator::clock::Times;
-use crate::integrator::workspace::{Counters, Workspace};
+use crate::integrator::counters::Counters;
+use crate::integrator::workspace::Workspace;
 use crate::noise::Noise;
 use serde::{Deserialize, Serialize};
 use std::sync::Mutex;

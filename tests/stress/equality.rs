@@ -7,7 +7,7 @@ use spherule::bvh::build::Builder;
 use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Image;
-use spherule::integrator::workspace::Counters;
+use spherule::integrator::counters::Counters;
 use spherule::render::{Options, render};
 use spherule::sampling::{stream, unit};
 use spherule::scene::{

@@ -15,7 +15,7 @@ use spherule::bvh::build::Builder;
 use spherule::bvh::walk::Method;
 use spherule::image::WriteOptions;
 use spherule::integrator::clock::{Stage, Times};
-use spherule::integrator::workspace::Counters;
+use spherule::integrator::counters::Counters;
 use spherule::render::{Render, Tasks};
 use spherule::scene::Settings;
 use spherule::trace::Width;

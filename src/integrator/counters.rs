@@ -1,0 +1,57 @@
+//! What a task has done, in numbers.
+
+use serde::{Deserialize, Serialize};
+
+/// What was done, for statistics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Samples that need no ray, for nothing but an even background can be seen there.
+    pub skipped_samples: u64,
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Rays from surfaces, looking for what comes next.
+    pub bounce_rays: u64,
+    /// Rays from surfaces toward light.
+    pub shadow_rays: u64,
+    /// Decisions about hits that took arithmetic without rounding.
+    pub exact_decisions: u64,
+    /// Paths that the depth limit ended.
+    pub cut_paths: u64,
+    /// Samples that were negative or not finite, and count as black.
+    pub bad_samples: u64,
+    /// Times that a path was in more glass spheres than it can remember.
+    pub nesting_overflows: u64,
+}
+
+impl Counters {
+    /// All rays.
+    pub fn rays(&self) -> u64 {
+        self.camera_rays + self.bounce_rays + self.shadow_rays
+    }
+
+    /// Adds what another task did.
+    pub fn add(&mut self, other: &Self) {
+        self.skipped_samples += other.skipped_samples;
+        self.camera_rays += other.camera_rays;
+        self.bounce_rays += other.bounce_rays;
+        self.shadow_rays += other.shadow_rays;
+        self.exact_decisions += other.exact_decisions;
+        self.cut_paths += other.cut_paths;
+        self.bad_samples += other.bad_samples;
+        self.nesting_overflows += other.nesting_overflows;
+    }
+
+    /// All of them.
+    pub(crate) fn all(&self) -> [u64; 8] {
+        [
+            self.skipped_samples,
+            self.camera_rays,
+            self.bounce_rays,
+            self.shadow_rays,
+            self.exact_decisions,
+            self.cut_paths,
+            self.bad_samples,
+            self.nesting_overflows,
+        ]
+    }
+}
