@@ -5,6 +5,7 @@
 //! in [`workspace::Paths`]. A stage whose column is empty does nothing.
 
 pub mod ao;
+pub mod bins;
 pub mod clock;
 pub mod counters;
 pub mod gather;

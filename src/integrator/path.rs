@@ -31,7 +31,7 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
         stages::glass(job, work, bounce);
         stages::by_kind(job, work, &mut Shade { job, event: Event { bounce, faint } });
         stages::occlude(job, work);
-        work.compact();
+        work.advance();
         work.clock.end(Stage::Shade);
         if work.is_empty() {
             return;
@@ -62,7 +62,6 @@ fn escape(job: &Job, work: &mut Workspace) {
             }
         }
         work.paths.radiance[place] += work.paths.throughput[place] * light;
-        work.end(row);
     }
 }
 

@@ -95,7 +95,7 @@ fn go_on<M: Material>(
     send::<M>(job, work, paths, (&next, goes_on.bits()));
 }
 
-/// Puts paths that go on back into their columns, in world space, and ends the others.
+/// Sends the paths in these lanes on, in world space; the others end.
 #[inline(always)]
 fn send<M: Material>(
     job: &Job,
@@ -105,12 +105,8 @@ fn send<M: Material>(
 ) {
     let (direction, throughput) = (Each::new(next.incoming), Each::new(next.weight));
     let (normal, pdf) = (Each::new(paths.starts.at.normal), next.pdf.to_array());
-    for lane in set_bits(paths.lanes) {
+    for lane in set_bits(paths.lanes & goes_on) {
         let row = paths.starts.rows[lane] as usize;
-        if goes_on >> lane & 1 == 0 {
-            work.end(row);
-            continue;
-        }
         let place = work.place[row] as usize;
         let unscattered = work.paths.arrival[place].unscattered && pdf[lane] == 0.0;
         let density = (pdf[lane] > 0.0).then_some(pdf[lane]);

@@ -42,7 +42,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
         stages::glass(job, work, bounce);
         stages::by_kind(job, work, &mut Shade { job, bounce, samples, sky, faint });
         stages::occlude(job, work);
-        work.compact();
+        work.advance();
         work.clock.end(Stage::Shade);
         if work.is_empty() {
             return;
@@ -61,7 +61,6 @@ fn escape(job: &Job, work: &mut Workspace) {
         let suns: Rgb = job.world.lights.suns_toward(direction).map(|(_, radiance)| radiance).sum();
         let light = job.world.environment.radiance(direction) + suns;
         work.paths.radiance[place] += work.paths.throughput[place] * light;
-        work.end(row);
     }
 }
 
@@ -212,7 +211,7 @@ impl Shade<'_> {
         let greatest = throughput.max_element();
         let survival = survival(self.job.settings.roulette, greatest, self.bounce, self.faint);
         if throughput == Rgb::ZERO || draw.roulette >= survival {
-            return work.end(row);
+            return;
         }
         work.paths.throughput[place] = throughput / survival;
         work.paths.arrival[place] = Arrival::CAMERA;

@@ -1,5 +1,6 @@
 //! The columns that a task works on: allocated once, used for tile after tile.
 
+use super::bins::Bins;
 use super::clock::Clock;
 use super::counters::Counters;
 use super::shadows::Shadows;
@@ -12,6 +13,7 @@ use crate::sampling::{PathRow, PathState, Sampler};
 use crate::scene::Rgb;
 use crate::world::{Kind, World};
 use glam::{DVec3, Vec3};
+use std::mem::swap;
 
 /// Paths that are followed together: 16 samples of each pixel of a tile. The columns of that many
 /// stay in the second-level cache.
@@ -23,7 +25,8 @@ const NESTING: usize = 16;
 /// Everything that a task writes while it renders a tile.
 ///
 /// Paths have a place, `0..BATCH`, that they keep from the camera to their end. Those that still go
-/// on have a row in `rays`, `hits`, `surface` and `place`; rows are compacted after each bounce.
+/// on have a row in `rays`, `hits`, `surface` and `place`; at each bounce they get new rows, in the
+/// order in which they are shaded, so that there are no gaps, and like goes with like.
 pub struct Workspace {
     /// Rows: the next segment of each path.
     pub rays: Rays,
@@ -31,12 +34,14 @@ pub struct Workspace {
     pub hits: Hits,
     /// Rows: where it hits.
     pub surface: Surface,
-    /// Rows: which path it belongs to; [`MISS`] once the path has ended.
+    /// Rows: which path it belongs to.
     pub place: Vec<u32>,
     /// Places: the paths.
     pub paths: Paths,
     /// Rows by what they hit.
     pub bins: Bins,
+    /// The rows of the next bounce.
+    onward: Onward,
     /// Light that arrives if nothing is in between.
     pub shadows: Shadows,
     /// What the camera rays may hit.
@@ -45,6 +50,15 @@ pub struct Workspace {
     pub counters: Counters,
     /// How long it took.
     pub clock: Clock,
+}
+
+/// The rows of the next bounce, as far as their paths have been sent on.
+struct Onward {
+    rays: Rays,
+    hits: Hits,
+    /// Normals of the spheres that rays go inside of, where they enter.
+    entry: Vec<DVec3>,
+    place: Vec<u32>,
 }
 
 /// Where rays hit.
@@ -87,15 +101,6 @@ pub struct Arrival {
     pub unscattered: bool,
 }
 
-/// Rows by what they hit.
-#[derive(Default)]
-pub struct Bins {
-    /// Nothing.
-    pub escaped: Vec<u32>,
-    /// A surface of each kind.
-    pub kind: [Vec<u32>; Kind::COUNT],
-}
-
 impl Arrival {
     /// At the first hit.
     pub const CAMERA: Self = Self { pdf: None, diffuse: false, unscattered: true };
@@ -121,6 +126,12 @@ impl Workspace {
                 nesting,
             },
             bins: Bins::default(),
+            onward: Onward {
+                rays: Rays::with_capacity(BATCH),
+                hits: Hits::with_capacity(BATCH),
+                entry: vec![DVec3::ZERO; BATCH],
+                place: vec![MISS; BATCH],
+            },
             shadows: Shadows::new(),
             view: View::Anything,
             counters: Counters::default(),
@@ -128,7 +139,7 @@ impl Workspace {
         }
     }
 
-    /// Number of paths that still go on, once compacted.
+    /// Number of paths that still go on.
     pub fn len(&self) -> usize {
         self.rays.len()
     }
@@ -162,16 +173,18 @@ impl Workspace {
     }
 
     /// Sends the path in `row` on from the surface it has hit. `direction` goes inside the sphere
-    /// if `inward`: then what it leaves through is known.
+    /// if `inward`: then what it leaves through is known. Paths that are not sent on end.
     #[inline]
     pub fn go_on(&mut self, world: &World, row: usize, direction: Vec3, inward: bool) {
-        let own = self.hits.sphere[row];
-        self.rays.set(row, self.surface.point[row], direction, own);
+        let (own, next) = (self.hits.sphere[row], self.onward.rays.len());
+        self.onward.rays.push(self.surface.point[row], direction, own);
+        self.onward.place[next] = self.place[row];
         if inward && own != GROUND {
             let t = self.chord(world, row, direction);
-            self.hits.set(row, t, own);
+            self.onward.hits.set(next, t, own);
+            self.onward.entry[next] = self.surface.normal[row];
         } else {
-            self.hits.set(row, f64::INFINITY, MISS);
+            self.onward.hits.set(next, f64::INFINITY, MISS);
         }
     }
 
@@ -197,28 +210,14 @@ impl Workspace {
         chord(self.surface.normal[row], radius, direction)
     }
 
-    /// Ends the path in `row`.
-    #[inline]
-    pub fn end(&mut self, row: usize) {
-        self.place[row] = MISS;
-    }
-
-    /// Closes the gaps that paths have left that ended, in order.
-    pub fn compact(&mut self) {
-        let mut kept = 0;
-        for row in 0..self.rays.len() {
-            if self.place[row] == MISS {
-                continue;
-            }
-            if kept != row {
-                self.rays.copy_row(row, kept);
-                self.hits.set(kept, self.hits.t[row], self.hits.sphere[row]);
-                self.surface.normal[kept] = self.surface.normal[row];
-                self.place[kept] = self.place[row];
-            }
-            kept += 1;
-        }
-        self.rays.truncate(kept);
+    /// Turns to the paths that were sent on.
+    pub fn advance(&mut self) {
+        let onward = &mut self.onward;
+        swap(&mut self.rays, &mut onward.rays);
+        swap(&mut self.hits, &mut onward.hits);
+        swap(&mut self.surface.normal, &mut onward.entry);
+        swap(&mut self.place, &mut onward.place);
+        onward.rays.truncate(0);
     }
 }
 
@@ -227,26 +226,5 @@ impl Paths {
     #[inline]
     pub fn inside(&mut self, place: usize) -> &mut [u32] {
         &mut self.inside[place * self.nesting..(place + 1) * self.nesting]
-    }
-}
-
-impl Bins {
-    /// How many rows hit something.
-    pub fn scattered(&self) -> u64 {
-        self.kind.iter().map(|rows| rows.len() as u64).sum()
-    }
-
-    /// Sorts rows `0..count` by what they hit.
-    pub fn sort(&mut self, world: &World, hits: &Hits, count: usize) {
-        self.escaped.clear();
-        self.kind.iter_mut().for_each(Vec::clear);
-        for row in 0..count {
-            let hit = hits.sphere[row];
-            if hit == MISS {
-                self.escaped.push(row as u32);
-            } else {
-                self.kind[world.material(hit).kind() as usize].push(row as u32);
-            }
-        }
     }
 }
