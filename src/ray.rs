@@ -55,7 +55,8 @@ pub struct Hits {
 }
 
 impl Columns3 {
-    fn with_rows(rows: usize) -> Self {
+    /// Of so many rows, all 0.
+    pub(crate) fn with_rows(rows: usize) -> Self {
         let column = || vec![0.0; rows];
         Self { x: column(), y: column(), z: column() }
     }

@@ -2,7 +2,7 @@
 
 use crate::lanes::{Doubles, F32x16, F64x8, Lanes, narrow, widen};
 use glam::DVec3;
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// A point or a direction; `T` is a number or a row of [`Lanes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +62,7 @@ impl<L: Lanes> Vec3<L> {
 impl<L: Lanes> Vec3<L> {
     /// One or the other, lane by lane.
     #[inline(always)]
-    pub fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+    pub fn select_lanes(mask: L::Mask, yes: Self, no: Self) -> Self {
         Self {
             x: L::select(mask, yes.x, no.x),
             y: L::select(mask, yes.y, no.y),
@@ -110,6 +110,22 @@ impl<D: Doubles> Vec3<D> {
     pub fn dot_unfused(self, other: Self) -> D {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
+
+    /// One over the length.
+    #[inline(always)]
+    pub fn inverse_length(self) -> D {
+        D::splat(1.0) / self.dot_unfused(self).sqrt()
+    }
+
+    /// `yes` where `mask` is true, `no` elsewhere.
+    #[inline(always)]
+    pub fn select(mask: D::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            x: D::select(mask, yes.x, no.x),
+            y: D::select(mask, yes.y, no.y),
+            z: D::select(mask, yes.z, no.z),
+        }
+    }
 }
 
 impl From<DVec3> for Vec3<f64> {
@@ -154,5 +170,13 @@ impl<L: Sub<Output = L>> Sub for Vec3<L> {
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+impl<T: Neg<Output = T>> Neg for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { x: -self.x, y: -self.y, z: -self.z }
     }
 }

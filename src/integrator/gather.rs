@@ -40,7 +40,7 @@ impl Starts {
         Self {
             rows: [row as u32; ROW],
             at: ReceiverRow {
-                point: splat(work.surface.point[row]),
+                point: splat(work.surface.point.row(row)),
                 normal: splat(local.frame.normal),
                 own: [work.hits.sphere[row]; ROW],
             },
@@ -57,12 +57,12 @@ impl Starts {
         let mut inside = 0;
         for (lane, &row) in rows.iter().enumerate() {
             let row = row as usize;
-            let outward = work.surface.normal[row];
+            let outward = work.surface.normal.row(row);
             let leaves = outward.dot(work.rays.direction.row(row).as_dvec3()) > 0.0;
             let facing = if leaves { -outward } else { outward }.as_vec3();
             inside |= u32::from(leaves) << lane;
             own[lane] = work.hits.sphere[row];
-            put(&mut point, lane, work.surface.point[row]);
+            put(&mut point, lane, work.surface.point.row(row));
             put(&mut normal, lane, facing);
         }
         Self {
@@ -85,7 +85,7 @@ impl Gathered {
             put(&mut throughput, lane, work.paths.throughput[work.place[row] as usize]);
         }
         let frames = Frames::about(starts.at.normal);
-        let mut outgoing = frames.to_local(columns(direction).map(|x| -x));
+        let mut outgoing = frames.to_local(-columns(direction));
         // At the limb, rounding may put the viewer below the horizon.
         outgoing.z = Lanes::max(outgoing.z, F32x16::splat(f32::EPSILON));
         Self {

@@ -2,7 +2,7 @@
 
 use super::Job;
 use super::clock::Stage;
-use super::surface::{solve, solve_cut};
+use super::surface::solve;
 use super::workspace::{Arrival, Workspace};
 use crate::film::{Tile, View};
 use crate::lanes::{F64x8, Lanes, MAX_LANES, load_doubles};
@@ -132,17 +132,7 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
         }
     }
     work.clock.end(Stage::Trace);
-    let cut = !job.world.cut.is_empty();
-    for row in 0..work.len() {
-        let hit = work.hits.sphere[row];
-        if hit != MISS {
-            let world = job.world;
-            let (point, normal) =
-                if cut { solve_cut(world, work, row, hit) } else { solve(world, work, row, hit) };
-            work.surface.point[row] = point;
-            work.surface.normal[row] = normal;
-        }
-    }
+    solve(job.world, work);
     let count = work.len();
     work.bins.sort(job.world, &work.hits, count);
     work.clock.end(Stage::Surface);
@@ -164,7 +154,7 @@ impl Local {
     #[inline]
     pub fn new(work: &Workspace, row: usize) -> Self {
         let direction = work.rays.direction.row(row);
-        let normal = work.surface.normal[row];
+        let normal = work.surface.normal.row(row);
         let inside = normal.dot(direction.as_dvec3()) > 0.0;
         let facing = if inside { -normal } else { normal };
         let frame = sampling::Frame::new(facing.as_vec3());
@@ -221,7 +211,7 @@ fn pass_glass(job: &Job, work: &mut Workspace, row: usize, lobe: f32) {
     let (passage, overflow) = dielectric::pass(
         job.world,
         hit,
-        (work.rays.direction.row(row).as_dvec3(), work.surface.normal[row]),
+        (work.rays.direction.row(row).as_dvec3(), work.surface.normal.row(row)),
         work.paths.inside(place),
         lobe,
     );

@@ -1,56 +1,247 @@
 //! Where rays hit: points and normals, and how far it is through spheres from there.
 
 use super::workspace::Workspace;
-use crate::ray::{ExactRay, GROUND};
-use crate::world::World;
-use glam::{DVec3, Vec3};
+use crate::lanes::{Doubles, F64x8, Mask, U32x16, load_doubles, look_up, widen};
+use crate::ray::{Columns3, GROUND, MISS};
+use crate::spheres::{LEAF, Spheres};
+use crate::vec3::Vec3;
+use crate::world::{Ground, World};
+use glam::DVec3;
 
-/// Point and outward normal of a hit, in double precision from the surface itself: the point is no
-/// farther off it than rounding takes it.
-#[inline]
-pub(super) fn solve(world: &World, work: &Workspace, row: usize, hit: u32) -> (Vec3, DVec3) {
-    let ray = work.rays.exact(row);
-    if hit == GROUND {
-        let normal = world.ground.map_or(DVec3::Z, |ground| ground.normal);
-        let height = world.ground.map_or(0.0, |ground| ground.height);
-        let point = ray.at(work.hits.t[row]);
-        let off = normal.dot(point) - height;
-        return ((point - normal * off).as_vec3(), normal);
-    }
-    let center = world.spheres.center(hit as usize).as_dvec3();
-    let radius = f64::from(world.spheres.radius(hit as usize));
-    let normal = if work.rays.own[row] == hit {
-        exit_normal(&ray, work.surface.normal[row])
-    } else {
-        // Of a sphere that is smaller than rounding, the ray is all that is known.
-        ray.at_from(center, work.hits.t[row]).normalize_or(-ray.direction.normalize())
-    };
-    ((center + normal * radius).as_vec3(), normal)
+/// Rows that are solved for together.
+const ROW: usize = 8;
+
+/// All lanes of a row.
+const ALL: u32 = (1 << ROW) - 1;
+
+/// Where rays hit.
+pub struct Surface {
+    /// The point, rounded to single precision.
+    pub point: Columns3,
+    /// The outward unit normal.
+    pub normal: Normals,
 }
 
-/// [`solve`] in a world where spheres are cut: points of caps, and of spheres from their caps.
-#[cold]
-pub(super) fn solve_cut(world: &World, work: &Workspace, row: usize, hit: u32) -> (Vec3, DVec3) {
-    let (ray, own, t) = (work.rays.exact(row), work.rays.own[row], work.hits.t[row]);
-    if hit == GROUND {
-        return solve(world, work, row, hit);
+/// Unit vectors in columns of double precision.
+pub struct Normals {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    z: Vec<f64>,
+}
+
+impl Surface {
+    pub(super) fn with_rows(rows: usize) -> Self {
+        Self { point: Columns3::with_rows(rows), normal: Normals::with_rows(rows) }
     }
+}
+
+impl Normals {
+    pub(super) fn with_rows(rows: usize) -> Self {
+        let column = || vec![0.0; rows];
+        Self { x: column(), y: column(), z: column() }
+    }
+
+    /// Row `i`.
+    #[inline(always)]
+    pub fn row(&self, i: usize) -> DVec3 {
+        DVec3::new(self.x[i], self.y[i], self.z[i])
+    }
+
+    /// Writes row `i`.
+    #[inline(always)]
+    pub(super) fn set(&mut self, i: usize, normal: DVec3) {
+        (self.x[i], self.y[i], self.z[i]) = normal.into();
+    }
+
+    /// Rows `i..i + 8`.
+    #[inline(always)]
+    fn load(&self, i: usize) -> Vec3<F64x8> {
+        Vec3::new(row(&self.x[i..]), row(&self.y[i..]), row(&self.z[i..]))
+    }
+
+    /// Writes rows `i..i + 8`.
+    #[inline(always)]
+    pub(super) fn set_row(&mut self, i: usize, normal: Vec3<F64x8>) {
+        self.x[i..i + ROW].copy_from_slice(&normal.x.to_array());
+        self.y[i..i + ROW].copy_from_slice(&normal.y.to_array());
+        self.z[i..i + ROW].copy_from_slice(&normal.z.to_array());
+    }
+}
+
+#[inline(always)]
+fn row(column: &[f64]) -> F64x8 {
+    F64x8::new(*column.first_chunk().expect("columns hold whole rows"))
+}
+
+/// Rows `i..i + 8` of columns of single precision.
+#[inline(always)]
+fn load(columns: &Columns3, i: usize) -> Vec3<F64x8> {
+    let column = |column: &[f32]| load_doubles(&column[i..]);
+    Vec3::new(column(&columns.x), column(&columns.y), column(&columns.z))
+}
+
+/// Numbers of 32 bits, which double precision holds exactly.
+#[inline(always)]
+fn numbers(column: &[u32]) -> F64x8 {
+    let row: &[u32; ROW] = column.first_chunk().expect("columns hold whole rows");
+    F64x8::new(row.map(f64::from))
+}
+
+/// Where whole numbers are equal.
+#[inline(always)]
+fn equal(a: F64x8, b: F64x8) -> <F64x8 as Doubles>::Mask {
+    (a - b).abs().lt(F64x8::splat(0.5))
+}
+
+/// Finds points and outward normals of what all rows hit, in double precision from the surfaces
+/// themselves: points are no farther off them than rounding takes them.
+pub(super) fn solve(world: &World, work: &mut Workspace) {
+    let spheres = &world.spheres;
+    match Few::of(spheres) {
+        Some(few) => solve_rows(world, work, |hits| few.struck(hits)),
+        None => solve_rows(world, work, |hits| struck(spheres, hits)),
+    }
+    if !world.cut.is_empty() {
+        (0..work.len()).for_each(|row| solve_cut(world, work, row));
+    }
+}
+
+/// The same where no sphere is cut; `struck` finds centers and radii.
+#[inline(always)]
+fn solve_rows(
+    world: &World,
+    work: &mut Workspace,
+    struck: impl Fn(&[u32; ROW]) -> (Vec3<F64x8>, F64x8),
+) {
+    for first in (0..work.len()).step_by(ROW) {
+        let hits = work.hits.sphere[first..].first_chunk().expect("columns hold whole rows");
+        let struck = struck(hits);
+        solve_row(world, work, first, struck);
+    }
+}
+
+/// The same for eight rows; of those that hit nothing, anything.
+#[inline(always)]
+fn solve_row(
+    world: &World,
+    work: &mut Workspace,
+    first: usize,
+    (center, radius): (Vec3<F64x8>, F64x8),
+) {
+    let hit = numbers(&work.hits.sphere[first..]);
+    let missed = equal(hit, F64x8::splat(f64::from(MISS)));
+    let grounded = equal(hit, F64x8::splat(f64::from(GROUND)));
+    let (origin, direction) = (load(&work.rays.origin, first), load(&work.rays.direction, first));
+    let t = row(&work.hits.t[first..]);
+    let mut toward = (origin - center) + direction * t;
+    let through = equal(hit, numbers(&work.rays.own[first..])) & !missed;
+    if through.bits() != 0 {
+        let exit = exit(work.surface.normal.load(first), direction);
+        toward = Vec3::select(through, exit, toward);
+    }
+    let scale = toward.inverse_length();
+    let mut normal = toward * scale;
+    // Of a sphere that is smaller than rounding, the ray is all that is known.
+    let known = scale.lt(F64x8::splat(f64::INFINITY)) & F64x8::splat(0.0).lt(scale);
+    if (known | missed | grounded).bits() != ALL {
+        normal = Vec3::select(known, normal, -(direction * direction.inverse_length()));
+    }
+    let mut point = center + normal * radius;
+    if let Some(ground) = &world.ground
+        && grounded.bits() != 0
+    {
+        let (foot, up) = foot(ground, origin + direction * t);
+        point = Vec3::select(grounded, foot, point);
+        normal = Vec3::select(grounded, up, normal);
+    }
+    work.surface.point.set_row(first, point);
+    work.surface.normal.set_row(first, normal);
+}
+
+/// Centers and radii of the spheres that rows have hit; of any where that is none.
+#[inline(always)]
+fn struck(spheres: &Spheres, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
+    let blocks = spheres.blocks();
+    let mut columns = [[0.0; ROW]; 4];
+    for (lane, &hit) in hits.iter().enumerate() {
+        let (block, place) = (hit as usize / LEAF, hit as usize % LEAF);
+        let block = &blocks[block.min(blocks.len() - 1)];
+        columns[0][lane] = block.x[place];
+        columns[1][lane] = block.y[place];
+        columns[2][lane] = block.z[place];
+        columns[3][lane] = block.radius[place];
+    }
+    let [x, y, z, radius] = columns.each_ref().map(|column| load_doubles(column));
+    (Vec3::new(x, y, z), radius)
+}
+
+/// All spheres of a world of few, where registers hold them.
+struct Few([U32x16; 4]);
+
+impl Few {
+    /// None if there are too many; there may be no sphere at all.
+    fn of(spheres: &Spheres) -> Option<Self> {
+        let mut columns = [[0.0_f32; 2 * LEAF]; 4];
+        let blocks = spheres.blocks();
+        if blocks.len() > 2 {
+            return None;
+        }
+        for (i, block) in blocks.iter().enumerate() {
+            let rows = [&block.x, &block.y, &block.z, &block.radius];
+            for (column, row) in columns.iter_mut().zip(rows) {
+                column[i * LEAF..][..LEAF].copy_from_slice(row);
+            }
+        }
+        Some(Self(columns.map(bytemuck::cast)))
+    }
+
+    /// [`struck`] among them.
+    #[inline(always)]
+    fn struck(&self, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
+        let mut places = [0; 2 * ROW];
+        places[..ROW].copy_from_slice(hits);
+        let places = U32x16::new(places);
+        let pick = |column: U32x16| widen(bytemuck::cast(look_up(column, places)))[0];
+        let [x, y, z, radius] = &self.0;
+        (Vec3::new(pick(*x), pick(*y), pick(*z)), pick(*radius))
+    }
+}
+
+/// What is below or above a point on the ground, and the ground's normal.
+#[inline(always)]
+fn foot(ground: &Ground, point: Vec3<F64x8>) -> (Vec3<F64x8>, Vec3<F64x8>) {
+    let up = Vec3::from(ground.normal).map(F64x8::splat);
+    let off = up.dot_unfused(point) - F64x8::splat(ground.height);
+    (point - up * off, up)
+}
+
+/// Where chords leave spheres, from where they entered: mirrored at the plane across the chord's
+/// middle. It does not use the origin, which was rounded.
+#[inline(always)]
+fn exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
+    let length2 = direction.dot_unfused(direction);
+    entry - direction * (F64x8::splat(2.0) * entry.dot_unfused(direction) / length2)
+}
+
+/// Mends what spheres that are cut show instead: points of caps, and of spheres from their caps.
+#[cold]
+fn solve_cut(world: &World, work: &mut Workspace, row: usize) {
+    let hit = work.hits.sphere[row];
+    if hit == GROUND || hit == MISS {
+        return;
+    }
+    let (ray, own, t) = (work.rays.exact(row), work.rays.own[row], work.hits.t[row]);
     if let Some(normal) = world.cut.cap(&ray, own, t) {
-        return (ray.at(t).as_vec3(), normal);
+        work.surface.point.set(row, ray.at(t).as_vec3());
+        work.surface.normal.set(row, normal);
+        return;
     }
     let (center, radius) = world.spheres.exact(hit as usize);
     if own == hit && world.cut.divides(center, radius) {
         let normal = ray.at_from(center, t).normalize_or(-ray.direction.normalize());
-        return ((center + normal * radius).as_vec3(), normal);
+        work.surface.point.set(row, (center + normal * radius).as_vec3());
+        work.surface.normal.set(row, normal);
     }
-    solve(world, work, row, hit)
-}
-
-/// Where a chord leaves a sphere, from where it entered: mirrored at the plane across the chord's
-/// middle. It does not use the origin, which was rounded.
-fn exit_normal(ray: &ExactRay, entry: DVec3) -> DVec3 {
-    let d = ray.direction;
-    (entry - d * (2.0 * entry.dot(d) / d.length_squared())).normalize()
 }
 
 /// Distance from a point of a sphere, with outward unit `normal`, through the inside to where

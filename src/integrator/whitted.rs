@@ -148,7 +148,7 @@ impl Shade<'_> {
         let place = work.place[base.row] as usize;
         let count = if world.lights.is_delta(light) { 1 } else { self.samples };
         let share = work.paths.throughput[place] / count as f32;
-        let origin = (work.surface.point[base.row], work.hits.sphere[base.row]);
+        let origin = (work.surface.point.row(base.row), work.hits.sphere[base.row]);
         let Some(aim) = world.lights.aim(world, light, origin) else { return };
         let points = self.job.sampler.split(&work.paths.sample[place], self.event(light), count);
         for (first, count) in rows(count) {

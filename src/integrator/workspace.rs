@@ -5,19 +5,23 @@ use super::clock::Clock;
 use super::counters::Counters;
 use super::shadows::Shadows;
 use super::skips::Skips;
-use super::surface::{chord, far_end};
+use super::surface::{Normals, Surface, chord, far_end};
 use crate::film::View;
 use crate::lanes::MAX_LANES;
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{PathRow, PathState, Sampler};
 use crate::scene::Rgb;
 use crate::world::{Kind, World};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::mem::swap;
 
 /// Paths that are followed together: 16 samples of each pixel of a tile. The columns of that many
 /// stay in the second-level cache.
 pub const BATCH: usize = 4096;
+
+/// Rows of a column: with room for whole rows of lanes, and such that the columns do not all begin in
+/// the same lines of the first-level cache.
+const ROWS: usize = BATCH + MAX_LANES;
 
 /// How many glass spheres a path can be in at the same time.
 const NESTING: usize = 16;
@@ -57,16 +61,8 @@ struct Onward {
     rays: Rays,
     hits: Hits,
     /// Normals of the spheres that rays go inside of, where they enter.
-    entry: Vec<DVec3>,
+    entry: Normals,
     place: Vec<u32>,
-}
-
-/// Where rays hit.
-pub struct Surface {
-    /// The point, rounded to single precision.
-    pub point: Vec<Vec3>,
-    /// The outward unit normal.
-    pub normal: Vec<DVec3>,
 }
 
 /// Paths, by place.
@@ -114,8 +110,8 @@ impl Workspace {
         Self {
             rays: Rays::with_capacity(BATCH),
             hits: Hits::with_capacity(BATCH),
-            surface: Surface { point: vec![Vec3::ZERO; BATCH], normal: vec![DVec3::ZERO; BATCH] },
-            place: vec![MISS; BATCH],
+            surface: Surface::with_rows(ROWS),
+            place: vec![MISS; ROWS],
             paths: Paths {
                 throughput: vec![Rgb::ZERO; BATCH],
                 radiance: vec![Rgb::ZERO; BATCH],
@@ -129,8 +125,8 @@ impl Workspace {
             onward: Onward {
                 rays: Rays::with_capacity(BATCH),
                 hits: Hits::with_capacity(BATCH),
-                entry: vec![DVec3::ZERO; BATCH],
-                place: vec![MISS; BATCH],
+                entry: Normals::with_rows(ROWS),
+                place: vec![MISS; ROWS],
             },
             shadows: Shadows::new(),
             view: View::Anything,
@@ -177,12 +173,12 @@ impl Workspace {
     #[inline]
     pub fn go_on(&mut self, world: &World, row: usize, direction: Vec3, inward: bool) {
         let (own, next) = (self.hits.sphere[row], self.onward.rays.len());
-        self.onward.rays.push(self.surface.point[row], direction, own);
+        self.onward.rays.push(self.surface.point.row(row), direction, own);
         self.onward.place[next] = self.place[row];
         if inward && own != GROUND {
             let t = self.chord(world, row, direction);
             self.onward.hits.set(next, t, own);
-            self.onward.entry[next] = self.surface.normal[row];
+            self.onward.entry.set(next, self.surface.normal.row(row));
         } else {
             self.onward.hits.set(next, f64::INFINITY, MISS);
         }
@@ -196,7 +192,7 @@ impl Workspace {
             return self.chord_cut(world, row, direction);
         }
         let radius = f64::from(world.spheres.radius(self.hits.sphere[row] as usize));
-        chord(self.surface.normal[row], radius, direction.as_dvec3())
+        chord(self.surface.normal.row(row), radius, direction.as_dvec3())
     }
 
     /// The same where spheres are cut; apart, so that it is not in the way elsewhere.
@@ -205,9 +201,9 @@ impl Workspace {
         let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
         let direction = direction.as_dvec3();
         if world.cut.divides(center, radius) {
-            return far_end(self.surface.point[row].as_dvec3() - center, radius, direction);
+            return far_end(self.surface.point.row(row).as_dvec3() - center, radius, direction);
         }
-        chord(self.surface.normal[row], radius, direction)
+        chord(self.surface.normal.row(row), radius, direction)
     }
 
     /// Turns to the paths that were sent on.

@@ -31,7 +31,7 @@ impl Sums {
         if hit == MISS {
             return;
         }
-        let (ray, normal) = (work.rays.exact(row), work.surface.normal[row]);
+        let (ray, normal) = (work.rays.exact(row), work.surface.normal.row(row));
         self.albedo += world.albedo(hit).as_dvec3();
         self.normal += if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
         self.depth += world.camera.distance(ray.at(work.hits.t[row])) / world.frame.scale;

@@ -51,7 +51,7 @@ pub fn sample_visible_normal<L: Lanes>(alpha: L, outgoing: Vec3<L>, u: [L; 2]) -
 #[inline(always)]
 pub fn upward<L: Lanes>(direction: Vec3<L>) -> Vec3<L> {
     let long = L::splat(0.0).lt(direction.dot(direction));
-    Vec3::select(long, direction.normalize(), Vec3::splat(0.0, 0.0, 1.0))
+    Vec3::select_lanes(long, direction.normalize(), Vec3::splat(0.0, 0.0, 1.0))
 }
 
 #[cfg(test)]

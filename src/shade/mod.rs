@@ -75,8 +75,8 @@ impl<L: Lanes> Scatter<L> {
     #[inline(always)]
     fn select(mask: L::Mask, yes: &Self, no: &Self) -> Self {
         Self {
-            incoming: Vec3::select(mask, yes.incoming, no.incoming),
-            weight: Vec3::select(mask, yes.weight, no.weight),
+            incoming: Vec3::select_lanes(mask, yes.incoming, no.incoming),
+            weight: Vec3::select_lanes(mask, yes.weight, no.weight),
             pdf: L::select(mask, yes.pdf, no.pdf),
         }
     }

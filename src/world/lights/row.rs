@@ -103,8 +103,8 @@ impl LightRow {
         }
         let mask = <F32x16 as Lanes>::lanes(others.lanes);
         let mut row = Self {
-            direction: Vec3::select(mask, others.direction, self.direction),
-            weight: Vec3::select(mask, others.weight, self.weight),
+            direction: Vec3::select_lanes(mask, others.direction, self.direction),
+            weight: Vec3::select_lanes(mask, others.weight, self.weight),
             pdf: Lanes::select(mask, others.pdf, self.pdf),
             close: self.close & !others.lanes | others.close & others.lanes,
             lanes: self.lanes | others.lanes,
