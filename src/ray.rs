@@ -1,6 +1,6 @@
 //! Rays and hits in columns: row `i` of every column belongs to ray `i`.
 
-use crate::lanes::{Doubles, F64x8, Lanes, MAX_LANES, store_rounded};
+use crate::lanes::{Doubles, F32x16, F64x8, Lanes, MAX_LANES, Packing, store_rounded};
 use crate::vec3::Vec3;
 use glam::{DVec3, Vec3 as Point};
 
@@ -147,6 +147,26 @@ impl Rays {
         self.own[row..row + L::WIDTH].fill(MISS);
         self.target[row..row + L::WIDTH].fill(MISS);
         self.len += count;
+    }
+
+    /// Appends some of sixteen rays that start on surfaces, toward no sphere. The
+    /// caller keeps to the capacity.
+    #[inline(always)]
+    pub(crate) fn append_packed(
+        &mut self,
+        packing: &Packing,
+        (origin, direction): (Vec3<F32x16>, Vec3<F32x16>),
+        own: &[u32; MAX_LANES],
+    ) {
+        let row = self.len;
+        for (columns, lanes) in [(&mut self.origin, origin), (&mut self.direction, direction)] {
+            packing.store(lanes.x, &mut columns.x[row..]);
+            packing.store(lanes.y, &mut columns.y[row..]);
+            packing.store(lanes.z, &mut columns.z[row..]);
+        }
+        packing.store_numbers(own, &mut self.own[row..]);
+        self.target[row..row + MAX_LANES].fill(MISS);
+        self.len += packing.count();
     }
 
     /// Writes row `i`.

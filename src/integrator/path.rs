@@ -42,27 +42,40 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
 
 /// Gives the environment's light, and the suns', to paths that leave the scene.
 fn escape(job: &Job, work: &mut Workspace) {
-    let world = job.world;
+    let (environment, lights) = (&job.world.environment, &job.world.lights);
+    let sampled = lights.sky || lights.suns_have_discs();
     for i in 0..work.bins.escaped.len() {
         let row = work.bins.escaped[i] as usize;
         let place = work.place[row] as usize;
-        let arrival = work.paths.arrival[place];
-        let direction = work.rays.direction.row(row);
-        let mut light = Rgb::ZERO;
-        if world.environment.illuminates || arrival.unscattered {
-            let weight = heuristic(arrival.pdf, || {
-                world.lights.sky_pdf(&world.environment, direction, &receiver(work, row))
-            });
-            light += world.environment.radiance(direction) * weight;
-        }
-        if !arrival.diffuse {
-            for (sun, radiance) in world.lights.suns_toward(direction) {
-                let pdf = || world.lights.sun_pdf(sun, &receiver(work, row));
-                light += radiance * heuristic(arrival.pdf, pdf);
-            }
-        }
+        let light = if sampled {
+            sky(job, work, row)
+        } else if environment.illuminates || work.paths.arrival[place].unscattered {
+            environment.radiance(work.rays.direction.row(row))
+        } else {
+            continue;
+        };
         work.paths.radiance[place] += work.paths.throughput[place] * light;
     }
+}
+
+/// What the path in `row` finds in the sky, where light samples may find it as well.
+fn sky(job: &Job, work: &Workspace, row: usize) -> Rgb {
+    let (environment, lights) = (&job.world.environment, &job.world.lights);
+    let arrival = work.paths.arrival[work.place[row] as usize];
+    let direction = work.rays.direction.row(row);
+    let mut light = Rgb::ZERO;
+    if environment.illuminates || arrival.unscattered {
+        let weight =
+            heuristic(arrival.pdf, || lights.sky_pdf(environment, direction, &receiver(work, row)));
+        light += environment.radiance(direction) * weight;
+    }
+    if !arrival.diffuse {
+        for (sun, radiance) in lights.suns_toward(direction) {
+            let pdf = || lights.sun_pdf(sun, &receiver(work, row));
+            light += radiance * heuristic(arrival.pdf, pdf);
+        }
+    }
+    light
 }
 
 /// Gives the light of emitters to paths that hit them.

@@ -103,7 +103,8 @@ fn send<M: Material>(
     paths: &Gathered,
     (next, goes_on): (&Scatter<F32x16>, u32),
 ) {
-    let (direction, throughput) = (Each::new(next.incoming), Each::new(next.weight));
+    work.go_on_row(job.world, (&paths.starts, paths.lanes & goes_on), next.incoming);
+    let throughput = Each::new(next.weight);
     let (normal, pdf) = (Each::new(paths.starts.at.normal), next.pdf.to_array());
     for lane in set_bits(paths.lanes & goes_on) {
         let row = paths.starts.rows[lane] as usize;
@@ -115,8 +116,6 @@ fn send<M: Material>(
         if let Some(last) = work.paths.normal.get_mut(place) {
             *last = normal.at(lane);
         }
-        let inside = paths.starts.inside >> lane & 1 == 1;
-        work.go_on(job.world, row, direction.at(lane), inside);
     }
 }
 

@@ -4,11 +4,11 @@ use super::Job;
 use super::gather::Starts;
 use super::stages;
 use super::workspace::Workspace;
-use crate::lanes::{F32x16, Lanes, Mask, set_bits};
+use crate::lanes::{F32x16, Lanes, Mask, Packing, set_bits};
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
-use crate::world::{LightRow, LightSample, ROW, Receiver, ReceiverRow, World};
+use crate::world::{LightRow, LightSample, ROW, ReceiverRow, World};
 
 /// Shadow rays that are traced together.
 pub const SHADOWS: usize = 4096;
@@ -42,42 +42,25 @@ impl Shadows {
         self.rays.len() + count <= SHADOWS
     }
 
-    /// Appends a shadow ray toward a light, for the path and with the light given.
-    #[inline]
-    fn push(&mut self, from: &Receiver, sample: &LightSample, to: (u32, Rgb)) {
-        let row = self.rays.len();
-        self.rays.push(from.point, sample.direction, from.own);
-        self.rays.target[row] = sample.target;
-        self.hits.set(row, sample.t, MISS);
-        (self.place[row], self.light[row]) = to;
-    }
-
     /// Appends the shadow rays in `lanes` toward lights, for the paths and with the light given; there
     /// is room for a whole row.
-    #[inline]
+    #[inline(always)]
     fn push_row(
         &mut self,
         from: &ReceiverRow,
         (samples, lanes): (&LightRow, u32),
-        (place, light): (&[u32; ROW], &[Rgb; ROW]),
+        (place, light): (&[u32; ROW], Vec3<F32x16>),
     ) {
-        let count = lanes.trailing_ones() as usize;
-        if lanes.count_ones() as usize != count {
-            for lane in set_bits(lanes) {
-                let to = (place[lane], light[lane]);
-                self.push(&from.receiver(lane), &samples.sample(lane), to);
-            }
-            return;
+        let (packing, first) = (Packing::new(lanes), self.rays.len());
+        self.rays.append_packed(&packing, (from.point, samples.direction), &from.own);
+        packing.store_numbers(&samples.target, &mut self.rays.target[first..]);
+        packing.store_numbers(place, &mut self.place[first..]);
+        self.hits.sphere[first..first + ROW].fill(MISS);
+        let Vec3 { x, y, z } = light.map(F32x16::to_array);
+        for (row, lane) in (first..).zip(set_bits(lanes)) {
+            self.hits.t[row] = samples.t[lane];
+            self.light[row] = Rgb::new(x[lane], y[lane], z[lane]);
         }
-        let rows = self.rays.len()..self.rays.len() + ROW;
-        let axes = |v: Vec3<F32x16>| [v.x, v.y, v.z];
-        self.rays.append(count, &axes(from.point), &axes(samples.direction));
-        self.rays.own[rows.clone()].copy_from_slice(&from.own);
-        self.rays.target[rows.clone()].copy_from_slice(&samples.target);
-        self.hits.t[rows.clone()].copy_from_slice(&samples.t);
-        self.hits.sphere[rows.clone()].fill(MISS);
-        self.place[rows.clone()].copy_from_slice(place);
-        self.light[rows].copy_from_slice(light);
     }
 }
 
@@ -99,9 +82,7 @@ pub fn cast(
         stages::occlude(job, work);
     }
     let place = starts.rows.map(|row| work.place[row as usize]);
-    let Vec3 { x, y, z } = light.map(F32x16::to_array);
-    let light = std::array::from_fn(|lane| Rgb::new(x[lane], y[lane], z[lane]));
-    work.shadows.push_row(&starts.at, (samples, lanes), (&place, &light));
+    work.shadows.push_row(&starts.at, (samples, lanes), (&place, light));
 }
 
 /// Whether a sphere hides a light from a point of its inside: what lies behind its far side.
@@ -130,25 +111,22 @@ mod tests {
         (samples.t, samples.target) = (lanes.map(f64::from), numbers);
         let point = direction.map(|x| x + F32x16::splat(0.1));
         let from = ReceiverRow { point, normal: direction, own: numbers.map(|x| 2 * x) };
-        let light = lanes.map(Rgb::splat);
+        let light = direction * F32x16::splat(0.5);
         for bits in [0, 1, 0xffff, 0xff, 0xa5a5, 0x8000, 0xfffe] {
-            let (mut rows, mut single) = (Shadows::new(), Shadows::new());
+            let mut shadows = Shadows::new();
             for _ in 0..3 {
-                rows.push_row(&from, (&samples, bits), (&numbers, &light));
-                for lane in set_bits(bits) {
-                    let to = (numbers[lane], light[lane]);
-                    single.push(&from.receiver(lane), &samples.sample(lane), to);
-                }
+                shadows.push_row(&from, (&samples, bits), (&numbers, light));
             }
-            assert_eq!(rows.rays.len(), single.rays.len());
-            for row in 0..rows.rays.len() {
-                let all = |shadows: &Shadows| {
-                    let rays = &shadows.rays;
-                    let ray = (rays.origin.row(row), rays.direction.row(row));
-                    let ends = (rays.own[row], rays.target[row], shadows.hits.t[row]);
-                    (ray, ends, shadows.hits.sphere[row], shadows.place[row], shadows.light[row])
-                };
-                assert_eq!(all(&rows), all(&single), "{bits:x} {row}");
+            let each = [(); 3].into_iter().flat_map(|()| set_bits(bits));
+            assert_eq!(shadows.rays.len(), 3 * u32::count_ones(bits) as usize);
+            for (row, lane) in each.enumerate() {
+                let (rays, sample) = (&shadows.rays, samples.sample(lane));
+                let start = (rays.origin.row(row), rays.own[row]);
+                let end = (rays.direction.row(row), rays.target[row], shadows.hits.t[row]);
+                assert_eq!(start, (from.receiver(lane).point, from.own[lane]));
+                assert_eq!(end, (sample.direction, sample.target, sample.t));
+                assert_eq!((shadows.hits.sphere[row], shadows.place[row]), (MISS, numbers[lane]));
+                assert_eq!(shadows.light[row].y, 0.5 * sample.direction.y);
             }
         }
     }

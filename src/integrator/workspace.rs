@@ -3,14 +3,16 @@
 use super::bins::Bins;
 use super::clock::Clock;
 use super::counters::Counters;
+use super::gather::Starts;
 use super::shadows::Shadows;
 use super::skips::Skips;
 use super::surface::{Normals, Surface, chord, far_end};
 use crate::film::View;
-use crate::lanes::MAX_LANES;
+use crate::lanes::{F32x16, MAX_LANES, Packing, set_bits};
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{PathRow, PathState, Sampler};
 use crate::scene::Rgb;
+use crate::vec3 as row;
 use crate::world::{Kind, World};
 use glam::Vec3;
 use std::mem::swap;
@@ -181,6 +183,32 @@ impl Workspace {
             self.onward.entry.set(next, self.surface.normal.row(row));
         } else {
             self.onward.hits.set(next, f64::INFINITY, MISS);
+        }
+    }
+
+    /// [`Workspace::go_on`] for the paths in `lanes`; inside of a sphere, it goes on inside.
+    #[inline(always)]
+    pub fn go_on_row(
+        &mut self,
+        world: &World,
+        (starts, lanes): (&Starts, u32),
+        direction: row::Vec3<F32x16>,
+    ) {
+        let (packing, first) = (Packing::new(lanes), self.onward.rays.len());
+        let place = starts.rows.map(|row| self.place[row as usize]);
+        self.onward.rays.append_packed(&packing, (starts.at.point, direction), &starts.at.own);
+        packing.store_numbers(&place, &mut self.onward.place[first..]);
+        self.onward.hits.t[first..first + MAX_LANES].fill(f64::INFINITY);
+        self.onward.hits.sphere[first..first + MAX_LANES].fill(MISS);
+        for lane in set_bits(lanes & starts.inside) {
+            let (own, row) = (starts.at.own[lane], starts.rows[lane] as usize);
+            if own != GROUND {
+                let next = first + (lanes & ((1 << lane) - 1)).count_ones() as usize;
+                let direction = self.onward.rays.direction.row(next);
+                let t = self.chord(world, row, direction);
+                self.onward.hits.set(next, t, own);
+                self.onward.entry.set(next, self.surface.normal.row(row));
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! What moves values from lane to lane, and bits from place to place.
 
-use super::{F32x4, F32x8, Lanes, U32x16};
+use super::{F32x4, F32x8, F32x16, Lanes, U32x16};
 
 /// In lane `i` the greatest lane of `row[i]`; anything in the last.
 #[inline(always)]
@@ -24,6 +24,70 @@ pub fn shuffle_numbers(row: &[u32; 8], order: u32) -> [u32; 8] {
 pub fn shuffle(row: F32x8, order: u32) -> F32x8 {
     let row: [u32; 8] = bytemuck::cast(row);
     bytemuck::cast(shuffle_numbers(&row, order))
+}
+
+/// For every set of eight lanes, their numbers in order, in four bits each.
+static IN_ORDER: [u32; 256] = in_order();
+
+const fn in_order() -> [u32; 256] {
+    let mut table = [0; 256];
+    let mut lanes = 0;
+    while lanes < 256 {
+        let (mut lane, mut place) = (0, 0);
+        while lane < 8 {
+            if lanes >> lane & 1 == 1 {
+                table[lanes] |= lane << (4 * place);
+                place += 1;
+            }
+            lane += 1;
+        }
+        lanes += 1;
+    }
+    table
+}
+
+/// Puts some of sixteen lanes one after another.
+#[derive(Clone, Copy, Debug)]
+pub struct Packing {
+    /// Of the lower and the upper eight.
+    order: [u32; 2],
+    /// How many of the lower.
+    low: usize,
+    count: usize,
+}
+
+impl Packing {
+    /// Of the lanes whose bits are set.
+    #[inline(always)]
+    pub fn new(lanes: u32) -> Self {
+        let order = [lanes, lanes >> 8].map(|half| IN_ORDER[half as usize & 0xff]);
+        let low = (lanes & 0xff).count_ones() as usize;
+        Self { order, low, count: (lanes & 0xffff).count_ones() as usize }
+    }
+
+    /// How many there are.
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Writes the lanes to the first places of a column, and anything to the next, up to sixteen.
+    ///
+    /// # Panics
+    /// If the column is shorter.
+    #[inline(always)]
+    pub fn store_numbers(&self, row: &[u32; 16], column: &mut [u32]) {
+        let [low, high]: [[u32; 8]; 2] = bytemuck::cast(*row);
+        let place = &mut column[..16];
+        place[..8].copy_from_slice(&shuffle_numbers(&low, self.order[0]));
+        place[self.low..self.low + 8].copy_from_slice(&shuffle_numbers(&high, self.order[1]));
+    }
+
+    /// [`Packing::store_numbers`] for floats.
+    #[inline(always)]
+    pub fn store(&self, row: F32x16, column: &mut [f32]) {
+        self.store_numbers(&bytemuck::cast(row), bytemuck::cast_slice_mut(column));
+    }
 }
 
 /// In each lane the number of `table` at the place that the last four bits of `places` tell.
@@ -58,6 +122,21 @@ mod tests {
         let places: [u32; 16] = std::array::from_fn(|i| 16 * i as u32 + 15 - i as u32);
         let found = look_up(U32x16::new(row), U32x16::new(places)).to_array();
         assert_eq!(found, std::array::from_fn(|i| row[15 - i]));
+    }
+
+    #[test]
+    fn lanes_are_put_one_after_another() {
+        let row: [u32; 16] = std::array::from_fn(|i| 100 + i as u32);
+        for lanes in 0..=u32::from(u16::MAX) {
+            let packing = Packing::new(lanes);
+            let mut column = [0; 19];
+            packing.store_numbers(&row, &mut column[1..]);
+            let expected: Vec<u32> =
+                super::super::set_bits(lanes).map(|lane| 100 + lane as u32).collect();
+            assert_eq!(packing.count(), expected.len());
+            assert_eq!(column[1..=expected.len()], expected, "{lanes:x}");
+            assert_eq!((column[0], &column[17..]), (0, &[0, 0][..]));
+        }
     }
 
     #[test]

@@ -13,7 +13,7 @@ mod across;
 mod bits;
 mod doubles;
 
-pub use across::{greatest_of, look_up, reverse_bits, shuffle, shuffle_numbers};
+pub use across::{Packing, greatest_of, look_up, reverse_bits, shuffle, shuffle_numbers};
 pub use bits::{bits, bits_of, numbers, set_bits};
 pub use doubles::{Doubles, load_doubles, narrow, store_rounded, store_where, widen};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};

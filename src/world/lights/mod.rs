@@ -229,6 +229,11 @@ impl Lights {
         }
     }
 
+    /// Whether there is a sun that can be seen.
+    pub fn suns_have_discs(&self) -> bool {
+        self.suns.iter().any(|sun| sun.disc.is_some())
+    }
+
     /// Each sun that is seen in unit direction `toward`, and its radiance.
     pub fn suns_toward(&self, toward: Vec3) -> impl Iterator<Item = (usize, Rgb)> {
         self.suns.iter().enumerate().filter_map(move |(i, sun)| {
