@@ -98,5 +98,9 @@ impl Region {
 
 /// The bits of `i` at even places, side by side.
 fn even_bits(i: u32) -> u32 {
-    (0..16).fold(0, |bits, place| bits | (i >> (2 * place) & 1) << place)
+    let close = |bits: u32, width: u32, mask: u32| (bits | bits >> width) & mask;
+    let bits = close(i & 0x5555_5555, 1, 0x3333_3333);
+    let bits = close(bits, 2, 0x0f0f_0f0f);
+    let bits = close(bits, 4, 0x00ff_00ff);
+    close(bits, 8, 0x0000_ffff)
 }
