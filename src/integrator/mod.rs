@@ -9,6 +9,8 @@ pub mod bins;
 pub mod clock;
 pub mod counters;
 pub mod gather;
+mod glass;
+mod onward;
 pub mod path;
 mod scatter;
 pub mod shadows;

@@ -9,6 +9,7 @@
 
 use super::Job;
 use super::clock::Stage;
+use super::glass;
 use super::scatter::{self, Event};
 use super::stages::{self, ShadeKind};
 use super::workspace::Workspace;
@@ -28,7 +29,7 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
             work.counters.cut_paths += work.bins.scattered();
             return;
         }
-        stages::glass(job, work, bounce);
+        glass::pass(job, work, bounce);
         stages::by_kind(job, work, &mut Shade { job, event: Event { bounce, faint } });
         stages::occlude(job, work);
         work.advance();

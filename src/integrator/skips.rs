@@ -16,7 +16,7 @@ pub struct Skips {
     pub lights: bool,
     /// Tests against a ground, where there is none.
     pub plane: bool,
-    /// Room in each path for the glass that it is in, where there is no glass.
+    /// Room in each path for the glass that it is in, where that is one sphere at most.
     pub glass: bool,
     /// The search for the nearest of the spheres that hide a light, once one is found.
     pub nearest_occluder: bool,

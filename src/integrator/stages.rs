@@ -3,7 +3,7 @@
 use super::Job;
 use super::clock::Stage;
 use super::surface::solve;
-use super::workspace::{Arrival, Workspace};
+use super::workspace::Workspace;
 use crate::film::{Tile, View};
 use crate::lanes::{F64x8, Lanes, MAX_LANES, load_doubles};
 use crate::ray::MISS;
@@ -56,7 +56,7 @@ pub fn generate_centers(job: &Job, tile: &Tile, work: &mut Workspace) {
 fn start_at_camera(job: &Job, work: &mut Workspace) {
     aim_camera(job, work);
     let count = work.len();
-    if !job.world.features.glass_at_camera.is_empty() || !job.skips.glass {
+    if work.paths.keeps_inside() {
         (0..count).for_each(|path| enter_glass(job.world, work, path));
     }
     work.counters.camera_rays += count as u64;
@@ -191,39 +191,6 @@ pub fn occlude(job: &Job, work: &mut Workspace) {
     work.counters.shadow_rays += shadows.rays.len() as u64;
     shadows.rays.truncate(0);
     work.clock.end(Stage::Shadow);
-}
-
-/// Sends every path that has hit glass through it or back.
-pub fn glass(job: &Job, work: &mut Workspace, bounce: u32) {
-    let rows = std::mem::take(&mut work.bins.kind[Kind::Dielectric as usize]);
-    for rows in rows.chunks(MAX_LANES) {
-        let lobes = job.sampler.lobe_row(&work.samples(rows), bounce).to_array();
-        for (&row, lobe) in rows.iter().zip(lobes) {
-            pass_glass(job, work, row as usize, lobe);
-        }
-    }
-    work.bins.kind[Kind::Dielectric as usize] = rows;
-}
-
-/// Sends the path in `row` through the glass that it has hit or back, by a number in [0, 1).
-fn pass_glass(job: &Job, work: &mut Workspace, row: usize, lobe: f32) {
-    let (place, hit) = (work.place[row] as usize, work.hits.sphere[row]);
-    let (passage, overflow) = dielectric::pass(
-        job.world,
-        hit,
-        (work.rays.direction.row(row).as_dvec3(), work.surface.normal.row(row)),
-        work.paths.inside(place),
-        lobe,
-    );
-    work.counters.nesting_overflows += u64::from(overflow);
-    work.go_on(job.world, row, passage.direction.as_vec3(), passage.inward);
-    if passage.real {
-        let table = &job.world.materials.dielectric;
-        let color = table[job.world.material(hit).row()].color * job.world.color(hit);
-        let unscattered = work.paths.arrival[place].unscattered;
-        work.paths.throughput[place] *= color;
-        work.paths.arrival[place] = Arrival { unscattered, ..Arrival::CAMERA };
-    }
 }
 
 /// A system that shades the rows of one kind of material.

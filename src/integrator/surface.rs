@@ -1,7 +1,7 @@
 //! Where rays hit: points and normals, and how far it is through spheres from there.
 
 use super::workspace::Workspace;
-use crate::lanes::{Doubles, F64x8, Mask, U32x16, load_doubles, look_up, widen};
+use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, U32x16, load_doubles, look_up, widen};
 use crate::ray::{Columns3, GROUND, MISS};
 use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
@@ -51,6 +51,20 @@ impl Normals {
     #[inline(always)]
     pub(super) fn set(&mut self, i: usize, normal: DVec3) {
         (self.x[i], self.y[i], self.z[i]) = normal.into();
+    }
+
+    /// The three of them.
+    #[inline(always)]
+    pub(super) fn columns(&self) -> [&[f64]; 3] {
+        [&self.x, &self.y, &self.z]
+    }
+
+    /// Writes rows `i..i + 16`.
+    #[inline(always)]
+    pub(super) fn copy(&mut self, i: usize, [x, y, z]: &[[f64; MAX_LANES]; 3]) {
+        self.x[i..i + MAX_LANES].copy_from_slice(x);
+        self.y[i..i + MAX_LANES].copy_from_slice(y);
+        self.z[i..i + MAX_LANES].copy_from_slice(z);
     }
 
     /// Rows `i..i + 8`.
@@ -246,9 +260,11 @@ fn solve_cut(world: &World, work: &mut Workspace, row: usize) {
 
 /// Distance from a point of a sphere, with outward unit `normal`, through the inside to where
 /// `direction` leaves.
-#[inline]
-pub fn chord(normal: DVec3, radius: f64, direction: DVec3) -> f64 {
-    (-2.0 * radius * normal.dot(direction) / direction.length_squared()).max(0.0)
+#[inline(always)]
+pub fn chord<D: Doubles>(normal: Vec3<D>, radius: D, direction: Vec3<D>) -> D {
+    let length2 = direction.dot_unfused(direction);
+    let t = D::splat(-2.0) * radius * normal.dot_unfused(direction) / length2;
+    D::select(D::splat(0.0).lt(t), t, D::splat(0.0))
 }
 
 /// The same from a point of the inside, `offset` from the center.

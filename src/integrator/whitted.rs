@@ -10,6 +10,7 @@
 use super::Job;
 use super::clock::Stage;
 use super::gather::Starts;
+use super::glass;
 use super::path::{faint, survival};
 use super::shadows;
 use super::stages::{self, Local, ShadeKind};
@@ -39,7 +40,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
             work.counters.cut_paths += work.bins.scattered();
             return;
         }
-        stages::glass(job, work, bounce);
+        glass::pass(job, work, bounce);
         stages::by_kind(job, work, &mut Shade { job, bounce, samples, sky, faint });
         stages::occlude(job, work);
         work.advance();

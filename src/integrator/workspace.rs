@@ -4,16 +4,17 @@ use super::bins::Bins;
 use super::clock::Clock;
 use super::counters::Counters;
 use super::gather::Starts;
+use super::onward::Onward;
 use super::shadows::Shadows;
 use super::skips::Skips;
-use super::surface::{Normals, Surface, chord, far_end};
+use super::surface::{Surface, chord, far_end};
 use crate::film::View;
 use crate::lanes::{F32x16, MAX_LANES, Packing, set_bits};
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{PathRow, PathState, Sampler};
 use crate::scene::Rgb;
 use crate::vec3 as row;
-use crate::world::{Kind, World};
+use crate::world::World;
 use glam::Vec3;
 use std::mem::swap;
 
@@ -23,7 +24,7 @@ pub const BATCH: usize = 4096;
 
 /// Rows of a column: with room for whole rows of lanes, and such that the columns do not all begin in
 /// the same lines of the first-level cache.
-const ROWS: usize = BATCH + MAX_LANES;
+pub(super) const ROWS: usize = BATCH + MAX_LANES;
 
 /// How many glass spheres a path can be in at the same time.
 const NESTING: usize = 16;
@@ -47,7 +48,7 @@ pub struct Workspace {
     /// Rows by what they hit.
     pub bins: Bins,
     /// The rows of the next bounce.
-    onward: Onward,
+    pub(super) onward: Onward,
     /// Light that arrives if nothing is in between.
     pub shadows: Shadows,
     /// What the camera rays may hit.
@@ -56,15 +57,6 @@ pub struct Workspace {
     pub counters: Counters,
     /// How long it took.
     pub clock: Clock,
-}
-
-/// The rows of the next bounce, as far as their paths have been sent on.
-struct Onward {
-    rays: Rays,
-    hits: Hits,
-    /// Normals of the spheres that rays go inside of, where they enter.
-    entry: Normals,
-    place: Vec<u32>,
 }
 
 /// Paths, by place.
@@ -80,8 +72,8 @@ pub struct Paths {
     /// Normal of the last surface, on the side that was lit, for what the choice of a light depends
     /// on; empty where that depends on nothing.
     pub normal: Vec<Vec3>,
-    /// The glass spheres that the path is in: a fixed number of places for each path, none if there
-    /// is no glass.
+    /// The glass spheres that the path is in: a fixed number of places for each path, none where it
+    /// can be in one at most.
     inside: Vec<u32>,
     nesting: usize,
 }
@@ -107,8 +99,7 @@ impl Arrival {
 impl Workspace {
     /// Room for [`BATCH`] paths through `world`.
     pub fn new(world: &World, sampler: &Sampler, skips: Skips) -> Self {
-        let glass = world.features.spheres_by_kind[Kind::Dielectric as usize];
-        let nesting = if skips.glass { NESTING.min(glass as usize) } else { NESTING };
+        let nesting = if skips.glass && !world.features.nested_glass { 0 } else { NESTING };
         Self {
             rays: Rays::with_capacity(BATCH),
             hits: Hits::with_capacity(BATCH),
@@ -124,12 +115,7 @@ impl Workspace {
                 nesting,
             },
             bins: Bins::default(),
-            onward: Onward {
-                rays: Rays::with_capacity(BATCH),
-                hits: Hits::with_capacity(BATCH),
-                entry: Normals::with_rows(ROWS),
-                place: vec![MISS; ROWS],
-            },
+            onward: Onward::new(),
             shadows: Shadows::new(),
             view: View::Anything,
             counters: Counters::default(),
@@ -220,7 +206,7 @@ impl Workspace {
             return self.chord_cut(world, row, direction);
         }
         let radius = f64::from(world.spheres.radius(self.hits.sphere[row] as usize));
-        chord(self.surface.normal.row(row), radius, direction.as_dvec3())
+        chord(self.surface.normal.row(row).into(), radius, direction.as_dvec3().into())
     }
 
     /// The same where spheres are cut; apart, so that it is not in the way elsewhere.
@@ -231,7 +217,7 @@ impl Workspace {
         if world.cut.divides(center, radius) {
             return far_end(self.surface.point.row(row).as_dvec3() - center, radius, direction);
         }
-        chord(self.surface.normal.row(row), radius, direction)
+        chord(self.surface.normal.row(row).into(), radius, direction.into())
     }
 
     /// Turns to the paths that were sent on.
@@ -246,6 +232,11 @@ impl Workspace {
 }
 
 impl Paths {
+    /// Whether it is known which glass spheres paths are in.
+    pub fn keeps_inside(&self) -> bool {
+        self.nesting > 0
+    }
+
     /// The glass spheres that the path in `place` is in.
     #[inline]
     pub fn inside(&mut self, place: usize) -> &mut [u32] {

@@ -7,69 +7,101 @@
 //! interface that lies inside a smaller sphere is not there.
 
 use super::fresnel;
+use crate::lanes::Doubles;
 use crate::ray::MISS;
+use crate::vec3::Vec3;
 use crate::world::World;
-use glam::DVec3;
 
 /// The glass spheres that a path is in, as rows, in any order; [`MISS`] marks a free place.
 pub type Inside<'a> = &'a mut [u32];
 
-/// What glass does to a ray.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passage {
-    /// Where the ray goes on: a unit vector.
-    pub direction: DVec3,
-    /// Whether it goes on inside the sphere.
-    pub inward: bool,
-    /// Whether the interface was there: if not, the ray went on as it came.
-    pub real: bool,
+/// A ray that meets the surface of a glass sphere, or a row of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting<D> {
+    /// Where the ray goes, of any length.
+    pub direction: Vec3<D>,
+    /// The outward unit normal.
+    pub normal: Vec3<D>,
+    /// Index of refraction of the sphere.
+    pub here: D,
+    /// Index of refraction of what is around the sphere there; 0 where that decides the medium on
+    /// both sides, so that the surface is not there.
+    pub around: D,
+    /// A number in [0, 1) that chooses whether the ray is reflected.
+    pub choice: D,
 }
 
-/// Takes a ray through or back from the surface of glass sphere `row`, where the outward unit
-/// normal is `normal`.
+/// What glass does to a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Passage<D: Doubles> {
+    /// Where the ray goes on: a unit vector.
+    pub direction: Vec3<D>,
+    /// Whether it goes on inside the sphere.
+    pub inward: D::Mask,
+}
+
+/// Takes a ray through or back from the surface of a glass sphere.
 ///
 /// It is reflected with the probability of the share that is, so its weight does not change.
-/// `inside` is what the ray was in before, and becomes what it is in after. Returns whether
-/// `inside` overflowed as well.
-pub fn pass(
-    world: &World,
-    row: u32,
-    (direction, normal): (DVec3, DVec3),
-    inside: Inside<'_>,
-    choice: f32,
-) -> (Passage, bool) {
-    let direction = direction.normalize();
-    let entering = direction.dot(normal) < 0.0;
-    remove(inside, row);
-    let around = innermost(world, inside);
-    let real = around.is_none_or(|other| precedes(world, row, other));
-    let mut passage = Passage { direction, inward: entering, real };
-    if real {
-        let (here, there) = (ior(world, row), around.map_or(1.0, |other| ior(world, other)));
-        let eta = if entering { there / here } else { here / there };
-        let facing = if entering { normal } else { -normal };
-        let (direction, through) = refract(direction, facing, eta, f64::from(choice));
-        passage.direction = direction;
-        passage.inward = entering == through;
+#[inline(always)]
+pub fn pass<D: Doubles>(meeting: &Meeting<D>) -> Passage<D> {
+    let Meeting { direction, normal, here, around, choice } = *meeting;
+    let direction = direction * direction.inverse_length();
+    let entering = direction.dot_unfused(normal).lt(D::splat(0.0));
+    let from = D::select(entering, around, here);
+    let eta = from / D::select(entering, here, around);
+    let facing = Vec3::select(entering, normal, -normal);
+    let (sent, through) = refract(direction, facing, eta, choice);
+    let real = D::splat(0.0).lt(around);
+    let across = through | !real;
+    Passage {
+        direction: Vec3::select(real, sent, direction),
+        inward: (entering & across) | (!entering & !across),
     }
-    let overflow = passage.inward && !insert(world, inside, row);
-    (passage, overflow)
 }
 
 /// Reflects or refracts at an interface with unit normal `facing`, against the ray. Returns whether
 /// it went through.
-fn refract(direction: DVec3, facing: DVec3, eta: f64, choice: f64) -> (DVec3, bool) {
-    let cosine = (-direction.dot(facing)).clamp(0.0, 1.0);
+#[inline(always)]
+fn refract<D: Doubles>(
+    direction: Vec3<D>,
+    facing: Vec3<D>,
+    eta: D,
+    choice: D,
+) -> (Vec3<D>, D::Mask) {
+    let cosine = clamp(-direction.dot_unfused(facing));
     let (reflected, refracted) = fresnel::dielectric(cosine, eta);
-    if choice < reflected {
-        return ((direction + facing * (2.0 * cosine)).normalize(), false);
-    }
-    ((direction * eta + facing * (eta * cosine - refracted)).normalize(), true)
+    let back = choice.lt(reflected);
+    let mirrored = direction + facing * (D::splat(2.0) * cosine);
+    let bent = direction * eta + facing * (eta * cosine - refracted);
+    let sent = Vec3::select(back, mirrored, bent);
+    (sent * sent.inverse_length(), !back)
 }
 
-fn ior(world: &World, row: u32) -> f64 {
+/// The nearest number in 0..=1.
+#[inline(always)]
+fn clamp<D: Doubles>(x: D) -> D {
+    let (zero, one) = (D::splat(0.0), D::splat(1.0));
+    let x = D::select(x.lt(zero), zero, x);
+    D::select(one.lt(x), one, x)
+}
+
+/// The index of refraction of glass sphere `row`.
+#[inline(always)]
+pub fn index(world: &World, row: u32) -> f32 {
     let material = world.appearance.material.row(row as usize);
-    f64::from(world.materials.dielectric[material.row()].ior)
+    world.materials.dielectric[material.row()].ior
+}
+
+/// The index of refraction around glass sphere `row` where a ray meets it, as [`Meeting::around`];
+/// `inside` is what the ray is in, and loses the sphere.
+pub fn around(world: &World, row: u32, inside: Inside<'_>) -> f32 {
+    remove(inside, row);
+    match innermost(world, inside) {
+        None => 1.0,
+        Some(other) if precedes(world, row, other) => index(world, other),
+        Some(_) => 0.0,
+    }
 }
 
 /// Whether sphere `a` decides the medium where it overlaps sphere `b`.
@@ -109,6 +141,12 @@ pub fn insert(world: &World, inside: Inside<'_>, row: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
+
+    fn meet(direction: DVec3, normal: DVec3, eta: f64, choice: f64) -> (DVec3, bool) {
+        let (sent, through) = refract(direction.into(), normal.into(), eta, choice);
+        (DVec3::new(sent.x, sent.y, sent.z), through)
+    }
 
     #[test]
     fn refraction_obeys_snell_and_keeps_to_the_plane() {
@@ -117,13 +155,13 @@ mod tests {
             let (sin, cos) = f64::to_radians(degrees).sin_cos();
             let direction = DVec3::new(sin, 0.0, -cos);
             // A choice of 1 never reflects, but for total reflection.
-            let (refracted, through) = refract(direction, normal, 1.0 / 1.5, 1.0);
+            let (refracted, through) = meet(direction, normal, 1.0 / 1.5, 1.0);
             assert!(through && refracted.y == 0.0 && refracted.z < 0.0);
             assert!((refracted.x * 1.5 - sin).abs() < 1e-14);
-            let (reflected, through) = refract(direction, normal, 1.0 / 1.5, 0.0);
+            let (reflected, through) = meet(direction, normal, 1.0 / 1.5, 0.0);
             assert!(!through && (reflected - DVec3::new(sin, 0.0, cos)).length() < 1e-14);
         }
         let grazing = DVec3::new(0.9, 0.0, -(1.0_f64 - 0.81).sqrt());
-        assert!(!refract(grazing, normal, 1.5, 0.999_999).1, "total reflection");
+        assert!(!meet(grazing, normal, 1.5, 0.999_999).1, "total reflection");
     }
 }

@@ -9,13 +9,14 @@ use crate::lanes::{Doubles, Lanes};
 /// side over that on the other. Total internal reflection gives 1 and 0.
 #[inline(always)]
 pub fn dielectric<D: Doubles>(cosine: D, eta: D) -> (D, D) {
-    let (zero, one) = (D::splat(0.0), D::splat(1.0));
+    let one = D::splat(1.0);
     let sine2 = eta * eta * ((one - cosine) * (one + cosine));
     let passes = sine2.lt(one);
-    let refracted = D::select(passes, one - sine2, zero).sqrt();
+    let refracted = (one - sine2).sqrt();
     let s = (eta * cosine - refracted) / (eta * cosine + refracted);
     let p = (cosine - eta * refracted) / (cosine + eta * refracted);
-    (D::select(passes, D::splat(0.5) * (s * s + p * p), one), refracted)
+    let reflected = D::splat(0.5) * (s * s + p * p);
+    (D::select(passes, reflected, one), D::select(passes, refracted, D::splat(0.0)))
 }
 
 /// How far Schlick's curve has risen from the reflectance at normal incidence to 1 (Schlick, "An

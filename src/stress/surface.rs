@@ -67,7 +67,7 @@ fn count_spherule(world: &World, starts: &[Start], report: &mut RegimeReport) {
         let Some(own) = ids.iter().position(|&id| id as usize == start.sphere) else { continue };
         let (center, radius) = world.spheres.exact(own);
         let point = (center + start.normal * radius).as_vec3();
-        let exit = chord(start.normal, radius, start.direction.as_dvec3());
+        let exit = chord(start.normal.into(), radius, start.direction.as_dvec3().into());
         let (t, hit) = if start.inward { (exit, own as u32) } else { (f64::INFINITY, MISS) };
         hits.set(rays.len(), t, hit);
         rays.push(point, start.direction, own as u32);

@@ -2,7 +2,11 @@
 
 use super::World;
 use super::materials::Kind;
+use glam::DVec3;
 use rayon::prelude::*;
+
+/// Spheres that are nearer than this share of their coordinates are taken to touch.
+const TOUCH: f64 = 1e-5;
 
 /// What there is in a world. What is not, is not run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,6 +40,9 @@ pub struct Features {
     /// Glass spheres that a camera ray may start in; empty if there are none, and then every ray
     /// starts outside.
     pub glass_at_camera: Vec<u32>,
+    /// Whether a ray may be in more than one glass sphere at a time: some may touch or overlap, or one
+    /// be in another.
+    pub nested_glass: bool,
 }
 
 impl Features {
@@ -61,6 +68,7 @@ impl Features {
             lens: false,
             environment: !world.environment.is_black(),
             glass_at_camera: Vec::new(),
+            nested_glass: nested_glass(world),
         }
         .seen_by(world)
     }
@@ -98,6 +106,7 @@ impl Features {
             self.glass_at_camera.is_empty(),
             "no glass around the camera: every ray starts outside",
         );
+        skip(!self.nested_glass, "no glass at or in other glass: no path keeps what it is in");
         for kind in Kind::ALL {
             skip(!self.has(kind), &format!("no {}: its shading stage does not run", kind.name()));
         }
@@ -114,6 +123,27 @@ fn around_camera(world: &World) -> bool {
         near && world.cut.divides(center, radius)
     };
     !world.cut.is_empty() && (0..world.spheres.len()).into_par_iter().any(around)
+}
+
+/// So many glass spheres are held against each other; more are taken to touch.
+const HELD_TOGETHER: usize = 1024;
+
+/// Whether glass spheres may touch, by far more than what rounding moves points of them.
+fn nested_glass(world: &World) -> bool {
+    let is_glass = |row: &usize| world.appearance.material.row(*row).kind() == Kind::Dielectric;
+    if world.materials.dielectric.is_empty() {
+        return false;
+    }
+    let rows = (0..world.spheres.len()).filter(is_glass).take(HELD_TOGETHER + 1);
+    let glass: Vec<_> = rows.map(|row| world.spheres.exact(row)).collect();
+    let apart = |(i, (center, radius)): (usize, &(DVec3, f64))| {
+        glass[..i].iter().all(|(other, other_radius)| {
+            let reach = radius + other_radius;
+            let size = center.length() + other.length() + reach;
+            center.distance(*other) > reach + size * TOUCH
+        })
+    };
+    glass.len() > HELD_TOGETHER || !glass.iter().enumerate().all(apart)
 }
 
 /// Glass spheres that touch the ball in which camera rays start.
