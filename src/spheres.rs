@@ -7,6 +7,9 @@ use rayon::prelude::*;
 /// Spheres of a block, which is a leaf of the tree: one row of lanes for each column.
 pub const LEAF: usize = 8;
 
+/// So many rows are worth a task.
+const TASK: usize = 1 << 12;
+
 /// The columns of [`LEAF`] spheres side by side, so that a leaf is two lines of cache.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug)]
@@ -74,9 +77,10 @@ impl Spheres {
             }
             block
         };
+        let rows = |count: usize| (0..count).into_par_iter().with_min_len(TASK);
         Self {
-            blocks: (0..count.div_ceil(LEAF)).into_par_iter().map(block).collect(),
-            id: (0..count).into_par_iter().map(|i| row(i).1).collect(),
+            blocks: rows(count.div_ceil(LEAF)).map(block).collect(),
+            id: rows(count).map(|i| row(i).1).collect(),
             precise: Vec::new(),
         }
     }

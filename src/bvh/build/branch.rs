@@ -38,7 +38,7 @@ impl Branch {
 }
 
 impl Top {
-    pub(super) fn leaf<'a>(items: impl Iterator<Item = &'a Item>) -> Self {
+    pub(super) fn leaf(items: impl Iterator<Item = Item>) -> Self {
         Self { bounds: bounds(items), ..Branch::NONE.top }
     }
 
@@ -81,7 +81,7 @@ pub(super) fn grow(
     }
     let Some((root, below)) = branches.split_first_mut() else {
         items.sort_unstable_by(|a, b| along(0, a, b));
-        return Top::leaf(items.iter());
+        return Top::leaf(items.iter().copied());
     };
     let least_height = (leaves - 1).ilog2() as usize + 1;
     let place = if depth + 1 + least_height <= HEIGHT {

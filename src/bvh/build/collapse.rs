@@ -4,11 +4,11 @@
 //! ([`branch::best`]); where it would become deeper than the walks' stacks allow, so that it is
 //! shallow.
 
-use super::PARALLEL;
 use super::branch::{self, Branch, Top};
 use super::item::{Item, bounds};
+use super::{PARALLEL, freeing};
 use crate::bvh::{Bounds, Child, DEPTH, Node, WIDTH, order};
-use crate::spheres::LEAF;
+use crate::spheres::{LEAF, Spheres};
 use rayon::prelude::*;
 
 /// A part of the binary tree.
@@ -38,68 +38,101 @@ impl<'a> Part<'a> {
     }
 }
 
-/// The nodes over `items`, root first; a single leaf has a root of its own.
-pub(super) fn nodes(branches: &[Branch], items: &[Item]) -> Vec<Node> {
-    let mut nodes = Vec::with_capacity(branches.len().div_ceil(WIDTH - 1) * 3 / 2 + 1);
-    let root = Part { branches, block: 0 };
-    if branches.is_empty() {
-        nodes.push(node(&[(root, bounds(items.iter()))], |_| Child::leaf(0)));
-    } else {
-        emit(root, items, DEPTH, &mut nodes);
+/// Nodes in a row, as one task made them.
+struct Run {
+    nodes: Vec<Node>,
+    /// What their children's numbers lack.
+    base: usize,
+}
+
+/// The nodes over the spheres, root first; a single leaf has a root of its own.
+pub(super) fn nodes(branches: Vec<Branch>, spheres: &Spheres) -> Vec<Node> {
+    let root = Part { branches: &branches, block: 0 };
+    if branches.is_empty() && spheres.is_empty() {
+        return Vec::new();
     }
+    if branches.is_empty() {
+        return vec![node(&[(root, box_of(root, spheres))], |_| Child::leaf(0))];
+    }
+    let runs = runs(root, spheres, DEPTH);
+    freeing(branches, || joined(runs))
+}
+
+/// The nodes of a part that is at most `levels` deep, in the order in which they are to be.
+fn runs(part: Part, spheres: &Spheres, levels: usize) -> Vec<Run> {
+    if part.branches.len() * LEAF < PARALLEL {
+        let mut nodes = Vec::new();
+        emit(part, spheres, levels, &mut nodes);
+        return vec![Run { nodes, base: 0 }];
+    }
+    let parts = children(part, levels);
+    let below = |&part: &Part| match part.branches {
+        [] => Vec::new(),
+        _ => runs(part, spheres, levels - 1),
+    };
+    let below: Vec<_> = parts.par_iter().map(below).collect();
+    let (mut begins, mut length) = (Vec::with_capacity(WIDTH), 1);
+    let mut all = vec![Run { nodes: Vec::new(), base: 0 }];
+    for runs in below {
+        begins.push(length);
+        let begin = length;
+        for mut run in runs {
+            run.base += begin;
+            length += run.nodes.len();
+            all.push(run);
+        }
+    }
+    all[0].nodes.push(over(&parts, spheres, |i| begins[i]));
+    all
+}
+
+/// All nodes in one row.
+fn joined(mut runs: Vec<Run>) -> Vec<Node> {
+    if let [only] = &mut *runs {
+        return std::mem::take(&mut only.nodes);
+    }
+    let count: usize = runs.iter().map(|run| run.nodes.len()).sum();
+    let mut nodes: Vec<_> = (0..count).into_par_iter().map(|_| Node::EMPTY).collect();
+    let (mut rest, mut places) = (&mut *nodes, Vec::with_capacity(runs.len()));
+    for run in &runs {
+        places.push(rest.split_off_mut(..run.nodes.len()).unwrap_or_default());
+    }
+    places.into_par_iter().zip(runs).for_each(|(places, run)| {
+        for (place, node) in places.iter_mut().zip(run.nodes) {
+            *place = moved(node, run.base);
+        }
+    });
     nodes
 }
 
 /// Appends a node and all that is below it, at most `levels` deep.
-fn emit(part: Part, items: &[Item], levels: usize, nodes: &mut Vec<Node>) {
+fn emit(part: Part, spheres: &Spheres, levels: usize, nodes: &mut Vec<Node>) {
     let parts = children(part, levels);
-    let boxed: Vec<_> = parts.iter().map(|&part| (part, box_of(part, items))).collect();
     let index = nodes.len();
     nodes.push(Node::EMPTY);
-    let below = if part.branches.len() * LEAF >= PARALLEL {
-        emit_in_parallel(&parts, items, levels - 1, nodes)
-    } else {
-        parts.iter().map(|&part| emit_below(part, items, levels - 1, nodes)).collect()
-    };
-    nodes[index] = node(&boxed, |i| match parts[i] {
-        Part { branches: [], block } => Child::leaf(block),
-        _ => Child::node(below[i]),
-    });
-}
-
-/// Appends a part unless it is a leaf; returns where it begins.
-fn emit_below(part: Part, items: &[Item], levels: usize, nodes: &mut Vec<Node>) -> usize {
-    let base = nodes.len();
-    if !part.branches.is_empty() {
-        emit(part, items, levels, nodes);
+    let mut begins = [0; WIDTH];
+    for (begin, &part) in begins.iter_mut().zip(&parts) {
+        *begin = nodes.len();
+        if !part.branches.is_empty() {
+            emit(part, spheres, levels - 1, nodes);
+        }
     }
-    base
+    nodes[index] = over(&parts, spheres, |i| begins[i]);
 }
 
-fn emit_in_parallel(
-    parts: &[Part],
-    items: &[Item],
-    levels: usize,
-    nodes: &mut Vec<Node>,
-) -> Vec<usize> {
-    let subtree = |&part: &Part| {
-        let mut nodes = Vec::new();
-        emit_below(part, items, levels, &mut nodes);
-        nodes
-    };
-    let subtrees: Vec<_> = parts.par_iter().map(subtree).collect();
-    let append = |subtree: Vec<Node>| {
-        let base = nodes.len();
-        nodes.extend(subtree.into_iter().map(|node| moved(node, base)));
-        base
-    };
-    subtrees.into_iter().map(append).collect()
+/// The node over some parts, where those that are not leaves begin at certain nodes.
+fn over(parts: &[Part], spheres: &Spheres, begin: impl Fn(usize) -> usize) -> Node {
+    let boxed: Vec<_> = parts.iter().map(|&part| (part, box_of(part, spheres))).collect();
+    node(&boxed, |i| match parts[i] {
+        Part { branches: [], block } => Child::leaf(block),
+        _ => Child::node(begin(i)),
+    })
 }
 
-fn box_of(part: Part, items: &[Item]) -> Bounds {
+fn box_of(part: Part, spheres: &Spheres) -> Bounds {
     let leaf = || {
         let first = part.block * LEAF;
-        bounds(items[first..items.len().min(first + LEAF)].iter())
+        bounds((first..spheres.len().min(first + LEAF)).map(|row| Item::of(spheres, row)))
     };
     part.branches.first().map_or_else(leaf, |root| root.top.bounds)
 }
@@ -114,7 +147,7 @@ fn node(boxed: &[(Part, Bounds)], child: impl Fn(usize) -> Child) -> Node {
     node
 }
 
-/// A node whose subtree begins at `base`.
+/// A node of which the first of its tree is not the first of all, but the one after `base`.
 fn moved(mut node: Node, base: usize) -> Node {
     for child in &mut node.child {
         if child.kind() == 0 {

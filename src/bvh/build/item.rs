@@ -2,6 +2,7 @@
 
 use crate::bvh::Bounds;
 use crate::slabs::MARGIN;
+use crate::spheres::Spheres;
 use glam::Vec4;
 use std::cmp::Ordering;
 
@@ -18,6 +19,13 @@ pub(super) struct Item {
 }
 
 impl Item {
+    /// A row of the columns.
+    #[inline(always)]
+    pub(super) fn of(spheres: &Spheres, row: usize) -> Self {
+        let [x, y, z] = spheres.center(row).to_array();
+        Self { sphere: [x, y, z, spheres.radius(row)], id: spheres.id[row] }
+    }
+
     /// Center and radius.
     #[inline(always)]
     pub(super) fn vector(&self) -> Vec4 {
@@ -82,10 +90,10 @@ pub(super) fn spread(items: &[Item]) -> Extent {
 
 /// A box that holds the spheres for certain: rounding the difference may fall on the inner side of
 /// the true bound, the next number cannot.
-pub(super) fn bounds<'a>(items: impl Iterator<Item = &'a Item>) -> Bounds {
+pub(super) fn bounds(items: impl Iterator<Item = Item>) -> Bounds {
     let margin = Vec4::splat(MARGIN);
     let all = items.fold(Extent::EMPTY, |all, item| {
-        let Extent { low, high } = Extent::of(item);
+        let Extent { low, high } = Extent::of(&item);
         all.union(&Extent { low: low - margin, high: high + margin })
     });
     let (low, high) = (all.low.truncate().to_array(), all.high.truncate().to_array());

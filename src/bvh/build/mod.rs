@@ -97,6 +97,13 @@ struct Precise {
 }
 
 impl Precise {
+    /// What the columns do not hold of some spheres, which do without it from now on.
+    fn taken(from: &mut Spheres) -> Self {
+        let sphere = std::mem::take(&mut from.precise);
+        let id = if sphere.is_empty() { Vec::new() } else { std::mem::take(&mut from.id) };
+        Self { id, sphere }
+    }
+
     fn of(&self, item: &Item) -> Option<(DVec3, f64)> {
         self.sphere.get(self.id.partition_point(|&id| id < item.id)).copied()
     }
@@ -118,29 +125,30 @@ impl Precise {
 /// Of spheres that coincide only the first of the user's is ever hit. Where there are crowds of them,
 /// in whose boxes a walk would have to look into every leaf, the others are left out.
 pub fn build(spheres: &mut Spheres, builder: Builder) -> Bvh {
-    let (mut items, precise) = taken(std::mem::take(spheres));
-    let (mut bvh, crowded) = tree(&mut items, builder);
-    if crowded {
+    let mut from = std::mem::take(spheres);
+    let rows = (0..from.len()).into_par_iter().with_min_len(PARALLEL);
+    let mut items: Vec<Item> = rows.map(|row| Item::of(&from, row)).collect();
+    let precise = Precise::taken(&mut from);
+    let mut binary = freeing(from, || Binary::over(&mut items, builder));
+    if binary.crowded {
         let count = items.len();
         leave_out_hidden(&mut items, &precise);
         if items.len() < count {
-            bvh = tree(&mut items, builder).0;
+            drop(binary);
+            binary = Binary::over(&mut items, builder);
         }
     }
     *spheres = Spheres::from_rows(items.len(), |row| (items[row].sphere, items[row].id));
-    spheres.precise = items.iter().filter_map(|item| precise.of(item)).collect();
-    bvh
+    if !precise.sphere.is_empty() {
+        spheres.precise = items.iter().filter_map(|item| precise.of(item)).collect();
+    }
+    Bvh::new(freeing(items, || collapse::nodes(binary.branches, spheres)))
 }
 
-/// The spheres as items; their columns are not needed any more.
-fn taken(spheres: Spheres) -> (Vec<Item>, Precise) {
-    let item = |row: usize| {
-        let [x, y, z] = spheres.center(row).to_array();
-        Item { sphere: [x, y, z, spheres.radius(row)], id: spheres.id[row] }
-    };
-    let items = (0..spheres.len()).into_par_iter().map(item).collect();
-    let id = if spheres.precise.is_empty() { Vec::new() } else { spheres.id };
-    (items, Precise { id, sphere: spheres.precise })
+/// Gives memory back while other threads go on: it takes the system as long as some levels of a large
+/// tree, and one thread at a time.
+fn freeing<T: Send, R: Send>(memory: T, meanwhile: impl FnOnce() -> R + Send) -> R {
+    rayon::join(|| drop(memory), meanwhile).1
 }
 
 /// Keeps the first of the user's spheres of all that coincide.
@@ -149,31 +157,35 @@ fn leave_out_hidden(items: &mut Vec<Item>, precise: &Precise) {
     items.dedup_by_key(|item| precise.key(item));
 }
 
-/// The tree over `items`, which are put into the order of the leaves, and whether there are crowds of
-/// equal centers.
-fn tree(items: &mut Vec<Item>, builder: Builder) -> (Bvh, bool) {
-    match builder {
-        Builder::Median => cut(items, Median::default()),
-        Builder::SurfaceArea => cut(items, SurfaceArea::default()),
-        Builder::Morton => {
-            let morton = Morton::sort(items);
-            cut(items, morton)
-        }
-    }
+/// The tree while it is binary.
+struct Binary {
+    branches: Vec<Branch>,
+    /// Whether there are crowds of equal centers.
+    crowded: bool,
 }
 
-fn cut(items: &mut [Item], how: impl Cut) -> (Bvh, bool) {
-    let mut nodes = Vec::new();
-    let mut crowded = false;
-    if !items.is_empty() {
-        let mut branches = vec![Branch::NONE; items.len().div_ceil(LEAF) - 1];
-        branch::grow(&how, items, &mut branches, (0, 0));
-        crowded = how.median().crowded.load(Relaxed);
-        // Before more memory is taken.
-        drop(how);
-        nodes = collapse::nodes(&branches, items);
+impl Binary {
+    /// Over `items`, which are put into the order of the leaves.
+    fn over(items: &mut [Item], builder: Builder) -> Self {
+        match builder {
+            Builder::Median => Self::cut(items, &Median::default()),
+            Builder::SurfaceArea => Self::cut(items, &SurfaceArea::default()),
+            Builder::Morton => {
+                let (morton, memory) = Morton::sort(items);
+                freeing(memory, || Self::cut(items, &morton))
+            }
+        }
     }
-    (Bvh::new(nodes), crowded)
+
+    fn cut(items: &mut [Item], how: &impl Cut) -> Self {
+        let count = items.len().div_ceil(LEAF).saturating_sub(1);
+        let none = (0..count).into_par_iter().with_min_len(PARALLEL).map(|_| Branch::NONE);
+        let mut branches: Vec<_> = none.collect();
+        if !items.is_empty() {
+            branch::grow(how, items, &mut branches, (0, 0));
+        }
+        Self { branches, crowded: how.median().crowded.load(Relaxed) }
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Parting spheres at a place in their order on an axis, in time proportional to their number.
 //!
-//! A histogram over [`BINS`] intervals says in which of them the place is; only the few spheres in
-//! that one are ordered. All of it is done in place, and by many threads where there is much of it.
+//! A histogram over [`BINS`] intervals says in which of them the place is, and so on in that one; only
+//! when spheres are few are they ordered. All of it is done in place, and by many threads where there is much of it.
 
 use super::item::{AXES, Extent, Item, along, spread};
 use glam::Vec4;
@@ -82,9 +82,21 @@ impl Grid {
         if below < place {
             let rest = &mut items[below..];
             partition(rest, |item| self.bins(item)[axis] == bin);
-            rest[..counts[bin]].select_nth_unstable_by(place - below, |a, b| along(axis, a, b));
+            part_some(&mut rest[..counts[bin]], axis, place - below);
         }
     }
+}
+
+/// The same for those of one interval: all threads cut it into intervals again if there are many.
+fn part_some(items: &mut [Item], axis: usize, place: usize) {
+    if items.len() > CHUNK {
+        let grid = Grid::over(items);
+        let counts = grid.count(items, axis);
+        if counts.iter().all(|&count| count < items.len()) {
+            return grid.part(items, axis, &counts, place);
+        }
+    }
+    items.select_nth_unstable_by(place, |a, b| along(axis, a, b));
 }
 
 /// Puts what satisfies a condition first; returns how many do.

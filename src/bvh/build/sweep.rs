@@ -69,7 +69,7 @@ impl Sweep {
 
     fn grow(&mut self, from: usize, to: usize, branches: &mut [Branch]) -> Top {
         let Some((root, rest)) = branches.split_first_mut() else {
-            return Top::leaf(self.order[0][from..to].iter().map(|&i| &self.items[i as usize]));
+            return Top::leaf(self.order[0][from..to].iter().map(|&i| self.items[i as usize]));
         };
         let (axis, first) = self.best(from, to);
         let border = from + first * LEAF;
