@@ -64,7 +64,7 @@ fn begin(job: &Job, state: &mut State, target: &Target, watch: &Watch) {
         if unseen(tile) {
             pass::pilot_pass(job, tile, (block, samples), work);
         }
-        watch.report(work, 0.0, None);
+        watch.report(work, None, 0.0, None);
     });
 }
 
@@ -88,7 +88,7 @@ fn refine(job: &Job, state: &mut State, target: &Target, watch: &Watch, pause: O
         let added = added.fetch_add(rays as u64, Ordering::Relaxed) as f64 + rays;
         let by_error = expected.map_or(0.0, |expected| (spent + added) / expected);
         let by_time = target.time.map_or(0.0, |time| watch.elapsed().div_duration_f64(time));
-        watch.report(work, by_error.max(by_time).min(1.0), noise);
+        watch.report(work, None, by_error.max(by_time).min(1.0), noise);
     });
     state.strike(count);
 }

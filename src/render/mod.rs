@@ -7,9 +7,11 @@
 mod adapt;
 mod outline;
 mod pass;
+mod schedule;
 mod share;
 mod state;
 mod target;
+mod tasks;
 mod unfinished;
 mod uniform;
 mod unlike;
@@ -20,10 +22,11 @@ pub(crate) use outline::Outline;
 pub(crate) use pass::view;
 pub use share::Share;
 pub use target::{End, Stage};
+pub use tasks::Tasks;
 pub use unfinished::Unfinished;
 pub use unlike::Unlike;
 pub(crate) use unlike::difference;
-pub use watch::{Tasks, Totals};
+pub use watch::Totals;
 
 use self::pass::PASS;
 use crate::bvh::walk::Method;

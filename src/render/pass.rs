@@ -27,24 +27,67 @@ pub(crate) fn view(job: &Job, tile: &Tile) -> View {
 
 /// The radiance of every sample of a tile, if it is the same and known.
 pub(super) fn even(world: &World, tile: &Tile) -> Option<Rgb> {
+    even_view(world, tile.view)
+}
+
+fn even_view(world: &World, view: View) -> Option<Rgb> {
     let only = world.ground.is_none() && world.lights.suns.is_empty();
-    world.environment.constant().filter(|_| only && tile.view == View::Background)
+    world.environment.constant().filter(|_| only && view == View::Background)
+}
+
+/// All that it takes to know of a tile to follow paths from it.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    region: Region,
+    view: View,
+}
+
+/// Samples of a tile that are in none of its sums yet.
+pub(super) enum Taken {
+    /// All the same.
+    Even(Rgb),
+    /// The first so many of a workspace.
+    Paths(usize),
+}
+
+impl Place {
+    pub(super) fn of(tile: &Tile) -> Self {
+        Self { region: tile.region, view: tile.view }
+    }
+
+    /// Takes samples of the pixels.
+    pub(super) fn take(self, job: &Job, samples: Range<u32>, work: &mut Workspace) -> Taken {
+        work.clock.restart();
+        let even = even_view(job.world, self.view).filter(|_| job.skips.even_background);
+        if let Some(radiance) = even {
+            let pixels = u64::from(self.region.width) * u64::from(self.region.height);
+            work.counters.skipped_samples += pixels * samples.len() as u64;
+            return Taken::Even(radiance);
+        }
+        work.view = self.view;
+        let streams = self.region.morton().map(|(x, y)| (x, y, *job.sampler));
+        stages::generate_streams(job, streams, samples, work);
+        Taken::Paths(integrate(job, work))
+    }
+}
+
+impl Taken {
+    /// Adds them to their tile: `count` for each of its pixels.
+    pub(super) fn add(self, tile: &mut Tile, count: u32, work: &mut Workspace) {
+        match self {
+            Self::Even(radiance) => tile.add_even(radiance, count),
+            Self::Paths(paths) => {
+                work.counters.bad_samples += tile.add(&work.paths.radiance[..paths], count);
+            }
+        }
+        work.clock.end(Stage::Film);
+    }
 }
 
 /// Adds samples to the pixels of a tile.
 pub(super) fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
     let count = samples.end - samples.start;
-    work.clock.restart();
-    if let Some(radiance) = even(job.world, tile).filter(|_| job.skips.even_background) {
-        tile.add_even(radiance, count);
-        work.counters.skipped_samples += u64::from(count) * tile.pixels().count() as u64;
-        return work.clock.end(Stage::Film);
-    }
-    work.view = tile.view;
-    stages::generate(job, tile, samples, work);
-    let paths = integrate(job, work);
-    work.counters.bad_samples += tile.add(&work.paths.radiance[..paths], count);
-    work.clock.end(Stage::Film);
+    Place::of(tile).take(job, samples, work).add(tile, count, work);
 }
 
 /// Gives the probes of a tile those of the samples that they lack, up to the end; `go_on` may end it

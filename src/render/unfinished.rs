@@ -102,7 +102,7 @@ impl Unfinished {
     /// `world` is that of the beginning. Of the options, region and statistics are those of the
     /// beginning too, whatever is said here.
     pub fn run(&mut self, world: &World, options: &Options) -> End {
-        let watch = Watch::new(options, self.totals);
+        let watch = Watch::new(options, &self.totals);
         let settings = self.settings.clone();
         self.end = with_job(world, &settings, options, |job| {
             if settings.has_target() {

@@ -1,6 +1,7 @@
 //! Renders that give every pixel as many samples.
 
-use super::pass::{self, PASS};
+use super::pass::{PASS, Place, probe_pass};
+use super::schedule::{Schedule, Task};
 use super::state::State;
 use super::target::End;
 use super::watch::Watch;
@@ -9,79 +10,63 @@ use crate::integrator::Job;
 use crate::integrator::workspace::Workspace;
 use std::ops::Range;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// Gives every pixel the samples that it lacks of a share.
 ///
-/// A task is a pass over a tile, and threads take them off one counter: none ever waits for a whole pass
-/// over the picture to end. Whoever comes to a tile takes the samples that are next there, so their
-/// order does not depend on that of the tasks, nor on how often the render was stopped.
+/// A task is a pass over a tile or a part of one, and threads take them off one counter: none ever
+/// waits for a whole pass over the picture to end, nor for another that has samples of the same tile,
+/// but while these are added up. It does not matter in which order they are.
 pub(super) fn run(job: &Job, share: Range<u32>, state: &mut State, watch: &Watch) -> End {
     let spp = share.len() as u32;
-    let left = |tile: &Tile| passes_left(tile.samples, spp);
-    let all = state.film.tiles.len() * spp.div_ceil(PASS) as usize;
-    let rounds = state.film.tiles.iter().map(left).max().unwrap_or(0);
-    let waiting: usize = state.film.tiles.iter().map(left).sum();
-    let tiles: Vec<Mutex<&mut Tile>> = state.film.tiles.iter_mut().map(Mutex::new).collect();
-    let tasks = tiles.len() * rounds;
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(all.saturating_sub(waiting)));
+    let taken: Vec<u32> = state.film.tiles.iter().map(|tile| tile.samples).collect();
+    let all = taken.len() as u64 * u64::from(spp);
+    let done = AtomicU64::new(taken.iter().map(|&taken| u64::from(taken.min(spp))).sum());
+    let schedule = Schedule::new(taken, spp, rayon::current_num_threads());
+    let next = AtomicUsize::new(0);
+    let tiles: Vec<_> = state.film.tiles.iter_mut().map(shared).collect();
     rayon::broadcast(|_| {
         let mut work = Workspace::new(job.world, job.sampler, job.skips);
         while !watch.cancelled() {
-            let task = next.fetch_add(1, Ordering::Relaxed);
-            let Some(Ok(mut tile)) = (task < tasks).then(|| tiles[task % tiles.len()].lock())
-            else {
-                return;
-            };
-            if left(&tile) > 0 {
-                let first = share.start + tile.samples;
-                let end = share.start + pass_end(tile.samples, spp);
-                pass::tile_pass(job, &mut tile, first..end, &mut work);
-                pass::probe_pass(job, &mut tile, share.start..end, &mut work, || true);
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                watch.report(&mut work, done as f64 / all as f64, None);
+            let next = next.fetch_add(1, Ordering::Relaxed);
+            let Some(Task { tile, samples, of }) = schedule.task(next) else { return };
+            let count = samples.len() as u64;
+            if count > 0 {
+                let samples = share.start + samples.start..share.start + samples.end;
+                add(job, &tiles[tile], samples, share.start, &mut work);
+                let done = done.fetch_add(count, Ordering::Relaxed) + count;
+                watch.report(&mut work, Some(of), done as f64 / all as f64, None);
             }
         }
     });
     drop(tiles);
     state.round = rounds_taken(&state.film);
-    let complete = state.film.tiles.iter().all(|tile| left(tile) == 0);
+    let complete = state.film.tiles.iter().all(|tile| tile.samples >= spp);
     if complete { End::Samples } else { End::Cancelled }
 }
 
-/// Where the pass ends that begins at sample `first`: passes begin where those of a render that
-/// never stopped do.
-fn pass_end(first: u32, spp: u32) -> u32 {
-    spp.min((first / PASS + 1).saturating_mul(PASS))
+/// A tile whose sums all threads may add to.
+fn shared(tile: &mut Tile) -> (Place, Mutex<&mut Tile>) {
+    (Place::of(tile), Mutex::new(tile))
 }
 
-/// Passes until a tile of so many samples has `spp`.
-fn passes_left(samples: u32, spp: u32) -> usize {
-    if samples < spp { (spp.div_ceil(PASS) - samples / PASS) as usize } else { 0 }
+/// Takes samples of a tile and adds them up; gives its probes theirs, from `first` on.
+fn add(
+    job: &Job,
+    (place, tile): &(Place, Mutex<&mut Tile>),
+    samples: Range<u32>,
+    first: u32,
+    work: &mut Workspace,
+) {
+    let (count, end) = (samples.len() as u32, samples.end);
+    let taken = place.take(job, samples, work);
+    if let Ok(mut tile) = tile.lock() {
+        taken.add(&mut tile, count, work);
+        probe_pass(job, &mut tile, first..end, work, || true);
+    }
 }
 
 /// Passes of the tile that has had most.
 pub(super) fn rounds_taken(film: &Film) -> u32 {
     film.tiles.iter().map(|tile| tile.samples.div_ceil(PASS)).max().unwrap_or(0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn passes_are_those_of_a_render_that_never_stopped() {
-        for (first, spp, end, left) in [
-            (0, 1, 1, 1),
-            (0, 40, 16, 3),
-            (16, 40, 32, 2),
-            (20, 40, 32, 2),
-            (32, 40, 40, 1),
-            (40, 40, 40, 0),
-            (u32::MAX - 1, u32::MAX, u32::MAX, 1),
-        ] {
-            assert_eq!(passes_left(first, spp), left, "{first} of {spp}");
-            assert!(left == 0 || pass_end(first, spp) == end, "{first} of {spp}");
-        }
-    }
 }

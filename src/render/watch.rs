@@ -1,5 +1,7 @@
 //! What all threads of a render share: whether to go on, and what was done.
 
+use super::schedule::Pass;
+use super::tasks::Tasks;
 use super::{Options, Progress};
 use crate::integrator::clock::Times;
 use crate::integrator::counters::Counters;
@@ -9,32 +11,6 @@ use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-
-/// How a render's work was divided: a task is what one thread does between looking for something to do
-/// and looking again, alone and without waiting for anyone.
-///
-/// On `n` threads a render takes no longer than its work over `n` and one task: nobody is idle before
-/// there is nothing left to begin (Graham, "Bounds on Multiprocessing Timing Anomalies", SIAM Journal on
-/// Applied Mathematics 1969). That is so for pictures of more tiles than threads, as far as memory keeps
-/// up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Tasks {
-    /// How many.
-    pub count: u64,
-    /// How long the longest took.
-    pub longest: Duration,
-    /// How long all took together.
-    pub total: Duration,
-}
-
-impl Tasks {
-    /// The least efficiency on so many threads, 0..=1: speed-up over threads.
-    pub fn efficiency(&self, threads: u32) -> f64 {
-        let ideal = self.total / threads;
-        let longest = self.longest.mul_f64(1.0 - 1.0 / f64::from(threads));
-        if self.total.is_zero() { 1.0 } else { ideal.div_duration_f64(ideal + longest) }
-    }
-}
 
 /// What was done, and how long it took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,9 +30,7 @@ impl Totals {
     pub(super) fn add(&mut self, other: &Self) {
         self.counters.add(&other.counters);
         self.times.add(&other.times);
-        self.tasks.count += other.tasks.count;
-        self.tasks.longest = self.tasks.longest.max(other.tasks.longest);
-        self.tasks.total += other.tasks.total;
+        self.tasks.add(&other.tasks);
         self.elapsed += other.elapsed;
     }
 }
@@ -73,13 +47,13 @@ pub(super) struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     /// Goes on from what was done before.
-    pub(super) fn new(options: &'a Options<'a>, totals: Totals) -> Self {
+    pub(super) fn new(options: &'a Options<'a>, totals: &Totals) -> Self {
         Self {
             options,
             start: Instant::now(),
             before: totals.elapsed,
             rays: AtomicU64::new(totals.counters.rays()),
-            totals: Mutex::new(totals),
+            totals: Mutex::new(*totals),
         }
     }
 
@@ -94,16 +68,20 @@ impl<'a> Watch<'a> {
     }
 
     /// Takes in what a task has done, and tells how far the render is: `done` of it.
-    pub(super) fn report(&self, work: &mut Workspace, done: f64, noise: Option<Noise>) {
+    pub(super) fn report(
+        &self,
+        work: &mut Workspace,
+        of: Option<Pass>,
+        done: f64,
+        noise: Option<Noise>,
+    ) {
         let counted = std::mem::take(&mut work.counters);
         let rays = self.rays.fetch_add(counted.rays(), Ordering::Relaxed) + counted.rays();
         if let Ok(mut totals) = self.totals.lock() {
             totals.counters.add(&counted);
             let times = work.clock.take();
             totals.times.add(&times);
-            totals.tasks.count += 1;
-            totals.tasks.longest = totals.tasks.longest.max(times.total());
-            totals.tasks.total += times.total();
+            totals.tasks.push(times.total(), of);
         }
         if let Some(progress) = self.options.progress {
             progress(Progress { done, rays, elapsed: self.elapsed(), noise });
@@ -114,23 +92,5 @@ impl<'a> Watch<'a> {
     pub(super) fn totals(self) -> Totals {
         let elapsed = self.elapsed();
         Totals { elapsed, ..self.totals.into_inner().unwrap_or_default() }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_long_task_bounds_the_efficiency() {
-        let of = |longest, total| Tasks {
-            count: 2,
-            longest: Duration::from_millis(longest),
-            total: Duration::from_millis(total),
-        };
-        assert_eq!(Tasks::default().efficiency(64), 1.0);
-        assert_eq!(of(10, 1000).efficiency(1), 1.0);
-        // 100 ms of work each and 9 ms more.
-        assert!((of(10, 1000).efficiency(10) - 100.0 / 109.0).abs() < 1e-12);
     }
 }

@@ -1,0 +1,163 @@
+//! How the samples of a picture are divided into tasks.
+
+use super::pass::PASS;
+use std::ops::Range;
+
+/// Passes at the end that are divided, for each thread, and into how many tasks: from the last.
+///
+/// Where a few tiles see much glass, say, their passes take six times as long as the others. So the last
+/// to begin are shorter, and those before have as much begun after them as they take. A batch of fewer
+/// paths takes up to a tenth longer, so it is but the end.
+const ZONES: [(usize, u32); 2] = [(2, 4), (4, 2)];
+
+/// Into how many tasks a pass is divided after which so many others come.
+pub(super) fn parts(left: usize, threads: usize) -> u32 {
+    let mut end = 0;
+    let zones = ZONES.iter().map(|&(passes, parts)| {
+        end += passes * threads;
+        (end, parts)
+    });
+    zones.into_iter().find(|&(end, _)| left < end).map_or(1, |(_, parts)| parts)
+}
+
+/// The tasks of a render, in the order in which they are begun.
+///
+/// A pass is [`PASS`] samples of a tile's pixels, and passes go over all tiles before the next ones, so
+/// that a picture is as far everywhere. They end where those of a render that never stopped do.
+#[derive(Debug)]
+pub(super) struct Schedule {
+    /// Samples that each tile has already.
+    taken: Vec<u32>,
+    /// Samples that each is to have.
+    spp: u32,
+    /// Passes that all tiles have before, for a tile may have begun one.
+    passes: usize,
+    threads: usize,
+}
+
+/// What one thread does at a time.
+#[derive(Clone, Debug)]
+pub(super) struct Task {
+    /// Which tile it is for.
+    pub(super) tile: usize,
+    /// The samples that it is to get, maybe none.
+    pub(super) samples: Range<u32>,
+    /// The pass that this is a part of.
+    pub(super) of: Pass,
+}
+
+/// A pass, among those of a schedule.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pass {
+    /// Passes that come after it.
+    pub(super) left: usize,
+    /// Tasks that it is divided into.
+    pub(super) parts: u32,
+}
+
+impl Schedule {
+    /// Of what lacks of `spp` samples where tiles have `taken` some, for so many threads.
+    pub(super) fn new(taken: Vec<u32>, spp: u32, threads: usize) -> Self {
+        let rounds = taken.iter().map(|&taken| passes_left(taken, spp)).max().unwrap_or(0);
+        Self { passes: rounds * taken.len(), taken, spp, threads }
+    }
+
+    /// A task by its number; `None` past the last one.
+    pub(super) fn task(&self, at: usize) -> Option<Task> {
+        let (mut first_task, mut first_pass) = (0, 0);
+        for (passes, parts) in self.zones() {
+            let place = at - first_task;
+            if place < passes * parts as usize {
+                let (pass, part) = (first_pass + place / parts as usize, place % parts as usize);
+                let samples = self.pass(pass);
+                let cut = |part: usize| samples.start + samples.len() as u32 * part as u32 / parts;
+                return Some(Task {
+                    tile: pass % self.taken.len(),
+                    samples: cut(part)..cut(part + 1),
+                    of: Pass { left: self.passes - pass - 1, parts },
+                });
+            }
+            first_task += passes * parts as usize;
+            first_pass += passes;
+        }
+        None
+    }
+
+    /// From the first: how many passes, and into how many tasks each is divided.
+    fn zones(&self) -> [(usize, u32); ZONES.len() + 1] {
+        let mut left = self.passes;
+        let mut zones = [(0, 1); ZONES.len() + 1];
+        for (zone, (passes, parts)) in zones[1..].iter_mut().rev().zip(ZONES) {
+            *zone = ((passes * self.threads).min(left), parts);
+            left -= zone.0;
+        }
+        zones[0].0 = left;
+        zones
+    }
+
+    /// The samples of a pass.
+    fn pass(&self, pass: usize) -> Range<u32> {
+        let (tile, round) = (pass % self.taken.len(), pass / self.taken.len());
+        let taken = self.taken[tile];
+        let end = |round: usize| u64::from(PASS) * (u64::from(taken / PASS) + round as u64);
+        let within = |end: u64| end.clamp(taken.into(), self.spp.max(taken).into()) as u32;
+        within(end(round))..within(end(round + 1))
+    }
+}
+
+/// Passes until a tile of so many samples has `spp`.
+fn passes_left(samples: u32, spp: u32) -> usize {
+    if samples < spp { (spp.div_ceil(PASS) - samples / PASS) as usize } else { 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tasks(schedule: &Schedule) -> impl Iterator<Item = Task> {
+        (0..).map_while(|at| schedule.task(at))
+    }
+
+    #[test]
+    fn every_sample_is_taken_once_and_in_its_order() {
+        for (taken, spp) in [
+            (vec![0; 7], 40),
+            (vec![0; 700], 16),
+            (vec![0; 300], 3),
+            (vec![20, 0, 40, 16, 39, 50], 40),
+            (vec![40, 41], 40),
+            (vec![u32::MAX - 1, u32::MAX - 40], u32::MAX),
+            (vec![], 9),
+        ] {
+            for threads in [1, 2, 64] {
+                let schedule = Schedule::new(taken.clone(), spp, threads);
+                let mut reached = taken.clone();
+                for Task { tile, samples, of } in tasks(&schedule) {
+                    assert!(samples.is_empty() || samples.start == reached[tile], "{taken:?}");
+                    assert!(samples.len() <= (PASS / of.parts) as usize);
+                    assert_eq!(of.parts, parts(of.left, threads));
+                    reached[tile] = reached[tile].max(samples.end);
+                }
+                assert!(reached.iter().zip(&taken).all(|(&now, &then)| now == then.max(spp)));
+            }
+        }
+    }
+
+    #[test]
+    fn passes_end_where_those_of_a_render_that_never_stopped_do() {
+        let schedule = Schedule::new([20].repeat(9), 75, 1);
+        let ends: Vec<u32> = (0..schedule.passes).map(|pass| schedule.pass(pass).end).collect();
+        assert_eq!(ends, [[32; 9], [48; 9], [64; 9], [75; 9]].as_flattened());
+    }
+
+    #[test]
+    fn tasks_become_shorter_toward_the_end() {
+        let schedule = Schedule::new(vec![0; 1000], 16, 64);
+        let lengths: Vec<_> = tasks(&schedule).map(|task| task.samples.len()).collect();
+        assert!(lengths.is_sorted_by(|a, b| a >= b));
+        assert_eq!(
+            [16, 8, 4].map(|n| lengths.iter().filter(|&&m| m == n).count()),
+            [616, 512, 512]
+        );
+    }
+}

@@ -1,0 +1,151 @@
+//! How long the tasks of a render take, and what more threads would make of that.
+
+use super::schedule::{Pass, parts};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// How a render's work was divided: a task is what one thread does between looking for something to do
+/// and looking again, alone and without waiting for anyone.
+///
+/// Nobody is idle before there is nothing left to begin (Graham, "Bounds on Multiprocessing Timing
+/// Anomalies", SIAM Journal on Applied Mathematics 1969). So if a task that takes `d` ends last, and what
+/// is begun after it takes `a`, a render on `n` threads takes its work over `n` and at most
+/// `d (1 - 1 / n) - a / n` longer, as far as memory keeps up. Of passes it is kept therefore about how
+/// many come after them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Tasks {
+    /// How many.
+    pub count: u64,
+    /// How long the longest took.
+    pub longest: Duration,
+    /// How long all took together.
+    pub total: Duration,
+    /// The longest of those that are not divided, however many threads there are.
+    whole: Duration,
+    /// Passes by how many come after them: 0, 1, 2, 3 and 4, 5 and 6, 7 to 10, 11 to 14, and so on;
+    /// last, all the rest.
+    waves: [Wave; WAVES],
+}
+
+const WAVES: usize = 28;
+
+/// Passes after which about as many others come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+struct Wave {
+    /// Of the whole pass, all its parts being as long as the one that took longest.
+    longest: Duration,
+    total: Duration,
+}
+
+impl Wave {
+    /// In which wave a pass is after which so many others come.
+    fn of(left: usize) -> usize {
+        let place = left + 1;
+        let octave = place.ilog2() as usize;
+        (2 * octave + (((2 * place) >> octave) & 1)).min(WAVES - 1)
+    }
+
+    /// The most passes that come after one of a wave.
+    fn most(wave: usize) -> usize {
+        if wave < WAVES - 1 { ((3 + wave % 2) << (wave / 2)).div_ceil(2) - 2 } else { usize::MAX }
+    }
+}
+
+impl Tasks {
+    /// Adds one that took so long: of a pass, or `None` for what is never divided.
+    pub(super) fn push(&mut self, time: Duration, of: Option<Pass>) {
+        self.count += 1;
+        self.longest = self.longest.max(time);
+        self.total += time;
+        let Some(Pass { left, parts }) = of else {
+            self.whole = self.whole.max(time);
+            return;
+        };
+        let wave = &mut self.waves[Wave::of(left)];
+        wave.longest = wave.longest.max(time * parts);
+        wave.total += time;
+    }
+
+    /// Adds those of another share of the render, as if both were rendered at once.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.count += other.count;
+        self.longest = self.longest.max(other.longest);
+        self.total += other.total;
+        self.whole = self.whole.max(other.whole);
+        for (wave, more) in self.waves.iter_mut().zip(other.waves) {
+            wave.longest = wave.longest.max(more.longest);
+            wave.total += more.total;
+        }
+    }
+
+    /// The least efficiency on so many threads, 0..=1: speed-up over threads. Passes are divided as
+    /// they are for so many, and each part is taken to be as long as the others.
+    pub fn efficiency(&self, threads: u32) -> f64 {
+        let (ideal, alone) = (self.total / threads, 1.0 - 1.0 / f64::from(threads));
+        let (mut after, mut late) = (Duration::ZERO, self.whole.mul_f64(alone));
+        for (i, wave) in self.waves.iter().enumerate() {
+            let longest = wave.longest / parts(Wave::most(i), threads as usize);
+            late = late.max(longest.mul_f64(alone).saturating_sub(after / threads));
+            after += wave.total;
+        }
+        if self.total.is_zero() { 1.0 } else { ideal.div_duration_f64(ideal + late) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tasks by how many passes come after theirs, and milliseconds.
+    fn of(tasks: &[(Option<usize>, u64)]) -> Tasks {
+        let mut all = Tasks::default();
+        for &(left, time) in tasks {
+            let pass = left.map(|left| Pass { left, parts: 1 });
+            all.push(Duration::from_millis(time), pass);
+        }
+        all
+    }
+
+    fn near(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-9
+    }
+
+    #[test]
+    fn one_long_task_bounds_the_efficiency() {
+        assert_eq!(Tasks::default().efficiency(64), 1.0);
+        assert_eq!(of(&[(None, 10); 100]).efficiency(1), 1.0);
+        // 100 ms of work each and 9 ms more.
+        assert!(near(of(&[(None, 10); 100]).efficiency(10), 100.0 / 109.0));
+    }
+
+    #[test]
+    fn what_comes_after_a_long_pass_is_for_other_threads() {
+        let last = of(&[(Some(1 << 20), 990), (None, 5), (Some(0), 5)]);
+        assert!(near(last.efficiency(10), 100.0 / 990.5));
+        // As if there were both at once.
+        let mut both = last;
+        both.add(&last);
+        assert_eq!((both.count, both.total), (6, 2 * last.total));
+        assert!(near(both.efficiency(10), 200.0 / 1090.0));
+    }
+
+    #[test]
+    fn the_last_passes_are_divided() {
+        // Into four and into two parts, as two threads would have it.
+        assert!(near(of(&[(Some(0), 40)]).efficiency(2), 20.0 / 25.0));
+        assert!(near(of(&[(Some(9), 40)]).efficiency(2), 20.0 / 30.0));
+        let mut parts = Tasks::default();
+        (0..4)
+            .for_each(|_| parts.push(Duration::from_millis(10), Some(Pass { left: 0, parts: 4 })));
+        assert!(near(parts.efficiency(2), 20.0 / 25.0));
+    }
+
+    #[test]
+    fn passes_are_in_the_wave_that_they_should_be_in() {
+        for left in 0..1 << 16 {
+            let wave = Wave::of(left);
+            assert!(left <= Wave::most(wave), "{left}");
+            assert!(wave == 0 || left > Wave::most(wave - 1), "{left}");
+        }
+    }
+}
