@@ -1,25 +1,21 @@
 //! Files that appear whole or not at all.
 //!
 //! A render takes hours, and the file it replaces may be the only copy of another. So content goes
-//! to a temporary file beside the destination, is forced to the disk, and takes the destination's
-//! name in one step. Whatever fails before that step leaves the old file as it was.
+//! to a temporary file beside the destination, without a name where the system has such files, is
+//! forced to the disk, and takes the destination's name in one step. Whatever fails before that step
+//! leaves the old file as it was.
+
+mod temporary;
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
     io::{self, BufWriter, ErrorKind, Write},
     path::{Path, PathBuf},
 };
-use tempfile::NamedTempFile;
+use temporary::Temporary;
 
 /// More links in a row than this are taken for a loop, as Linux does.
 const MAXIMUM_LINKS: usize = 40;
-
-/// What the names of temporary files end with, after so many random characters.
-const TEMPORARY: &str = ".spherule-tmp";
-const RANDOM: usize = 8;
-
-/// Bytes of a file's name that are in those of its temporary files: systems take 255 in all.
-const NAMED: usize = 200;
 
 /// What is at a destination, symbolic links followed.
 enum Destination {
@@ -51,17 +47,16 @@ where
             writer.flush()
         }
         Destination::Regular { path, folder, old } => {
-            let mut file = create_temporary(&path, &folder)?;
-            // To the file alone: errors would name the temporary file, which is no help.
-            let mut writer = BufWriter::new(file.as_file_mut());
+            let temporary = Temporary::create(&path, &folder)?;
+            let mut writer = BufWriter::new(temporary.file());
             fill(&mut writer)?;
             writer.flush()?;
             drop(writer);
             if let Some(old) = old {
-                file.as_file().set_permissions(old.permissions())?;
+                temporary.file().set_permissions(old.permissions())?;
             }
-            file.as_file().sync_all()?;
-            file.persist(path)?;
+            temporary.file().sync_all()?;
+            temporary.persist(&path, &folder)?;
             sync(&folder);
             Ok(())
         }
@@ -76,8 +71,8 @@ pub fn check_destination(path: impl AsRef<Path>) -> io::Result<()> {
     match Destination::find(path.as_ref())? {
         // Opening a pipe would wait for its reader.
         Destination::Special(_) => Ok(()),
-        // The temporary file goes when it is dropped.
-        Destination::Regular { path, folder, .. } => create_temporary(&path, &folder).map(drop),
+        // It goes when it is dropped.
+        Destination::Regular { path, folder, .. } => Temporary::create(&path, &folder).map(drop),
     }
 }
 
@@ -88,13 +83,13 @@ pub fn check_destination(path: impl AsRef<Path>) -> io::Result<()> {
 /// The folder cannot be read, or a file in it not be removed.
 pub fn remove_leftovers(path: impl AsRef<Path>) -> io::Result<()> {
     let path = follow(path.as_ref())?;
-    let prefix = temporary_prefix(&path);
+    let prefix = temporary::prefix(&path);
     for entry in fs::read_dir(folder_of(&path)?)? {
         let entry = entry?;
         let name = entry.file_name();
         let middle = name.to_str().and_then(|name| name.strip_prefix(&prefix));
-        let random = middle.and_then(|name| name.strip_suffix(TEMPORARY));
-        if random.is_some_and(|random| random.len() == RANDOM) {
+        let random = middle.and_then(|name| name.strip_suffix(temporary::SUFFIX));
+        if random.is_some_and(|random| random.len() == temporary::RANDOM) {
             fs::remove_file(entry.path())?;
         }
     }
@@ -159,43 +154,12 @@ fn folder_of(path: &Path) -> io::Result<PathBuf> {
     Err(explain(ErrorKind::NotFound, &message))
 }
 
-/// What the names of a file's temporary files begin with.
-fn temporary_prefix(path: &Path) -> String {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let mut end = name.len().min(NAMED);
-    while !name.is_char_boundary(end) {
-        end -= 1;
-    }
-    format!(".{}-", &name[..end])
-}
-
 /// Forces a name in a folder to the disk, where systems can do that. The file is there whether this
 /// succeeds or not.
 fn sync(folder: &Path) {
     if cfg!(unix) {
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }
-}
-
-/// An empty file in the folder of `path` with the permissions of any new file, which goes when it
-/// is dropped.
-fn create_temporary(path: &Path, folder: &Path) -> io::Result<NamedTempFile<File>> {
-    let mut builder = tempfile::Builder::new();
-    let prefix = temporary_prefix(path);
-    builder.prefix(&prefix).suffix(TEMPORARY).rand_bytes(RANDOM);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // Less what the process's umask forbids.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder).map_err(|error| {
-        // The error itself would name the temporary file, which is no help.
-        let (folder, kind) = (folder.display(), error.kind());
-        let message =
-            format!("no file can be created in \"{folder}\" ({kind}); choose another folder");
-        explain(kind, &message)
-    })
 }
 
 fn explain(kind: ErrorKind, message: &str) -> io::Error {

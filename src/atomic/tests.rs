@@ -25,15 +25,49 @@ fn what_killed_programs_left_goes() {
     let long = "ä".repeat(110);
     for name in ["a.png", &long] {
         let path = folder.path().join(name);
-        let left = create_temporary(&path, folder.path()).unwrap().keep().unwrap().1;
+        let left = temporary::named(&path, folder.path()).unwrap().keep().unwrap().1;
         fs::write(folder.path().join("other"), "").unwrap();
-        create_temporary(&folder.path().join("a.pn"), folder.path()).unwrap().keep().unwrap();
+        temporary::named(&folder.path().join("a.pn"), folder.path()).unwrap().keep().unwrap();
         assert!(left.exists());
         remove_leftovers(&path).unwrap();
         assert!(!left.exists());
     }
     // Those of other files stay.
     assert_eq!(names(folder.path()).len(), 3);
+}
+
+#[test]
+fn files_with_names_and_without_take_the_place_of_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a");
+    let named = || temporary::named(&path, folder.path()).map(Temporary::Named);
+    let usual = || Temporary::create(&path, folder.path());
+    for (i, temporary) in [&usual as &dyn Fn() -> _, &usual, &named, &usual].iter().enumerate() {
+        let (temporary, content) = (temporary().unwrap(), [i as u8]);
+        temporary.file().write_all(&content).unwrap();
+        temporary.persist(&path, folder.path()).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), content);
+        assert_eq!(names(folder.path()), ["a"]);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_is_to_be_seen_before_all_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    for (path, there) in [("a", None), ("a", Some("a"))] {
+        write_atomically(folder.path().join(path), |file| {
+            file.write_all(b"content")?;
+            file.flush()?;
+            let seen: Vec<_> = there.into_iter().collect();
+            // Where the folder's file system has files without names.
+            if matches!(Temporary::create(Path::new("a"), folder.path())?, Temporary::Unnamed(_)) {
+                assert_eq!(names(folder.path()), seen);
+            }
+            Ok(())
+        })
+        .unwrap();
+    }
 }
 
 #[test]

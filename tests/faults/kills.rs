@@ -17,6 +17,9 @@ const KILLS: u32 = 200;
 /// Longest life of a program that may do nothing, in milliseconds.
 const LIFE: u64 = 60;
 
+/// Longest time from a moment to a kill, in microseconds: in it, checkpoints are begun and written.
+const PAUSE: u64 = 6000;
+
 const KEPT: &str = "render.checkpoint";
 
 /// Renders, each of a second or so: plain, to an error, with statistics.
@@ -101,7 +104,7 @@ fn kill(mut child: Child, folder: &Folder, chance: &mut Chance) -> bool {
         // On a machine that is busy, whoever only looks on is in the way.
         sleep(Duration::from_micros(200));
     }
-    sleep(Duration::from_micros(chance.below(1500)));
+    sleep(Duration::from_micros(chance.below(PAUSE)));
     child.kill().expect("a program that can be killed");
     !child.wait().expect("a program that ends").success()
 }
@@ -110,10 +113,9 @@ fn kill(mut child: Child, folder: &Folder, chance: &mut Chance) -> bool {
 enum Moment {
     /// After some time, which may be before it does anything.
     At(Instant),
-    /// When a checkpoint was replaced so often: the first number is that of the last one.
+    /// When a checkpoint was replaced so often: the first number is that of the last one. The next one
+    /// is begun two milliseconds later, and nobody sees it before it takes the place of the last.
     After(Option<u64>, u64),
-    /// While the next one after that is written.
-    During(Option<u64>, u64),
 }
 
 impl Moment {
@@ -124,17 +126,14 @@ impl Moment {
         let (last, count) = (number_of(folder), chance.below(Self::MOST));
         match chance.below(8) {
             0 => Self::At(Instant::now() + Duration::from_millis(chance.below(LIFE))),
-            1..=4 => Self::After(last, count),
-            _ => Self::During(last, count),
+            _ => Self::After(last, count),
         }
     }
 
     fn has_come(&mut self, folder: &Folder) -> bool {
-        let writes = || names(folder).iter().any(|name| name.starts_with(&format!(".{KEPT}-")));
         match self {
             Self::At(moment) => Instant::now() >= *moment,
             Self::After(last, left) => replaced(folder, last, left),
-            Self::During(last, left) => replaced(folder, last, left) && writes(),
         }
     }
 }
