@@ -4,16 +4,17 @@
 //! without them does nothing for them. The rays are the picture's: the same samples of the same
 //! filter through the same lens, so that edges and blur lie where the picture has them.
 
+mod growing;
 mod sums;
 
-use self::sums::Sums;
-use crate::bvh::walk::Method;
-use crate::film::{Film, Region, Tile, View};
+pub use self::growing::Growing;
+use self::growing::Known;
+use crate::film::{Film, Region};
 use crate::image::{Channel, Values};
+use crate::integrator::Job;
 use crate::integrator::workspace::Workspace;
-use crate::integrator::{Job, stages};
 use crate::ray::{GROUND, MISS};
-use crate::render::{Options, Statistics, passes, view};
+use crate::render::{Options, Statistics};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::Settings;
 use crate::world::World;
@@ -221,44 +222,17 @@ pub fn features(
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
     let camera = &world.camera;
     let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
-    let mut tiles = Film::with_tiles(options.region.unwrap_or(whole), tiles, false).tiles;
+    let tiles = Film::with_tiles(options.region.unwrap_or(whole), tiles, false).tiles;
     let features: Vec<Vec<Features>> = tiles
-        .par_iter_mut()
+        .into_par_iter()
         .map_init(
             || Workspace::new(world, &sampler, skips),
             |work, tile| {
-                if job.tracer.method != Method::Brute {
-                    tile.view = view(&job, tile);
-                }
-                of_tile(&job, tile, samples, work)
+                let mut known = Known::new(tile);
+                known.grow(&job, samples, work);
+                known.features()
             },
         )
         .collect();
     features.into_iter().flatten().collect()
-}
-
-/// The features of a tile's pixels, in the order of [`Tile::pixels`].
-fn of_tile(job: &Job, tile: &Tile, samples: u32, work: &mut Workspace) -> Vec<Features> {
-    let mut sums = vec![Sums::default(); tile.pixels().count()];
-    if tile.view == View::Anything || job.world.ground.is_some() {
-        for samples in passes(samples) {
-            let count = samples.len();
-            stages::generate(job, tile, samples, work);
-            see(job, tile, work);
-            for (pixel, sums) in sums.iter_mut().enumerate() {
-                (pixel * count..(pixel + 1) * count).for_each(|row| sums.add(job.world, work, row));
-            }
-        }
-        stages::generate_centers(job, tile, work);
-        see(job, tile, work);
-        for (sums, &hit) in sums.iter_mut().zip(&work.hits.sphere) {
-            sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);
-        }
-    }
-    sums.iter().map(|sums| sums.mean(samples)).collect()
-}
-
-fn see(job: &Job, tile: &Tile, work: &mut Workspace) {
-    work.view = tile.view;
-    stages::intersect(job, work);
 }

@@ -7,7 +7,7 @@ use crate::world::World;
 use glam::DVec3;
 
 /// What the samples of a pixel have added up to.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Sums {
     albedo: DVec3,
     normal: DVec3,

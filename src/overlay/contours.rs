@@ -1,10 +1,10 @@
 //! Lines where one sphere ends and something else begins.
 
-use super::sky::depths;
-use super::{Overlay, blend};
+use super::{Overlay, PIXELS, blend};
 use crate::image::Image;
 use crate::layers::{Features, NOTHING};
 use glam::Vec3;
+use rayon::prelude::*;
 
 /// Two spheres of a pixel and its neighbor are apart if their depths differ by more than this part
 /// of the whole scene's depth.
@@ -24,21 +24,30 @@ impl Overlay<'_> {
     /// the layers: about two pixels wide, inside of what is nearer.
     pub fn draw_contours(&self, image: &mut Image, color: [f32; 3]) {
         let (width, height) = (self.layers.width as usize, self.layers.height as usize);
-        let [near, far] = depths(self.world);
+        let [near, far] = self.depths();
         let jump = JUMP * (far - near);
-        let mut marks = vec![0.0_f32; image.pixels.len()];
         let pixels = &self.layers.pixels;
-        for row in 0..pixels.len() {
-            let right = ((row + 1) % width != 0).then_some(row + 1);
+        let mark = |row: usize| {
+            let right = (!(row + 1).is_multiple_of(width)).then_some(row + 1);
             let below = (row + width < pixels.len()).then_some(row + width);
-            for other in right.into_iter().chain(below) {
-                let strength = strength(&pixels[row], &pixels[other], jump);
-                let nearer = if pixels[row].depth <= pixels[other].depth { row } else { other };
-                marks[nearer] = marks[nearer].max(strength);
-            }
-        }
+            let (left, above) = ((row % width).min(1), (row / width).min(1) * width);
+            // Each pair has one that is nearer: of equals, the left or upper one.
+            let after = right.into_iter().chain(below);
+            let after = after.filter(|&other| nearer(&pixels[row], &pixels[other]));
+            let before = [row - left, row - above].into_iter().filter(|&other| other != row);
+            let before = before.filter(|&other| !nearer(&pixels[other], &pixels[row]));
+            let others = after.chain(before);
+            others.map(|other| strength(&pixels[row], &pixels[other], jump)).fold(0.0, f32::max)
+        };
+        let rows = (0..pixels.len()).into_par_iter().with_min_len(PIXELS);
+        let marks: Vec<f32> = rows.map(mark).collect();
         blend(image, &smooth(&marks, width, height), color);
     }
+}
+
+/// Which of two pixels a line is drawn in.
+fn nearer(a: &Features, b: &Features) -> bool {
+    a.depth <= b.depth
 }
 
 /// How much of a line there is between two pixels, 0..=1.
@@ -67,5 +76,5 @@ fn smooth(marks: &[f32], width: usize, height: usize) -> Vec<f32> {
         let beside = across(x, y.saturating_sub(1)) + across(x, (y + 1).min(height - 1));
         (GAIN * (beside + 2.0 * across(x, y)) / 4.0).min(1.0)
     };
-    (0..marks.len()).map(value).collect()
+    (0..marks.len()).into_par_iter().with_min_len(PIXELS).map(value).collect()
 }

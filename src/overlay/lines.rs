@@ -138,7 +138,7 @@ mod tests {
         let options = Options { region: Some(region), ..Options::default() };
         let layers = layers(&world, &scene.settings, &options, &[Layer::Depth]);
         let mut image = Image::filled(region.width, region.height, [0.0; 3]).unwrap();
-        let overlay = Overlay { world: &world, region, layers: &layers };
+        let overlay = Overlay { world: &world, region, layers: &layers, depths: None };
         overlay.draw_lines(&mut image, &[line], Pen { color: [1.0; 3], width: 2.0 });
         image
     }

@@ -54,6 +54,15 @@ impl Overlay<'_> {
     }
 }
 
+/// Draws over a picture, and over what is known of how much of it is no background: `draw` does so
+/// with any picture.
+pub fn draw_over(image: &mut Image, matte: Option<&mut Matte>, draw: impl Fn(&mut Image)) {
+    draw(image);
+    if let Some(matte) = matte {
+        draw_alpha(&mut matte.coverage, (image.width, image.height), draw);
+    }
+}
+
 /// Raises the alpha of a picture of this size by what is drawn over it: `draw` does so with any
 /// picture.
 ///

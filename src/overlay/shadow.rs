@@ -1,7 +1,7 @@
 //! The shadow on the ground, by itself: how much of its light spheres take.
 
 use crate::image::Image;
-use crate::render::{Options, render};
+use crate::render::{End, Options, Unfinished};
 use crate::scene::Settings;
 use crate::world::{Seen, World};
 
@@ -15,25 +15,69 @@ pub struct Ground {
     pub shadow: Vec<f32>,
 }
 
-/// Finds out how spheres change the ground's light; `None` if there is no ground.
+/// Two pictures that tell how spheres change the ground's light, as far as they are.
 ///
-/// Two pictures tell it, of the ground alone: with the spheres there but hidden from the camera, and
-/// without them. Both take the same random numbers, so that light which nothing is in the way of
-/// cancels. The light of spheres that glow counts as what they keep, with its sign: more light is no
-/// shadow.
+/// Both are of the ground alone: with the spheres there but hidden from the camera, and without
+/// them. They take the same random numbers, so that light which nothing is in the way of cancels.
+/// The light of spheres that glow counts as what they keep, with its sign: more light is no shadow.
+#[derive(Debug)]
+pub struct GroundRender {
+    lit: Unfinished,
+    bare: Unfinished,
+    without: World,
+}
+
+impl GroundRender {
+    /// Pictures without samples yet; `None` if there is no ground. Of the options, only the region
+    /// counts.
+    pub fn begin(world: &World, settings: &Settings, options: &Options) -> Option<Self> {
+        world.ground?;
+        let (settings, options) = plain(settings, options);
+        let without = world.without_spheres();
+        let lit = Unfinished::begin(world, &settings, &options);
+        let bare = Unfinished::begin(&without, &settings, &options);
+        Some(Self { lit, bare, without })
+    }
+
+    /// Takes the samples that they lack; false if `options` say that this is cancelled. The world is
+    /// that of the beginning, and the same afterwards.
+    pub fn go_on(&mut self, world: &mut World, settings: &Settings, options: &Options) -> bool {
+        let (settings, options) = plain(settings, options);
+        for (picture, world) in [(&mut self.lit, &*world), (&mut self.bare, &self.without)] {
+            if picture.raise(&settings).is_err() {
+                *picture = Unfinished::begin(world, &settings, &options);
+            }
+        }
+        let seen = world.seen.replace(Seen::default());
+        let lit = self.lit.run(world, &options);
+        world.seen = seen;
+        lit != End::Cancelled && self.bare.run(&self.without, &options) != End::Cancelled
+    }
+
+    /// What they tell.
+    pub fn ground(&self) -> Ground {
+        let (lit, bare) = (self.lit.film().resolve(), self.bare.film().resolve());
+        let shadow = kept(&lit, &bare);
+        Ground { lit, shadow }
+    }
+}
+
+/// Without what is for the picture itself.
+fn plain<'a>(settings: &Settings, options: &Options<'a>) -> (Settings, Options<'a>) {
+    let Options { tracer, region, cancel, .. } = *options;
+    let options = Options { tracer, region, cancel, ..Options::default() };
+    (Settings { until_error: None, time: None, ..settings.clone() }, options)
+}
+
+/// Finds out how spheres change the ground's light; `None` if there is no ground.
 ///
 /// `settings` say how many samples there are; only the tracer and the region of `options` count.
 /// The world is the same afterwards.
 pub fn ground(world: &mut World, settings: &Settings, options: &Options) -> Option<Ground> {
-    world.ground?;
-    let settings = Settings { until_error: None, time: None, ..settings.clone() };
-    let options = Options { tracer: options.tracer, region: options.region, ..Options::default() };
-    let seen = world.seen.replace(Seen::default());
-    let lit = render(world, &settings, &options).image;
-    world.seen = seen;
-    let bare = render(&world.without_spheres(), &settings, &options).image;
-    let shadow = kept(&lit, &bare);
-    Some(Ground { lit, shadow })
+    let options = Options { cancel: None, ..*options };
+    let mut render = GroundRender::begin(world, settings, &options)?;
+    render.go_on(world, settings, &options);
+    Some(render.ground())
 }
 
 /// What is missing in one picture beside another, as a share.

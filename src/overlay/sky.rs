@@ -1,8 +1,8 @@
 //! What is behind the scene: a color in the sky's place, and a fog of that color.
 
-use super::Overlay;
+use super::{Overlay, PIXELS};
 use crate::image::Image;
-use crate::world::World;
+use rayon::prelude::*;
 
 impl Overlay<'_> {
     /// Puts a color in the place of the sky, which goes on lighting the scene. Where spheres cover a
@@ -11,7 +11,8 @@ impl Overlay<'_> {
     /// Of a sky that is not of one color, what the pixel's middle sees is taken away.
     pub fn replace_sky(&self, image: &mut Image, color: [f32; 3]) {
         let width = self.region.width as usize;
-        for (row, (pixel, seen)) in image.pixels.iter_mut().zip(&self.layers.pixels).enumerate() {
+        let pixels = image.pixels.par_iter_mut().zip(&self.layers.pixels).enumerate();
+        pixels.with_min_len(PIXELS).for_each(|(row, (pixel, seen))| {
             let share = 1.0 - seen.coverage;
             if share >= 1.0 {
                 *pixel = color;
@@ -20,7 +21,7 @@ impl Overlay<'_> {
                 let change = |i: usize| pixel[i] + share * (color[i] - sky[i]);
                 *pixel = std::array::from_fn(|i| change(i).max(0.0));
             }
-        }
+        });
     }
 
     /// What the middle of a pixel would see of the sky.
@@ -35,28 +36,17 @@ impl Overlay<'_> {
     /// Fades what is far: nothing where the nearest sphere begins, and `most` (0..=1) of the color
     /// where the farthest ends, and beyond.
     pub fn fade(&self, image: &mut Image, color: [f32; 3], most: f32) {
-        let [near, far] = depths(self.world);
-        for (pixel, seen) in image.pixels.iter_mut().zip(&self.layers.pixels) {
+        let [near, far] = self.depths();
+        let pixels = image.pixels.par_iter_mut().zip(&self.layers.pixels);
+        pixels.with_min_len(PIXELS).for_each(|(pixel, seen)| {
             if seen.coverage > 0.0 && far > near {
                 let share = ((f64::from(seen.depth) - near) / (far - near)).clamp(0.0, 1.0);
                 // What is near keeps its colors for longer.
                 let share = (share * share) as f32 * most;
                 *pixel = std::array::from_fn(|i| pixel[i] + share * (color[i] - pixel[i]));
             }
-        }
+        });
     }
-}
-
-/// Between which distances from the camera all spheres are, in the scene's unit.
-pub(super) fn depths(world: &World) -> [f64; 2] {
-    let mut depths = [f64::INFINITY, 0.0];
-    for row in 0..world.spheres.len() {
-        let (center, radius) = world.spheres.exact(row);
-        let distance = world.camera.distance(center) / world.frame.scale;
-        let radius = radius / world.frame.scale;
-        depths = [depths[0].min(distance - radius), depths[1].max(distance + radius)];
-    }
-    [depths[0].max(0.0), depths[1]]
 }
 
 #[cfg(test)]
@@ -64,9 +54,11 @@ mod tests {
     use super::*;
     use crate::film::Region;
     use crate::layers::{Layer, layers};
+    use crate::overlay::depths;
     use crate::render::{Options, render};
     use crate::scene::particles::Particles;
     use crate::scene::{Pose, Projection, Rgb, Scene};
+    use crate::world::World;
     use glam::DVec3;
 
     const SIZE: u32 = 24;
@@ -90,7 +82,7 @@ mod tests {
         let before = render(&world, &scene.settings, &Options::default()).image;
         let layers = layers(&world, &scene.settings, &Options::default(), &[Layer::Depth]);
         let mut after = before.clone();
-        draw(&Overlay { world: &world, region: WHOLE, layers: &layers }, &mut after);
+        draw(&Overlay { world: &world, region: WHOLE, layers: &layers, depths: None }, &mut after);
         [before, after]
     }
 

@@ -21,6 +21,7 @@ pub struct Identity {
     lights: [u8; 32],
     environment: [u8; 32],
     camera: [u8; 32],
+    look: [u8; 32],
 }
 
 impl Identity {
@@ -40,6 +41,7 @@ impl Identity {
             lights: hash(scene.lights.iter().map(sections::light).collect()),
             environment: environment(scene),
             camera: hash(sections::camera(&scene.camera)),
+            look: hash(sections::look(&scene.look)),
         }
     }
 
@@ -53,6 +55,7 @@ impl Identity {
             ("lights", self.lights == other.lights),
             ("environment", self.environment == other.environment),
             ("camera", self.camera == other.camera),
+            ("look", self.look == other.look),
         ];
         parts.into_iter().find(|(_, same)| !same).map(|(name, _)| name)
     }
@@ -140,6 +143,7 @@ mod tests {
         let light = Light::Point { position: DVec3::X, intensity: Rgb::ONE, falloff: true };
         assert_eq!(difference(&|scene| scene.lights.push(light.clone())), Some("lights"));
         assert_eq!(difference(&|scene| next(&mut scene.camera.near)), Some("camera"));
+        assert_eq!(difference(&|scene| scene.look.outline = true), Some("look"));
         let dark = |scene: &mut Scene| scene.environment.illuminates ^= true;
         assert_eq!(difference(&dark), Some("environment"));
     }

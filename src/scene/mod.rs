@@ -11,6 +11,7 @@ pub mod file;
 pub mod generate;
 mod identity;
 mod light;
+mod look;
 mod material;
 pub mod particles;
 mod preset;
@@ -25,6 +26,7 @@ pub use error::{Place, SceneError};
 pub use identity::Identity;
 pub(crate) use light::is_radiance;
 pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
+pub use look::{Background, Look};
 pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
 pub use preset::Preset;
 pub use settings::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Settings, Tone};
@@ -54,6 +56,8 @@ pub struct Scene {
     pub camera: Camera,
     /// How the picture is made.
     pub settings: Settings,
+    /// What is drawn over the picture.
+    pub look: Look,
     /// What the user should hear of though it is no error: one sentence each, such as how many rows
     /// of a particle file were dropped and why.
     pub warnings: Vec<String>,

@@ -5,8 +5,8 @@
 //! such as contours, is drawn by [`crate::overlay`].
 
 use super::{
-    Camera, Environment, EnvironmentMap, Ground, Integrator, Light, Material, NamedMaterial, Pose,
-    Rgb, Scene, Settings,
+    Background, Camera, Environment, EnvironmentMap, Ground, Integrator, Light, Look, Material,
+    NamedMaterial, Pose, Rgb, Scene, Settings,
 };
 use glam::DVec3;
 
@@ -72,6 +72,16 @@ impl Preset {
             Self::Chalk => Integrator::Ao { distance: f64::INFINITY },
             _ => Integrator::Path,
         };
+    }
+
+    /// What is drawn over the picture.
+    pub fn look(self) -> Look {
+        Look {
+            background: Background::Color(Rgb::ONE),
+            depth_cue: self == Self::DepthCue,
+            outline: self == Self::Outline,
+            cell: None,
+        }
     }
 
     /// Replaces all materials, which keep their names, and all light; the camera has its place.

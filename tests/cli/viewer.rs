@@ -69,6 +69,50 @@ fn what_is_hidden_cut_colored_and_lit_is_saved_so() {
 }
 
 #[test]
+fn what_is_drawn_over_pictures_is_seen_and_saved() {
+    let folder = Folder::new();
+    let cell = SALT.replace("Properties", "Lattice=\"4 0 0 0 4 0 0 0 4\" pbc=\"T T T\" Properties");
+    folder.write("salt.xyz", &cell);
+    let mut pictures: Vec<Vec<u8>> = Vec::new();
+    for (args, keys) in [
+        ("--preset depthcue", ""),
+        ("--preset outline", ""),
+        ("--background #ff8000", ""),
+        ("--cell", ""),
+        ("--preset outline --background black --cell", ""),
+        ("--preset outline --background transparent --cell", ""),
+        ("--preset studio --background transparent", "key i"),
+        ("", "key P\nkey d"),
+        ("", "key p\nkey d\nkey b\nkey b"),
+        ("", "key o\nkey m\ndrag 5,5 30,9"),
+    ] {
+        let script = format!("size 64x48\n{keys}\nwait 3\nsave a.png\nsave a.exr\nsave a.toml\n");
+        let args: Vec<&str> = args.split_whitespace().collect();
+        view(&folder, &[&["salt.xyz", "--radii", "1"], &args[..]].concat(), &script);
+        assert_comes_back(&folder, 3);
+        folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.exr"]);
+        assert!(folder.read("a.exr") == folder.read("b.exr"), "{args:?}");
+        let picture = folder.read("a.png");
+        assert!(!pictures.contains(&picture), "{args:?} {keys}");
+        pictures.push(picture);
+    }
+}
+
+#[test]
+fn windows_show_looks_as_pictures_of_them_do() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    let script = "size 64x48\nkey tab\nwait 2\nsave a.png\nwindow w.png";
+    view(&folder, &["salt.xyz", "--preset", "outline"], script);
+    assert_eq!(read("a.png"), read("w.png"));
+    view(&folder, &["salt.xyz", "--background", "transparent"], script);
+    // Squares are seen where nothing is.
+    let window = read("w.png");
+    assert_ne!(window.pixel(0, 0), window.pixel(12, 0));
+}
+
+#[test]
 fn clicks_name_spheres_and_their_types_can_be_hidden() {
     let folder = Folder::new();
     folder.write("salt.xyz", SALT);

@@ -22,7 +22,8 @@ fn lifted(scene: &Scene) -> ([Image; 2], Matte) {
     let layers = layers(&world, &scene.settings, &options, &[Layer::Depth]);
     let region = Region { x: 0, y: 0, width: SIZE, height: SIZE };
     let mut after = before.clone();
-    let matte = Overlay { world: &world, region, layers: &layers }.lift(&mut after, ground);
+    let matte =
+        Overlay { world: &world, region, layers: &layers, depths: None }.lift(&mut after, ground);
     assert_eq!(render(&world, &scene.settings, &options).image, before, "the world is the same");
     ([before, after], matte)
 }

@@ -19,7 +19,7 @@ use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::particles::Looks;
-use spherule::scene::{Camera, Settings};
+use spherule::scene::{Camera, Look, Settings};
 use spherule::split::{Part, Split};
 use spherule::trace::{Tracer, Width};
 use std::path::PathBuf;
@@ -65,13 +65,7 @@ impl<'a> Job<'a> {
                 format!("{format} has no room for --layers; end the name of --output in .exr");
             return Err(Failure::usage("render", message));
         }
-        if args.style.is_transparent() && !matches!(format, Format::Png | Format::Exr) {
-            let message = format!(
-                "{format} has no room for --background transparent; end the name of --output in \
-                 .png or .exr"
-            );
-            return Err(Failure::usage("render", message));
-        }
+        check_alpha(&args.style.look(None, Look::default()), format)?;
         let inside = matches!(&args.looks.color_bar, Some(BarPlace::Inside(_)));
         if inside && args.picture.region.is_some() {
             let message = "--color-bar inside is for a whole picture: leave --region out";
@@ -132,11 +126,6 @@ impl<'a> Job<'a> {
         Ok((0..pictures).map(job).collect())
     }
 
-    /// Whether something is drawn over the picture, which takes layers.
-    pub(in crate::cli) fn draws_over(&self) -> bool {
-        self.views.draws_cell() || self.style.background().is_some() || self.style.is_transparent()
-    }
-
     /// Whether a color bar is drawn into the picture.
     pub(in crate::cli) fn draws_bar(&self) -> bool {
         matches!(self.color_bar, Some(BarPlace::Inside(_)))
@@ -176,6 +165,19 @@ impl<'a> Job<'a> {
         );
         Err(Failure::usage("render", message))
     }
+}
+
+/// Refuses a transparent background in files that cannot have one.
+pub(in crate::cli) fn check_alpha(look: &Look, format: Format) -> Result<(), Failure> {
+    let holds = matches!(format, Format::Png | Format::Exr);
+    if !look.is_transparent() || holds {
+        return Ok(());
+    }
+    let message = format!(
+        "{format} has no room for a transparent background; end the name of --output in .png or \
+         .exr, or give --background white"
+    );
+    Err(Failure::usage("render", message))
 }
 
 fn tracer(typed: Traversal, lanes: Option<Width>) -> Tracer {

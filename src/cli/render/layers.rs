@@ -2,8 +2,9 @@
 
 use super::job::Job;
 use super::prepare::Prepared;
-use spherule::image::{Channel, Values};
+use spherule::image::{Channel, Format, Values};
 use spherule::layers::{Layer, layers};
+use spherule::overlay::Matte;
 use spherule::render::{Options, Render};
 use spherule::scene::Settings;
 
@@ -27,8 +28,9 @@ pub(super) fn channels(job: &Job, prepared: &Prepared, render: &Render) -> Vec<C
     layers.channels(&wanted)
 }
 
-/// Alpha as a channel.
-pub(super) fn alpha(values: Vec<f32>) -> Channel {
+/// Alpha as a channel, for files that are blended as radiance is or in codes.
+pub(in crate::cli) fn alpha(matte: &Matte, format: Format) -> Channel {
+    let values = if format == Format::Exr { matte.linear() } else { matte.encoded() };
     Channel { name: "A".to_owned(), values: Values::Floats(values) }
 }
 

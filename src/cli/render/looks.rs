@@ -83,7 +83,7 @@ pub(super) fn draw_bar(
     job: &Job,
     legend: Option<&Legend>,
     canvas: &mut Canvas,
-    ink: [f32; 3],
+    ink: Rgb,
 ) -> Result<(), Failure> {
     let (Some(BarPlace::Inside(corner)), Some(legend)) = (job.color_bar, legend) else {
         return Ok(());
@@ -93,7 +93,7 @@ pub(super) fn draw_bar(
     let size = bar.size();
     let x = if corner.left { 0 } else { width.saturating_sub(size.0) };
     let y = if corner.top { 0 } else { height.saturating_sub(size.1) };
-    let draw = |image: &mut Image| bar.draw_over(image, (x, y), Rgb::from_array(ink));
+    let draw = |image: &mut Image| bar.draw_over(image, (x, y), ink);
     draw(&mut Image { width: 1, height: 1, pixels: vec![[0.0; 3]] })?;
     // What succeeds once does so again.
     canvas.draw(|image| _ = draw(image));

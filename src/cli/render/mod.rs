@@ -18,8 +18,9 @@ mod summary;
 mod terminal;
 
 pub(super) use self::estimate::Estimate;
-pub(super) use self::job::Job;
+pub(super) use self::job::{Job, check_alpha};
 use self::keeper::Keeper;
+pub(super) use self::layers::alpha;
 pub(super) use self::metadata::Subject;
 use self::prepare::Prepared;
 use self::resume::Resumed;
@@ -29,10 +30,12 @@ use self::terminal::Terminal;
 use super::args::RenderArgs;
 use super::command::Given;
 use super::progress::Meter;
-use super::views::Over;
+use super::views::draw_over as draw_look;
 use super::{Failure, output, signals};
 use spherule::image::check_writable;
+use spherule::overlay::Matte;
 use spherule::render::{End, Options, Render, Unfinished};
+use spherule::scene::Scene;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -127,31 +130,26 @@ fn finish_picture(
 
 /// Writes the picture, with what is drawn over it and beside it, and tells how it went.
 fn write(job: &Job, prepared: &mut Prepared, render: &mut Render) -> Result<(), Failure> {
-    let alpha = draw_over(job, prepared, render)?;
+    let matte = draw_over(job, prepared, render)?;
     let options = metadata::write_options(job, prepared, render);
     let mut channels = layers::channels(job, prepared, render);
-    channels.extend(alpha.map(layers::alpha));
+    channels.extend(matte.map(|matte| alpha(&matte, job.format)));
     render.image.write_layers(&job.output, &channels, &options)?;
     Summary::new(job, prepared, render, &options).tell(job.report);
     Ok(())
 }
 
-/// Draws what is drawn over pictures. Returns alpha, if the background is transparent.
+/// Draws what is drawn over pictures. Returns what is left of one whose background is transparent.
 fn draw_over(
     job: &Job,
     prepared: &mut Prepared,
     render: &mut Render,
-) -> Result<Option<Vec<f32>>, Failure> {
-    let over = Over {
-        views: job.views,
-        style: job.style,
-        cell: prepared.cell.as_ref(),
-        region: prepared.region,
-        format: job.format,
-    };
-    let mut canvas = over.draw(&mut prepared.world, &prepared.scene.settings, render);
-    looks::draw_bar(job, prepared.legend.as_ref(), &mut canvas, over.ink())?;
-    Ok(canvas.alpha)
+) -> Result<Option<Matte>, Failure> {
+    let Scene { look, settings, .. } = &prepared.scene;
+    let region = prepared.region;
+    let mut canvas = draw_look(look, &mut prepared.world, settings, region, render);
+    looks::draw_bar(job, prepared.legend.as_ref(), &mut canvas, look.ink())?;
+    Ok(canvas.matte)
 }
 
 /// Renders from the beginning, or from where a render was stopped.

@@ -15,7 +15,7 @@ use spherule::checkpoint::Caption;
 use spherule::film::{Film, Region};
 use spherule::layers::{Layer, features};
 use spherule::render::{Options, Share, Unfinished};
-use spherule::scene::Settings;
+use spherule::scene::Scene;
 use spherule::split::Part;
 use std::path::{Path, PathBuf};
 
@@ -63,7 +63,8 @@ pub(super) fn keep(args: &mut RenderArgs, typed: &mut TypedOptions) -> Result<()
 }
 
 /// What is to be rendered: all of it, or the share of the part.
-pub(super) fn share(job: &Job, region: Region, settings: &Settings) -> Result<Share, Failure> {
+pub(super) fn share(job: &Job, region: Region, scene: &Scene) -> Result<Share, Failure> {
+    let settings = &scene.settings;
     let whole = Share::whole(region, settings.spp);
     let Some(part) = job.part else { return Ok(whole) };
     let refuse = |message: &dyn std::fmt::Display| Err(Failure::usage("render", message));
@@ -73,10 +74,10 @@ pub(super) fn share(job: &Job, region: Region, settings: &Settings) -> Result<Sh
               none, and --spp",
         );
     }
-    if job.draws_over() || job.draws_bar() {
+    if !scene.look.is_plain() || job.draws_bar() {
         return refuse(
-            &"--cell, --background (which some presets have) and --color-bar inside are drawn over \
-              whole pictures: leave them out with --part",
+            &"--cell, --background (which presets have), a scene's [look] and --color-bar inside \
+              are drawn over whole pictures: leave them out with --part",
         );
     }
     part.share(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))
@@ -85,7 +86,8 @@ pub(super) fn share(job: &Job, region: Region, settings: &Settings) -> Result<Sh
 /// What merging has to know besides samples; nothing yet of layers.
 pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
     let layers = layers::wanted(&job.encoding.layers);
-    let (title, drawn_over) = (prepared.title.clone(), job.draws_over() || job.draws_bar());
+    let title = prepared.title.clone();
+    let drawn_over = !prepared.scene.look.is_plain() || job.draws_bar();
     Caption { title, looks: looks(job, prepared), drawn_over, layers, ..Caption::default() }
 }
 

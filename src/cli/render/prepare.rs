@@ -1,7 +1,7 @@
 //! From a job to a world that can be rendered.
 
 use super::estimate::Estimate;
-use super::job::Job;
+use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::{layers, looks, part};
 use crate::cli::contents::{dropped, found};
@@ -21,8 +21,6 @@ use std::time::{Duration, Instant};
 pub(super) struct Prepared {
     /// Without its spheres, which are the world's now.
     pub(super) scene: Scene,
-    /// The cell of the particles, if their file has one.
-    pub(super) cell: Option<Cell>,
     pub(super) title: String,
     pub(super) world: World,
     /// The part of the picture that is rendered.
@@ -55,16 +53,18 @@ impl Prepared {
         job.slices.cut(&mut scene, Path::new(&*job.source.name()), box_of)?;
         let load = start.elapsed();
         job.style.set(&mut scene);
+        job.views.show_cell(&mut scene, cell.as_ref());
+        check_alpha(&scene.look, job.format)?;
         job.picture.replace(&mut scene.settings);
         if job.part.is_some() {
             // The picture is written elsewhere, from what the part's settings say.
             job.encoding.replace(&mut scene.settings);
         }
-        place_camera(job, &mut scene, cell.as_ref())?;
+        place_camera(job, &mut scene)?;
         job.style.light(&mut scene);
         let region = job.region(&scene.settings)?;
-        let layered = !job.encoding.layers.is_empty() || job.draws_over();
-        let share = part::share(job, region, &scene.settings)?;
+        let layered = !job.encoding.layers.is_empty() || !scene.look.is_plain();
+        let share = part::share(job, region, &scene)?;
         Estimate::new(&scene, region, layers::need_statistics(job), layered)
             .of_tiles(share.tiles.len())
             .check()?;
@@ -82,7 +82,6 @@ impl Prepared {
             title: job.source.title(&scene).into_owned(),
             notes: notes(job, &scene.settings, &world),
             scene,
-            cell,
             world,
             region,
             share,
@@ -122,12 +121,12 @@ impl Prepared {
 }
 
 /// Places the camera, or leaves it where it stood in an earlier picture of a sequence.
-fn place_camera(job: &Job, scene: &mut Scene, cell: Option<&Cell>) -> Result<(), Failure> {
+fn place_camera(job: &Job, scene: &mut Scene) -> Result<(), Failure> {
     if let Some(camera) = &job.camera {
         scene.camera = camera.clone();
         return Ok(());
     }
-    job.views.frame(scene, cell, job.turn)?;
+    job.views.frame(scene, job.turn)?;
     if job.frame.is_none() {
         return Ok(());
     }

@@ -1,6 +1,8 @@
 //! What the window shows: a picture, as large as the window, and letters over it.
 
+use super::checks::over_checks;
 use super::keys;
+use super::picture::Picture;
 use super::viewer::Viewer;
 use glam::DVec2;
 use indicatif::HumanCount;
@@ -9,7 +11,6 @@ use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
 use rayon::prelude::*;
 use spherule::drawing::{self, Area, Drawn, letters};
-use spherule::image::Image;
 use spherule::image::tone::{Codes8, DisplayTransform};
 use spherule::scene::Settings;
 
@@ -46,7 +47,7 @@ impl Canvas {
         (self.width, self.height) = (width, height);
         self.pixels.resize(width as usize * height as usize, EMPTY);
         match &viewer.shown {
-            Some(picture) => self.show(&picture.image, &viewer.settings),
+            Some(picture) => self.show(picture, &viewer.settings),
             None => self.pixels.fill(EMPTY),
         }
         if let Some([a, b]) = viewer.cut() {
@@ -61,7 +62,8 @@ impl Canvas {
     }
 
     /// Shows a picture as a PNG file would have it, stretched to the window.
-    fn show(&mut self, image: &Image, settings: &Settings) {
+    fn show(&mut self, picture: &Picture, settings: &Settings) {
+        let (image, matte) = picture.seen();
         let table = match self.table.take() {
             Some((exposure, table)) if exposure == settings.exposure => table,
             _ => Codes8::new(DisplayTransform::new(settings.exposure, settings.tone)),
@@ -70,7 +72,11 @@ impl Canvas {
             let [red, green, blue] = pixel.map(|value| u32::from(table.code(value)));
             red << 16 | green << 8 | blue
         };
-        if (image.width, image.height) == (self.width, self.height) {
+        if let Some(matte) = matte {
+            let code = |value| table.code(value);
+            let codes = over_checks(image, &matte.encoded(), self.width, code);
+            self.stretch(&codes, image.width as usize, image.height as usize);
+        } else if (image.width, image.height) == (self.width, self.height) {
             self.pixels
                 .par_iter_mut()
                 .zip(&image.pixels)

@@ -165,11 +165,14 @@ impl<'a> Headless<'a> {
         };
         let viewer = &self.session.viewer;
         let Some(picture) = viewer.whole() else { return Ok(()) };
+        let (image, matte) = picture.seen();
         let seen = Seen {
             title: &viewer.facts.title,
             camera: &viewer.rig.camera,
             settings: &settings,
-            image: &picture.image,
+            look: viewer.look(),
+            image,
+            matte,
         };
         if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
             return save_scene(&seen, &studio.stage.scene, path);

@@ -4,7 +4,7 @@ use super::command::Command;
 
 /// Keys, as events and scripts write them, and what they do. Where OVITO or Blender have a key for
 /// something, it is theirs.
-pub(super) const BINDINGS: [(&str, Command); 54] = [
+pub(super) const BINDINGS: [(&str, Command); 58] = [
     ("?", Command::Help),
     ("f1", Command::Help),
     ("home", Command::Fit),
@@ -38,6 +38,10 @@ pub(super) const BINDINGS: [(&str, Command); 54] = [
     ("m", Command::Sampler),
     ("p", Command::Preset(1)),
     ("P", Command::Preset(-1)),
+    ("b", Command::Background(1)),
+    ("B", Command::Background(-1)),
+    ("d", Command::DepthCue),
+    ("o", Command::Outline),
     ("h", Command::Hide),
     ("delete", Command::Hide),
     ("H", Command::ShowAll),
@@ -62,7 +66,7 @@ pub(super) const BINDINGS: [(&str, Command); 54] = [
 ];
 
 /// Keys and gestures, and what they do, in words.
-pub(super) const HELP: [(&str, &str); 33] = [
+pub(super) const HELP: [(&str, &str); 35] = [
     ("left or middle drag", "turn about the pivot"),
     ("right drag, shift+drag", "move across"),
     ("wheel, ctrl+drag", "nearer, farther; the wheel, toward the pointer"),
@@ -84,7 +88,9 @@ pub(super) const HELP: [(&str, &str); 33] = [
     ("e E", "brighter, darker by a third of a stop"),
     ("i", "next integrator"),
     ("m", "next sampler"),
-    ("p P", "next, last look: chalk, studio, cloudy, glossy"),
+    ("p P", "next, last look: chalk, studio, cloudy, glossy, depthcue, outline"),
+    ("b B", "next, last background: the sky, white, black, transparent"),
+    ("d o", "fade what is far; contours; on and off"),
     ("c C", "color by the next, the last column"),
     ("h delete", "hide the type of the sphere that was clicked"),
     ("x", "then a drag: cut off what is right of that line"),

@@ -115,8 +115,9 @@ impl Base {
             cell.map(|cell| cell.bounds()),
         )?;
         job.style.set(&mut scene);
+        job.views.show_cell(&mut scene, cell.as_ref());
         job.picture.replace(&mut scene.settings);
-        job.views.frame(&mut scene, cell.as_ref(), None)?;
+        job.views.frame(&mut scene, None)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         let up = scene.camera.up;
         framing::hold(&mut scene, &[]).map_err(failed)?;
@@ -126,6 +127,7 @@ impl Base {
             let home = std::mem::replace(&mut scene.camera, camera.clone());
             preset.light(&mut scene);
             scene.camera = home;
+            scene.look = job.style.look(Some(*preset), scene.look);
         } else {
             job.style.light(&mut scene);
         }
@@ -151,6 +153,7 @@ impl Base {
             frame: self.frame.unwrap_or(0),
             frames: self.frames,
             size: size(&scene.spheres),
+            look: scene.look,
         }
     }
 }

@@ -10,13 +10,16 @@
 
 mod args;
 mod canvas;
+mod checks;
 mod command;
 mod content;
 mod headless;
 mod keys;
 mod load;
 mod obey;
+mod over;
 mod pace;
+mod picture;
 mod refine;
 mod rig;
 mod save;
@@ -33,8 +36,8 @@ mod worker;
 pub(super) use self::args::ViewerArgs;
 
 use self::headless::Headless;
+use super::Failure;
 use super::render::Job;
-use super::{Failure, output};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -65,11 +68,6 @@ pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
     let args: &'static ViewerArgs = Box::leak(args);
     let job = Job::new(&args.render)?;
     refuse(args, &job)?;
-    if job.style.background().is_some() && !args.render.report.quiet {
-        output::note(
-            "what is drawn over pictures (background, contours, fading) only render draws",
-        );
-    }
     if let Some(path) = &args.headless_script {
         let steps = read_script(path)?;
         let json = args.render.report.json;
@@ -107,7 +105,6 @@ fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
         ("--layers", !args.render.encoding.layers.is_empty()),
         ("--color-bar", job.color_bar.is_some()),
         ("--turntable", job.views.turntable().is_some()),
-        ("--cell", job.views.draws_cell()),
         ("--checkpoint", args.render.keep.checkpoint.is_some()),
         ("--resume", args.render.keep.resume.is_some()),
         ("--terminal", args.render.report.terminal),

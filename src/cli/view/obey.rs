@@ -2,9 +2,9 @@
 
 use super::command::{Action, Command};
 use super::rig::Rig;
-use super::viewer::{Viewer, WIDER};
+use super::viewer::{Touched, Viewer, WIDER};
 use glam::DVec2;
-use spherule::scene::{Camera, Integrator, Pose, Preset, SamplerKind};
+use spherule::scene::{Background, Camera, Integrator, Pose, Preset, Rgb, SamplerKind};
 
 /// Degrees.
 const TURN: f64 = 15.0;
@@ -17,8 +17,12 @@ const OPEN: f64 = 1.25;
 /// Stops.
 const EXPOSURE: f64 = 1.0 / 3.0;
 
-/// Looks that are all in the scene: the others draw over the picture, which a scene file cannot say.
-const PRESETS: [Preset; 4] = [Preset::Chalk, Preset::Studio, Preset::Cloudy, Preset::Glossy];
+const BACKGROUNDS: [(&str, Background); 4] = [
+    ("the sky", Background::Sky),
+    ("white", Background::Color(Rgb::ONE)),
+    ("black", Background::Color(Rgb::ZERO)),
+    ("transparent", Background::Transparent),
+];
 
 const INTEGRATORS: [(&str, Integrator); 3] = [
     ("path", Integrator::Path),
@@ -56,6 +60,8 @@ impl Viewer {
             Command::Sampler => self.next_sampler(),
             Command::Samples(steps) => self.ask_for_samples(steps),
             Command::Preset(step) => return Some(self.next_preset(step)),
+            Command::Background(step) => self.next_background(step),
+            Command::DepthCue | Command::Outline => self.toggle(command),
             Command::Color(step) => return Some(self.next_color(step)),
             Command::Frame(step) => return self.next_frame(step),
             Command::Hide => return self.hide(),
@@ -134,9 +140,10 @@ impl Viewer {
 
     fn next_preset(&mut self, step: i8) -> Action {
         let now = self.content.preset.as_ref().map(|preset| preset.0);
-        let next = cycled(&PRESETS, now.as_ref(), step).copied();
+        let next = cycled(&Preset::ALL, now.as_ref(), step).copied();
         let name = next.map_or("the scene's own look", Preset::name);
         self.say(name);
+        self.touched = Touched::default();
         if let Some(preset) = next {
             preset.set(&mut self.settings);
         }
@@ -144,6 +151,30 @@ impl Viewer {
         let camera = Camera { up: self.rig.vertical(), ..self.rig.camera.clone() };
         self.content.preset = next.map(|preset| (preset, camera));
         Action::Load
+    }
+
+    fn next_background(&mut self, step: i8) {
+        let now = self.look().background;
+        let place = BACKGROUNDS.iter().position(|row| row.1 == now).unwrap_or(0) as i64;
+        let next = (place + i64::from(step)).rem_euclid(BACKGROUNDS.len() as i64);
+        let (name, background) = BACKGROUNDS[next as usize];
+        self.touched.background = Some(background);
+        self.say(format!("background: {name}"));
+        self.change();
+    }
+
+    /// Turns a part of what is drawn over pictures on or off.
+    fn toggle(&mut self, command: Command) {
+        let look = self.look();
+        let (name, on) = if command == Command::DepthCue {
+            self.touched.depth_cue = Some(!look.depth_cue);
+            ("what is far fades", !look.depth_cue)
+        } else {
+            self.touched.outline = Some(!look.outline);
+            ("contours", !look.outline)
+        };
+        self.say(format!("{name}: {}", if on { "on" } else { "off" }));
+        self.change();
     }
 
     fn next_color(&mut self, step: i8) -> Action {

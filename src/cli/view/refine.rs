@@ -1,7 +1,8 @@
 //! Which picture comes next, and how good the last one is.
 
 use super::pace::refined;
-use super::viewer::{Order, Picture, Viewer};
+use super::picture::{Order, Picture};
+use super::viewer::Viewer;
 use spherule::image::Image;
 use spherule::scene::{SamplerKind, Settings};
 
@@ -24,6 +25,7 @@ impl Viewer {
             version: self.version,
             camera: self.rig.camera.clone(),
             settings: Settings { width, height, spp, ..self.settings.clone() },
+            look: self.look(),
             first: shown.is_none(),
         })
     }

@@ -1,10 +1,11 @@
 //! What was seen as files: the picture, and a scene that renders to it.
 
 use crate::cli::failure::Failure;
-use crate::cli::render::Subject;
+use crate::cli::render::{Subject, alpha, check_alpha};
 use spherule::film::Region;
-use spherule::image::{Format, Image, WriteOptions};
-use spherule::scene::{Camera, Scene, Settings, write};
+use spherule::image::{Channel, Format, Image, WriteOptions};
+use spherule::overlay::Matte;
+use spherule::scene::{Camera, Look, Scene, Settings, write};
 use std::path::Path;
 #[cfg(feature = "view")]
 use std::path::PathBuf;
@@ -16,24 +17,30 @@ pub(super) struct Seen<'a> {
     pub(super) camera: &'a Camera,
     /// With the samples that the picture has.
     pub(super) settings: &'a Settings,
+    pub(super) look: Look,
     pub(super) image: &'a Image,
+    /// How much of each pixel is not background, unless all is.
+    pub(super) matte: Option<&'a Matte>,
 }
 
 /// Writes the picture, as `spherule render` would of the saved scene.
 pub(super) fn save_picture(seen: &Seen, path: &Path) -> Result<(), Failure> {
+    let format = Format::of_suffix(path)?;
+    check_alpha(&seen.look, format)?;
     let Settings { width, height, exposure, tone, .. } = *seen.settings;
     let mut options = WriteOptions { exposure, tone, ..WriteOptions::default() };
     let region = Region { x: 0, y: 0, width, height };
     let subject = Subject { title: seen.title, settings: seen.settings, region, looks: &[] };
-    options.metadata = subject.describe(Format::of_suffix(path)?, &options);
-    Ok(seen.image.write(path, &options)?)
+    options.metadata = subject.describe(format, &options);
+    let channels: Vec<Channel> = seen.matte.map(|matte| alpha(matte, format)).into_iter().collect();
+    Ok(seen.image.write_layers(path, &channels, &options)?)
 }
 
 /// Writes the scene, with its spheres in a file beside it.
 pub(super) fn save_scene(seen: &Seen, scene: &RwLock<Scene>, path: &Path) -> Result<(), Failure> {
     let mut scene = scene.write().unwrap_or_else(PoisonError::into_inner);
     scene.camera = seen.camera.clone();
-    scene.settings = seen.settings.clone();
+    (scene.settings, scene.look) = (seen.settings.clone(), seen.look);
     seen.title.clone_into(&mut scene.title);
     Ok(write(&scene, path)?)
 }

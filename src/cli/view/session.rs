@@ -8,7 +8,7 @@ use super::studio::{Picked, Studio};
 use super::viewer::Viewer;
 use crate::cli::output;
 use crate::cli::render::Job;
-use crate::cli::views::from_side;
+use crate::cli::views::{corners, from_side};
 use glam::DVec3;
 use spherule::scene::{Camera, Pose, Projection, Scene, Settings};
 use spherule::world::framing;
@@ -82,12 +82,13 @@ pub(super) fn frame(viewer: &mut Viewer, scene: &RwLock<Scene>, side: Option<&st
     let mut scene = scene.write().unwrap_or_else(PoisonError::into_inner);
     scene.camera = viewer.rig.camera.clone();
     scene.settings = viewer.settings.clone();
+    scene.look = viewer.look();
     match side.and_then(|side| from_side(side, &scene)) {
         Some(camera) => scene.camera = camera,
         None => fit(&mut scene.camera),
     }
-    let up = scene.camera.up;
-    if framing::hold(&mut scene, &[]).is_err() {
+    let (up, corners) = (scene.camera.up, corners(&scene));
+    if framing::hold(&mut scene, &corners).is_err() {
         return viewer.say("there is nothing to frame");
     }
     // The way that is up, not that of the picture, which leans: the camera turns about it.

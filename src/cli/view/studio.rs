@@ -1,8 +1,9 @@
 //! Who makes the pictures that the viewer orders, and knows what is at a pixel.
 
 use super::load::Stage;
+use super::over::Over;
+use super::picture::{Order, Picture};
 use super::rig::Rig;
-use super::viewer::{Order, Picture};
 use crate::cli::failure::Failure;
 use glam::{DVec2, DVec3};
 use spherule::World;
@@ -25,6 +26,7 @@ pub(super) struct Studio {
     aimed: Scene,
     /// Of the camera, by these settings.
     film: Option<(Camera, Unfinished)>,
+    over: Over,
 }
 
 /// What is at a pixel.
@@ -39,12 +41,12 @@ pub(super) struct Picked {
 
 impl Studio {
     pub(super) fn new(stage: Stage, tracer: Tracer, builder: Builder) -> Self {
-        Self { stage, tracer, builder, aimed: Scene::default(), film: None }
+        Self { stage, tracer, builder, aimed: Scene::default(), film: None, over: Over::default() }
     }
 
     /// Goes on with another scene.
     pub(super) fn set(&mut self, stage: Stage) {
-        (self.stage, self.film, self.aimed) = (stage, None, Scene::default());
+        *self = Self::new(stage, self.tracer, self.builder);
     }
 
     /// Makes the picture that is ordered, from the last one if that was of the same; nothing if it is
@@ -63,7 +65,7 @@ impl Studio {
         let mut film = self.film.take().filter(|(camera, _)| *camera == order.camera);
         let goes_on = |(_, film): &mut (Camera, Unfinished)| film.raise(&order.settings).is_ok();
         film = film.and_then(|mut film| goes_on(&mut film).then_some(film));
-        let world = &self.stage.world;
+        let world = &mut self.stage.world;
         let begin = || {
             let film = Unfinished::begin(world, &order.settings, &options);
             (order.camera.clone(), film)
@@ -73,13 +75,16 @@ impl Studio {
         if film.run(world, &options) == End::Cancelled {
             return Ok(None);
         }
-        Ok(Some(Picture {
-            version: order.version,
-            samples: order.settings.spp,
-            image: film.film().resolve(),
-            rays: film.totals().counters.rays() - before,
-            elapsed: start.elapsed(),
-        }))
+        let (image, rays) = (film.film().resolve(), film.totals().counters.rays() - before);
+        let mut drawn = None;
+        if !order.look.is_plain() {
+            drawn = self.over.draw(world, order, image.clone(), &options);
+            if drawn.is_none() {
+                return Ok(None);
+            }
+        }
+        let (version, samples) = (order.version, order.settings.spp);
+        Ok(Some(Picture { version, samples, image, drawn, rays, elapsed: start.elapsed() }))
     }
 
     /// Lets the camera into the world; where it is too far away for that, builds the world for it.
@@ -91,6 +96,7 @@ impl Studio {
             return Ok(());
         }
         self.film = None;
+        self.over.move_on();
         (self.aimed.camera, self.aimed.settings) = (camera.clone(), settings.clone());
         let title = self.stage.facts.title.clone();
         let failed = |error| Failure::World(title.clone(), error);
@@ -100,6 +106,7 @@ impl Studio {
         let mut scene = self.stage.scene.write().unwrap_or_else(PoisonError::into_inner);
         (scene.camera, scene.settings) = (camera.clone(), settings.clone());
         self.stage.world = World::build_with(&scene, self.builder).map_err(failed)?;
+        self.over = Over::default();
         Ok(())
     }
 

@@ -6,11 +6,10 @@ use super::command::{Action, Button, Event, Held, Purpose};
 use super::content::{Content, Cut};
 use super::keys;
 use super::pace::Pace;
+use super::picture::Picture;
 use super::rig::Rig;
 use glam::DVec2;
-use spherule::image::Image;
-use spherule::scene::{Camera, Settings};
-use std::time::Duration;
+use spherule::scene::{Background, Camera, Look, Settings};
 
 /// Least and most pixels on a side of the window.
 const SIDES: (u32, u32) = (16, 16_384);
@@ -43,35 +42,16 @@ pub(super) struct Facts {
     pub(super) frames: Option<u64>,
     /// Radius of the ball about all spheres.
     pub(super) size: f64,
+    /// What the scene says is drawn over its pictures.
+    pub(super) look: Look,
 }
 
-/// A picture to be rendered.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Order {
-    /// Of what the viewer shows: grows with every change.
-    pub(super) version: u64,
-    pub(super) camera: Camera,
-    /// With the size and the samples of this picture.
-    pub(super) settings: Settings,
-    /// Whether it is the first of its version, which is not to be broken off.
-    pub(super) first: bool,
-}
-
-/// A picture that was ordered.
-#[derive(Clone, Debug)]
-pub(super) struct Picture {
-    pub(super) version: u64,
-    pub(super) samples: u32,
-    pub(super) image: Image,
-    /// Rays of the last samples, and how long they took.
-    pub(super) rays: u64,
-    pub(super) elapsed: Duration,
-}
-
-impl Picture {
-    pub(super) fn size(&self) -> (u32, u32) {
-        (self.image.width, self.image.height)
-    }
+/// What was changed of the scene's look by keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Touched {
+    pub(super) background: Option<Background>,
+    pub(super) depth_cue: Option<bool>,
+    pub(super) outline: Option<bool>,
 }
 
 /// What the pointer does.
@@ -95,6 +75,7 @@ pub(super) struct Viewer {
     /// With the size of the window, and the samples at which the picture is finished.
     pub(super) settings: Settings,
     pub(super) content: Content,
+    pub(super) touched: Touched,
     pub(super) facts: Facts,
     pub(super) pace: Pace,
     /// Of the sphere that was named last, its type.
@@ -124,6 +105,7 @@ impl Viewer {
             home: camera.clone(),
             settings: Settings { until_error: None, time: None, ..settings.clone() },
             content: Content::default(),
+            touched: Touched::default(),
             facts: Facts::default(),
             pace,
             named: None,
@@ -150,6 +132,17 @@ impl Viewer {
     /// What is shown is not what it was: pictures begin anew.
     pub(super) fn change(&mut self) {
         self.version += 1;
+    }
+
+    /// What is drawn over pictures.
+    pub(super) fn look(&self) -> Look {
+        let (own, touched) = (self.facts.look, self.touched);
+        Look {
+            background: touched.background.unwrap_or(own.background),
+            depth_cue: touched.depth_cue.unwrap_or(own.depth_cue),
+            outline: touched.outline.unwrap_or(own.outline),
+            cell: own.cell,
+        }
     }
 
     /// What is shown, if it is the whole picture of what is to be seen now.

@@ -183,13 +183,14 @@ impl App {
         else {
             return;
         };
-        let (scene, image, path) =
-            (Arc::clone(scene), picture.image.clone(), free_name(&self.output));
+        let (scene, picture, path) = (Arc::clone(scene), picture.clone(), free_name(&self.output));
         let (title, camera) = (self.viewer.facts.title.clone(), self.viewer.rig.camera.clone());
-        let tell = Arc::clone(&self.tell);
+        let (tell, look) = (Arc::clone(&self.tell), self.viewer.look());
         self.viewer.say(format!("saving {}", path.display()));
         let saver = std::thread::spawn(move || {
-            let seen = Seen { title: &title, camera: &camera, settings: &settings, image: &image };
+            let (image, matte) = picture.seen();
+            let (title, camera, settings) = (&*title, &camera, &settings);
+            let seen = Seen { title, camera, settings, look, image, matte };
             let saved = save_picture(&seen, &path)
                 .and_then(|()| save_scene(&seen, &scene, &path.with_extension("toml")));
             tell(News::Saved(saved.map(|()| path)));

@@ -6,8 +6,8 @@
 use super::command::Purpose;
 use super::content::Content;
 use super::load::{Base, Stage};
+use super::picture::{Order, Picture};
 use super::studio::{Picked, Studio};
-use super::viewer::{Order, Picture};
 use crate::cli::failure::Failure;
 use crate::cli::render::Job;
 use rayon::ThreadPool;

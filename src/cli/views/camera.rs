@@ -3,7 +3,6 @@
 use super::ViewArgs;
 use crate::cli::Failure;
 use glam::DVec3;
-use spherule::scene::particles::Cell;
 use spherule::scene::{Camera, Pose, Projection, Scene};
 use spherule::world::{WorldError, framing};
 use std::f64::consts::TAU;
@@ -55,14 +54,10 @@ impl ViewArgs {
     pub(in crate::cli) fn frame(
         &self,
         scene: &mut Scene,
-        cell: Option<&Cell>,
         turn: Option<u32>,
     ) -> Result<(), Failure> {
         self.choose(scene)?;
-        let corners = match cell.filter(|_| self.cell) {
-            Some(cell) => cell.corners().to_vec(),
-            None => Vec::new(),
-        };
+        let corners = corners(scene);
         let all = f64::from(self.turntable.unwrap_or(1));
         if let Some(turn) = turn {
             framing::turn(scene, &corners, TAU * f64::from(turn) / all);
@@ -94,6 +89,11 @@ impl ViewArgs {
         }
         Ok(())
     }
+}
+
+/// What is to be in the picture besides spheres: the corners of a cell that is drawn.
+pub(in crate::cli) fn corners(scene: &Scene) -> Vec<DVec3> {
+    scene.look.cell.map_or_else(Vec::new, |cell| cell.corners().to_vec())
 }
 
 pub(super) fn of_view(view: View, scene: &Scene) -> Camera {

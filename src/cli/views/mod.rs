@@ -6,7 +6,8 @@ mod periodic;
 mod style;
 
 use self::camera::View;
-pub(super) use self::over::{Canvas, Over};
+pub(super) use self::camera::corners;
+pub(super) use self::over::{Canvas, draw_over, settings_of_layers};
 pub(super) use self::style::StyleArgs;
 use super::names::Names;
 use super::settings::List;
@@ -65,11 +66,6 @@ impl ViewArgs {
     /// Whether the file of particles is to be changed, or its cell drawn.
     pub(super) fn needs_cell(&self) -> bool {
         self.wrap || self.cell || self.replicate.is_some()
-    }
-
-    /// Whether the cell is drawn.
-    pub(super) fn draws_cell(&self) -> bool {
-        self.cell
     }
 
     /// What makes the picture, for its file.

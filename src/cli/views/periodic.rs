@@ -2,8 +2,8 @@
 
 use super::ViewArgs;
 use crate::cli::Failure;
-use spherule::scene::SceneError;
 use spherule::scene::particles::{Cell, Particles, PeriodicError};
+use spherule::scene::{Scene, SceneError};
 use std::path::Path;
 
 /// `NA,NB,NC`.
@@ -23,6 +23,13 @@ impl ViewArgs {
             return Err(Failure::usage("render", message));
         }
         Ok(())
+    }
+
+    /// Has the cell drawn, if that is asked for.
+    pub(in crate::cli) fn show_cell(&self, scene: &mut Scene, cell: Option<&Cell>) {
+        if self.cell {
+            scene.look.cell = cell.copied();
+        }
     }
 
     /// Puts particles into their cell and repeats it, as asked for; returns the cell that holds them

@@ -3,7 +3,7 @@
 use crate::cli::settings::List;
 use serde_json::json;
 use spherule::color::srgb;
-use spherule::scene::{Preset, Rgb, Scene};
+use spherule::scene::{Background, Look, Preset, Rgb, Scene};
 
 /// What the picture looks like.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -14,18 +14,17 @@ pub(in crate::cli) struct StyleArgs {
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<Preset>,
     /// In the sky's place, which goes on lighting the scene: white, black or #rrggbb, before
-    /// --exposure; or transparent, for PNG and EXR, where of the ground only shadows are left
-    /// [default: white with --preset, or else the sky]
-    #[arg(long, value_name = "COLOR", value_parser = color)]
-    background: Option<Background>,
+    /// --exposure; transparent, for PNG and EXR, where of the ground only shadows are left; or sky
+    /// [default: white with --preset, or else what the scene says]
+    #[arg(long, value_name = "COLOR", value_parser = background)]
+    background: Option<Typed>,
 }
 
-/// A color, or none, and how it was typed.
+/// A background, and how it was typed.
 #[derive(Clone, Debug, PartialEq)]
-struct Background {
-    typed: String,
-    /// `None`: it is transparent.
-    color: Option<Rgb>,
+struct Typed {
+    text: String,
+    background: Background,
 }
 
 fn preset(name: &str) -> Result<Preset, String> {
@@ -34,18 +33,20 @@ fn preset(name: &str) -> Result<Preset, String> {
     found.ok_or_else(|| format!("looks are {}", names()))
 }
 
-fn color(text: &str) -> Result<Background, String> {
+fn background(text: &str) -> Result<Typed, String> {
     let six = |digits: &&str| digits.len() == 6 && digits.bytes().all(|c| c.is_ascii_hexdigit());
     let hex = |digits: &str| u32::from_str_radix(digits, 16).ok();
-    let color = match text {
-        "white" => Some(Rgb::ONE),
-        "black" => Some(Rgb::ZERO),
-        _ => text.strip_prefix('#').filter(six).and_then(hex).map(srgb),
+    let color = |text: &str| text.strip_prefix('#').filter(six).and_then(hex).map(srgb);
+    let background = match text {
+        "white" => Background::Color(Rgb::ONE),
+        "black" => Background::Color(Rgb::ZERO),
+        "transparent" => Background::Transparent,
+        "sky" => Background::Sky,
+        _ => color(text).map(Background::Color).ok_or_else(|| {
+            "give white, black, transparent, sky, or six digits as in \"#f0f4ff\"".to_owned()
+        })?,
     };
-    if color.is_none() && text != "transparent" {
-        return Err("give white, black, transparent, or six digits as in \"#f0f4ff\"".to_owned());
-    }
-    Ok(Background { typed: text.to_owned(), color })
+    Ok(Typed { text: text.to_owned(), background })
 }
 
 impl StyleArgs {
@@ -53,24 +54,20 @@ impl StyleArgs {
         self.preset
     }
 
-    /// What is seen in the sky's place, linear.
-    pub(in crate::cli) fn background(&self) -> Option<Rgb> {
-        match &self.background {
-            Some(background) => background.color,
-            None => self.preset.map(|_| Rgb::ONE),
-        }
+    /// What is drawn over a picture: as a preset says or else the scene, but for the cell, and for
+    /// the background if one was typed.
+    pub(in crate::cli) fn look(&self, preset: Option<Preset>, own: Look) -> Look {
+        let look = preset.map_or(own, Preset::look);
+        let typed = self.background.as_ref().map(|typed| typed.background);
+        Look { background: typed.unwrap_or(look.background), cell: own.cell, ..look }
     }
 
-    /// Whether nothing is.
-    pub(in crate::cli) fn is_transparent(&self) -> bool {
-        self.background.as_ref().is_some_and(|background| background.color.is_none())
-    }
-
-    /// Sets what the look says of settings, before others are typed.
+    /// Sets what the look says of settings and of what is drawn over the picture, before others are typed.
     pub(in crate::cli) fn set(&self, scene: &mut Scene) {
         if let Some(preset) = self.preset {
             preset.set(&mut scene.settings);
         }
+        scene.look = self.look(self.preset, scene.look);
     }
 
     /// Lights a scene whose camera has its place.
@@ -86,8 +83,8 @@ impl StyleArgs {
         if let Some(preset) = self.preset {
             list.insert("preset".to_owned(), json!(preset.name()));
         }
-        if let Some(background) = &self.background {
-            list.insert("background".to_owned(), json!(background.typed));
+        if let Some(typed) = &self.background {
+            list.insert("background".to_owned(), json!(typed.text));
         }
         list
     }
@@ -99,15 +96,17 @@ mod tests {
 
     #[test]
     fn colors_and_looks_are_read() {
-        let read = |text: &str| color(text).map(|background| background.color);
-        for (text, color) in [
-            ("white", Some(Rgb::ONE)),
-            ("#ffffff", Some(Rgb::ONE)),
-            ("black", Some(Rgb::ZERO)),
-            ("#FF0000", Some(Rgb::X)),
-            ("transparent", None),
+        let read = |text: &str| background(text).map(|typed| typed.background);
+        let color = Background::Color;
+        for (text, expected) in [
+            ("white", color(Rgb::ONE)),
+            ("#ffffff", color(Rgb::ONE)),
+            ("black", color(Rgb::ZERO)),
+            ("#FF0000", color(Rgb::X)),
+            ("transparent", Background::Transparent),
+            ("sky", Background::Sky),
         ] {
-            assert_eq!(read(text), Ok(color));
+            assert_eq!(read(text), Ok(expected));
         }
         for text in ["", "#", "#fff", "#-fffff", "#+fffff", "ffffff", "red", "#ggffff"] {
             assert!(read(text).is_err(), "{text}");

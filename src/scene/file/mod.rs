@@ -9,6 +9,7 @@ mod block;
 mod camera;
 mod environment;
 mod lights;
+mod look;
 mod materials;
 mod render;
 mod schema;
@@ -20,8 +21,8 @@ use self::block::{Block, Source};
 use self::materials::Materials;
 use super::particles::{self, Particles, ReadOptions};
 use super::{
-    Camera, Environment, EnvironmentMap, Light, Material, NamedMaterial, Rgb, Scene, SceneError,
-    Settings, Spheres,
+    Camera, Environment, EnvironmentMap, Light, Look, Material, NamedMaterial, Rgb, Scene,
+    SceneError, Settings, Spheres,
 };
 use crate::memory::{self, read_at_most};
 use std::fs::File;
@@ -112,10 +113,12 @@ fn read(source: &Source, root: &Block) -> Result<Scene, SceneError> {
     let title = root.value("title").map_or(Ok(""), |value| value.text())?;
     let settings = root.block("render", &schema::RENDER)?;
     let camera = root.block("camera", &schema::CAMERA)?;
+    let look = root.block("look", &schema::LOOK)?;
     let mut scene = Scene {
         title: title.to_owned(),
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
         camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
+        look: look.map_or(Ok(Look::default()), |block| look::read(&block))?,
         slices: slices::read(root)?,
         lights: lights::read(root)?,
         ..Scene::default()

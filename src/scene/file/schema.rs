@@ -37,6 +37,7 @@ pub(super) const ROOT: Schema = plain(
         ("title", &[]),
         ("render", &[]),
         ("camera", &[]),
+        ("look", &[]),
         ("environment", &[]),
         ("ground", &[]),
         ("slice", &[]),
@@ -90,6 +91,9 @@ pub(super) const CAMERA: Schema = Schema {
         ("near", &[]),
     ],
 };
+
+pub(super) const LOOK: Schema =
+    plain("[look]", &[("background", &[]), ("depth_cue", &[]), ("outline", &[]), ("cell", &[])]);
 
 pub(super) const ENVIRONMENT: Schema = Schema {
     section: "[environment]",
@@ -179,10 +183,11 @@ pub(super) const FILE: Schema = plain(
 mod tests {
     use super::*;
 
-    const ALL: [&Schema; 11] = [
+    const ALL: [&Schema; 12] = [
         &ROOT,
         &RENDER,
         &CAMERA,
+        &LOOK,
         &ENVIRONMENT,
         &GROUND,
         &SLICE,

@@ -2,7 +2,7 @@
 
 use super::{Field, Group};
 use crate::scene::{
-    Camera, Environment, EnvironmentMap, Ground, Lens, Light, Material, NamedMaterial, Pose,
+    Camera, Environment, EnvironmentMap, Ground, Lens, Light, Look, Material, NamedMaterial, Pose,
     Projection, Rgb, Scene, Settings, Tone,
 };
 use glam::DVec3;
@@ -30,6 +30,7 @@ pub fn default_scene(seed: u64) -> Scene {
         materials,
         ground: Some(ground),
         slices: Vec::new(),
+        look: Look::default(),
         lights: vec![sun()],
         environment: sky(),
         camera: camera(),

@@ -3,7 +3,7 @@
 
 pub(super) mod sections;
 
-use self::sections::{camera, environment, light, material, quoted, render, slice, vector};
+use self::sections::{camera, environment, light, look, material, quoted, render, slice, vector};
 use super::{EnvironmentMap, NamedMaterial, Rgb, Scene, SceneError, Spheres};
 use crate::atomic::write_atomically;
 use crate::image::WriteOptions;
@@ -72,6 +72,7 @@ fn document(scene: &Scene, columns: &Path, sky: &Path) -> String {
     let mut text = format!("title = {}\n\n", quoted(&scene.title));
     text += &render(&scene.settings);
     text += &camera(&scene.camera);
+    text += &look(&scene.look);
     text += &environment(&scene.environment, &name(sky));
     for NamedMaterial { name, material: surface } in &scene.materials {
         let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
@@ -125,9 +126,10 @@ fn write_columns(scene: &Scene, file: &mut dyn io::Write) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::scene::generate::default_scene;
+    use crate::scene::particles::Cell;
     use crate::scene::{
-        BRIGHTEST, ConductorFresnel, Filter, Ground, Integrator, Lens, Light, LightChoice,
-        Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
+        BRIGHTEST, Background, ConductorFresnel, Filter, Ground, Integrator, Lens, Light,
+        LightChoice, Look, Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
@@ -226,6 +228,21 @@ mod tests {
             scene.camera.lens = Some(Lens { aperture: choice as f64 / 3.0, focus });
             let again = round_trip(&scene);
             assert!(same(&scene, &again), "{scene:?}\n{again:?}");
+        }
+    }
+
+    #[test]
+    fn looks_come_back() {
+        let odd = Rgb::new(0.1, 1.0 / 3.0, BRIGHTEST);
+        let vectors = [DVec3::new(0.1, -1e300, 0.0), DVec3::Y / 3.0, DVec3::Z];
+        let cell = Cell { origin: DVec3::NEG_ONE / 7.0, vectors, periodic: [false; 3] };
+        for background in [Background::Sky, Background::Color(odd), Background::Transparent] {
+            for (depth_cue, outline) in [(false, false), (true, false), (false, true)] {
+                let cell = outline.then_some(cell);
+                let look = Look { background, depth_cue, outline, cell };
+                let again = round_trip(&Scene { look, ..Scene::default() });
+                assert_eq!(again.look, look);
+            }
         }
     }
 

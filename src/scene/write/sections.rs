@@ -1,8 +1,9 @@
 //! The sections of a scene file as text.
 
 use crate::scene::{
-    Camera, ConductorFresnel, Environment, EnvironmentMap, Filter, Integrator, Lens, Light,
-    LightChoice, Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings, Slice, Tone,
+    Background, Camera, ConductorFresnel, Environment, EnvironmentMap, Filter, Integrator, Lens,
+    Light, LightChoice, Look, Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings,
+    Slice, Tone,
 };
 use glam::DVec3;
 
@@ -80,6 +81,26 @@ pub(in crate::scene) fn camera(camera: &Camera) -> String {
     };
     let (up, near) = (vector(camera.up), camera.near);
     format!("[camera]\nprojection = {projection}\n{pose}\nup = {up}\nnear = {near:?}\n{lens}\n")
+}
+
+/// Nothing if nothing is drawn over the picture.
+pub(in crate::scene) fn look(look: &Look) -> String {
+    if look.is_plain() {
+        return String::new();
+    }
+    let background = match look.background {
+        Background::Sky => "\"sky\"".to_owned(),
+        Background::Transparent => "\"transparent\"".to_owned(),
+        Background::Color(color) => rgb(color),
+    };
+    let cell = look.cell.map_or_else(String::new, |cell| {
+        let [a, b, c] = cell.vectors.map(vector);
+        format!("cell = [{}, {a}, {b}, {c}]\n", vector(cell.origin))
+    });
+    let Look { depth_cue, outline, .. } = look;
+    format!(
+        "[look]\nbackground = {background}\ndepth_cue = {depth_cue}\noutline = {outline}\n{cell}\n"
+    )
 }
 
 /// `picture` is the name of the picture's file, if there is one.

@@ -1,0 +1,66 @@
+//! What is drawn over the pictures of a viewer: as `spherule render` does it, but with what is known
+//! of the last picture, if that was of the same.
+
+use super::picture::Order;
+use crate::cli::views::settings_of_layers;
+use spherule::World;
+use spherule::film::Region;
+use spherule::image::Image;
+use spherule::layers::Growing;
+use spherule::overlay::{GroundRender, Matte, Overlay, Runs};
+use spherule::render::Options;
+
+/// A picture with what is drawn over it.
+#[derive(Clone, Debug)]
+pub(super) struct Drawn {
+    pub(super) image: Image,
+    /// How much of each pixel is not background; `None` if all is. Then the colors are
+    /// premultiplied.
+    pub(super) matte: Option<Matte>,
+}
+
+/// What is known of a world and of what its camera sees, as far as something was drawn.
+#[derive(Default)]
+pub(super) struct Over {
+    runs: Option<Runs>,
+    layers: Option<Growing>,
+    ground: Option<GroundRender>,
+}
+
+impl Over {
+    /// The camera has another place or another picture.
+    pub(super) fn move_on(&mut self) {
+        (self.layers, self.ground) = (None, None);
+    }
+
+    /// Draws over a picture that was ordered; nothing if it is cancelled.
+    pub(super) fn draw(
+        &mut self,
+        world: &mut World,
+        order: &Order,
+        mut image: Image,
+        options: &Options,
+    ) -> Option<Drawn> {
+        let settings = settings_of_layers(&order.settings, order.settings.spp);
+        let layers = self.layers.get_or_insert_with(|| Growing::begin(world, &settings, options));
+        if !layers.grow(world, &settings, options) {
+            return None;
+        }
+        if order.look.is_transparent() {
+            let begin = || GroundRender::begin(world, &order.settings, options);
+            self.ground = self.ground.take().or_else(begin);
+            if let Some(ground) = &mut self.ground
+                && !ground.go_on(world, &order.settings, options)
+            {
+                return None;
+            }
+        }
+        let ground = self.ground.as_ref().filter(|_| order.look.is_transparent());
+        let depths = self.runs.get_or_insert_with(|| Runs::of(world)).depths(world);
+        let region = Region { x: 0, y: 0, width: image.width, height: image.height };
+        let (layers, depths) = (layers.layers(), Some(depths));
+        let overlay = Overlay { world, region, layers: &layers, depths };
+        let matte = overlay.draw_look(&mut image, &order.look, ground.map(GroundRender::ground));
+        Some(Drawn { image, matte })
+    }
+}

@@ -1,0 +1,182 @@
+//! Layers that get more samples, as the picture does that they belong to.
+
+use super::sums::Sums;
+use super::{Features, Layers, SAMPLES};
+use crate::bvh::walk::Method;
+use crate::film::{Film, Region, Tile, View};
+use crate::integrator::workspace::Workspace;
+use crate::integrator::{Job, stages};
+use crate::render::{Options, passes, view};
+use crate::sampling::{PixelFilter, Sampler};
+use crate::scene::{SamplerKind, Settings};
+use crate::world::World;
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Layers that get more samples: those of a picture of so many that [`layers`](super::layers()) finds
+/// at once, to the last bit.
+#[derive(Debug)]
+pub struct Growing {
+    region: Region,
+    settings: Settings,
+    tiles: Vec<Known>,
+}
+
+/// What is known of a tile.
+#[derive(Debug)]
+pub(super) struct Known {
+    tile: Tile,
+    sums: Vec<Sums>,
+    samples: u32,
+    /// Whether it is known what the pixels' centers see.
+    centered: bool,
+}
+
+impl Growing {
+    /// Layers of which nothing is known yet, of the region that `options` say.
+    pub fn begin(world: &World, settings: &Settings, options: &Options) -> Self {
+        let camera = &world.camera;
+        let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
+        let region = options.region.unwrap_or(whole);
+        let tiles = Film::new(region, false).tiles.into_iter().map(Known::new).collect();
+        Self { region, settings: settings.clone(), tiles }
+    }
+
+    /// Takes the samples that pixels lack of those that `settings` say, at most [`SAMPLES`]; false if
+    /// the options' flag cancels that, at the grain of a tile. `world` is that of the beginning;
+    /// where settings ask for other samples than before, all begin anew.
+    pub fn grow(&mut self, world: &World, settings: &Settings, options: &Options) -> bool {
+        if !alike(&self.settings, settings) {
+            self.tiles.iter_mut().for_each(Known::forget);
+        }
+        self.settings = settings.clone();
+        let (samples, tiles) = (settings.spp.min(SAMPLES), self.tiles.len());
+        let cancelled = || options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
+        let filter = PixelFilter::new(settings.filter);
+        let (tracer, skips) = (options.tracer, options.skips);
+        let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, skips };
+        let next = AtomicUsize::new(0);
+        let waiting: Vec<Mutex<&mut Known>> = self.tiles.iter_mut().map(Mutex::new).collect();
+        rayon::broadcast(|_| {
+            let mut work = Workspace::new(world, &sampler, skips);
+            while !cancelled() {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(Ok(mut known)) = waiting.get(number).map(Mutex::lock) else { return };
+                known.grow(&job, samples, &mut work);
+            }
+        });
+        next.into_inner() >= tiles && self.tiles.iter().all(|known| known.has(samples))
+    }
+
+    /// What is known.
+    pub fn layers(&self) -> Layers {
+        let features: Vec<Vec<Features>> =
+            self.tiles.par_iter().with_min_len(16).map(Known::features).collect();
+        let tiles = 0..self.tiles.len() as u32;
+        Layers::gather(self.region, &[(tiles, features.into_iter().flatten().collect())])
+    }
+}
+
+/// Whether the samples that one asks for are among those of the other.
+fn alike(a: &Settings, b: &Settings) -> bool {
+    let strata = a.sampler != SamplerKind::Stratified || a.spp == b.spp;
+    (a.sampler, a.seed, a.filter) == (b.sampler, b.seed, b.filter) && a.spp <= b.spp && strata
+}
+
+impl Known {
+    /// Nothing of a tile.
+    pub(super) fn new(tile: Tile) -> Self {
+        let sums = vec![Sums::default(); tile.len() as usize];
+        Self { tile, sums, samples: 0, centered: false }
+    }
+
+    fn forget(&mut self) {
+        self.sums.fill(Sums::default());
+        (self.samples, self.centered) = (0, false);
+    }
+
+    fn has(&self, samples: u32) -> bool {
+        self.samples == samples && self.centered
+    }
+
+    /// Takes the samples that are missing, and looks what the pixels' centers see.
+    pub(super) fn grow(&mut self, job: &Job, samples: u32, work: &mut Workspace) {
+        if self.has(samples) {
+            return;
+        }
+        if !self.centered && job.tracer.method != Method::Brute {
+            self.tile.view = view(job, &self.tile);
+        }
+        if self.tile.view == View::Anything || job.world.ground.is_some() {
+            self.see(job, samples, work);
+        }
+        (self.samples, self.centered) = (samples, true);
+    }
+
+    fn see(&mut self, job: &Job, samples: u32, work: &mut Workspace) {
+        work.view = self.tile.view;
+        for pass in passes(samples).filter(|pass| pass.end > self.samples) {
+            let pass = pass.start.max(self.samples)..pass.end;
+            let count = pass.len();
+            stages::generate(job, &self.tile, pass, work);
+            stages::intersect(job, work);
+            for (pixel, sums) in self.sums.iter_mut().enumerate() {
+                (pixel * count..(pixel + 1) * count).for_each(|row| sums.add(job.world, work, row));
+            }
+        }
+        if self.centered {
+            return;
+        }
+        stages::generate_centers(job, &self.tile, work);
+        stages::intersect(job, work);
+        for (sums, &hit) in self.sums.iter_mut().zip(&work.hits.sphere) {
+            sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);
+        }
+    }
+
+    /// Of its pixels, in the order of [`Tile::pixels`].
+    pub(super) fn features(&self) -> Vec<Features> {
+        self.sums.iter().map(|sums| sums.mean(self.samples)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::{Layer, layers};
+    use crate::scene::generate::default_scene;
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn layers_that_grow_are_those_found_at_once() {
+        let mut scene = default_scene(4);
+        (scene.settings.width, scene.settings.height) = (40, 27);
+        let world = World::build(&scene).unwrap();
+        for sampler in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
+            let of = |spp| Settings { spp, sampler, ..scene.settings.clone() };
+            let options = Options::default();
+            let mut growing = Growing::begin(&world, &of(1), &options);
+            for spp in [1, 2, 5, 16, 20, 37, 36, 40] {
+                assert!(growing.grow(&world, &of(spp), &options));
+                let whole = layers(&world, &of(spp), &options, &[Layer::Depth]);
+                assert_eq!(growing.layers(), whole, "{sampler:?} {spp}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_cancelled_goes_on() {
+        let mut scene = default_scene(4);
+        (scene.settings.width, scene.settings.height, scene.settings.spp) = (40, 27, 3);
+        let world = World::build(&scene).unwrap();
+        let flag = AtomicBool::new(true);
+        let stopped = Options { cancel: Some(&flag), ..Options::default() };
+        let mut growing = Growing::begin(&world, &scene.settings, &stopped);
+        assert!(!growing.grow(&world, &scene.settings, &stopped));
+        assert!(growing.grow(&world, &scene.settings, &Options::default()));
+        let whole = layers(&world, &scene.settings, &Options::default(), &[Layer::Depth]);
+        assert_eq!(growing.layers(), whole);
+    }
+}

@@ -1,0 +1,35 @@
+//! `[look]`: what is drawn over the picture.
+
+use super::block::Block;
+use super::value::{Limits, Value};
+use crate::scene::particles::Cell;
+use crate::scene::{Background, Look, SceneError};
+
+pub(super) fn read(block: &Block) -> Result<Look, SceneError> {
+    let flag = |key| block.value(key).map_or(Ok(false), |value: Value| value.flag());
+    let background = block.value("background");
+    Ok(Look {
+        background: background.map_or(Ok(Background::Sky), |value| read_background(&value))?,
+        depth_cue: flag("depth_cue")?,
+        outline: flag("outline")?,
+        cell: block.value("cell").map(|value| cell(&value)).transpose()?,
+    })
+}
+
+/// A corner, and the three edges from it.
+fn cell(value: &Value) -> Result<Cell, SceneError> {
+    let [origin, a, b, c] = value.list()?;
+    let vectors = [a.point()?, b.point()?, c.point()?];
+    Ok(Cell { origin: origin.point()?, vectors, periodic: [false; 3] })
+}
+
+fn read_background(value: &Value) -> Result<Background, SceneError> {
+    match value.item.as_str() {
+        Some("sky") => Ok(Background::Sky),
+        Some("transparent") => Ok(Background::Transparent),
+        Some(text) if !text.starts_with('#') => {
+            Err(value.must_be("a color, \"sky\" or \"transparent\""))
+        }
+        _ => value.color(Limits::Light).map(Background::Color),
+    }
+}
