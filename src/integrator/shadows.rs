@@ -57,9 +57,9 @@ impl Shadows {
         packing.store_numbers(place, &mut self.place[first..]);
         self.hits.sphere[first..first + ROW].fill(MISS);
         let Vec3 { x, y, z } = light.map(F32x16::to_array);
-        for (row, lane) in (first..).zip(set_bits(lanes)) {
-            self.hits.t[row] = samples.t[lane];
-            self.light[row] = Rgb::new(x[lane], y[lane], z[lane]);
+        let ends = self.hits.t[first..].iter_mut().zip(&mut self.light[first..]);
+        for ((t, light), lane) in ends.zip(set_bits(lanes)) {
+            (*t, *light) = (samples.t[lane], Rgb::new(x[lane], y[lane], z[lane]));
         }
     }
 }
