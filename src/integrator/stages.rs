@@ -76,10 +76,9 @@ fn draw_places(job: &Job, work: &mut Workspace) {
         dx.store(&mut direction.x[first..]);
         dy.store(&mut direction.y[first..]);
         if job.has_lens() {
-            for (path, sample) in (first..).zip(row) {
-                let place = sampling::concentric_disk(job.sampler.lens(sample));
-                (origin.z[path], direction.z[path]) = place.into();
-            }
+            let [x, y] = sampling::concentric_disk(job.sampler.lens_row(row));
+            x.store(&mut origin.z[first..]);
+            y.store(&mut direction.z[first..]);
         }
     }
 }

@@ -64,6 +64,13 @@ impl Sampler {
         [x, y]
     }
 
+    /// The camera rays' places on the lens: [`Sampler::lens`] for each.
+    #[inline(always)]
+    pub fn lens_row(&self, paths: &PathRow) -> [F32x16; 2] {
+        let [u, v, ..] = self.draw4_row(paths, 1);
+        [u, v]
+    }
+
     /// [`Sampler::scatter`] for each. Numbers for lobes and Russian roulette are 0 unless they are
     /// asked for.
     #[inline(always)]
@@ -144,6 +151,8 @@ mod tests {
                 }
                 let [x, y] = sampler.pixel_row(row).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.pixel(&row[3]));
+                let [x, y] = sampler.lens_row(row).map(|x| x.to_array()[3]);
+                assert_eq!([x, y], sampler.lens(&row[3]));
             }
         }
     }
