@@ -32,7 +32,7 @@ pub use preset::Preset;
 pub use settings::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Settings, Tone};
 pub use slice::{Slice, SliceMode, SlicePlane, bounds};
 pub use spheres::Spheres;
-pub use write::write;
+pub use write::{Header, write, write_as};
 
 /// A whole scene: what there is, how it is lit, who looks at it and with which settings.
 #[derive(Clone, Debug, Default)]

@@ -82,6 +82,10 @@ fn settings_without_effect_are_refused() {
     let folder = folder();
     folder.write("bare.xyz", "1\n\nC 0 0 0\n");
     folder.write("a.toml", "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n");
+    folder.write(
+        "clear.toml",
+        "[look]\nbackground = \"transparent\"\n[[generate]]\nkind = \"grid\"\n",
+    );
     for (line, code, message) in [
         ("render bare.xyz --wrap", 1, "no cell to wrap by"),
         ("render bare.xyz --replicate 2,1,1", 1, "no cell to replicate by"),
@@ -98,6 +102,8 @@ fn settings_without_effect_are_refused() {
         ("render a.xyz --background red", 2, "six digits"),
         ("render --preset chalk", 2, "a file of particles"),
         ("render a.toml --margin 0.1", 2, "add --view"),
+        ("render clear.toml -o clear.ppm", 2, "no room for a transparent background"),
+        ("render clear.toml --part 1/2", 2, "a scene's [look]"),
     ] {
         let output = folder.run(&line.split(' ').collect::<Vec<_>>());
         let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");

@@ -5,7 +5,7 @@ use crate::cli::render::{Subject, alpha, check_alpha};
 use spherule::film::Region;
 use spherule::image::{Channel, Format, Image, WriteOptions};
 use spherule::overlay::Matte;
-use spherule::scene::{Camera, Look, Scene, Settings, write};
+use spherule::scene::{Camera, Header, Look, Scene, Settings, write_as};
 use std::path::Path;
 #[cfg(feature = "view")]
 use std::path::PathBuf;
@@ -38,11 +38,10 @@ pub(super) fn save_picture(seen: &Seen, path: &Path) -> Result<(), Failure> {
 
 /// Writes the scene, with its spheres in a file beside it.
 pub(super) fn save_scene(seen: &Seen, scene: &RwLock<Scene>, path: &Path) -> Result<(), Failure> {
-    let mut scene = scene.write().unwrap_or_else(PoisonError::into_inner);
-    scene.camera = seen.camera.clone();
-    (scene.settings, scene.look) = (seen.settings.clone(), seen.look);
-    seen.title.clone_into(&mut scene.title);
-    Ok(write(&scene, path)?)
+    let Seen { title, camera, settings, ref look, .. } = *seen;
+    // Who looks at the scene meanwhile does not wait.
+    let scene = scene.read().unwrap_or_else(PoisonError::into_inner);
+    Ok(write_as(&scene, &Header { title, camera, settings, look }, path)?)
 }
 
 /// `view-002.png` if there is a picture or a scene `view-001` already.

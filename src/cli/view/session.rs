@@ -12,7 +12,7 @@ use crate::cli::views::{corners, from_side};
 use glam::DVec3;
 use spherule::scene::{Camera, Pose, Projection, Scene, Settings};
 use spherule::world::framing;
-use std::sync::{PoisonError, RwLock};
+use std::sync::{PoisonError, RwLock, TryLockError};
 
 /// Samples of a pixel that a viewer takes if nobody says how many.
 pub(super) const SAMPLES: u32 = 1024;
@@ -79,7 +79,12 @@ pub(super) fn begin(viewer: &mut Viewer, stage: &Stage, samples: u32) {
 
 /// Frames everything from a side, or from where the camera stands.
 pub(super) fn frame(viewer: &mut Viewer, scene: &RwLock<Scene>, side: Option<&str>) {
-    let mut scene = scene.write().unwrap_or_else(PoisonError::into_inner);
+    let mut scene = match scene.try_write() {
+        Ok(scene) => scene,
+        Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+        // The window does not wait for a file.
+        Err(TryLockError::WouldBlock) => return viewer.say("the scene is in use: once more, soon"),
+    };
     scene.camera = viewer.rig.camera.clone();
     scene.settings = viewer.settings.clone();
     scene.look = viewer.look();

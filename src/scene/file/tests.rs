@@ -98,7 +98,15 @@ fn sections_in_the_wrong_brackets_are_told() {
 /// Texts with one value each that is out of its range, and one that is just inside.
 #[test]
 fn every_range_is_kept() {
-    let cases: [(&str, &[&str], &str); 39] = [
+    let cases: [(&str, &[&str], &str); 43] = [
+        ("[look]\nbackground = ?", &["\"red\"", "\"#12\"", "-1", "[1, 2]"], "\"transparent\""),
+        ("[look]\nbackground = ?", &["true", "2e30"], "[0, 1e30, 0.5]"),
+        ("[look]\noutline = ?", &["1", "\"yes\""], "true"),
+        (
+            "[look]\ncell = [[0, 0, 0], [9, 0, 0], [0, 9, 0], ?]",
+            &["1", "[0, 0]", "[0, 0, inf]"],
+            "[0, 0, 9]",
+        ),
         ("[render]\nsize = ?", &["[0, 5]", "[5, 65536]", "[5]", "5", "[1.5, 2]"], "[65535, 1]"),
         ("[render]\nspp = ?", &["0", "-1", "16777217", "1.5", "\"many\""], "16777216"),
         ("[render]\nuntil_error = ?", &["0", "-1", "1.1", "nan", "\"1%\""], "1"),

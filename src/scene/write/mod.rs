@@ -4,7 +4,9 @@
 pub(super) mod sections;
 
 use self::sections::{camera, environment, light, look, material, quoted, render, slice, vector};
-use super::{EnvironmentMap, NamedMaterial, Rgb, Scene, SceneError, Spheres};
+use super::{
+    Camera, EnvironmentMap, Look, NamedMaterial, Rgb, Scene, SceneError, Settings, Spheres,
+};
 use crate::atomic::write_atomically;
 use crate::image::WriteOptions;
 use std::borrow::Cow;
@@ -12,6 +14,19 @@ use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::io;
 use std::path::Path;
+
+/// Of a scene, all that says how its picture is made, and not what is in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Header<'a> {
+    /// As [`Scene::title`].
+    pub title: &'a str,
+    /// Who looks.
+    pub camera: &'a Camera,
+    /// How the picture is made.
+    pub settings: &'a Settings,
+    /// What is drawn over the picture.
+    pub look: &'a Look,
+}
 
 /// Writes a scene to `path`, its spheres to a file of the same name that ends in `.csv`, and the
 /// picture of its environment, if it has one, to one that ends in `.pfm`. Loading it gives the same
@@ -22,6 +37,16 @@ use std::path::Path;
 /// A file cannot be written, or the scene has what a scene file cannot say: materials whose names are
 /// empty, framed by blanks or not unique, or rows of materials that are not there.
 pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+    let Scene { title, camera, settings, look, .. } = scene;
+    write_as(scene, &Header { title, camera, settings, look }, path)
+}
+
+/// Writes a scene with another header than its own.
+///
+/// # Errors
+///
+/// Those of [`write()`].
+pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), SceneError> {
     let columns = path.with_extension("csv");
     if columns == path {
         let error = SceneError::whole_file(path, "a scene cannot be written to a .csv file");
@@ -33,7 +58,7 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
         let written = image.write(&sky, &WriteOptions::default());
         written.map_err(|error| failed(&sky, &error))?;
     }
-    let text = document(scene, &columns, &sky);
+    let text = document(scene, header, &columns, &sky);
     if !scene.spheres.is_empty() {
         write_atomically(&columns, |file| write_columns(scene, file))
             .map_err(|error| failed(&columns, &error))?;
@@ -68,11 +93,11 @@ fn check(scene: &Scene) -> Result<(), String> {
 }
 
 /// The whole TOML file.
-fn document(scene: &Scene, columns: &Path, sky: &Path) -> String {
-    let mut text = format!("title = {}\n\n", quoted(&scene.title));
-    text += &render(&scene.settings);
-    text += &camera(&scene.camera);
-    text += &look(&scene.look);
+fn document(scene: &Scene, header: &Header, columns: &Path, sky: &Path) -> String {
+    let mut text = format!("title = {}\n\n", quoted(header.title));
+    text += &render(header.settings);
+    text += &camera(header.camera);
+    text += &look(header.look);
     text += &environment(&scene.environment, &name(sky));
     for NamedMaterial { name, material: surface } in &scene.materials {
         let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
@@ -129,7 +154,7 @@ mod tests {
     use crate::scene::particles::Cell;
     use crate::scene::{
         BRIGHTEST, Background, ConductorFresnel, Filter, Ground, Integrator, Lens, Light,
-        LightChoice, Look, Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
+        LightChoice, Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
