@@ -1,6 +1,6 @@
 //! What the window shows: a picture, as large as the window, and letters over it.
 
-use super::checks::over_checks;
+use super::develop::{Developer, Print};
 use super::keys;
 use super::picture::Picture;
 use super::viewer::Viewer;
@@ -9,9 +9,7 @@ use indicatif::HumanCount;
 use plotters::backend::DrawingBackend;
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::HPos;
-use rayon::prelude::*;
 use spherule::drawing::{self, Area, Drawn, letters};
-use spherule::image::tone::{Codes8, DisplayTransform};
 use spherule::scene::Settings;
 
 /// Pixels: of letters, and of a line of them.
@@ -37,7 +35,7 @@ pub(super) struct Canvas {
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) pixels: Vec<u32>,
-    table: Option<(f64, Codes8)>,
+    developer: Developer,
 }
 
 impl Canvas {
@@ -61,48 +59,13 @@ impl Canvas {
         }
     }
 
-    /// Shows a picture as a PNG file would have it, stretched to the window.
+    /// Shows a picture; what it was developed to, if the window still asks for the same.
     fn show(&mut self, picture: &Picture, settings: &Settings) {
-        let (image, matte) = picture.seen();
-        let table = match self.table.take() {
-            Some((exposure, table)) if exposure == settings.exposure => table,
-            _ => Codes8::new(DisplayTransform::new(settings.exposure, settings.tone)),
-        };
-        let packed = |pixel: &[f32; 3]| {
-            let [red, green, blue] = pixel.map(|value| u32::from(table.code(value)));
-            red << 16 | green << 8 | blue
-        };
-        if let Some(matte) = matte {
-            let code = |value| table.code(value);
-            let codes = over_checks(image, &matte.encoded(), self.width, code);
-            self.stretch(&codes, image.width as usize, image.height as usize);
-        } else if (image.width, image.height) == (self.width, self.height) {
-            self.pixels
-                .par_iter_mut()
-                .zip(&image.pixels)
-                .with_min_len(1 << 14)
-                .for_each(|(pixel, radiance)| *pixel = packed(radiance));
-        } else {
-            let codes: Vec<u32> =
-                image.pixels.par_iter().with_min_len(1 << 14).map(packed).collect();
-            self.stretch(&codes, image.width as usize, image.height as usize);
+        let print = Print::of(settings);
+        match picture.developed.as_ref().filter(|developed| developed.print == print) {
+            Some(developed) => self.pixels.copy_from_slice(&developed.pixels),
+            None => self.developer.develop(picture.seen(), print, &mut self.pixels),
         }
-        self.table = Some((settings.exposure, table));
-    }
-
-    /// Stretches a picture of codes, smoothly.
-    fn stretch(&mut self, codes: &[u32], width: usize, height: usize) {
-        let across = taps(self.width as usize, width);
-        let down = taps(self.height as usize, height);
-        let rows = self.pixels.par_chunks_mut(self.width as usize);
-        rows.zip(&down).for_each(|(row, &(upper, below, share))| {
-            let [upper, below] = [upper, below].map(|y| &codes[y * width..(y + 1) * width]);
-            let column: Vec<u32> =
-                upper.iter().zip(below).map(|(a, b)| blended(*a, *b, share)).collect();
-            for (pixel, &(left, right, share)) in row.iter_mut().zip(&across) {
-                *pixel = blended(column[left], column[right], share);
-            }
-        });
     }
 
     fn line(&mut self, a: DVec2, b: DVec2) {
@@ -138,24 +101,6 @@ impl Canvas {
         let channels = |pixel: &u32| [16, 8, 0].map(|shift| (pixel >> shift) as u8);
         self.pixels.iter().flat_map(channels).collect()
     }
-}
-
-/// For each of `count` places along a side: two neighbors of `from`, and 256 times the share of the
-/// second.
-fn taps(count: usize, from: usize) -> Vec<(usize, usize, u32)> {
-    let place = |i: usize| {
-        let at =
-            ((i as f64 + 0.5) * from as f64 / count as f64 - 0.5).clamp(0.0, from as f64 - 1.0);
-        let first = at as usize;
-        (first, (first + 1).min(from - 1), ((at - first as f64) * 256.0) as u32)
-    };
-    (0..count).map(place).collect()
-}
-
-/// Two colors, the second with a share of `share / 256`: red and blue at once, then green.
-fn blended(a: u32, b: u32, share: u32) -> u32 {
-    let mix = |mask: u32| (((a & mask) * (256 - share) + (b & mask) * share) >> 8) & mask;
-    mix(0x00FF_00FF) | mix(0x0000_FF00)
 }
 
 /// Lines of text, of two parts if there is something in the first.
@@ -203,20 +148,4 @@ pub(super) fn status(viewer: &Viewer) -> String {
         parts.push(viewer.message.clone());
     }
     parts.join("  |  ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stretching_keeps_colors_and_goes_from_end_to_end() {
-        let mut canvas = Canvas { width: 8, height: 4, pixels: vec![0; 32], ..Canvas::default() };
-        canvas.stretch(&[0x0010_2030; 6], 3, 2);
-        assert!(canvas.pixels.iter().all(|pixel| *pixel == 0x0010_2030));
-        canvas.stretch(&[0, 0x00FF_FFFF], 2, 1);
-        let row = &canvas.pixels[..8];
-        assert_eq!((row[0], row[7]), (0, 0x00FF_FFFF));
-        assert!(row.is_sorted());
-    }
 }

@@ -139,7 +139,9 @@ impl<'a> Headless<'a> {
         let start = Instant::now();
         self.expose()?;
         self.session.canvas.draw(&self.session.viewer);
-        self.times.moving.push(start.elapsed());
+        let time = start.elapsed();
+        self.session.viewer.pace.judge(time);
+        self.times.moving.push(time);
         Ok(())
     }
 

@@ -88,8 +88,8 @@ pub(super) const HELP: [(&str, &str); 35] = [
     ("e E", "brighter, darker by a third of a stop"),
     ("i", "next integrator"),
     ("m", "next sampler"),
-    ("p P", "next, last look: chalk, studio, cloudy, glossy, depthcue, outline"),
-    ("b B", "next, last background: the sky, white, black, transparent"),
+    ("p P", "next, last look, as --preset has them"),
+    ("b B", "next, last background: sky, a color, none"),
     ("d o", "fade what is far; contours; on and off"),
     ("c C", "color by the next, the last column"),
     ("h delete", "hide the type of the sphere that was clicked"),
@@ -112,6 +112,14 @@ pub(super) fn command(key: &str) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Two columns of them are in a window of 960 pixels.
+    #[test]
+    fn explanations_are_short() {
+        for (keys, what) in HELP {
+            assert!(keys.len() <= 26 && what.len() <= 47, "{what}");
+        }
+    }
 
     #[test]
     fn every_key_is_bound_once_and_explained() {

@@ -13,6 +13,7 @@ mod canvas;
 mod checks;
 mod command;
 mod content;
+mod develop;
 mod headless;
 mod keys;
 mod load;

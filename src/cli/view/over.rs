@@ -56,9 +56,11 @@ impl Over {
             }
         }
         let ground = self.ground.as_ref().filter(|_| order.look.is_transparent());
-        let depths = self.runs.get_or_insert_with(|| Runs::of(world)).depths(world);
+        let deep = order.look.depth_cue || order.look.outline;
+        let find = || self.runs.get_or_insert_with(|| Runs::of(world)).depths(world);
+        let depths = deep.then(find);
         let region = Region { x: 0, y: 0, width: image.width, height: image.height };
-        let (layers, depths) = (layers.layers(), Some(depths));
+        let layers = layers.layers();
         let overlay = Overlay { world, region, layers: &layers, depths };
         let matte = overlay.draw_look(&mut image, &order.look, ground.map(GroundRender::ground));
         Some(Drawn { image, matte })

@@ -2,9 +2,18 @@
 
 use std::time::Duration;
 
-/// Seconds that a picture may take while the camera moves: 30 of them in a second, with what it
-/// takes to show them.
-const MOVING: f64 = 0.024;
+/// Seconds that a picture may take while the camera moves: at first, at most, and at least. How much
+/// of a thirtieth of a second that is depends on what else the machine does.
+const BUDGET: f64 = 0.016;
+const LARGEST: f64 = 0.026;
+const SMALLEST: f64 = 0.012;
+
+/// Seconds from picture to picture that are too many, and by which factors the budget then falls, or
+/// else rises: so that one picture in eighty is late (Robbins & Monro, "A Stochastic Approximation
+/// Method", The Annals of Mathematical Statistics 1951).
+const LATE: f64 = 0.031;
+const FALL: f64 = 0.85;
+const RISE: f64 = 1.002;
 
 /// Pixels in a second that are expected before anything was measured.
 const GUESS: f64 = 2e6;
@@ -23,19 +32,24 @@ const WEIGHT: f64 = 0.4;
 pub(super) enum Pace {
     /// All of the window, however long it takes: what scripts get is the same on every machine.
     Whole,
-    /// As large as time allows, at so many pixels in a second.
-    Measured(f64),
+    /// As large as time allows.
+    Measured {
+        /// Pixels in a second.
+        rate: f64,
+        /// Seconds that a picture may take.
+        budget: f64,
+    },
 }
 
 impl Pace {
     /// One that has measured nothing yet.
     pub(super) fn measured() -> Self {
-        Self::Measured(GUESS)
+        Self::Measured { rate: GUESS, budget: BUDGET }
     }
 
     /// Takes note of how long pixels took.
     pub(super) fn learn(&mut self, pixels: u64, time: Duration) {
-        if let Self::Measured(rate) = self {
+        if let Self::Measured { rate, .. } = self {
             let now = pixels as f64 / time.as_secs_f64().max(1e-6);
             // Too slow a picture is worse than too small a one.
             let weight = if now < *rate { 2.0 * WEIGHT } else { WEIGHT };
@@ -43,11 +57,20 @@ impl Pace {
         }
     }
 
+    /// Takes note of how long it took from one picture of a moving camera to the next, with all that
+    /// comes between.
+    pub(super) fn judge(&mut self, time: Duration) {
+        if let Self::Measured { budget, .. } = self {
+            let factor = if time.as_secs_f64() > LATE { FALL } else { RISE };
+            *budget = (*budget * factor).clamp(SMALLEST, LARGEST);
+        }
+    }
+
     /// The size of a picture of a moving camera.
     pub(super) fn moving(self, whole: (u32, u32)) -> (u32, u32) {
         match self {
             Self::Whole => whole,
-            Self::Measured(rate) => shrunk(whole, rate * MOVING),
+            Self::Measured { rate, budget } => shrunk(whole, rate * budget),
         }
     }
 }
@@ -85,12 +108,34 @@ mod tests {
             pace.learn(1_000_000, Duration::from_secs(1));
         }
         let count = pixels(pace.moving(WHOLE));
-        assert!((count / (1e6 * MOVING) - 1.0).abs() < 0.02, "{count}");
+        assert!((count / (1e6 * BUDGET) - 1.0).abs() < 0.02, "{count}");
         for _ in 0..20 {
             pace.learn(1_000_000_000, Duration::from_secs(1));
         }
         assert_eq!(pace.moving(WHOLE), WHOLE);
         assert_eq!(Pace::Whole.moving(WHOLE), WHOLE);
+    }
+
+    #[test]
+    fn budgets_leave_room_for_what_else_happens() {
+        let mut pace = Pace::measured();
+        let budget = |pace: Pace| match pace {
+            Pace::Measured { budget, .. } => budget,
+            Pace::Whole => 0.0,
+        };
+        (0..1000).for_each(|_| pace.judge(Duration::from_millis(20)));
+        assert_eq!(budget(pace), LARGEST);
+        // Pictures take their budget, and one in twenty 15 ms more.
+        let mut late = 0;
+        for picture in 0..4000 {
+            let more = if picture % 20 == 0 { 0.015 } else { 0.001 };
+            let time = budget(pace) + more;
+            late += u32::from(picture >= 1000 && time > LATE);
+            pace.judge(Duration::from_secs_f64(time));
+        }
+        assert!((15..60).contains(&late), "{late}");
+        (0..100).for_each(|_| pace.judge(Duration::from_secs(1)));
+        assert_eq!(budget(pace), SMALLEST);
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Pictures, as a viewer orders and gets them.
 
+use super::develop::{Developed, Print};
 use super::over::Drawn;
 use spherule::image::Image;
 use spherule::overlay::Matte;
 use spherule::scene::{Camera, Look, Settings};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// A picture to be rendered.
@@ -15,6 +17,8 @@ pub(super) struct Order {
     /// With the size and the samples of this picture.
     pub(super) settings: Settings,
     pub(super) look: Look,
+    /// How the window is going to show it.
+    pub(super) print: Print,
     /// Whether it is the first of its version, which is not to be broken off.
     pub(super) first: bool,
 }
@@ -28,6 +32,8 @@ pub(super) struct Picture {
     pub(super) image: Image,
     /// The same with what is drawn over it, if anything is.
     pub(super) drawn: Option<Drawn>,
+    /// The same as the window shows it.
+    pub(super) developed: Option<Arc<Developed>>,
     /// Rays of the last samples, and how long they took.
     pub(super) rays: u64,
     pub(super) elapsed: Duration,

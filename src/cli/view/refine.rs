@@ -1,5 +1,6 @@
 //! Which picture comes next, and how good the last one is.
 
+use super::develop::Print;
 use super::pace::refined;
 use super::picture::{Order, Picture};
 use super::viewer::Viewer;
@@ -26,6 +27,7 @@ impl Viewer {
             camera: self.rig.camera.clone(),
             settings: Settings { width, height, spp, ..self.settings.clone() },
             look: self.look(),
+            print: Print::of(&self.settings),
             first: shown.is_none(),
         })
     }
@@ -44,7 +46,9 @@ impl Viewer {
             return false;
         }
         let (width, height) = picture.size();
-        if picture.samples == 1 {
+        // Larger ones of a camera at rest waste less on what every picture takes.
+        let first = self.shown.as_ref().is_none_or(|shown| shown.version < picture.version);
+        if first && picture.samples == 1 {
             self.pace.learn(u64::from(width) * u64::from(height), picture.elapsed);
         }
         self.measure(&picture);

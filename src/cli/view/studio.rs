@@ -1,5 +1,6 @@
 //! Who makes the pictures that the viewer orders, and knows what is at a pixel.
 
+use super::develop::{Developed, Developer};
 use super::load::Stage;
 use super::over::Over;
 use super::picture::{Order, Picture};
@@ -13,9 +14,9 @@ use spherule::layers::{Layer, layers};
 use spherule::render::{End, Options, Unfinished};
 use spherule::scene::{Camera, Scene, Settings};
 use spherule::trace::Tracer;
-use std::sync::PoisonError;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
 
 /// The world, and the picture that is being made of it.
 pub(super) struct Studio {
@@ -27,6 +28,7 @@ pub(super) struct Studio {
     /// Of the camera, by these settings.
     film: Option<(Camera, Unfinished)>,
     over: Over,
+    developer: Developer,
 }
 
 /// What is at a pixel.
@@ -41,7 +43,8 @@ pub(super) struct Picked {
 
 impl Studio {
     pub(super) fn new(stage: Stage, tracer: Tracer, builder: Builder) -> Self {
-        Self { stage, tracer, builder, aimed: Scene::default(), film: None, over: Over::default() }
+        let (over, developer) = (Over::default(), Developer::default());
+        Self { stage, tracer, builder, aimed: Scene::default(), film: None, over, developer }
     }
 
     /// Goes on with another scene.
@@ -84,7 +87,21 @@ impl Studio {
             }
         }
         let (version, samples) = (order.version, order.settings.spp);
-        Ok(Some(Picture { version, samples, image, drawn, rays, elapsed: start.elapsed() }))
+        let mut picture = Picture {
+            version,
+            samples,
+            image,
+            drawn,
+            rays,
+            developed: None,
+            elapsed: Duration::ZERO,
+        };
+        let (width, height) = order.print.size;
+        let mut pixels = vec![0; width as usize * height as usize];
+        self.developer.develop(picture.seen(), order.print, &mut pixels);
+        picture.developed = Some(Arc::new(Developed { print: order.print, pixels }));
+        picture.elapsed = start.elapsed();
+        Ok(Some(picture))
     }
 
     /// Lets the camera into the world; where it is too far away for that, builds the world for it.

@@ -4,8 +4,8 @@ use crate::cli::output;
 use serde::Serialize;
 use std::time::Duration;
 
-/// Times from one picture to the next while the camera moves, and from the last motion to the first
-/// picture that is finer than those.
+/// Times from one picture to the next while the camera moves, or from the motion if the picture before
+/// was of all that had moved; and from the last motion to the first picture that is finer than those.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Times {
     pub(super) moving: Vec<Duration>,

@@ -16,6 +16,7 @@ use super::times::Times;
 use super::viewer::Viewer;
 use super::worker::{News, Workers};
 use crate::cli::failure::Failure;
+use crate::cli::output;
 use crate::cli::render::Job;
 use softbuffer::{Context, Surface};
 use spherule::scene::{Scene, Settings};
@@ -33,6 +34,9 @@ use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::{Window, WindowId};
 
 type Screen = Surface<Rc<Window>, Rc<Window>>;
+
+/// Displays pass over it, but pictures of the screen may take it for alpha.
+const OPAQUE: u32 = 0xFF00_0000;
 
 struct App {
     viewer: Viewer,
@@ -60,8 +64,10 @@ struct App {
 struct Clock {
     /// The last motion, until a finer picture follows it.
     moved: Option<Instant>,
-    /// The last picture of the drag that goes on.
-    shown: Option<Instant>,
+    /// Since when the window shows something else than what is to be seen.
+    stale: Option<Instant>,
+    /// Version, size and samples of the picture that it shows.
+    shown: (u64, (u32, u32), u32),
 }
 
 /// Opens a window and shows what the job speaks of until it is closed.
@@ -96,8 +102,15 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     };
     app.viewer.say("loading");
     app.workers.load(&app.viewer.content);
-    let ended = events.run_app(&mut app).map_err(|error| no_display(&error));
+    let ended = events.run_app(&mut app);
+    let opened = app.screen.is_some();
+    let ended = ended.map_err(|error| if opened { lost() } else { no_display(&error) });
     app.workers.cancel();
+    // Nobody looks at a window that is closed while files are still written.
+    app.screen = None;
+    if app.savers.iter().any(|saver| !saver.is_finished()) {
+        output::note("a picture and its scene are still being saved; Ctrl-C leaves them out");
+    }
     for saver in app.savers.drain(..) {
         // One that panicked has said so.
         let _ = saver.join();
@@ -134,12 +147,23 @@ fn no_display(why: &dyn std::fmt::Display) -> Failure {
     ))
 }
 
+/// What is wrong when a window that was there is there no more, though nobody closed it.
+fn lost() -> Failure {
+    Failure::Window("the display has gone, and the window with it".to_owned())
+}
+
+fn no_picture(why: &dyn std::fmt::Display) -> Failure {
+    Failure::Window(format!("nothing can be drawn into the window: {why}"))
+}
+
 impl App {
     fn handle(&mut self, events: &ActiveEventLoop, event: Event) {
         let before = self.viewer.version;
         let action = self.viewer.handle(event);
         if self.viewer.version != before {
-            self.clock.moved = Some(Instant::now());
+            let now = Instant::now();
+            self.clock.moved = Some(now);
+            self.clock.stale.get_or_insert(now);
         }
         match action {
             None => (),
@@ -208,9 +232,12 @@ impl App {
         if let (Some(wide), Some(high)) = (NonZeroU32::new(width), NonZeroU32::new(height)) {
             screen.resize(wide, high)?;
             let mut buffer = screen.buffer_mut()?;
-            buffer.copy_from_slice(&self.canvas.pixels);
+            for (pixel, color) in buffer.iter_mut().zip(&self.canvas.pixels) {
+                *pixel = OPAQUE | color;
+            }
             window.pre_present_notify();
             buffer.present()?;
+            self.take_times();
         }
         Ok(())
     }
@@ -248,7 +275,7 @@ impl ApplicationHandler<News> for App {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         if matches!(event, WindowEvent::RedrawRequested) {
             if let Err(error) = self.redraw() {
-                self.failure = Some(no_display(&error));
+                self.failure = Some(no_picture(&error));
                 events.exit();
             }
         } else if let Some(event) = self.input.event(&event) {

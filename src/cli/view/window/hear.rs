@@ -4,7 +4,6 @@ use super::App;
 use crate::cli::output;
 use crate::cli::view::command::Event;
 use crate::cli::view::load::Stage;
-use crate::cli::view::picture::Picture;
 use crate::cli::view::session;
 use crate::cli::view::worker::News;
 use std::sync::Arc;
@@ -25,7 +24,6 @@ impl App {
             }
             News::Picture(Ok(None)) => (),
             News::Picture(Ok(Some(picture))) => {
-                self.take_times(&picture);
                 self.viewer.accept(picture);
             }
             News::Picked(Ok(picked), purpose) => {
@@ -84,21 +82,24 @@ impl App {
         }
     }
 
-    fn take_times(&mut self, picture: &Picture) {
-        let now = Instant::now();
-        let dragging = self.viewer.is_dragging();
-        let first = self.viewer.shown.as_ref().is_none_or(|shown| shown.version < picture.version);
-        let newest = picture.version == self.viewer.version;
-        if newest
-            && !first
-            && let Some(moved) = self.clock.moved.take()
-        {
-            self.times.rest.push(now - moved);
+    /// Takes the time of a picture that has come into the window.
+    pub(super) fn take_times(&mut self) {
+        let Some(picture) = &self.viewer.shown else { return };
+        let (now, clock) = (Instant::now(), &mut self.clock);
+        let shown =
+            std::mem::replace(&mut clock.shown, (picture.version, picture.size(), picture.samples));
+        if shown == clock.shown {
+            return;
         }
-        let before = self.clock.shown.take();
-        if first && dragging {
-            self.times.moving.extend(before.map(|before| now - before));
-            self.clock.shown = Some(now);
+        let (first, newest) = (shown.0 < picture.version, picture.version == self.viewer.version);
+        if newest && !first {
+            self.times.rest.extend(clock.moved.take().map(|moved| now - moved));
+        }
+        let stale = std::mem::replace(&mut clock.stale, (!newest).then_some(now));
+        if let Some(time) = stale.filter(|_| first && self.viewer.is_dragging()) {
+            let time = now - time;
+            self.times.moving.push(time);
+            self.viewer.pace.judge(time);
         }
     }
 }
