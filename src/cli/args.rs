@@ -1,26 +1,21 @@
 //! The command line as typed.
 
+mod field;
+mod picture;
+
+pub(super) use field::{FieldArgs, Kind, ParameterArgs};
+pub(super) use picture::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
+
 use super::keep::KeepArgs;
 use super::looks::LookArgs;
 use super::memory::MemoryArgs;
-use super::names::{
-    BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
-    Traversal,
-};
 use super::part::PartArgs;
 use super::particles::ParticleArgs;
 use super::slices::SliceArgs;
-use super::values::{self, DepthLimit, Radii, SAMPLES, Size, THREADS, Target};
 use super::views::{StyleArgs, ViewArgs};
 use super::{bench, compare, examples, merge, stress, view};
-use clap::{Parser, Subcommand, ValueEnum, value_parser};
-use spherule::film::Region;
-use spherule::image::{Depth, PpmEncoding};
-use spherule::layers::Layer;
-use spherule::scene::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Tone};
-use spherule::trace::Width;
+use clap::{Parser, Subcommand};
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// Renders scenes made of spheres: exact visibility, and the same picture at every speed setting
 #[derive(Debug, Parser)]
@@ -93,183 +88,6 @@ pub(super) struct RenderArgs {
     pub(super) part: PartArgs,
     #[command(flatten)]
     pub(super) report: ReportArgs,
-}
-
-/// What replaces the scene's own settings.
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Picture, instead of what the scene says")]
-pub(super) struct PictureArgs {
-    /// Width and height in pixels, each 1 to 65535
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = values::size)]
-    pub(super) size: Option<Size>,
-    /// Samples per pixel; with --until-error or --time, the most of them
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(SAMPLES))]
-    pub(super) spp: Option<u32>,
-    /// Stop when the picture is 95 % sure to be right: when the root of its mean squared error, by
-    /// its mean radiance, is below this; none for as many samples as --spp says
-    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, value_parser = values::error)]
-    pub(super) until_error: Option<Target<f64>>,
-    /// Stop when this time is over, as in 60s or 5m, with the best picture that it allows
-    #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = values::time)]
-    pub(super) time: Option<Target<Duration>>,
-    /// Most scatterings on a path: a number, or unlimited
-    #[arg(long, value_name = "N", value_parser = values::depth)]
-    pub(super) depth: Option<DepthLimit>,
-    /// Seed of all random numbers
-    #[arg(long, value_name = "N")]
-    pub(super) seed: Option<u64>,
-    /// How light is gathered
-    #[arg(long, value_parser = INTEGRATORS.parser())]
-    pub(super) integrator: Option<Integrator>,
-    /// Samples toward each light at each hit, for the integrator whitted
-    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(SAMPLES))]
-    pub(super) shadow_samples: Option<u32>,
-    /// What is farther does not occlude, for the integrator ao; in the scene's unit, or inf
-    #[arg(long, value_name = "DISTANCE", value_parser = values::distance)]
-    pub(super) ao_distance: Option<f64>,
-    /// Where samples lie
-    #[arg(long, value_parser = SAMPLERS.parser())]
-    pub(super) sampler: Option<SamplerKind>,
-    /// How samples become pixels
-    #[arg(long, value_parser = FILTERS.parser())]
-    pub(super) filter: Option<Filter>,
-    /// How paths end by chance: none, throughput, or the probability P to survive each bounce
-    #[arg(long, value_name = "none|throughput|P", value_parser = values::roulette)]
-    pub(super) roulette: Option<Roulette>,
-    /// How a path chooses the light that it looks for, for the integrator path
-    #[arg(long, value_parser = LIGHT_CHOICES.parser())]
-    pub(super) light_choice: Option<LightChoice>,
-    /// Render this part alone: column and row of its top left corner, its width and height
-    #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true, value_parser = values::region)]
-    pub(super) region: Option<Region>,
-}
-
-/// How the picture becomes a file.
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "File")]
-pub(super) struct EncodingArgs {
-    /// Stops: PNG and PPM show the radiance multiplied by 2 to this power
-    #[arg(long, value_name = "STOPS", value_parser = values::exposure)]
-    pub(super) exposure: Option<f64>,
-    /// From radiance to what PNG and PPM can show
-    #[arg(long, value_parser = TONES.parser())]
-    pub(super) tone: Option<Tone>,
-    /// Bits of each channel of PNG and PPM [default: 8]
-    #[arg(long, value_parser = BITS.parser())]
-    pub(super) bits: Option<Depth>,
-    /// Dialect of PPM [default: binary]
-    #[arg(long, value_parser = PPM.parser())]
-    pub(super) ppm: Option<PpmEncoding>,
-    /// More channels in an EXR file, for denoisers and compositors; several with commas
-    #[arg(long, value_name = "LAYERS", value_delimiter = ',', value_parser = LAYERS.parser())]
-    pub(super) layers: Vec<Option<Layer>>,
-}
-
-/// What never changes the picture.
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Speed; the picture is the same to the last bit")]
-pub(super) struct SpeedArgs {
-    /// Threads [default: what the affinity mask and the control group's quota allow]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(THREADS))]
-    pub(super) threads: Option<u16>,
-    /// How rays find spheres
-    #[arg(long, value_enum, default_value_t = Traversal::Auto)]
-    pub(super) traversal: Traversal,
-    /// How the tree is built
-    #[arg(long, value_enum, default_value_t = Builder::Auto)]
-    pub(super) builder: Builder,
-    /// Rays in a packet; [default: 16]
-    #[arg(long, value_parser = LANES.parser())]
-    pub(super) lanes: Option<Width>,
-}
-
-/// What is told.
-#[derive(Clone, Copy, Debug, clap::Args)]
-#[command(next_help_heading = "Reports")]
-#[expect(clippy::struct_excessive_bools, reason = "one for each option")]
-pub(super) struct ReportArgs {
-    /// Nothing but warnings and errors
-    #[arg(short, long, conflicts_with = "verbose")]
-    pub(super) quiet: bool,
-    /// Also what the scene contains and what is skipped because it contains no such thing
-    #[arg(short, long)]
-    pub(super) verbose: bool,
-    /// Also which stage of the render took which share of the time
-    #[arg(long, conflicts_with = "quiet")]
-    pub(super) stats: bool,
-    /// Statistics and settings as one JSON object on standard output
-    #[arg(long)]
-    pub(super) json: bool,
-    /// Draw the picture in the terminal too, while it refines
-    #[arg(long, conflicts_with = "json")]
-    pub(super) terminal: bool,
-}
-
-#[derive(Debug, clap::Args)]
-pub(super) struct FieldArgs {
-    /// What to generate
-    #[arg(value_enum, default_value_t = Kind::Field)]
-    pub(super) kind: Kind,
-    /// The scene: a name that ends in .toml; the spheres go to a .csv file of the same name
-    #[arg(short, long, value_name = "FILE.toml")]
-    pub(super) output: PathBuf,
-    /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(super) seed: u64,
-    /// Nothing but errors
-    #[arg(short, long)]
-    pub(super) quiet: bool,
-    #[command(flatten)]
-    pub(super) parameters: ParameterArgs,
-}
-
-/// Kinds of generated scenes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Kind {
-    /// N x N equal spheres on a plane
-    Grid,
-    /// N x N random spheres on a plane: what `spherule render` shows when it is given no scene
-    Field,
-    /// N random spheres in a cube
-    Volume,
-    /// A crystal, face-centered cubic, of N x N x N cells of four spheres
-    Lattice,
-    /// Haines' sphereflake
-    Sphereflake,
-    /// The last scene of "Ray Tracing in One Weekend"
-    Weekend,
-}
-
-/// Parameters of the generators; each belongs to some of the kinds.
-#[derive(Debug, Default, clap::Args)]
-#[command(next_help_heading = "Parameters; without them, the kind's own")]
-pub(super) struct ParameterArgs {
-    /// grid, field: spheres along each side [20]; volume: spheres [10000]; lattice: cells along
-    /// each edge [10]
-    #[arg(long, value_name = "N")]
-    pub(super) count: Option<u64>,
-    /// grid [0.4], lattice, sphereflake [0.5]: one radius; field [0.1,0.45], volume: least and
-    /// greatest
-    #[arg(long, value_name = "R|MIN,MAX", allow_hyphen_values = true, value_parser = values::radii)]
-    pub(super) radius: Option<Radii>,
-    /// grid: distance between neighboring centers [1]
-    #[arg(long, value_name = "DISTANCE", value_parser = values::finite)]
-    pub(super) spacing: Option<f64>,
-    /// field: shares of diffuse, metal and glass spheres [0.68,0.2,0.12]
-    #[arg(long, value_name = "D,M,G", allow_hyphen_values = true, value_parser = values::mix)]
-    pub(super) mix: Option<[f64; 3]>,
-    /// field [true], volume [false]: whether each sphere has its own color
-    #[arg(long, value_name = "BOOL")]
-    pub(super) colors: Option<bool>,
-    /// volume: edge of the cube [the cube root of N]
-    #[arg(long, value_name = "LENGTH", value_parser = values::finite)]
-    pub(super) size: Option<f64>,
-    /// lattice: thermal displacement, in distances between neighbors [0]
-    #[arg(long, value_name = "DEVIATION", value_parser = values::finite)]
-    pub(super) jitter: Option<f64>,
-    /// sphereflake: generations of children [4]
-    #[arg(long, value_name = "N")]
-    pub(super) level: Option<u32>,
 }
 
 #[derive(Debug, clap::Args)]

@@ -1,6 +1,7 @@
 //! Rays one by one: those whose numbers, or whose distance, single precision cannot hold.
 
-use super::{Found, SphereTree, Tally};
+use super::run::Found;
+use super::{SphereTree, Tally};
 use crate::bvh::walk::{Method, Query, trace};
 use crate::exact::{self, Distance};
 use crate::intersect;

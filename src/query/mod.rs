@@ -25,24 +25,19 @@
 //! ```
 
 mod alone;
+mod columns;
 mod plain;
+mod run;
+
+pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
-use crate::bvh::walk::{Any, Closest, Method, Query, trace};
-use crate::exact;
-use crate::lanes::F32x16;
-use crate::ray::{self, MISS, Rays};
+use crate::bvh::walk::{Any, Closest};
 use crate::spheres::Spheres;
-use alone::Scaled;
+use columns::{one, same_length};
 use glam::{DVec3, Vec3};
 use std::cell::Cell;
-
-/// The sphere of a ray that hits nothing.
-pub const NOTHING: u32 = MISS;
-
-/// Rays that are traced together.
-const CHUNK: usize = 2048;
 
 /// Spheres, ready for exact queries.
 #[derive(Clone, Debug)]
@@ -52,60 +47,6 @@ pub struct SphereTree {
     /// A power of two, which makes the largest coordinate about 1.
     scale: f64,
     invalid: usize,
-}
-
-/// Rays in columns: coordinate by coordinate, all of one length.
-#[derive(Clone, Copy, Debug)]
-pub struct RayColumns<'a> {
-    /// Where rays start: x, y, z.
-    pub origin: [&'a [f32]; 3],
-    /// Where they go: x, y, z, of any length but 0.
-    pub direction: [&'a [f32]; 3],
-}
-
-/// Where answers about rays go, and where their search ends: columns as long as those of the rays.
-#[derive(Debug)]
-pub struct Hits<'a> {
-    /// On entry, hits not nearer than this do not count; infinity for no bound. On return the
-    /// distance of the hit, in units of the direction's length, or unchanged.
-    pub t: &'a mut [f64],
-    /// On return the sphere's row in the columns that the tree was built from, or [`NOTHING`].
-    pub sphere: &'a mut [u32],
-    /// On return point and normal; unchanged where nothing is hit. `None` if nobody wants to know.
-    pub surface: Option<&'a mut [Surface]>,
-}
-
-/// What a ray hits first.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
-    /// Row of the sphere in the columns that the tree was built from.
-    pub sphere: u32,
-    /// Distance in units of the direction's length, more than 0.
-    pub t: f64,
-    /// The point of the sphere, in the user's coordinates.
-    pub point: [f64; 3],
-    /// The outward unit normal.
-    pub normal: [f64; 3],
-}
-
-/// Where a ray hits. Both are solved in double precision from the sphere itself, so the point is on
-/// it up to the last bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Surface {
-    /// The point, in the user's coordinates.
-    pub point: [f64; 3],
-    /// The outward unit normal.
-    pub normal: [f64; 3],
-}
-
-/// What was noticed on the way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// Rays that are no rays: something is not finite, the direction is zero, or the bound is NaN. They
-    /// hit nothing.
-    pub invalid: u64,
-    /// Decisions that took arithmetic without rounding.
-    pub exact: u64,
 }
 
 /// Why a tree cannot be built, or columns cannot be traced.
@@ -266,104 +207,6 @@ impl SphereTree {
         rays.check(&[t.len(), occluded.len()])?;
         occluded.fill(false);
         Ok(self.run::<Any>(rays, |i| t[i], |i, _| occluded[i] = true))
-    }
-
-    /// Traces rays in chunks that stay in the second-level cache; `bound` is where the search for each
-    /// ends.
-    fn run<Q: Query>(
-        &self,
-        columns: &RayColumns,
-        bound: impl Fn(usize) -> f64,
-        mut found: impl FnMut(usize, &Found),
-    ) -> Tally {
-        let mut tally = Tally::default();
-        let count = columns.origin[0].len();
-        // Powers of two: their reciprocals and products do not round.
-        let inverse_scale = self.scale.recip();
-        let mut rays = Rays::with_capacity(CHUNK.min(count));
-        let mut hits = ray::Hits::with_capacity(CHUNK.min(count));
-        for first in (0..count).step_by(CHUNK) {
-            let rows = first..count.min(first + CHUNK);
-            rays.truncate(0);
-            let plain = self.load(columns, rows.clone(), &mut rays);
-            let stretch = |row: usize| f64::from(plain.stretch[row]);
-            let unit = |row: usize| f64::from(plain.shrink[row]) * inverse_scale;
-            let is_plain =
-                |row: usize| plain.packets[row / plain::PACKET] && !bound(first + row).is_nan();
-            for (row, i) in rows.clone().enumerate() {
-                // Nothing counts below 0: what is not plain is not traced here.
-                let bound = if is_plain(row) { bound(i) * self.scale * stretch(row) } else { -1.0 };
-                hits.set(row, bound, MISS);
-            }
-            tally.exact +=
-                trace::<F32x16, Q>(Method::Auto, &self.bvh, &self.spheres, &rays, &mut hits);
-            for (row, i) in rows.enumerate() {
-                if !is_plain(row) {
-                    let hit = self.trace_alone::<Q>(columns.row(i), bound(i), &mut tally);
-                    if let Some(hit) = hit {
-                        found(i, &hit);
-                    }
-                } else if hits.sphere[row] != MISS {
-                    let sphere = hits.sphere[row] as usize;
-                    let id = if Q::ANY { NOTHING } else { self.spheres.id[sphere] };
-                    found(i, &Found { sphere, id, t: hits.t[row] * unit(row) });
-                }
-            }
-        }
-        tally
-    }
-
-    fn surface(&self, (origin, direction): ([f32; 3], [f32; 3]), found: &Found) -> Surface {
-        /// Beyond this many radii, double precision shows its limits.
-        const FAR: f64 = (1 << 20) as f64;
-        let Some(Scaled { ray, unit }) = self.scaled(origin, direction) else {
-            return Surface::default();
-        };
-        let (center, radius) = self.spheres.exact(found.sphere);
-        let normal = if ray.origin.distance(center) > FAR * radius {
-            exact::normal(&ray, center, radius)
-        } else {
-            ray.at_from(center, found.t / unit).normalize_or(-ray.direction.normalize())
-        };
-        let point = (center + normal * radius) / self.scale;
-        Surface { point: point.to_array(), normal: normal.to_array() }
-    }
-}
-
-/// A hit.
-struct Found {
-    /// The sphere's row in the tree.
-    sphere: usize,
-    /// The sphere's row in the user's columns; [`NOTHING`] if nobody asks which.
-    id: u32,
-    /// In units of the user's direction.
-    t: f64,
-}
-
-impl RayColumns<'_> {
-    /// Whether all columns agree in length.
-    fn check(&self, others: &[usize]) -> Result<(), QueryError> {
-        let [count, ..] = self.origin.map(<[f32]>::len);
-        same_length(count, &self.origin.map(<[f32]>::len))?;
-        same_length(count, &self.direction.map(<[f32]>::len))?;
-        same_length(count, others)
-    }
-
-    fn row(&self, i: usize) -> ([f32; 3], [f32; 3]) {
-        (self.origin.map(|column| column[i]), self.direction.map(|column| column[i]))
-    }
-}
-
-/// A single ray in columns.
-fn one<'a>(origin: &'a [f32; 3], direction: &'a [f32; 3]) -> RayColumns<'a> {
-    let columns = |v: &'a [f32; 3]| v.each_ref().map(std::slice::from_ref);
-    RayColumns { origin: columns(origin), direction: columns(direction) }
-}
-
-fn same_length(expected: usize, lengths: &[usize]) -> Result<(), QueryError> {
-    match lengths.iter().find(|&&found| found != expected) {
-        Some(&found) => Err(QueryError::Lengths { expected, found }),
-        None => Ok(()),
     }
 }
 

@@ -2,7 +2,8 @@
 //! and single precision holds what they are then.
 
 use super::alone::REACH;
-use super::{CHUNK, RayColumns, SphereTree};
+use super::run::CHUNK;
+use super::{RayColumns, SphereTree};
 use crate::lanes::{F32x16, Lanes, Mask};
 use crate::ray::Rays;
 use std::ops::Range;

@@ -1,0 +1,88 @@
+//! Rays and answers in columns.
+
+use super::QueryError;
+use crate::ray::MISS;
+
+/// The sphere of a ray that hits nothing.
+pub const NOTHING: u32 = MISS;
+
+/// Rays in columns: coordinate by coordinate, all of one length.
+#[derive(Clone, Copy, Debug)]
+pub struct RayColumns<'a> {
+    /// Where rays start: x, y, z.
+    pub origin: [&'a [f32]; 3],
+    /// Where they go: x, y, z, of any length but 0.
+    pub direction: [&'a [f32]; 3],
+}
+
+/// Where answers about rays go, and where their search ends: columns as long as those of the rays.
+#[derive(Debug)]
+pub struct Hits<'a> {
+    /// On entry, hits not nearer than this do not count; infinity for no bound. On return the
+    /// distance of the hit, in units of the direction's length, or unchanged.
+    pub t: &'a mut [f64],
+    /// On return the sphere's row in the columns that the tree was built from, or [`NOTHING`].
+    pub sphere: &'a mut [u32],
+    /// On return point and normal; unchanged where nothing is hit. `None` if nobody wants to know.
+    pub surface: Option<&'a mut [Surface]>,
+}
+
+/// What a ray hits first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Row of the sphere in the columns that the tree was built from.
+    pub sphere: u32,
+    /// Distance in units of the direction's length, more than 0.
+    pub t: f64,
+    /// The point of the sphere, in the user's coordinates.
+    pub point: [f64; 3],
+    /// The outward unit normal.
+    pub normal: [f64; 3],
+}
+
+/// Where a ray hits. Both are solved in double precision from the sphere itself, so the point is on
+/// it up to the last bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// The point, in the user's coordinates.
+    pub point: [f64; 3],
+    /// The outward unit normal.
+    pub normal: [f64; 3],
+}
+
+/// What was noticed on the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Rays that are no rays: something is not finite, the direction is zero, or the bound is NaN. They
+    /// hit nothing.
+    pub invalid: u64,
+    /// Decisions that took arithmetic without rounding.
+    pub exact: u64,
+}
+
+impl RayColumns<'_> {
+    /// Whether all columns agree in length.
+    pub(super) fn check(&self, others: &[usize]) -> Result<(), QueryError> {
+        let [count, ..] = self.origin.map(<[f32]>::len);
+        same_length(count, &self.origin.map(<[f32]>::len))?;
+        same_length(count, &self.direction.map(<[f32]>::len))?;
+        same_length(count, others)
+    }
+
+    pub(super) fn row(&self, i: usize) -> ([f32; 3], [f32; 3]) {
+        (self.origin.map(|column| column[i]), self.direction.map(|column| column[i]))
+    }
+}
+
+/// A single ray in columns.
+pub(super) fn one<'a>(origin: &'a [f32; 3], direction: &'a [f32; 3]) -> RayColumns<'a> {
+    let columns = |v: &'a [f32; 3]| v.each_ref().map(std::slice::from_ref);
+    RayColumns { origin: columns(origin), direction: columns(direction) }
+}
+
+pub(super) fn same_length(expected: usize, lengths: &[usize]) -> Result<(), QueryError> {
+    match lengths.iter().find(|&&found| found != expected) {
+        Some(&found) => Err(QueryError::Lengths { expected, found }),
+        None => Ok(()),
+    }
+}
