@@ -78,6 +78,12 @@ impl Tasks {
         }
     }
 
+    /// All times that are kept.
+    pub(super) fn times(&self) -> impl Iterator<Item = Duration> {
+        let waves = self.waves.into_iter().flat_map(|wave| [wave.longest, wave.total]);
+        waves.chain([self.longest, self.total, self.whole])
+    }
+
     /// The least efficiency on so many threads, 0..=1: speed-up over threads. Passes are divided as
     /// they are for so many, and each part is taken to be as long as the others.
     pub fn efficiency(&self, threads: u32) -> f64 {
