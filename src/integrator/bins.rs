@@ -18,26 +18,8 @@ const ESCAPED: usize = Kind::COUNT;
 /// Rows that are sorted together.
 const CHUNK: usize = 128;
 
-/// A chunk of rows by bin, and eight bits for how many each bin has.
-struct Sorted {
-    rows: [[u32; CHUNK]; ESCAPED + 1],
-    counts: u64,
-}
-
-impl Sorted {
-    /// Appends a row, without a branch: which bin comes next cannot be foretold.
-    #[inline(always)]
-    fn push(&mut self, row: u32, bin: usize) {
-        let count = (self.counts >> (8 * bin)) as usize;
-        self.rows[bin][count % CHUNK] = row;
-        self.counts += 1 << (8 * bin);
-    }
-
-    /// The rows of a bin.
-    fn bin(&self, bin: usize) -> &[u32] {
-        &self.rows[bin][..(self.counts >> (8 * bin)) as usize & 0xff]
-    }
-}
+/// A chunk of rows by bin.
+type Sorted = [[u32; CHUNK]; ESCAPED + 1];
 
 impl Bins {
     /// How many rows hit something.
@@ -51,15 +33,16 @@ impl Bins {
         self.kind.iter_mut().for_each(Vec::clear);
         let hits = &hits.sphere[..count];
         let ground = world.ground.map_or(ESCAPED, |ground| ground.material.kind() as usize);
-        match &world.appearance.material {
-            Column::Uniform(id) => {
-                let kind = id.kind() as usize;
-                self.sort_by(hits, ground, |_| kind);
-            }
-            Column::Rows(ids) if ids.is_empty() => self.sort_by(hits, ground, |_| ESCAPED),
-            Column::Rows(ids) => {
+        let kinds = &world.features.spheres_by_kind;
+        let mut present = (0..Kind::COUNT).filter(|&kind| kinds[kind] > 0);
+        match (&world.appearance.material, present.next(), present.next()) {
+            (Column::Rows(ids), _, Some(_)) => {
                 let kind = |hit: u32| ids[(hit as usize).min(ids.len() - 1)].kind() as usize;
                 self.sort_by(hits, ground, kind);
+            }
+            (_, only, _) => {
+                let only = only.unwrap_or(ESCAPED);
+                self.sort_by(hits, ground, |_| only);
             }
         }
     }
@@ -67,15 +50,21 @@ impl Bins {
     /// The same; `kind` tells the kinds of spheres, and anything of rows that are none.
     #[inline(always)]
     fn sort_by(&mut self, hits: &[u32], ground: usize, kind: impl Fn(u32) -> usize) {
-        let mut sorted = Sorted { rows: [[0; CHUNK]; ESCAPED + 1], counts: 0 };
+        let mut sorted: Sorted = [[0; CHUNK]; ESCAPED + 1];
         for (hits, first) in hits.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
-            sorted.counts = 0;
+            // Eight bits for how many rows each bin has.
+            let mut counts = 0_u64;
             for (&hit, row) in hits.iter().zip(first..) {
                 let bin = if hit == GROUND { ground } else { kind(hit) };
-                sorted.push(row, if hit == MISS { ESCAPED } else { bin });
+                let bin = if hit == MISS { ESCAPED } else { bin };
+                // Without a branch: which bin comes next cannot be foretold.
+                sorted[bin][(counts >> (8 * bin)) as usize % CHUNK] = row;
+                counts += 1 << (8 * bin);
             }
             let bins = self.kind.iter_mut().chain([&mut self.escaped]);
-            bins.enumerate().for_each(|(bin, rows)| rows.extend_from_slice(sorted.bin(bin)));
+            for (rows, (bin, sorted)) in bins.zip(sorted.iter().enumerate()) {
+                rows.extend_from_slice(&sorted[..(counts >> (8 * bin)) as usize & 0xff]);
+            }
         }
     }
 }

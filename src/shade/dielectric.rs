@@ -141,6 +141,8 @@ pub fn insert(world: &World, inside: Inside<'_>, row: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::{F64x8, Mask};
+    use crate::shade::tests::numbers;
     use glam::DVec3;
 
     fn meet(direction: DVec3, normal: DVec3, eta: f64, choice: f64) -> (DVec3, bool) {
@@ -163,5 +165,48 @@ mod tests {
         }
         let grazing = DVec3::new(0.9, 0.0, -(1.0_f64 - 0.81).sqrt());
         assert!(!meet(grazing, normal, 1.5, 0.999_999).1, "total reflection");
+    }
+
+    #[test]
+    fn rays_in_a_row_pass_as_each_does() {
+        let draws: Vec<[f64; 3]> =
+            numbers(5, 24).map(|u| u.map(|x| 2.0 * f64::from(x) - 1.0)).collect();
+        let meeting = |lane: usize| {
+            let [a, b, c] = [draws[lane], draws[lane + 8], draws[lane + 16]];
+            let around = [1.0, 0.0, 1.33, 2.4][lane % 4];
+            let normal = DVec3::from(b).normalize();
+            Meeting {
+                direction: DVec3::from(a).into(),
+                normal: normal.into(),
+                here: 1.5,
+                around,
+                choice: c[0].abs(),
+            }
+        };
+        let one: [Meeting<f64>; 8] = std::array::from_fn(meeting);
+        let row = |of: fn(&Meeting<f64>) -> f64| F64x8::new(one.each_ref().map(of));
+        let together = pass(&Meeting {
+            direction: Vec3::new(
+                row(|m| m.direction.x),
+                row(|m| m.direction.y),
+                row(|m| m.direction.z),
+            ),
+            normal: Vec3::new(row(|m| m.normal.x), row(|m| m.normal.y), row(|m| m.normal.z)),
+            here: row(|m| m.here),
+            around: row(|m| m.around),
+            choice: row(|m| m.choice),
+        });
+        let direction = together.direction.map(F64x8::to_array);
+        for (lane, meeting) in one.iter().enumerate() {
+            let alone = pass(meeting);
+            let sent = Vec3::new(direction.x[lane], direction.y[lane], direction.z[lane]);
+            assert_eq!(sent, alone.direction, "{lane}");
+            assert_eq!(together.inward.bits() >> lane & 1 == 1, alone.inward, "{lane}");
+            if meeting.around == 0.0 {
+                let scale = meeting.direction.inverse_length();
+                assert_eq!(alone.direction, meeting.direction * scale, "what is not there");
+                assert_eq!(alone.inward, meeting.direction.dot_unfused(meeting.normal) < 0.0);
+            }
+        }
     }
 }

@@ -164,3 +164,36 @@ fn glass_at_camera(world: &World) -> Vec<u32> {
     rows.retain(is_glass);
     rows
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, NamedMaterial, Rgb, Scene};
+
+    /// Whether glass may be nested, of glass spheres along an axis; and of one that is not of glass,
+    /// in the first.
+    fn nested(spheres: &[(f64, f64)]) -> bool {
+        let mut scene = Scene::default();
+        let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
+        let solid = Material::Lambertian { color: Rgb::ONE };
+        scene.materials = [("glass", glass), ("solid", solid)]
+            .map(|(name, material)| NamedMaterial { name: name.into(), material })
+            .into();
+        for (place, &(x, radius)) in spheres.iter().chain(&[(0.0, 0.1)]).enumerate() {
+            let material = u32::from(place == spheres.len());
+            scene.spheres.push(DVec3::X * x, radius, material, Rgb::ONE);
+        }
+        World::build(&scene).unwrap().features.nested_glass
+    }
+
+    #[test]
+    fn glass_is_nested_where_it_touches_glass() {
+        assert!(!nested(&[(0.0, 1.0)]));
+        assert!(!nested(&[(0.0, 1.0), (2.1, 1.0), (-3.0, 1.5)]));
+        assert!(nested(&[(0.0, 1.0), (2.0, 1.0)]), "touching");
+        assert!(nested(&[(0.0, 1.0), (5.0, 0.1), (0.3, 0.2)]), "inside");
+        assert!(nested(&[(0.0, 1.0), (-1.5, 1.0)]), "overlapping");
+        // What rounding moves a point by is more than lies between.
+        assert!(nested(&[(0.0, 1.0), (1e6, 1e-3), (1e6 + 3e-3, 1e-3)]));
+    }
+}
