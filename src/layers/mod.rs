@@ -205,7 +205,7 @@ pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[L
 }
 
 /// The same of some tiles of the region, by their numbers: the features of their pixels, tile by tile
-/// and in each in the order of [`Tile::pixels`].
+/// and in each in the order of [`Tile::pixels`](crate::film::Tile::pixels).
 pub fn features(
     world: &World,
     settings: &Settings,

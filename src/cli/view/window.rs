@@ -3,6 +3,7 @@
 //! `winit` opens windows on X11 and Wayland, `softbuffer` puts pixels into them: neither needs a
 //! graphics processor, and both look for the display's libraries when they run.
 
+mod files;
 mod hear;
 mod input;
 
@@ -10,13 +11,11 @@ use self::input::Input;
 use super::canvas::Canvas;
 use super::command::{Action, Event};
 use super::pace::Pace;
-use super::save::{Seen, free_name, save_picture, save_scene};
 use super::session;
 use super::times::Times;
 use super::viewer::Viewer;
 use super::worker::{News, Workers};
 use crate::cli::failure::Failure;
-use crate::cli::output;
 use crate::cli::render::Job;
 use softbuffer::{Context, Surface};
 use spherule::scene::{Scene, Settings};
@@ -47,6 +46,10 @@ struct App {
     /// What is saved; `None` until something was loaded.
     scene: Option<Arc<RwLock<Scene>>>,
     savers: Vec<JoinHandle<()>>,
+    /// Files that are being written.
+    files: u32,
+    /// Whether the window is gone, and only files are waited for.
+    closed: bool,
     tell: Arc<dyn Fn(News) + Send + Sync>,
     output: PathBuf,
     samples: u32,
@@ -91,6 +94,8 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
         screen: None,
         scene: None,
         savers: Vec::new(),
+        files: 0,
+        closed: false,
         tell: Arc::new(move |news| drop(proxy.send_event(news))),
         output,
         samples,
@@ -103,14 +108,9 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     app.viewer.say("loading");
     app.workers.load(&app.viewer.content);
     let ended = events.run_app(&mut app);
-    let opened = app.screen.is_some();
+    let opened = app.closed || app.screen.is_some();
     let ended = ended.map_err(|error| if opened { lost() } else { no_display(&error) });
     app.workers.cancel();
-    // Nobody looks at a window that is closed while files are still written.
-    app.screen = None;
-    if app.savers.iter().any(|saver| !saver.is_finished()) {
-        output::note("a picture and its scene are still being saved; Ctrl-C leaves them out");
-    }
     for saver in app.savers.drain(..) {
         // One that panicked has said so.
         let _ = saver.join();
@@ -167,7 +167,7 @@ impl App {
         }
         match action {
             None => (),
-            Some(Action::Quit) => events.exit(),
+            Some(Action::Quit) => return self.quit(events),
             Some(Action::Load) => self.workers.load(&self.viewer.content),
             Some(Action::Save) => {
                 self.saving = true;
@@ -188,6 +188,9 @@ impl App {
 
     /// Orders the next picture and shows what is new.
     fn go_on(&mut self) {
+        if self.closed {
+            return;
+        }
         if self.scene.is_some() {
             self.workers.order(self.viewer.order());
         }
@@ -198,28 +201,6 @@ impl App {
         if let Some((window, _)) = &self.screen {
             window.request_redraw();
         }
-    }
-
-    /// Saves picture and scene in a thread of its own: large scenes take seconds.
-    fn save(&mut self) {
-        let (Some(scene), Some(picture), Some(settings)) =
-            (&self.scene, self.viewer.whole(), self.viewer.settings_of_picture())
-        else {
-            return;
-        };
-        let (scene, picture, path) = (Arc::clone(scene), picture.clone(), free_name(&self.output));
-        let (title, camera) = (self.viewer.facts.title.clone(), self.viewer.rig.camera.clone());
-        let (tell, look) = (Arc::clone(&self.tell), self.viewer.look());
-        self.viewer.say(format!("saving {}", path.display()));
-        let saver = std::thread::spawn(move || {
-            let (image, matte) = picture.seen();
-            let (title, camera, settings) = (&*title, &camera, &settings);
-            let seen = Seen { title, camera, settings, look, image, matte };
-            let saved = save_picture(&seen, &path)
-                .and_then(|()| save_scene(&seen, &scene, &path.with_extension("toml")));
-            tell(News::Saved(saved.map(|()| path)));
-        });
-        self.savers.push(saver);
     }
 }
 

@@ -16,6 +16,9 @@ const LARGEST: (u32, u32) = (1600, 1000);
 
 impl App {
     pub(super) fn hear(&mut self, events: &ActiveEventLoop, news: News) {
+        if matches!(news, News::Saved(_)) {
+            self.saved(events);
+        }
         match news {
             News::Staged(Ok(stage)) => self.set(stage),
             News::Staged(Err(failure)) if self.scene.is_none() => {
