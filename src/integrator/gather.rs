@@ -1,5 +1,6 @@
 //! Rows of paths: what each of sixteen brings to the surface that it has hit.
 
+use super::pick::{padded, pick, pick_colors, pick_row};
 use super::stages::Local;
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes};
@@ -51,24 +52,16 @@ impl Starts {
     /// Of the paths in at most sixteen rows.
     #[inline(always)]
     fn of(work: &Workspace, some: &[u32]) -> Self {
-        let mut rows = [some[0]; ROW];
-        rows[..some.len()].copy_from_slice(some);
-        let (mut point, mut normal, mut own) = ([[0.0; ROW]; 3], [[0.0; ROW]; 3], [0; ROW]);
-        let mut inside = 0;
-        for (lane, &row) in rows.iter().enumerate() {
-            let row = row as usize;
-            let outward = work.surface.normal.row(row);
-            let leaves = outward.dot(work.rays.direction.row(row).as_dvec3()) > 0.0;
-            let facing = if leaves { -outward } else { outward }.as_vec3();
-            inside |= u32::from(leaves) << lane;
-            own[lane] = work.hits.sphere[row];
-            put(&mut point, lane, work.surface.point.row(row));
-            put(&mut normal, lane, facing);
-        }
+        let rows = padded(some);
+        let (point, normal) = (&work.surface.point, &work.surface.facing);
         Self {
             rows,
-            at: ReceiverRow { point: columns(point), normal: columns(normal), own },
-            inside,
+            at: ReceiverRow {
+                point: pick_row(point, &rows),
+                normal: pick_row(normal, &rows),
+                own: pick(&work.hits.sphere, &rows),
+            },
+            inside: work.surface.inside(&rows),
         }
     }
 }
@@ -78,14 +71,9 @@ impl Gathered {
     #[inline(always)]
     pub fn new(work: &Workspace, some: &[u32]) -> Self {
         let starts = Starts::of(work, some);
-        let (mut direction, mut throughput) = ([[0.0; ROW]; 3], [[0.0; ROW]; 3]);
-        for (lane, &row) in starts.rows.iter().enumerate() {
-            let row = row as usize;
-            put(&mut direction, lane, work.rays.direction.row(row));
-            put(&mut throughput, lane, work.paths.throughput[work.place[row] as usize]);
-        }
+        let place = pick(&work.place, &starts.rows);
         let frames = Frames::about(starts.at.normal);
-        let mut outgoing = frames.to_local(-columns(direction));
+        let mut outgoing = frames.to_local(-pick_row(&work.rays.direction, &starts.rows));
         // At the limb, rounding may put the viewer below the horizon.
         outgoing.z = Lanes::max(outgoing.z, F32x16::splat(f32::EPSILON));
         Self {
@@ -93,7 +81,7 @@ impl Gathered {
             lanes: (1 << some.len()) - 1,
             frames,
             outgoing,
-            throughput: columns(throughput),
+            throughput: pick_colors(&work.paths.throughput, &place),
             sample: work.samples(some),
         }
     }
@@ -103,17 +91,4 @@ impl Gathered {
     pub fn to_world(&self, local: Vec3<F32x16>) -> Vec3<F32x16> {
         self.frames.to_world(local).normalize()
     }
-}
-
-#[inline(always)]
-fn put(columns: &mut [[f32; ROW]; 3], lane: usize, value: glam::Vec3) {
-    for axis in 0..3 {
-        columns[axis][lane] = value[axis];
-    }
-}
-
-#[inline(always)]
-fn columns(columns: [[f32; ROW]; 3]) -> Vec3<F32x16> {
-    let [x, y, z] = columns.map(F32x16::new);
-    Vec3::new(x, y, z)
 }

@@ -2,10 +2,11 @@
 
 use super::Job;
 use super::onward::Segments;
-use super::surface::{Normals, chord};
+use super::pick::{padded, pick, pick_normals, pick_row};
+use super::surface::chord;
 use super::workspace::Workspace;
-use crate::lanes::{Doubles, F32x16, F64x8, MAX_LANES, Mask, load_doubles};
-use crate::ray::{Columns3, MISS};
+use crate::lanes::{Doubles, F32x16, F64x8, MAX_LANES, Mask, load_doubles, store_rounded, widen};
+use crate::ray::MISS;
 use crate::scene::Rgb;
 use crate::shade::dielectric::{self, Meeting};
 use crate::vec3::Vec3;
@@ -18,8 +19,8 @@ const HALF: usize = MAX_LANES / 2;
 struct Gathered {
     place: [u32; MAX_LANES],
     hit: [u32; MAX_LANES],
-    point: [[f32; MAX_LANES]; 3],
-    direction: [[f32; MAX_LANES]; 3],
+    point: Vec3<F32x16>,
+    direction: Vec3<F32x16>,
     normal: [[f64; MAX_LANES]; 3],
     radius: [f32; MAX_LANES],
     /// Indices of refraction, of the spheres and of what is around them, as [`Meeting`] has them.
@@ -63,45 +64,37 @@ fn is_tinted(world: &World) -> bool {
     world.features.colors || world.materials.dielectric.iter().any(|glass| glass.color != Rgb::ONE)
 }
 
-/// Lanes without a row are like the first.
 #[inline(always)]
 fn gather(world: &World, work: &Workspace, rows: &[u32], choice: F32x16) -> Gathered {
-    let mut padded = [rows[0]; MAX_LANES];
-    padded[..rows.len()].copy_from_slice(rows);
+    let padded = padded(rows);
     let hit = pick(&work.hits.sphere, &padded);
-    let (mut radius, mut index) = ([0.0; MAX_LANES], [1.0; MAX_LANES]);
-    for (lane, &hit) in hit.iter().enumerate() {
-        radius[lane] = world.spheres.radius(hit as usize);
-        index[lane] = dielectric::index(world, hit);
+    let mut radius = [0.0; MAX_LANES];
+    for (radius, &hit) in radius.iter_mut().zip(&hit) {
+        *radius = world.spheres.radius(hit as usize);
     }
     Gathered {
         place: pick(&work.place, &padded),
         hit,
-        point: pick_columns(&work.surface.point, &padded),
-        direction: pick_columns(&work.rays.direction, &padded),
+        point: pick_row(&work.surface.point, &padded),
+        direction: pick_row(&work.rays.direction, &padded),
         normal: pick_normals(&work.surface.normal, &padded),
         radius,
-        index: [index, [1.0; MAX_LANES]],
+        index: [indices(world, &hit), [1.0; MAX_LANES]],
         choice: choice.to_array(),
     }
 }
 
+/// Indices of refraction of glass spheres.
 #[inline(always)]
-fn pick<T: Copy>(column: &[T], rows: &[u32; MAX_LANES]) -> [T; MAX_LANES] {
-    let mut lanes = [column[rows[0] as usize]; MAX_LANES];
-    lanes.iter_mut().zip(rows).for_each(|(lane, &row)| *lane = column[row as usize]);
-    lanes
-}
-
-#[inline(always)]
-fn pick_columns(columns: &Columns3, rows: &[u32; MAX_LANES]) -> [[f32; MAX_LANES]; 3] {
-    [pick(&columns.x, rows), pick(&columns.y, rows), pick(&columns.z, rows)]
-}
-
-#[inline(always)]
-fn pick_normals(normals: &Normals, rows: &[u32; MAX_LANES]) -> [[f64; MAX_LANES]; 3] {
-    let [x, y, z] = normals.columns();
-    [pick(x, rows), pick(y, rows), pick(z, rows)]
+fn indices(world: &World, rows: &[u32; MAX_LANES]) -> [f32; MAX_LANES] {
+    if let [only] = world.materials.dielectric.as_slice() {
+        return [only.ior; MAX_LANES];
+    }
+    let mut indices = [1.0; MAX_LANES];
+    for (index, &row) in indices.iter_mut().zip(rows) {
+        *index = dielectric::index(world, row);
+    }
+    indices
 }
 
 /// Takes the sphere that a path has hit from what it is in, and finds what glass is around.
@@ -130,13 +123,12 @@ fn send(gathered: &Gathered) -> Sent {
 fn send_half(gathered: &Gathered, first: usize, sent: &mut Sent) {
     let lanes = first..first + HALF;
     let singles = |column: &[f32; MAX_LANES]| load_doubles(&column[first..]);
-    let load = |[x, y, z]: &[[f32; MAX_LANES]; 3]| Vec3::new(singles(x), singles(y), singles(z));
     let doubles =
         |column: &[f64; MAX_LANES]| F64x8::new(*column[first..].first_chunk().expect("half a row"));
     let [x, y, z] = gathered.normal.each_ref().map(doubles);
     let normal = Vec3::new(x, y, z);
     let passage = dielectric::pass(&Meeting {
-        direction: load(&gathered.direction),
+        direction: gathered.direction.map(|x| widen(x)[first / HALF]),
         normal,
         here: singles(&gathered.index[0]),
         around: singles(&gathered.index[1]),
@@ -144,9 +136,10 @@ fn send_half(gathered: &Gathered, first: usize, sent: &mut Sent) {
     });
     let Vec3 { x, y, z } = passage.direction;
     for (column, x) in sent.direction.iter_mut().zip([x, y, z]) {
-        crate::lanes::store_rounded(x, &mut column[first..]);
+        store_rounded(x, &mut column[first..]);
     }
-    let t = chord(normal, singles(&gathered.radius), load(&sent.direction));
+    let [x, y, z] = sent.direction.each_ref().map(singles);
+    let t = chord(normal, singles(&gathered.radius), Vec3::new(x, y, z));
     let t = Doubles::select(passage.inward, t, F64x8::splat(f64::INFINITY));
     sent.t[lanes].copy_from_slice(&t.to_array());
     sent.inward |= passage.inward.bits() << first;
@@ -184,7 +177,7 @@ fn go_on(work: &mut Workspace, count: usize, gathered: &Gathered, sent: &Sent) {
     work.onward.append(
         count,
         &Segments {
-            origin: gathered.point.map(F32x16::new),
+            origin: [gathered.point.x, gathered.point.y, gathered.point.z],
             direction: sent.direction.map(F32x16::new),
             own: gathered.hit,
             end: (sent.t, end),

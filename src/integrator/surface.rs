@@ -1,15 +1,15 @@
 //! Where rays hit: points and normals, and how far it is through spheres from there.
 
+use super::struck::{Few, struck};
 use super::workspace::Workspace;
-use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, U32x16, load_doubles, look_up, widen};
+use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, load_doubles};
 use crate::ray::{Columns3, GROUND, MISS};
-use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
 use crate::world::{Ground, World};
 use glam::DVec3;
 
 /// Rows that are solved for together.
-const ROW: usize = 8;
+pub(super) const ROW: usize = 8;
 
 /// All lanes of a row.
 const ALL: u32 = (1 << ROW) - 1;
@@ -20,6 +20,10 @@ pub struct Surface {
     pub point: Columns3,
     /// The outward unit normal.
     pub normal: Normals,
+    /// The normal on the side that is looked at, rounded.
+    pub facing: Columns3,
+    /// Eight rows to a byte: whether the surface is seen from inside.
+    inside: Vec<u8>,
 }
 
 /// Unit vectors in columns of double precision.
@@ -31,7 +35,32 @@ pub struct Normals {
 
 impl Surface {
     pub(super) fn with_rows(rows: usize) -> Self {
-        Self { point: Columns3::with_rows(rows), normal: Normals::with_rows(rows) }
+        Self {
+            point: Columns3::with_rows(rows),
+            normal: Normals::with_rows(rows),
+            facing: Columns3::with_rows(rows),
+            inside: vec![0; rows.div_ceil(ROW)],
+        }
+    }
+
+    /// Which of some rows are seen from inside, bit by bit.
+    #[inline(always)]
+    pub(super) fn inside(&self, rows: &[u32; MAX_LANES]) -> u32 {
+        let mut bits = 0;
+        for (lane, &row) in rows.iter().enumerate() {
+            let byte = u32::from(self.inside[row as usize / ROW]);
+            bits |= (byte >> (row as usize % ROW) & 1) << lane;
+        }
+        bits
+    }
+
+    /// Turns the normals of rows `first..first + 8`, of rays of these directions, to where they are
+    /// looked at from.
+    #[inline(always)]
+    fn face(&mut self, first: usize, normal: Vec3<F64x8>, direction: Vec3<F64x8>) {
+        let inside = F64x8::splat(0.0).lt(normal.dot_unfused(direction));
+        self.facing.set_row(first, Vec3::select(inside, -normal, normal));
+        self.inside[first / ROW] = inside.bits() as u8;
     }
 }
 
@@ -117,6 +146,10 @@ pub(super) fn solve(world: &World, work: &mut Workspace) {
     }
     if !world.cut.is_empty() {
         (0..work.len()).for_each(|row| solve_cut(world, work, row));
+        for first in (0..work.len()).step_by(ROW) {
+            let normal = work.surface.normal.load(first);
+            work.surface.face(first, normal, load(&work.rays.direction, first));
+        }
     }
 }
 
@@ -170,55 +203,7 @@ fn solve_row(
     }
     work.surface.point.set_row(first, point);
     work.surface.normal.set_row(first, normal);
-}
-
-/// Centers and radii of the spheres that rows have hit; of any where that is none.
-#[inline(always)]
-fn struck(spheres: &Spheres, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
-    let blocks = spheres.blocks();
-    let mut columns = [[0.0; ROW]; 4];
-    for (lane, &hit) in hits.iter().enumerate() {
-        let (block, place) = (hit as usize / LEAF, hit as usize % LEAF);
-        let block = &blocks[block.min(blocks.len() - 1)];
-        columns[0][lane] = block.x[place];
-        columns[1][lane] = block.y[place];
-        columns[2][lane] = block.z[place];
-        columns[3][lane] = block.radius[place];
-    }
-    let [x, y, z, radius] = columns.each_ref().map(|column| load_doubles(column));
-    (Vec3::new(x, y, z), radius)
-}
-
-/// All spheres of a world of few, where registers hold them.
-struct Few([U32x16; 4]);
-
-impl Few {
-    /// None if there are too many; there may be no sphere at all.
-    fn of(spheres: &Spheres) -> Option<Self> {
-        let mut columns = [[0.0_f32; 2 * LEAF]; 4];
-        let blocks = spheres.blocks();
-        if blocks.len() > 2 {
-            return None;
-        }
-        for (i, block) in blocks.iter().enumerate() {
-            let rows = [&block.x, &block.y, &block.z, &block.radius];
-            for (column, row) in columns.iter_mut().zip(rows) {
-                column[i * LEAF..][..LEAF].copy_from_slice(row);
-            }
-        }
-        Some(Self(columns.map(bytemuck::cast)))
-    }
-
-    /// [`struck`] among them.
-    #[inline(always)]
-    fn struck(&self, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
-        let mut places = [0; 2 * ROW];
-        places[..ROW].copy_from_slice(hits);
-        let places = U32x16::new(places);
-        let pick = |column: U32x16| widen(bytemuck::cast(look_up(column, places)))[0];
-        let [x, y, z, radius] = &self.0;
-        (Vec3::new(pick(*x), pick(*y), pick(*z)), pick(*radius))
-    }
+    work.surface.face(first, normal, direction);
 }
 
 /// What is below or above a point on the ground, and the ground's normal.
