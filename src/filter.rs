@@ -31,6 +31,13 @@
 //!   the sphere for certain, the near hit is not beyond `t - half` and the far one not before `t +
 //!   half`. Squared errors help: `(r - x)^2 - (p - y)^2 <= r^2 - p^2` for `p <= r`, `0 <= y <= x <=
 //!   r`.
+//! - The near hit has an upper bound without another root. The squares `x` and `y` that belong to the
+//!   two reaches differ by `4 K r (r + T)`, and by less than `5 K r (r + T)` with rounding. Their roots
+//!   (0 for a negative `y`: the hit is not beyond the middle) therefore differ by no more than `sqrt(x -
+//!   y)`, which is at most `r / 64 + 80 K (r + T)`, for a geometric mean is no more than the arithmetic
+//!   one. The parts `2 K` and `K |t|` that halves and the middle are off add less than `8 K (r + T)`,
+//!   what is left of `96 K (r + T)` is for rounding: so the hit is not beyond `t - half + (r / 64 + 96 K
+//!   (r + T)) / |d|`.
 //!
 //! Underflow: worlds are scaled so that their largest coordinate is about 1, and origins are no
 //! farther than 2^20, so nothing overflows, and what underflows is less than 2^-120 in squares.
@@ -57,6 +64,17 @@ pub struct FilterRay<L> {
     inverse_length2: L,
     /// `K |direction|`.
     band: L,
+}
+
+/// What it takes to be certain.
+#[derive(Clone, Copy, Debug)]
+pub struct Margin<L> {
+    /// `K / |direction|`.
+    inverse_band: L,
+    /// How much the product of the distances to near and far hit has to exceed, for a radius of 0.
+    least: L,
+    /// By how much more that is for each unit of the radius.
+    per_radius: L,
 }
 
 impl<L: Lanes> FilterRay<L> {
@@ -90,6 +108,21 @@ impl<L: Lanes> FilterRay<L> {
     pub fn origin_error(&self) -> L {
         let span = self.origin.x.abs() + self.origin.y.abs() + self.origin.z.abs();
         span * L::splat(f32::EPSILON * (1.0 + 4.0 * f32::EPSILON))
+    }
+
+    /// The margin of rays that may start on surfaces, where origins are off by
+    /// [`FilterRay::origin_error`]: the product of the distances to near and far hit, times the
+    /// direction's length squared, is the squared distance of the origin from the center less the
+    /// square of the radius.
+    #[inline(always)]
+    pub fn margin(&self) -> Margin<L> {
+        let error = self.origin_error();
+        let scaled = error * self.inverse_length2 * L::splat(1.0 + 16.0 * K);
+        Margin {
+            inverse_band: self.band * self.inverse_length2,
+            least: scaled * error,
+            per_radius: scaled + scaled,
+        }
     }
 }
 
@@ -125,6 +158,8 @@ pub struct Chord<L> {
     chord2: L,
     /// Half the chord, no shorter than it is, by which also `middle` is bounded.
     half: L,
+    /// `K |middle|`.
+    slack: L,
 }
 
 impl<L: Lanes> Chord<L> {
@@ -139,7 +174,7 @@ impl<L: Lanes> Chord<L> {
         let chord2 = reach.mul_add(reach, -distance2);
         let slack = middle.abs() * L::splat(K);
         let half = (chord2 * ray.inverse_length2).sqrt().mul_add(L::splat(1.0 + 2.0 * K), slack);
-        Self { middle, distance2, chord2, half }
+        Self { middle, distance2, chord2, half, slack }
     }
 
     /// The lanes whose ray may hit the sphere at a distance in `0..=t_max`: never without one that
@@ -156,28 +191,53 @@ impl<L: Lanes> Chord<L> {
         self.middle - self.half
     }
 
-    /// The lanes whose ray starts outside the sphere and enters it, for certain, and a distance
-    /// beyond which it does not do so.
-    ///
-    /// Outside is also beyond the band about the surface in which a ray that starts on a surface,
-    /// and whose origin was rounded, may be on this one: `origin_error` is the rounding's bound. The
-    /// product of the distances to near and far hit, times the direction's length squared, is
-    /// that of the origin to the center less that of the radius.
+    /// A distance beyond which the line does not enter the sphere, if it does.
     #[inline(always)]
-    pub fn enters(&self, ray: &FilterRay<L>, radius: L, origin_error: L) -> (L::Mask, L) {
+    pub fn near_at_most(&self, radius: L, margin: &Margin<L>) -> L {
+        const ERRORS: f32 = 96.0;
+        let part = radius * L::splat(ERRORS + 1.0 / (64.0 * K));
+        self.slack.mul_add(L::splat(ERRORS), part.mul_add(margin.inverse_band, self.near()))
+    }
+
+    /// The lanes whose ray starts outside the sphere and enters it, for certain. Outside is also beyond
+    /// the margin about the surface.
+    #[inline(always)]
+    pub fn enters(&self, ray: &FilterRay<L>, radius: L, margin: &Margin<L>) -> L::Mask {
         let zero = L::splat(0.0);
-        let reach = radius * L::splat(1.0 - K) - self.middle.abs() * ray.band;
-        let chord2 = reach.mul_add(reach, -(self.distance2 + L::splat(2.0 * UNDERFLOW)));
-        let slack = self.middle.abs() * L::splat(K);
-        let root = (chord2 * ray.inverse_length2).sqrt();
-        let half = root * L::splat(1.0 - 2.0 * K) - slack;
-        let band = (radius + radius + origin_error) * origin_error * L::splat(1.0 + 16.0 * K);
-        let outside = self.near() * (self.middle + half);
-        let certain = zero.lt(reach)
-            & zero.lt(chord2)
+        // The far hit is not before the middle, which is off by at most this.
+        let error = radius.mul_add(margin.inverse_band, self.slack);
+        let outside = self.near() * (self.middle - error);
+        zero.lt(self.least_chord2(ray, radius))
             & zero.lt(self.near())
-            & (band * ray.inverse_length2).lt(outside);
-        (certain, self.middle - half)
+            & margin.about(radius).lt(outside)
+    }
+
+    /// The lanes whose ray starts inside the sphere for certain, and not within the margin, and bounds
+    /// of the distance at which it leaves.
+    #[inline(always)]
+    pub fn leaves(&self, ray: &FilterRay<L>, radius: L, margin: &Margin<L>) -> (L::Mask, [L; 2]) {
+        let zero = L::splat(0.0);
+        let root = (self.least_chord2(ray, radius) * ray.inverse_length2).sqrt();
+        let half = root * L::splat(1.0 - 2.0 * K) - self.slack;
+        let (before, beyond) = (half - self.middle.abs(), half + self.middle.abs());
+        let certain = zero.lt(before) & margin.about(radius).lt(before * beyond);
+        (certain, [self.middle + half, self.middle + self.half])
+    }
+
+    /// As `chord2`, but no larger than it is; not positive where it is not certain that the line meets
+    /// the sphere.
+    #[inline(always)]
+    fn least_chord2(&self, ray: &FilterRay<L>, radius: L) -> L {
+        let reach = radius * L::splat(1.0 - K) - self.middle.abs() * ray.band;
+        let reach = reach.max(L::splat(0.0));
+        reach.mul_add(reach, -(self.distance2 + L::splat(2.0 * UNDERFLOW)))
+    }
+}
+
+impl<L: Lanes> Margin<L> {
+    #[inline(always)]
+    fn about(&self, radius: L) -> L {
+        radius.mul_add(self.per_radius, self.least)
     }
 }
 

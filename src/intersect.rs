@@ -28,6 +28,9 @@
 //! A sign is taken from double precision only where the value is beyond its bound. Underflow does
 //! not matter: the least product of four single-precision numbers is 1e-180.
 
+mod terms;
+
+use self::terms::Terms;
 use crate::exact;
 use crate::lanes::Doubles;
 use crate::ray::ExactRay;
@@ -68,7 +71,7 @@ pub fn confirm(
     let terms = Terms::of(ray, center, radius);
     let band = ray.origin_error * (2.0 * radius + ray.origin_error);
     if terms.are_clear() && terms.outside.abs() > band {
-        let t = terms.distance()?;
+        let t = terms.hit()?;
         return Some(Root { t, error: t * CLEAR, exact: false });
     }
     confirm_closely(ray, center, radius, inside)
@@ -107,15 +110,25 @@ impl Pairs<f64> {
 /// far from any doubt, and the distances; the error of each is at most [`CLEAR`] of it.
 #[inline(always)]
 pub fn confirm_plain<D: Doubles>(pairs: &Pairs<D>) -> (D::Mask, D) {
+    let (clear, terms) = clear(pairs);
+    (clear & terms.enters(), terms.near())
+}
+
+/// [`confirm_plain`], and lanes whose ray starts inside.
+#[inline(always)]
+pub fn confirm_either<D: Doubles>(pairs: &Pairs<D>) -> (D::Mask, D) {
+    let (clear, terms) = clear(pairs);
+    let inside = terms.outside.lt(D::splat(0.0));
+    (clear & (terms.enters() | inside), terms.distance())
+}
+
+/// What decides about pairs, and the lanes whose line meets the sphere and that are far from any doubt.
+#[inline(always)]
+fn clear<D: Doubles>(pairs: &Pairs<D>) -> (D::Mask, Terms<D>) {
     let terms = Terms::new(pairs.origin, pairs.direction, pairs.center, pairs.radius);
-    let zero = D::splat(0.0);
     let band = pairs.origin_error * (D::splat(2.0) * pairs.radius + pairs.origin_error);
-    let plain = terms.are_clear()
-        & zero.lt(terms.chord2)
-        & band.lt(terms.outside)
-        & zero.lt(terms.outside)
-        & zero.lt(terms.b);
-    (plain, terms.near())
+    let meets = D::splat(0.0).lt(terms.chord2);
+    (terms.are_clear() & meets & band.lt(terms.outside.abs()), terms)
 }
 
 /// Relative errors of distances above this are not put up with.
@@ -123,97 +136,6 @@ const COARSE: f64 = 1.0 / (1 << 30) as f64;
 
 /// Bound of the relative error of a distance that is far from any doubt.
 pub const CLEAR: f64 = 1.0 / (1 << 18) as f64;
-
-/// What the decision about a ray and a sphere is made of, rounded. One ray and one sphere, or a row of
-/// each.
-struct Terms<D> {
-    /// Squared length of the direction.
-    a: D,
-    /// Way to the middle of the chord, times `a`.
-    b: D,
-    /// Squared distance of the origin from the center.
-    distance2: D,
-    /// Squared distance of the line from the center.
-    p2: D,
-    r2: D,
-    /// Squared half of the chord; negative where the line misses.
-    chord2: D,
-    /// Negative inside, 0 on the surface, positive outside.
-    outside: D,
-}
-
-impl<D: Doubles> Terms<D> {
-    #[inline(always)]
-    fn new(origin: Vec3<D>, direction: Vec3<D>, center: Vec3<D>, radius: D) -> Self {
-        let from_center = origin - center;
-        let distance2 = from_center.dot_unfused(from_center);
-        let a = direction.dot_unfused(direction);
-        let b = -from_center.dot_unfused(direction);
-        let perpendicular = from_center + direction * (b / a);
-        let p2 = perpendicular.dot_unfused(perpendicular);
-        let r2 = radius * radius;
-        Self { a, b, distance2, p2, r2, chord2: r2 - p2, outside: distance2 - r2 }
-    }
-
-    /// Where chord and side are at least 2^20 times their bounds, without a root: so the relative
-    /// error of the distance is below 2 x 2^-20 and a little, for that of `b` is at most 2^-36
-    /// then. A line that certainly misses is clear as well.
-    #[inline(always)]
-    fn are_clear(&self) -> D::Mask {
-        // 2 x 2^20 x 8 E, and its square for the mixed product.
-        const PART: f64 = 1.0 / (1_u64 << 28) as f64;
-        let (part, part2) = (D::splat(PART), D::splat(PART * PART));
-        let chord2 = self.chord2.abs();
-        (part * (self.p2 + self.r2)).lt(chord2)
-            & (part2 * self.distance2 * self.p2).lt(chord2 * chord2)
-            & (part2 * self.distance2).lt(chord2)
-            & (part * (self.distance2 + self.r2)).lt(self.outside.abs())
-            & D::splat(0.0).lt(self.a)
-            & self.a.lt(D::splat(f64::INFINITY))
-    }
-
-    /// Distance to the near hit of a line that meets the sphere from outside.
-    #[inline(always)]
-    fn near(&self) -> D {
-        self.outside.abs() / (self.b.abs() + (self.a * self.chord2).sqrt())
-    }
-}
-
-impl Terms<f64> {
-    fn of(ray: &ExactRay, center: DVec3, radius: f64) -> Self {
-        Self::new(ray.origin.into(), ray.direction.into(), center.into(), radius)
-    }
-
-    /// The distance for signs that are certain; `None` for a miss.
-    #[inline(always)]
-    fn distance(&self) -> Option<f64> {
-        let outside = self.outside > 0.0;
-        if self.chord2 < 0.0 || (outside && self.b <= 0.0) {
-            return None;
-        }
-        // The form of the two in which nothing cancels.
-        let far = !outside && self.b >= 0.0;
-        Some(if far { (self.b + (self.a * self.chord2).sqrt()) / self.a } else { self.near() })
-    }
-
-    fn chord2_error(&self) -> f64 {
-        let mixed = (self.distance2 * self.p2).sqrt();
-        8.0 * E * (mixed + self.p2 + self.r2) + (16.0 * E).powi(2) * self.distance2
-    }
-
-    fn outside_error(&self) -> f64 {
-        8.0 * E * (self.distance2 + self.r2)
-    }
-
-    /// Bound of the error of [`Terms::distance`], relative.
-    fn distance_error(&self, b_magnitude: f64) -> f64 {
-        let root = (self.a * self.chord2).sqrt();
-        let root_error = root * (self.chord2_error() / self.chord2 + 4.0 * E);
-        let sum = self.b.abs() + root;
-        let side = self.outside_error() / self.outside.abs();
-        1.01 * (side + (4.0 * E * b_magnitude + root_error) / sum) + 8.0 * E
-    }
-}
 
 /// [`confirm`] where something is close: bounds in full, and arithmetic without rounding if they
 /// are not enough.
@@ -243,7 +165,7 @@ pub fn confirm_closely(
         let away = terms.outside > terms.outside_error() && terms.b < -4.0 * E * b_magnitude;
         return decide(ray, center, radius, away);
     }
-    let t = terms.distance()?;
+    let t = terms.hit()?;
     let error = terms.distance_error(b_magnitude);
     if error > COARSE {
         // That there is a hit is certain, but so close to the surface little is left of the distance.

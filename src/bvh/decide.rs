@@ -5,15 +5,13 @@
 //! that comes first in the user's scene. Walks only decide how soon the answer is found, never which
 //! it is.
 
-use super::certain::Certain;
 use super::walk::{Query, Visits};
 use crate::exact::{self, Distance};
 use crate::filter::{Chord, FilterRay};
 use crate::intersect::{self, CLEAR, Pairs, Root};
-use crate::lanes::{F64x8, Lanes, MAX_LANES, Mask, bits, bits_of, numbers, set_bits, store_where};
+use crate::lanes::{Lanes, bits, bits_of};
 use crate::ray::{CHUNK, ExactRay, Hits, MISS, Rays};
 use crate::spheres::Spheres;
-use crate::vec3::Vec3;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::marker::PhantomData;
@@ -35,6 +33,8 @@ pub(super) struct Decider<'a, Q> {
     pub(super) hits: &'a mut Hits,
     /// How often arithmetic without rounding was needed.
     pub(super) exact: u64,
+    /// Rays to look at anew: what they have found may be wrong.
+    pub(super) doubtful: Vec<u32>,
     /// What was visited, if it is counted.
     pub(super) visits: Visits,
     query: PhantomData<Q>,
@@ -42,7 +42,15 @@ pub(super) struct Decider<'a, Q> {
 
 impl<'a, Q: Query> Decider<'a, Q> {
     pub(super) fn new(spheres: &'a Spheres, rays: &'a Rays, hits: &'a mut Hits) -> Self {
-        Self { spheres, rays, hits, exact: 0, visits: Visits::default(), query: PhantomData }
+        Self {
+            spheres,
+            rays,
+            hits,
+            exact: 0,
+            doubtful: Vec::new(),
+            visits: Visits::default(),
+            query: PhantomData,
+        }
     }
 
     /// Bounds of the distance that still counts for a ray; [`DONE`] if none does.
@@ -67,73 +75,6 @@ impl<'a, Q: Query> Decider<'a, Q> {
         };
         let done = L::splat(DONE);
         (L::select(searched, low, done), L::select(searched, high, done))
-    }
-
-    /// Keeps hits of rays `first..` that are certain and nearer than what the rays have.
-    #[inline(always)]
-    pub(super) fn settle<L: Lanes>(
-        &mut self,
-        first: usize,
-        rays: &FilterRay<L>,
-        certain: &Certain<L>,
-    ) {
-        let there = certain.there().bits();
-        if there == 0 {
-            return;
-        }
-        if Q::ANY {
-            return self.keep_spheres(first, certain.there(), certain.sphere);
-        }
-        let single = self.rays.precise.is_empty() && self.spheres.precise.is_empty();
-        let plain = if single { self.settle_plain(first, rays, certain) } else { 0 };
-        self.keep_spheres(first, L::lanes(plain), certain.sphere);
-        if plain != there {
-            let sphere = numbers(certain.sphere);
-            for lane in set_bits(there & !plain) {
-                self.consider(first + lane, sphere[lane] as usize);
-            }
-        }
-    }
-
-    /// Leaves the distances of hits that double precision is sure of in the hits, and returns which
-    /// they are.
-    #[inline(always)]
-    fn settle_plain<L: Lanes>(
-        &mut self,
-        first: usize,
-        rays: &FilterRay<L>,
-        certain: &Certain<L>,
-    ) -> u32 {
-        let mut bits = 0;
-        // Nothing is plain about what is no number.
-        let radius = L::select(certain.there(), certain.radius, L::splat(f32::NAN));
-        for half in (0..L::WIDTH).step_by(8) {
-            let vector =
-                |v: Vec3<L>| Vec3::new(v.x.doubles(half), v.y.doubles(half), v.z.doubles(half));
-            let pairs = Pairs {
-                origin: vector(rays.origin()),
-                direction: vector(rays.direction()),
-                // As if all were on surfaces: no less.
-                origin_error: rays.origin_error().doubles(half),
-                center: vector(certain.center),
-                radius: radius.doubles(half),
-            };
-            let (plain, t) = intersect::confirm_plain(&pairs);
-            store_where(plain, t, &mut self.hits.t[first + half..]);
-            store_where(
-                plain,
-                t * F64x8::splat(CLEAR),
-                &mut self.hits.error[first % CHUNK + half..],
-            );
-            bits |= plain.bits() << half;
-        }
-        bits
-    }
-
-    #[inline(always)]
-    fn keep_spheres<L: Lanes>(&mut self, first: usize, mask: L::Mask, sphere: L) {
-        let column = bytemuck::cast_slice_mut(&mut self.hits.sphere[first..]);
-        L::select(mask, sphere, L::load(column)).store(column);
     }
 
     /// Decides about a ray and a sphere, and keeps the hit if it is nearer: then it is true.
@@ -181,16 +122,6 @@ impl<'a, Q: Query> Decider<'a, Q> {
             }
         }
         nearer
-    }
-
-    /// [`Decider::settle`] with distances of single precision.
-    #[inline(always)]
-    pub(super) fn believe_all<L: Lanes>(&mut self, first: usize, certain: &Certain<L>, near: L) {
-        let (sphere, mut nears) = (numbers(certain.sphere), [0.0; MAX_LANES]);
-        near.store(&mut nears);
-        for lane in set_bits(certain.there().bits()) {
-            self.hits.set(first + lane, f64::from(nears[lane]), sphere[lane]);
-        }
     }
 
     /// Takes a sphere that passed the filter for a hit.

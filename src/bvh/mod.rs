@@ -5,12 +5,13 @@
 //! rays one by one, many in flight, in packets of every lane count, or by brute force. The tree
 //! knows nothing of materials, the rest of the program nothing of nodes.
 
+mod best;
 pub mod build;
-mod certain;
 mod decide;
 mod hold;
 mod order;
 mod packet;
+mod settle;
 mod single;
 mod stream;
 pub mod walk;

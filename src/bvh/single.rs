@@ -72,6 +72,18 @@ impl<Q: Query> Bundle<Q> for Single {
 }
 
 impl Single {
+    /// Tests every sphere there is, for the ray of a row.
+    pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, row: usize) {
+        let (spheres, mut ray) = (decider.spheres, <Self as Bundle<Q>>::none());
+        let mut slabs = Slabs::IDLE;
+        let mut t_far = ray.begin(decider, row, &mut slabs);
+        for (index, block) in spheres.blocks().iter().enumerate() {
+            let met = <Self as Bundle<Q>>::meets(&ray, &slabs, t_far, index, block);
+            ray.test(decider, index * LEAF, met);
+            t_far = ray.t_far(decider);
+        }
+    }
+
     /// Whether single precision can tell that the sphere occludes the ray.
     #[inline(always)]
     fn is_hit_for_certain<Q: Query>(&self, decider: &Decider<Q>, sphere: usize) -> bool {
@@ -82,7 +94,8 @@ impl Single {
         }
         let (center, radius) = (decider.spheres.center(sphere), decider.spheres.radius(sphere));
         let chord = Chord::new(&self.filter, center.into(), radius);
-        let (certain, far) = chord.enters(&self.filter, radius, self.filter.origin_error());
-        certain && far < decider.bounds(row).0
+        let margin = self.filter.margin();
+        chord.enters(&self.filter, radius, &margin)
+            && chord.near_at_most(radius, &margin) < decider.bounds(row).0
     }
 }

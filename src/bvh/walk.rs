@@ -2,7 +2,7 @@
 //!
 //! All of them find the same, for hits are decided in one place, `decide`. Rays that go alike go in
 //! packets (`packet`), others each on its own (`single`), many at a time (`stream`). Brute force is
-//! a packet's test over all spheres: the oracle.
+//! a packet's test over all spheres: the oracle, and where there are few, sooner done than others.
 
 use super::decide::Decider;
 use super::packet::Packet;
@@ -12,6 +12,7 @@ use crate::lanes::{Lanes, Mask, set_bits};
 use crate::ray::{CHUNK, Hits, Rays};
 use crate::spheres::{LEAF, Spheres};
 use std::marker::PhantomData;
+use std::ops::Range;
 
 /// Single rays on their way at once. By million rays per second on scenes of 400 to a million spheres:
 /// 64 beats 32 by up to a tenth, 16 by a quarter, 8 by a third.
@@ -19,6 +20,10 @@ const RAYS: usize = 64;
 
 /// Packets on their way at once: 8 beats 4 by some percent, and 16 is no better.
 const PACKETS: usize = 8;
+
+/// Up to so many spheres, rays that do not go alike are tested against all of them, in packets: with 32 of
+/// them that takes as long as the tree does for rays that end at any hit, with 8 a third.
+const SMALL: usize = 24;
 
 /// How far rays of a packet may start from its middle one on any axis, in sizes of a leaf. What is
 /// farther costs more than it saves: 1 is better than this by a tenth on scenes of a few thousand
@@ -104,7 +109,8 @@ pub enum Method {
     Stream,
     /// In packets where rays go alike, and one after another elsewhere.
     Packet,
-    /// In packets where rays go so much alike that it pays, and many at a time elsewhere.
+    /// In packets where rays go so much alike that it pays, and many at a time elsewhere, or against every
+    /// sphere where there are few.
     Auto,
 }
 
@@ -147,33 +153,81 @@ fn walk<'a, L: Lanes, Q: Query>(
         let rows = first..rays.len().min(first + CHUNK);
         decider.hits.error[..rows.len()].fill(0.0);
         match method {
-            Method::Brute => {
-                rows.step_by(L::WIDTH).for_each(|row| {
-                    let lanes = lanes_from(row, L::WIDTH, rays.len());
-                    Packet::<L>::brute(decider, (row, lanes));
-                });
-            }
+            Method::Brute => test_all::<L, Q>(decider, rows, &[u32::MAX; CHUNK]),
             Method::Single => stream::trace::<_, Single, 1>(bvh, decider, rows),
             Method::Stream => stream::trace::<_, Single, RAYS>(bvh, decider, rows),
-            Method::Packet | Method::Auto => {
-                let grain = if method == Method::Auto { bvh.grain } else { f32::INFINITY };
-                let mut others = [0_u32; CHUNK];
-                let mut count = 0;
-                let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
-                    let members = alike::<L>(rays, row, grain);
-                    for lane in set_bits(!members & lanes_from(row, L::WIDTH, rows.end)) {
-                        others[count] = (row + lane) as u32;
-                        count += 1;
-                    }
-                    (members != 0).then_some((row, members))
-                });
-                stream::trace::<_, Packet<L>, PACKETS>(bvh, decider, packets);
-                let others = others[..count].iter().map(|&row| row as usize);
-                stream::trace::<_, Single, RAYS>(bvh, decider, others);
-            }
+            Method::Packet => together::<L, Q>(bvh, f32::INFINITY, decider, rows),
+            Method::Auto if spheres.len() <= SMALL => among_few::<L, Q>(bvh, decider, rows),
+            Method::Auto => together::<L, Q>(bvh, bvh.grain, decider, rows),
         }
+        decide_doubtful(bvh, decider, method == Method::Brute || spheres.len() <= SMALL);
     }
     all
+}
+
+/// Traces rays that go alike through the tree, and tests others against every sphere.
+#[inline(always)]
+fn among_few<L: Lanes, Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, rows: Range<usize>) {
+    let rays = decider.rays;
+    let (mut others, mut count) = ([0_u32; CHUNK], 0);
+    let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
+        let members = alike::<L>(rays, row, bvh.grain);
+        others[count] = !members;
+        count += 1;
+        (members != 0).then_some((row, members))
+    });
+    stream::trace::<_, Packet<L>, PACKETS>(bvh, decider, packets);
+    test_all::<L, Q>(decider, rows, &others);
+}
+
+/// Tests every sphere, for rays of which a bit is set: of each row of lanes.
+#[inline(always)]
+fn test_all<L: Lanes, Q: Query>(decider: &mut Decider<Q>, rows: Range<usize>, some: &[u32; CHUNK]) {
+    for (row, some) in rows.clone().step_by(L::WIDTH).zip(some) {
+        let lanes = lanes_from(row, L::WIDTH, rows.end) & some;
+        if lanes != 0 {
+            Packet::<L>::brute(decider, (row, lanes));
+        }
+    }
+}
+
+/// Traces rays that go alike together, as far as the size of a leaf tells, and others alone.
+#[inline(always)]
+fn together<L: Lanes, Q: Query>(
+    bvh: &Bvh,
+    grain: f32,
+    decider: &mut Decider<Q>,
+    rows: Range<usize>,
+) {
+    let rays = decider.rays;
+    let (mut others, mut count) = ([0_u32; CHUNK], 0);
+    let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
+        let members = alike::<L>(rays, row, grain);
+        for lane in set_bits(!members & lanes_from(row, L::WIDTH, rows.end)) {
+            others[count] = (row + lane) as u32;
+            count += 1;
+        }
+        (members != 0).then_some((row, members))
+    });
+    stream::trace::<_, Packet<L>, PACKETS>(bvh, decider, packets);
+    if count > 0 {
+        let others = others[..count].iter().map(|&row| row as usize);
+        stream::trace::<_, Single, RAYS>(bvh, decider, others);
+    }
+}
+
+/// Looks anew at rays of which it is not sure what they hit: with the tree or, if `brute`, without.
+#[inline(always)]
+fn decide_doubtful<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, brute: bool) {
+    let doubtful = std::mem::take(&mut decider.doubtful);
+    let rows = doubtful.iter().map(|&row| row as usize);
+    if brute {
+        rows.for_each(|row| Single::brute(decider, row));
+    } else if doubtful.len() >= RAYS {
+        stream::trace::<_, Single, RAYS>(bvh, decider, rows);
+    } else if !doubtful.is_empty() {
+        stream::trace::<_, Single, 1>(bvh, decider, rows);
+    }
 }
 
 /// A bit for each row in `row..row + width` that is less than `end`.
