@@ -36,7 +36,7 @@ impl Bins {
         let kinds = &world.features.spheres_by_kind;
         let mut present = (0..Kind::COUNT).filter(|&kind| kinds[kind] > 0);
         match (&world.appearance.material, present.next(), present.next()) {
-            (Column::Rows(ids), _, Some(_)) => {
+            (Column::Rows(ids), _, Some(_)) if !ids.is_empty() => {
                 let kind = |hit: u32| ids[(hit as usize).min(ids.len() - 1)].kind() as usize;
                 self.sort_by(hits, ground, kind);
             }
@@ -101,5 +101,15 @@ mod tests {
                 assert_eq!(bins.kind[kind as usize], expected(Some(kind)), "{kind:?}");
             }
         }
+    }
+
+    /// The world keeps the census of what was taken out.
+    #[test]
+    fn where_the_spheres_were_taken_out_nothing_is_hit() {
+        let mut world = World::build(&default_scene(3)).unwrap();
+        world.appearance.material = Column::Rows(Vec::new());
+        let mut bins = Bins::default();
+        bins.sort(&world, &Hits::with_capacity(3), 3);
+        assert_eq!((&bins.escaped[..], bins.scattered()), (&[0, 1, 2][..], 0));
     }
 }

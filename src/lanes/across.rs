@@ -153,8 +153,8 @@ mod tests {
         for lane in 0..16 {
             let mut row = [-3.0; 16];
             row[lane] = 2.0;
-            let lanes = super::super::F32x16::new(row);
-            let lower = lanes - super::super::F32x16::splat(1.0);
+            let lanes = F32x16::new(row);
+            let lower = lanes - F32x16::splat(1.0);
             assert_eq!(lanes.greatest(), 2.0);
             assert_eq!(greatest_of([lanes, lower, -lanes]).to_array()[..3], [2.0, 1.0, 3.0]);
         }
