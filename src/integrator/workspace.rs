@@ -22,8 +22,8 @@ use std::mem::swap;
 /// stay in the second-level cache.
 pub const BATCH: usize = 4096;
 
-/// Rows of a column: with room for whole rows of lanes, and such that the columns do not all begin in
-/// the same lines of the first-level cache.
+/// Rows of a column: with room for whole rows of lanes, and such that the columns do not all begin
+/// in the same lines of the first-level cache.
 pub(super) const ROWS: usize = BATCH + MAX_LANES;
 
 /// How many glass spheres a path can be in at the same time.

@@ -40,8 +40,8 @@ pub struct Features {
     /// Glass spheres that a camera ray may start in; empty if there are none, and then every ray
     /// starts outside.
     pub glass_at_camera: Vec<u32>,
-    /// Whether a ray may be in more than one glass sphere at a time: some may touch or overlap, or one
-    /// be in another.
+    /// Whether a ray may be in more than one glass sphere at a time: some may touch or overlap, or
+    /// one be in another.
     pub nested_glass: bool,
 }
 
@@ -170,8 +170,8 @@ mod tests {
     use super::*;
     use crate::scene::{Material, NamedMaterial, Rgb, Scene};
 
-    /// Whether glass may be nested, of glass spheres along an axis; and of one that is not of glass,
-    /// in the first.
+    /// Whether glass may be nested, of glass spheres along an axis; and of one that is not of
+    /// glass, in the first.
     fn nested(spheres: &[(f64, f64)]) -> bool {
         let mut scene = Scene::default();
         let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
