@@ -21,6 +21,10 @@ const RAYS: usize = 64;
 /// Packets on their way at once: 8 beats 4 by some percent, and 16 is no better.
 const PACKETS: usize = 8;
 
+/// Up to so many spheres, all rays are tested against all of them, in packets: a tree of two leaves saves
+/// less than it takes to look for rays that go alike.
+const FEWEST: usize = 10;
+
 /// Up to so many spheres, rays that do not go alike are tested against all of them, in packets: with 32 of
 /// them that takes as long as the tree does for rays that end at any hit, with 8 a third.
 const SMALL: usize = 24;
@@ -154,6 +158,9 @@ fn walk<'a, L: Lanes, Q: Query>(
         decider.hits.error[..rows.len()].fill(0.0);
         match method {
             Method::Brute => test_all::<L, Q>(decider, rows, &[u32::MAX; CHUNK]),
+            Method::Auto if spheres.len() <= FEWEST => {
+                test_all::<L, Q>(decider, rows, &[u32::MAX; CHUNK]);
+            }
             Method::Single => stream::trace::<_, Single, 1>(bvh, decider, rows),
             Method::Stream => stream::trace::<_, Single, RAYS>(bvh, decider, rows),
             Method::Packet => together::<L, Q>(bvh, f32::INFINITY, decider, rows),
