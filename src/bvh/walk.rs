@@ -226,7 +226,7 @@ fn together<L: Lanes, Q: Query>(
 /// Looks anew at rays of which it is not sure what they hit: with the tree or, if `brute`, without.
 #[inline(always)]
 fn decide_doubtful<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, brute: bool) {
-    let doubtful = std::mem::take(&mut decider.doubtful);
+    let mut doubtful = std::mem::take(&mut decider.doubtful);
     let rows = doubtful.iter().map(|&row| row as usize);
     if brute {
         rows.for_each(|row| Single::brute(decider, row));
@@ -235,6 +235,9 @@ fn decide_doubtful<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, brute: bool) {
     } else if !doubtful.is_empty() {
         stream::trace::<_, Single, 1>(bvh, decider, rows);
     }
+    // With its memory.
+    doubtful.clear();
+    decider.doubtful = doubtful;
 }
 
 /// A bit for each row in `row..row + width` that is less than `end`.
