@@ -37,7 +37,7 @@
 //!   y)`, which is at most `r / 64 + 80 K (r + T)`, for a geometric mean is no more than the arithmetic
 //!   one. The parts `2 K` and `K |t|` that halves and the middle are off add less than `8 K (r + T)`,
 //!   what is left of `96 K (r + T)` is for rounding: so the hit is not beyond `t - half + (r / 64 + 96 K
-//!   (r + T)) / |d|`.
+//!   (r + T)) / |d|`, but for what may underflow: three of what follows, in the difference of squares.
 //!
 //! Underflow: worlds are scaled so that their largest coordinate is about 1, and origins are no
 //! farther than 2^20, so nothing overflows, and what underflows is less than 2^-120 in squares.
@@ -54,6 +54,9 @@ const K: f32 = 16.0 * U;
 /// Above every absolute error of a square that underflow can cause, and far below the square of any
 /// radius that counts.
 const UNDERFLOW: f32 = 1.0 / (1_u128 << 120) as f32;
+
+/// The square root of [`UNDERFLOW`].
+const ROOT_OF_UNDERFLOW: f32 = 1.0 / (1_u64 << 60) as f32;
 
 /// Rays as the filter wants them.
 #[derive(Clone, Copy, Debug)]
@@ -195,7 +198,8 @@ impl<L: Lanes> Chord<L> {
     #[inline(always)]
     pub fn near_at_most(&self, radius: L, margin: &Margin<L>) -> L {
         const ERRORS: f32 = 96.0;
-        let part = radius * L::splat(ERRORS + 1.0 / (64.0 * K));
+        let per_radius = L::splat(ERRORS + 1.0 / (64.0 * K));
+        let part = radius.mul_add(per_radius, L::splat(4.0 * ROOT_OF_UNDERFLOW / K));
         self.slack.mul_add(L::splat(ERRORS), part.mul_add(margin.inverse_band, self.near()))
     }
 

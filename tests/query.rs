@@ -186,6 +186,18 @@ fn scale_does_not_matter() {
     }
 }
 
+/// Down to where squares of radii underflow beside the largest sphere.
+#[test]
+fn spheres_may_be_tiny_beside_others() {
+    let around = [[-0.5, -0.612_941_86, 0.5], [0.1, -0.5, 2.0], [0.3, 0.4, -0.9], [1.2, 0.0, 0.0]];
+    let toward = [[0.0, 0.0, -0.25], [-0.4, 0.1, -1.0], [0.0, -0.9, 0.8], [-1.0, -0.4, 0.1]];
+    let rays: Vec<Ray> = around.into_iter().flat_map(|o| toward.map(|d| (o, d))).collect();
+    for exponent in 20..=75 {
+        let giant = [0.0, 0.0, 0.0, 1.1 * (exponent as f32).exp2()];
+        check(&[[0.0, -0.5, -0.076_299_414, 0.75], giant], &rays);
+    }
+}
+
 /// Origins so far away that single precision cannot even tell the spheres apart.
 #[test]
 fn distance_does_not_matter() {
