@@ -5,6 +5,7 @@
 //! rays one by one, many in flight, in packets of every lane count, or by brute force. The tree
 //! knows nothing of materials, the rest of the program nothing of nodes.
 
+mod beam;
 mod best;
 pub mod build;
 mod decide;
@@ -16,8 +17,9 @@ mod single;
 mod stream;
 pub mod walk;
 
-use crate::lanes::{U32x16, set_bits};
-use crate::slabs::{Slabs, row};
+pub use beam::Beam;
+
+use crate::lanes::U32x16;
 use crate::spheres::{LEAF, Spheres};
 use glam::Vec3;
 
@@ -214,29 +216,6 @@ impl Bvh {
             *of_kind += probability * if child.kind() == 0 { 1.0 } else { LEAF as f64 };
         }
         cost
-    }
-
-    /// Whether any ray may hit a sphere whose origin and direction, or a multiple of it, lie in these
-    /// boxes: never false if one does.
-    pub fn may_be_hit(&self, spheres: &Spheres, origin: [Vec3; 2], direction: [Vec3; 2]) -> bool {
-        let straddles = direction[0].signum() != direction[1].signum();
-        if self.is_empty() || straddles {
-            return !self.is_empty();
-        }
-        let slabs = Slabs::between(origin.map(row), direction.map(row));
-        let mut open = vec![Child::node(0)];
-        while let Some(child) = open.pop() {
-            let planes = match child.kind() {
-                Child::NODE => self.nodes[child.index()].planes,
-                _ => packet::boxes(&spheres.blocks()[child.index()]),
-            };
-            let (hit, _) = slabs.enters(&planes, f32::INFINITY);
-            if child.kind() == Child::BLOCK && hit != 0 {
-                return true;
-            }
-            open.extend(set_bits(hit).map(|i| self.nodes[child.index()].child[i]));
-        }
-        false
     }
 
     /// Checks what the walks rely on: every block is in one leaf, every box holds what is below it,

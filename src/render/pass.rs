@@ -6,7 +6,7 @@ use crate::integrator::workspace::{BATCH, Workspace};
 use crate::integrator::{Job, stages};
 use crate::scene::Rgb;
 use crate::world::World;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::ops::Range;
 
 /// Samples per pixel and pass: a tile of them is one batch of paths.
@@ -19,9 +19,7 @@ pub(crate) fn view(job: &Job, tile: &Tile) -> View {
     let Region { x, y, width, height } = tile.region;
     let low = DVec2::new(f64::from(x), f64::from(y)) - reach;
     let high = DVec2::new(f64::from(x + width), f64::from(y + height)) + reach;
-    let [origin, direction] = world.camera.bounds(low, high);
-    let single = |v: [DVec3; 2]| v.map(DVec3::as_vec3);
-    let hit = world.bvh.may_be_hit(&world.spheres, single(origin), single(direction));
+    let hit = world.bvh.may_be_hit(&world.spheres, &world.camera.beam(low, high));
     if hit { View::Anything } else { View::Background }
 }
 
@@ -31,7 +29,7 @@ pub(super) fn even(world: &World, tile: &Tile) -> Option<Rgb> {
 }
 
 fn even_view(world: &World, view: View) -> Option<Rgb> {
-    let only = world.ground.is_none() && world.lights.suns.is_empty();
+    let only = world.ground.is_none() && !world.lights.suns_have_discs();
     world.environment.constant().filter(|_| only && view == View::Background)
 }
 

@@ -2,6 +2,7 @@
 
 use super::Frame;
 use super::fit::Placement;
+use crate::bvh::Beam;
 use crate::lanes::Doubles;
 use crate::scene::{Projection, Scene};
 use crate::vec3::Vec3;
@@ -101,33 +102,37 @@ impl Camera {
         (self.eye, across + along + self.lens_radius)
     }
 
-    /// Boxes that hold the origins, and multiples of the directions, of all rays through a rectangle of
-    /// the picture: from `low` to `high` in pixels from its top left corner.
-    pub fn bounds(&self, low: DVec2, high: DVec2) -> [[DVec3; 2]; 2] {
-        /// More than rays are rounded by.
-        const ROUNDING: f64 = 1e-6;
+    /// A region that holds all rays through a rectangle of the picture: from `low` to `high` in pixels
+    /// from its top left corner.
+    ///
+    /// It lies between planes through the rectangle's edges, and ahead of where rays start. A ray of a
+    /// lens is off the one through its middle by at most the lens's radius times the distance along
+    /// the view axis from the plane in focus, in units of how far that is: each plane is turned and moved
+    /// by that.
+    pub fn beam(&self, low: DVec2, high: DVec2) -> Beam {
         let across = |x: f64| (2.0 * x / f64::from(self.width) - 1.0) * self.half_width;
         let upward = |y: f64| (1.0 - 2.0 * y / f64::from(self.height)) * self.half_height;
-        let corner = |x: f64, y: f64| self.right * across(x) + self.up * upward(y);
-        let corners = [(low.x, low.y), (high.x, low.y), (low.x, high.y), (high.x, high.y)]
-            .map(|(x, y)| corner(x, y));
-        let least = corners.into_iter().reduce(DVec3::min).unwrap_or_default();
-        let most = corners.into_iter().reduce(DVec3::max).unwrap_or_default();
-        let shift = (self.right.abs() + self.up.abs()) * self.lens_radius;
-        let turn = if self.lens_radius > 0.0 { shift / self.focus } else { DVec3::ZERO };
-        let (eye, forward) = ([self.eye; 2], [self.forward - turn, self.forward + turn]);
-        let spread = |[a, b]: [DVec3; 2]| [a + least, b + most];
-        let (origin, direction) =
-            if self.orthographic { (spread(eye), forward) } else { (eye, spread(forward)) };
-        let origin = [
-            origin[0] - shift + direction[0] * self.near,
-            origin[1] + shift + direction[1] * self.near,
-        ];
-        let wider = |[a, b]: [DVec3; 2]| {
-            let margin = DVec3::splat(a.abs().max(b.abs()).max_element() * ROUNDING);
-            [a - margin, b + margin]
+        let (right, up, forward) = (self.right, self.up, self.forward);
+        let turn = if self.has_lens() { self.lens_radius / self.focus } else { 0.0 };
+        let side = |inward: DVec3, edge: f64| {
+            let (normal, start) = if self.orthographic {
+                (inward, edge)
+            } else {
+                let normal = inward - forward * edge;
+                (normal / normal.length(), 0.0)
+            };
+            let normal = normal + forward * turn;
+            (normal, normal.dot(self.eye) + start - self.lens_radius)
         };
-        [wider(origin), wider(direction)]
+        let planes = [
+            side(right, across(low.x)),
+            side(-right, -across(high.x)),
+            side(up, upward(high.y)),
+            side(-up, -upward(low.y)),
+            (forward, forward.dot(self.eye) + self.near),
+        ];
+        let (center, radius) = self.origins();
+        Beam::new(planes, center.length() + radius)
     }
 
     /// Origins and unit directions of the rays through points of the picture, in pixels from its top
@@ -159,3 +164,6 @@ impl Camera {
         (origin, direction * (one / direction.dot_unfused(direction).sqrt()))
     }
 }
+
+#[cfg(test)]
+mod tests;
