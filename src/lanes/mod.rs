@@ -12,25 +12,20 @@
 mod across;
 mod bits;
 mod doubles;
+mod masks;
 
 pub use across::{Packing, greatest_of, look_up, reverse_bits, shuffle, shuffle_numbers};
 pub use bits::{bits, bits_of, numbers, set_bits};
 pub use doubles::{Doubles, load_doubles, narrow, store_rounded, store_where, widen};
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use masks::places;
+pub use masks::{Mask, WideMask};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 pub use wide::{
     f32x4 as F32x4, f32x8 as F32x8, f32x16 as F32x16, f64x8 as F64x8, u32x16 as U32x16,
 };
 
 /// The widest packet there is; columns of rays are padded to a multiple of it.
 pub const MAX_LANES: usize = 16;
-
-/// One truth value per lane.
-pub trait Mask:
-    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> + Send + Sync
-{
-    /// Bit `i` is set if lane `i` is true.
-    fn bits(self) -> u32;
-}
 
 /// A row of `f32` values, one per ray.
 pub trait Lanes:
@@ -111,13 +106,6 @@ pub trait Lanes:
     }
 }
 
-impl Mask for bool {
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        u32::from(self)
-    }
-}
-
 impl Lanes for f32 {
     const WIDTH: usize = 1;
     type Mask = bool;
@@ -190,35 +178,6 @@ impl Lanes for f32 {
     #[inline(always)]
     fn lanes(bits: u32) -> bool {
         bits & 1 == 1
-    }
-}
-
-/// A comparison's result: all bits of a lane set, or none. A type of its own, so that masks cannot
-/// be added up by mistake.
-#[derive(Clone, Copy, Debug)]
-pub struct WideMask<W>(W);
-
-impl<W: BitAnd<Output = W>> BitAnd for WideMask<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-}
-
-impl<W: BitOr<Output = W>> BitOr for WideMask<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-}
-
-impl<W: Not<Output = W>> Not for WideMask<W> {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(!self.0)
     }
 }
 
@@ -296,9 +255,9 @@ macro_rules! impl_lanes {
             }
             #[inline(always)]
             fn lanes(bits: u32) -> Self::Mask {
-                let lane = |i: usize| if bits >> i & 1 == 1 { 1.0 } else { 0.0 };
-                let set = Self::new(std::array::from_fn(lane));
-                Lanes::lt(Self::splat(0.0), set)
+                const BITS: wide::$integers = wide::$integers::new(places());
+                let set = wide::$integers::splat(bits as i32) & BITS;
+                WideMask(bytemuck::cast(set.simd_eq(BITS)))
             }
         }
     )+};
