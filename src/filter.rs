@@ -157,9 +157,8 @@ pub struct Chord<L> {
     middle: L,
     /// Squared distance of the line from the center, no larger than it is.
     distance2: L,
-    /// Square of the half chord, times that of the direction's length, no smaller than it is.
-    chord2: L,
-    /// Half the chord, no shorter than it is, by which also `middle` is bounded.
+    /// Half the chord, no shorter than it is, by which also `middle` is bounded; NaN where the line
+    /// misses.
     half: L,
     /// `K |middle|`.
     slack: L,
@@ -177,7 +176,7 @@ impl<L: Lanes> Chord<L> {
         let chord2 = reach.mul_add(reach, -distance2);
         let slack = middle.abs() * L::splat(K);
         let half = (chord2 * ray.inverse_length2).sqrt().mul_add(L::splat(1.0 + 2.0 * K), slack);
-        Self { middle, distance2, chord2, half, slack }
+        Self { middle, distance2, half, slack }
     }
 
     /// The lanes whose ray may hit the sphere at a distance in `0..=t_max`: never without one that
@@ -185,7 +184,8 @@ impl<L: Lanes> Chord<L> {
     #[inline(always)]
     pub fn may_hit(&self, t_max: L) -> L::Mask {
         let zero = L::splat(0.0);
-        zero.le(self.chord2) & self.near().le(t_max) & zero.le(self.middle + self.half)
+        // Neither is true of NaN.
+        self.near().le(t_max) & zero.le(self.middle + self.half)
     }
 
     /// A distance before which the line does not enter the sphere.

@@ -106,29 +106,32 @@ impl Pairs<f64> {
     }
 }
 
+impl<D: Doubles> Pairs<D> {
+    /// What decides about them, and by how much origins may be off, as `outside` is counted.
+    #[inline(always)]
+    fn terms(&self) -> (Terms<D>, D) {
+        let terms = Terms::new(self.origin, self.direction, self.center, self.radius);
+        let band = self.origin_error * (D::splat(2.0) * self.radius + self.origin_error);
+        (terms, band)
+    }
+}
+
 /// [`confirm`] for pairs that are plain: the lanes whose ray enters the sphere from outside and that are
 /// far from any doubt, and the distances; the error of each is at most [`CLEAR`] of it.
 #[inline(always)]
 pub fn confirm_plain<D: Doubles>(pairs: &Pairs<D>) -> (D::Mask, D) {
-    let (clear, terms) = clear(pairs);
-    (clear & terms.enters(), terms.near())
+    let (terms, band) = pairs.terms();
+    let meets = D::splat(0.0).lt(terms.chord2) & band.lt(terms.outside.abs());
+    (terms.are_clear() & meets & terms.enters(), terms.near())
 }
 
-/// [`confirm_plain`], and lanes whose ray starts inside.
+/// [`confirm_plain`], and lanes whose ray starts inside, for rays and spheres of single precision.
 #[inline(always)]
 pub fn confirm_either<D: Doubles>(pairs: &Pairs<D>) -> (D::Mask, D) {
-    let (clear, terms) = clear(pairs);
-    let inside = terms.outside.lt(D::splat(0.0));
-    (clear & (terms.enters() | inside), terms.distance())
-}
-
-/// What decides about pairs, and the lanes whose line meets the sphere and that are far from any doubt.
-#[inline(always)]
-fn clear<D: Doubles>(pairs: &Pairs<D>) -> (D::Mask, Terms<D>) {
-    let terms = Terms::new(pairs.origin, pairs.direction, pairs.center, pairs.radius);
-    let band = pairs.origin_error * (D::splat(2.0) * pairs.radius + pairs.origin_error);
-    let meets = D::splat(0.0).lt(terms.chord2);
-    (terms.are_clear() & meets & band.lt(terms.outside.abs()), terms)
+    let (terms, band) = pairs.terms();
+    let (zero, outside) = (D::splat(0.0), terms.outside);
+    let ahead = outside.lt(zero) | zero.lt(terms.b);
+    (terms.meet_clearly() & band.lt(outside.abs()) & ahead, terms.distance())
 }
 
 /// Relative errors of distances above this are not put up with.

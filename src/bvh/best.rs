@@ -1,31 +1,51 @@
 //! What rays have hit so far, as far as single precision can tell.
 //!
-//! Each candidate has bounds of the distance at which it is hit, if it is. A ray keeps the candidate
-//! with the least lower bound, and the least of all others' lower bounds: nothing is decided before the
-//! walk ends. If double precision then finds a hit on the one that is nearer than anything else can be,
-//! that is the answer; if not, which is rare, [`Decider`](super::decide::Decider) looks at the ray anew.
+//! Each candidate has a distance before which it is not hit. A ray keeps the candidate of which that is
+//! least, and the least of all others' ([`Rival`]): nothing is decided before the walk ends. If double
+//! precision then finds a hit on the one that is nearer than anything else can be, that is the answer;
+//! if not, which is rare, [`Decider`](super::decide::Decider) looks at the ray anew.
 //!
-//! What is beyond the least upper bound is not looked at. If that is of a candidate that is no hit
-//! after all, then a lower bound of another was less than it, and the ray is looked at anew.
+//! Nor is anything looked at that is farther than where the best is likely to be hit. If it is hit beyond
+//! that, or not at all, the ray is looked at anew as well; so that is no bound, and takes two operations.
 
 use super::decide::DONE;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay, Margin};
 use crate::lanes::{Lanes, Mask, bits};
 use crate::ray::MISS;
+use crate::vec3::Vec3;
+
+/// A sphere that is hit is hit by so much of its radius, and of the distance, after the distance before
+/// which it is not: but by tangents, and what is next to one.
+const PART: f32 = 1.0 / 32.0;
+const RELATIVE: f32 = 1.0 / (1 << 15) as f32;
 
 /// The best candidates of rays in a row.
 #[derive(Clone, Copy)]
 pub(super) struct Best<L> {
     /// The bits of the sphere; [`MISS`] where there is none.
     pub(super) sphere: L,
-    /// A distance before which it is not hit.
+    /// A distance before which it is not hit. Of a query for any hit: before which the search does not
+    /// end, but [`DONE`] where there may be a hit that is not certain.
     pub(super) near: L,
-    /// A distance before which no other is hit, nor the search ends. Of a query for any hit: before
-    /// which the search does not end, but [`DONE`] where there may be a hit that is not certain.
-    pub(super) other: L,
-    /// A distance beyond which nothing counts; [`DONE`] for a lane without a ray, or done.
+    /// A distance beyond which nothing is looked at; [`DONE`] for a lane without a ray, or done.
     pub(super) t_max: L,
+}
+
+/// What a query for the first hit keeps besides, for what is to be decided in the end.
+#[derive(Clone, Copy)]
+pub(super) struct Rival<L> {
+    /// The best candidate; anything where there is none.
+    pub(super) ball: Ball<L>,
+    /// A distance before which no other is hit, nor the search ends.
+    pub(super) near: L,
+}
+
+/// Spheres in a row.
+#[derive(Clone, Copy)]
+pub(super) struct Ball<L> {
+    pub(super) center: Vec3<L>,
+    pub(super) radius: L,
 }
 
 /// A sphere that rays in a row may hit.
@@ -35,15 +55,33 @@ pub(super) struct Candidate<L: Lanes> {
     pub(super) number: L,
     /// The lanes that may count it as hit.
     pub(super) allowed: L::Mask,
-    pub(super) radius: L,
+    pub(super) ball: Ball<L>,
     pub(super) chord: Chord<L>,
+}
+
+impl<L: Lanes> Ball<L> {
+    /// The same in every lane.
+    #[inline(always)]
+    pub(super) fn splat([x, y, z, radius]: [f32; 4]) -> Self {
+        Self { center: Vec3::splat(x, y, z), radius: L::splat(radius) }
+    }
+
+    /// One or the other, lane by lane.
+    #[inline(always)]
+    fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            center: Vec3::select_lanes(mask, yes.center, no.center),
+            radius: L::select(mask, yes.radius, no.radius),
+        }
+    }
 }
 
 impl<L: Lanes> Best<L> {
     /// Nothing yet, between bounds of the distance at which the search ends.
     #[inline(always)]
-    pub(super) fn of_search((t_min, t_max): (L, L)) -> Self {
-        Self { sphere: bits(MISS), near: L::splat(f32::INFINITY), other: t_min, t_max }
+    pub(super) fn of_search<Q: Query>((t_min, t_max): (L, L)) -> Self {
+        let near = if Q::ANY { t_min } else { L::splat(f32::INFINITY) };
+        Self { sphere: bits(MISS), near, t_max }
     }
 
     /// The lanes that have a candidate; of a query for any hit, one that is certain.
@@ -52,75 +90,85 @@ impl<L: Lanes> Best<L> {
         !self.sphere.has_bits_of(bits(MISS))
     }
 
-    /// The best once a sphere is met.
+    /// Meets a sphere.
     #[inline(always)]
     pub(super) fn meet<Q: Query>(
-        self,
-        ray: &FilterRay<L>,
-        margin: &Margin<L>,
+        &mut self,
+        rival: &mut Rival<L>,
+        (ray, margin): (&FilterRay<L>, &Margin<L>),
         met: &Candidate<L>,
-    ) -> Self {
+    ) {
         let lanes = met.chord.may_hit(self.t_max) & met.allowed;
-        let (near, far) = (met.chord.near(), met.chord.near_at_most(met.radius, margin));
         if !Q::EXACT {
-            self.believe::<Q>(lanes, near, met.number)
+            self.believe::<Q>(lanes, met);
         } else if Q::ANY {
-            let entered = lanes & met.chord.enters(ray, met.radius, margin) & far.lt(self.other);
-            let open = lanes & !entered;
-            if open.bits() == 0 {
-                return self.end(entered, open, met.number);
-            }
-            let (inside, [near, far]) = met.chord.leaves(ray, met.radius, margin);
-            let inside = open & inside;
-            let left = inside & far.lt(self.other);
-            let open = open & !inside | inside & near.le(self.t_max) & !left;
-            self.end(entered | left, open, met.number)
+            self.end(lanes, (ray, margin), met);
         } else {
+            let near = met.chord.near();
             let around = lanes & near.lt(L::splat(0.0));
             if around.bits() == 0 {
-                return self.keep(lanes, [near, far], met.number);
+                return self.keep(rival, lanes, [near, near], met);
             }
-            let (inside, [at_least, at_most]) = met.chord.leaves(ray, met.radius, margin);
+            let (inside, [at_least, at_most]) = met.chord.leaves(ray, met.ball.radius, margin);
             let near = L::select(inside, at_least, near);
             // Also where it is not certain on which side rays start.
-            let far = L::select(around, at_most, far);
-            self.keep(lanes & near.le(self.t_max), [near, far], met.number)
+            let far = L::select(around, at_most, near);
+            self.keep(rival, lanes & near.le(self.t_max), [near, far], met);
         }
     }
 
-    /// Keeps a candidate for the nearest hit, between bounds.
+    /// Keeps a candidate for the nearest hit, which is not before `near`, and hardly beyond `far`.
     #[inline(always)]
-    fn keep(self, lanes: L::Mask, [near, far]: [L; 2], number: L) -> Self {
+    fn keep(
+        &mut self,
+        rival: &mut Rival<L>,
+        lanes: L::Mask,
+        [near, far]: [L; 2],
+        met: &Candidate<L>,
+    ) {
+        let far = far.mul_add(L::splat(1.0 + RELATIVE), met.ball.radius * L::splat(PART));
+        self.t_max = L::select(lanes, far.min(self.t_max), self.t_max);
         let near = L::select(lanes, near, L::splat(f32::INFINITY));
-        Self {
-            sphere: L::select(near.lt(self.near), number, self.sphere),
-            near: near.min(self.near),
-            other: near.max(self.near).min(self.other),
-            t_max: L::select(lanes, far.min(self.t_max), self.t_max),
-        }
+        let nearer = near.lt(self.near);
+        self.sphere = L::select(nearer, met.number, self.sphere);
+        rival.ball = Ball::select(nearer, met.ball, rival.ball);
+        rival.near = near.max(self.near).min(rival.near);
+        self.near = near.min(self.near);
     }
 
     /// Ends lanes whose ray hits something for certain, and notes where one may do so.
     #[inline(always)]
-    fn end(self, certain: L::Mask, open: L::Mask, number: L) -> Self {
-        let done = L::splat(DONE);
-        Self {
-            sphere: L::select(certain, number, self.sphere),
-            near: self.near,
-            other: L::select(open, done, self.other),
-            t_max: L::select(certain, done, self.t_max),
+    fn end(
+        &mut self,
+        lanes: L::Mask,
+        (ray, margin): (&FilterRay<L>, &Margin<L>),
+        met: &Candidate<L>,
+    ) {
+        let radius = met.ball.radius;
+        let far = met.chord.near_at_most(radius, margin);
+        let entered = lanes & met.chord.enters(ray, radius, margin) & far.lt(self.near);
+        let open = lanes & !entered;
+        let (mut certain, mut uncertain) = (entered, open);
+        if open.bits() != 0 {
+            let (inside, [near, far]) = met.chord.leaves(ray, radius, margin);
+            let inside = open & inside;
+            let left = inside & far.lt(self.near);
+            certain = entered | left;
+            uncertain = open & !inside | inside & near.le(self.t_max) & !left;
         }
+        let done = L::splat(DONE);
+        self.sphere = L::select(certain, met.number, self.sphere);
+        self.near = L::select(uncertain, done, self.near);
+        self.t_max = L::select(certain, done, self.t_max);
     }
 
     /// Takes the filter's word.
     #[inline(always)]
-    fn believe<Q: Query>(self, lanes: L::Mask, near: L, number: L) -> Self {
+    fn believe<Q: Query>(&mut self, lanes: L::Mask, met: &Candidate<L>) {
+        let near = met.chord.near();
         let t_max = if Q::ANY { L::splat(DONE) } else { near };
-        Self {
-            sphere: L::select(lanes, number, self.sphere),
-            near: L::select(lanes, near, self.near),
-            other: self.other,
-            t_max: L::select(lanes, t_max, self.t_max),
-        }
+        self.sphere = L::select(lanes, met.number, self.sphere);
+        self.near = L::select(lanes, near, self.near);
+        self.t_max = L::select(lanes, t_max, self.t_max);
     }
 }

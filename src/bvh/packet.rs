@@ -6,7 +6,7 @@
 //!
 //! What is hit is decided in the end, for all rays at once: see [`Best`].
 
-use super::best::{Best, Candidate};
+use super::best::{Ball, Best, Candidate, Rival};
 use super::decide::{DONE, Decider};
 use super::stream::Bundle;
 use super::walk::Query;
@@ -27,6 +27,7 @@ pub(super) struct Packet<L: Lanes> {
     /// The bits of the spheres that the rays start on, and of those that they are aimed at.
     known: [L; 2],
     best: Best<L>,
+    rival: Rival<L>,
 }
 
 impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
@@ -40,7 +41,8 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
             filter: FilterRay::IDLE.splat(),
             margin: FilterRay::IDLE.splat().margin(),
             known: [bits(MISS); 2],
-            best: Best::of_search((L::splat(DONE), L::splat(DONE))),
+            best: Best::of_search::<Q>((L::splat(DONE), L::splat(DONE))),
+            rival: Rival { ball: Ball::splat([0.0; 4]), near: L::splat(DONE) },
         }
     }
 
@@ -64,11 +66,14 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     #[inline(always)]
     fn test(&mut self, decider: &mut Decider<Q>, first: usize, spheres: u32) {
         // In registers: what is stored under a mask takes long to be loaded again.
-        let mut best = self.best;
+        let (mut best, mut rival) = (self.best, self.rival);
         for lane in set_bits(spheres) {
-            best = self.better::<Q>(decider.spheres, first + lane, best);
+            self.meet::<Q>(decider.spheres, first + lane, (&mut best, &mut rival));
         }
         self.best = best;
+        if Q::EXACT && !Q::ANY {
+            self.rival = rival;
+        }
     }
 
     #[inline(always)]
@@ -78,7 +83,7 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
 
     #[inline(always)]
     fn settle(&self, decider: &mut Decider<Q>) {
-        decider.settle(self.row as usize, &self.filter, &self.best);
+        decider.settle(self.row as usize, &self.filter, (&self.best, &self.rival));
     }
 }
 
@@ -88,13 +93,13 @@ impl<L: Lanes> Packet<L> {
         let rays = decider.rays;
         let origin: Vec3<L> = rays.origin.load(row);
         let filter = FilterRay::new(origin, rays.direction.load(row));
-        *self = Self {
-            row: row as u32,
-            filter,
-            margin: filter.margin(),
-            known: [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])],
-            best: Best::of_search(decider.start(row, L::lanes(lanes))),
-        };
+        self.row = row as u32;
+        self.filter = filter;
+        self.margin = filter.margin();
+        self.known = [bits_of(&rays.own[row..]), bits_of(&rays.target[row..])];
+        let bounds = decider.start(row, L::lanes(lanes));
+        self.best = Best::of_search::<Q>(bounds);
+        self.rival.near = bounds.0;
     }
 
     /// Tests every sphere there is, for some of the rays from a row on.
@@ -102,23 +107,28 @@ impl<L: Lanes> Packet<L> {
     pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, rows: (usize, u32)) {
         let mut packet = <Self as Bundle<Q>>::none();
         packet.take_rays(decider, rows);
-        let mut best = packet.best;
+        let (mut best, mut rival) = (packet.best, packet.rival);
         for sphere in 0..decider.spheres.len() {
-            best = packet.better::<Q>(decider.spheres, sphere, best);
+            packet.meet::<Q>(decider.spheres, sphere, (&mut best, &mut rival));
         }
-        decider.settle(rows.0, &packet.filter, &best);
+        decider.settle(rows.0, &packet.filter, (&best, &rival));
     }
 
-    /// The best once the rays have met another sphere.
+    /// What the rays know once they have met another sphere.
     #[inline(always)]
-    fn better<Q: Query>(&self, spheres: &Spheres, sphere: usize, best: Best<L>) -> Best<L> {
+    fn meet<Q: Query>(
+        &self,
+        spheres: &Spheres,
+        sphere: usize,
+        (best, rival): (&mut Best<L>, &mut Rival<L>),
+    ) {
         let (block, lane) = (&spheres.blocks()[sphere / LEAF], sphere % LEAF);
-        let center = Vec3::splat(block.x[lane], block.y[lane], block.z[lane]);
-        let (radius, number) = (L::splat(block.radius[lane]), bits(sphere as u32));
+        let ball = Ball::splat([block.x[lane], block.y[lane], block.z[lane], block.radius[lane]]);
+        let number = bits(sphere as u32);
         let [own, target] = self.known.map(|known| known.has_bits_of(number));
-        let chord = Chord::new(&self.filter, center, radius);
-        let met = Candidate { number, allowed: !(own | target), radius, chord };
-        best.meet::<Q>(&self.filter, &self.margin, &met)
+        let chord = Chord::new(&self.filter, ball.center, ball.radius);
+        let met = Candidate { number, allowed: !(own | target), ball, chord };
+        best.meet::<Q>(rival, (&self.filter, &self.margin), &met);
     }
 }
 
