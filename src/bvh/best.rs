@@ -100,40 +100,43 @@ impl<L: Lanes> Best<L> {
     ) {
         let lanes = met.chord.may_hit(self.t_max) & met.allowed;
         if !Q::EXACT {
-            self.believe::<Q>(lanes, met);
+            self.believe::<Q>(lanes, met.chord.near(), met.number);
         } else if Q::ANY {
             self.end(lanes, (ray, margin), met);
         } else {
             let near = met.chord.near();
             let around = lanes & near.lt(L::splat(0.0));
-            if around.bits() == 0 {
-                return self.keep(rival, lanes, [near, near], met);
-            }
-            let (inside, [at_least, at_most]) = met.chord.leaves(ray, met.ball.radius, margin);
-            let near = L::select(inside, at_least, near);
-            // Also where it is not certain on which side rays start.
-            let far = L::select(around, at_most, near);
-            self.keep(rival, lanes & near.le(self.t_max), [near, far], met);
+            let (lanes, bounds) = if around.bits() == 0 {
+                (lanes, [near, near])
+            } else {
+                let (inside, [at_least, at_most]) = met.chord.leaves(ray, met.ball.radius, margin);
+                let near = L::select(inside, at_least, near);
+                // Also where it is not certain on which side rays start.
+                (lanes & near.le(self.t_max), [near, L::select(around, at_most, near)])
+            };
+            let nearer = self.keep(&mut rival.near, lanes, bounds, (met.number, met.ball.radius));
+            rival.ball = Ball::select(nearer, met.ball, rival.ball);
         }
     }
 
-    /// Keeps a candidate for the nearest hit, which is not before `near`, and hardly beyond `far`.
+    /// Keeps a candidate for the nearest hit, which is not before `near`, and hardly beyond `far`, of a
+    /// number and a radius; and the bound of what is hit of all others. The lanes in which it is the best.
     #[inline(always)]
-    fn keep(
+    pub(super) fn keep(
         &mut self,
-        rival: &mut Rival<L>,
+        others: &mut L,
         lanes: L::Mask,
         [near, far]: [L; 2],
-        met: &Candidate<L>,
-    ) {
-        let far = far.mul_add(L::splat(1.0 + RELATIVE), met.ball.radius * L::splat(PART));
+        (number, radius): (L, L),
+    ) -> L::Mask {
+        let far = far.mul_add(L::splat(1.0 + RELATIVE), radius * L::splat(PART));
         self.t_max = L::select(lanes, far.min(self.t_max), self.t_max);
         let near = L::select(lanes, near, L::splat(f32::INFINITY));
         let nearer = near.lt(self.near);
-        self.sphere = L::select(nearer, met.number, self.sphere);
-        rival.ball = Ball::select(nearer, met.ball, rival.ball);
-        rival.near = near.max(self.near).min(rival.near);
+        self.sphere = L::select(nearer, number, self.sphere);
+        *others = near.max(self.near).min(*others);
         self.near = near.min(self.near);
+        nearer
     }
 
     /// Ends lanes whose ray hits something for certain, and notes where one may do so.
@@ -164,10 +167,9 @@ impl<L: Lanes> Best<L> {
 
     /// Takes the filter's word.
     #[inline(always)]
-    fn believe<Q: Query>(&mut self, lanes: L::Mask, met: &Candidate<L>) {
-        let near = met.chord.near();
+    pub(super) fn believe<Q: Query>(&mut self, lanes: L::Mask, near: L, number: L) {
         let t_max = if Q::ANY { L::splat(DONE) } else { near };
-        self.sphere = L::select(lanes, met.number, self.sphere);
+        self.sphere = L::select(lanes, number, self.sphere);
         self.near = L::select(lanes, near, self.near);
         self.t_max = L::select(lanes, t_max, self.t_max);
     }

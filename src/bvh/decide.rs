@@ -5,6 +5,7 @@
 //! that comes first in the user's scene. Walks only decide how soon the answer is found, never which
 //! it is.
 
+use super::waiting::Waiting;
 use super::walk::{Query, Visits};
 use crate::exact::{self, Distance};
 use crate::filter::{Chord, FilterRay};
@@ -35,6 +36,8 @@ pub(super) struct Decider<'a, Q> {
     pub(super) exact: u64,
     /// Rays to look at anew: what they have found may be wrong.
     pub(super) doubtful: Vec<u32>,
+    /// Rays that wait to be decided in lanes.
+    pub(super) waiting: Waiting,
     /// What was visited, if it is counted.
     pub(super) visits: Visits,
     query: PhantomData<Q>,
@@ -48,6 +51,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
             hits,
             exact: 0,
             doubtful: Vec::new(),
+            waiting: Waiting::default(),
             visits: Visits::default(),
             query: PhantomData,
         }

@@ -9,12 +9,14 @@ mod beam;
 mod best;
 pub mod build;
 mod decide;
+mod deferred;
 mod hold;
 mod order;
 mod packet;
 mod settle;
 mod single;
 mod stream;
+mod waiting;
 pub mod walk;
 
 pub use beam::Beam;

@@ -59,7 +59,7 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     }
 
     #[inline(always)]
-    fn meets(&self, slabs: &Slabs, t_far: f32, _: usize, block: &Block) -> u32 {
+    fn meets(&mut self, slabs: &Slabs, t_far: f32, _: usize, block: &Block) -> u32 {
         slabs.enters(&boxes(block), t_far).0
     }
 

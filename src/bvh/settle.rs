@@ -31,7 +31,7 @@ impl<Q: Query> Decider<'_, Q> {
         if !Q::EXACT {
             return self.believe_all(first, best);
         }
-        if self.trusted(there) == 0 {
+        if !self.is_plain() {
             return self.doubt(first, there);
         }
         let low = self.settle_half::<L, 0>(first, rays, (best, rival));
@@ -70,10 +70,10 @@ impl<Q: Query> Decider<'_, Q> {
         nearest.bits()
     }
 
-    /// Nothing where rays or spheres are not what their columns hold.
+    /// Whether rays and spheres are what their columns hold.
     #[inline(always)]
-    fn trusted(&self, lanes: u32) -> u32 {
-        if self.rays.precise.is_empty() && self.spheres.precise.is_empty() { lanes } else { 0 }
+    pub(super) fn is_plain(&self) -> bool {
+        self.rays.precise.is_empty() && self.spheres.precise.is_empty()
     }
 
     /// Has rays looked at anew.

@@ -43,7 +43,7 @@ impl<Q: Query> Bundle<Q> for Single {
     }
 
     #[inline(always)]
-    fn meets(&self, _: &Slabs, t_far: f32, index: usize, block: &Block) -> u32 {
+    fn meets(&mut self, _: &Slabs, t_far: f32, index: usize, block: &Block) -> u32 {
         let center = Vec3::new(F32x8::load(&block.x), F32x8::load(&block.y), F32x8::load(&block.z));
         let chord = Chord::new(&self.filter.splat(), center, F32x8::load(&block.radius));
         let but_own = if self.own.0 == index as u32 { self.own.1 } else { u32::MAX };
@@ -78,7 +78,7 @@ impl Single {
         let mut slabs = Slabs::IDLE;
         let mut t_far = ray.begin(decider, row, &mut slabs);
         for (index, block) in spheres.blocks().iter().enumerate() {
-            let met = <Self as Bundle<Q>>::meets(&ray, &slabs, t_far, index, block);
+            let met = <Self as Bundle<Q>>::meets(&mut ray, &slabs, t_far, index, block);
             ray.test(decider, index * LEAF, met);
             t_far = ray.t_far(decider);
         }

@@ -30,7 +30,7 @@ pub(super) trait Bundle<Q: Query>: Copy {
 
     /// Which spheres of a block may be hit at a distance of at most `t_far`. The bundle is within
     /// the slabs.
-    fn meets(&self, slabs: &Slabs, t_far: f32, index: usize, block: &Block) -> u32;
+    fn meets(&mut self, slabs: &Slabs, t_far: f32, index: usize, block: &Block) -> u32;
 
     /// Finds out about spheres that may be hit: a bit for each from the first on.
     fn test(&mut self, decider: &mut Decider<Q>, first: usize, spheres: u32);
@@ -38,8 +38,12 @@ pub(super) trait Bundle<Q: Query>: Copy {
     /// The distance beyond which it needs no answers now; below 0 if it needs none.
     fn t_far(&self, decider: &Decider<Q>) -> f32;
 
-    /// Leaves all answers in the hits.
+    /// Leaves all answers in the hits, or has them wait until [`Bundle::finish`].
     fn settle(&self, decider: &mut Decider<Q>);
+
+    /// Leaves the answers that wait in the hits.
+    #[inline(always)]
+    fn finish(_: &mut Decider<Q>) {}
 }
 
 /// A bundle on its way.
@@ -157,7 +161,7 @@ pub(super) fn trace<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
             }
         }
         if now.nodes | now.leaves | begun == 0 {
-            return;
+            return B::finish(decider);
         }
         if Q::COUNTED {
             decider.visits.nodes += u64::from(now.nodes.count_ones());
@@ -189,7 +193,7 @@ fn visit_leaves<Q: Query, B: Bundle<Q>, const FLIGHTS: usize>(
     let mut candidates = [(0_u8, 0_u8); FLIGHTS];
     let mut count = 0;
     for place in set_bits(places) {
-        let flight = &flights[place % FLIGHTS];
+        let flight = &mut flights[place % FLIGHTS];
         let index = at.at(place).index();
         let block = &decider.spheres.blocks()[index];
         let met = flight.bundle.meets(&flight.slabs, flight.t_far, index, block);

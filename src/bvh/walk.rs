@@ -5,6 +5,7 @@
 //! a packet's test over all spheres: the oracle, and where there are few, sooner done than others.
 
 use super::decide::Decider;
+use super::deferred::Deferred;
 use super::packet::Packet;
 use super::single::Single;
 use super::{Bvh, stream};
@@ -162,7 +163,7 @@ fn walk<'a, L: Lanes, Q: Query>(
                 test_all::<L, Q>(decider, rows, &[u32::MAX; CHUNK]);
             }
             Method::Single => stream::trace::<_, Single, 1>(bvh, decider, rows),
-            Method::Stream => stream::trace::<_, Single, RAYS>(bvh, decider, rows),
+            Method::Stream => alone(bvh, decider, rows),
             Method::Packet => together::<L, Q>(bvh, f32::INFINITY, decider, rows),
             Method::Auto if spheres.len() <= SMALL => among_few::<L, Q>(bvh, decider, rows),
             Method::Auto => together::<L, Q>(bvh, bvh.grain, decider, rows),
@@ -218,8 +219,17 @@ fn together<L: Lanes, Q: Query>(
     });
     stream::trace::<_, Packet<L>, PACKETS>(bvh, decider, packets);
     if count > 0 {
-        let others = others[..count].iter().map(|&row| row as usize);
-        stream::trace::<_, Single, RAYS>(bvh, decider, others);
+        alone(bvh, decider, others[..count].iter().map(|&row| row as usize));
+    }
+}
+
+/// Traces rays each on its own, many at a time.
+#[inline(always)]
+fn alone<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, rows: impl Iterator<Item = usize>) {
+    if Q::ANY || !decider.is_plain() {
+        stream::trace::<_, Single, RAYS>(bvh, decider, rows);
+    } else {
+        stream::trace::<_, Deferred, RAYS>(bvh, decider, rows);
     }
 }
 
