@@ -42,7 +42,7 @@
 //! Underflow: worlds are scaled so that their largest coordinate is about 1, and origins are no
 //! farther than 2^20, so nothing overflows, and what underflows is less than 2^-120 in squares.
 
-use crate::lanes::Lanes;
+use crate::lanes::{F32x16, Lanes, transpose};
 use crate::vec3::Vec3;
 
 /// Unit roundoff of `f32`.
@@ -126,6 +126,40 @@ impl<L: Lanes> FilterRay<L> {
             least: scaled * error,
             per_radius: scaled + scaled,
         }
+    }
+}
+
+impl FilterRay<F32x16> {
+    /// Each on its own, to be kept.
+    #[inline(always)]
+    pub fn rows(&self, rows: &mut [FilterRow; 16]) {
+        let (origin, direction) = (self.origin, self.direction);
+        let ([a, b, c], [d, e, f]) =
+            ([origin.x, origin.y, origin.z], [direction.x, direction.y, direction.z]);
+        let columns = [a, b, c, d, e, f, self.inverse_length2, self.band];
+        for first in [0, 8] {
+            let lanes = transpose(columns, first);
+            for i in 0..8 {
+                rows[first + i] = FilterRow(lanes[i].to_array());
+            }
+        }
+    }
+}
+
+/// A [`FilterRay`] to be kept: its numbers in their order.
+#[derive(Clone, Copy, Debug)]
+pub struct FilterRow([f32; 8]);
+
+impl FilterRow {
+    /// In place of one where there is none.
+    pub const NONE: Self = Self([0.0; 8]);
+}
+
+impl From<FilterRow> for FilterRay<f32> {
+    #[inline(always)]
+    fn from(FilterRow([a, b, c, d, e, f, inverse_length2, band]): FilterRow) -> Self {
+        let (origin, direction) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+        Self { origin, direction, inverse_length2, band }
     }
 }
 

@@ -1,6 +1,6 @@
 //! A ray, or rays that go alike, against eight boxes at once.
 
-use crate::lanes::{F32x4, F32x8, Lanes, Mask};
+use crate::lanes::{F32x4, F32x8, F32x16, Lanes, Mask, U32x16, transpose};
 use glam::Vec3;
 
 /// The planes of eight boxes: by axis and side, lower first.
@@ -24,6 +24,16 @@ const SOONER: f32 = 1.0 - 8.0 * U;
 /// less than boxes are wider than what is in them, over any distance that counts.
 const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
 
+/// By octant and axis, whether directions are negative.
+const NEGATIVE: [[bool; 4]; 8] = {
+    let (mut table, mut i) = ([[false; 4]; 8], 0);
+    while i < 8 * 3 {
+        table[i / 3][i % 3] = ((i / 3) >> (i % 3)) & 1 == 1;
+        i += 1;
+    }
+    table
+};
+
 /// The rays between two bounds: one ray, or a packet.
 ///
 /// On each axis all directions have the same sign, that of a zero included: with both signs, boxes that
@@ -44,12 +54,12 @@ const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Slabs {
-    inverse_near: [f32; 4],
-    shift_near: [f32; 4],
-    inverse_far: [f32; 4],
-    shift_far: [f32; 4],
+    /// By axis, factors and terms of near distances.
+    near: [[f32; 4]; 2],
+    /// The same of far distances.
+    far: [[f32; 4]; 2],
     /// By axis, whether the direction is negative.
-    negative: [bool; 3],
+    negative: [bool; 4],
     /// Bit `a` is set where the direction is negative on axis `a`.
     pub octant: usize,
 }
@@ -57,11 +67,9 @@ pub struct Slabs {
 impl Slabs {
     /// In place of a ray where there is none.
     pub const IDLE: Self = Self {
-        inverse_near: [1.0; 4],
-        shift_near: [0.0; 4],
-        inverse_far: [1.0; 4],
-        shift_far: [0.0; 4],
-        negative: [false; 3],
+        near: [[1.0; 4], [0.0; 4]],
+        far: [[1.0; 4], [0.0; 4]],
+        negative: [false; 4],
         octant: 0,
     };
 
@@ -70,7 +78,7 @@ impl Slabs {
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let (origin, direction) = (row(origin), row(direction));
         let inverse = inverse(direction);
-        Self::assemble(direction, (inverse, origin), (inverse, origin))
+        Self::from_bounds(direction, (inverse, origin), (inverse, origin))
     }
 
     /// For rays whose origins and directions lie between two bounds, lower first, of which those of the
@@ -84,24 +92,41 @@ impl Slabs {
         let [low, high] = origin;
         let (ahead, behind) =
             (Lanes::select(negative, low, high), Lanes::select(negative, high, low));
-        Self::assemble(lower, (steep, ahead), (flat, behind))
+        Self::from_bounds(lower, (steep, ahead), (flat, behind))
     }
 
-    /// From the reciprocal direction and the origin that bound near and far distances.
+    /// For sixteen rays, each on its own: as [`Slabs::new`], by axis.
     #[inline(always)]
-    fn assemble(direction: F32x4, near: (F32x4, F32x4), far: (F32x4, F32x4)) -> Self {
-        let sooner = near.0 * F32x4::splat(SOONER);
-        let (near, far) = ((sooner, near.1 * sooner), (far.0, far.1 * far.0));
-        let slack = |shift: F32x4| Lanes::abs(shift) * F32x4::splat(SLACK);
-        let octant = direction.is_negative().bits() as usize & 7;
-        Self {
-            inverse_near: near.0.to_array(),
-            shift_near: (-(near.1 + slack(near.1))).to_array(),
-            inverse_far: far.0.to_array(),
-            shift_far: (slack(far.1) - far.1).to_array(),
-            negative: [octant & 1 != 0, octant & 2 != 0, octant & 4 != 0],
-            octant,
+    pub fn of_rays(origin: [F32x16; 3], direction: [F32x16; 3], slabs: &mut [Self; 16]) {
+        let mut columns = [[F32x16::splat(0.0); 8]; 2];
+        let mut octants = U32x16::splat(0);
+        for axis in 0..3 {
+            let inverse = inverse(direction[axis]);
+            let bounds = [near(inverse, origin[axis]), far(inverse, origin[axis])];
+            for (columns, [factor, term]) in columns.iter_mut().zip(bounds) {
+                (columns[axis], columns[4 + axis]) = (factor, term);
+            }
+            let sign: U32x16 = bytemuck::cast(direction[axis]);
+            octants |= (sign >> 31) << axis as u32;
         }
+        let octants = octants.to_array();
+        for first in [0, 8] {
+            let [near, far] = columns.map(|columns| transpose(columns, first));
+            for i in 0..8 {
+                let octant = octants[first + i] as usize & 7;
+                let (near, far) = (bytemuck::cast(near[i]), bytemuck::cast(far[i]));
+                slabs[first + i] = Self { near, far, negative: NEGATIVE[octant], octant };
+            }
+        }
+    }
+
+    /// From directions, and the reciprocal direction and the origin that bound near and far distances.
+    #[inline(always)]
+    fn from_bounds(direction: F32x4, first: (F32x4, F32x4), last: (F32x4, F32x4)) -> Self {
+        let ([a, b], [c, d]) = (near(first.0, first.1), far(last.0, last.1));
+        let octant = direction.is_negative().bits() as usize & 7;
+        let (near, far) = ([a.to_array(), b.to_array()], [c.to_array(), d.to_array()]);
+        Self { near, far, negative: NEGATIVE[octant], octant }
     }
 
     /// Which boxes a ray may meet at a distance in `0..=t_max`, in the lowest bits, and a distance
@@ -117,8 +142,8 @@ impl Slabs {
             let splat = |x: &[f32; 4]| F32x8::splat(x[axis]);
             let first = F32x8::load(&planes[axis][usize::from(negative)]);
             let second = F32x8::load(&planes[axis][usize::from(!negative)]);
-            let enter = Lanes::mul_add(first, splat(&self.inverse_near), splat(&self.shift_near));
-            let leave = Lanes::mul_add(second, splat(&self.inverse_far), splat(&self.shift_far));
+            let enter = Lanes::mul_add(first, splat(&self.near[0]), splat(&self.near[1]));
+            let leave = Lanes::mul_add(second, splat(&self.far[0]), splat(&self.far[1]));
             near = Lanes::max(enter, near);
             far = Lanes::min(leave, far);
         }
@@ -133,11 +158,26 @@ pub(crate) fn row(v: Vec3) -> F32x4 {
 }
 
 #[inline(always)]
-fn inverse(direction: F32x4) -> F32x4 {
-    let least = F32x4::splat(LEAST);
-    let least = Lanes::select(direction.is_negative(), -least, least);
-    let kept = Lanes::select(Lanes::abs(direction).lt(least.abs()), least, direction);
-    F32x4::splat(1.0) / kept
+fn inverse<L: Lanes>(direction: L) -> L {
+    let least = L::splat(LEAST);
+    let least = L::select(direction.is_negative(), -least, least);
+    let kept = L::select(direction.abs().lt(least.abs()), least, direction);
+    L::splat(1.0) / kept
+}
+
+/// The factor and the term that make a near distance of a plane's coordinate.
+#[inline(always)]
+fn near<L: Lanes>(inverse: L, origin: L) -> [L; 2] {
+    let sooner = inverse * L::splat(SOONER);
+    let shift = origin * sooner;
+    [sooner, -(shift + shift.abs() * L::splat(SLACK))]
+}
+
+/// The same for a far distance.
+#[inline(always)]
+fn far<L: Lanes>(inverse: L, origin: L) -> [L; 2] {
+    let shift = origin * inverse;
+    [inverse, shift.abs() * L::splat(SLACK) - shift]
 }
 
 #[cfg(test)]

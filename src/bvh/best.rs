@@ -15,9 +15,11 @@ use crate::lanes::{Lanes, Mask, bits};
 use crate::ray::MISS;
 use crate::vec3::Vec3;
 
-/// A sphere that is hit is hit by so much of its radius, and of the distance, after the distance before
-/// which it is not: but by tangents, and what is next to one.
+/// A sphere is hit by no more of its radius than this after the distance before which it is not, and
+/// [`RELATIVE`] of the distance: but by tangents, and what is next to one.
 const PART: f32 = 1.0 / 32.0;
+
+/// See [`PART`].
 const RELATIVE: f32 = 1.0 / (1 << 15) as f32;
 
 /// The best candidates of rays in a row.
@@ -98,21 +100,22 @@ impl<L: Lanes> Best<L> {
         (ray, margin): (&FilterRay<L>, &Margin<L>),
         met: &Candidate<L>,
     ) {
+        let near = met.chord.near();
         let lanes = met.chord.may_hit(self.t_max) & met.allowed;
         if !Q::EXACT {
-            self.believe::<Q>(lanes, met.chord.near(), met.number);
+            self.believe::<Q>(lanes, near, met.number);
         } else if Q::ANY {
             self.end(lanes, (ray, margin), met);
         } else {
-            let near = met.chord.near();
             let around = lanes & near.lt(L::splat(0.0));
             let (lanes, bounds) = if around.bits() == 0 {
                 (lanes, [near, near])
             } else {
                 let (inside, [at_least, at_most]) = met.chord.leaves(ray, met.ball.radius, margin);
                 let near = L::select(inside, at_least, near);
+                let lanes = lanes & near.le(self.t_max);
                 // Also where it is not certain on which side rays start.
-                (lanes & near.le(self.t_max), [near, L::select(around, at_most, near)])
+                (lanes, [near, L::select(around, at_most, near)])
             };
             let nearer = self.keep(&mut rival.near, lanes, bounds, (met.number, met.ball.radius));
             rival.ball = Ball::select(nearer, met.ball, rival.ball);
@@ -130,12 +133,11 @@ impl<L: Lanes> Best<L> {
         (number, radius): (L, L),
     ) -> L::Mask {
         let far = far.mul_add(L::splat(1.0 + RELATIVE), radius * L::splat(PART));
-        self.t_max = L::select(lanes, far.min(self.t_max), self.t_max);
-        let near = L::select(lanes, near, L::splat(f32::INFINITY));
-        let nearer = near.lt(self.near);
+        let nearer = lanes & near.lt(self.near);
         self.sphere = L::select(nearer, number, self.sphere);
-        *others = near.max(self.near).min(*others);
-        self.near = near.min(self.near);
+        *others = L::select(lanes, near.max(self.near).min(*others), *others);
+        self.near = L::select(nearer, near, self.near);
+        self.t_max = L::select(lanes, far.min(self.t_max), self.t_max);
         nearer
     }
 

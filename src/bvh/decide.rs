@@ -5,6 +5,7 @@
 //! that comes first in the user's scene. Walks only decide how soon the answer is found, never which
 //! it is.
 
+use super::ready::Ready;
 use super::waiting::Waiting;
 use super::walk::{Query, Visits};
 use crate::exact::{self, Distance};
@@ -38,6 +39,8 @@ pub(super) struct Decider<'a, Q> {
     pub(super) doubtful: Vec<u32>,
     /// Rays that wait to be decided in lanes.
     pub(super) waiting: Waiting,
+    /// Rays that are to begin.
+    pub(super) ready: Ready,
     /// What was visited, if it is counted.
     pub(super) visits: Visits,
     query: PhantomData<Q>,
@@ -52,6 +55,7 @@ impl<'a, Q: Query> Decider<'a, Q> {
             exact: 0,
             doubtful: Vec::new(),
             waiting: Waiting::default(),
+            ready: Ready::NONE,
             visits: Visits::default(),
             query: PhantomData,
         }

@@ -45,15 +45,12 @@ impl<Q: Query> Bundle<Q> for Deferred {
     }
 
     #[inline(always)]
-    fn begin(&mut self, decider: &Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
-        let rays = decider.rays;
-        let (origin, direction) = (rays.origin.row(row), rays.direction.row(row));
-        *slabs = Slabs::new(origin, direction);
-        let own = rays.own[row];
+    fn begin(&mut self, decider: &mut Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
+        let (filter, bounds) = decider.begin(row, slabs);
+        let own = decider.rays.own[row];
         self.row = row as u32;
         self.own = (own / LEAF as u32, !(1 << (own % LEAF as u32)));
-        self.filter = FilterRay::new(origin.into(), direction.into());
-        let bounds = decider.bounds(row);
+        self.filter = filter;
         self.best = Best::of_search::<Q>(bounds);
         self.others = bounds.0;
         bounds.1
@@ -75,7 +72,7 @@ impl<Q: Query> Bundle<Q> for Deferred {
             let (sphere, near) = (first + lane, self.near[lane]);
             let (number, counts) = (bits(sphere as u32), near <= self.best.t_max);
             if !Q::EXACT {
-                self.best.believe::<Q>(counts, near, number);
+                self.best.believe::<Q>(counts && near >= 0.0, near, number);
             } else if near < 0.0 || target == sphere as u32 {
                 self.meet_closely(decider, sphere);
             } else {

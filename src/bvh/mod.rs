@@ -13,6 +13,7 @@ mod deferred;
 mod hold;
 mod order;
 mod packet;
+mod ready;
 mod settle;
 mod single;
 mod stream;

@@ -49,7 +49,7 @@ impl<Q: Query, L: Lanes> Bundle<Q> for Packet<L> {
     #[inline(always)]
     fn begin(
         &mut self,
-        decider: &Decider<Q>,
+        decider: &mut Decider<Q>,
         (row, lanes): (usize, u32),
         slabs: &mut Slabs,
     ) -> f32 {

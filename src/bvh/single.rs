@@ -29,17 +29,12 @@ impl<Q: Query> Bundle<Q> for Single {
     }
 
     #[inline(always)]
-    fn begin(&mut self, decider: &Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
-        let rays = decider.rays;
-        let (origin, direction) = (rays.origin.row(row), rays.direction.row(row));
-        *slabs = Slabs::new(origin, direction);
-        let own = rays.own[row];
-        *self = Self {
-            row: row as u32,
-            own: (own / LEAF as u32, !(1 << (own % LEAF as u32))),
-            filter: FilterRay::new(origin.into(), direction.into()),
-        };
-        decider.bounds(row).1
+    fn begin(&mut self, decider: &mut Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
+        let (filter, bounds) = decider.begin(row, slabs);
+        let own = decider.rays.own[row];
+        let own = (own / LEAF as u32, !(1 << (own % LEAF as u32)));
+        *self = Self { row: row as u32, own, filter };
+        bounds.1
     }
 
     #[inline(always)]

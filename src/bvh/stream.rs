@@ -26,7 +26,7 @@ pub(super) trait Bundle<Q: Query>: Copy {
 
     /// Becomes another bundle. Returns the distance beyond which it needs no answers; below 0 if it
     /// needs none. In place, for what is put together in parts should not be copied as a whole.
-    fn begin(&mut self, decider: &Decider<Q>, start: Self::Start, slabs: &mut Slabs) -> f32;
+    fn begin(&mut self, decider: &mut Decider<Q>, start: Self::Start, slabs: &mut Slabs) -> f32;
 
     /// Which spheres of a block may be hit at a distance of at most `t_far`. The bundle is within
     /// the slabs.
@@ -118,9 +118,9 @@ impl<const FLIGHTS: usize> Next<FLIGHTS> {
             return std::mem::take(&mut self.turn);
         }
         let (mut leaves, mut arrived) = (0, 0);
+        let rows: &[[u32; MAX_LANES]; MOST / MAX_LANES] = bytemuck::cast_ref(&self.child);
         for first in (0..FLIGHTS).step_by(MAX_LANES) {
-            let row = U32x16::new(std::array::from_fn(|i| self.child[first + i].0));
-            let [leaf, none] = Child::are(row);
+            let [leaf, none] = Child::are(U32x16::new(rows[first / MAX_LANES]));
             leaves |= u64::from(leaf) << first;
             arrived |= u64::from(none) << first;
         }
@@ -259,11 +259,12 @@ impl<B: Copy> Flight<B> {
         }
         for first in (1..full).step_by(WIDTH) {
             let near = F32x8::load(&self.stack.near[first as usize..]);
-            let row: [u32; WIDTH] = std::array::from_fn(|i| self.stack.child[first as usize + i].0);
+            let mut row = [Child::NONE; WIDTH];
+            row.copy_from_slice(&self.stack.child[first as usize..first as usize + WIDTH]);
             let there = !(u32::MAX << (full - first).min(WIDTH as u32));
             let kept = near.le(F32x8::splat(self.t_far)).bits() & there;
             let (order, top) = (order::in_order(kept), self.top as usize);
-            self.stack.put(top, &row, order);
+            self.stack.put(top, &bytemuck::cast(row), order);
             shuffle(near, order).store(&mut self.stack.near[top..top + WIDTH]);
             self.top += kept.count_ones();
         }

@@ -1,15 +1,16 @@
 //! Which walk takes which rays.
 //!
 //! All of them find the same, for hits are decided in one place, `decide`. Rays that go alike go in
-//! packets (`packet`), others each on its own (`single`), many at a time (`stream`). Brute force is
-//! a packet's test over all spheres: the oracle, and where there are few, sooner done than others.
+//! packets (`packet`), others each on its own (`deferred`, or `single` where each hit is to be decided
+//! at once), many at a time (`stream`). Brute force is a packet's test over all spheres: the oracle,
+//! and where there are few, sooner done than others.
 
 use super::decide::Decider;
 use super::deferred::Deferred;
 use super::packet::Packet;
 use super::single::Single;
 use super::{Bvh, stream};
-use crate::lanes::{Lanes, Mask, set_bits};
+use crate::lanes::{Lanes, MAX_LANES, Mask, Packing, U32x16, set_bits};
 use crate::ray::{CHUNK, Hits, Rays};
 use crate::spheres::{LEAF, Spheres};
 use std::marker::PhantomData;
@@ -38,6 +39,9 @@ const NEAR: f32 = 0.75;
 /// How much directions of a packet's rays may differ from its middle one's on any axis, in sizes of a
 /// leaf over that of the scene. Camera rays of a million spheres break even at about this.
 const SPREAD: f32 = 0.5;
+
+/// The numbers of lanes.
+const LANES: [u32; MAX_LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// A packet is no less than one over this full.
 const FEW: usize = 2;
@@ -211,16 +215,30 @@ fn together<L: Lanes, Q: Query>(
     let (mut others, mut count) = ([0_u32; CHUNK], 0);
     let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
         let members = alike::<L>(rays, row, grain);
-        for lane in set_bits(!members & lanes_from(row, L::WIDTH, rows.end)) {
-            others[count] = (row + lane) as u32;
-            count += 1;
-        }
+        let alone = !members & lanes_from(row, L::WIDTH, rows.end);
+        count += note(row, alone, L::WIDTH, &mut others[count..]);
         (members != 0).then_some((row, members))
     });
     stream::trace::<_, Packet<L>, PACKETS>(bvh, decider, packets);
     if count > 0 {
         alone(bvh, decider, others[..count].iter().map(|&row| row as usize));
     }
+}
+
+/// Writes which rays are lanes of the row at `row` whose bits are set. Returns how many.
+#[inline(always)]
+fn note(row: usize, lanes: u32, width: usize, rays: &mut [u32]) -> usize {
+    if lanes == 0 {
+        return 0;
+    }
+    // A whole row is never more than what is left.
+    if width == MAX_LANES {
+        let numbers = U32x16::splat(row as u32) + U32x16::new(LANES);
+        Packing::new(lanes).store_numbers(&numbers.to_array(), rays);
+    } else {
+        set_bits(lanes).zip(rays).for_each(|(lane, ray)| *ray = (row + lane) as u32);
+    }
+    lanes.count_ones() as usize
 }
 
 /// Traces rays each on its own, many at a time.

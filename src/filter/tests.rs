@@ -224,6 +224,8 @@ fn every_width_says_the_same() {
         let chord = Chord::new(&filter, vector(|case| case.center), radius);
         let certain = chord.enters(&filter, radius, &filter.margin());
         let far = chord.near_at_most(radius, &filter.margin());
+        let mut rows = [FilterRow::NONE; 16];
+        filter.rows(&mut rows);
         let (met, near) = (chord.may_hit(F32x16::splat(1.0)).bits(), chord.near().to_array());
         for (lane, case) in cases.iter().enumerate() {
             let one = case.chord();
@@ -231,6 +233,8 @@ fn every_width_says_the_same() {
             let bit = |bits: u32| bits >> lane & 1 == 1;
             assert_eq!((bit(met), bit(certain.bits())), (one.may_hit(1.0), enters), "{case:?}");
             assert_eq!(near[lane].to_bits(), one.near().to_bits(), "{case:?}");
+            let row = FilterRay::from(rows[lane]);
+            assert_eq!(format!("{row:?}"), format!("{:?}", case.filter()), "{case:?}");
             assert_eq!(far.to_array()[lane].to_bits(), distance.to_bits(), "{case:?}");
         }
     }

@@ -11,6 +11,12 @@ pub fn greatest_of<L: Lanes>([x, y, z]: [L; 3]) -> F32x4 {
     Lanes::max(Lanes::max(a, b), Lanes::max(c, d))
 }
 
+/// In row `i` lane `first + i` of each column.
+#[inline(always)]
+pub fn transpose(columns: [F32x16; 8], first: usize) -> [F32x8; 8] {
+    F32x8::transpose(columns.map(|column| bytemuck::cast::<_, [F32x8; 2]>(column)[(first / 8) & 1]))
+}
+
 /// Puts number `order >> 4 i & 7` of a row in place `i`.
 #[inline(always)]
 pub fn shuffle_numbers(row: &[u32; 8], order: u32) -> [u32; 8] {
@@ -122,6 +128,18 @@ mod tests {
         let places: [u32; 16] = std::array::from_fn(|i| 16 * i as u32 + 15 - i as u32);
         let found = look_up(U32x16::new(row), U32x16::new(places)).to_array();
         assert_eq!(found, std::array::from_fn(|i| row[15 - i]));
+    }
+
+    #[test]
+    fn columns_become_rows() {
+        let columns = std::array::from_fn(|i| {
+            F32x16::new(std::array::from_fn(|lane| (100 * i + lane) as f32))
+        });
+        for first in [0, 8] {
+            for (i, row) in transpose(columns, first).into_iter().enumerate() {
+                assert_eq!(row.to_array(), std::array::from_fn(|k| (100 * k + first + i) as f32));
+            }
+        }
     }
 
     #[test]

@@ -157,6 +157,28 @@ fn other_boxes_are_told_as_double_precision_does() {
 }
 
 #[test]
+fn rays_in_lanes_are_as_they_are_one_by_one() {
+    let mut random = Random::new(7);
+    for _ in 0..500 {
+        let rays: [Point; 16] = std::array::from_fn(|_| point(&mut random));
+        let columns = |v: fn(&Point) -> Vec3| {
+            [0, 1, 2].map(|axis| F32x16::new(rays.each_ref().map(|ray| v(ray)[axis])))
+        };
+        let mut slabs = [Slabs::IDLE; 16];
+        Slabs::of_rays(columns(|ray| ray.origin), columns(|ray| ray.direction), &mut slabs);
+        for (slabs, ray) in slabs.iter().zip(&rays) {
+            let one = Slabs::new(ray.origin, ray.direction);
+            let bits = |slabs: &Slabs, axis: usize| {
+                let rows = [slabs.near[0], slabs.near[1], slabs.far[0], slabs.far[1]];
+                rows.map(|row| row[axis].to_bits())
+            };
+            assert!((0..3).all(|axis| bits(slabs, axis) == bits(&one, axis)), "{ray:?}");
+            assert_eq!((slabs.octant, slabs.negative), (one.octant, one.negative), "{ray:?}");
+        }
+    }
+}
+
+#[test]
 fn signs_of_the_direction_make_the_octant() {
     let octant = |x, y, z| Slabs::new(Vec3::ONE, Vec3::new(x, y, z)).octant;
     assert_eq!([octant(1.0, 0.0, 1.0), octant(-1.0, 1.0, -0.0), octant(0.5, -0.1, 0.0)], [0, 5, 2]);
