@@ -5,6 +5,7 @@
 //! without rounding unless their sum is more than 2^29 times the least of them.
 
 use super::exact::{ExactSums, two_sum};
+use crate::lanes::{F32x16, F64x8, Lanes, MAX_LANES, widen};
 use crate::scene::Rgb;
 
 /// How many times the least of them a sum of samples may be and is not rounded for certain: the bits of
@@ -123,20 +124,69 @@ fn square(color: Rgb) -> [f64; 3] {
 
 /// The sum of samples, unless it might be rounded or one of them is not sound.
 fn plain_sum(samples: &[Rgb]) -> Option<[f64; 3]> {
-    let mut sum = [0.0; 3];
-    let (mut low, mut least) = ([0.0_f32; 3], [f32::INFINITY; 3]);
-    for sample in samples {
-        for (channel, value) in sample.to_array().into_iter().enumerate() {
-            sum[channel] += f64::from(value);
-            low[channel] = low[channel].min(value);
-            let more = if value > 0.0 { value } else { f32::INFINITY };
-            least[channel] = least[channel].min(more);
+    let (rows, rest) = samples.as_chunks();
+    let mut total = if rows.is_empty() { Total::default() } else { Total::of_rows(rows) };
+    for sample in rest {
+        total.add(*sample);
+    }
+    total.exact()
+}
+
+/// A sum of samples, and what tells whether it is exact.
+struct Total {
+    sum: [f64; 3],
+    /// The least number, if that is less than 0.
+    low: f32,
+    /// The least that is more than 0.
+    least: f32,
+}
+
+impl Default for Total {
+    fn default() -> Self {
+        Self { sum: [0.0; 3], low: 0.0, least: f32::INFINITY }
+    }
+}
+
+impl Total {
+    /// Of sixteen samples at a time, which are three rows of lanes.
+    fn of_rows(rows: &[[Rgb; MAX_LANES]]) -> Self {
+        let (zero, none) = (F32x16::splat(0.0), F32x16::splat(f32::INFINITY));
+        let mut sum = [F64x8::splat(0.0); 3];
+        let (mut low, mut least) = (zero, none);
+        for row in rows {
+            let [a, b, c]: [F32x16; 3] = bytemuck::cast(*row);
+            for x in [a, b, c] {
+                low = Lanes::min(x, low);
+                least = Lanes::min(least, Lanes::select(Lanes::lt(zero, x), x, none));
+            }
+            // Eight numbers on, and sixteen, it is another channel's turn; 24 on, the same.
+            let ([a, b], [c, d], [e, f]) = (widen(a), widen(b), widen(c));
+            sum = [sum[0] + (a + d), sum[1] + (b + e), sum[2] + (c + f)];
+        }
+        let each: [[f64; 3]; 8] = bytemuck::cast(sum);
+        let add = |a: [f64; 3], b: [f64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        Self {
+            sum: each.into_iter().fold([0.0; 3], add),
+            low: -(-low).greatest(),
+            least: -(-least).greatest(),
         }
     }
-    // All samples, and so all sums of some, are whole multiples of the last place of the least.
-    let exact = |channel: usize| sum[channel] <= FREE * f64::from(least[channel]);
-    let sound = |channel: usize| low[channel] >= 0.0 && sum[channel].is_finite();
-    (0..3).all(|channel| exact(channel) && sound(channel)).then_some(sum)
+
+    fn add(&mut self, sample: Rgb) {
+        for (sum, value) in self.sum.iter_mut().zip(sample.to_array()) {
+            *sum += f64::from(value);
+            self.low = self.low.min(value);
+            self.least = self.least.min(if value > 0.0 { value } else { f32::INFINITY });
+        }
+    }
+
+    /// The sum, if no order of adding rounds it and all samples are sound.
+    fn exact(&self) -> Option<[f64; 3]> {
+        // All samples, and so all sums of some, are whole multiples of the last place of the least.
+        let bound = FREE * f64::from(self.least);
+        let exact = self.sum.iter().all(|&sum| sum.is_finite() && sum <= bound);
+        (exact && self.low >= 0.0).then_some(self.sum)
+    }
 }
 
 /// The sum of numbers in two levels, unless the second might be rounded.
