@@ -32,11 +32,10 @@ impl Lights {
         let row = self.gather(spheres, light, lanes);
         let (origin, center) = (at.point.halves(), row.center().halves());
         let radius = widen(F32x16::new(row.radius));
-        let seen =
-            [0, 1].map(|half| toward(origin[half], (center[half], radius[half]), self.reach));
-        let (cone, outside) =
-            Cone::toward_spheres(seen.each_ref().map(|seen| seen.distance2), radius);
-        let axis = Vec3::narrow(seen.each_ref().map(|seen| seen.direction));
+        let low = toward(origin[0], (center[0], radius[0]), self.reach);
+        let high = toward(origin[1], (center[1], radius[1]), self.reach);
+        let (cone, outside) = Cone::toward_spheres([low.distance2, high.distance2], radius);
+        let axis = Vec3::narrow([low.direction, high.direction]);
         let direction = Frames::about(axis).to_world(cone.sample_each(u));
         let own = set_bits(lanes).filter(|&lane| row.target[lane] == at.own[lane]);
         let lanes = own.fold(lanes & outside, |lanes, lane| lanes & !(1 << lane));
@@ -47,13 +46,23 @@ impl Lights {
             target: row.target,
             weight: row.radiance().map(|channel| channel / pdf),
             pdf,
-            close: lanes & (seen[0].close.bits() | seen[1].close.bits() << 8),
+            close: lanes & (low.close.bits() | high.close.bits() << 8),
             lanes,
         }
     }
 
     #[inline(always)]
     fn gather(&self, spheres: &Spheres, light: &[u32; ROW], lanes: u32) -> Gathered {
+        if let [lone] = self.emitters[..] {
+            // All at once: what is written lane by lane has to be waited for.
+            let (center, radiance) = (spheres.center(lone as usize), self.radiance[0]);
+            return Gathered {
+                center: center.to_array().map(|x| [x; ROW]),
+                radius: [spheres.radius(lone as usize); ROW],
+                radiance: radiance.to_array().map(|x| [x; ROW]),
+                target: [lone; ROW],
+            };
+        }
         let mut row = Gathered {
             center: [[0.0; ROW]; 3],
             radius: [1.0; ROW],

@@ -64,7 +64,49 @@ impl Point {
     }
 }
 
+/// Points of a row of lanes.
+struct Gathered {
+    position: [[f64; ROW]; 3],
+    intensity: [[f64; ROW]; 3],
+    scale: [f64; ROW],
+}
+
+impl Gathered {
+    /// How eight of them, from lane `first` on, are seen.
+    #[inline(always)]
+    fn see(&self, origin: Vec3<F64x8>, first: usize) -> Seen<F64x8> {
+        let part = |column: &[f64; ROW]| F64x8::from(&column[first..first + 8]);
+        let vector = |[x, y, z]: &[[f64; ROW]; 3]| Vec3::new(part(x), part(y), part(z));
+        see(origin, (vector(&self.position), vector(&self.intensity)), part(&self.scale))
+    }
+}
+
+impl Point {
+    /// How it is seen from eight points.
+    #[inline(always)]
+    fn see_row(&self, origin: Vec3<F64x8>) -> Seen<F64x8> {
+        let splat = |v: DVec3| Vec3::from(v).map(F64x8::splat);
+        let light = (splat(self.position), splat(self.intensity.as_dvec3()));
+        see(origin, light, F64x8::splat(self.falloff.unwrap_or(0.0)))
+    }
+}
+
 impl Lights {
+    #[inline(always)]
+    fn gather_points(&self, light: &[u32; ROW], lanes: u32, first: usize) -> Gathered {
+        let column = [0.0; ROW];
+        let mut row = Gathered { position: [column; 3], intensity: [column; 3], scale: column };
+        for lane in set_bits(lanes) {
+            let point = &self.points[light[lane] as usize - first];
+            for axis in 0..3 {
+                row.position[axis][lane] = point.position[axis];
+                row.intensity[axis][lane] = f64::from(point.intensity[axis]);
+            }
+            row.scale[lane] = point.falloff.unwrap_or(0.0);
+        }
+        row
+    }
+
     /// [`Point::sample`] for each receiver in `lanes`: point `light[lane]`, counted from `first`.
     #[inline(always)]
     pub(super) fn sample_points(
@@ -73,22 +115,13 @@ impl Lights {
         (light, lanes): (&[u32; ROW], u32),
         first: usize,
     ) -> LightRow {
-        let (mut position, mut intensity) = ([[0.0; ROW]; 3], [[0.0; ROW]; 3]);
-        let mut scale = [0.0; ROW];
-        for lane in set_bits(lanes) {
-            let point = &self.points[light[lane] as usize - first];
-            for axis in 0..3 {
-                position[axis][lane] = point.position[axis];
-                intensity[axis][lane] = f64::from(point.intensity[axis]);
-            }
-            scale[lane] = point.falloff.unwrap_or(0.0);
-        }
         let origin = at.point.halves();
-        let [low, high] = [0, 1].map(|half| {
-            let part = |column: &[f64; ROW]| F64x8::from(&column[8 * half..8 * half + 8]);
-            let vector = |[x, y, z]: &[[f64; ROW]; 3]| Vec3::new(part(x), part(y), part(z));
-            see(origin[half], (vector(&position), vector(&intensity)), part(&scale))
-        });
+        let (low, high) = if let [lone] = &self.points[..] {
+            (lone.see_row(origin[0]), lone.see_row(origin[1]))
+        } else {
+            let points = self.gather_points(light, lanes, first);
+            (points.see(origin[0], 0), points.see(origin[1], 8))
+        };
         let row = LightRow::distant(
             Vec3::narrow([low.direction, high.direction]),
             Rgb::ZERO,

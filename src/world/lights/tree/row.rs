@@ -36,7 +36,10 @@ impl Tree {
             if wanted == 0 {
                 continue;
             }
-            let picked = pick(&chances.map(|row| widen(row)[half])[..usize::from(self.top)], draw);
+            // Not `map`, whose closure may be a call.
+            let mut of_half = [draw; BRANCHES];
+            of_half.iter_mut().zip(&chances).for_each(|(of, &row)| *of = widen(row)[half]);
+            let picked = pick(&of_half[..usize::from(self.top)], draw);
             let (place, chance) = (picked.place.to_array(), picked.probability.to_array());
             for i in set_bits(wanted) {
                 let lane = 8 * half + i;
