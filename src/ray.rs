@@ -1,6 +1,6 @@
 //! Rays and hits in columns: row `i` of every column belongs to ray `i`.
 
-use crate::lanes::{Doubles, F32x16, F64x8, Lanes, MAX_LANES, Packing, store_rounded};
+use crate::lanes::{Doubles, F32x16, F64x8, Lanes, MAX_LANES, Packing, U32x16, store_rounded};
 use crate::vec3::Vec3;
 use glam::{DVec3, Vec3 as Point};
 
@@ -81,6 +81,14 @@ impl Columns3 {
         store_rounded(p.z, &mut self.z[i..]);
     }
 
+    /// Writes some of sixteen lanes to rows from `i` on, and anything to those up to sixteen.
+    #[inline(always)]
+    pub(crate) fn pack(&mut self, i: usize, packing: &Packing, p: Vec3<F32x16>) {
+        packing.store(p.x, &mut self.x[i..]);
+        packing.store(p.y, &mut self.y[i..]);
+        packing.store(p.z, &mut self.z[i..]);
+    }
+
     /// Rows `i..i + L::WIDTH`.
     #[inline(always)]
     pub fn load<L: Lanes>(&self, i: usize) -> Vec3<L> {
@@ -149,8 +157,8 @@ impl Rays {
         self.len += count;
     }
 
-    /// Appends some of sixteen rays that start on surfaces, toward no sphere. The
-    /// caller keeps to the capacity.
+    /// Appends some of sixteen rays that start on surfaces. The caller keeps to the capacity, and
+    /// writes what they are aimed at, if rays are.
     #[inline(always)]
     pub(crate) fn append_packed(
         &mut self,
@@ -159,13 +167,9 @@ impl Rays {
         own: &[u32; MAX_LANES],
     ) {
         let row = self.len;
-        for (columns, lanes) in [(&mut self.origin, origin), (&mut self.direction, direction)] {
-            packing.store(lanes.x, &mut columns.x[row..]);
-            packing.store(lanes.y, &mut columns.y[row..]);
-            packing.store(lanes.z, &mut columns.z[row..]);
-        }
-        packing.store_numbers(own, &mut self.own[row..]);
-        self.target[row..row + MAX_LANES].fill(MISS);
+        self.origin.pack(row, packing, origin);
+        self.direction.pack(row, packing, direction);
+        packing.store_numbers(U32x16::new(*own), &mut self.own[row..]);
         self.len += packing.count();
     }
 

@@ -234,7 +234,7 @@ fn note(row: usize, lanes: u32, width: usize, rays: &mut [u32]) -> usize {
     // A whole row is never more than what is left.
     if width == MAX_LANES {
         let numbers = U32x16::splat(row as u32) + U32x16::new(LANES);
-        Packing::new(lanes).store_numbers(&numbers.to_array(), rays);
+        Packing::new(lanes).store_numbers(numbers, rays);
     } else {
         set_bits(lanes).zip(rays).for_each(|(lane, ray)| *ray = (row + lane) as u32);
     }

@@ -1,37 +1,36 @@
 //! Rows of paths: what each of sixteen brings to the surface that it has hit.
 
-use super::pick::{padded, pick, pick_colors, pick_row};
+use super::bins::Bin;
+use super::carried::CarriedRow;
 use super::stages::Local;
 use super::workspace::Workspace;
-use crate::lanes::{F32x16, Lanes};
-use crate::sampling::{Frames, PathRow};
+use crate::lanes::{F32x16, Lanes, U32x16};
+use crate::sampling::Frames;
 use crate::vec3::Vec3;
 use crate::world::{ROW, ReceiverRow};
 
-/// Where a row of shadow rays starts.
+/// Where a row of shadow rays, or of paths, starts.
 pub struct Starts {
-    /// Rows of the paths; lanes without a path are like the first.
-    pub rows: [u32; ROW],
+    /// Rows of the rays that have come there; anything in lanes without a path.
+    pub rows: U32x16,
     /// The surfaces, on the sides that are looked at.
     pub at: ReceiverRow,
     /// Lanes whose sphere is seen from inside.
     pub inside: u32,
+    /// What the paths bring.
+    pub carried: CarriedRow,
 }
 
 /// A row of paths at surfaces.
-pub struct Gathered {
+pub struct Gathered<'a> {
     /// Where they are.
-    pub starts: Starts,
+    pub starts: &'a Starts,
     /// Lanes that have a path.
     pub lanes: u32,
     /// To world space and back; z is the normal on the side that is looked at.
     pub frames: Frames<F32x16>,
     /// Local unit vectors toward where the paths came from.
     pub outgoing: Vec3<F32x16>,
-    /// Product of the weights so far.
-    pub throughput: Vec3<F32x16>,
-    /// Where in their sequences of samples the paths are.
-    pub sample: PathRow,
 }
 
 impl Starts {
@@ -39,51 +38,42 @@ impl Starts {
     pub fn one(work: &Workspace, row: usize, local: &Local) -> Self {
         let splat = |v: glam::Vec3| Vec3::from(v).map(F32x16::splat);
         Self {
-            rows: [row as u32; ROW],
+            rows: U32x16::splat(row as u32),
             at: ReceiverRow {
                 point: splat(work.surface.point.row(row)),
                 normal: splat(local.frame.normal),
                 own: [work.hits.sphere[row]; ROW],
             },
             inside: if local.inside { u32::from(u16::MAX) } else { 0 },
+            carried: work.carried.one(row),
         }
     }
 
-    /// Of the paths in at most sixteen rows.
+    /// Of the paths in sixteen rows of a bin.
     #[inline(always)]
-    fn of(work: &Workspace, some: &[u32]) -> Self {
-        let rows = padded(some);
-        let (point, normal) = (&work.surface.point, &work.surface.facing);
+    pub fn of(bin: &Bin, first: usize) -> Self {
         Self {
-            rows,
+            rows: bin.ray_row(first),
             at: ReceiverRow {
-                point: pick_row(point, &rows),
-                normal: pick_row(normal, &rows),
-                own: pick(&work.hits.sphere, &rows),
+                point: bin.point_row(first),
+                normal: bin.facing_row(first),
+                own: bin.hit_row(first).to_array(),
             },
-            inside: work.surface.inside(&rows),
+            inside: bin.inside(first),
+            carried: bin.carried_row(first),
         }
     }
 }
 
-impl Gathered {
-    /// The paths in at most sixteen rows.
+impl<'a> Gathered<'a> {
+    /// The paths in those of sixteen rows of a bin that there are, which start there.
     #[inline(always)]
-    pub fn new(work: &Workspace, some: &[u32]) -> Self {
-        let starts = Starts::of(work, some);
-        let place = pick(&work.place, &starts.rows);
+    pub fn new(bin: &Bin, (first, lanes): (usize, u32), starts: &'a Starts) -> Self {
         let frames = Frames::about(starts.at.normal);
-        let mut outgoing = frames.to_local(-pick_row(&work.rays.direction, &starts.rows));
+        let mut outgoing = frames.to_local(-bin.direction_row(first));
         // At the limb, rounding may put the viewer below the horizon.
         outgoing.z = Lanes::max(outgoing.z, F32x16::splat(f32::EPSILON));
-        Self {
-            starts,
-            lanes: (1 << some.len()) - 1,
-            frames,
-            outgoing,
-            throughput: pick_colors(&work.paths.throughput, &place),
-            sample: work.samples(some),
-        }
+        Self { starts, lanes, frames, outgoing }
     }
 
     /// Local directions in world space, of unit length.

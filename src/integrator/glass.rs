@@ -1,11 +1,16 @@
 //! Sending paths through glass, sixteen at a time.
 
 use super::Job;
+use super::arrival::Arrival;
+use super::bins::Bin;
+use super::carried::CarriedRow;
 use super::onward::Segments;
-use super::pick::{padded, pick, pick_normals, pick_row};
 use super::surface::chord;
 use super::workspace::Workspace;
-use crate::lanes::{Doubles, F32x16, F64x8, MAX_LANES, Mask, load_doubles, store_rounded, widen};
+use crate::lanes::{
+    Doubles, F32x16, F64x8, Lanes, MAX_LANES, Mask, Packing, load_doubles, set_bits, store_rounded,
+    widen,
+};
 use crate::ray::MISS;
 use crate::scene::Rgb;
 use crate::shade::dielectric::{self, Meeting};
@@ -17,7 +22,7 @@ const HALF: usize = MAX_LANES / 2;
 
 /// What a row of paths brings to the glass that it has hit.
 struct Gathered {
-    place: [u32; MAX_LANES],
+    carried: CarriedRow,
     hit: [u32; MAX_LANES],
     point: Vec3<F32x16>,
     direction: Vec3<F32x16>,
@@ -39,24 +44,23 @@ struct Sent {
 
 /// Sends every path that has hit glass through it or back.
 pub(super) fn pass(job: &Job, work: &mut Workspace, bounce: u32) {
-    let rows = std::mem::take(&mut work.bins.kind[Kind::Dielectric as usize]);
-    let tinted = is_tinted(job.world);
-    for rows in rows.chunks(MAX_LANES) {
-        let choice = job.sampler.lobe_row(&work.samples(rows), bounce);
-        let mut gathered = gather(job.world, work, rows, choice);
-        let nested = work.paths.keeps_inside();
+    let Some(bin) = work.bins.take(Kind::Dielectric) else { return };
+    let (tinted, nested) = (is_tinted(job.world), work.paths.keeps_inside());
+    for (first, lanes) in bin.rows() {
+        let carried = bin.carried_row(first);
+        let choice = job.sampler.lobe_row(&work.paths.numbers(&carried), bounce);
+        let mut gathered = gather(job.world, work, (&bin, first), (carried, choice));
         if nested {
-            (0..rows.len()).for_each(|lane| surround(job.world, work, &mut gathered, lane));
+            set_bits(lanes).for_each(|lane| surround(job.world, work, &mut gathered, lane));
         }
         let sent = send(&gathered);
         if nested {
-            let inward = (0..rows.len()).filter(|lane| sent.inward >> lane & 1 == 1);
-            inward.for_each(|lane| enter(job.world, work, &gathered, lane));
+            set_bits(lanes & sent.inward).for_each(|lane| enter(job.world, work, &gathered, lane));
         }
-        arrive(job.world, work, tinted, (rows.len(), &gathered));
-        go_on(work, rows.len(), &gathered, &sent);
+        let carried = arrive(job.world, tinted, &gathered);
+        go_on(work, lanes, (&gathered, &carried), &sent);
     }
-    work.bins.kind[Kind::Dielectric as usize] = rows;
+    work.bins.put(Kind::Dielectric, bin);
 }
 
 /// Whether any glass takes away from what passes.
@@ -65,19 +69,23 @@ fn is_tinted(world: &World) -> bool {
 }
 
 #[inline(always)]
-fn gather(world: &World, work: &Workspace, rows: &[u32], choice: F32x16) -> Gathered {
-    let padded = padded(rows);
-    let hit = pick(&work.hits.sphere, &padded);
+fn gather(
+    world: &World,
+    work: &Workspace,
+    (bin, first): (&Bin, usize),
+    (carried, choice): (CarriedRow, F32x16),
+) -> Gathered {
+    let hit = bin.hit_row(first).to_array();
     let mut radius = [0.0; MAX_LANES];
     for (radius, &hit) in radius.iter_mut().zip(&hit) {
         *radius = world.spheres.radius(hit as usize);
     }
     Gathered {
-        place: pick(&work.place, &padded),
+        carried,
         hit,
-        point: pick_row(&work.surface.point, &padded),
-        direction: pick_row(&work.rays.direction, &padded),
-        normal: pick_normals(&work.surface.normal, &padded),
+        point: bin.point_row(first),
+        direction: bin.direction_row(first),
+        normal: work.surface.normal.pick(&bin.ray_row(first).to_array()),
         radius,
         index: [indices(world, &hit), [1.0; MAX_LANES]],
         choice: choice.to_array(),
@@ -99,13 +107,13 @@ fn indices(world: &World, rows: &[u32; MAX_LANES]) -> [f32; MAX_LANES] {
 
 /// Takes the sphere that a path has hit from what it is in, and finds what glass is around.
 fn surround(world: &World, work: &mut Workspace, gathered: &mut Gathered, lane: usize) {
-    let inside = work.paths.inside(gathered.place[lane] as usize);
+    let inside = work.paths.inside(gathered.carried.place.to_array()[lane] as usize);
     gathered.index[1][lane] = dielectric::around(world, gathered.hit[lane], inside);
 }
 
 /// Adds the sphere that a path has hit to what it is in.
 fn enter(world: &World, work: &mut Workspace, gathered: &Gathered, lane: usize) {
-    let inside = work.paths.inside(gathered.place[lane] as usize);
+    let inside = work.paths.inside(gathered.carried.place.to_array()[lane] as usize);
     let fits = dielectric::insert(world, inside, gathered.hit[lane]);
     work.counters.nesting_overflows += u64::from(!fits);
 }
@@ -145,44 +153,47 @@ fn send_half(gathered: &Gathered, first: usize, sent: &mut Sent) {
     sent.inward |= passage.inward.bits() << first;
 }
 
-/// Notes how paths have come through surfaces that are there.
+/// What paths take along from surfaces that are there; from others, what they brought.
 #[inline(always)]
-fn arrive(
-    world: &World,
-    work: &mut Workspace,
-    tinted: bool,
-    (count, gathered): (usize, &Gathered),
-) {
-    for lane in 0..count {
-        if gathered.index[1][lane] == 0.0 {
-            continue;
-        }
-        let place = gathered.place[lane] as usize;
-        let arrival = &mut work.paths.arrival[place];
-        (arrival.pdf, arrival.diffuse) = (None, false);
-        if tinted {
-            let hit = gathered.hit[lane];
-            let glass = &world.materials.dielectric[world.material(hit).row()];
-            work.paths.throughput[place] *= glass.color * world.color(hit);
-        }
+fn arrive(world: &World, tinted: bool, gathered: &Gathered) -> CarriedRow {
+    let real = Lanes::lt(F32x16::splat(0.0), F32x16::new(gathered.index[1]));
+    let carried = gathered.carried;
+    let arrival = carried.arrival.onward(F32x16::splat(0.0), false);
+    let arrival = Arrival(Lanes::select(real, arrival.0, carried.arrival.0));
+    let throughput = if tinted { tint(world, real.bits(), gathered) } else { carried.throughput };
+    CarriedRow { throughput, arrival, ..carried }
+}
+
+/// What is left of the throughput of the paths in `lanes` after glass has taken its share.
+fn tint(world: &World, lanes: u32, gathered: &Gathered) -> Vec3<F32x16> {
+    let mut color = [[1.0; MAX_LANES]; 3];
+    for lane in set_bits(lanes) {
+        let hit = gathered.hit[lane];
+        let glass = &world.materials.dielectric[world.material(hit).row()];
+        let Rgb { x, y, z } = glass.color * world.color(hit);
+        (color[0][lane], color[1][lane], color[2][lane]) = (x, y, z);
     }
+    let [x, y, z] = color;
+    let color = Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z));
+    gathered.carried.throughput.times(color)
 }
 
 #[inline(always)]
-fn go_on(work: &mut Workspace, count: usize, gathered: &Gathered, sent: &Sent) {
-    let mut end = gathered.hit;
-    for (lane, end) in end.iter_mut().enumerate() {
-        *end = if sent.inward >> lane & 1 == 1 { *end } else { MISS };
+fn go_on(
+    work: &mut Workspace,
+    lanes: u32,
+    (gathered, carried): (&Gathered, &CarriedRow),
+    sent: &Sent,
+) {
+    let [x, y, z] = sent.direction;
+    let direction = Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z));
+    let segments = Segments { origin: gathered.point, direction, own: &gathered.hit, carried };
+    let onward = &mut work.onward;
+    let first = onward.append(&Packing::new(lanes), &segments);
+    let ends = onward.hits.sphere[first..].iter_mut().zip(gathered.hit);
+    for (lane, (end, hit)) in ends.enumerate() {
+        *end = if sent.inward >> lane & 1 == 1 { hit } else { MISS };
     }
-    work.onward.append(
-        count,
-        &Segments {
-            origin: [gathered.point.x, gathered.point.y, gathered.point.z],
-            direction: sent.direction.map(F32x16::new),
-            own: gathered.hit,
-            end: (sent.t, end),
-            normal: gathered.normal,
-            place: gathered.place,
-        },
-    );
+    onward.hits.t[first..first + MAX_LANES].copy_from_slice(&sent.t);
+    onward.entry.copy(first, &gathered.normal);
 }

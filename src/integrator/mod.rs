@@ -1,18 +1,23 @@
 //! From rays to radiance: loops over columns, no recursion.
 //!
-//! All three integrators begin with [`stages::generate`], alternate [`stages::intersect`] with
+//! All three integrators begin with [`generate`], alternate [`stages::intersect`] with
 //! shading, one system for each kind of material that was hit, and leave the radiance of each path
 //! in [`workspace::Paths`]. A stage whose column is empty does nothing.
 
 pub mod ao;
+pub mod arrival;
 pub mod bins;
+pub mod block;
+pub mod carried;
 pub mod clock;
 pub mod counters;
+mod found;
 pub mod gather;
+pub mod generate;
 mod glass;
+pub mod looks;
 mod onward;
 pub mod path;
-mod pick;
 mod scatter;
 pub mod shadows;
 pub mod skips;

@@ -9,28 +9,29 @@
 
 use super::Job;
 use super::clock::Stage;
+use super::found;
 use super::glass;
 use super::scatter::{self, Event};
-use super::stages::{self, ShadeKind};
+use super::stages::{self, ByKind};
 use super::workspace::Workspace;
 use crate::lanes::Lanes;
-use crate::scene::{Rgb, Roulette};
+use crate::scene::Roulette;
 use crate::shade::Material;
-use crate::world::{Kind, MaterialId, ROW, Receiver, World};
+use crate::world::{Kind, MaterialId, World};
 
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace) {
     let faint = faint(job.world);
     for bounce in 0.. {
         stages::intersect(job, work);
-        escape(job, work);
-        emit(job, work);
+        found::in_the_sky(job, work);
+        found::at_lamps(job, work);
         if bounce == job.depth() {
             work.counters.cut_paths += work.bins.scattered();
             return;
         }
         glass::pass(job, work, bounce);
-        stages::by_kind(job, work, &mut Shade { job, event: Event { bounce, faint } });
+        stages::by_kind(job.world, &mut Shade { job, work, event: Event { bounce, faint } });
         stages::occlude(job, work);
         work.advance();
         work.clock.end(Stage::Shade);
@@ -39,78 +40,6 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
         }
         work.counters.bounce_rays += work.len() as u64;
     }
-}
-
-/// Gives the environment's light, and the suns', to paths that leave the scene.
-fn escape(job: &Job, work: &mut Workspace) {
-    let (environment, lights) = (&job.world.environment, &job.world.lights);
-    let sampled = lights.sky || lights.suns_have_discs();
-    for i in 0..work.bins.escaped.len() {
-        let row = work.bins.escaped[i] as usize;
-        let place = work.place[row] as usize;
-        let light = if sampled {
-            sky(job, work, row)
-        } else if environment.illuminates || work.paths.arrival[place].unscattered {
-            environment.radiance(work.rays.direction.row(row))
-        } else {
-            continue;
-        };
-        work.paths.radiance[place] += work.paths.throughput[place] * light;
-    }
-}
-
-/// What the path in `row` finds in the sky, where light samples may find it as well.
-fn sky(job: &Job, work: &Workspace, row: usize) -> Rgb {
-    let (environment, lights) = (&job.world.environment, &job.world.lights);
-    let arrival = work.paths.arrival[work.place[row] as usize];
-    let direction = work.rays.direction.row(row);
-    let mut light = Rgb::ZERO;
-    if environment.illuminates || arrival.unscattered {
-        let weight =
-            heuristic(arrival.pdf, || lights.sky_pdf(environment, direction, &receiver(work, row)));
-        light += environment.radiance(direction) * weight;
-    }
-    if !arrival.diffuse {
-        for (sun, radiance) in lights.suns_toward(direction) {
-            let pdf = || lights.sun_pdf(sun, &receiver(work, row));
-            light += radiance * heuristic(arrival.pdf, pdf);
-        }
-    }
-    light
-}
-
-/// Gives the light of emitters to paths that hit them.
-fn emit(job: &Job, work: &mut Workspace) {
-    let world = job.world;
-    for i in 0..work.bins.kind[Kind::Emitter as usize].len() {
-        let row = work.bins.kind[Kind::Emitter as usize][i] as usize;
-        let place = work.place[row] as usize;
-        let arrival = work.paths.arrival[place];
-        let hit = work.hits.sphere[row];
-        let weight = match arrival.pdf {
-            None => 1.0,
-            Some(pdf) => {
-                match world.lights.emitter_pdf(&world.spheres, hit, &receiver(work, row)) {
-                    (_, false) if arrival.diffuse => 0.0,
-                    (other, _) => heuristic(Some(pdf), || other),
-                }
-            }
-        };
-        let radiance = world.materials.emitter[world.material(hit).row()].radiance;
-        work.paths.radiance[place] += work.paths.throughput[place] * radiance * weight;
-    }
-}
-
-/// Where the path in `row` looked for light last.
-fn receiver(work: &Workspace, row: usize) -> Receiver {
-    let normal = work.paths.normal.get(work.place[row] as usize).copied().unwrap_or_default();
-    Receiver { point: work.rays.origin.row(row), normal, own: work.rays.own[row] }
-}
-
-/// Weight of what was found with density `found` and might have been found with density `other`.
-/// `None` is a density that is infinite.
-fn heuristic(found: Option<f32>, other: impl FnOnce() -> f32) -> f32 {
-    found.map_or(1.0, |found| heuristics(found, other()))
 }
 
 /// Weights of what was found with densities `found`, more than 0, and might have been found with
@@ -125,21 +54,17 @@ pub fn heuristics<L: Lanes>(found: L, other: L) -> L {
 /// One bounce's shading.
 struct Shade<'a> {
     job: &'a Job<'a>,
+    work: &'a mut Workspace,
     event: Event,
 }
 
-impl ShadeKind for Shade<'_> {
-    fn shade<M: Material>(
-        &mut self,
-        work: &mut Workspace,
-        kind: Kind,
-        material: impl Fn(MaterialId) -> M,
-    ) {
-        let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
-        for rows in rows.chunks(ROW) {
-            scatter::shade(self.job, work, self.event, (rows, &material));
+impl ByKind for Shade<'_> {
+    fn visit<M: Material>(&mut self, kind: Kind, table: impl Fn(MaterialId) -> M) {
+        let Some(bin) = self.work.bins.take(kind) else { return };
+        for rows in bin.rows() {
+            scatter::shade(self.job, self.work, self.event, (&bin, rows), (kind, &table));
         }
-        work.bins.kind[kind as usize] = rows;
+        self.work.bins.put(kind, bin);
     }
 }
 

@@ -1,14 +1,16 @@
 //! Shading in rows of sixteen paths: a light sample for each, and where each goes on.
 
 use super::Job;
-use super::gather::Gathered;
+use super::bins::Bin;
+use super::carried::CarriedRow;
+use super::gather::{Gathered, Starts};
+use super::looks::surfaces;
 use super::path::{heuristics, may_end, survival};
 use super::shadows::cast;
-use super::workspace::{Arrival, Workspace};
-use crate::lanes::{F32x16, Lanes, Mask, set_bits};
-use crate::shade::{Bsdf, Material, Scatter};
-use crate::vec3::Vec3;
-use crate::world::{MaterialId, ROW};
+use super::workspace::Workspace;
+use crate::lanes::{F32x16, Lanes, Mask};
+use crate::shade::{Bsdf, Material};
+use crate::world::{Kind, MaterialId};
 
 /// One scattering: its number, and the throughput of paths that are worth their time.
 #[derive(Clone, Copy)]
@@ -17,23 +19,22 @@ pub(super) struct Event {
     pub(super) faint: f32,
 }
 
-/// Samples a light for each of at most sixteen rows, and sends their paths on or ends them.
+/// Samples a light for each of at most sixteen rows of a bin, and sends their paths on or ends
+/// them.
 pub(super) fn shade<M: Material>(
     job: &Job,
     work: &mut Workspace,
     event: Event,
-    (rows, material): (&[u32], &impl Fn(MaterialId) -> M),
+    (bin, rows): (&Bin, (usize, u32)),
+    material: (Kind, &impl Fn(MaterialId) -> M),
 ) {
-    let paths = Gathered::new(work, rows);
-    let surfaces: [M; ROW] = std::array::from_fn(|lane| {
-        let hit = paths.starts.at.own[lane];
-        material(job.world.material(hit)).tinted(job.world.color(hit))
-    });
-    let bsdf = M::row(&surfaces);
+    let starts = Starts::of(bin, rows.0);
+    let paths = Gathered::new(bin, rows, &starts);
+    let looks = (job.world, work.looks.as_ref());
+    let bsdf = surfaces(looks, material, &paths.starts.at.own);
     if job.has_lights() {
-        let delta = |lane: usize| u32::from(surfaces[lane].is_delta()) << lane;
-        let delta = (0..ROW).fold(0, |lanes, lane| lanes | delta(lane));
-        look_for_light::<M>(job, work, event.bounce, (&paths, &bsdf, paths.lanes & !delta));
+        let lanes = paths.lanes & !bsdf.is_delta().bits();
+        look_for_light::<M>(job, work, event.bounce, (&paths, &bsdf, lanes));
     }
     go_on::<M>(job, work, event, (&paths, &bsdf));
 }
@@ -49,8 +50,15 @@ fn look_for_light<M: Material>(
     if lanes == 0 {
         return;
     }
-    let numbers = job.sampler.light_row(&paths.sample, bounce);
-    let samples = job.world.lights.sample_row(job.world, &paths.starts.at, numbers, lanes);
+    let carried = &paths.starts.carried;
+    let lights = &job.world.lights;
+    let numbers = if lights.len() == 1 && lights.is_delta(0) {
+        // Nothing is drawn for what is certain.
+        [F32x16::splat(0.0); 4]
+    } else {
+        job.sampler.light_row(&work.paths.numbers(carried), bounce)
+    };
+    let samples = lights.sample_row(job.world, &paths.starts.at, numbers, lanes);
     let incoming = paths.frames.to_local(samples.direction);
     // Whether the surface's own directions look for that light as well.
     let both = if M::DIFFUSE {
@@ -65,9 +73,9 @@ fn look_for_light<M: Material>(
         Lanes::select(both, weights, F32x16::splat(1.0))
     };
     let response = bsdf.eval(paths.outgoing, incoming) * weight;
-    let light = paths.throughput.times(response).times(samples.weight);
+    let light = carried.throughput.times(response).times(samples.weight);
     let above = Lanes::lt(F32x16::splat(0.0), incoming.z).bits();
-    cast(job, work, &paths.starts, (&samples, samples.lanes & above), light);
+    cast(job, work, paths.starts, (&samples, samples.lanes & above), light);
 }
 
 /// Sends each path on, or ends it.
@@ -78,58 +86,21 @@ fn go_on<M: Material>(
     Event { bounce, faint }: Event,
     (paths, bsdf): (&Gathered, &M::Bsdf<F32x16>),
 ) {
-    let roulette = job.settings.roulette;
+    let (roulette, carried) = (job.settings.roulette, &paths.starts.carried);
     // Nothing is drawn for what is certain.
     let choose = !M::DIFFUSE || may_end(roulette, bounce);
-    let draw = job.sampler.scatter_row(&paths.sample, bounce, choose);
+    let draw = job.sampler.scatter_row(&work.paths.numbers(carried), bounce, choose);
     let scatter = bsdf.sample(paths.outgoing, draw.direction, draw.lobe);
-    let throughput = paths.throughput.times(scatter.weight);
+    let throughput = carried.throughput.times(scatter.weight);
     let greatest = throughput.max_element();
     let survival = survival(roulette, greatest, bounce, faint);
     let goes_on = Lanes::lt(draw.roulette, survival) & Lanes::lt(F32x16::splat(0.0), greatest);
-    let next = Scatter {
-        incoming: paths.to_world(scatter.incoming),
-        weight: throughput.map(|channel| channel / survival),
-        ..scatter
+    let next = CarriedRow {
+        throughput: throughput.map(|channel| channel / survival),
+        arrival: carried.arrival.onward(scatter.pdf, M::DIFFUSE),
+        normal: paths.starts.at.normal,
+        ..*carried
     };
-    send::<M>(job, work, paths, (&next, goes_on.bits()));
-}
-
-/// Sends the paths in these lanes on, in world space; the others end.
-#[inline(always)]
-fn send<M: Material>(
-    job: &Job,
-    work: &mut Workspace,
-    paths: &Gathered,
-    (next, goes_on): (&Scatter<F32x16>, u32),
-) {
-    work.go_on_row(job.world, (&paths.starts, paths.lanes & goes_on), next.incoming);
-    let throughput = Each::new(next.weight);
-    let (normal, pdf) = (Each::new(paths.starts.at.normal), next.pdf.to_array());
-    for lane in set_bits(paths.lanes & goes_on) {
-        let row = paths.starts.rows[lane] as usize;
-        let place = work.place[row] as usize;
-        let unscattered = work.paths.arrival[place].unscattered && pdf[lane] == 0.0;
-        let density = (pdf[lane] > 0.0).then_some(pdf[lane]);
-        work.paths.throughput[place] = throughput.at(lane);
-        work.paths.arrival[place] = Arrival { pdf: density, diffuse: M::DIFFUSE, unscattered };
-        if let Some(last) = work.paths.normal.get_mut(place) {
-            *last = normal.at(lane);
-        }
-    }
-}
-
-/// A row of vectors to be taken one by one.
-struct Each(Vec3<[f32; ROW]>);
-
-impl Each {
-    #[inline(always)]
-    fn new(row: Vec3<F32x16>) -> Self {
-        Self(row.map(F32x16::to_array))
-    }
-
-    #[inline(always)]
-    fn at(&self, lane: usize) -> glam::Vec3 {
-        glam::Vec3::new(self.0.x[lane], self.0.y[lane], self.0.z[lane])
-    }
+    let (lanes, direction) = (paths.lanes & goes_on.bits(), paths.to_world(scatter.incoming));
+    work.go_on(job.world, (paths.starts, lanes), direction, &next);
 }

@@ -4,9 +4,8 @@ use super::Job;
 use super::gather::Starts;
 use super::stages;
 use super::workspace::Workspace;
-use crate::lanes::{F32x16, Lanes, Mask, Packing, set_bits};
-use crate::ray::{GROUND, Hits, MISS, Rays};
-use crate::scene::Rgb;
+use crate::lanes::{F32x16, Lanes, Mask, Packing, U32x16, set_bits};
+use crate::ray::{Columns3, GROUND, Hits, MISS, Rays};
 use crate::vec3::Vec3;
 use crate::world::{LightRow, LightSample, ROW, ReceiverRow, World};
 
@@ -22,7 +21,7 @@ pub struct Shadows {
     /// Which path the light goes to.
     pub place: Vec<u32>,
     /// What arrives if nothing is in between.
-    pub light: Vec<Rgb>,
+    pub light: Columns3,
 }
 
 impl Shadows {
@@ -31,8 +30,8 @@ impl Shadows {
         Self {
             rays: Rays::with_capacity(SHADOWS),
             hits: Hits::with_capacity(SHADOWS),
-            place: vec![MISS; SHADOWS],
-            light: vec![Rgb::ZERO; SHADOWS],
+            place: vec![0; SHADOWS + ROW],
+            light: Columns3::with_rows(SHADOWS + ROW),
         }
     }
 
@@ -49,18 +48,15 @@ impl Shadows {
         &mut self,
         from: &ReceiverRow,
         (samples, lanes): (&LightRow, u32),
-        (place, light): (&[u32; ROW], Vec3<F32x16>),
+        (place, light): (U32x16, Vec3<F32x16>),
     ) {
         let (packing, first) = (Packing::new(lanes), self.rays.len());
         self.rays.append_packed(&packing, (from.point, samples.direction), &from.own);
-        packing.store_numbers(&samples.target, &mut self.rays.target[first..]);
+        packing.store_numbers(U32x16::new(samples.target), &mut self.rays.target[first..]);
         packing.store_numbers(place, &mut self.place[first..]);
+        packing.store_doubles(&samples.t, &mut self.hits.t[first..]);
         self.hits.sphere[first..first + ROW].fill(MISS);
-        let Vec3 { x, y, z } = light.map(F32x16::to_array);
-        let ends = self.hits.t[first..].iter_mut().zip(&mut self.light[first..]);
-        for ((t, light), lane) in ends.zip(set_bits(lanes)) {
-            (*t, *light) = (samples.t[lane], Rgb::new(x[lane], y[lane], z[lane]));
-        }
+        self.light.pack(first, &packing, light);
     }
 }
 
@@ -75,14 +71,15 @@ pub fn cast(
     light: Vec3<F32x16>,
 ) {
     let lit = Lanes::lt(F32x16::splat(0.0), light.max_element()).bits();
-    let hidden = set_bits(lanes & lit & starts.inside)
-        .filter(|&lane| hides(job.world, work, starts.rows[lane] as usize, &samples.sample(lane)));
+    let hidden = set_bits(lanes & lit & starts.inside).filter(|&lane| {
+        let row = starts.rows.to_array()[lane] as usize;
+        hides(job.world, work, row, &samples.sample(lane))
+    });
     let lanes = hidden.fold(lanes & lit, |lanes, lane| lanes & !(1 << lane));
     if !work.shadows.has_room(ROW) {
         stages::occlude(job, work);
     }
-    let place = starts.rows.map(|row| work.place[row as usize]);
-    work.shadows.push_row(&starts.at, (samples, lanes), (&place, light));
+    work.shadows.push_row(&starts.at, (samples, lanes), (starts.carried.place, light));
 }
 
 /// Whether a sphere hides a light from a point of its inside: what lies behind its far side.
@@ -100,6 +97,7 @@ impl Default for Shadows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Rgb;
 
     #[test]
     fn rows_are_pushed_as_their_lanes_are() {
@@ -115,7 +113,7 @@ mod tests {
         for bits in [0, 1, 0xffff, 0xff, 0xa5a5, 0x8000, 0xfffe] {
             let mut shadows = Shadows::new();
             for _ in 0..3 {
-                shadows.push_row(&from, (&samples, bits), (&numbers, light));
+                shadows.push_row(&from, (&samples, bits), (U32x16::new(numbers), light));
             }
             let each = [(); 3].into_iter().flat_map(|()| set_bits(bits));
             assert_eq!(shadows.rays.len(), 3 * u32::count_ones(bits) as usize);
@@ -126,7 +124,7 @@ mod tests {
                 assert_eq!(start, (from.receiver(lane).point, from.own[lane]));
                 assert_eq!(end, (sample.direction, sample.target, sample.t));
                 assert_eq!((shadows.hits.sphere[row], shadows.place[row]), (MISS, numbers[lane]));
-                assert_eq!(shadows.light[row].y, 0.5 * sample.direction.y);
+                assert_eq!(shadows.light.row(row), 0.5 * sample.direction);
             }
         }
     }

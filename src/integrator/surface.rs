@@ -1,7 +1,7 @@
 //! Where rays hit: points and normals, and how far it is through spheres from there.
 
 use super::struck::{Few, struck};
-use super::workspace::Workspace;
+use super::workspace::{BATCH, Workspace};
 use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, load_doubles};
 use crate::ray::{Columns3, GROUND, MISS};
 use crate::vec3::Vec3;
@@ -39,19 +39,21 @@ impl Surface {
             point: Columns3::with_rows(rows),
             normal: Normals::with_rows(rows),
             facing: Columns3::with_rows(rows),
-            inside: vec![0; rows.div_ceil(ROW)],
+            inside: vec![0; rows.next_multiple_of(MAX_LANES) / ROW],
         }
     }
 
-    /// Which of some rows are seen from inside, bit by bit.
+    /// Which of rows `first..first + 16`, `first` being a multiple of that, are seen from inside.
     #[inline(always)]
-    pub(super) fn inside(&self, rows: &[u32; MAX_LANES]) -> u32 {
-        let mut bits = 0;
-        for (lane, &row) in rows.iter().enumerate() {
-            let byte = u32::from(self.inside[row as usize / ROW]);
-            bits |= (byte >> (row as usize % ROW) & 1) << lane;
-        }
-        bits
+    pub(super) fn inside(&self, first: usize) -> u32 {
+        let halves = &self.inside[first / ROW..][..MAX_LANES / ROW];
+        u32::from(halves[0]) | u32::from(halves[1]) << ROW
+    }
+
+    /// Lets a row be seen from the other side.
+    #[cfg(test)]
+    pub(super) fn turn(&mut self, row: usize) {
+        self.inside[row / ROW] ^= 1 << (row % ROW);
     }
 
     /// Turns the normals of rows `first..first + 8`, of rays of these directions, to where they are
@@ -82,10 +84,10 @@ impl Normals {
         (self.x[i], self.y[i], self.z[i]) = normal.into();
     }
 
-    /// The three of them.
+    /// Some rows, wherever they are.
     #[inline(always)]
-    pub(super) fn columns(&self) -> [&[f64]; 3] {
-        [&self.x, &self.y, &self.z]
+    pub(super) fn pick(&self, rows: &[u32; MAX_LANES]) -> [[f64; MAX_LANES]; 3] {
+        [pick(&self.x, rows), pick(&self.y, rows), pick(&self.z, rows)]
     }
 
     /// Writes rows `i..i + 16`.
@@ -109,6 +111,18 @@ impl Normals {
         self.y[i..i + ROW].copy_from_slice(&normal.y.to_array());
         self.z[i..i + ROW].copy_from_slice(&normal.z.to_array());
     }
+}
+
+/// What a column has in some rows.
+#[inline(always)]
+fn pick(column: &[f64], rows: &[u32; MAX_LANES]) -> [f64; MAX_LANES] {
+    let column: &[f64; BATCH] = column.first_chunk().expect("columns hold a batch");
+    let mut lanes = [0.0; MAX_LANES];
+    for (lane, &row) in lanes.iter_mut().zip(rows) {
+        // Rows are less than that, which saves a check of each.
+        *lane = column[row as usize % BATCH];
+    }
+    lanes
 }
 
 #[inline(always)]

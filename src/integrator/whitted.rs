@@ -8,18 +8,20 @@
 //! rough metal choose one direction by chance.
 
 use super::Job;
+use super::bins::Bin;
+use super::carried::CarriedRow;
 use super::clock::Stage;
 use super::gather::Starts;
 use super::glass;
 use super::path::{faint, survival};
 use super::shadows;
-use super::stages::{self, Local, ShadeKind};
-use super::workspace::{Arrival, Workspace};
-use crate::lanes::{F32x16, Lanes, Mask};
+use super::stages::{self, ByKind, Local};
+use super::workspace::Workspace;
+use crate::lanes::{F32x16, Lanes, Mask, first_lanes};
 use crate::ray::MISS;
 use crate::sampling::{Frames, cosine_hemispheres};
 use crate::scene::Rgb;
-use crate::shade::{Bsdf, Material, mirror};
+use crate::shade::{Bsdf, Material, One, mirror};
 use crate::vec3::Vec3 as Row3;
 use crate::world::{Kind, LightRow, MaterialId, ROW};
 use std::f32::consts::PI;
@@ -41,7 +43,8 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
             return;
         }
         glass::pass(job, work, bounce);
-        stages::by_kind(job, work, &mut Shade { job, bounce, samples, sky, faint });
+        let shade = Shade { job, bounce, samples, sky, faint };
+        stages::by_kind(job.world, &mut ShadeAll { shade, work });
         stages::occlude(job, work);
         work.advance();
         work.clock.end(Stage::Shade);
@@ -55,28 +58,25 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
 /// What leaves the scene has come from the camera by mirrors and glass alone, and sees the
 /// environment and the suns.
 fn escape(job: &Job, work: &mut Workspace) {
-    for i in 0..work.bins.escaped.len() {
-        let row = work.bins.escaped[i] as usize;
-        let place = work.place[row] as usize;
+    for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
         let direction = work.rays.direction.row(row);
         let suns: Rgb = job.world.lights.suns_toward(direction).map(|(_, radiance)| radiance).sum();
         let light = job.world.environment.radiance(direction) + suns;
-        work.paths.radiance[place] += work.paths.throughput[place] * light;
+        work.paths.radiance[work.carried.place(row)] += work.carried.throughput(row) * light;
     }
 }
 
 /// Likewise for emitters.
 fn emit(job: &Job, work: &mut Workspace) {
-    for i in 0..work.bins.kind[Kind::Emitter as usize].len() {
-        let row = work.bins.kind[Kind::Emitter as usize][i] as usize;
-        let place = work.place[row] as usize;
+    for row in work.bins.of(Kind::Emitter).into_iter().flat_map(Bin::each) {
         let material = job.world.material(work.hits.sphere[row]);
         let radiance = job.world.materials.emitter[material.row()].radiance;
-        work.paths.radiance[place] += work.paths.throughput[place] * radiance;
+        work.paths.radiance[work.carried.place(row)] += work.carried.throughput(row) * radiance;
     }
 }
 
 /// One bounce's shading.
+#[derive(Clone, Copy)]
 struct Shade<'a> {
     job: &'a Job<'a>,
     bounce: u32,
@@ -85,33 +85,23 @@ struct Shade<'a> {
     faint: f32,
 }
 
-impl ShadeKind for Shade<'_> {
-    fn shade<M: Material>(
-        &mut self,
-        work: &mut Workspace,
-        kind: Kind,
-        material: impl Fn(MaterialId) -> M,
-    ) {
-        let rows = std::mem::take(&mut work.bins.kind[kind as usize]);
-        for &row in &rows {
-            let row = row as usize;
-            let hit = work.hits.sphere[row];
+/// The same of the rows of a workspace.
+struct ShadeAll<'a> {
+    shade: Shade<'a>,
+    work: &'a mut Workspace,
+}
+
+impl ByKind for ShadeAll<'_> {
+    fn visit<M: Material>(&mut self, kind: Kind, table: impl Fn(MaterialId) -> M) {
+        let Some(bin) = self.work.bins.take(kind) else { return };
+        let world = self.shade.job.world;
+        for row in bin.each() {
+            let hit = self.work.hits.sphere[row];
             debug_assert_ne!(hit, MISS);
-            let world = self.job.world;
-            let surface = material(world.material(hit)).tinted(world.color(hit));
-            let local = Local::new(work, row);
-            if M::BASE && !surface.is_delta() {
-                let base = Base::<M>::new(work, row, (&surface, &local));
-                for light in 0..self.job.world.lights.len() {
-                    self.direct(work, light, &base);
-                }
-                if self.sky {
-                    self.skylight(work, &base);
-                }
-            }
-            self.go_on(work, row, (&surface, &local));
+            let surface = table(world.material(hit)).tinted(world.color(hit));
+            self.shade.shade(self.work, row, &surface);
         }
-        work.bins.kind[kind as usize] = rows;
+        self.work.bins.put(kind, bin);
     }
 }
 
@@ -129,7 +119,7 @@ impl<M: Material> Base<M> {
         let starts = Starts::one(work, row, local);
         Self {
             row,
-            bsdf: M::row(&[*surface; ROW]),
+            bsdf: M::row(&One(surface)),
             frames: Frames::about(starts.at.normal),
             outgoing: Row3::from(local.outgoing).map(F32x16::splat),
             starts,
@@ -143,15 +133,29 @@ impl Shade<'_> {
         self.bounce.wrapping_mul(0x9e37_79b9).wrapping_add(light as u32)
     }
 
+    /// Shades what the path in a row has hit.
+    fn shade<M: Material>(&self, work: &mut Workspace, row: usize, surface: &M) {
+        let local = Local::new(work, row);
+        let base = Base::<M>::new(work, row, (surface, &local));
+        if M::BASE && base.bsdf.is_delta().bits() == 0 {
+            for light in 0..self.job.world.lights.len() {
+                self.direct(work, light, &base);
+            }
+            if self.sky {
+                self.skylight(work, &base);
+            }
+        }
+        self.go_on(work, (surface, &local), &base.starts);
+    }
+
     /// Light from one light, by stratified samples; one is enough for a light without extent.
     fn direct<M: Material>(&self, work: &mut Workspace, light: usize, base: &Base<M>) {
         let world = self.job.world;
-        let place = work.place[base.row] as usize;
         let count = if world.lights.is_delta(light) { 1 } else { self.samples };
-        let share = work.paths.throughput[place] / count as f32;
+        let share = work.carried.throughput(base.row) / count as f32;
         let origin = (work.surface.point.row(base.row), work.hits.sphere[base.row]);
         let Some(aim) = world.lights.aim(world, light, origin) else { return };
-        let points = self.job.sampler.split(&work.paths.sample[place], self.event(light), count);
+        let points = self.job.sampler.split(&work.state(base.row), self.event(light), count);
         for (first, count) in rows(count) {
             let samples = aim.sample_row(points.row(first, count), count);
             self.cast(work, base, (share, &samples));
@@ -160,14 +164,13 @@ impl Shade<'_> {
 
     /// Light from a constant or gradient environment, by stratified cosine-distributed samples.
     fn skylight<M: Material>(&self, work: &mut Workspace, base: &Base<M>) {
-        let place = work.place[base.row] as usize;
-        let share = work.paths.throughput[place] / self.samples as f32;
+        let share = work.carried.throughput(base.row) / self.samples as f32;
         let event = self.event(self.job.world.lights.len());
-        let points = self.job.sampler.split(&work.paths.sample[place], event, self.samples);
+        let points = self.job.sampler.split(&work.state(base.row), event, self.samples);
         for (first, count) in rows(self.samples) {
             let incoming = cosine_hemispheres(points.row(first, count));
             let direction = base.frames.to_world(incoming).normalize();
-            let mut samples = LightRow::distant(direction, Rgb::ZERO, (1 << count) - 1);
+            let mut samples = LightRow::distant(direction, Rgb::ZERO, first_lanes(count));
             let mut weight = [[0.0; ROW]; 3];
             for (lane, cosine) in incoming.z.to_array().into_iter().enumerate().take(count) {
                 let radiance = self.job.world.environment.radiance(samples.sample(lane).direction);
@@ -197,27 +200,32 @@ impl Shade<'_> {
     }
 
     /// Sends the mirrored share on, or what has no other share.
-    fn go_on<M: Material>(&self, work: &mut Workspace, row: usize, (surface, local): (&M, &Local)) {
-        let bsdf: M::Bsdf<f32> = M::row(&[*surface; ROW]);
+    fn go_on<M: Material>(
+        &self,
+        work: &mut Workspace,
+        (surface, local): (&M, &Local),
+        starts: &Starts,
+    ) {
+        let bsdf: M::Bsdf<f32> = M::row(&One(surface));
         let outgoing = local.outgoing.into();
-        let place = work.place[row] as usize;
-        let draw = self.job.sampler.scatter(&work.paths.sample[place], self.bounce);
+        let row = starts.rows.to_array()[0] as usize;
+        let draw = self.job.sampler.scatter(&work.state(row), self.bounce);
         let (incoming, weight) = if M::BASE {
             (mirror(outgoing), bsdf.mirrored(outgoing))
         } else {
             let scatter = bsdf.sample(outgoing, draw.direction, draw.lobe);
             (scatter.incoming, scatter.weight)
         };
-        let throughput = work.paths.throughput[place] * Rgb::from(weight);
+        let throughput = work.carried.throughput(row) * Rgb::from(weight);
         let greatest = throughput.max_element();
         let survival = survival(self.job.settings.roulette, greatest, self.bounce, self.faint);
         if throughput == Rgb::ZERO || draw.roulette >= survival {
             return;
         }
-        work.paths.throughput[place] = throughput / survival;
-        work.paths.arrival[place] = Arrival::CAMERA;
-        let direction = local.to_world(incoming.into());
-        work.go_on(self.job.world, row, direction, local.inside);
+        let splat = |v: glam::Vec3| Row3::from(v).map(F32x16::splat);
+        let direction = splat(local.to_world(incoming.into()));
+        let carried = CarriedRow { throughput: splat(throughput / survival), ..starts.carried };
+        work.go_on(self.job.world, (starts, 1), direction, &carried);
     }
 }
 

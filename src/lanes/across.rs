@@ -55,8 +55,10 @@ const fn in_order() -> [u32; 256] {
 /// Puts some of sixteen lanes one after another.
 #[derive(Clone, Copy, Debug)]
 pub struct Packing {
-    /// Of the lower and the upper eight.
-    order: [u32; 2],
+    /// Which lane comes to each place, in the last four bits.
+    order: U32x16,
+    /// The same of the lower and the upper eight, in four bits each.
+    halves: [u32; 2],
     /// How many of the lower.
     low: usize,
     count: usize,
@@ -66,9 +68,20 @@ impl Packing {
     /// Of the lanes whose bits are set.
     #[inline(always)]
     pub fn new(lanes: u32) -> Self {
-        let order = [lanes, lanes >> 8].map(|half| IN_ORDER[half as usize & 0xff]);
+        const PLACES: U32x16 =
+            U32x16::new([0, 4, 8, 12, 16, 20, 24, 28, 0, 4, 8, 12, 16, 20, 24, 28]);
+        let halves = [lanes, lanes >> 8].map(|half| IN_ORDER[half as usize & 0xff]);
         let low = (lanes & 0xff).count_ones() as usize;
-        Self { order, low, count: (lanes & 0xffff).count_ones() as usize }
+        // The upper lanes come right after those of the lower that there are.
+        let upper = u64::from(halves[1] | 0x8888_8888);
+        let order = u64::from(halves[0]) | upper << (4 * low);
+        let words = [order as u32, (order >> 32) as u32].map(wide::u32x8::splat);
+        Self {
+            order: bytemuck::cast::<_, U32x16>(words) >> PLACES,
+            halves,
+            low,
+            count: (lanes & 0xffff).count_ones() as usize,
+        }
     }
 
     /// How many there are.
@@ -82,17 +95,29 @@ impl Packing {
     /// # Panics
     /// If the column is shorter.
     #[inline(always)]
-    pub fn store_numbers(&self, row: &[u32; 16], column: &mut [u32]) {
-        let [low, high]: [[u32; 8]; 2] = bytemuck::cast(*row);
-        let place = &mut column[..16];
-        place[..8].copy_from_slice(&shuffle_numbers(&low, self.order[0]));
-        place[self.low..self.low + 8].copy_from_slice(&shuffle_numbers(&high, self.order[1]));
+    pub fn store_numbers(&self, row: U32x16, column: &mut [u32]) {
+        column[..16].copy_from_slice(&look_up(row, self.order).to_array());
     }
 
     /// [`Packing::store_numbers`] for floats.
     #[inline(always)]
     pub fn store(&self, row: F32x16, column: &mut [f32]) {
-        self.store_numbers(&bytemuck::cast(row), bytemuck::cast_slice_mut(column));
+        self.store_numbers(bytemuck::cast(row), bytemuck::cast_slice_mut(column));
+    }
+
+    /// [`Packing::store_numbers`] for floats of double precision.
+    #[inline(always)]
+    pub fn store_doubles(&self, row: &[f64; 16], column: &mut [f64]) {
+        const PLACES: U32x16 =
+            U32x16::new([0, 0, 4, 4, 8, 8, 12, 12, 16, 16, 20, 20, 24, 24, 28, 28]);
+        const WORDS: U32x16 = U32x16::new([0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1]);
+        let halves: [U32x16; 2] = bytemuck::cast(*row);
+        let column = &mut column[..16];
+        for (half, first) in [(0, 0), (1, self.low)] {
+            let places = U32x16::splat(self.halves[half]) >> PLACES;
+            let packed: [f64; 8] = bytemuck::cast(look_up(halves[half], (places << 1_u32) | WORDS));
+            column[first..first + 8].copy_from_slice(&packed);
+        }
     }
 }
 
@@ -148,12 +173,16 @@ mod tests {
         for lanes in 0..=u32::from(u16::MAX) {
             let packing = Packing::new(lanes);
             let mut column = [0; 19];
-            packing.store_numbers(&row, &mut column[1..]);
+            packing.store_numbers(U32x16::new(row), &mut column[1..]);
             let expected: Vec<u32> =
                 super::super::set_bits(lanes).map(|lane| 100 + lane as u32).collect();
             assert_eq!(packing.count(), expected.len());
             assert_eq!(column[1..=expected.len()], expected, "{lanes:x}");
             assert_eq!((column[0], &column[17..]), (0, &[0, 0][..]));
+            let mut column = [0.0; 19];
+            packing.store_doubles(&row.map(f64::from), &mut column[1..]);
+            assert!(column[1..].iter().zip(&expected).all(|(&a, &b)| a == f64::from(b)));
+            assert_eq!((column[0], &column[17..]), (0.0, &[0.0, 0.0][..]));
         }
     }
 

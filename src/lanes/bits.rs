@@ -25,6 +25,12 @@ pub fn numbers<L: Lanes>(row: L) -> [u32; MAX_LANES] {
     bytemuck::cast(lanes)
 }
 
+/// The bits of the first `count` lanes, or of all if there are fewer.
+#[inline(always)]
+pub fn first_lanes(count: usize) -> u32 {
+    ((1_u64 << count.min(MAX_LANES)) - 1) as u32
+}
+
 /// The indices of the set bits, lowest first.
 #[inline(always)]
 pub fn set_bits(bits: impl Into<u64>) -> impl Iterator<Item = usize> {

@@ -17,7 +17,7 @@ mod masks;
 pub use across::{
     Packing, greatest_of, look_up, reverse_bits, shuffle, shuffle_numbers, transpose,
 };
-pub use bits::{bits, bits_of, numbers, set_bits};
+pub use bits::{bits, bits_of, first_lanes, numbers, set_bits};
 pub use doubles::{Doubles, load_doubles, narrow, store_rounded, store_where, widen};
 use masks::places;
 pub use masks::{Mask, WideMask};

@@ -4,6 +4,7 @@ use super::sums::Sums;
 use super::{Features, Layers, SAMPLES};
 use crate::bvh::walk::Method;
 use crate::film::{Film, Region, Tile, View};
+use crate::integrator::generate::{generate, generate_centers};
 use crate::integrator::workspace::Workspace;
 use crate::integrator::{Job, stages};
 use crate::render::{Options, passes, view};
@@ -60,7 +61,7 @@ impl Growing {
         let next = AtomicUsize::new(0);
         let waiting: Vec<Mutex<&mut Known>> = self.tiles.iter_mut().map(Mutex::new).collect();
         rayon::broadcast(|_| {
-            let mut work = Workspace::new(world, &sampler, skips);
+            let mut work = Workspace::new(world, skips);
             while !cancelled() {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 let Some(Ok(mut known)) = waiting.get(number).map(Mutex::lock) else { return };
@@ -120,7 +121,7 @@ impl Known {
         for pass in passes(samples).filter(|pass| pass.end > self.samples) {
             let pass = pass.start.max(self.samples)..pass.end;
             let count = pass.len();
-            stages::generate(job, &self.tile, pass, work);
+            generate(job, &self.tile, pass, work);
             stages::intersect(job, work);
             for (pixel, sums) in self.sums.iter_mut().enumerate() {
                 (pixel * count..(pixel + 1) * count).for_each(|row| sums.add(job.world, work, row));
@@ -129,7 +130,7 @@ impl Known {
         if self.centered {
             return;
         }
-        stages::generate_centers(job, &self.tile, work);
+        generate_centers(job, &self.tile, work);
         stages::intersect(job, work);
         for (sums, &hit) in self.sums.iter_mut().zip(&work.hits.sphere) {
             sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);

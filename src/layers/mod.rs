@@ -226,7 +226,7 @@ pub fn features(
     let features: Vec<Vec<Features>> = tiles
         .into_par_iter()
         .map_init(
-            || Workspace::new(world, &sampler, skips),
+            || Workspace::new(world, skips),
             |work, tile| {
                 let mut known = Known::new(tile);
                 known.grow(&job, samples, work);

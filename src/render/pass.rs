@@ -1,9 +1,11 @@
 //! A tile's samples, batch by batch.
 
 use crate::film::{Pilot, Region, Tile, View};
+use crate::integrator::Job;
 use crate::integrator::clock::Stage;
+use crate::integrator::generate::generate_streams;
 use crate::integrator::workspace::{BATCH, Workspace};
-use crate::integrator::{Job, stages};
+use crate::sampling::Sampler;
 use crate::scene::Rgb;
 use crate::world::World;
 use glam::DVec2;
@@ -62,10 +64,8 @@ impl Place {
             work.counters.skipped_samples += pixels * samples.len() as u64;
             return Taken::Even(radiance);
         }
-        work.view = self.view;
         let streams = self.region.morton().map(|(x, y)| (x, y, *job.sampler));
-        stages::generate_streams(job, streams, samples, work);
-        Taken::Paths(integrate(job, work))
+        Taken::Paths(follow(job, self.view, (streams, samples), work))
     }
 }
 
@@ -103,10 +103,9 @@ pub(super) fn probe_pass(
         let range = first..samples.end.min(first.saturating_add(batch as u32));
         let count = range.len() as u32;
         work.clock.restart();
-        work.view = tile.view;
         let rays = work.counters.rays();
-        stages::generate_streams(job, tile.probes.starts(job.sampler), range, work);
-        let paths = integrate(job, work);
+        let streams = tile.probes.starts(job.sampler);
+        let paths = follow(job, tile.view, (streams, range), work);
         work.counters.bad_samples += tile.probes.add(&work.paths.radiance[..paths], count);
         tile.probes.rays += work.counters.rays() - rays;
         work.clock.end(Stage::Film);
@@ -127,18 +126,23 @@ pub(super) fn pilot_pass(
         return;
     }
     work.clock.restart();
-    work.view = tile.view;
     let places = Pilot::starts(tile, job.sampler, job.settings.seed, block);
     let streams = places.iter().map(|&(x, y, sampler, _)| (x, y, sampler));
-    stages::generate_streams(job, streams, 0..samples, work);
-    let paths = integrate(job, work);
+    let paths = follow(job, tile.view, (streams, 0..samples), work);
     let weights = places.iter().map(|&(.., weight)| weight);
     tile.probes.pilot = Some(Pilot::new(&work.paths.radiance[..paths], samples, weights));
     work.clock.end(Stage::Film);
 }
 
-/// Follows the paths that were generated to their ends, and says how many there were.
-fn integrate(job: &Job, work: &mut Workspace) -> usize {
+/// Follows the paths of samples of streams to their ends, and says how many there were.
+fn follow(
+    job: &Job,
+    view: View,
+    (streams, samples): (impl Iterator<Item = (u32, u32, Sampler)>, Range<u32>),
+    work: &mut Workspace,
+) -> usize {
+    work.view = view;
+    generate_streams(job, streams, samples, work);
     let paths = work.len();
     job.integrate(work);
     work.clock.end(Stage::Shade);

@@ -2,11 +2,96 @@
 
 use super::plan::{ScatterDraw, choices, directions, lights};
 use super::sampler::{PathState, Points, Sampler};
-use super::sobol::{block, shuffle_from};
+use super::sobol::{Shuffled, block, shuffle_from};
 use crate::lanes::{F32x16, MAX_LANES, U32x16};
 
+/// Where sixteen paths are in the Sobol sequences that they draw from.
+#[derive(Clone, Copy, Debug)]
+pub struct Places {
+    /// [`PathState`]'s place in the sequence of its seed.
+    pub places: U32x16,
+    /// The seeds.
+    pub seeds: U32x16,
+}
+
+/// What else there is of many paths' states, of which few draws ask for more than [`Places`].
+#[derive(Clone, Debug)]
+pub struct PathStates {
+    key: Vec<u64>,
+    index: Vec<u32>,
+}
+
+/// The states of sixteen paths.
+pub struct StartRow {
+    key: [u64; MAX_LANES],
+    index: [u32; MAX_LANES],
+    /// Where they are in the Sobol sequences.
+    pub places: Places,
+}
+
 /// Paths that draw together.
-pub type PathRow = [PathState; MAX_LANES];
+#[derive(Clone, Copy, Debug)]
+pub struct PathRow<'a> {
+    places: Places,
+    /// Which of the states are the paths'.
+    paths: U32x16,
+    states: &'a PathStates,
+}
+
+impl StartRow {
+    fn of(each: &[PathState; MAX_LANES]) -> Self {
+        Self {
+            key: each.map(|state| state.key),
+            index: each.map(|state| state.index),
+            places: Places {
+                places: U32x16::new(each.map(|state| state.shuffled.0)),
+                seeds: U32x16::new(each.map(|state| state.key as u32)),
+            },
+        }
+    }
+}
+
+impl PathState {
+    /// The place in the Sobol sequence, and its seed.
+    #[inline]
+    pub fn sobol(&self) -> [u32; 2] {
+        [self.shuffled.0, self.key as u32]
+    }
+}
+
+impl PathStates {
+    /// Room for so many paths, and for a whole row after the last.
+    pub fn with_paths(count: usize) -> Self {
+        Self { key: vec![0; count + MAX_LANES], index: vec![0; count + MAX_LANES] }
+    }
+
+    /// Writes the states of paths `first..first + 16`.
+    #[inline(always)]
+    pub fn set_row(&mut self, first: usize, row: &StartRow) {
+        self.key[first..first + MAX_LANES].copy_from_slice(&row.key);
+        self.index[first..first + MAX_LANES].copy_from_slice(&row.index);
+    }
+
+    /// Writes the state of a path.
+    #[inline]
+    pub fn set(&mut self, path: usize, state: &PathState) {
+        (self.key[path], self.index[path]) = (state.key, state.index);
+    }
+
+    /// The state of a path, of which the place in the Sobol sequence is known.
+    #[inline]
+    pub fn state(&self, path: usize, place: u32) -> PathState {
+        PathState { key: self.key[path], index: self.index[path], shuffled: Shuffled(place) }
+    }
+}
+
+impl<'a> PathRow<'a> {
+    /// Of the paths whose numbers are given, with all states, that are where `places` tells.
+    #[inline(always)]
+    pub fn new(places: Places, paths: U32x16, states: &'a PathStates) -> Self {
+        Self { places, paths, states }
+    }
+}
 
 /// The numbers of one scattering of each path; all in [0, 1).
 #[derive(Clone, Copy, Debug)]
@@ -34,26 +119,29 @@ impl ScatterRow {
 }
 
 impl Sampler {
-    /// The states of the paths of a pixel's samples from `first` on: [`Sampler::start`] for each.
-    pub fn start_all(&self, x: u32, y: u32, first: u32, states: &mut [PathState]) {
-        for (row, first) in states.chunks_mut(MAX_LANES).zip((first..).step_by(MAX_LANES)) {
-            let start = self.start(x, y, first);
-            let together = match self.points {
-                Points::Sobol(_) => {
-                    block(u64::from(first) + MAX_LANES as u64 - 1).0 == block(u64::from(first)).0
-                }
-                Points::Stratified(_) | Points::Independent => false,
-            };
-            if together {
-                let places = shuffle_from(start.index, start.key as u32);
-                for (lane, (state, shuffled)) in row.iter_mut().zip(places).enumerate() {
-                    *state = PathState { index: start.index + lane as u32, shuffled, ..start };
-                }
-            } else {
-                row.iter_mut()
-                    .zip(first..)
-                    .for_each(|(state, index)| *state = self.start(x, y, index));
+    /// The states of the paths of sixteen of a pixel's samples from `first` on: [`Sampler::start`]
+    /// for each.
+    #[inline]
+    pub fn start_row(&self, x: u32, y: u32, first: u32) -> StartRow {
+        let start = self.start(x, y, first);
+        let together = match self.points {
+            Points::Sobol(_) => {
+                block(u64::from(first) + MAX_LANES as u64 - 1).0 == block(u64::from(first)).0
             }
+            Points::Stratified(_) | Points::Independent => false,
+        };
+        if !together {
+            let each =
+                std::array::from_fn(|lane| self.start(x, y, first.wrapping_add(lane as u32)));
+            return StartRow::of(&each);
+        }
+        StartRow {
+            key: [start.key; MAX_LANES],
+            index: std::array::from_fn(|lane| start.index + lane as u32),
+            places: Places {
+                places: shuffle_from(start.index, start.key as u32),
+                seeds: U32x16::splat(start.key as u32),
+            },
         }
     }
 
@@ -102,15 +190,21 @@ impl Sampler {
     #[inline(always)]
     pub fn draw4_row(&self, paths: &PathRow, set: u32) -> [F32x16; 4] {
         if let Points::Sobol(sobol) = self.points {
-            let places = U32x16::new(paths.map(|path| path.shuffled.0));
-            let seeds = U32x16::new(paths.map(|path| path.key as u32));
+            let Places { places, seeds } = paths.places;
             if let Some(row) = sobol.draw4_row(places, set, seeds) {
                 return row;
             }
         }
+        self.draw4_each(paths, set)
+    }
+
+    /// The same, one by one.
+    #[inline(never)]
+    fn draw4_each(&self, paths: &PathRow, set: u32) -> [F32x16; 4] {
         let mut columns = [[0.0; MAX_LANES]; 4];
-        for (lane, path) in paths.iter().enumerate() {
-            let draw = self.draw4(path, set);
+        let each = paths.paths.to_array().into_iter().zip(paths.places.places.to_array());
+        for (lane, (path, place)) in each.enumerate() {
+            let draw = self.draw4(&paths.states.state(path as usize, place), set);
             columns.iter_mut().zip(draw).for_each(|(column, x)| column[lane] = x);
         }
         columns.map(F32x16::new)
@@ -128,30 +222,36 @@ mod tests {
         for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
             let sampler = Sampler::new(kind, 4, 16);
             for first in [0, 3, 65_520, 65_530, u32::MAX - 40] {
-                let mut paths = [sampler.start(0, 0, 0); 37];
-                sampler.start_all(5, 6, first, &mut paths);
-                for (path, index) in paths.iter().zip(first..) {
-                    assert_eq!(*path, sampler.start(5, 6, index), "{kind:?} {index}");
+                let row: [PathState; 16] =
+                    std::array::from_fn(|lane| sampler.start(5, 6, first + lane as u32));
+                let start = sampler.start_row(5, 6, first);
+                let mut states = PathStates::with_paths(20);
+                states.set_row(3, &start);
+                for (lane, place) in start.places.places.to_array().into_iter().enumerate() {
+                    assert_eq!(states.state(3 + lane, place), row[lane], "{kind:?} {first}");
+                    assert_eq!(start.places.seeds.to_array()[lane], row[lane].key as u32);
                 }
-                let row: &PathRow = paths.first_chunk().expect("more than a row");
+                let paths = U32x16::new(std::array::from_fn(|lane| 3 + lane as u32));
+                let together = &PathRow::new(start.places, paths, &states);
+                let row = &row;
                 for set in [0, 1, 5, 200] {
-                    let rows = sampler.draw4_row(row, set).map(wide::f32x16::to_array);
+                    let rows = sampler.draw4_row(together, set).map(wide::f32x16::to_array);
                     for (lane, path) in row.iter().enumerate() {
                         assert_eq!(rows.map(|x| x[lane]), sampler.draw4(path, set), "{kind:?}");
                     }
                 }
                 for bounce in [0, 1, 2, 7] {
                     let one = sampler.scatter(&row[5], bounce);
-                    assert_eq!(sampler.scatter_row(row, bounce, true).each()[5], one);
+                    assert_eq!(sampler.scatter_row(together, bounce, true).each()[5], one);
                     let plain = ScatterDraw { lobe: 0.0, roulette: 0.0, ..one };
-                    assert_eq!(sampler.scatter_row(row, bounce, false).each()[5], plain);
-                    assert_eq!(sampler.lobe_row(row, bounce).to_array()[5], one.lobe);
-                    let light = sampler.light_row(row, bounce).map(|x| x.to_array()[5]);
+                    assert_eq!(sampler.scatter_row(together, bounce, false).each()[5], plain);
+                    assert_eq!(sampler.lobe_row(together, bounce).to_array()[5], one.lobe);
+                    let light = sampler.light_row(together, bounce).map(|x| x.to_array()[5]);
                     assert_eq!(LightDraw::new(light), sampler.light(&row[5], bounce));
                 }
-                let [x, y] = sampler.pixel_row(row).map(|x| x.to_array()[3]);
+                let [x, y] = sampler.pixel_row(together).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.pixel(&row[3]));
-                let [x, y] = sampler.lens_row(row).map(|x| x.to_array()[3]);
+                let [x, y] = sampler.lens_row(together).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.lens(&row[3]));
             }
         }

@@ -6,7 +6,7 @@
 //! shuffled once per path, is looked up by nibbles: the same sum of direction vectors, without a
 //! branch.
 
-use crate::lanes::{F32x16, MAX_LANES, U32x16, look_up, reverse_bits};
+use crate::lanes::{F32x16, U32x16, look_up, reverse_bits};
 use sobol_burley::NUM_DIMENSION_SETS_4D;
 use sobol_burley::parts::{Int4, hash, hash_int4};
 use sobol_burley::parts::{owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
@@ -83,15 +83,23 @@ const DIMENSIONS: [u32; 4] = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8
 #[inline(always)]
 fn scrambled_row(nibbles: &RowNibbles, places: U32x16, set: u32, seeds: U32x16) -> [F32x16; 4] {
     let seeds = (seeds * U32x16::splat(0x9c8f_2d3b)) ^ U32x16::splat(set);
-    std::array::from_fn(|dimension| {
-        let [a, b, c, d] = nibbles[dimension];
-        let sum = look_up(a, places)
-            ^ look_up(b, places >> 4)
-            ^ look_up(c, places >> 8)
-            ^ look_up(d, places >> 12);
-        let scramble = hash_row(seeds ^ U32x16::splat(DIMENSIONS[dimension]));
-        norm_row(reverse_bits(owen_scramble_row(sum, scramble)))
-    })
+    let [a, b, c, d] = nibbles;
+    // Not `map`, whose closure may be a call, through which rows would go by way of memory.
+    [
+        dimension_row(a, places, seeds ^ U32x16::splat(DIMENSIONS[0])),
+        dimension_row(b, places, seeds ^ U32x16::splat(DIMENSIONS[1])),
+        dimension_row(c, places, seeds ^ U32x16::splat(DIMENSIONS[2])),
+        dimension_row(d, places, seeds ^ U32x16::splat(DIMENSIONS[3])),
+    ]
+}
+
+#[inline(always)]
+fn dimension_row([a, b, c, d]: &[U32x16; 4], places: U32x16, seeds: U32x16) -> F32x16 {
+    let sum = look_up(*a, places)
+        ^ look_up(*b, places >> 4)
+        ^ look_up(*c, places >> 8)
+        ^ look_up(*d, places >> 12);
+    norm_row(reverse_bits(owen_scramble_row(sum, hash_row(seeds))))
 }
 
 /// [`hash`] for a row.
@@ -137,11 +145,10 @@ pub(super) fn shuffle(index: u32, seed: u32) -> Shuffled {
 
 /// [`shuffle`] for the indices from `first` on, which lie in one block.
 #[inline(always)]
-pub(super) fn shuffle_from(first: u32, seed: u32) -> [Shuffled; MAX_LANES] {
+pub(super) fn shuffle_from(first: u32, seed: u32) -> U32x16 {
     let indices = U32x16::new(std::array::from_fn(|i| first + i as u32));
     let scramble = U32x16::splat(hash(seed ^ 0x79c6_8e4a));
-    let shuffled = owen_scramble_row(reverse_bits(indices), scramble) >> INDEX_BITS;
-    shuffled.to_array().map(Shuffled)
+    owen_scramble_row(reverse_bits(indices), scramble) >> INDEX_BITS
 }
 
 /// Splits a position into the block of 2^16 points in which it lies, and its index there.
@@ -167,6 +174,7 @@ fn by_dimension(nibbles: &Nibbles) -> RowNibbles {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::MAX_LANES;
     use sobol_burley::sample_4d;
 
     #[test]
@@ -198,7 +206,8 @@ mod tests {
                 assert_eq!(rows.map(|rows| rows.map(|row| row[lane])), one);
             }
         }
-        assert_eq!(shuffle_from(65_520, 7), std::array::from_fn(|i| shuffle(65_520 + i as u32, 7)));
+        let each = std::array::from_fn(|i| shuffle(65_520 + i as u32, 7).0);
+        assert_eq!(shuffle_from(65_520, 7).to_array(), each);
     }
 
     #[test]

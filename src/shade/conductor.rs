@@ -1,7 +1,7 @@
 //! Metals: smooth mirrors, or rough by GGX.
 
-use super::{Bsdf, Material, Scatter, colors, column, fresnel, ggx, in_doubles};
-use crate::lanes::{Lanes, MAX_LANES, Mask};
+use super::{Bsdf, Material, Numbers, One, Scatter, fresnel, ggx, in_doubles};
+use crate::lanes::{Lanes, Mask};
 use crate::scene::{ConductorFresnel, Rgb};
 use crate::vec3::Vec3;
 use crate::world::Conductor;
@@ -27,7 +27,12 @@ struct Exact<L> {
 impl Conductor {
     /// The color in which it reflects what is seen from above.
     pub fn color(&self) -> Rgb {
-        Self::row::<f32>(&[*self; MAX_LANES]).reflectance(1.0).into()
+        Self::row::<f32>(&One(self)).reflectance(1.0).into()
+    }
+
+    /// Whether it has an index of refraction.
+    fn is_exact(&self) -> bool {
+        matches!(self.fresnel, ConductorFresnel::Exact { .. })
     }
 
     /// Real and imaginary part of the index of refraction; anything if the color is told.
@@ -54,12 +59,12 @@ impl Conductor {
 impl<L: Lanes> Exact<L> {
     /// Of these metals; `None` if none has an index of refraction.
     #[inline(always)]
-    fn of(each: &[Conductor; MAX_LANES]) -> Option<Self> {
-        let exact = |metal: &Conductor| matches!(metal.fresnel, ConductorFresnel::Exact { .. });
-        each[..L::WIDTH].iter().any(exact).then(|| Self {
-            eta: colors(each, |metal| metal.index()[0]),
-            k: colors(each, |metal| metal.index()[1]),
-            tint: colors(each, |metal| if exact(metal) { metal.tint } else { Rgb::ZERO }),
+    fn of(numbers: &impl Numbers<L>) -> Option<Self> {
+        let exact = L::splat(0.0).lt(numbers.row(5));
+        (exact.bits() != 0).then(|| Self {
+            eta: numbers.color(6),
+            k: numbers.color(9),
+            tint: numbers.color(12),
         })
     }
 
@@ -101,29 +106,45 @@ impl<L: Lanes> Metal<L> {
 impl Material for Conductor {
     const DIFFUSE: bool = false;
     const BASE: bool = false;
+    const NUMBERS: usize = 15;
     type Bsdf<L: Lanes> = Metal<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { tint: self.tint * color, ..self }
     }
 
-    fn is_delta(&self) -> bool {
-        self.roughness == 0.0
+    #[inline(always)]
+    fn number(&self, i: usize) -> f32 {
+        let number = |yes: bool| f32::from(u8::from(yes));
+        match i {
+            0..3 => self.normal_incidence()[i],
+            3 => number(matches!(self.fresnel, ConductorFresnel::Schlick(_))),
+            4 => self.roughness,
+            5 => number(self.is_exact()),
+            6..9 => self.index()[0][i - 6],
+            9..12 => self.index()[1][i - 9],
+            _ if self.is_exact() => self.tint[i - 12],
+            _ => 0.0,
+        }
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Metal<L> {
-        let rises = |metal: &Self| matches!(metal.fresnel, ConductorFresnel::Schlick(_));
+    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Metal<L> {
         Metal {
-            normal_incidence: colors(each, Self::normal_incidence),
-            rises: column(each, |metal| f32::from(u8::from(rises(metal)))),
-            exact: Exact::of(each),
-            alpha: column(each, |metal| metal.roughness),
+            normal_incidence: numbers.color(0),
+            rises: numbers.row(3),
+            exact: Exact::of(numbers),
+            alpha: numbers.row(4),
         }
     }
 }
 
 impl<L: Lanes> Bsdf<L> for Metal<L> {
+    #[inline(always)]
+    fn is_delta(&self) -> L::Mask {
+        self.smooth()
+    }
+
     #[inline(always)]
     fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));

@@ -1,7 +1,7 @@
 //! Ideally diffuse surfaces: the lambertian material, and what emitters reflect.
 
-use super::{Bsdf, Material, Scatter, colors};
-use crate::lanes::{Lanes, MAX_LANES};
+use super::{Bsdf, Material, Numbers, Scatter, is_black};
+use crate::lanes::Lanes;
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
@@ -16,23 +16,30 @@ pub struct Diffuse<L> {
 impl Material for Lambertian {
     const DIFFUSE: bool = true;
     const BASE: bool = true;
+    const NUMBERS: usize = 3;
     type Bsdf<L: Lanes> = Diffuse<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color }
     }
 
-    fn is_delta(&self) -> bool {
-        self.color == Rgb::ZERO
+    #[inline(always)]
+    fn number(&self, i: usize) -> f32 {
+        self.color[i]
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Diffuse<L> {
-        Diffuse { albedo: colors(each, |material| material.color) }
+    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Diffuse<L> {
+        Diffuse { albedo: numbers.color(0) }
     }
 }
 
 impl<L: Lanes> Bsdf<L> for Diffuse<L> {
+    #[inline(always)]
+    fn is_delta(&self) -> L::Mask {
+        is_black(self.albedo)
+    }
+
     #[inline(always)]
     fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
         self.albedo * self.pdf(outgoing, incoming)

@@ -10,8 +10,11 @@ pub mod dielectric;
 pub mod fresnel;
 pub mod ggx;
 pub mod lambertian;
+mod numbers;
 pub mod plastic;
 pub mod reflective;
+
+pub use numbers::{Each, Numbers, One};
 
 use crate::lanes::{F64x8, Lanes, MAX_LANES, store_rounded};
 use crate::scene::Rgb;
@@ -26,6 +29,9 @@ pub trait Material: Copy {
     /// must be sampled.
     const BASE: bool;
 
+    /// How many numbers tell all of it.
+    const NUMBERS: usize;
+
     /// A row of such surfaces.
     type Bsdf<L: Lanes>: Bsdf<L>;
 
@@ -33,15 +39,18 @@ pub trait Material: Copy {
     #[must_use]
     fn tinted(self, color: Rgb) -> Self;
 
-    /// Whether it only mirrors, so that no light sample can contribute.
-    fn is_delta(&self) -> bool;
+    /// Number `i` of those that tell all of it.
+    fn number(&self, i: usize) -> f32;
 
-    /// The first of these surfaces, in lanes.
-    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Self::Bsdf<L>;
+    /// Surfaces of which these are the numbers.
+    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Self::Bsdf<L>;
 }
 
 /// How each of a row of surfaces scatters light.
 pub trait Bsdf<L: Lanes> {
+    /// Where it only mirrors, so that no light sample can contribute.
+    fn is_delta(&self) -> L::Mask;
+
     /// Scattered radiance per irradiance, times the cosine of `incoming`, by channel; without any
     /// mirrored part, and 0 from below.
     fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L>;
@@ -94,19 +103,10 @@ pub fn mirror<L: Lanes>(outgoing: Vec3<L>) -> Vec3<L> {
     Vec3::new(-outgoing.x, -outgoing.y, outgoing.z)
 }
 
-/// A number of each of a row of materials.
+/// Where all channels are 0.
 #[inline(always)]
-fn column<M, L: Lanes>(each: &[M; MAX_LANES], number: impl Fn(&M) -> f32) -> L {
-    let mut row = [0.0; MAX_LANES];
-    row.iter_mut().zip(each).take(L::WIDTH).for_each(|(lane, material)| *lane = number(material));
-    L::load(&row)
-}
-
-/// A color of each of a row of materials.
-#[inline(always)]
-fn colors<M, L: Lanes>(each: &[M; MAX_LANES], color: impl Fn(&M) -> Rgb) -> Vec3<L> {
-    let channel = |i: usize| column(each, |material| color(material)[i]);
-    Vec3::new(channel(0), channel(1), channel(2))
+fn is_black<L: Lanes>(color: Vec3<L>) -> L::Mask {
+    color.max_element().le(L::splat(0.0))
 }
 
 /// What a formula gives in double precision, rounded.
@@ -122,7 +122,7 @@ fn in_doubles<L: Lanes, const N: usize>(row: [L; N], of: impl Fn([F64x8; N]) -> 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::lanes::F32x16;
+    use crate::lanes::{F32x16, Mask};
     use crate::sampling::statistics::Grid;
     use crate::sampling::{stream, uniform_sphere, unit};
     use std::f32::consts::PI;
@@ -141,7 +141,7 @@ pub(crate) mod tests {
     }
 
     /// A sampled direction of one surface.
-    pub(crate) struct One {
+    pub(crate) struct Sampled {
         pub(crate) incoming: glam::Vec3,
         pub(crate) weight: Rgb,
         /// `None` for a mirrored direction.
@@ -153,12 +153,12 @@ pub(crate) mod tests {
         material: &impl Material,
         outgoing: glam::Vec3,
         [u, v, choice]: [f32; 3],
-    ) -> Option<One> {
-        let bsdf = Material::row::<f32>(&[*material; MAX_LANES]);
+    ) -> Option<Sampled> {
+        let bsdf = lone(material);
         let Scatter { incoming, weight, pdf } = bsdf.sample(outgoing.into(), [u, v], choice);
         let weight = Rgb::from(weight);
         let pdf = (pdf > 0.0).then_some(pdf);
-        (weight != Rgb::ZERO).then_some(One { incoming: incoming.into(), weight, pdf })
+        (weight != Rgb::ZERO).then_some(Sampled { incoming: incoming.into(), weight, pdf })
     }
 
     pub(crate) fn eval(m: &impl Material, outgoing: glam::Vec3, incoming: glam::Vec3) -> Rgb {
@@ -170,12 +170,12 @@ pub(crate) mod tests {
     }
 
     fn lone<M: Material>(material: &M) -> M::Bsdf<f32> {
-        M::row(&[*material; MAX_LANES])
+        M::row(&One(material))
     }
 
     /// Sixteen surfaces at once do what each does alone, to the bit.
     pub(crate) fn rows_are_what_their_lanes_are<M: Material>(each: &[M; MAX_LANES]) {
-        let row: M::Bsdf<F32x16> = M::row(each);
+        let row: M::Bsdf<F32x16> = M::row(&Each(each));
         let u: Vec<[f32; 3]> = numbers(5, MAX_LANES).collect();
         let direction = |seed| {
             let directions: Vec<glam::Vec3> = numbers(seed, MAX_LANES)
@@ -193,7 +193,8 @@ pub(crate) mod tests {
         let all = (row.eval(wo, wi), row.pdf(wo, wi), row.mirrored(wo));
         let scatter = row.sample(wo, [column(0), column(1)], column(2));
         for lane in 0..MAX_LANES {
-            let one = M::row::<f32>(&[each[lane]; MAX_LANES]);
+            let one = lone(&each[lane]);
+            assert_eq!(row.is_delta().bits() >> lane & 1 == 1, one.is_delta());
             let (wo, wi) = (outgoing[lane].into(), incoming[lane].into());
             let at = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]);
             assert_eq!(at(all.0), one.eval(wo, wi));

@@ -5,8 +5,8 @@
 //! reflections (Weidlich and Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", GRAPHITE 2007,
 //! with the series summed). A white base gives back exactly what it gets.
 
-use super::{Bsdf, Material, Scatter, colors, column, fresnel, in_doubles};
-use crate::lanes::{F64x8, Lanes, MAX_LANES};
+use super::{Bsdf, Material, Numbers, Scatter, fresnel, in_doubles, is_black};
+use crate::lanes::{F64x8, Lanes};
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
@@ -33,28 +33,36 @@ impl<L: Lanes> Coated<L> {
 impl Material for Plastic {
     const DIFFUSE: bool = false;
     const BASE: bool = true;
+    const NUMBERS: usize = 4;
     type Bsdf<L: Lanes> = Coated<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color, ..self }
     }
 
-    fn is_delta(&self) -> bool {
-        self.color == Rgb::ZERO
+    #[inline(always)]
+    fn number(&self, i: usize) -> f32 {
+        match self.color.to_array().get(i) {
+            Some(albedo) => {
+                let kept = 1.0 - albedo * self.internal_reflectance;
+                albedo / (kept * (self.ior * self.ior))
+            }
+            None => self.ior,
+        }
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Coated<L> {
-        let one = L::splat(1.0);
-        let color: Vec3<L> = colors(each, |material| material.color);
-        let ior: L = column(each, |material| material.ior);
-        let internal: L = column(each, |material| material.internal_reflectance);
-        let base = color.map(|albedo| albedo / ((one - albedo * internal) * (ior * ior)));
-        Coated { ior, base }
+    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Coated<L> {
+        Coated { base: numbers.color(0), ior: numbers.row(3) }
     }
 }
 
 impl<L: Lanes> Bsdf<L> for Coated<L> {
+    #[inline(always)]
+    fn is_delta(&self) -> L::Mask {
+        is_black(self.base)
+    }
+
     #[inline(always)]
     fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
         let one = L::splat(1.0);
@@ -95,6 +103,7 @@ impl<L: Lanes> Bsdf<L> for Coated<L> {
 mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
+    use crate::shade::One;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
     use crate::shade::tests::{
         rows_are_what_their_lanes_are, samples_follow_density, samples_match_density,
@@ -107,7 +116,7 @@ mod tests {
     }
 
     fn coat(plastic: Plastic, cosine: f32) -> f64 {
-        f64::from(Plastic::row::<f32>(&[plastic; MAX_LANES]).coat(cosine))
+        f64::from(Plastic::row::<f32>(&One(&plastic)).coat(cosine))
     }
 
     #[test]

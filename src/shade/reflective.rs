@@ -1,7 +1,7 @@
 //! The paper's material: a diffuse and a mirror share of one color, weights given.
 
-use super::{Bsdf, Material, Scatter, colors, column};
-use crate::lanes::{Lanes, MAX_LANES};
+use super::{Bsdf, Material, Numbers, Scatter};
+use crate::lanes::Lanes;
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
@@ -28,23 +28,30 @@ impl Reflective {
 impl Material for Reflective {
     const DIFFUSE: bool = false;
     const BASE: bool = true;
+    const NUMBERS: usize = 6;
     type Bsdf<L: Lanes> = Shares<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color, ..self }
     }
 
-    fn is_delta(&self) -> bool {
-        self.diffuse == 0.0
+    #[inline(always)]
+    fn number(&self, i: usize) -> f32 {
+        match i {
+            0..3 => self.color[i],
+            3 => self.diffuse,
+            4 => self.mirror,
+            _ => self.mirror_probability(),
+        }
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(each: &[Self; MAX_LANES]) -> Shares<L> {
+    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Shares<L> {
         Shares {
-            color: colors(each, |material| material.color),
-            diffuse: column(each, |material| material.diffuse),
-            mirror: column(each, |material| material.mirror),
-            mirrors: column(each, Self::mirror_probability),
+            color: numbers.color(0),
+            diffuse: numbers.row(3),
+            mirror: numbers.row(4),
+            mirrors: numbers.row(5),
         }
     }
 }
@@ -58,6 +65,11 @@ impl<L: Lanes> Shares<L> {
 }
 
 impl<L: Lanes> Bsdf<L> for Shares<L> {
+    #[inline(always)]
+    fn is_delta(&self) -> L::Mask {
+        self.diffuse.le(L::splat(0.0))
+    }
+
     #[inline(always)]
     fn eval(&self, _outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L> {
         self.color * (self.diffuse * L::splat(FRAC_1_PI) * incoming.z.max(L::splat(0.0)))

@@ -207,17 +207,18 @@ impl Lights {
         }
     }
 
-    /// Density with which `choose` and `sample` find a direction that meets emissive sphere `row`,
-    /// and whether that sphere is close; density 0 from in or on it.
-    pub fn emitter_pdf(&self, spheres: &Spheres, row: u32, at: &Receiver) -> (f32, bool) {
+    /// Density with which `choose` and `sample` find emissive sphere `row`; 0 from in or on it,
+    /// infinite if it is not close to a `diffuse` surface: then light samples alone count.
+    pub fn emitter_pdf(&self, spheres: &Spheres, row: u32, at: &Receiver, diffuse: bool) -> f32 {
         let key = spheres.key(row as usize);
         let found = self.emitters.binary_search_by_key(&key, |&other| spheres.key(other as usize));
         let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != at.own) else {
-            return (0.0, true);
+            return 0.0;
         };
         match toward_sphere(spheres, row as usize, (at.point, self.reach)) {
-            Some((seen, cone)) => (self.probability(at, index) * cone.pdf(), seen.close),
-            None => (0.0, true),
+            Some((seen, _)) if diffuse && !seen.close => f32::INFINITY,
+            Some((_, cone)) => self.probability(at, index) * cone.pdf(),
+            None => 0.0,
         }
     }
 

@@ -4,7 +4,7 @@
 use super::choice::Choice;
 use super::discs::distances;
 use super::{Aim, Disc, LightSample, Lights, Receiver};
-use crate::lanes::{F32x16, F64x8, Lanes, set_bits};
+use crate::lanes::{F32x16, F64x8, Lanes, first_lanes, set_bits};
 use crate::ray::MISS;
 use crate::sampling::LightDraw;
 use crate::scene::Rgb;
@@ -43,11 +43,6 @@ pub struct LightRow {
     pub close: u32,
     /// Lanes that are samples: there is no light in the others.
     pub lanes: u32,
-}
-
-/// The first `count` lanes.
-pub(super) fn first(count: usize) -> u32 {
-    (1_u32 << count) - 1
 }
 
 impl ReceiverRow {
@@ -166,12 +161,12 @@ impl Lights {
         if let Some(sun) = self.lone_sun() {
             return sun.sample_row([u, v], lanes);
         }
-        let draw = LightDraw::light_row(numbers);
+        let draw = || LightDraw::light_row(numbers);
         let (light, probability) = match &self.choice {
             Choice::None => return LightRow::dark(),
             Choice::Lone => return self.sample_lights(world, at, (&[0; ROW], lanes), [u, v]),
-            Choice::Tree(tree) => tree.choose_row(at, draw, lanes),
-            Choice::Table(_) => self.choose_each(at, draw),
+            Choice::Tree(tree) => tree.choose_row(at, draw(), lanes),
+            Choice::Table(_) => self.choose_each(at, draw()),
         };
         let samples = self.sample_lights(world, at, (&light, lanes), [u, v]);
         samples.chosen(F32x16::new(probability))
@@ -226,7 +221,7 @@ impl Aim<'_> {
     /// [`Aim::sample`] for the first `count` lanes of a row of numbers.
     #[inline(always)]
     pub fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightRow {
-        let lanes = first(count);
+        let lanes = first_lanes(count);
         match self {
             Self::Disc(disc) => disc.sample_row(u, lanes),
             Self::Sun(sun) => sun.sample_row(u, lanes),

@@ -12,7 +12,7 @@ fn check(aim: &Aim, count: usize, seed: u64) {
         std::array::from_fn(|lane| unit_pair(stream(mix(seed), lane as u64)));
     let u = [0, 1].map(|axis| F32x16::new(draws.map(|draw| draw[axis])));
     let row = aim.sample_row(u, count);
-    assert_eq!(row.lanes, first(count));
+    assert_eq!(row.lanes, first_lanes(count));
     for (lane, &draw) in draws.iter().enumerate().take(count) {
         let (sample, one) = (row.sample(lane), aim.sample(draw).expect("there is light"));
         assert_eq!(sample.direction, one.direction, "lane {lane}");
