@@ -89,16 +89,30 @@ impl Tile {
 impl Region {
     /// The pixels of a region no larger than a tile, as [`Tile::pixels`] gives them.
     pub(crate) fn morton(self) -> impl Iterator<Item = (u32, u32)> {
-        (0..TILE * TILE)
-            .map(|i| (even_bits(i), even_bits(i >> 1)))
+        MORTON
+            .iter()
+            .map(|&[x, y]| (u32::from(x), u32::from(y)))
             .filter(move |&(x, y)| x < self.width && y < self.height)
             .map(move |(x, y)| (self.x + x, self.y + y))
     }
 }
 
+/// Columns and rows along a Morton curve.
+static MORTON: [[u8; 2]; (TILE * TILE) as usize] = {
+    let mut places = [[0; 2]; (TILE * TILE) as usize];
+    let mut i = 0;
+    while i < TILE * TILE {
+        places[i as usize] = [even_bits(i) as u8, even_bits(i >> 1) as u8];
+        i += 1;
+    }
+    places
+};
+
 /// The bits of `i` at even places, side by side.
-fn even_bits(i: u32) -> u32 {
-    let close = |bits: u32, width: u32, mask: u32| (bits | bits >> width) & mask;
+const fn even_bits(i: u32) -> u32 {
+    const fn close(bits: u32, width: u32, mask: u32) -> u32 {
+        (bits | bits >> width) & mask
+    }
     let bits = close(i & 0x5555_5555, 1, 0x3333_3333);
     let bits = close(bits, 2, 0x0f0f_0f0f);
     let bits = close(bits, 4, 0x00ff_00ff);
