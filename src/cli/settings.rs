@@ -27,6 +27,7 @@ impl PictureArgs {
         settings.filter = self.filter.unwrap_or(settings.filter);
         settings.roulette = self.roulette.unwrap_or(settings.roulette);
         settings.light_choice = self.light_choice.unwrap_or(settings.light_choice);
+        settings.caustics &= !self.no_caustics;
         settings.integrator = self.integrator(settings.integrator);
     }
 
@@ -98,6 +99,9 @@ pub(super) fn list(settings: &Settings, region: Region) -> List {
         Integrator::Ao { distance } if distance.is_finite() => put("ao_distance", json!(distance)),
         Integrator::Ao { .. } => put("ao_distance", json!("inf")),
     };
+    if !settings.caustics {
+        put("caustics", json!(false));
+    }
     put("sampler", json!(SAMPLERS.name(&settings.sampler)));
     put("filter", json!(FILTERS.name(&settings.filter)));
     put("roulette", roulette(settings.roulette));

@@ -2,6 +2,7 @@
 
 use super::Job;
 use super::arrival::Arrival;
+use super::caustics;
 use super::path::heuristics;
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, bits, bits_of, first_lanes, set_bits};
@@ -79,6 +80,10 @@ pub(super) fn at_lamps(job: &Job, work: &mut Workspace) {
         let mut weight = [1.0; MAX_LANES];
         for lane in set_bits(lanes & carried.arrival.sampled().bits()) {
             weight[lane] = lamp(job, work, bin.ray(first + lane));
+        }
+        for lane in set_bits(lanes & !carried.arrival.sampled().bits()) {
+            let place = carried.place.to_array()[lane];
+            weight[lane] = caustics::weight(job, work, bin.ray(first + lane), place as usize);
         }
         let light = carried.throughput.times(radiance) * F32x16::new(weight);
         work.paths.add(carried.place, light, lanes);

@@ -9,6 +9,7 @@ pub mod arrival;
 pub mod bins;
 pub mod block;
 pub mod carried;
+mod caustics;
 pub mod clock;
 pub mod counters;
 mod found;

@@ -5,9 +5,11 @@
 //! (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH
 //! 1995), but from a diffuse surface a light that is not close, a sun or a point is left to the
 //! light samples alone: adding the other way would only add variance. A constant or gradient
-//! environment is left to the material's samples alone.
+//! environment is left to the material's samples alone. Lamps that are seen by way of one mirror or one
+//! ball of glass are looked for from diffuse surfaces too.
 
 use super::Job;
+use super::caustics;
 use super::clock::Stage;
 use super::found;
 use super::glass;
@@ -30,8 +32,10 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
             work.counters.cut_paths += work.bins.scattered();
             return;
         }
+        caustics::follow(job, work);
         glass::pass(job, work, bounce);
         stages::by_kind(job.world, &mut Shade { job, work, event: Event { bounce, faint } });
+        caustics::flush(job, work, bounce);
         stages::occlude(job, work);
         work.advance();
         work.clock.end(Stage::Shade);

@@ -3,6 +3,7 @@
 use super::Job;
 use super::bins::Bin;
 use super::carried::CarriedRow;
+use super::caustics;
 use super::gather::{Gathered, Starts};
 use super::looks::surfaces;
 use super::path::{heuristics, may_end, survival};
@@ -35,6 +36,7 @@ pub(super) fn shade<M: Material>(
     if job.has_lights() {
         let lanes = paths.lanes & !bsdf.is_delta().bits();
         look_for_light::<M>(job, work, event.bounce, (&paths, &bsdf, lanes));
+        caustics::look::<M>(job, work, event.bounce, (&paths, &bsdf, lanes));
     }
     go_on::<M>(job, work, event, (&paths, &bsdf));
 }

@@ -8,6 +8,7 @@ use crate::lanes::{F32x16, Lanes, Mask, Packing, U32x16, set_bits};
 use crate::ray::{Columns3, GROUND, Hits, MISS, Rays};
 use crate::vec3::Vec3;
 use crate::world::{LightRow, LightSample, ROW, ReceiverRow, World};
+use glam::Vec3 as Point;
 
 /// Shadow rays that are traced together.
 pub const SHADOWS: usize = 4096;
@@ -60,6 +61,20 @@ impl Shadows {
     }
 }
 
+/// A shadow ray that comes by itself.
+pub(super) struct Next {
+    /// Where it starts, and on which sphere.
+    pub(super) start: (Point, u32),
+    /// Where it goes.
+    pub(super) direction: Point,
+    /// The distance of its light, and the light's row.
+    pub(super) end: (f64, u32),
+    /// Which path the light goes to.
+    pub(super) place: u32,
+    /// What arrives if nothing is in between.
+    pub(super) light: Point,
+}
+
 /// Queues the shadow rays in `lanes` of light samples, with the light that arrives if nothing is in
 /// between; traces the queue when it is full.
 #[inline(always)]
@@ -86,6 +101,18 @@ pub fn cast(
 fn hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
     let own = work.hits.sphere[row];
     own != GROUND && work.chord(world, row, sample.direction) < sample.t
+}
+
+impl Shadows {
+    /// Appends a ray; there is room for it.
+    pub(super) fn push(&mut self, next: &Next) {
+        let row = self.rays.len();
+        self.rays.push(next.start.0, next.direction, next.start.1);
+        self.rays.target[row] = next.end.1;
+        self.hits.set(row, next.end.0, MISS);
+        self.place[row] = next.place;
+        self.light.set(row, next.light);
+    }
 }
 
 impl Default for Shadows {

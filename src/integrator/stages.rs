@@ -7,7 +7,7 @@ use super::surface::solve;
 use super::workspace::Workspace;
 use crate::film::View;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, U32x16, bits, bits_of, first_lanes};
-use crate::ray::MISS;
+use crate::ray::{Hits, MISS, Rays};
 use crate::sampling;
 use crate::shade::Material;
 use crate::trace;
@@ -69,14 +69,7 @@ impl Local {
 pub fn occlude(job: &Job, work: &mut Workspace) {
     work.clock.end(Stage::Shade);
     let shadows = &mut work.shadows;
-    if let Some(ground) = job.unseen_ground() {
-        trace::hide_behind(&ground, &shadows.rays, &mut shadows.hits);
-    }
-    work.counters.exact_decisions += if job.skips.nearest_occluder {
-        job.tracer.occluded(job.world, &shadows.rays, &mut shadows.hits)
-    } else {
-        job.tracer.closest(job.world, &shadows.rays, &mut shadows.hits)
-    };
+    work.counters.exact_decisions += find_hidden(job, &shadows.rays, &mut shadows.hits);
     for first in (0..shadows.rays.len()).step_by(MAX_LANES) {
         let there = first_lanes(shadows.rays.len() - first);
         let hits: F32x16 = bits_of(&shadows.hits.sphere[first..]);
@@ -87,6 +80,18 @@ pub fn occlude(job: &Job, work: &mut Workspace) {
     work.counters.shadow_rays += shadows.rays.len() as u64;
     shadows.rays.truncate(0);
     work.clock.end(Stage::Shadow);
+}
+
+/// Finds which shadow rays something is in the way of.
+pub(super) fn find_hidden(job: &Job, rays: &Rays, hits: &mut Hits) -> u64 {
+    if let Some(ground) = job.unseen_ground() {
+        trace::hide_behind(&ground, rays, hits);
+    }
+    if job.skips.nearest_occluder {
+        job.tracer.occluded(job.world, rays, hits)
+    } else {
+        job.tracer.closest(job.world, rays, hits)
+    }
 }
 
 /// What is done for each kind of material.

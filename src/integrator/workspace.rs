@@ -2,6 +2,7 @@
 
 use super::bins::{Bins, ESCAPED, Rows};
 use super::carried::{Carried, CarriedRow};
+use super::caustics::Caustics;
 use super::clock::Clock;
 use super::counters::Counters;
 use super::gather::Starts;
@@ -57,6 +58,8 @@ pub struct Workspace {
     pub(super) onward: Onward,
     /// Light that arrives if nothing is in between.
     pub shadows: Shadows,
+    /// Who looks for light by way of balls.
+    pub(super) caustics: Caustics,
     /// What the camera rays may hit.
     pub view: View,
     /// What was done.
@@ -97,6 +100,7 @@ impl Workspace {
             looks: Looks::of(world, ESCAPED),
             onward: Onward::new(normals),
             shadows: Shadows::new(),
+            caustics: Caustics::new(world),
             view: View::Anything,
             counters: Counters::default(),
             clock: Clock::new(),

@@ -89,7 +89,7 @@ pub(crate) fn difference(a: &Unfinished, b: &Unfinished) -> Option<(&'static str
 
 /// What every sample depends on, by name.
 fn samples(settings: &Settings) -> Vec<(&'static str, String)> {
-    let all: [(&'static str, &dyn Debug); 9] = [
+    let all: [(&'static str, &dyn Debug); 10] = [
         ("width", &settings.width),
         ("height", &settings.height),
         ("depth", &settings.depth),
@@ -99,6 +99,7 @@ fn samples(settings: &Settings) -> Vec<(&'static str, String)> {
         ("filter", &settings.filter),
         ("roulette", &settings.roulette),
         ("light_choice", &settings.light_choice),
+        ("caustics", &settings.caustics),
     ];
     all.map(|(name, value)| (name, format!("{value:?}"))).into()
 }

@@ -1,7 +1,7 @@
 //! Cones of directions: what a sphere or a sun looks like from a point.
 
 use super::warp::cap;
-use crate::lanes::{Doubles, F32x16, F64x8, Lanes, Mask, narrow};
+use crate::lanes::{Doubles, F32x16, F64x8, Lanes, MAX_LANES, Mask, narrow};
 use crate::vec3;
 use glam::Vec3;
 use std::f64::consts::PI;
@@ -73,6 +73,13 @@ impl Cone<F32x16> {
         let [[a, a_pdf], [b, b_pdf]] = [a, b].map(measures);
         let cones = Self { height: narrow([a, b]), pdf: narrow([a_pdf, b_pdf]) };
         (cones, low.bits() | high.bits() << 8)
+    }
+
+    /// Cones in lanes.
+    #[inline(always)]
+    pub fn row(each: &[Cone; MAX_LANES]) -> Self {
+        let column = |of: fn(&Cone) -> f32| F32x16::new(each.each_ref().map(of));
+        Self { height: column(Cone::height), pdf: column(Cone::pdf) }
     }
 
     /// [`Cone::sample`] in lanes.

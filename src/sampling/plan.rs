@@ -107,6 +107,8 @@ fn which<D: Doubles>(coarse: D, fine: D) -> D {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lanes::U32x16;
+    use crate::sampling::{PathRow, PathStates};
     use crate::scene::SamplerKind;
 
     #[test]
@@ -114,6 +116,9 @@ mod tests {
         for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
             let sampler = Sampler::new(kind, 4, 16);
             let path = sampler.start(1, 2, 3);
+            let (start, mut states) = (sampler.start_row(1, 2, 3), PathStates::with_paths(1));
+            states.set_row(0, &start);
+            let row = PathRow::new(start.places, U32x16::splat(0), &states);
             let mut numbers = [sampler.pixel(&path), sampler.lens(&path)].concat();
             for bounce in 0..100 {
                 let ScatterDraw { direction, lobe, roulette } = sampler.scatter(&path, bounce);
@@ -123,12 +128,14 @@ mod tests {
                     roulette,
                     light as f32,
                 ]));
+                let (which, place) = sampler.caustic_row(&row, bounce);
+                numbers.extend([which, place[0], place[1]].map(|row| row.to_array()[0]));
             }
             let count = numbers.len();
-            assert_eq!(count, 704);
+            assert_eq!(count, 1004);
             numbers.sort_unstable_by(f32::total_cmp);
             numbers.dedup();
-            // Of 704 random multiples of 2^-23 or 2^-24, two may be equal by chance; not more.
+            // Of 1004 random multiples of 2^-23 or 2^-24, two may be equal by chance; not more.
             assert!(numbers.len() + 2 >= count, "{kind:?}: {}", numbers.len());
         }
     }

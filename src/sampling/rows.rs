@@ -1,7 +1,7 @@
 //! The numbers of sixteen paths at once.
 
 use super::plan::{ScatterDraw, choices, directions, lights};
-use super::sampler::{PathState, Points, Sampler};
+use super::sampler::{OTHER, PathState, Points, Sampler};
 use super::sobol::{Shuffled, block, shuffle_from};
 use crate::lanes::{F32x16, MAX_LANES, U32x16};
 
@@ -186,6 +186,26 @@ impl Sampler {
         self.draw4_row(paths, lights(bounce))
     }
 
+    /// Which caustic is looked for at scattering number `bounce`, and a place on its lamp, for each.
+    #[inline(always)]
+    pub fn caustic_row(&self, paths: &PathRow, bounce: u32) -> (F32x16, [F32x16; 2]) {
+        let [u, v, which, _] = self.other_row(paths, lights(bounce));
+        (which, [u, v])
+    }
+
+    /// [`Sampler::draw4`] for each, with [other](PathState::other) numbers.
+    #[inline(always)]
+    fn other_row(&self, paths: &PathRow, set: u32) -> [F32x16; 4] {
+        if let Points::Sobol(sobol) = self.points {
+            let Places { places, seeds } = paths.places;
+            let seeds = seeds ^ U32x16::splat(OTHER as u32);
+            if let Some(row) = sobol.draw4_row(places, set, seeds) {
+                return row;
+            }
+        }
+        self.draw4_each(paths, set, PathState::other)
+    }
+
     /// [`Sampler::draw4`] for each.
     #[inline(always)]
     pub fn draw4_row(&self, paths: &PathRow, set: u32) -> [F32x16; 4] {
@@ -195,16 +215,21 @@ impl Sampler {
                 return row;
             }
         }
-        self.draw4_each(paths, set)
+        self.draw4_each(paths, set, |state| state)
     }
 
     /// The same, one by one.
     #[inline(never)]
-    fn draw4_each(&self, paths: &PathRow, set: u32) -> [F32x16; 4] {
+    fn draw4_each(
+        &self,
+        paths: &PathRow,
+        set: u32,
+        of: impl Fn(PathState) -> PathState,
+    ) -> [F32x16; 4] {
         let mut columns = [[0.0; MAX_LANES]; 4];
         let each = paths.paths.to_array().into_iter().zip(paths.places.places.to_array());
         for (lane, (path, place)) in each.enumerate() {
-            let draw = self.draw4(&paths.states.state(path as usize, place), set);
+            let draw = self.draw4(&of(paths.states.state(path as usize, place)), set);
             columns.iter_mut().zip(draw).for_each(|(column, x)| column[lane] = x);
         }
         columns.map(F32x16::new)

@@ -17,6 +17,9 @@ const REPLICA: u64 = 0xbb67_ae85_84ca_a73b;
 /// Sets the keys of numbers beyond the Sobol dimensions apart from both.
 const BEYOND: u64 = 0xd134_2543_de82_ef95;
 
+/// Sets the keys of the numbers of caustics apart from those of other decisions.
+pub(super) const OTHER: u64 = 0x3c6e_f372_fe94_f82b;
+
 /// The source of all randomness of a picture, shared by all threads: it has no state.
 ///
 /// A number is a pure function of (seed, pixel, sample index, dimension), so pictures do not depend on
@@ -52,6 +55,14 @@ pub struct PathState {
     pub(super) index: u32,
     /// The same place in the Sobol sequence of `key`.
     pub(super) shuffled: Shuffled,
+}
+
+impl PathState {
+    /// The same path with other numbers at the same decisions.
+    #[inline(always)]
+    pub(super) fn other(self) -> Self {
+        Self { key: self.key ^ OTHER, ..self }
+    }
 }
 
 impl Sampler {

@@ -32,6 +32,9 @@ pub struct Settings {
     pub roulette: Roulette,
     /// How a path chooses the light that it looks for.
     pub light_choice: LightChoice,
+    /// Whether diffuse surfaces look for the light of lamps by way of mirrors and glass where that is
+    /// known in closed form.
+    pub caustics: bool,
     /// Stops: radiance is multiplied by 2 to this power when it becomes a picture of 8 or 16 bits.
     pub exposure: f64,
     /// From radiance to a displayable value, before the sRGB curve.
@@ -140,6 +143,7 @@ impl Default for Settings {
             filter: Filter::BlackmanHarris,
             roulette: Roulette::Throughput,
             light_choice: LightChoice::Tree,
+            caustics: true,
             exposure: 0.0,
             tone: Tone::Linear,
         }

@@ -1,7 +1,9 @@
 //! Checks what only code can get wrong: a scene from a file has passed all this when it was read, with line and column.
 
-use super::WorldError;
+use super::fit::{self, Placement};
+use super::{Frame, WorldError, spheres};
 use crate::image::Image;
+use crate::memory;
 use crate::scene::{
     BRIGHTEST, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Integrator, Light,
     Material, NamedMaterial, Pose, Projection, Rgb, Roulette, Scene, Settings, Slice, is_radiance,
@@ -201,4 +203,15 @@ fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError
     let material = materials.get(ground.material as usize).map(|named| &named.material);
     let solid = !matches!(material, Some(Material::Dielectric { .. } | Material::Emitter { .. }));
     demand(solid, || "the ground can be neither glass nor an emitter; use a sphere".to_owned())
+}
+
+/// Finds where everything is, once nothing is wrong with it and so many bytes can be had.
+pub(super) fn place(scene: &Scene, bytes: u64) -> Result<(Frame, Placement), WorldError> {
+    memory::check(bytes).map_err(|shortage| WorldError::Memory(scene.spheres.len(), shortage))?;
+    memory::check(super::Environment::bytes(&scene.environment))
+        .map_err(WorldError::Environment)?;
+    spheres::validate(scene)?;
+    check(scene)?;
+    let pose = fit::pose(scene)?;
+    Ok((Frame::of(&scene.spheres, &pose), pose))
 }

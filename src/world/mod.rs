@@ -8,6 +8,7 @@
 
 mod appearance;
 mod camera;
+mod caustics;
 mod census;
 pub(crate) mod check;
 mod cut;
@@ -23,6 +24,8 @@ mod spheres;
 
 pub use appearance::{Appearance, Colors, Column};
 pub use camera::Camera;
+pub use caustics::Casters;
+pub(crate) use caustics::{Found, Looking, Sent, Way};
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use environment::{Environment, Picture, Radiance, SkySample};
@@ -38,7 +41,7 @@ pub use seen::Seen;
 
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
-use crate::memory::{self, Shortage};
+use crate::memory::Shortage;
 use crate::ray::GROUND;
 use crate::scene::{self, Material, NamedMaterial, Rgb, Scene, Settings, SliceMode};
 use crate::spheres::Spheres;
@@ -76,6 +79,8 @@ pub struct World {
     pub materials: Materials,
     /// What can be sampled to find light.
     pub lights: Lights,
+    /// What casts the light of lamps.
+    pub casters: Casters,
     /// What rays see that hit nothing.
     pub environment: Environment,
     /// Who looks.
@@ -145,7 +150,7 @@ impl World {
     /// # Errors
     /// Those of [`World::build`].
     pub fn build_with(scene: &Scene, builder: Builder) -> Result<Self, WorldError> {
-        let at = place(scene, Self::bytes_for(scene))?;
+        let at = check::place(scene, Self::bytes_for(scene))?;
         Self::assemble(scene, Cow::Borrowed(&scene.spheres), &at, builder)
     }
 
@@ -155,7 +160,7 @@ impl World {
     /// # Errors
     /// Those of [`World::build`]; for all but [`WorldError::Glass`] the scene still has its spheres.
     pub fn build_taking(scene: &mut Scene, builder: Builder) -> Result<Self, WorldError> {
-        let at = place(scene, Self::bytes_beside(scene))?;
+        let at = check::place(scene, Self::bytes_beside(scene))?;
         let spheres = std::mem::take(&mut scene.spheres);
         Self::assemble(scene, Cow::Owned(spheres), &at, builder)
     }
@@ -204,11 +209,13 @@ impl World {
             ground,
             materials,
             lights,
+            casters: Casters::default(),
             environment,
             camera,
             features: Features::default(),
         };
         world.features = Features::census(&world, [given, shown, placed]);
+        world.casters = Casters::find(&world);
         Ok(world)
     }
 
@@ -226,6 +233,7 @@ impl World {
             ground: self.ground,
             materials: self.materials.clone(),
             lights: self.lights.without_spheres(&self.environment),
+            casters: Casters::default(),
             environment: self.environment.clone(),
             camera: self.camera,
             features,
@@ -283,14 +291,4 @@ impl World {
     pub fn albedo(&self, hit: u32) -> Rgb {
         self.materials.albedo(self.material(hit)) * self.color(hit)
     }
-}
-
-/// Finds where everything is, once nothing is wrong with it and so many bytes can be had.
-fn place(scene: &Scene, bytes: u64) -> Result<(Frame, Placement), WorldError> {
-    memory::check(bytes).map_err(|shortage| WorldError::Memory(scene.spheres.len(), shortage))?;
-    memory::check(Environment::bytes(&scene.environment)).map_err(WorldError::Environment)?;
-    spheres::validate(scene)?;
-    check::check(scene)?;
-    let pose = fit::pose(scene)?;
-    Ok((Frame::of(&scene.spheres, &pose), pose))
 }

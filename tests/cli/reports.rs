@@ -53,6 +53,7 @@ fn settings_without_effect_are_said_so() {
         ("--integrator ao --roulette none", "--roulette has no effect"),
         ("--integrator ao --light-choice power", "--light-choice has no effect"),
         ("--light-choice power", "--light-choice has no effect: the scene has no two lights"),
+        ("--no-caustics", "--no-caustics has no effect"),
         ("--depth 2 --roulette throughput", "--roulette throughput has no effect"),
         ("--traversal scalar --lanes 8", "--lanes has no effect"),
         ("-o a.exr --exposure 1", "exposure has no effect"),

@@ -4,6 +4,7 @@
 mod common;
 
 mod camera;
+mod caustics;
 mod diffuse;
 mod furnace;
 mod glass;

@@ -51,6 +51,12 @@ const LIGHTS: [Variant; 3] = [
     variant("all alike", |settings, _| settings.light_choice = LightChoice::Uniform),
 ];
 
+/// Where there are balls that cast the light of lamps.
+const CAUSTICS: [Variant; 2] = [
+    variant("looked for", |_, _| ()),
+    variant("by chance", |settings, _| settings.caustics = false),
+];
+
 /// Where paths scatter once: then both integrators make the same picture.
 const DIRECT: [Variant; 4] = [
     variant("path", |_, _| ()),
@@ -85,6 +91,7 @@ pub(super) fn cases(options: &Options) -> Result<Vec<Case>, BenchError> {
         cases.push(Case { scene: scene.clone(), variants: &SETTINGS });
         if !options.scenes.is_empty() {
             cases.extend(several_lights(scene)?);
+            cases.extend(caustics(scene)?);
             cases.push(direct(scene));
         }
     }
@@ -108,6 +115,13 @@ fn several_lights(scene: &NamedScene) -> Result<Option<Case>, BenchError> {
     let by_path = |scene: &mut Scene| scene.settings.integrator = Integrator::Path;
     let scene = changed(scene, "lights", by_path);
     Ok((scene.world()?.lights.len() > 1).then_some(Case { scene, variants: &LIGHTS }))
+}
+
+/// Caustics, if they are looked for.
+fn caustics(scene: &NamedScene) -> Result<Option<Case>, BenchError> {
+    let by_path = |scene: &mut Scene| scene.settings.integrator = Integrator::Path;
+    let scene = changed(scene, "caustics", by_path);
+    Ok((!scene.world()?.casters.is_empty()).then_some(Case { scene, variants: &CAUSTICS }))
 }
 
 fn direct(scene: &NamedScene) -> Case {

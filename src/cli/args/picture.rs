@@ -57,6 +57,9 @@ pub(in crate::cli) struct PictureArgs {
     /// How a path chooses the light that it looks for, for the integrator path
     #[arg(long, value_parser = LIGHT_CHOICES.parser())]
     pub(in crate::cli) light_choice: Option<LightChoice>,
+    /// Leave it to chance to find lamps by way of mirrors and glass, for the integrator path
+    #[arg(long)]
+    pub(in crate::cli) no_caustics: bool,
     /// Render this part alone: column and row of its top left corner, its width and height
     #[arg(long, value_name = "X,Y,WxH", allow_hyphen_values = true, value_parser = values::region)]
     pub(in crate::cli) region: Option<Region>,

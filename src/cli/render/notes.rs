@@ -33,6 +33,8 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     note(chosen, ao || whitted, "--light-choice", "only the integrator path chooses a light");
     let lone = world.lights.len() < 2;
     note(chosen, lone, "--light-choice", "the scene has no two lights");
+    let cast = !ao && !whitted && !world.casters.is_empty();
+    note(picture.no_caustics, !cast, "--no-caustics", "no lamp is looked for by way of a sphere");
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);
     let late = !ao && short && picture.roulette == Some(Roulette::Throughput);
     note(late, true, "--roulette throughput", "it begins at the fourth scattering, past --depth");

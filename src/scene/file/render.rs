@@ -47,6 +47,7 @@ pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
         light_choice: block
             .value("light_choice")
             .map_or(Ok(usual.light_choice), |value| light_choice(&value))?,
+        caustics: block.value("caustics").map_or(Ok(usual.caustics), |value| value.flag())?,
         exposure,
         tone: block.value("tone").map_or(Ok(usual.tone), |value| tone(&value))?,
     })

@@ -67,6 +67,7 @@ pub(super) const RENDER: Schema = Schema {
         ("filter", &[]),
         ("roulette", &[]),
         ("light_choice", &[]),
+        ("caustics", &[]),
         ("exposure", &[]),
         ("tone", &[]),
     ],

@@ -98,7 +98,7 @@ fn sections_in_the_wrong_brackets_are_told() {
 /// Texts with one value each that is out of its range, and one that is just inside.
 #[test]
 fn every_range_is_kept() {
-    let cases: [(&str, &[&str], &str); 43] = [
+    let cases: [(&str, &[&str], &str); 44] = [
         ("[look]\nbackground = ?", &["\"red\"", "\"#12\"", "-1", "[1, 2]"], "\"transparent\""),
         ("[look]\nbackground = ?", &["true", "2e30"], "[0, 1e30, 0.5]"),
         ("[look]\noutline = ?", &["1", "\"yes\""], "true"),
@@ -115,6 +115,7 @@ fn every_range_is_kept() {
         ("[render]\nseed = ?", &["-1", "18446744073709551616"], "18446744073709551615"),
         ("[render]\nroulette = ?", &["0", "1.1", "nan", "\"maybe\""], "1"),
         ("[render]\nlight_choice = ?", &["\"random\"", "1"], "\"power\""),
+        ("[render]\ncaustics = ?", &["1", "\"on\""], "false"),
         ("[render]\nexposure = ?", &["101", "inf", "\"1\""], "-100"),
         ("[render]\nsampler = ?", &["\"halton\"", "1"], "\"stratified\""),
         ("[render]\nfilter = ?", &["\"tent\""], "\"box\""),

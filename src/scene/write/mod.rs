@@ -243,6 +243,7 @@ mod tests {
         for choice in 0..4 {
             scene.settings.integrator = integrators[choice];
             scene.settings.light_choice = lights[choice % 3];
+            scene.settings.caustics = choice % 2 == 0;
             scene.settings.roulette = roulettes[choice % 3];
             scene.settings.sampler = samplers[choice % 3];
             scene.settings.filter = filters[choice % 3];

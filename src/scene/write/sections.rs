@@ -40,6 +40,7 @@ pub(super) fn render(settings: &Settings) -> String {
         LightChoice::Power => "power",
         LightChoice::Uniform => "uniform",
     };
+    let caustics = settings.caustics;
     let tone = match settings.tone {
         Tone::Linear => "linear",
         Tone::Filmic => "filmic",
@@ -52,7 +53,7 @@ pub(super) fn render(settings: &Settings) -> String {
     format!(
         "[render]\nsize = [{width}, {height}]\nspp = {spp}\n{error}{time}depth = {depth}\nseed = {seed}\n\
          integrator = {integrator}\nsampler = \"{sampler}\"\nfilter = \"{filter}\"\n\
-         roulette = {roulette}\nlight_choice = \"{light_choice}\"\nexposure = {exposure:?}\ntone = \"{tone}\"\n\n"
+         roulette = {roulette}\nlight_choice = \"{light_choice}\"\ncaustics = {caustics}\nexposure = {exposure:?}\ntone = \"{tone}\"\n\n"
     )
 }
 

@@ -1,0 +1,118 @@
+//! Light by way of mirrors and glass is the same whether it is looked for or left to chance.
+
+use crate::common::*;
+use glam::DVec3;
+use spherule::image::Image;
+use spherule::scene::{Integrator, Material, Rgb, Scene, Settings};
+
+/// Blocks of a picture each way.
+const BLOCKS: usize = 4;
+
+/// A ground under a lamp.
+fn lit() -> Scene {
+    let mut scene = dark();
+    ground(&mut scene, lambertian(0.7));
+    sphere(&mut scene, [1.5, 1.0, 4.0], 0.8, emitter(20.0, 0.3));
+    look(&mut scene, DVec3::new(0.0, -7.0, 4.0), DVec3::new(0.0, 0.0, 0.3), 35.0);
+    scene.settings.depth = Some(6);
+    scene
+}
+
+fn plastic() -> Material {
+    Material::Plastic { color: Rgb::splat(0.5), ior: 1.5 }
+}
+
+fn red_glass() -> Material {
+    Material::Dielectric { ior: 1.7, color: Rgb::new(0.8, 0.3, 0.3) }
+}
+
+/// Means of the blocks.
+fn blocks(image: &Image) -> [f64; BLOCKS * BLOCKS] {
+    let (width, height) = (image.width as usize, image.height as usize);
+    let mut sums = [0.0; BLOCKS * BLOCKS];
+    for (place, pixel) in image.pixels.iter().enumerate() {
+        let (x, y) = (place % width * BLOCKS / width, place / width * BLOCKS / height);
+        sums[BLOCKS * y + x] += f64::from(pixel[0]);
+    }
+    sums.map(|sum| sum * (BLOCKS * BLOCKS) as f64 / (width * height) as f64)
+}
+
+/// Fails unless all blocks are as bright without the search for caustics as with it, and the search
+/// changes what is drawn.
+#[track_caller]
+fn assert_unbiased(scene: &Scene, what: &str) {
+    let mut chance = scene.clone();
+    chance.settings.caustics = false;
+    assert_ne!(shoot(scene).image.pixels, shoot(&chance).image.pixels, "{what}");
+    let pairs = each_over_seeds(scene, blocks).into_iter().zip(each_over_seeds(&chance, blocks));
+    for (block, (looked, found)) in pairs.enumerate() {
+        assert_agree(looked, found, &format!("{what}, block {block}"));
+    }
+}
+
+#[test]
+fn a_ball_of_each_kind() {
+    let kinds =
+        [("mirror", mirror()), ("glass", glass(1.5)), ("red", red_glass()), ("coat", plastic())];
+    for (what, kind) in kinds {
+        for height in [1.0, 1.8] {
+            let mut scene = lit();
+            sphere(&mut scene, [0.0, 0.0, height], 1.0, kind.clone());
+            assert_unbiased(&scene, &format!("{what} at {height}"));
+        }
+    }
+}
+
+#[test]
+fn several_balls_and_lamps_and_what_is_in_between() {
+    let mut scene = lit();
+    sphere(&mut scene, [-1.3, 0.0, 1.0], 1.0, mirror());
+    sphere(&mut scene, [0.8, 0.0, 0.7], 0.7, glass(1.4));
+    sphere(&mut scene, [-3.0, 1.0, 3.0], 0.5, emitter(30.0, 0.0));
+    assert_unbiased(&scene, "two balls and two lamps");
+    sphere(&mut scene, [0.9, 0.3, 2.4], 0.4, lambertian(0.5));
+    sphere(&mut scene, [0.2, -1.0, 0.3], 0.3, lambertian(0.9));
+    assert_unbiased(&scene, "something in between");
+}
+
+#[test]
+fn paths_are_as_long_as_they_may_be() {
+    for depth in 2..5 {
+        let mut scene = lit();
+        sphere(&mut scene, [-1.0, 0.0, 1.0], 1.0, mirror());
+        sphere(&mut scene, [1.1, 0.0, 1.0], 1.0, glass(1.5));
+        scene.settings.depth = Some(depth);
+        // Of what a ball reflects that lets nearly all through, chance finds little.
+        scene.settings.spp = 256;
+        assert_unbiased(&scene, &format!("depth {depth}"));
+    }
+}
+
+/// What the technique is not for.
+#[test]
+fn other_scenes_are_what_they_are_without() {
+    let mut rough = lit();
+    sphere(&mut rough, [0.0, 0.0, 1.0], 1.0, metal(0.2));
+    let mut nested = lit();
+    sphere(&mut nested, [0.0, 0.0, 1.0], 1.0, glass(1.5));
+    sphere(&mut nested, [0.0, 0.0, 1.0], 0.5, glass(1.3));
+    let mut filled = lit();
+    sphere(&mut filled, [0.0, 0.0, 1.0], 1.0, glass(1.5));
+    sphere(&mut filled, [0.0, 0.0, 1.0], 0.5, lambertian(0.5));
+    let mut sunk = lit();
+    sphere(&mut sunk, [0.0, 0.0, 0.5], 1.0, glass(1.5));
+    let mut large = lit();
+    sphere(&mut large, [0.0, 0.0, 1.0], 1.0, mirror());
+    large.spheres.radius[0] = 3.0;
+    let mut shallow = lit();
+    sphere(&mut shallow, [0.0, 0.0, 1.0], 1.0, mirror());
+    shallow.settings.depth = Some(1);
+    let mut direct = lit();
+    sphere(&mut direct, [0.0, 0.0, 1.0], 1.0, mirror());
+    direct.settings.integrator = Integrator::Whitted { shadow_samples: 4 };
+    for (case, scene) in [rough, nested, filled, sunk, large, shallow, direct].iter().enumerate() {
+        let chance = Settings { caustics: false, ..scene.settings.clone() };
+        let chance = Scene { settings: chance, ..scene.clone() };
+        assert_eq!(shoot(scene).image.pixels, shoot(&chance).image.pixels, "case {case}");
+    }
+}
