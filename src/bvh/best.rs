@@ -15,12 +15,13 @@ use crate::lanes::{Lanes, Mask, bits};
 use crate::ray::MISS;
 use crate::vec3::Vec3;
 
-/// A sphere is hit by no more of its radius than this after the distance before which it is not, and
-/// [`RELATIVE`] of the distance: but by tangents, and what is next to one.
-const PART: f32 = 1.0 / 32.0;
+/// After the distance before which it is not, a sphere is hit by no more of its radius than this, and
+/// [`RELATIVE`] of the distance, where half the chord is more than a hundredth of the radius: for that is
+/// what the bounds of its square differ by, over twice the half.
+const PART: f32 = 1.0 / (1 << 10) as f32;
 
 /// See [`PART`].
-const RELATIVE: f32 = 1.0 / (1 << 15) as f32;
+const RELATIVE: f32 = 1.0 / (1 << 11) as f32;
 
 /// The best candidates of rays in a row.
 #[derive(Clone, Copy)]
@@ -59,6 +60,12 @@ pub(super) struct Candidate<L: Lanes> {
     pub(super) allowed: L::Mask,
     pub(super) ball: Ball<L>,
     pub(super) chord: Chord<L>,
+}
+
+/// A distance beyond which spheres are hardly hit, of which this is one before which they are not.
+#[inline(always)]
+pub(super) fn likely<L: Lanes>(near: L, radius: L) -> L {
+    near.mul_add(L::splat(1.0 + RELATIVE), radius * L::splat(PART))
 }
 
 impl<L: Lanes> Ball<L> {
@@ -108,31 +115,31 @@ impl<L: Lanes> Best<L> {
             self.end(lanes, (ray, margin), met);
         } else {
             let around = lanes & near.lt(L::splat(0.0));
+            let far = likely(near, met.ball.radius);
             let (lanes, bounds) = if around.bits() == 0 {
-                (lanes, [near, near])
+                (lanes, [near, far])
             } else {
                 let (inside, [at_least, at_most]) = met.chord.leaves(ray, met.ball.radius, margin);
                 let near = L::select(inside, at_least, near);
                 let lanes = lanes & near.le(self.t_max);
                 // Also where it is not certain on which side rays start.
-                (lanes, [near, L::select(around, at_most, near)])
+                (lanes, [near, L::select(around, likely(at_most, L::splat(0.0)), far)])
             };
-            let nearer = self.keep(&mut rival.near, lanes, bounds, (met.number, met.ball.radius));
+            let nearer = self.keep(&mut rival.near, lanes, bounds, met.number);
             rival.ball = Ball::select(nearer, met.ball, rival.ball);
         }
     }
 
-    /// Keeps a candidate for the nearest hit, which is not before `near`, and hardly beyond `far`, of a
-    /// number and a radius; and the bound of what is hit of all others. The lanes in which it is the best.
+    /// Keeps a candidate for the nearest hit, which is not before `near`, and hardly beyond `far`, and the
+    /// bound of what is hit of all others. The lanes in which it is the best.
     #[inline(always)]
     pub(super) fn keep(
         &mut self,
         others: &mut L,
         lanes: L::Mask,
         [near, far]: [L; 2],
-        (number, radius): (L, L),
+        number: L,
     ) -> L::Mask {
-        let far = far.mul_add(L::splat(1.0 + RELATIVE), radius * L::splat(PART));
         let nearer = lanes & near.lt(self.near);
         self.sphere = L::select(nearer, number, self.sphere);
         *others = L::select(lanes, near.max(self.near).min(*others), *others);

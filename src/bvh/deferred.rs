@@ -3,8 +3,9 @@
 //! What it meets is known from eight spheres at once, in single precision, and kept as packets keep it:
 //! see [`Best`]. Rays that may have a hit wait until there is a row of them.
 
-use super::best::{Ball, Best, Candidate, Rival};
+use super::best::{Ball, Best, Candidate, Rival, likely};
 use super::decide::{DONE, Decider};
+use super::ready::Start;
 use super::stream::Bundle;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay};
@@ -29,8 +30,7 @@ pub(super) struct Deferred {
 }
 
 impl<Q: Query> Bundle<Q> for Deferred {
-    /// The ray's row.
-    type Start = usize;
+    type Start = Start;
 
     #[inline(always)]
     fn none() -> Self {
@@ -45,8 +45,9 @@ impl<Q: Query> Bundle<Q> for Deferred {
     }
 
     #[inline(always)]
-    fn begin(&mut self, decider: &mut Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
-        let (filter, bounds) = decider.begin(row, slabs);
+    fn begin(&mut self, decider: &mut Decider<Q>, start: Start, slabs: &mut Slabs) -> f32 {
+        let (filter, bounds) = decider.begin(start, slabs);
+        let row = start.row;
         let own = decider.rays.own[row];
         self.row = row as u32;
         self.own = (own / LEAF as u32, !(1 << (own % LEAF as u32)));
@@ -76,8 +77,8 @@ impl<Q: Query> Bundle<Q> for Deferred {
             } else if near < 0.0 || target == sphere as u32 {
                 self.meet_closely(decider, sphere);
             } else {
-                let radius = decider.spheres.radius(sphere);
-                self.best.keep(&mut self.others, counts, [near, near], (number, radius));
+                let far = likely(near, decider.spheres.radius(sphere));
+                self.best.keep(&mut self.others, counts, [near, far], number);
             }
         }
     }

@@ -12,6 +12,7 @@ mod decide;
 mod deferred;
 mod hold;
 mod order;
+mod others;
 mod packet;
 mod ready;
 mod settle;

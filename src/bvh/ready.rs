@@ -10,6 +10,14 @@ use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::slabs::Slabs;
 use crate::vec3::Vec3;
 
+/// Which ray is to begin.
+#[derive(Clone, Copy)]
+pub(super) struct Start {
+    pub(super) row: usize,
+    /// Whether only few rays of its row of lanes are to begin: then there is no use in making all ready.
+    pub(super) few: bool,
+}
+
 /// What walks want to know of a row of rays that have not begun.
 pub(super) struct Ready {
     /// The first of the rays.
@@ -33,9 +41,15 @@ impl Ready {
 impl<Q: Query> Decider<'_, Q> {
     /// What a ray begins with, and bounds of the distance that still counts; [`DONE`] if none does.
     #[inline(always)]
-    pub(super) fn begin(&mut self, row: usize, slabs: &mut Slabs) -> (FilterRay<f32>, (f32, f32)) {
-        if self.rays.len() < MAX_LANES {
-            return self.begin_alone(row, slabs);
+    pub(super) fn begin(
+        &mut self,
+        Start { row, few }: Start,
+        slabs: &mut Slabs,
+    ) -> (FilterRay<f32>, (f32, f32)) {
+        if few {
+            let (origin, direction) = (self.rays.origin.row(row), self.rays.direction.row(row));
+            *slabs = Slabs::new(origin, direction);
+            return (FilterRay::new(origin.into(), direction.into()), self.bounds(row));
         }
         let place = row % MAX_LANES;
         if self.ready.first != row - place {
@@ -44,14 +58,6 @@ impl<Q: Query> Decider<'_, Q> {
         let ready = &self.ready;
         *slabs = ready.slabs[place];
         (ready.filter[place].into(), (ready.bounds[0][place], ready.bounds[1][place]))
-    }
-
-    /// Where there is no row to make ready.
-    #[inline(never)]
-    fn begin_alone(&self, row: usize, slabs: &mut Slabs) -> (FilterRay<f32>, (f32, f32)) {
-        let (origin, direction) = (self.rays.origin.row(row), self.rays.direction.row(row));
-        *slabs = Slabs::new(origin, direction);
-        (FilterRay::new(origin.into(), direction.into()), self.bounds(row))
     }
 
     #[inline(never)]

@@ -1,6 +1,7 @@
 //! A ray on its own: eight spheres of a leaf are tested at once.
 
 use super::decide::Decider;
+use super::ready::Start;
 use super::stream::Bundle;
 use super::walk::Query;
 use crate::filter::{Chord, FilterRay};
@@ -20,8 +21,7 @@ pub(super) struct Single {
 }
 
 impl<Q: Query> Bundle<Q> for Single {
-    /// The ray's row.
-    type Start = usize;
+    type Start = Start;
 
     #[inline(always)]
     fn none() -> Self {
@@ -29,8 +29,9 @@ impl<Q: Query> Bundle<Q> for Single {
     }
 
     #[inline(always)]
-    fn begin(&mut self, decider: &mut Decider<Q>, row: usize, slabs: &mut Slabs) -> f32 {
-        let (filter, bounds) = decider.begin(row, slabs);
+    fn begin(&mut self, decider: &mut Decider<Q>, start: Start, slabs: &mut Slabs) -> f32 {
+        let (filter, bounds) = decider.begin(start, slabs);
+        let row = start.row;
         let own = decider.rays.own[row];
         let own = (own / LEAF as u32, !(1 << (own % LEAF as u32)));
         *self = Self { row: row as u32, own, filter };
@@ -71,7 +72,7 @@ impl Single {
     pub(super) fn brute<Q: Query>(decider: &mut Decider<Q>, row: usize) {
         let (spheres, mut ray) = (decider.spheres, <Self as Bundle<Q>>::none());
         let mut slabs = Slabs::IDLE;
-        let mut t_far = ray.begin(decider, row, &mut slabs);
+        let mut t_far = ray.begin(decider, Start { row, few: true }, &mut slabs);
         for (index, block) in spheres.blocks().iter().enumerate() {
             let met = <Self as Bundle<Q>>::meets(&mut ray, &slabs, t_far, index, block);
             ray.test(decider, index * LEAF, met);

@@ -7,10 +7,12 @@
 
 use super::decide::Decider;
 use super::deferred::Deferred;
+use super::others::{Others, starts};
 use super::packet::Packet;
+use super::ready::Start;
 use super::single::Single;
 use super::{Bvh, stream};
-use crate::lanes::{Lanes, MAX_LANES, Mask, Packing, U32x16, set_bits};
+use crate::lanes::{Lanes, Mask};
 use crate::ray::{CHUNK, Hits, Rays};
 use crate::spheres::{LEAF, Spheres};
 use std::marker::PhantomData;
@@ -39,9 +41,6 @@ const NEAR: f32 = 0.75;
 /// How much directions of a packet's rays may differ from its middle one's on any axis, in sizes of a
 /// leaf over that of the scene. Camera rays of a million spheres break even at about this.
 const SPREAD: f32 = 0.5;
-
-/// The numbers of lanes.
-const LANES: [u32; MAX_LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// A packet is no less than one over this full.
 const FEW: usize = 2;
@@ -166,8 +165,8 @@ fn walk<'a, L: Lanes, Q: Query>(
             Method::Auto if spheres.len() <= FEWEST => {
                 test_all::<L, Q>(decider, rows, &[u32::MAX; CHUNK]);
             }
-            Method::Single => stream::trace::<_, Single, 1>(bvh, decider, rows),
-            Method::Stream => alone(bvh, decider, rows),
+            Method::Single => stream::trace::<_, Single, 1>(bvh, decider, starts(rows)),
+            Method::Stream => alone(bvh, decider, starts(rows)),
             Method::Packet => together::<L, Q>(bvh, f32::INFINITY, decider, rows),
             Method::Auto if spheres.len() <= SMALL => among_few::<L, Q>(bvh, decider, rows),
             Method::Auto => together::<L, Q>(bvh, bvh.grain, decider, rows),
@@ -212,42 +211,25 @@ fn together<L: Lanes, Q: Query>(
     rows: Range<usize>,
 ) {
     let rays = decider.rays;
-    let (mut others, mut count) = ([0_u32; CHUNK], 0);
+    let mut others = Others::of_chunk(rows.start);
     let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
         let members = alike::<L>(rays, row, grain);
-        let alone = !members & lanes_from(row, L::WIDTH, rows.end);
-        count += note(row, alone, L::WIDTH, &mut others[count..]);
+        others.push::<L>(row, !members & lanes_from(row, L::WIDTH, rows.end));
         (members != 0).then_some((row, members))
     });
     stream::trace::<_, Packet<L>, PACKETS>(bvh, decider, packets);
-    if count > 0 {
-        alone(bvh, decider, others[..count].iter().map(|&row| row as usize));
+    if !others.is_empty() {
+        alone(bvh, decider, others.starts());
     }
-}
-
-/// Writes which rays are lanes of the row at `row` whose bits are set. Returns how many.
-#[inline(always)]
-fn note(row: usize, lanes: u32, width: usize, rays: &mut [u32]) -> usize {
-    if lanes == 0 {
-        return 0;
-    }
-    // A whole row is never more than what is left.
-    if width == MAX_LANES {
-        let numbers = U32x16::splat(row as u32) + U32x16::new(LANES);
-        Packing::new(lanes).store_numbers(numbers, rays);
-    } else {
-        set_bits(lanes).zip(rays).for_each(|(lane, ray)| *ray = (row + lane) as u32);
-    }
-    lanes.count_ones() as usize
 }
 
 /// Traces rays each on its own, many at a time.
 #[inline(always)]
-fn alone<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, rows: impl Iterator<Item = usize>) {
+fn alone<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, rays: impl Iterator<Item = Start>) {
     if Q::ANY || !decider.is_plain() {
-        stream::trace::<_, Single, RAYS>(bvh, decider, rows);
+        stream::trace::<_, Single, RAYS>(bvh, decider, rays);
     } else {
-        stream::trace::<_, Deferred, RAYS>(bvh, decider, rows);
+        stream::trace::<_, Deferred, RAYS>(bvh, decider, rays);
     }
 }
 
@@ -256,12 +238,13 @@ fn alone<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, rows: impl Iterator<Item
 fn decide_doubtful<Q: Query>(bvh: &Bvh, decider: &mut Decider<Q>, brute: bool) {
     let mut doubtful = std::mem::take(&mut decider.doubtful);
     let rows = doubtful.iter().map(|&row| row as usize);
+    let one = |row| Start { row, few: true };
     if brute {
         rows.for_each(|row| Single::brute(decider, row));
     } else if doubtful.len() >= RAYS {
-        stream::trace::<_, Single, RAYS>(bvh, decider, rows);
+        stream::trace::<_, Single, RAYS>(bvh, decider, rows.map(one));
     } else if !doubtful.is_empty() {
-        stream::trace::<_, Single, 1>(bvh, decider, rows);
+        stream::trace::<_, Single, 1>(bvh, decider, rows.map(one));
     }
     // With its memory.
     doubtful.clear();
