@@ -34,14 +34,15 @@ fn spiky() -> Scene {
     scene
 }
 
-/// A lamp over glass on a ground: in the glass's shadow is light that only paths find which hit the lamp by chance.
+/// A lamp over glass on a ground: in the glass's shadow is light that only paths find which hit the lamp by
+/// chance, for it is not looked for.
 fn caustic() -> Scene {
     let mut scene = dark();
     ground(&mut scene, lambertian(0.8));
     sphere(&mut scene, [0.0, 0.0, 1.0], 1.0, glass(1.5));
     sphere(&mut scene, [1.0, 1.0, 4.0], 1.0, emitter(10.0, 0.0));
     look(&mut scene, DVec3::new(4.0, -4.0, 3.0), DVec3::new(0.0, 0.0, 0.5), 50.0);
-    scene.settings.depth = Some(6);
+    (scene.settings.depth, scene.settings.caustics) = (Some(6), false);
     scene
 }
 
