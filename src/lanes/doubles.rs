@@ -90,8 +90,17 @@ impl Doubles for F64x8 {
 /// If there are fewer.
 #[inline(always)]
 pub fn load_doubles(column: &[f32]) -> F64x8 {
-    let row: &[f32; 8] = column.first_chunk().expect("columns hold whole rows");
-    F64x8::new(row.map(f64::from))
+    exact(column.first_chunk().expect("columns hold whole rows"))
+}
+
+/// Eight numbers in double precision. Not by `map`, which may become a call and a way through memory.
+#[inline(always)]
+fn exact(row: &[f32; 8]) -> F64x8 {
+    let mut doubles = [0.0; 8];
+    for (double, &single) in doubles.iter_mut().zip(row) {
+        *double = f64::from(single);
+    }
+    F64x8::new(doubles)
 }
 
 /// Writes numbers to the first eight places of a column, rounded to single precision.
@@ -123,6 +132,6 @@ pub fn narrow(halves: [F64x8; 2]) -> F32x16 {
 /// The same numbers in double precision.
 #[inline(always)]
 pub fn widen(row: F32x16) -> [F64x8; 2] {
-    let halves: [[f32; 8]; 2] = bytemuck::cast(row);
-    halves.map(|half| F64x8::new(half.map(f64::from)))
+    let [low, high]: [[f32; 8]; 2] = bytemuck::cast(row);
+    [exact(&low), exact(&high)]
 }
