@@ -111,7 +111,7 @@ impl Slabs {
         }
         let octants = octants.to_array();
         for first in [0, 8] {
-            let [near, far] = columns.map(|columns| transpose(columns, first));
+            let (near, far) = (transpose(columns[0], first), transpose(columns[1], first));
             for i in 0..8 {
                 let octant = octants[first + i] as usize & 7;
                 let (near, far) = (bytemuck::cast(near[i]), bytemuck::cast(far[i]));

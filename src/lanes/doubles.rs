@@ -109,7 +109,16 @@ fn exact(row: &[f32; 8]) -> F64x8 {
 /// If there are fewer.
 #[inline(always)]
 pub fn store_rounded(row: F64x8, column: &mut [f32]) {
-    column[..8].copy_from_slice(&row.to_array().map(|x| x as f32));
+    column[..8].copy_from_slice(&rounded(row));
+}
+
+#[inline(always)]
+fn rounded(row: F64x8) -> [f32; 8] {
+    let mut singles = [0.0; 8];
+    for (single, double) in singles.iter_mut().zip(row.to_array()) {
+        *single = double as f32;
+    }
+    singles
 }
 
 /// Writes the lanes in which `mask` is true to the first eight places of a column.
@@ -124,9 +133,8 @@ pub fn store_where(mask: WideMask<F64x8>, row: F64x8, column: &mut [f64]) {
 
 /// Rounds two rows of eight to one of sixteen.
 #[inline(always)]
-pub fn narrow(halves: [F64x8; 2]) -> F32x16 {
-    let halves: [[f32; 8]; 2] = halves.map(|half| half.to_array().map(|x| x as f32));
-    bytemuck::cast(halves)
+pub fn narrow([low, high]: [F64x8; 2]) -> F32x16 {
+    bytemuck::cast([rounded(low), rounded(high)])
 }
 
 /// The same numbers in double precision.
