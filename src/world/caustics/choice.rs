@@ -9,7 +9,7 @@ use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 use crate::vec3::Vec3;
 
 /// How likely a way is looked for that gives as much light as reaches the ball: what pays best in the
-/// pictures of `tools/references`, and hardly matters from a quarter of it to four times as much.
+/// pictures of `tools/references`, and hardly matters up to four times as much.
 const EAGER: f64 = 0.5;
 
 /// Least rate at which rays part that counts: a focus is not sharper than that.
