@@ -1,7 +1,10 @@
-//! `--part from-env`: which part this process is to render, by what schedulers and launchers tell.
+//! `--part from-env`: the part that this process renders, from the environment variables of schedulers
+//! and launchers.
 //!
-//! Job arrays number their tasks from what the user says and in steps, launchers their processes from
-//! 0. Arrays go first: their tasks have a launcher's variables too.
+//! Job arrays number their tasks as the user says, cloud services and launchers from 0. The index of an
+//! array goes before a launcher's rank, because the tasks of an array have a launcher's variables too.
+//! Several arrays at once are refused unless they name the same part; of several launchers the first of
+//! [`LAUNCHERS`] counts: `mpirun` within a Slurm job leaves `srun`'s variables in place.
 
 use spherule::split::Part;
 use std::fmt;
@@ -22,16 +25,16 @@ enum Row {
     /// From a first to a last one, by variables; without the first they begin at 1, and without the
     /// third the step is 1.
     Array { first: Option<&'static str>, last: &'static str, step: Option<&'static str> },
-    /// From 0, and so many.
+    /// From 0; a variable has their number.
     Ranks { size: &'static str },
-    /// From here, and nobody tells how many.
+    /// From `first`; no variable has their number.
     Endless { first: i64 },
 }
 
 /// How many tasks Slurm's array has, which need not be a row.
 const SLURM_COUNT: &str = "SLURM_ARRAY_TASK_COUNT";
 
-const ARRAYS: [Dialect; 5] = [
+const ARRAYS: [Dialect; 7] = [
     Dialect {
         name: "Slurm",
         task: "SLURM_ARRAY_TASK_ID",
@@ -59,6 +62,18 @@ const ARRAYS: [Dialect; 5] = [
         task: "LSB_JOBINDEX",
         none: "0",
         row: Row::Array { first: None, last: "LSB_JOBINDEX_END", step: Some("LSB_JOBINDEX_STEP") },
+    },
+    Dialect {
+        name: "AWS Batch",
+        task: "AWS_BATCH_JOB_ARRAY_INDEX",
+        none: "",
+        row: Row::Ranks { size: "AWS_BATCH_JOB_ARRAY_SIZE" },
+    },
+    Dialect {
+        name: "Kubernetes",
+        task: "JOB_COMPLETION_INDEX",
+        none: "",
+        row: Row::Endless { first: 0 },
     },
 ];
 
@@ -119,6 +134,11 @@ pub(super) enum Silence {
          start one process in each task of the array"
     )]
     Both { array: &'static str, rank: &'static str, number: i64 },
+    #[error(
+        "{first} and {second} are both set and name different parts, or do not say of how many; \
+         unset one of them, or write --part K/N"
+    )]
+    SeveralArrays { first: &'static str, second: &'static str },
 }
 
 fn names() -> String {
@@ -130,11 +150,11 @@ fn steps(step: i64) -> impl fmt::Display {
     if step == 1 { String::new() } else { format!(" in steps of {step}") }
 }
 
-/// The part that this process is to render, by a function that gives the values of variables: of as
-/// many as `count` says, or else as the environment does.
+/// The part that this process renders, from a function that returns the value of a variable. There are
+/// `count` parts, or as many as the environment says.
 ///
-/// With a `count`, tasks of arrays have the numbers 1 to `count`, so that some of them can be rendered
-/// again by an array of these alone.
+/// With a `count`, the tasks of arrays that users number are 1 to `count`, so that an array of some of
+/// these numbers renders some of the parts again.
 pub(super) fn part(
     variable: &dyn Fn(&str) -> Option<String>,
     count: Option<u32>,
@@ -143,16 +163,21 @@ pub(super) fn part(
         variable(dialect.task).is_some_and(|value| !value.is_empty() && value != dialect.none)
     };
     let launcher = LAUNCHERS.iter().find(is_set);
-    let Some(array) = ARRAYS.iter().find(is_set) else {
+    let mut arrays = ARRAYS.iter().filter(is_set);
+    let Some(array) = arrays.next() else {
         return launcher.ok_or(Silence::Nothing)?.part(variable, count);
     };
+    let part = array.part(variable, count);
+    if let Some(other) = arrays.find(|other| part.is_err() || other.part(variable, count) != part) {
+        return Err(Silence::SeveralArrays { first: array.task, second: other.task });
+    }
     if let Some(Dialect { task: rank, row: Row::Ranks { .. }, .. }) = launcher {
         let number = number(variable, rank)?.unwrap_or(0);
         if number > 0 {
             return Err(Silence::Both { array: array.task, rank, number });
         }
     }
-    array.part(variable, count)
+    part
 }
 
 impl Dialect {
@@ -166,8 +191,10 @@ impl Dialect {
         let told = |name: Option<&'static str>| name.map_or(Ok(None), read);
         let number = read(task)?.unwrap_or(0);
         let (first, last, step) = match (&self.row, count) {
-            (Row::Ranks { .. }, Some(count)) => (0, Some(i64::from(count) - 1), 1),
-            (_, Some(count)) => (1, Some(i64::from(count)), 1),
+            (row, Some(count)) => {
+                let first = row.first_of_counted();
+                (first, Some(first + i64::from(count) - 1), 1)
+            }
             (Row::Ranks { size }, None) => (0, read(size)?.map(|size| size - 1), 1),
             (Row::Endless { first }, None) => (*first, None, 1),
             (Row::Array { first, last, step }, None) => {
@@ -192,6 +219,17 @@ impl Dialect {
             last,
             step,
         })
+    }
+}
+
+impl Row {
+    /// Number of the first task where the user gives the number of parts.
+    fn first_of_counted(&self) -> i64 {
+        match *self {
+            Self::Array { .. } => 1,
+            Self::Ranks { .. } => 0,
+            Self::Endless { first } => first,
+        }
     }
 }
 
@@ -231,6 +269,8 @@ mod tests {
             ("PMI_RANK=1 PMI_SIZE=2 SLURM_PROCID=0 SLURM_NTASKS=1", "2/2"),
             ("MV2_COMM_WORLD_RANK=1 MV2_COMM_WORLD_SIZE=3", "2/3"),
             ("PMIX_RANK=2 SLURM_NTASKS=4", "3/4"),
+            ("AWS_BATCH_JOB_ARRAY_INDEX=0 AWS_BATCH_JOB_ARRAY_SIZE=5", "1/5"),
+            ("AWS_BATCH_JOB_ARRAY_INDEX=4 AWS_BATCH_JOB_ARRAY_SIZE=5", "5/5"),
         ] {
             assert_eq!(told(&format!("{SLURM} {variables}"), None), Ok(expected.to_owned()));
         }
@@ -243,6 +283,9 @@ mod tests {
             ("PBS_ARRAYID=7", "7/7"),
             ("PARALLEL_SEQ=1", "1/7"),
             ("PMIX_RANK=0", "1/7"),
+            ("JOB_COMPLETION_INDEX=0", "1/7"),
+            ("JOB_COMPLETION_INDEX=6", "7/7"),
+            ("AWS_BATCH_JOB_ARRAY_INDEX=6 AWS_BATCH_JOB_ARRAY_SIZE=7", "7/7"),
             // Two of seven, once more.
             (
                 "SLURM_ARRAY_TASK_ID=5 SLURM_ARRAY_TASK_MIN=5 SLURM_ARRAY_TASK_MAX=6 \
@@ -266,7 +309,14 @@ mod tests {
         refused("SLURM_ARRAY_TASK_ID=", None, &["no scheduler"]);
         refused("PMI_RANK=x PMI_SIZE=2", None, &["PMI_RANK is `x`"]);
         refused("PMI_RANK=1 PMI_SIZE=1e3", None, &["PMI_SIZE is `1e3`"]);
-        for task in ["PBS_ARRAY_INDEX", "PARALLEL_SEQ", "PMIX_RANK", "SLURM_ARRAY_TASK_ID"] {
+        for task in [
+            "PBS_ARRAY_INDEX",
+            "PARALLEL_SEQ",
+            "PMIX_RANK",
+            "SLURM_ARRAY_TASK_ID",
+            "JOB_COMPLETION_INDEX",
+            "AWS_BATCH_JOB_ARRAY_INDEX",
+        ] {
             refused(&format!("{task}=3"), None, &[task, "task 3", "from-env/N"]);
         }
     }
@@ -280,6 +330,10 @@ mod tests {
         refused("PMI_RANK=2 PMI_SIZE=2", None, &["PMI_RANK is 2", "from 0 to 1"]);
         refused("PMI_RANK=0 PMI_SIZE=0", None, &["PMI_RANK is 0"]);
         refused("PBS_ARRAY_INDEX=0", Some(7), &["from 1 to 7"]);
+        refused("JOB_COMPLETION_INDEX=7", Some(7), &["JOB_COMPLETION_INDEX is 7", "from 0 to 6"]);
+        refused("JOB_COMPLETION_INDEX=-1", Some(7), &["JOB_COMPLETION_INDEX is -1"]);
+        let fifth = "AWS_BATCH_JOB_ARRAY_INDEX=5 AWS_BATCH_JOB_ARRAY_SIZE=5";
+        refused(fifth, None, &["AWS_BATCH_JOB_ARRAY_INDEX is 5", "from 0 to 4"]);
         let list = format!("{} SLURM_ARRAY_TASK_COUNT=2", at("2"));
         refused(&list, None, &["SLURM_ARRAY_TASK_COUNT is 2", "3 numbers", "from-env/N"]);
         let wide = "SLURM_ARRAY_TASK_ID=9223372036854775807 SLURM_ARRAY_TASK_MIN=-9 \
@@ -291,5 +345,16 @@ mod tests {
     fn processes_of_one_task_do_not_render_the_same_part() {
         let second = format!("{SLURM} SLURM_ARRAY_TASK_ID=2 SLURM_PROCID=1 SLURM_NTASKS=2");
         refused(&second, None, &["SLURM_ARRAY_TASK_ID is set", "SLURM_PROCID is 1"]);
+    }
+
+    #[test]
+    fn arrays_that_contradict_each_other_are_refused() {
+        let both = "SLURM_ARRAY_TASK_ID=2 JOB_COMPLETION_INDEX=2";
+        let names = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX", "--part K/N"];
+        refused(both, Some(4), &names);
+        refused(both, None, &names);
+        assert_eq!(told("SLURM_ARRAY_TASK_ID=3 JOB_COMPLETION_INDEX=2", Some(4)), Ok("3/4".into()));
+        assert_eq!(told("PBS_ARRAY_INDEX=2 PBS_ARRAYID=2", Some(4)), Ok("2/4".into()));
+        assert_eq!(told("SGE_TASK_ID=undefined JOB_COMPLETION_INDEX=0", Some(4)), Ok("1/4".into()));
     }
 }

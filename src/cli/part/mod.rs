@@ -14,9 +14,9 @@ const FROM_ENVIRONMENT: &str = "from-env";
 #[derive(Clone, Copy, Debug, clap::Args)]
 #[command(next_help_heading = "Parts, for several machines; `spherule merge` puts them together")]
 pub(super) struct PartArgs {
-    /// Render part K of N, to a file that goes by the name of --output with K-of-N.part at its end;
-    /// from-env takes K, and N unless it is given, from what Slurm, PBS, Grid Engine, LSF, MPI or
-    /// GNU parallel tell
+    /// Render part K of N to a file named after --output with .K-of-N.part at its end; from-env takes
+    /// K, and N unless it is given, from the environment variables of Slurm, PBS, Grid Engine, LSF,
+    /// AWS Batch, Kubernetes, MPI or GNU parallel
     #[arg(long, value_name = "K/N|from-env[/N]", value_parser = choice)]
     part: Option<Choice>,
     /// What parts differ in [default: samples, or tiles where there are fewer samples than parts]
