@@ -2,6 +2,7 @@
 
 use crate::folder::{Folder, text};
 use spherule::image::Image;
+use std::path::{Path, PathBuf};
 
 /// Three types, one of them in two places, a column, and two frames.
 const SALT: &str = "\
@@ -206,4 +207,79 @@ fn without_a_display_the_message_says_what_to_do() {
     assert_eq!(output.status.code(), Some(1));
     let message = text(&output.stderr);
     assert!(message.contains("--headless-script") && message.lines().count() == 1, "{message}");
+}
+
+/// Every file that may hold particles or a scene.
+fn data_files() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = [
+        "tests/data",
+        "tests/fuzz/corpus/particles",
+        "tests/fuzz/corpus/scenes",
+        "scenes",
+        "scenes/gallery",
+    ];
+    let entries = folders.iter().flat_map(|folder| {
+        std::fs::read_dir(root.join(folder)).expect("a folder of the repository")
+    });
+    let other = ["png", "md", "awk"];
+    let is_data = |path: &PathBuf| {
+        let suffix = path.extension().and_then(std::ffi::OsStr::to_str).unwrap_or_default();
+        path.is_file() && !other.contains(&suffix) && !path.ends_with("make")
+    };
+    let mut files: Vec<PathBuf> =
+        entries.map(|entry| entry.expect("an entry").path()).filter(is_data).collect();
+    files.sort();
+    files
+}
+
+/// The viewer opens what `render` takes, colors it by every column that it lists, and shows what
+/// `render` makes of the scene that it saves.
+#[test]
+fn the_viewer_opens_every_file_that_render_takes() {
+    let folder = Folder::new();
+    let script = format!(
+        "size 24x16\nwait 1\nsave a.png\nsave a.toml\nclick 12,8\n{}wait 1\nclick 12,8",
+        "key c\n".repeat(30)
+    );
+    let mut opened = Vec::new();
+    for path in data_files() {
+        let file = path.to_str().expect("a name in UTF-8");
+        let render = ["render", file, "--size", "24x16", "--spp", "1", "--quiet", "-o", "r.png"];
+        if !folder.run(&render).status.success() {
+            continue;
+        }
+        view(&folder, &[file], &script);
+        assert_comes_back(&folder, 1);
+        opened.push(path.file_name().map(|name| name.to_string_lossy().into_owned()));
+    }
+    for name in [
+        "velocities.gro",
+        "arrays.npz",
+        "mixed.csv",
+        "chunks.gsd",
+        "ragged.xyz",
+        "water.gro",
+        "stored.npz",
+        "models.pdb",
+        "moving.data",
+        "rows.txt.xz",
+        "quartz.cif",
+        "weekend.toml",
+    ] {
+        assert!(opened.iter().flatten().any(|own| own == name), "{name} is not opened");
+    }
+    assert!(opened.len() >= 50, "{} files", opened.len());
+}
+
+#[test]
+fn standard_input_is_read_once_with_all_its_columns() {
+    let folder = Folder::new();
+    folder.write("script.txt", "size 60x60\nkey right\nkey c\nkey C\nclick 17,43");
+    let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"));
+    let args = ["view", "-", "--radii", "1", "--view", "z", "--headless-script", "script.txt"];
+    let program = program.args(args).current_dir(folder.root());
+    let output = program.write_stdin(SALT).output().expect("a program that runs");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(text(&output.stdout), "sphere 3: type K, at 0 0 3, radius 1, q = 1\n");
 }

@@ -16,8 +16,6 @@ pub(super) struct Content {
     pub(super) color: Option<String>,
     /// A look by name, and the camera that its lights stand by.
     pub(super) preset: Option<(Preset, Camera)>,
-    /// Whether all columns of the file are to be read, for what is said of single spheres.
-    pub(super) columns: bool,
 }
 
 /// A plane: what is beyond it, by its center, is not drawn.

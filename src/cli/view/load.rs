@@ -9,7 +9,7 @@ use glam::DVec3;
 use spherule::World;
 use spherule::scene::particles::{
     self, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Looks, NumberColumn, Particles,
-    ReadOptions, TextColumn,
+    ReadOptions, Role, TextColumn,
 };
 use spherule::scene::{Scene, Spheres};
 use spherule::world::framing;
@@ -17,8 +17,9 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::sync::{Arc, RwLock};
 
-/// Particles of which all columns are read at once.
-const FEW: usize = 200_000;
+/// Values of columns that are read though nothing asks for them yet: of 200 000 particles, 20
+/// columns.
+const VALUES: usize = 4_000_000;
 
 /// Bytes of a file that is gone through to count its frames.
 const SHORT: u64 = 1 << 26;
@@ -33,8 +34,8 @@ pub(super) struct Base {
     scene: Option<Scene>,
     frame: Option<u64>,
     frames: Option<u64>,
-    /// Whether all columns are there.
-    columns: bool,
+    /// Whether columns that are not there can be read from the file.
+    more_columns: bool,
 }
 
 /// What is to be seen, and what is known of it.
@@ -62,8 +63,13 @@ impl Base {
         content: &Content,
         before: Option<Self>,
     ) -> Result<Self, Failure> {
-        let enough =
-            |base: &Self| base.frame == content.frame && (base.columns || !content.columns);
+        let has_color = |base: &Self| {
+            content
+                .color
+                .as_ref()
+                .is_none_or(|name| !base.more_columns || base.particles.can_color_by(name))
+        };
+        let enough = |base: &Self| base.frame == content.frame && has_color(base);
         let frames = before.as_ref().and_then(|base| base.frames);
         if let Some(base) = before.filter(enough) {
             return Ok(base);
@@ -76,12 +82,15 @@ impl Base {
         if let Some(frame) = content.frame {
             options.frame = FrameChoice::Index(frame);
         }
-        let (mut particles, columns) = read(path, &mut options, content.columns)?;
+        options.columns.wanted.extend(content.color.clone());
+        options.columns.rest = Some(VALUES);
+        let mut particles = particles::read(path, &options)?;
+        let more_columns = path.is_file() && has_many_values(&particles);
         let select = Looks { select: job.looks.select.clone(), ..Looks::default() };
         select.apply(path, &mut particles)?;
         job.views.repeat(path, &mut particles)?;
         let frames = frames.or_else(|| count(path, &options, content.frame.is_some()));
-        Ok(Self { particles, scene: None, frame: content.frame, frames, columns })
+        Ok(Self { particles, scene: None, frame: content.frame, frames, more_columns })
     }
 
     /// A scene's spheres as particles whose types are materials.
@@ -92,7 +101,7 @@ impl Base {
         let codes = (0..spheres.len()).map(|row| spheres.material_of(row)).collect();
         let kinds = Kinds { table, codes: Codes::Words(codes) };
         let particles = Particles { spheres, kinds, ..Particles::default() };
-        Self { particles, scene: Some(scene), frame: None, frames: None, columns: true }
+        Self { particles, scene: Some(scene), frame: None, frames: None, more_columns: false }
     }
 
     /// Makes what was read look as it is to look, and builds its world.
@@ -140,10 +149,8 @@ impl Base {
     }
 
     fn facts(&self, scene: &Scene, labels: &Labels, job: &Job) -> Facts {
-        let roles: HashSet<&str> =
-            self.particles.roles.iter().map(|(_, name)| name.as_str()).collect();
-        let own = self.particles.columns.iter().map(String::as_str);
-        let own = own.filter(|name| !roles.contains(name) && !USUAL.contains(name));
+        let own = other_columns(&self.particles);
+        let own = own.filter(|name| self.more_columns || self.particles.can_color_by(name));
         let usual = USUAL.into_iter().filter(|name| *name != "type" || labels.has_types());
         Facts {
             title: job.source.title(scene).into_owned(),
@@ -204,28 +211,26 @@ fn dress(job: &Job, content: &Content, particles: &mut Particles) -> Result<(), 
     Ok(())
 }
 
-/// Reads particles, with all their columns if they are few or `all` are asked for.
-fn read(path: &Path, options: &mut ReadOptions, all: bool) -> Result<(Particles, bool), Failure> {
-    let particles = particles::read(path, options)?;
-    if !path.is_file() || !(all || particles.spheres.len() <= FEW) {
-        return Ok((particles, false));
-    }
-    let roles: HashSet<&String> = particles.roles.iter().map(|(_, name)| name).collect();
-    let wanted = &mut options.columns.wanted;
-    let before = wanted.len();
-    for name in particles.columns.iter().filter(|name| !roles.contains(name)) {
-        if !wanted.contains(name) {
-            wanted.push(name.clone());
-        }
-    }
-    if wanted.len() == before {
-        return Ok((particles, true));
-    }
-    Ok((particles::read(path, options)?, true))
+/// Whether particles have more values than are read though nothing asks for them.
+fn has_many_values(particles: &Particles) -> bool {
+    other_columns(particles).count().saturating_mul(particles.spheres.len()) > VALUES
 }
 
-/// How many frames a file has, if that is known soon or someone wants to see others.
+/// Names of the columns of a file that positions, radii and types were not read from.
+fn other_columns(particles: &Particles) -> impl Iterator<Item = &str> {
+    let shapes = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
+    let roles = particles.roles.iter().filter(|(role, _)| shapes.contains(role));
+    let roles: HashSet<&str> = roles.map(|(_, name)| name.as_str()).collect();
+    let own = particles.columns.iter().map(String::as_str);
+    own.filter(move |name| !roles.contains(name) && !USUAL.contains(name))
+}
+
+/// Number of frames of a file, if that is known soon or someone wants to see others. Standard input
+/// has one: it can be read only once.
 fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
+    if path.as_os_str() == "-" {
+        return Some(1);
+    }
     let short = path.metadata().is_ok_and(|data| data.is_file() && (asked || data.len() < SHORT));
     short.then(|| particles::count_frames(path, options).ok()).flatten()
 }

@@ -184,7 +184,6 @@ impl Viewer {
             None => "the usual colors".to_owned(),
         });
         self.content.color = next;
-        self.content.columns = true;
         Action::Load
     }
 

@@ -13,6 +13,9 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Number of rows before memory is looked at for the first time.
+const ROOM: usize = 1 << 16;
+
 /// A frame that is being read.
 pub(super) struct Builder {
     path: Arc<Path>,
@@ -26,13 +29,18 @@ pub(super) struct Builder {
     extras: Vec<Extra>,
     /// The number of rows from which on there may be too little memory.
     room: usize,
+    /// Number of rows beyond which only columns are kept that were asked for by name.
+    most_rows: usize,
+    needed_columns: usize,
 }
 
 impl Builder {
     pub(super) fn new(path: &Arc<Path>, format: Format, schema: &Arc<Schema>) -> Self {
         let mut frame = ParticleFrame { format, ..ParticleFrame::default() };
-        frame.columns.clone_from(&schema.names);
+        frame.columns = schema.listed();
         frame.roles.clone_from(&schema.roles);
+        let rest = schema.extras.len() - schema.asked;
+        let most_rows = schema.rest.checked_div(rest).map_or(usize::MAX, |rows| rows.max(1));
         Self {
             path: path.clone(),
             frame,
@@ -43,7 +51,9 @@ impl Builder {
             materials: Codebook::default(),
             extras: schema.extras.iter().map(|name| Extra::new(name)).collect(),
             schema: schema.clone(),
-            room: 1 << 16,
+            room: ROOM.min(most_rows),
+            most_rows,
+            needed_columns: schema.needed_columns(),
         }
     }
 
@@ -64,14 +74,21 @@ impl Builder {
         mut fields: impl Iterator<Item = &'l [u8]>,
     ) -> Result<(), SceneError> {
         for column in 0..self.schema.slots.len() {
-            let Some(field) = fields.next() else { return Err(self.too_short(line, column)) };
+            let Some(field) = fields.next() else {
+                if column < self.needed_columns {
+                    return Err(self.too_short(line, column));
+                }
+                // What follows was not asked for: rows may end before it.
+                self.put(self.schema.slots[column], line, b"")?;
+                continue;
+            };
             self.put(self.schema.slots[column], line, field)?;
         }
         self.end_row()
     }
 
     fn too_short(&self, line: &Line, columns: usize) -> SceneError {
-        let names = &self.schema.names[..self.schema.slots.len()];
+        let names = &self.schema.names[..self.needed_columns];
         let message = format!("{columns} columns, but a row has {}", names.join(", "));
         line.whole(message)
     }
@@ -86,7 +103,14 @@ impl Builder {
             Slot::Kind => self.kind(field),
             Slot::Color(channel) => self.channel(channel, line, field)?,
             Slot::Material => self.material(field),
-            Slot::Extra(extra) => self.extras[extra].put(line, field)?,
+            Slot::Extra(extra) => {
+                let put = self.extras[extra].put(line, field);
+                if extra < self.schema.asked {
+                    put?;
+                } else if put.is_err() {
+                    self.extras[extra] = Extra::LeftOut;
+                }
+            }
         }
         Ok(())
     }
@@ -177,12 +201,17 @@ impl Builder {
     /// Before columns grow, which take twice the memory then: whether there is so much.
     fn check_room(&mut self) -> Result<(), SceneError> {
         let count = self.frame.x.len() as u64;
-        self.room *= 2;
+        if self.room == self.most_rows {
+            self.extras[self.schema.asked..].fill_with(|| Extra::LeftOut);
+        }
+        let next = self.room.next_power_of_two().max(ROOM / 2) * 2;
+        self.room = if self.room < self.most_rows { next.min(self.most_rows) } else { next };
         if count >= Spheres::MAX {
             let message = format!("holds more than {} particles", Spheres::MAX);
             return Err(SceneError::whole_file(&self.path, message));
         }
-        let bytes = Spheres::BYTES + 8 * self.extras.len() as u64;
+        let kept = self.extras.iter().filter(|extra| !matches!(extra, Extra::LeftOut)).count();
+        let bytes = Spheres::BYTES + 8 * kept as u64;
         memory::check(count * bytes).map_err(|shortage| {
             let message = format!("holds more than {count} particles, which need {shortage}");
             SceneError::whole_file(&self.path, message)

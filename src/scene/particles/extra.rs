@@ -17,6 +17,8 @@ pub(super) enum Extra {
     Unknown(String, Vec<u8>),
     Number(NumberColumn),
     Text(TextColumn, Box<Codebook>),
+    /// Not kept after all.
+    LeftOut,
 }
 
 impl Extra {
@@ -49,7 +51,7 @@ impl Extra {
             }
         }
         match self {
-            Self::Unknown(..) => (),
+            Self::Unknown(..) | Self::LeftOut => (),
             Self::Number(column) if missing.is_some() => column.values.push(f64::NAN),
             Self::Number(column) => column.values.push(line.number(field)?),
             Self::Text(column, book) => push_text(column, book, field),
@@ -101,7 +103,7 @@ impl Extra {
             _ => (),
         }
         match self {
-            Self::Unknown(..) => (),
+            Self::Unknown(..) | Self::LeftOut => (),
             Self::Number(column) => numbers.push(column),
             Self::Text(column, _) => texts.push(column),
         }

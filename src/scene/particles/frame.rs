@@ -28,9 +28,9 @@ pub struct ParticleFrame {
     pub numbers: Vec<NumberColumn>,
     /// The columns of texts that were asked for, and are no role.
     pub texts: Vec<TextColumn>,
-    /// What all columns of the file are called, read or not.
+    /// Names of all columns of the file that can be asked for, read or not.
     pub columns: Vec<String>,
-    /// Which of these positions, radii and types were read from, if from any.
+    /// The columns that positions, radii, types, colors and materials were read from.
     pub roles: Vec<(Role, String)>,
     /// The cell of the simulation, if the file has one.
     pub cell: Option<Cell>,

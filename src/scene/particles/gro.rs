@@ -20,6 +20,12 @@ use std::sync::Arc;
 const NAMES: [&str; 10] =
     ["residue_number", "residue", "name", "number", "x", "y", "z", "vx", "vy", "vz"];
 
+/// Columns that a file may have after those of positions.
+const VELOCITIES: [&str; 3] = ["vx", "vy", "vz"];
+
+/// The first of them, among all columns.
+const VELOCITY: usize = 7;
+
 /// Where positions begin.
 const POSITION: usize = 20;
 
@@ -27,13 +33,18 @@ const POSITION: usize = 20;
 pub(super) struct Gro {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
+    /// A velocity that the file must have.
+    needed: Option<String>,
 }
 
 impl Gro {
     pub(super) fn new(source: Source, options: &ReadOptions) -> Self {
         let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
         let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
-        Self { lines: Lines::new(source), schema: schema.map(named) }
+        let is_velocity =
+            |name: &&String| VELOCITIES.iter().any(|own| own.eq_ignore_ascii_case(name));
+        let needed = options.columns.kept.iter().find(is_velocity).cloned();
+        Self { lines: Lines::new(source), schema: schema.map(named), needed }
     }
 
     /// Title and number of atoms; `None` at the end.
@@ -47,11 +58,12 @@ impl Gro {
         }
     }
 
-    fn atoms(&mut self, builder: &mut Builder, count: u64) -> Result<(), SceneError> {
+    /// Reads the atoms; returns whether any has a velocity.
+    fn atoms(&mut self, builder: &mut Builder, count: u64) -> Result<bool, SceneError> {
         let schema = builder.schema().clone();
         let others: Vec<(usize, Slot)> = schema.others().collect();
         let has_kind = schema.slots.contains(&Slot::Kind);
-        let mut width = None;
+        let (mut width, mut has_velocities) = (None, false);
         for atom in 0..count {
             let Some(line) = self.lines.next()? else {
                 let error =
@@ -67,11 +79,30 @@ impl Gro {
             if !has_kind {
                 builder.kind_of(&line.bytes[5..15], kind);
             }
+            has_velocities = has_velocities || !part(&line, columns(VELOCITY, width)).is_empty();
             for &(column, slot) in &others {
-                builder.put(slot, &line, field(&line, column, width)?.trim_ascii())?;
+                let field = match slot {
+                    Slot::Extra(_) => part(&line, columns(column, width)),
+                    _ => field(&line, column, width)?,
+                };
+                builder.put(slot, &line, field)?;
             }
         }
-        Ok(())
+        Ok(has_velocities)
+    }
+
+    /// Takes velocities out of a frame that has none.
+    fn without_velocities(&self, mut frame: ParticleFrame) -> Result<ParticleFrame, SceneError> {
+        frame.columns.retain(|name| !VELOCITIES.contains(&name.as_str()));
+        frame.numbers.retain(|column| !VELOCITIES.contains(&column.name.as_str()));
+        match &self.needed {
+            Some(name) => {
+                let names = frame.columns.join(", ");
+                let message = format!("no column is named `{name}`; there are {names}");
+                Err(self.lines.ended(message).with_help("the file has no velocities"))
+            }
+            None => Ok(frame),
+        }
     }
 }
 
@@ -86,19 +117,30 @@ fn width(line: &Line) -> Result<usize, SceneError> {
     })
 }
 
-/// The bytes of a column, which may have blanks around it.
-fn field<'l>(line: &Line<'l>, column: usize, width: usize) -> Result<&'l [u8], SceneError> {
-    let range: Range<usize> = match column {
+/// The bytes that a column takes.
+fn columns(column: usize, width: usize) -> Range<usize> {
+    match column {
         0..4 => 5 * column..5 * column + 5,
         _ => POSITION + (column - 4) * width..POSITION + (column - 3) * width,
-    };
+    }
+}
+
+/// As many of these bytes as a line has, without blanks around them.
+fn part<'l>(line: &Line<'l>, range: Range<usize>) -> &'l [u8] {
     let end = range.end.min(line.bytes.len());
-    let field = line.bytes.get(range.start..end).filter(|field| !field.trim_ascii().is_empty());
-    field.map(<[u8]>::trim_ascii).ok_or_else(|| {
+    line.bytes.get(range.start..end).unwrap_or_default().trim_ascii()
+}
+
+/// The content of a column that every row must have.
+fn field<'l>(line: &Line<'l>, column: usize, width: usize) -> Result<&'l [u8], SceneError> {
+    let range = columns(column, width);
+    let field = part(line, range.clone());
+    if field.is_empty() {
         let message = format!("no {} in this row", NAMES[column]);
         let help = format!("it is expected at columns {} to {}", range.start + 1, range.end);
-        line.whole(message).with_help(help)
-    })
+        return Err(line.whole(message).with_help(help));
+    }
+    Ok(field)
 }
 
 /// A type from the name of a residue and that of an atom, five letters each.
@@ -134,8 +176,8 @@ impl FrameReader for Gro {
         let Some((title, count)) = self.head()? else { return Ok(None) };
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let mut builder = Builder::new(self.lines.path(), Format::Gro, &schema);
-        builder.declare(&["residue", "name"], &[]);
-        self.atoms(&mut builder, count)?;
+        builder.declare(&["residue", "name"], &VELOCITIES);
+        let has_velocities = self.atoms(&mut builder, count)?;
         let cell = if let Some(line) = self.lines.next()? {
             cell(&line)?
         } else {
@@ -148,7 +190,10 @@ impl FrameReader for Gro {
         };
         let time = after("t=").and_then(|time| number::parse(time.as_bytes()));
         let step = after("step=").and_then(|step| step.parse().ok());
-        let frame = builder.finish();
+        let mut frame = builder.finish();
+        if !has_velocities {
+            frame = self.without_velocities(frame)?;
+        }
         let unit = LengthUnit::Nanometer;
         Ok(Some(ParticleFrame { cell, title, step, time, unit, ..frame }))
     }

@@ -182,6 +182,9 @@ pub struct Columns {
     pub kept: Vec<String>,
     /// Columns to be kept likewise where the file has them.
     pub wanted: Vec<String>,
+    /// Keeps all other columns too, as long as they hold no more than this many values in all.
+    /// Those that are neither numbers nor texts throughout are left out.
+    pub rest: Option<usize>,
 }
 
 impl FromStr for Columns {
@@ -237,6 +240,16 @@ impl Default for ReadOptions {
             scale: 1.0,
             atom_style: None,
         }
+    }
+}
+
+/// Names of the columns of a property or array that has several: `velocity_x`, `_y` and `_z` of
+/// three, or else `stress_1`, `stress_2` and so on.
+pub(super) fn component_names(name: &str, count: usize) -> Vec<String> {
+    match count {
+        1 => vec![name.to_owned()],
+        3 => ["x", "y", "z"].map(|axis| format!("{name}_{axis}")).into(),
+        _ => (1..=count).map(|column| format!("{name}_{column}")).collect(),
     }
 }
 

@@ -52,11 +52,16 @@ pub(super) struct Schema {
     pub(super) names: Vec<String>,
     /// Names of columns to be kept.
     pub(super) extras: Vec<String>,
+    /// Number of columns to be kept that were asked for by name, which come first; the others may
+    /// be left out.
+    pub(super) asked: usize,
+    /// Number of values that columns may hold which were not asked for by name.
+    pub(super) rest: usize,
     pub(super) naming: Naming,
     pub(super) has_color: bool,
     /// Names of the columns that are for nothing.
     pub(super) unused: Vec<String>,
-    /// Which column each role is read from.
+    /// The column that each role is read from.
     pub(super) roles: Vec<(Role, String)>,
 }
 
@@ -98,20 +103,46 @@ impl Schema {
         take(kind, Slot::Kind);
         take(choice.find(Role::Material)?, Slot::Material);
         let naming = Naming::of(kind.map_or("", |column| &names[column]));
-        let extras = choice.extras(&mut slots)?;
+        let mut extras = choice.asked(&mut slots)?;
+        let asked = extras.len();
+        if options.columns.rest.is_some() {
+            choice.add_rest(&mut slots, &mut extras);
+        }
+        let rest = options.columns.rest.unwrap_or(0);
         let unused = unused(&names, &slots);
         let roles = roles(&names, &slots);
         while slots.last() == Some(&Slot::Skip) {
             slots.pop();
         }
         let has_color = slots.contains(&Slot::Color(0));
-        Ok(Self { slots, names, extras, naming, has_color, unused, roles })
+        Ok(Self { slots, names, extras, asked, rest, naming, has_color, unused, roles })
     }
 
     /// The columns that are for something, except for those of positions.
     pub(super) fn others(&self) -> impl Iterator<Item = (usize, Slot)> {
         let slots = self.slots.iter().copied().enumerate();
         slots.filter(|(_, slot)| !matches!(slot, Slot::Skip | Slot::Position(_)))
+    }
+
+    /// Names by which columns can be asked for: each once, and none that is empty.
+    pub(super) fn listed(&self) -> Vec<String> {
+        let mut listed: Vec<String> = Vec::new();
+        for name in self.names.iter().filter(|name| !name.is_empty()) {
+            if !listed.contains(name) {
+                listed.push(name.clone());
+            }
+        }
+        listed
+    }
+
+    /// Number of columns that every row must have.
+    pub(super) fn needed_columns(&self) -> usize {
+        let needed = |slot: &Slot| match slot {
+            Slot::Skip => false,
+            Slot::Extra(extra) => *extra < self.asked,
+            _ => true,
+        };
+        self.slots.iter().rposition(needed).map_or(0, |last| last + 1)
     }
 
     /// Whether rows have colors.
@@ -132,14 +163,16 @@ fn unused(names: &[String], slots: &[Slot]) -> Vec<String> {
     columns.map(|(name, _)| name.clone()).collect()
 }
 
-/// The roles that tell something of a particle, but for its color and material.
+/// The roles of columns.
 fn roles(names: &[String], slots: &[Slot]) -> Vec<(Role, String)> {
     let role = |slot: &Slot| match *slot {
         Slot::Position(axis) => Some([Role::X, Role::Y, Role::Z][axis]),
         Slot::Radius(1.0) => Some(Role::Radius),
         Slot::Radius(_) => Some(Role::Diameter),
         Slot::Kind => Some(Role::Kind),
-        Slot::Skip | Slot::Color(_) | Slot::Material | Slot::Extra(_) => None,
+        Slot::Color(channel) => Some([Role::Red, Role::Green, Role::Blue][channel]),
+        Slot::Material => Some(Role::Material),
+        Slot::Skip | Slot::Extra(_) => None,
     };
     let columns = names.iter().zip(slots);
     columns.filter_map(|(name, slot)| Some((role(slot)?, name.clone()))).collect()
@@ -196,9 +229,9 @@ impl Choice<'_> {
         Ok(long.or_else(short))
     }
 
-    /// Names of the columns to be kept, whose slots become theirs; columns that have a role are
-    /// kept in it.
-    fn extras(&self, slots: &mut [Slot]) -> Result<Vec<String>, String> {
+    /// Names of the columns that were asked for, whose slots become theirs; columns that have a role
+    /// are kept in it.
+    fn asked(&self, slots: &mut [Slot]) -> Result<Vec<String>, String> {
         let mut extras = Vec::new();
         let columns = &self.options.columns;
         let kept =
@@ -211,6 +244,17 @@ impl Choice<'_> {
             }
         }
         Ok(extras)
+    }
+
+    /// Adds all other columns that have a name of their own.
+    fn add_rest(&self, slots: &mut [Slot], extras: &mut Vec<String>) {
+        for (column, name) in self.names.iter().enumerate() {
+            let own = !name.is_empty() && self.position(name) == Some(column);
+            if own && slots[column] == Slot::Skip {
+                slots[column] = Slot::Extra(extras.len());
+                extras.push(name.clone());
+            }
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::categories::{Kinds, TextColumn};
 use super::frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
-use super::looks::ElementColors;
+use super::looks::{Column, ElementColors, ID};
 use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
 use crate::color::category;
@@ -31,9 +31,9 @@ pub struct Particles {
     pub cell: Option<Cell>,
     /// How the file is written.
     pub format: Format,
-    /// What all columns of the file are called, read or not.
+    /// Names of all columns of the file that can be asked for, read or not.
     pub columns: Vec<String>,
-    /// Which of these positions, radii and types were read from, if from any.
+    /// The columns that positions, radii, types, colors and materials were read from.
     pub roles: Vec<(Role, String)>,
     /// Materials that were chosen, by names that `material_names` has; the others are the scene's
     /// own affair.
@@ -51,6 +51,12 @@ pub struct Particles {
 }
 
 impl Particles {
+    /// Whether particles can be colored by a column of this name: one that was kept, one that has a
+    /// role, or one that all particles have.
+    pub fn can_color_by(&self, name: &str) -> bool {
+        name == ID || Column::find(self, name).is_some_and(|column| column.has_values())
+    }
+
     /// Keeps the rows that `keep` is true for.
     pub(super) fn retain(&mut self, keep: &[bool]) {
         self.spheres.retain(keep);

@@ -7,7 +7,7 @@
 use super::builder::Builder;
 use super::frame::{Cell, LengthUnit, ParticleFrame};
 use super::lines::{Line, Lines};
-use super::options::{Format, ReadOptions, Role};
+use super::options::{Format, ReadOptions, Role, component_names};
 use super::reader::FrameReader;
 use super::schema::{Naming, Schema};
 use super::{number, source::Source};
@@ -197,11 +197,7 @@ fn columns(line: &Line, value: &str) -> Result<Vec<String>, SceneError> {
         if !["S", "R", "I", "L"].contains(kind) || names.len() + count > COLUMNS {
             return Err(fault());
         }
-        match count {
-            1 => names.push((*name).to_owned()),
-            3 => names.extend(["x", "y", "z"].map(|axis| format!("{name}_{axis}"))),
-            _ => names.extend((1..=count).map(|column| format!("{name}_{column}"))),
-        }
+        names.extend(component_names(name, count));
     }
     Ok(names)
 }

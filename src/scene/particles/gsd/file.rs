@@ -172,6 +172,12 @@ impl File {
         Ok(Some(rows.map(text).collect()))
     }
 
+    /// Rows and numbers in a row of a chunk of numbers, if the frame has it.
+    pub(super) fn shape(&self, frame: u64, name: &str) -> Option<(u64, u64)> {
+        let chunk = self.chunk(frame, name).filter(|chunk| (1..=10).contains(&chunk.kind))?;
+        Some((chunk.rows, chunk.width))
+    }
+
     fn chunk(&self, frame: u64, name: &str) -> Option<Chunk> {
         let id = *self.names.get(name)?;
         self.chunks.get(&(frame, id)).copied()

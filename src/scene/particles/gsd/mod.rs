@@ -10,7 +10,7 @@ pub(super) use file::MAGIC;
 use self::file::File;
 use super::categories::Kind;
 use super::frame::{Cell, NumberColumn, ParticleFrame};
-use super::options::{Format, Radii, ReadOptions, Role};
+use super::options::{Format, Radii, ReadOptions, Role, component_names};
 use super::reader::FrameReader;
 use super::source::Source;
 use crate::scene::SceneError;
@@ -18,8 +18,23 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Chunks of particles that are no columns of numbers, or are [`COLUMNS`] under other names.
+const KNOWN: [&str; 7] = ["N", "types", "typeid", "position", "velocity", "diameter", "mass"];
+
 /// Names of columns that are always there.
 const COLUMNS: [&str; 10] = ["x", "y", "z", "diameter", "type", "mass", "charge", "vx", "vy", "vz"];
+
+/// Most numbers that each particle has in a chunk whose numbers are columns.
+const WIDEST: u64 = 64;
+
+/// A column of a chunk.
+struct Part {
+    name: String,
+    chunk: String,
+    /// The place of its number in a row, and how many numbers rows have.
+    at: usize,
+    width: u64,
+}
 
 /// Reads frames of a GSD file.
 pub(super) struct Gsd {
@@ -90,19 +105,75 @@ impl Gsd {
             (Some(values), _) => Ok(values),
             (None, Some(value)) => Ok(vec![value; count as usize]),
             (None, None) => {
-                let names: Vec<&str> = COLUMNS.into_iter().chain(self.file.names()).collect();
+                let more = self.more_columns(count).into_iter().map(|part| part.name);
+                let names: Vec<String> =
+                    COLUMNS.map(str::to_owned).into_iter().chain(more).collect();
                 let names = names.join(", ");
                 Err(self.fault(format!("no column is named `{name}`; there are {names}")))
             }
         }
     }
 
-    /// Whether the frame has a column of this name that is none of its positions and types.
-    fn has(&self, name: &str) -> bool {
-        let chunk = format!("particles/{name}");
-        let own = |own: &str| own == name || own == chunk;
-        let role = ["x", "y", "z", "type"].contains(&name);
-        !role && (COLUMNS.contains(&name) || self.file.names().any(own))
+    /// The columns of chunks with a row for each particle, besides [`COLUMNS`], by name.
+    fn more_columns(&self, count: u64) -> Vec<Part> {
+        let mut parts = Vec::new();
+        for chunk in self.file.names() {
+            let known = |name: &str| KNOWN.contains(&name) || COLUMNS.contains(&name);
+            let name = match chunk.strip_prefix("particles/") {
+                Some(name) if known(name) => continue,
+                Some(name) => name,
+                None if chunk.starts_with("log/particles/") => chunk,
+                None => continue,
+            };
+            let shape = self.file.shape(self.next, chunk).or_else(|| self.file.shape(0, chunk));
+            let Some((_, width)) = shape.filter(|&(rows, width)| rows == count && width <= WIDEST)
+            else {
+                continue;
+            };
+            for (at, name) in component_names(name, width as usize).into_iter().enumerate() {
+                parts.push(Part { name, chunk: chunk.to_owned(), at, width });
+            }
+        }
+        parts.sort_by(|a, b| (&a.chunk, a.at).cmp(&(&b.chunk, b.at)));
+        parts
+    }
+
+    /// The columns that the options ask for.
+    fn kept(&mut self, count: u64, parts: &[Part]) -> Result<Vec<NumberColumn>, SceneError> {
+        let part = |name: &String| parts.iter().find(|part| part.name == *name);
+        let of_role = |name: &String| ["x", "y", "z", "type"].contains(&name.as_str());
+        let is_there = |name: &&String| {
+            let chunk = format!("particles/{name}");
+            let own = |own: &str| own == name.as_str() || own == chunk;
+            let plain = COLUMNS.contains(&name.as_str()) || self.file.names().any(own);
+            !of_role(name) && (plain || part(name).is_some())
+        };
+        let columns = &self.options.columns;
+        // Positions and types are kept in their role.
+        let kept = columns.kept.iter().filter(|name| !of_role(name));
+        let names: Vec<String> =
+            kept.chain(columns.wanted.iter().filter(is_there)).cloned().collect();
+        let all = COLUMNS.map(str::to_owned).into_iter();
+        let mut rest: Vec<String> = all.chain(parts.iter().map(|part| part.name.clone())).collect();
+        rest.retain(|name| !of_role(name) && !names.contains(name));
+        if columns.rest.is_none_or(|most| rest.len() as u64 * count > most as u64) {
+            rest.clear();
+        }
+        let mut column = |name: String| {
+            let values = match part(&name).filter(|part| part.width > 1) {
+                Some(Part { chunk, at, width, .. }) => {
+                    let rows = self.particles(chunk, count, *width)?.unwrap_or_default();
+                    rows.chunks(*width as usize).map(|row| row[*at]).collect()
+                }
+                None => self.column(&name, count)?,
+            };
+            Ok(NumberColumn { name, values })
+        };
+        let mut kept =
+            names.into_iter().map(&mut column).collect::<Result<Vec<_>, SceneError>>()?;
+        // Not asked for by name, so that a damaged one is no error.
+        kept.extend(rest.into_iter().filter_map(|name| column(name).ok()));
+        Ok(kept)
     }
 
     fn kinds(&mut self, frame: &mut ParticleFrame) -> Result<(), SceneError> {
@@ -164,19 +235,13 @@ impl Gsd {
         drop(position);
         self.kinds(&mut frame)?;
         frame.radius = self.radius(count)?;
-        let columns = &self.options.columns;
-        let wanted = columns.wanted.iter().filter(|name| self.has(name));
-        let names: Vec<String> = columns.kept.iter().chain(wanted).cloned().collect();
-        for name in names {
-            let values = self.column(&name, count)?;
-            frame.numbers.push(NumberColumn { name, values });
-        }
+        let parts = self.more_columns(count);
+        frame.numbers = self.kept(count, &parts)?;
         let step = self.whole("configuration/step")?.and_then(|step| step.first().copied());
         frame.step = Some(step.unwrap_or(0.0) as i64);
         frame.cell = self.whole("configuration/box")?.and_then(|edges| cell(&edges));
         frame.columns = COLUMNS.map(str::to_owned).into();
-        let more = self.file.names().filter(|name| name.starts_with("log/particles/"));
-        frame.columns.extend(more.map(str::to_owned));
+        frame.columns.extend(parts.into_iter().map(|part| part.name));
         Ok(frame)
     }
 }

@@ -177,7 +177,7 @@ impl FrameReader for Data {
             match name.trim() {
                 "Masses" => self.masses(&mut head)?,
                 "Atoms" => frame = Some(self.atoms(&head, style)?),
-                "Velocities" if velocities.any() => {
+                "Velocities" if velocities.find(head.atoms) => {
                     while !self.at_section()? {
                         let line = Self::line(&mut self.lines)?;
                         line.iter().try_for_each(|line| velocities.row(line))?;

@@ -22,6 +22,10 @@ pub(super) struct Velocities {
     needed: Option<String>,
     /// Whether ids are kept for this section alone.
     lends_ids: bool,
+    /// Most atoms for which the section is read; where it is not asked for by name there is a limit.
+    most: u64,
+    /// Whether the file has the section.
+    found: bool,
     values: Option<HashMap<u64, [f64; 3]>>,
 }
 
@@ -50,16 +54,35 @@ impl Velocities {
         if lends_ids {
             columns.wanted.push(ID.to_owned());
         }
-        Self { asked, needed, lends_ids, values: None }
+        let rest = columns.rest.map_or(0, |values| values / NAMES.len());
+        let most = if asked.is_empty() { rest as u64 } else { u64::MAX };
+        if columns.rest.is_some() {
+            for (axis, name) in NAMES.iter().enumerate() {
+                if asked.iter().all(|(_, other)| *other != axis) {
+                    asked.push(((*name).to_owned(), axis));
+                }
+            }
+        }
+        Self { asked, needed, lends_ids, most, found: false, values: None }
     }
 
-    /// Whether the section is worth reading.
-    pub(super) fn any(&self) -> bool {
-        !self.asked.is_empty()
+    /// Takes note of the section in a file of so many atoms; returns whether it is worth reading.
+    pub(super) fn find(&mut self, atoms: u64) -> bool {
+        self.found = true;
+        !self.asked.is_empty() && atoms <= self.most
     }
 
-    /// Reads a row of the section.
+    /// Reads a row of the section. A faulty one is an error only if velocities were asked for by name.
     pub(super) fn row(&mut self, line: &Line) -> Result<(), SceneError> {
+        let read = self.read(line);
+        if read.is_err() && self.most < u64::MAX {
+            self.asked.clear();
+            return Ok(());
+        }
+        read
+    }
+
+    fn read(&mut self, line: &Line) -> Result<(), SceneError> {
         let mut fields = line.fields();
         let mut field = || {
             let message = "a row of velocities has an id and vx, vy, vz";
@@ -95,7 +118,7 @@ impl Velocities {
         if self.lends_ids {
             frame.numbers.retain(|column| column.name != ID);
         }
-        if self.values.is_some() {
+        if self.found {
             frame.columns.extend(NAMES.map(str::to_owned));
         }
         Ok(())

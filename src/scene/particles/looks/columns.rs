@@ -1,14 +1,14 @@
 //! Columns by their names: those of the file, and those that all particles have.
 
-use crate::scene::SceneError;
 use crate::scene::particles::Particles;
 use crate::scene::particles::categories::{Codes, Kind};
 use crate::scene::particles::options::Role;
+use crate::scene::{Rgb, SceneError};
 use std::borrow::Cow;
 use std::path::Path;
 
 /// The particle's number: the file's, or else its place, from 0.
-pub(super) const ID: &str = "id";
+pub(in super::super) const ID: &str = "id";
 
 /// Names that mean something in every file, beside [`ID`] and [`ELEMENT`].
 const USUAL: [(&str, Role); 5] = [
@@ -28,7 +28,7 @@ pub(in super::super) enum Column<'p> {
     /// NaN where there is none.
     Numbers(Cow<'p, [f64]>),
     /// Each row is the place of its text in `names`.
-    Texts { names: Vec<&'p str>, codes: &'p Codes },
+    Texts { names: Vec<&'p str>, codes: Cow<'p, Codes> },
 }
 
 impl<'p> Column<'p> {
@@ -46,7 +46,7 @@ impl<'p> Column<'p> {
         }
         if let Some(column) = particles.texts.iter().find(|column| named(&column.name)) {
             let names = column.names.iter().map(String::as_str).collect();
-            return Some(Self::Texts { names, codes: &column.codes });
+            return Some(Self::Texts { names, codes: Cow::Borrowed(&column.codes) });
         }
         let role = particles.roles.iter().find(|(_, name)| named(name)).map(|(role, _)| *role);
         let usual = || USUAL.iter().find(|(name, _)| named(name)).map(|(_, role)| *role);
@@ -72,7 +72,10 @@ impl<'p> Column<'p> {
                 return Some(Self::Numbers(diameter.collect()));
             }
             Role::Kind => return Self::of_kinds(particles, |kind| &kind.name),
-            Role::Red | Role::Green | Role::Blue | Role::Material => return None,
+            Role::Red => return Some(Self::of_channel(particles, |color| color.x)),
+            Role::Green => return Some(Self::of_channel(particles, |color| color.y)),
+            Role::Blue => return Some(Self::of_channel(particles, |color| color.z)),
+            Role::Material => return Some(Self::of_materials(particles)),
         };
         Some(Self::Numbers(Cow::Borrowed(column)))
     }
@@ -80,7 +83,29 @@ impl<'p> Column<'p> {
     fn of_kinds(particles: &'p Particles, name: impl Fn(&'p Kind) -> &'p str) -> Option<Self> {
         let kinds = &particles.kinds;
         let names = kinds.table.iter().map(name).collect();
-        (!kinds.codes.is_empty()).then_some(Self::Texts { names, codes: &kinds.codes })
+        let codes = Cow::Borrowed(&kinds.codes);
+        (!kinds.codes.is_empty()).then_some(Self::Texts { names, codes })
+    }
+
+    fn of_channel(particles: &'p Particles, channel: impl Fn(Rgb) -> f32) -> Self {
+        let spheres = &particles.spheres;
+        let values = (0..spheres.len()).map(|row| f64::from(channel(spheres.color_of(row))));
+        Self::Numbers(values.collect())
+    }
+
+    fn of_materials(particles: &'p Particles) -> Self {
+        let (spheres, names) = (&particles.spheres, &particles.material_names);
+        let codes = (0..spheres.len()).map(|row| spheres.material_of(row)).collect();
+        let names = names.iter().map(String::as_str).collect();
+        Self::Texts { names, codes: Cow::Owned(Codes::Words(codes)) }
+    }
+
+    /// Whether any row has a value.
+    pub(in super::super) fn has_values(&self) -> bool {
+        match self {
+            Self::Numbers(values) => values.iter().any(|value| value.is_finite()),
+            Self::Texts { codes, .. } => !codes.is_empty(),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ mod columns;
 mod types;
 
 pub use colors::{ColumnColors, ElementColors, Legend};
-pub(super) use columns::{Column, names};
+pub(super) use columns::{Column, ID, names};
 pub use types::{TypeLook, TypeMaterial};
 
 use super::Particles;
@@ -78,10 +78,10 @@ impl Looks {
 
 /// Gives particles the numbers that files leave out, if they are asked for: before any is dropped.
 fn number(particles: &mut Particles, names: &[String]) {
-    let asked = names.iter().any(|name| name == columns::ID);
-    if asked && Column::find(particles, columns::ID).is_none() {
+    let asked = names.iter().any(|name| name == ID);
+    if asked && Column::find(particles, ID).is_none() {
         let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
-        particles.numbers.push(NumberColumn { name: columns::ID.to_owned(), values });
+        particles.numbers.push(NumberColumn { name: ID.to_owned(), values });
     }
 }
 

@@ -5,7 +5,7 @@ use super::schema;
 use crate::scene::particles::builder::{Builder, add, share};
 use crate::scene::particles::categories::{Codebook, Kind, TextColumn};
 use crate::scene::particles::frame::{NumberColumn, ParticleFrame};
-use crate::scene::particles::options::{Format, Radii, ReadOptions, Role};
+use crate::scene::particles::options::{Format, Radii, ReadOptions, Role, component_names};
 use crate::scene::particles::reader::FrameReader;
 use crate::scene::particles::source::Source;
 use crate::scene::{Rgb, SceneError};
@@ -23,6 +23,19 @@ const RADII: [&str; 3] = ["radius", "radii", "r"];
 const DIAMETERS: [&str; 2] = ["diameter", "diameters"];
 const COLORS: [&str; 2] = ["color", "colors"];
 const TYPES: [&str; 7] = ["typeid", "type", "types", "element", "elements", "species", "symbols"];
+
+/// Most columns of an array that are columns of particles.
+const WIDEST: usize = 64;
+
+/// A column of an array.
+#[derive(Clone)]
+struct Part {
+    name: String,
+    array: String,
+    /// Its place in a row, and how many columns rows have.
+    at: usize,
+    width: usize,
+}
 
 /// Reads positions, radii and colors from arrays of one archive.
 pub(in super::super) struct Npz {
@@ -71,7 +84,8 @@ impl Npz {
         })
     }
 
-    fn positions(&mut self) -> Result<Builder, SceneError> {
+    /// Positions, and the name of their array.
+    fn positions(&mut self) -> Result<(Builder, String), SceneError> {
         let names = self.names();
         let only = if names.len() == 1 { names.first().cloned() } else { None };
         let name = self.find(Role::X, &POSITIONS).or(only).ok_or_else(|| {
@@ -91,8 +105,89 @@ impl Npz {
             }
             builder.end_row()
         })?;
-        builder.frame.columns = names;
-        Ok(builder)
+        let width = array.columns();
+        let plain = array.names().is_none();
+        drop(array);
+        if plain {
+            let names = component_names(&name, width);
+            for (_, column) in &mut builder.frame.roles {
+                let place = column.parse().unwrap_or(0_usize).wrapping_sub(1);
+                names.get(place).unwrap_or(&name).clone_into(column);
+            }
+        }
+        Ok((builder, name))
+    }
+
+    /// The columns of all arrays that have a row for each particle.
+    fn parts(&mut self, count: usize) -> Vec<Part> {
+        let mut parts = Vec::new();
+        for array in self.names() {
+            // An archive may hold anything else beside.
+            let Ok(open) = self.open(&array) else { continue };
+            let width = open.columns();
+            let fits = open.count() == count as u64 && (1..=WIDEST).contains(&width);
+            if fits && open.names().is_none() {
+                let names = component_names(&array, width).into_iter().enumerate();
+                drop(open);
+                let part = |(at, name)| Part { name, array: array.clone(), at, width };
+                parts.extend(names.map(part));
+            }
+        }
+        parts
+    }
+
+    /// Reads the columns that the options ask for, where `used` are arrays that have a role.
+    fn keep(&mut self, frame: &mut ParticleFrame, used: &[String]) -> Result<(), SceneError> {
+        let parts = self.parts(frame.len());
+        let columns = &self.options.columns;
+        let find = |name: &String| {
+            let same = parts.iter().find(|part| part.name == *name);
+            same.or_else(|| parts.iter().find(|part| part.name.eq_ignore_ascii_case(name))).cloned()
+        };
+        // Of an array that does not fit, reading says why.
+        let whole = |name: &String| {
+            let (name, array) = (name.clone(), name.clone());
+            Part { name, array, at: 0, width: 1 }
+        };
+        let mut asked = Vec::new();
+        for name in &columns.kept {
+            if let Some(part) = parts.iter().find(|part| part.array == *name && part.width > 1) {
+                let (width, first) = (part.width, &part.name);
+                let message = format!("the array `{name}` has {width} columns");
+                let error = SceneError::whole_file(&self.path, message);
+                return Err(error.with_help(format!("name one of them, as in {first}")));
+            }
+            asked.push(find(name).unwrap_or_else(|| whole(name)));
+        }
+        asked.extend(columns.wanted.iter().filter_map(find));
+        let mut rest = parts.clone();
+        rest.retain(|part| {
+            !used.contains(&part.array) && asked.iter().all(|other| other.name != part.name)
+        });
+        let has_room = |most| rest.len().saturating_mul(frame.len()) <= most;
+        if columns.rest.is_some_and(has_room) {
+            for part in rest {
+                // Not asked for by name, so that a damaged one is no error.
+                let _ = self.read_part(frame, part);
+            }
+        }
+        asked.into_iter().try_for_each(|part| self.read_part(frame, part))?;
+        frame.columns = parts.into_iter().map(|part| part.name).collect();
+        Ok(())
+    }
+
+    fn read_part(&mut self, frame: &mut ParticleFrame, part: Part) -> Result<(), SceneError> {
+        let Part { name, array, at, width } = part;
+        if let Some(texts) = self.texts(&array, at, frame.len())? {
+            frame.texts.push(TextColumn { name, ..texts });
+            return Ok(());
+        }
+        let mut values = self.rows(&array, width, frame.len())?;
+        if width > 1 {
+            values = values.chunks_exact(width).map(|row| row[at]).collect();
+        }
+        frame.numbers.push(NumberColumn { name, values });
+        Ok(())
     }
 
     /// An array with as many rows as there are particles, of so many numbers each.
@@ -118,8 +213,13 @@ impl Npz {
 }
 
 impl Npz {
-    /// An array of as many texts as there are particles; `None` if it holds numbers.
-    fn texts(&mut self, name: &str, count: usize) -> Result<Option<TextColumn>, SceneError> {
+    /// A column of an array of texts, as many as there are particles; `None` if it holds numbers.
+    fn texts(
+        &mut self,
+        name: &str,
+        at: usize,
+        count: usize,
+    ) -> Result<Option<TextColumn>, SceneError> {
         let path = self.path.clone();
         let mut array = self.open(name)?;
         if !array.is_text(0) {
@@ -129,7 +229,7 @@ impl Npz {
         let mut column = TextColumn { name: name.to_owned(), ..TextColumn::default() };
         array.rows(&path, |row| {
             let names = &mut column.names;
-            let text = row.text(0).unwrap_or_default();
+            let text = row.text(at).unwrap_or_default();
             column.codes.push(book.code(text.as_bytes(), |text| add(names, text)));
             rows += 1;
             if rows > count { Err(number_of(&path, name, "more texts", count)) } else { Ok(()) }
@@ -145,7 +245,8 @@ impl Npz {
     fn kinds(&mut self, builder: &mut Builder) -> Result<(), SceneError> {
         let count = builder.frame.len();
         let Some(name) = self.find(Role::Kind, &TYPES) else { return Ok(()) };
-        if let Some(texts) = self.texts(&name, count)? {
+        builder.frame.roles.push((Role::Kind, name.clone()));
+        if let Some(texts) = self.texts(&name, 0, count)? {
             (0..count).for_each(|row| builder.kind(texts.text(row).as_bytes()));
         } else {
             // Numbers of types are no elements.
@@ -172,7 +273,8 @@ impl FrameReader for Npz {
         if std::mem::replace(&mut self.done, true) {
             return Ok(None);
         }
-        let mut builder = self.positions()?;
+        let (mut builder, positions) = self.positions()?;
+        let mut used = vec![positions];
         let count = builder.frame.len();
         self.kinds(&mut builder)?;
         let mut frame = builder.finish();
@@ -185,23 +287,20 @@ impl FrameReader for Npz {
         if let Some((name, factor)) = radius {
             frame.radius = self.rows(&name, 1, count)?;
             frame.radius.iter_mut().for_each(|radius| *radius *= factor);
+            frame.roles.retain(|(role, _)| !matches!(role, Role::Radius | Role::Diameter));
+            let role = if factor == 1.0 { Role::Radius } else { Role::Diameter };
+            frame.roles.push((role, name));
         }
         if let Some(name) = self.find(Role::Red, &COLORS) {
             let values = self.rows(&name, 3, count)?;
             let color = |row: &[f64]| Rgb::new(share(row[0]), share(row[1]), share(row[2]));
             frame.color = values.chunks_exact(3).map(color).collect();
+            let roles = [Role::Red, Role::Green, Role::Blue];
+            frame.roles.extend(roles.into_iter().zip(component_names(&name, 3)));
+            used.push(name);
         }
-        let (columns, there) = (&self.options.columns, self.names());
-        let wanted = columns.wanted.iter().filter(|name| there.contains(name));
-        let names: Vec<String> = columns.kept.iter().chain(wanted).cloned().collect();
-        for name in names {
-            if let Some(texts) = self.texts(&name, count)? {
-                frame.texts.push(texts);
-            } else {
-                let values = self.rows(&name, 1, count)?;
-                frame.numbers.push(NumberColumn { name, values });
-            }
-        }
+        used.extend(frame.roles.iter().map(|(_, name)| name.clone()));
+        self.keep(&mut frame, &used)?;
         Ok(Some(frame))
     }
 }

@@ -111,7 +111,7 @@ impl<R: Read> Array<R> {
     }
 
     /// Rows of a frame.
-    fn count(&self) -> u64 {
+    pub(super) fn count(&self) -> u64 {
         match self.shape[..] {
             [_, count] if self.structured => count,
             [count] | [count, _] | [_, count, _] => count,

@@ -15,7 +15,7 @@ enum Truth<'p> {
     Not(Box<Self>),
     Compare(Sign, Number<'p>, Number<'p>),
     /// Whether the condition is true, for each text of a column.
-    Texts(&'p Codes, Vec<bool>),
+    Texts(Cow<'p, Codes>, Vec<bool>),
 }
 
 /// A number for each row.
@@ -23,7 +23,7 @@ enum Number<'p> {
     Constant(f64),
     Column(Cow<'p, [f64]>),
     /// The number of each text of a column; NaN where it is none.
-    Texts(&'p Codes, Vec<f64>),
+    Texts(Cow<'p, Codes>, Vec<f64>),
     Negative(Box<Self>),
     Arithmetic(Box<Self>, Vec<(Sign, Self)>),
 }

@@ -1,3 +1,4 @@
+mod columns;
 mod crystals;
 mod gsd;
 mod lammps;
