@@ -5,7 +5,10 @@
 //! forced to the disk, and takes the destination's name in one step. Whatever fails before that step
 //! leaves the old file as it was.
 
+mod pending;
 mod temporary;
+
+pub use pending::Pending;
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},

@@ -1,6 +1,7 @@
 //! Which frames of a file are drawn, as typed.
 
 use spherule::scene::particles::FrameChoice;
+use std::fmt;
 use std::str::FromStr;
 
 /// One frame, or many.
@@ -22,9 +23,22 @@ pub(super) struct FrameRange {
 impl FrameRange {
     const ALL: Self = Self { first: 0, last: None, step: 1 };
 
-    /// Whether it includes a frame that is not after its last one.
-    pub(super) fn has(self, number: u64) -> bool {
-        number >= self.first && (number - self.first).is_multiple_of(self.step)
+    /// Number of its frames up to `last`, which is included.
+    pub(super) fn count_to(self, last: u64) -> u64 {
+        last.checked_sub(self.first).map_or(0, |span| span / self.step + 1)
+    }
+}
+
+/// As it is typed.
+impl fmt::Display for FrameRange {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { first, last, step } = *self;
+        match last {
+            Some(last) if step == 1 => write!(formatter, "{first}-{last}"),
+            Some(last) => write!(formatter, "{first}..{last}..{step}"),
+            None if step == 1 => write!(formatter, "{first}.."),
+            None => write!(formatter, "{first}....{step}"),
+        }
     }
 }
 
@@ -109,7 +123,14 @@ mod tests {
     #[test]
     fn steps_begin_with_the_first() {
         let range = FrameRange { first: 3, last: None, step: 4 };
-        let frames: Vec<u64> = (0..13).filter(|&number| range.has(number)).collect();
-        assert_eq!(frames, [3, 7, 11]);
+        assert_eq!([2, 3, 6, 7, 12].map(|last| range.count_to(last)), [0, 1, 1, 2, 3]);
+    }
+
+    #[test]
+    fn ranges_are_written_as_they_are_read() {
+        for text in ["3-7", "3..7..2", "3....2", "3.."] {
+            let Ok(FrameArg::Many(range)) = text.parse() else { panic!("{text} is a range") };
+            assert_eq!(range.to_string(), text);
+        }
     }
 }

@@ -153,7 +153,7 @@ impl LookArgs {
         let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
         radii.for_each(|radius| *radius *= radius_scale);
         let select = self.select.as_deref().cloned();
-        Looks { select, coloring: self.coloring(), types }
+        Looks { select, coloring: self.coloring(), types, allow_empty: false }
     }
 
     /// What makes the picture, for its file; ends of colors are those of the `legend`.

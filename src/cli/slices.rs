@@ -30,12 +30,13 @@ fn mode(name: &str) -> Result<SliceMode, String> {
 
 impl SliceArgs {
     /// Cuts a scene from `path`: by its own slices and by those that were typed, whose shares are of
-    /// `cell` if there is one.
+    /// `cell` if there is one. They may cut all spheres away only if that is allowed.
     pub(super) fn cut(
         &self,
         scene: &mut Scene,
         path: &Path,
         cell: Option<[DVec3; 2]>,
+        allow_empty: bool,
     ) -> Result<(), SceneError> {
         if !self.planes.is_empty() {
             let whole = cell.or_else(|| bounds(&scene.spheres)).unwrap_or_default();
@@ -43,7 +44,7 @@ impl SliceArgs {
             scene.slices.extend(self.planes.iter().map(|plane| plane.slice(whole, mode)));
         }
         let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
-        if dropped > 0 && scene.spheres.is_empty() {
+        if dropped > 0 && scene.spheres.is_empty() && !allow_empty {
             let message = format!("the slices cut all of its {dropped} spheres away");
             return Err(SceneError::whole_file(path, message)
                 .with_help("a slice names what is cut away: the other side is z<10, not z>10"));

@@ -20,6 +20,8 @@ pub struct SceneError {
     pub help: Option<String>,
     /// Where in the file; `None` if the whole file is meant.
     pub place: Option<Box<Place>>,
+    /// Whether the file ends before what it announces: it is cut off, or still being written.
+    pub cut_off: bool,
 }
 
 /// A place in a file, with the text around it so that it can be shown.
@@ -40,7 +42,8 @@ pub struct Place {
 impl SceneError {
     /// An error that concerns a whole file.
     pub fn whole_file(path: &Path, message: impl Into<String>) -> Self {
-        Self { path: path.to_path_buf(), message: clipped(message), help: None, place: None }
+        let message = clipped(message);
+        Self { path: path.to_path_buf(), message, help: None, place: None, cut_off: false }
     }
 
     /// An error at the bytes `span` of `text`, which begins with line `first_line` of the file.

@@ -3,6 +3,7 @@
 use super::write::sections;
 use super::{EnvironmentMap, Scene, Spheres};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Numbers that are hashed at a time.
 const CHUNK: usize = 1024;
@@ -47,17 +48,34 @@ impl Identity {
 
     /// The first part in which two scenes differ, as a word.
     pub fn difference(&self, other: &Self) -> Option<&'static str> {
-        let parts = [
-            ("spheres", self.spheres == other.spheres),
-            ("materials", self.materials == other.materials),
-            ("ground", self.ground == other.ground),
-            ("slices", self.slices == other.slices),
-            ("lights", self.lights == other.lights),
-            ("environment", self.environment == other.environment),
-            ("camera", self.camera == other.camera),
-            ("look", self.look == other.look),
-        ];
-        parts.into_iter().find(|(_, same)| !same).map(|(name, _)| name)
+        let mut pairs = self.parts().into_iter().zip(other.parts());
+        pairs.find(|((_, own), (_, theirs))| own != theirs).map(|((name, _), _)| name)
+    }
+
+    fn parts(&self) -> [(&'static str, &[u8; 32]); 8] {
+        [
+            ("spheres", &self.spheres),
+            ("materials", &self.materials),
+            ("ground", &self.ground),
+            ("slices", &self.slices),
+            ("lights", &self.lights),
+            ("environment", &self.environment),
+            ("camera", &self.camera),
+            ("look", &self.look),
+        ]
+    }
+}
+
+/// The name and the first eight bytes of the hash of each part, as in `spheres 01ab...`, with commas
+/// between them: enough to tell pictures apart that were made by accident from others.
+impl fmt::Display for Identity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, (name, hash)) in self.parts().into_iter().enumerate() {
+            let comma = if place > 0 { ", " } else { "" };
+            write!(formatter, "{comma}{name} ")?;
+            hash.iter().take(8).try_for_each(|byte| write!(formatter, "{byte:02x}"))?;
+        }
+        Ok(())
     }
 }
 
@@ -146,6 +164,21 @@ mod tests {
         assert_eq!(difference(&|scene| scene.look.outline = true), Some("look"));
         let dark = |scene: &mut Scene| scene.environment.illuminates ^= true;
         assert_eq!(difference(&dark), Some("environment"));
+    }
+
+    #[test]
+    fn texts_name_every_part_and_differ_where_it_does() {
+        let scene = default_scene(1);
+        let text = Identity::of(&scene).to_string();
+        let parts: Vec<&str> = text.split(", ").collect();
+        assert_eq!(parts.len(), 8);
+        assert!(parts[6].starts_with("camera ") && parts[6].len() == "camera ".len() + 16);
+        let mut other = scene;
+        other.camera.near = 0.5;
+        let other = Identity::of(&other).to_string();
+        let differ: Vec<_> = parts.iter().zip(other.split(", ")).filter(|(a, b)| *a != b).collect();
+        assert_eq!(differ.len(), 1);
+        assert_eq!(differ[0].0, &parts[6]);
     }
 
     #[test]

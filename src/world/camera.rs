@@ -86,6 +86,42 @@ impl Camera {
         DVec2::new(1.0 + across, 1.0 - upward) / 2.0 * size
     }
 
+    /// About how many pixels of a rectangle of the picture, from `low` to `high` in pixels from its top
+    /// left corner, a sphere of the world may cover if nothing hides it: 0 if none of its rays meets the
+    /// sphere, and infinity for one that is around the camera or very near.
+    pub fn coverage(&self, (center, radius): (DVec3, f64), low: DVec2, high: DVec2) -> f64 {
+        let across = |x: f64| (2.0 * x / f64::from(self.width) - 1.0) * self.half_width;
+        let upward = |y: f64| (1.0 - 2.0 * y / f64::from(self.height)) * self.half_height;
+        let seen = self.view(center);
+        let blur = if self.has_lens() {
+            self.lens_radius * (1.0 + seen.z.max(0.0) / self.focus)
+        } else {
+            0.0
+        };
+        let reach = radius + blur;
+        let inside = |inward: f64, edge: f64| {
+            if self.orthographic {
+                inward - edge >= -reach
+            } else {
+                inward - edge * seen.z >= -reach * edge.hypot(1.0)
+            }
+        };
+        let in_view = seen.z + reach > self.near
+            && inside(seen.x, across(low.x))
+            && inside(-seen.x, -across(high.x))
+            && inside(-seen.y, -upward(low.y))
+            && inside(seen.y, upward(high.y));
+        if !in_view {
+            return 0.0;
+        }
+        let depth = if self.orthographic { 1.0 } else { seen.z };
+        if !self.orthographic && depth <= radius {
+            return f64::INFINITY;
+        }
+        let pixels = radius / (depth * self.half_height) * f64::from(self.height) / 2.0;
+        std::f64::consts::PI * pixels * pixels
+    }
+
     /// Rays start where they cross the plane at this distance along the view axis.
     pub fn near(&self) -> f64 {
         self.near

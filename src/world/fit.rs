@@ -195,29 +195,89 @@ impl ViewBox {
 /// A sphere is inside a plane through the eye with inward unit normal `n` if
 /// `n . eye <= n . center - radius`: the least right side over all spheres bounds the eye. The two
 /// planes of an axis give its coordinate, and each pair gives how far forward it may go.
-fn nearest_eye(scene: &Scene, axes: &Axes, (tan_x, tan_y): (f64, f64)) -> DVec3 {
+fn nearest_eye(scene: &Scene, axes: &Axes, tangents: (f64, f64)) -> DVec3 {
     let spheres = &scene.spheres;
-    let normal = |tangent: f64| (tangent.atan().cos(), tangent.atan().sin());
-    let ((cos_x, sin_x), (cos_y, sin_y)) = (normal(tan_x), normal(tan_y));
+    let sides = Sides::new(tangents);
     let mut slack = [f64::INFINITY; 4];
     for i in scene.shown() {
-        let c = axes.coordinates(center(spheres, i));
-        let r = spheres.radius[i];
-        let planes = [
-            cos_x * c.x + sin_x * c.z - r,
-            -cos_x * c.x + sin_x * c.z - r,
-            cos_y * c.y + sin_y * c.z - r,
-            -cos_y * c.y + sin_y * c.z - r,
-        ];
+        let planes = sides.slack(axes.coordinates(center(spheres, i)), spheres.radius[i]);
         for (slack, plane) in slack.iter_mut().zip(planes) {
             *slack = slack.min(plane);
         }
     }
+    let Sides { cos_x, sin_x, cos_y, sin_y } = sides;
     DVec3::new(
         (slack[0] - slack[1]) / (2.0 * cos_x),
         (slack[2] - slack[3]) / (2.0 * cos_y),
         ((slack[0] + slack[1]) / (2.0 * sin_x)).min((slack[2] + slack[3]) / (2.0 * sin_y)),
     )
+}
+
+/// Normals of the four planes of a frustum at the sides of the picture.
+#[derive(Clone, Copy, Debug)]
+struct Sides {
+    cos_x: f64,
+    sin_x: f64,
+    cos_y: f64,
+    sin_y: f64,
+}
+
+impl Sides {
+    /// Of the tangents of half the picture's width and height.
+    fn new((tan_x, tan_y): (f64, f64)) -> Self {
+        let normal = |tangent: f64| (tangent.atan().cos(), tangent.atan().sin());
+        let ((cos_x, sin_x), (cos_y, sin_y)) = (normal(tan_x), normal(tan_y));
+        Self { cos_x, sin_x, cos_y, sin_y }
+    }
+
+    /// The largest offset of each plane for which a sphere is inside of it: `c` is its center along
+    /// right, up and forward.
+    fn slack(&self, c: DVec3, r: f64) -> [f64; 4] {
+        let Self { cos_x, sin_x, cos_y, sin_y } = self;
+        [
+            cos_x * c.x + sin_x * c.z - r,
+            -cos_x * c.x + sin_x * c.z - r,
+            cos_y * c.y + sin_y * c.z - r,
+            -cos_y * c.y + sin_y * c.z - r,
+        ]
+    }
+}
+
+/// Limits by which a sphere can decide where a camera stands that frames everything.
+pub(super) const LIMITS: usize = 11;
+
+/// What decides where a camera stands that frames everything: [`Limits::of`] a sphere is small where it
+/// counts.
+#[derive(Clone, Debug)]
+pub(super) struct Limits {
+    axes: Axes,
+    sides: Sides,
+    vertical: DVec3,
+}
+
+impl Limits {
+    /// For the camera of a scene; `None` if it stands where it stands, or looks nowhere.
+    pub(super) fn new(scene: &Scene) -> Option<Self> {
+        let Pose::Fit { direction, margin } = scene.camera.pose else { return None };
+        let tangent = match scene.camera.projection {
+            Projection::Perspective { fov } => (fov.to_radians() / 2.0).tan(),
+            Projection::Orthographic { .. } => 1.0,
+        };
+        let used = 1.0 - margin;
+        let sides = Sides::new((tangent * aspect(scene) * used, tangent * used));
+        let vertical = scene.camera.up.normalize_or(DVec3::Y);
+        Some(Self { axes: Axes::new(direction, scene.camera.up)?, sides, vertical })
+    }
+
+    /// A sphere's limits: of all spheres, only those of the least limit decide. They are the ends of
+    /// the box along the picture's axes, the planes of the frustum, and the lowest point.
+    pub(super) fn of(&self, center: DVec3, radius: f64) -> [f64; LIMITS] {
+        let c = self.axes.coordinates(center);
+        let (low, high) = (c - radius, -(c + radius));
+        let [left, right, bottom, top] = self.sides.slack(c, radius);
+        let lowest = self.vertical.dot(center) - radius;
+        [low.x, low.y, low.z, high.x, high.y, high.z, left, right, bottom, top, lowest]
+    }
 }
 
 fn center(spheres: &Spheres, i: usize) -> DVec3 {

@@ -1,6 +1,10 @@
 //! Cameras that suit what is in the scene: along its principal axes, around it in a turn, and with
 //! more in the picture than spheres.
 
+mod sequence;
+
+pub use sequence::SequenceBounds;
+
 use super::{WorldError, fit};
 use crate::scene::{Camera, Pose, Projection, Rgb, Scene, Spheres};
 use glam::{DMat3, DQuat, DVec3};

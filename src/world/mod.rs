@@ -21,6 +21,7 @@ mod lights;
 mod materials;
 mod seen;
 mod spheres;
+mod visibility;
 
 pub use appearance::{Appearance, Colors, Column};
 pub use camera::Camera;
@@ -38,6 +39,7 @@ pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };
 pub use seen::Seen;
+pub use visibility::Visibility;
 
 use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};

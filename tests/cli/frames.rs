@@ -35,7 +35,8 @@ fn every_frame_has_its_picture() {
     let folder = folder();
     run(&folder, &["--frame", "all", "-o", "b.png"]);
     assert_eq!(names(&folder), ["b-0000.png", "b-0001.png", "b-0002.png", "b-0003.png"]);
-    // The first particle stays where it is, for the camera does, and the other one moves.
+    // The first particle stays where it is, for the camera does, and the other one moves: the camera
+    // frames all of the way.
     let pictures: Vec<Image> =
         names(&folder).iter().map(|name| Image::read(folder.path(name)).expect("read")).collect();
     let column = |image: &Image, x: u32| -> Vec<_> {
@@ -77,27 +78,173 @@ fn colors_stand_for_the_same_numbers_in_all_frames() {
     }
 }
 
+/// Frames of particles of one kind at these places, each with a title of its own.
+fn trajectory(frames: &[&[[f64; 3]]]) -> String {
+    let row = |[x, y, z]: &[f64; 3]| format!("C {x} {y} {z}\n");
+    let rows = |frame: &[[f64; 3]]| frame.iter().map(row).collect::<String>();
+    let frame = |frame: &&[[f64; 3]]| {
+        format!("{}\nProperties=species:S:1:pos:R:3\n{}", frame.len(), rows(frame))
+    };
+    frames.iter().map(frame).collect()
+}
+
+/// Whether a picture shows anything but the sky, and whether that keeps off the edges.
+fn shown(folder: &Folder, name: &str) -> (bool, bool) {
+    let image = Image::read(folder.path(name)).expect("a picture");
+    let painted = |x: u32, y: u32| image.pixel(x, y).is_some_and(|pixel| pixel[1] < 0.9);
+    let (right, bottom) = (image.width - 1, image.height - 1);
+    let mut places = (0..=bottom).flat_map(|y| (0..=right).map(move |x| (x, y)));
+    let edge = |x: u32, y: u32| x == 0 || y == 0 || x == right || y == bottom;
+    let cropped = places.clone().any(|(x, y)| edge(x, y) && painted(x, y));
+    (places.any(|(x, y)| painted(x, y)), !cropped)
+}
+
+/// Runs the program, and returns what it says, in one line.
+#[track_caller]
+fn said(folder: &Folder, code: i32, line: &str) -> String {
+    let args: Vec<&str> = line.split(' ').collect();
+    let output = folder.run(&args);
+    let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(output.status.code(), Some(code), "{line}: {said}");
+    said
+}
+
+const TINY: &str = "--size 40x24 --spp 4 -q --background white";
+
 #[test]
-fn faults_name_their_frame_and_leave_the_pictures_before_it() {
+fn the_camera_frames_all_frames_that_are_drawn() {
+    let folder = Folder::new();
+    let (near, far) = ([0.0, 0.0, 0.0], [90.0, -20.0, 40.0]);
+    let drifting: Vec<[f64; 3]> = (0..5).map(|i| [30.0 * f64::from(i), 0.0, 9.0]).collect();
+    let frames: Vec<&[[f64; 3]]> = drifting.iter().map(std::slice::from_ref).collect();
+    folder.write("drift.xyz", &trajectory(&frames));
+    folder.write("grow.xyz", &trajectory(&[&[near, [2.0, 1.0, 0.0]], &[near, far]]));
+    folder.write("shrink.xyz", &trajectory(&[&[near, far], &[near, [2.0, 1.0, 0.0]]]));
+    for (file, frames) in [("drift", 5), ("grow", 2), ("shrink", 2)] {
+        for view in ["", " --view x", " --projection orthographic", " --view auto"] {
+            let line =
+                format!("render {file}.xyz --radii 4 --frame all {TINY} -o {file}.png{view}");
+            assert_eq!(said(&folder, 0, &line), "", "{line}");
+            for frame in 0..frames {
+                let name = format!("{file}-{frame:04}.png");
+                assert_eq!(shown(&folder, &name), (true, true), "{line} {frame}");
+            }
+        }
+    }
+    // A range frames what it draws: with one frame, that alone.
+    let line = format!("render drift.xyz --radii 4 --frame 4-4 {TINY} -o one.png");
+    said(&folder, 0, &line);
+    let line = format!("render drift.xyz --radii 4 --frame 4 {TINY} -o single.png");
+    said(&folder, 0, &line);
+    let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    assert_eq!(read("one-0004.png"), read("single.png"));
+}
+
+#[test]
+fn frames_that_show_nothing_are_counted_once() {
+    let folder = Folder::new();
+    let (low, high): (&[[f64; 3]], &[[f64; 3]]) =
+        (&[[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]], &[[0.0, 3.0, 8.0]]);
+    folder.write("a.xyz", &trajectory(&[low, &[], high, low, high, high]));
+    let line = format!("render a.xyz --frame all {TINY} -o a.png");
+    let all = said(&folder, 0, &line);
+    assert!(all.contains("in 1 of 6 pictures: frames 1"), "{all}");
+    for (condition, expected) in [
+        ("--select z<5", "in 4 of 6 pictures: frames 1-2, 4-5"),
+        ("--select z>5", "in 3 of 6 pictures: frames 0-1, 3"),
+        ("--slice z>5", "in 4 of 6 pictures: frames 1-2, 4-5"),
+    ] {
+        let some = said(&folder, 0, &format!("{line} {condition} --view iso"));
+        assert!(some.contains(expected), "{condition}: {some}");
+        assert_eq!(some.matches("warning").count(), 1, "{some}");
+    }
+    let (empty, full) = (shown(&folder, "a-0001.png").0, shown(&folder, "a-0000.png").0);
+    assert!(!empty && full);
+    let none = said(&folder, 1, &format!("{line} --select z>50"));
+    assert!(none.contains("no sphere in the 6 frames"), "{none}");
+    // A frame without atoms is one in plain XYZ too.
+    folder.write("plain.xyz", "1\n\nC 0 0 0\n0\n\n1\n\nC 0 0 1\n");
+    let plain = said(&folder, 0, &format!("render plain.xyz --frame all {TINY} -o p.png"));
+    assert!(plain.contains("in 1 of 3 pictures: frames 1"), "{plain}");
+}
+
+#[test]
+fn single_pictures_without_spheres_say_so() {
+    let folder = Folder::new();
+    let spheres = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+    let camera = |eye: &str| format!("[camera]\neye = {eye}\ntarget = [0, 0, 40]\n");
+    folder.write("away.toml", &(camera("[0, 0, 20]") + spheres));
+    folder.write("toward.toml", &(camera("[0, 0, -20]") + spheres));
+    folder.write("tiny.toml", &(camera("[0, 0, -20]") + &spheres.replace("= 1", "= 1e-5")));
+    folder.write(
+        "hidden.toml",
+        &(camera("[0, 0, -20]")
+            + spheres
+            + "[[slice]]\nnormal = [0, 0, 1]\ndistance = -9\nmode = \"hide\"\n"),
+    );
+    for (file, expected) in [
+        ("away", "1 sphere is in the picture"),
+        ("tiny", "1 sphere in the picture"),
+        ("hidden", "hide"),
+    ] {
+        let told = said(&folder, 0, &format!("render {file}.toml --size 24x24 --spp 2 -q"));
+        assert!(told.contains("no sphere") && told.contains(expected), "{file}: {told}");
+    }
+    let toward = "render toward.toml --size 24x24 --spp 2 -q";
+    assert_eq!(said(&folder, 0, toward), "");
+    let corner = said(&folder, 0, &format!("{toward} --region 0,0,2x2"));
+    assert!(corner.contains("region 0,0,2x2"), "{corner}");
+}
+
+#[test]
+fn what_can_be_read_once_says_which_frames_leave_the_picture() {
+    let folder = Folder::new();
+    let frames: Vec<[f64; 3]> = (0..4).map(|i| [5.0 * f64::from(i), 0.0, 0.0]).collect();
+    let frames: Vec<&[[f64; 3]]> = frames.iter().map(std::slice::from_ref).collect();
+    let input = trajectory(&frames);
+    let run = |args: &str| {
+        let line = format!("render - --radii 1 {args} {TINY} -o a.png");
+        let mut program = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"));
+        let program = program.args(line.split(' ')).current_dir(folder.root());
+        let output = program.write_stdin(input.clone()).output().expect("a program that runs");
+        (output.status.code(), text(&output.stderr))
+    };
+    let (code, told) = run("--frame all");
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("in 3 of 4 pictures: frames 1-3"), "{told}");
+    let (code, told) = run("--frame 1-9");
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("no frame 9, but 4") && told.contains("--frame 1-3"), "{told}");
+    assert_eq!(names(&folder), ["a-0000.png", "a-0001.png", "a-0002.png", "a-0003.png"]);
+}
+
+#[test]
+fn ranges_that_are_not_there_are_refused_before_anything_is_drawn() {
     let folder = folder();
-    folder.write("cut.xyz", &format!("{}2\n\nC 0 0 0\nC 0 zero 0\n", moving(2)));
+    folder.write("damaged.xyz", &format!("{}2\n\nC 0 0 0\nC 0 zero 0\n", moving(2)));
+    folder.write("cut.xyz", &format!("{}2\n\nC 0 0 0\n", moving(3)));
+    folder.write("more.xyz", &format!("{}two\n", moving(3)));
     for (line, code, message) in [
-        ("render cut.xyz --frame all", 1, "frame 2:"),
+        ("render damaged.xyz --frame all", 1, "frame 2:"),
+        ("render more.xyz --frame all", 1, "frame 3:"),
         ("render a.xyz --frame 2-9", 1, "has no frame 9, but 4"),
+        ("render a.xyz --frame 2-9", 1, "--frame 2-3"),
+        ("render a.xyz --frame 1..9..2", 1, "--frame 1..3..2"),
         ("render a.xyz --frame 7..", 1, "has no frame 7, but 4"),
+        ("render a.xyz --frame 7-9", 1, "--frame 3"),
+        ("render cut.xyz --frame 1-3", 1, "--frame 1-2"),
         ("render a.xyz --frame 3-1", 2, "A no more than B"),
-        ("render a.xyz --frame all --turntable 3", 2, "a single one"),
         ("info a.xyz --frame all", 2, "one frame here"),
         ("render --frame all", 2, "name one"),
     ] {
-        let args: Vec<&str> = line.split(' ').collect();
-        let size = ["--size", "8x8", "--spp", "1"];
-        let size = if args[0] == "render" { &size[..] } else { &[] };
-        let output = folder.run(&[&args[..], size].concat());
-        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
-        assert!(said.contains(message), "{line}: {said}");
+        let size = if line.starts_with("render") { " --size 8x8 --spp 1" } else { "" };
+        let told = said(&folder, code, &format!("{line}{size}"));
+        assert!(told.contains(message), "{line}: {told}");
     }
-    assert!(folder.path("spherule-0001.png").exists() && folder.path("spherule-0003.png").exists());
-    assert!(!folder.path("spherule-0004.png").exists());
+    assert_eq!(names(&folder), [""; 0]);
+    // What is whole is drawn, and what is cut off is told of.
+    let told = said(&folder, 0, &format!("render cut.xyz --frame all {TINY}"));
+    assert!(told.contains("the file ends after 1 of 2 atoms"), "{told}");
+    assert_eq!(names(&folder).len(), 3);
+    said(&folder, 0, &format!("render more.xyz --frame 0-2 {TINY}"));
 }

@@ -1,7 +1,7 @@
 //! What is to be rendered, how, and where to: validated as far as it can be without the scene.
 
 use super::looks::with_columns;
-use super::numbers::numbered;
+use super::sequence::Common;
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
 use crate::cli::keep::KeepArgs;
@@ -19,7 +19,7 @@ use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::particles::Looks;
-use spherule::scene::{Camera, Look, Settings};
+use spherule::scene::{Look, Settings};
 use spherule::split::{Part, Split};
 use spherule::trace::{Tracer, Width};
 use std::path::PathBuf;
@@ -42,8 +42,8 @@ pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) turn: Option<u32>,
     /// Which of many frames it is.
     pub(in crate::cli) frame: Option<u64>,
-    /// Of an earlier picture of the same sequence.
-    pub(in crate::cli) camera: Option<Camera>,
+    /// What it has in common with the other pictures of its sequence.
+    pub(in crate::cli) common: Option<Common>,
     pub(in crate::cli) encoding: &'a EncodingArgs,
     pub(in crate::cli) keep: &'a KeepArgs,
     /// Which part of the render it is, if it is but one.
@@ -98,7 +98,7 @@ impl<'a> Job<'a> {
             style: &args.style,
             turn: None,
             frame: None,
-            camera: None,
+            common: None,
             encoding: &args.encoding,
             keep: &args.keep,
             part: args.part.settled(),
@@ -110,20 +110,9 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// The renders of a turn of so many pictures, which are numbered.
-    pub(in crate::cli) fn turns(&self, pictures: u32) -> Result<Vec<Self>, Failure> {
-        if matches!(&self.source, Source::Particles(path, _) if path.as_os_str() == "-") {
-            let message = "--turntable reads its file for every picture, but standard input can \
-                           be read once: write it to a file";
-            return Err(Failure::usage("render", message));
-        }
-        let digits = (pictures - 1).to_string().len().max(3);
-        let job = |turn: u32| Self {
-            output: numbered(&self.output, turn.into(), digits),
-            turn: Some(turn),
-            ..self.clone()
-        };
-        Ok((0..pictures).map(job).collect())
+    /// Whether it is one of many pictures.
+    pub(in crate::cli) fn is_of_sequence(&self) -> bool {
+        self.turn.is_some() || self.frame.is_some()
     }
 
     /// Whether a color bar is drawn into the picture.

@@ -15,7 +15,10 @@ mod prepare;
 mod resume;
 mod sequence;
 mod summary;
+mod survey;
 mod terminal;
+mod told;
+mod unseen;
 
 pub(super) use self::estimate::Estimate;
 pub(super) use self::job::{Job, check_alpha};
@@ -27,6 +30,7 @@ use self::resume::Resumed;
 use self::summary::Summary;
 pub(super) use self::summary::warnings;
 use self::terminal::Terminal;
+use self::told::Told;
 use super::args::RenderArgs;
 use super::command::Given;
 use super::progress::Meter;
@@ -71,27 +75,11 @@ fn run_as(
     let job = Job::new(args)?;
     looks::check_bar(&job)?;
     terminal::check(job.report.terminal)?;
-    if let Some(range) = args.particles.frames() {
-        return job.pool()?.install(|| sequence::run(&job, range));
+    if args.particles.frames().is_some() || args.views.turntable().is_some() {
+        return job.pool()?.install(|| sequence::run(&job));
     }
-    let Some(pictures) = args.views.turntable() else {
-        check_writable(&job.output)?;
-        return job.pool()?.install(|| make_picture(&job, keeper, resumed));
-    };
-    let jobs = job.turns(pictures)?;
-    jobs.iter().try_for_each(|job| check_writable(&job.output))?;
-    job.pool()?.install(|| make_turn(&jobs))
-}
-
-/// Makes the pictures of a turn, until one is interrupted.
-fn make_turn(jobs: &[Job]) -> Result<ExitCode, Failure> {
-    for job in jobs {
-        let code = make_picture(job, None, None)?;
-        if code != ExitCode::SUCCESS {
-            return Ok(code);
-        }
-    }
-    Ok(ExitCode::SUCCESS)
+    check_writable(&job.output)?;
+    job.pool()?.install(|| make_picture(&job, keeper, resumed))
 }
 
 fn make_picture(
@@ -101,16 +89,17 @@ fn make_picture(
 ) -> Result<ExitCode, Failure> {
     let mut prepared = Prepared::load(job, None)?;
     let unfinished = resumed.map(|resumed| resumed.go_on(job, &prepared)).transpose()?;
-    finish_picture(job, &mut prepared, keeper, unfinished)
+    finish_picture(job, &mut prepared, &mut Told::default(), keeper, unfinished)
 }
 
 fn finish_picture(
     job: &Job,
     prepared: &mut Prepared,
+    told: &mut Told,
     keeper: Option<&Keeper>,
     unfinished: Option<Unfinished>,
 ) -> Result<ExitCode, Failure> {
-    prepared.tell(job);
+    prepared.tell(job, told);
     looks::write_bar(job, prepared)?;
     let traced = trace(job, prepared, keeper, unfinished);
     let code = traced.signal.map_or(ExitCode::SUCCESS, ExitCode::from);
@@ -118,24 +107,34 @@ fn finish_picture(
         part::finish(job, part, prepared, keeper, &traced.render)?;
         return Ok(code);
     }
+    if job.is_of_sequence() && !traced.render.is_complete() {
+        let output = job.output.display();
+        output::warn(format_args!("interrupted: {output} is unfinished and is not written"));
+        return Ok(code);
+    }
     if traced.render.samples().total == 0 {
         output::warn("interrupted before the first sample: nothing is written");
         return Ok(code);
     }
     let mut render = traced.render.render();
-    write(job, prepared, &mut render)?;
+    write(job, prepared, told, &mut render)?;
     traced.tell(job, prepared, &render);
     Ok(code)
 }
 
 /// Writes the picture, with what is drawn over it and beside it, and tells how it went.
-fn write(job: &Job, prepared: &mut Prepared, render: &mut Render) -> Result<(), Failure> {
+fn write(
+    job: &Job,
+    prepared: &mut Prepared,
+    told: &mut Told,
+    render: &mut Render,
+) -> Result<(), Failure> {
     let matte = draw_over(job, prepared, render)?;
     let options = metadata::write_options(job, prepared, render);
     let mut channels = layers::channels(job, prepared, render);
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
     render.image.write_layers(&job.output, &channels, &options)?;
-    Summary::new(job, prepared, render, &options).tell(job.report);
+    Summary::new(job, prepared, render, &options).tell(job.report, told);
     Ok(())
 }
 

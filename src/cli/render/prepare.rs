@@ -3,7 +3,8 @@
 use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
-use super::{layers, looks, part};
+use super::told::Told;
+use super::{layers, looks, part, unseen};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -13,7 +14,6 @@ use spherule::film::Region;
 use spherule::render::{Render, Share};
 use spherule::scene::particles::{Cell, Legend, Particles};
 use spherule::scene::{Identity, Scene, Settings};
-use spherule::world::framing;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -41,16 +41,25 @@ pub(super) struct Prepared {
     pub(super) identity: Option<Identity>,
     /// What is wrong with the input.
     pub(super) warnings: Vec<String>,
+    /// Why the picture shows no sphere, if it shows none.
+    pub(super) unseen: Option<String>,
 }
 
-impl Prepared {
-    /// Loads the scene, puts in the job's settings, and builds the world; `given` are its particles,
-    /// if they were read before.
+/// A scene with the job's settings in it, whose camera has no place yet.
+pub(super) struct Staged {
+    pub(super) scene: Scene,
+    pub(super) legend: Option<Legend>,
+    load: Duration,
+}
+
+impl Staged {
+    /// Loads the scene; `given` are its particles, if they were read before.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
         let looks::Loaded { mut scene, legend, cell } = looks::load(job, given)?;
         let box_of = cell.as_ref().map(Cell::bounds);
-        job.slices.cut(&mut scene, Path::new(&*job.source.name()), box_of)?;
+        let path = job.source.name().into_owned();
+        job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
         let load = start.elapsed();
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
@@ -60,8 +69,20 @@ impl Prepared {
             // The picture is written elsewhere, from what the part's settings say.
             job.encoding.replace(&mut scene.settings);
         }
+        Ok(Self { scene, legend, load })
+    }
+}
+
+impl Prepared {
+    /// Loads the scene, puts in the job's settings, and builds the world; `given` are its particles,
+    /// if they were read before.
+    pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
+        let Staged { mut scene, legend, load } = Staged::load(job, given)?;
         place_camera(job, &mut scene)?;
         job.style.light(&mut scene);
+        if let (Some(ground), Some(common)) = (&mut scene.ground, &job.common) {
+            ground.height = common.ground.unwrap_or(ground.height);
+        }
         let region = job.region(&scene.settings)?;
         let layered = !job.encoding.layers.is_empty() || !scene.look.is_plain();
         let share = part::share(job, region, &scene)?;
@@ -78,6 +99,7 @@ impl Prepared {
         let build = start.elapsed();
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
+        let unseen = unseen::why(&world, region, scene.settings.spp);
         Ok(Self {
             title: job.source.title(&scene).into_owned(),
             notes: notes(job, &scene.settings, &world),
@@ -91,16 +113,22 @@ impl Prepared {
             legend,
             identity,
             warnings,
+            unseen,
         })
     }
 
     /// Tells what is worth knowing before the render takes its time.
-    pub(super) fn tell(&self, job: &Job) {
-        self.warnings.iter().for_each(output::warn);
+    pub(super) fn tell(&self, job: &Job, told: &mut Told) {
+        self.warnings.iter().for_each(|text| told.warn(text));
+        match &self.unseen {
+            Some(_) if job.is_of_sequence() => told.see_no_sphere(),
+            Some(why) => told.warn(why),
+            None => {}
+        }
         if job.report.quiet {
             return;
         }
-        self.notes.iter().for_each(output::note);
+        self.notes.iter().for_each(|text| told.note(text));
         if job.report.verbose {
             output::note(format_args!("found: {}", found(&self.world).join(", ")));
             for skipped in self.world.features.skipped() {
@@ -120,18 +148,15 @@ impl Prepared {
     }
 }
 
-/// Places the camera, or leaves it where it stood in an earlier picture of a sequence.
+/// Places the camera, by itself or as in the other pictures of its sequence.
 fn place_camera(job: &Job, scene: &mut Scene) -> Result<(), Failure> {
-    if let Some(camera) = &job.camera {
-        scene.camera = camera.clone();
-        return Ok(());
+    match &job.common {
+        Some(common) => {
+            scene.camera = common.camera.clone();
+            Ok(())
+        }
+        None => job.views.frame(scene, job.turn),
     }
-    job.views.frame(scene, job.turn)?;
-    if job.frame.is_none() {
-        return Ok(());
-    }
-    let failure = |error| Failure::World(job.source.name().into_owned(), error);
-    framing::hold(scene, &[]).map_err(failure)
 }
 
 /// Samples of a part of the picture.

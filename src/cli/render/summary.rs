@@ -4,6 +4,7 @@ use super::job::Job;
 use super::memory;
 use super::noise::{NoiseSummary, missed};
 use super::prepare::Prepared;
+use super::told::Told;
 use crate::cli::args::ReportArgs;
 use crate::cli::contents::{found, plural, spheres};
 use crate::cli::output;
@@ -101,6 +102,7 @@ impl<'a> Summary<'a> {
         listed.extend(settings::list_encoding(job.format, options));
         let mut new_warnings = warnings(&render.counters, &prepared.scene.settings);
         new_warnings.extend(missed(render, &prepared.scene.settings));
+        let known = prepared.warnings.iter().chain(&prepared.unseen);
         Self {
             program: "spherule",
             version: env!("CARGO_PKG_VERSION"),
@@ -115,12 +117,12 @@ impl<'a> Summary<'a> {
             skipped: prepared.world.features.skipped(),
             notes: &prepared.notes,
             new_warnings: new_warnings.len(),
-            warnings: prepared.warnings.iter().cloned().chain(new_warnings).collect(),
+            warnings: known.cloned().chain(new_warnings).collect(),
         }
     }
 
     /// Prints it, as JSON or else as lines, and the warnings that are new.
-    pub(super) fn tell(&self, report: ReportArgs) {
+    pub(super) fn tell(&self, report: ReportArgs, told: &mut Told) {
         if report.json {
             output::print_json(self);
         } else if !report.quiet {
@@ -130,7 +132,7 @@ impl<'a> Summary<'a> {
             }
         }
         let old = self.warnings.len() - self.new_warnings;
-        self.warnings[old..].iter().for_each(output::warn);
+        self.warnings[old..].iter().for_each(|text| told.warn(text));
     }
 
     fn print_stages(&self) {

@@ -122,6 +122,7 @@ impl Base {
             &mut scene,
             Path::new(&*job.source.name()),
             cell.map(|cell| cell.bounds()),
+            false,
         )?;
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
@@ -205,7 +206,7 @@ fn dress(job: &Job, content: &Content, particles: &mut Particles) -> Result<(), 
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
     let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
-    let looks = Looks { select, coloring, types: job.looks.types.clone() };
+    let looks = Looks { select, coloring, types: job.looks.types.clone(), allow_empty: false };
     let name = job.source.name();
     looks.apply(Path::new(name.as_ref()), particles)?;
     Ok(())

@@ -58,16 +58,21 @@ impl ViewArgs {
     ) -> Result<(), Failure> {
         self.choose(scene)?;
         let corners = corners(scene);
-        let all = f64::from(self.turntable.unwrap_or(1));
         if let Some(turn) = turn {
-            framing::turn(scene, &corners, TAU * f64::from(turn) / all);
+            framing::turn(scene, &corners, self.angle(turn));
         }
         let name = scene.title.clone();
         let failure = |error: WorldError| Failure::World(name, error);
         if corners.is_empty() { Ok(()) } else { framing::hold(scene, &corners).map_err(failure) }
     }
 
-    fn choose(&self, scene: &mut Scene) -> Result<(), Failure> {
+    /// Angle of a picture of the turn, in radians.
+    pub(in crate::cli) fn angle(&self, turn: u32) -> f64 {
+        TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
+    }
+
+    /// Sets how and from which side the camera of a scene looks, but not where it stands.
+    pub(in crate::cli) fn choose(&self, scene: &mut Scene) -> Result<(), Failure> {
         if let Some(projection) = self.projection {
             let same = std::mem::discriminant(&projection)
                 == std::mem::discriminant(&scene.camera.projection);

@@ -151,12 +151,14 @@ impl Lines {
 
     /// An error after the last line.
     pub(super) fn ended(&self, message: impl Into<String>) -> SceneError {
-        SceneError::at(&self.path, "", self.number, 0..0, message)
+        let error = SceneError::at(&self.path, "", self.number, 0..0, message);
+        SceneError { cut_off: true, ..error }
     }
 
     fn failed(&self, error: &io::Error) -> SceneError {
         let message = format!("cannot be read at line {}: {error}", self.number.max(1));
-        SceneError::whole_file(&self.path, message)
+        let cut_off = error.kind() == io::ErrorKind::UnexpectedEof;
+        SceneError { cut_off, ..SceneError::whole_file(&self.path, message) }
     }
 
     pub(super) fn path(&self) -> &Arc<Path> {

@@ -51,7 +51,7 @@ pub use frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
 pub use looks::{Coloring, ColumnColors, ElementColors, Legend, Looks, TypeLook, TypeMaterial};
 pub use options::{Columns, Format, FrameChoice, Radii, ReadOptions, Role};
 pub use periodic::PeriodicError;
-pub use reader::{Frames, count_frames, read_frame};
+pub use reader::{FrameCount, Frames, count_frames, read_frame};
 pub use select::{Fault, Selection};
 pub use spheres::Particles;
 

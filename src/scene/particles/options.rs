@@ -227,6 +227,9 @@ pub struct ReadOptions {
     /// The atom style of a LAMMPS data file, such as `full`; `None`: what the file says, or else
     /// what its columns look like.
     pub atom_style: Option<String>,
+    /// Whether a frame without any sphere is valid, as among the frames of a trajectory, and not an
+    /// error.
+    pub allow_empty: bool,
 }
 
 impl Default for ReadOptions {
@@ -239,6 +242,7 @@ impl Default for ReadOptions {
             radius_scale: 1.0,
             scale: 1.0,
             atom_style: None,
+            allow_empty: false,
         }
     }
 }

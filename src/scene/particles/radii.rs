@@ -26,6 +26,9 @@ pub(super) fn radii(
     warnings: &mut Warnings,
 ) -> Result<Found, SceneError> {
     let count = frame.len();
+    if count == 0 {
+        return Ok(Found { radius: Vec::new(), guessed: false });
+    }
     let own = std::mem::take(&mut frame.radius);
     let has_elements = frame.kinds.table.iter().any(|kind| kind.element.is_some());
     let table = |warnings: &mut Warnings, radius: fn(Element) -> Option<f64>| {

@@ -127,6 +127,36 @@ fn last_of_stream(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, S
     last.ok_or_else(|| SceneError::whole_file(path, "holds no particles"))
 }
 
+/// Frames of a file, counted with as little work as the format allows.
+#[derive(Clone, Debug)]
+pub struct FrameCount {
+    /// Frames that are not cut off, as far as they were counted.
+    pub whole: u64,
+    /// Why nothing after them can be read, if that is not simply because the file ends there. A last
+    /// frame that is cut off may be missing here too: reading it tells.
+    pub rest: Option<SceneError>,
+}
+
+impl FrameCount {
+    /// Counts the frames of a file, up to `most` of them.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or is in no format known here.
+    pub fn of(path: &Path, options: &ReadOptions, most: u64) -> Result<Self, SceneError> {
+        let mut frames = Frames::open(path, options)?;
+        let mut whole = 0;
+        while whole < most {
+            match frames.skip_frame() {
+                Ok(true) => whole += 1,
+                Ok(false) => break,
+                Err(error) => return Ok(Self { whole, rest: Some(error) }),
+            }
+        }
+        Ok(Self { whole, rest: None })
+    }
+}
+
 /// How many frames a file holds that are not cut off.
 ///
 /// # Errors

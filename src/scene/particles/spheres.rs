@@ -76,7 +76,7 @@ pub(super) fn spheres(
     for warning in std::mem::take(&mut frame.warnings) {
         warnings.add(&warning);
     }
-    if frame.is_empty() {
+    if frame.is_empty() && !options.allow_empty {
         return Err(SceneError::whole_file(path, "holds no particles"));
     }
     if options.scale != 1.0 {
@@ -85,8 +85,8 @@ pub(super) fn spheres(
     }
     let Found { radius, guessed } = radii(path, &mut frame, options, &mut warnings)?;
     frame.radius = radius;
-    drop_rows(path, &mut frame, &mut warnings)?;
-    if guessed {
+    drop_rows(path, &mut frame, options, &mut warnings)?;
+    if guessed && !frame.is_empty() {
         let radius = half_spacing([&frame.x, &frame.y, &frame.z]);
         frame.radius.fill(radius * options.radius_scale);
         warnings.add(&format!(
@@ -155,6 +155,7 @@ pub(super) fn listed(reason: &str, names: &[&str]) -> String {
 fn drop_rows(
     path: &Path,
     frame: &mut ParticleFrame,
+    options: &ReadOptions,
     warnings: &mut Warnings,
 ) -> Result<(), SceneError> {
     let virtual_kinds: Vec<bool> = frame.kinds.table.iter().map(|kind| kind.virtual_site).collect();
@@ -183,7 +184,7 @@ fn drop_rows(
     (first + 1..count).for_each(|row| keep[row] = sphere(row));
     let dropped = not_finite + not_positive;
     let reasons = format!("{not_finite} not finite, {not_positive} with a radius of 0 or less");
-    if !keep.contains(&true) {
+    if !keep.contains(&true) && !options.allow_empty {
         let message = format!("none of its {count} rows is a sphere: {reasons}");
         return Err(SceneError::whole_file(path, message));
     }

@@ -54,8 +54,8 @@ impl Xyz {
         Ok(None)
     }
 
-    /// What the comment says, and the columns of the rows that follow.
-    fn head(&mut self) -> Result<(Comment, Arc<Schema>), SceneError> {
+    /// What the comment says, and the columns of the `count` rows that follow.
+    fn head(&mut self, count: u64) -> Result<(Comment, Arc<Schema>), SceneError> {
         let comment = match self.lines.next()? {
             Some(line) => Comment::new(&line, &self.options)?,
             None => return Err(self.lines.ended("the file ends before the comment line")),
@@ -64,12 +64,16 @@ impl Xyz {
             let schema = schema.clone();
             return Ok((comment, schema));
         }
-        let schema = match self.lines.next()? {
+        // The line after a frame without atoms begins the next frame.
+        let first = if count > 0 { self.lines.next()? } else { None };
+        let schema = match first {
             Some(line) => plain(&line, &self.options)?,
             None => Schema::new(["x", "y", "z"].map(str::to_owned).into(), &ReadOptions::default())
                 .map_err(|message| self.lines.ended(message))?,
         };
-        self.lines.back();
+        if count > 0 {
+            self.lines.back();
+        }
         let naming = if comment.has_types { Naming::Types } else { schema.naming };
         Ok((comment, Arc::new(Schema { naming, ..schema })))
     }
@@ -78,7 +82,7 @@ impl Xyz {
 impl FrameReader for Xyz {
     fn next(&mut self) -> Result<Option<ParticleFrame>, SceneError> {
         let Some(count) = self.count()? else { return Ok(None) };
-        let (comment, schema) = self.head()?;
+        let (comment, schema) = self.head(count)?;
         let mut builder = Builder::new(self.lines.path(), Format::Xyz, &schema);
         for atom in 0..count {
             let Some(line) = self.lines.next()? else {

@@ -99,6 +99,12 @@ impl ColumnColors {
         Ok(legend)
     }
 
+    /// What colors stand for where there is no particle: known if the ends of the map are.
+    pub(super) fn legend_of_ends(&self, unit: LengthUnit) -> Option<Legend> {
+        let scale = self.ends.and_then(|_| self.scale(&[]).ok())?;
+        Some(Legend { scale, label: self.label(unit) })
+    }
+
     fn scale(&self, values: &[f64]) -> Result<Scale, RangeError> {
         let range = match self.ends {
             Some([low, high]) => Range::new(low, high, self.spacing),

@@ -37,6 +37,8 @@ pub struct Looks {
     pub coloring: Coloring,
     /// Looks of single types, before all else; of two for one type the later one wins.
     pub types: Vec<TypeLook>,
+    /// Whether a selection may leave nothing, as in some frames of a trajectory.
+    pub allow_empty: bool,
 }
 
 impl Looks {
@@ -63,8 +65,14 @@ impl Looks {
         particles: &mut Particles,
     ) -> Result<Option<Legend>, SceneError> {
         number(particles, &self.columns());
-        if let Some(selection) = &self.select {
-            selection.apply(path, particles)?;
+        if let Some(selection) = self.select.as_ref().filter(|_| !particles.spheres.is_empty()) {
+            selection.apply(path, particles, self.allow_empty)?;
+        }
+        if particles.spheres.is_empty() {
+            return Ok(match &self.coloring {
+                Coloring::Column(colors) => colors.legend_of_ends(particles.unit),
+                Coloring::Usual | Coloring::Elements(_) => None,
+            });
         }
         let legend = match &self.coloring {
             Coloring::Usual => None,

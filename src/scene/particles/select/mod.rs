@@ -92,17 +92,22 @@ impl Selection {
         names
     }
 
-    /// Drops the particles that the condition is false of.
+    /// Drops the particles that the condition is false of, all of them only if that is allowed.
     ///
     /// # Errors
     ///
     /// The condition names no column there is, compares what cannot be compared, or is true of no
     /// particle.
-    pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), SceneError> {
+    pub(super) fn apply(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+        allow_empty: bool,
+    ) -> Result<(), SceneError> {
         let keep = bind::rows(&self.tree, particles).map_err(|(span, message)| {
             SceneError::at(Path::new(NAME), &self.text, 1, span, message)
         })?;
-        if !keep.contains(&true) {
+        if !keep.contains(&true) && !allow_empty {
             let message = format!("none of its {} particles is selected", keep.len());
             return Err(SceneError::whole_file(path, message));
         }

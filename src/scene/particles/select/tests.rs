@@ -15,7 +15,7 @@ fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
     let columns = Columns { wanted: selection.columns(), ..Columns::default() };
     let options = ReadOptions { columns, ..ReadOptions::default() };
     let mut particles = read(&path, &options).expect("particles");
-    selection.apply(&path, &mut particles).map_err(|error| match error.place {
+    selection.apply(&path, &mut particles, false).map_err(|error| match error.place {
         Some(place) => format!("{}: {}", &place.source_text[place.span], error.message),
         None => error.message,
     })?;

@@ -1,0 +1,81 @@
+//! Files that another program writes.
+
+use super::{Destination, explain, sync, temporary};
+use std::fs::{File, Metadata};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// A file that another program writes by its name, and that takes the name of its destination once it is
+/// whole. Dropped before that, it goes, and what is at the destination stays as it was.
+#[derive(Debug)]
+pub struct Pending {
+    temporary: NamedTempFile<File>,
+    destination: PathBuf,
+    folder: PathBuf,
+    old: Option<Metadata>,
+}
+
+impl Pending {
+    /// An empty file in the folder of its destination.
+    ///
+    /// # Errors
+    /// What [`super::write_atomically`] returns before it writes anything; a device or a pipe is refused.
+    pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
+        match Destination::find(path.as_ref())? {
+            Destination::Special(_) => {
+                Err(explain(ErrorKind::InvalidInput, "it is a device or a pipe; name a file"))
+            }
+            Destination::Regular { path, folder, old } => {
+                let temporary = temporary::named(&path, &folder)?;
+                Ok(Self { temporary, destination: path, folder, old })
+            }
+        }
+    }
+
+    /// Where the file is until it is whole.
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
+    /// Gives the file, which is whole, the name of its destination.
+    ///
+    /// # Errors
+    /// What the system says; the file at the destination is then untouched.
+    pub fn persist(self) -> io::Result<()> {
+        // The program may have replaced the file that was opened here.
+        let file = File::open(self.temporary.path())?;
+        if let Some(old) = self.old {
+            file.set_permissions(old.permissions())?;
+        }
+        file.sync_all()?;
+        self.temporary.persist(&self.destination)?;
+        sync(&self.folder);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn what_is_whole_gets_the_name_and_what_is_not_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("film.mp4");
+        fs::write(&path, "old").unwrap();
+        let pending = Pending::create(&path).unwrap();
+        assert_eq!(pending.path().parent(), Some(folder.path()));
+        fs::write(pending.path(), "half").unwrap();
+        drop(pending);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        let pending = Pending::create(&path).unwrap();
+        fs::write(pending.path(), "whole").unwrap();
+        pending.persist().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        assert!(Pending::create(folder.path().join("none/a")).is_err());
+        assert!(Pending::create(folder.path()).is_err());
+    }
+}

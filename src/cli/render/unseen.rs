@@ -1,0 +1,42 @@
+//! Pictures that show no sphere.
+
+use crate::cli::contents::spheres;
+use crate::cli::settings::region_text;
+use spherule::World;
+use spherule::film::Region;
+use spherule::world::Visibility;
+
+/// Why a picture of so many samples per pixel shows no sphere, and the mend; `None` if it shows one.
+pub(super) fn why(world: &World, region: Region, samples: u32) -> Option<String> {
+    let all = world.spheres.len() as u64;
+    let visibility = world.visibility(region, samples);
+    match visibility {
+        Visibility::Visible => None,
+        _ if all == 0 => Some("no sphere is visible: the scene has none".to_owned()),
+        _ if world.features.unseen >= all => Some(format!(
+            "no sphere is visible: slices hide all of them ({}) from the camera",
+            spheres(all)
+        )),
+        Visibility::OutOfView => {
+            Some(format!("no sphere is visible: {}", out_of_view(world, region)))
+        }
+        Visibility::TooSmall { spheres: count, pixels } => Some(format!(
+            "no sphere may be visible: {} in the picture cover {pixels:.1e} pixels together; move the \
+             camera nearer, or make radii larger",
+            spheres(count)
+        )),
+    }
+}
+
+fn out_of_view(world: &World, region: Region) -> String {
+    let count = spheres(world.spheres.len() as u64);
+    let (width, height) = (world.camera.width, world.camera.height);
+    if region != (Region { x: 0, y: 0, width, height }) {
+        let region = region_text(region);
+        return format!("none of {count} is in the region {region}; choose another --region");
+    }
+    format!(
+        "none of {count} is in the picture; point the camera at them, or leave out its `eye` and \
+         `target` to frame all of them"
+    )
+}
