@@ -5,9 +5,11 @@
 //! forced to the disk, and takes the destination's name in one step. Whatever fails before that step
 //! leaves the old file as it was.
 
+mod identity;
 mod pending;
 mod temporary;
 
+pub use self::identity::FileIdentity;
 pub use pending::Pending;
 
 use std::{

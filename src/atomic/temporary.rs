@@ -45,20 +45,22 @@ impl Temporary {
 
     /// Takes the place of what is at `path`, if there is anything.
     pub(super) fn persist(self, path: &Path, folder: &Path) -> io::Result<()> {
-        let named = match self {
+        match self {
             #[cfg(target_os = "linux")]
             Self::Unnamed(file) => {
                 if unnamed::link(&file, path).is_ok() {
                     return Ok(());
                 }
                 // Something is there, and links replace nothing. From here to the next line a
-                // program that is killed leaves the whole content behind.
-                let link = |name: &Path| unnamed::link(&file, name).and_then(|()| file.try_clone());
-                builder(&prefix(path)).make_in(folder, link)?
+                // program that is killed leaves the whole content behind. Nothing is opened for it:
+                // there may be no descriptor left.
+                let link = |name: &Path| unnamed::link(&file, name);
+                builder(&prefix(path)).make_in(folder, link)?.persist(path)?;
             }
-            Self::Named(file) => file,
-        };
-        named.persist(path)?;
+            Self::Named(file) => {
+                file.persist(path)?;
+            }
+        }
         Ok(())
     }
 }

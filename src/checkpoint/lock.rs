@@ -43,6 +43,13 @@ impl Lock {
         loop {
             let file = OpenOptions::new().write(true).create(true).truncate(false).open(&beside);
             let file = file.map_err(failed)?;
+            if file.metadata().map_err(failed)?.len() > 0 {
+                let name = beside.display();
+                let message = format!(
+                    "{name} is in the way, which is no lock; move it, or choose another file"
+                );
+                return Err(failed(io::Error::new(ErrorKind::AlreadyExists, message)));
+            }
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(LockError::Held(path.to_owned())),

@@ -13,7 +13,7 @@ use super::part::PartArgs;
 use super::particles::ParticleArgs;
 use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
-use super::{bench, compare, examples, merge, stress, view};
+use super::{Failure, bench, compare, examples, merge, stress, view};
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -109,10 +109,11 @@ pub(super) struct CompletionsArgs {
 }
 
 impl Args {
-    /// What this process was called with; leaves the process if that is a call for help, or not
-    /// understood.
-    pub(super) fn of_process() -> Command {
+    /// Returns the command of this process, or what there is to print instead: help, the version, or what
+    /// is wrong.
+    pub(super) fn of_process() -> Result<Command, Failure> {
         let usual = || Command::Render(Box::new(RenderArgs::parse_from(["spherule"])));
-        Self::parse().command.unwrap_or_else(usual)
+        let args = Self::try_parse().map_err(Failure::Usage)?;
+        Ok(args.command.unwrap_or_else(usual))
     }
 }

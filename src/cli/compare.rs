@@ -1,6 +1,7 @@
 //! `spherule compare`: how far a picture is from a reference.
 
 use super::Failure;
+use super::files::Files;
 use super::output;
 use indicatif::HumanCount;
 use serde::Serialize;
@@ -36,6 +37,10 @@ struct Report<'a> {
 
 /// Measures and tells.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let mut files = Files::new("compare");
+    files.reads("the picture", &args.picture);
+    files.reads("the reference", &args.reference);
+    files.check()?;
     let picture = Image::read(&args.picture)?;
     let reference = Image::read(&args.reference)?;
     let report = Report {

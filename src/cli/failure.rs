@@ -46,6 +46,9 @@ pub(crate) enum Failure {
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error("{}: cannot be written: {}", .0.display(), .1)]
     Write(PathBuf, io::Error),
+    /// With the exit code of the signal.
+    #[error("{}: interrupted, and nobody reads the pipe: nothing is written to it", .0.display())]
+    NoReader(PathBuf, u8),
     #[error("frame {0}: {1}")]
     Frame(u64, Box<Self>),
     #[error("{0}")]
@@ -57,11 +60,11 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Lock(#[from] LockError),
     #[error(
-        "{}: is there already; go on with it by --resume, or remove it, or choose another name",
+        "{}: already exists; resume it with --resume, delete it, or choose another name",
         .0.display()
     )]
     Kept(PathBuf),
-    #[error("{}: cannot be gone on with: {}", .0.display(), .1)]
+    #[error("{}: cannot resume: {}", .0.display(), .1)]
     Resume(PathBuf, String),
     #[error("{0}")]
     Drawing(#[from] DrawingError),
@@ -113,16 +116,26 @@ impl Failure {
         }
     }
 
-    /// Tells the user, and says with which code to exit: 2 for a wrong command line, 1 for all
-    /// else.
+    /// Tells the user, and returns the exit code: 2 for a wrong command line, 1 for all else, 0 if the
+    /// user asked for help or the version.
     pub(crate) fn report(self) -> ExitCode {
         match self {
+            Self::Usage(asked) if !asked.use_stderr() => {
+                output::write(format_args!("{}", asked.render().ansi()));
+                return ExitCode::SUCCESS;
+            }
             Self::Usage(error) => {
                 // Nobody is left to tell if standard error is closed.
                 let _ = error.print();
                 return ExitCode::from(2);
             }
-            Self::Frame(_, error) if matches!(*error, Self::Usage(_)) => return error.report(),
+            Self::Frame(_, error) if matches!(*error, Self::Usage(_) | Self::NoReader(..)) => {
+                return error.report();
+            }
+            Self::NoReader(_, code) => {
+                output::error(self);
+                return ExitCode::from(code);
+            }
             Self::Scene(error) => report_scene(*error),
             other => output::error(other),
         }

@@ -3,6 +3,7 @@
 use super::args::{FieldArgs, Kind, ParameterArgs};
 use super::contents::spheres;
 use super::field_scene;
+use super::files::Files;
 use super::values::Radii;
 use super::{Failure, output};
 use clap::ValueEnum;
@@ -16,12 +17,16 @@ use std::process::ExitCode;
 /// Generates the scene and writes it.
 pub(super) fn run(args: &FieldArgs) -> Result<ExitCode, Failure> {
     check_name(&args.output)?;
+    let columns = args.output.with_extension("csv");
+    let mut files = Files::new("field");
+    files.writes("--output", &args.output);
+    files.writes("the spheres of --output", &columns);
+    files.check()?;
     let generator = args.parameters.generator(args.kind)?;
     let scene = field_scene::scene(&generator, args.seed)?;
     write(&scene, &args.output)?;
     if !args.quiet {
         let count = spheres(scene.spheres.len() as u64);
-        let columns = args.output.with_extension("csv");
         output::print(format_args!("{}: {count} in {}", args.output.display(), columns.display()));
     }
     Ok(ExitCode::SUCCESS)

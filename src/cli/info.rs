@@ -2,6 +2,7 @@
 
 use super::args::InfoArgs;
 use super::contents::{dropped, found, plural, spheres};
+use super::files::Files;
 use super::particles::ParticleInfo;
 use super::source::Source;
 use super::{Failure, output, settings, slices};
@@ -76,6 +77,9 @@ const SHOWN: usize = 12;
 /// Looks and tells.
 pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     args.particles.refuse_frames("info")?;
+    let mut files = Files::new("info");
+    files.reads_scene(&args.scene);
+    files.check()?;
     let source = Source::of_path("info", &args.scene, &args.particles)?;
     let (scene, particles) = load(&source)?;
     let world =

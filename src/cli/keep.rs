@@ -2,7 +2,8 @@
 
 use super::Failure;
 use super::values::{self, Target};
-use std::path::PathBuf;
+use spherule::atomic::FileIdentity;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Time between two checkpoints, where nobody says another; and in times of what the last one took,
@@ -31,6 +32,15 @@ impl KeepArgs {
     /// Where checkpoints go.
     pub(super) fn file(&self) -> Option<&PathBuf> {
         self.checkpoint.as_ref().or(self.resume.as_ref())
+    }
+
+    /// Returns whether the checkpoint that is resumed is the one that is written, whatever their names.
+    pub(super) fn resumes_into_itself(&self) -> bool {
+        let Some(resumed) = &self.resume else { return false };
+        let identity = |path: &Path| FileIdentity::of(path).ok().flatten();
+        self.checkpoint.as_ref().is_none_or(|kept| {
+            kept == resumed || identity(kept).is_some_and(|kept| identity(resumed) == Some(kept))
+        })
     }
 
     /// Time until the next one, if the last one `took` so long; `None` for none but at the end.

@@ -2,9 +2,11 @@
 
 use super::args::EncodingArgs;
 use super::contents::plural;
+use super::files::Files;
 use super::memory::MemoryArgs;
 use super::render::{Subject, warnings};
 use super::settings::{self, List};
+use super::write_file::write_file;
 use super::{Failure, output};
 use indicatif::HumanCount;
 use serde::Serialize;
@@ -79,6 +81,10 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
             format!("{format} has no room for --layers; end the name of --output in .exr");
         return Err(Failure::usage("merge", message));
     }
+    let mut files = Files::new("merge");
+    args.parts.iter().for_each(|part| files.reads("a part", part));
+    files.writes("--output", &args.output);
+    files.check()?;
     check_writable(&args.output)?;
     let merged = merge(args)?;
     let render = merged.whole.render();
@@ -87,7 +93,8 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let Caption { title, looks, .. } = &merged.caption;
     let subject = Subject { title, settings, region, looks };
     let options = subject.write_options(&args.encoding, format, &render);
-    render.image.write_layers(&args.output, &channels, &options)?;
+    let file = render.image.encode(format, &channels, &options)?;
+    write_file(&args.output, &file)?;
     let mut listed = settings::list(settings, region);
     listed.extend(settings::list_encoding(format, &options));
     tell(args, &merged, &render, listed);

@@ -11,6 +11,7 @@ mod examples;
 mod failure;
 mod field;
 mod field_scene;
+mod files;
 mod frames;
 mod info;
 mod keep;
@@ -34,16 +35,18 @@ mod typed;
 mod values;
 mod view;
 mod views;
+mod write_file;
 
 use self::args::{Args, Command};
 pub(crate) use self::failure::Failure;
+pub(crate) use self::output::finish;
 use std::process::ExitCode;
 
-/// Does what the command line says.
+/// Runs the command that the command line names.
 pub(crate) fn run() -> Result<ExitCode, Failure> {
     processor::check()?;
     signals::survive_large_files();
-    match Args::of_process() {
+    match Args::of_process()? {
         Command::Render(args) => render::run(*args),
         Command::Merge(args) => merge::run(&args),
         Command::View(args) => view::run(args),

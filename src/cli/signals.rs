@@ -10,19 +10,24 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// The first signal that came; 0 for none.
 static SIGNAL: AtomicUsize = AtomicUsize::new(0);
 
-/// Whether one came: the next ends the program at once.
+/// Whether the next signal ends the program at once: after the first one, and while nothing is lost by it.
 static ARMED: AtomicBool = AtomicBool::new(false);
+
+/// Registers the handlers.
+static ONCE: std::sync::Once = std::sync::Once::new();
 
 /// What a shell reports of a process that a signal ended, less the signal's number.
 const ENDED: u8 = 128;
 
-/// From now on, the first signal that asks the program to end sets [`stop`]; the second ends it at
-/// once.
+/// From now on until [`release`], the first signal that asks the program to end sets [`stop`]; the second
+/// ends it at once.
 ///
 /// Before the first call signals end the program as they always do: there is no picture yet that
 /// could be saved.
 pub(super) fn catch() {
-    static ONCE: std::sync::Once = std::sync::Once::new();
+    ARMED.store(false, Ordering::SeqCst);
+    // In this order: a signal that comes in between sets it again.
+    ARMED.fetch_or(SIGNAL.load(Ordering::SeqCst) != 0, Ordering::SeqCst);
     ONCE.call_once(|| {
         for signal in terminating() {
             // Without a handler, signals end the program as before. The order counts: a signal is
@@ -64,6 +69,14 @@ pub(super) fn go_on() -> Option<u8> {
     STOP.store(false, Ordering::SeqCst);
     let signal = SIGNAL.load(Ordering::SeqCst);
     STOP.fetch_or(signal != 0, Ordering::SeqCst);
+    (signal != 0).then_some(ENDED + signal as u8)
+}
+
+/// Ends [`catch`]: from now on any signal ends the program at once, for there is nothing to save, or the
+/// program waits for someone else. Returns the exit code that a signal asks for which came before.
+pub(super) fn release() -> Option<u8> {
+    ARMED.store(true, Ordering::SeqCst);
+    let signal = SIGNAL.load(Ordering::SeqCst);
     (signal != 0).then_some(ENDED + signal as u8)
 }
 

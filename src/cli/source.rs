@@ -29,7 +29,7 @@ impl Source {
         path: &Path,
         args: &ParticleArgs,
     ) -> Result<Self, Failure> {
-        let toml = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml"));
+        let toml = is_scene(path);
         if toml && args.any() {
             let message = "how to read particles is what a scene says of each of its files: write \
                            format, radius and scale in its [[file]]";
@@ -69,6 +69,11 @@ impl Source {
             _ => Cow::Borrowed(&scene.title),
         }
     }
+}
+
+/// Returns whether a file is a scene, by its name; any other is a particle file.
+pub(super) fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml"))
 }
 
 #[cfg(test)]

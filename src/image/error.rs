@@ -53,22 +53,18 @@ pub enum ImageError {
     },
     /// The format cannot hold the picture.
     #[error(
-        "cannot write {path:?} as {format}: {reason}; choose another format or a smaller picture"
+        "cannot write the picture as {format}: {reason}; choose another format or a smaller picture"
     )]
     Encode {
-        /// The destination.
-        path: PathBuf,
-        /// The format its suffix asks for.
+        /// The format that was asked for.
         format: Format,
         /// What the encoder said.
         reason: String,
     },
     /// Only EXR files hold more channels than colors.
-    #[error("cannot write layers to {path:?}: {format} has no room for them; end the name in .exr")]
+    #[error("cannot write layers: {format} has no room for them; choose EXR")]
     Layers {
-        /// The destination.
-        path: PathBuf,
-        /// The format its suffix asks for.
+        /// The format that was asked for.
         format: Format,
     },
     /// A channel that no file can hold.

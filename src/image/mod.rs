@@ -128,18 +128,30 @@ impl Image {
         options: &WriteOptions,
     ) -> Result<(), ImageError> {
         let path = path.as_ref();
-        let format = Format::of_suffix(path)?;
+        let bytes = self.encode(Format::of_suffix(path)?, channels, options)?;
+        atomic::write_atomically(path, |file| file.write_all(&bytes))
+            .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
+    }
+
+    /// Returns the content of the file that [`Image::write_layers`] writes, in any format that is written.
+    ///
+    /// # Errors
+    /// Those of [`Image::write_layers`], but for the file's own.
+    pub fn encode(
+        &self,
+        format: Format,
+        channels: &[Channel],
+        options: &WriteOptions,
+    ) -> Result<Vec<u8>, ImageError> {
         self.check_shape()?;
         options.check()?;
         channel::check(channels, self.pixels.len())?;
         if !format.holds(channels) {
-            return Err(ImageError::Layers { path: path.to_owned(), format });
+            return Err(ImageError::Layers { format });
         }
-        let bytes = format
+        format
             .encode(self, channels, options)
-            .map_err(|reason| ImageError::Encode { path: path.to_owned(), format, reason })?;
-        atomic::write_atomically(path, |file| file.write_all(&bytes))
-            .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
+            .map_err(|reason| ImageError::Encode { format, reason })
     }
 
     fn check_shape(&self) -> Result<(), ImageError> {

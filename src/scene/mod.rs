@@ -23,6 +23,7 @@ mod write;
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use error::{Place, SceneError};
+pub use file::included_files;
 pub use identity::Identity;
 pub(crate) use light::is_radiance;
 pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};

@@ -8,6 +8,7 @@ mod frames;
 mod inputs;
 mod layers;
 mod looks;
+mod outputs;
 mod particles;
 mod parts;
 mod pictures;

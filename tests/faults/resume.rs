@@ -111,7 +111,7 @@ fn other_scenes_and_settings_are_refused_by_name() {
     refused(&["--view", "y"], "the camera of");
     refused(&["--type", "Na:radius=0.8"], "the spheres of");
     refused(&["--layers", "variance", "-o", "a.exr"], "--layers");
-    refused(&["--checkpoint", "salt.xyz"], "is there already");
+    refused(&["--checkpoint", "salt.xyz"], "already exists");
     let rows = String::from_utf8(folder.read("salt.xyz")).expect("a text");
     folder.write("salt.xyz", &rows.replace("3.1 2.2", "3.1 2.25"));
     refused(&[], "the spheres of");

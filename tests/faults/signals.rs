@@ -1,7 +1,7 @@
 //! Ctrl-C and its like, limits of time, and other processes.
 
 use crate::folder::{Folder, SMALL, text};
-use crate::process::{LONG, end, names, samples, shell, signal, start, wait_for_news};
+use crate::process::{LONG, end, names, samples, shell, signal, start, wait_for, wait_for_news};
 use spherule::image::Image;
 use std::fs;
 
@@ -127,4 +127,76 @@ fn places_that_take_no_checkpoint_are_told_before_the_render() {
     }
     assert_eq!(names(&folder), ["other"]);
     assert_eq!(folder.read("other"), b"something else");
+}
+
+/// Starts the program with standard input that goes on, and a pipe of a name.
+fn start_with_pipes(folder: &Folder, args: &[&str], input: &[u8]) -> std::process::Child {
+    use std::io::Write;
+    use std::process::{Command, Stdio};
+    let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
+    program.args(args).current_dir(folder.root());
+    program.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut child = program.spawn().expect("a program that starts");
+    // Closed when the child is waited for.
+    child.stdin.as_mut().expect("a pipe").write_all(input).expect("a reader");
+    child
+}
+
+#[test]
+fn one_signal_ends_whoever_waits_for_a_pipe() {
+    // Frames that are longer than what is read to find out the format.
+    let frame =
+        format!("4000\nProperties=species:S:1:pos:R:3\n{}", "H 0.125 0.25 0.375\n".repeat(4000));
+    let xyz = frame.repeat(4);
+    for (name, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        let folder = Folder::new();
+        let made = std::process::Command::new("mkfifo").arg(folder.path("p.png")).status();
+        assert!(made.is_ok_and(|status| status.success()));
+        let kept = ["--checkpoint", "c", "--checkpoint-every", "none"];
+        let writer = [&SMALL[..], &kept, &["-o", "p.png"]].concat();
+        let reader = [&SMALL[..], &["-", "--frame", "all", "-o", "a.png"]].concat();
+        for (args, last) in [(&writer, "c"), (&reader, "a-0000.png")] {
+            let child =
+                start_with_pipes(&folder, args, if last == "c" { b"" } else { xyz.as_bytes() });
+            wait_for("the last file before the wait", || folder.path(last).exists());
+            std::thread::sleep(std::time::Duration::from_millis(200));
+            signal(&child, &[name]);
+            let ended = end_in_time(child);
+            assert_eq!(ended, Some(code), "{args:?} {name}");
+        }
+        let rest = names(&folder).into_iter().filter(|name| !name.starts_with("a-"));
+        assert_eq!(rest.collect::<Vec<_>>(), ["c", "p.png"]);
+    }
+}
+
+/// The exit code of a program that ends soon; `None` for one that has to be killed.
+fn end_in_time(mut child: std::process::Child) -> Option<i32> {
+    for _ in 0..200 {
+        if let Some(status) = child.try_wait().expect("a program") {
+            return status.code();
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    child.kill().expect("a program");
+    child.wait().expect("a program");
+    None
+}
+
+#[test]
+fn few_descriptors_leave_a_whole_picture_and_nothing_else() {
+    let folder = Folder::new();
+    let old = folder.picture("a.png", &[]);
+    let mut written = 0;
+    for limit in 3..=12 {
+        let new = ["render", "--size", "16x12", "--spp", "1", "--quiet", "-o", "a.png"];
+        let output = shell(&folder, &format!("ulimit -n {limit}"), &new);
+        let message = text(&output.stderr);
+        assert!(!message.contains("panicked"), "{limit}: {message}");
+        assert_eq!(names(&folder), ["a.png"], "{limit}: {message}");
+        let width = Image::read(folder.path("a.png")).expect("a whole picture").width;
+        assert_eq!(width, if output.status.success() { 16 } else { 40 }, "{limit}: {message}");
+        written += u32::from(output.status.success());
+        fs::write(folder.path("a.png"), &old).expect("a file");
+    }
+    assert!(written > 0);
 }

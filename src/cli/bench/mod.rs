@@ -57,6 +57,7 @@ fn of(
     page: &str,
     runs: &[Run],
 ) -> Result<ExitCode, Failure> {
+    common.check_files()?;
     let folder = Folder::new(&common.output)?;
     let count = cores::count(common.threads);
     let pool = cores::pool(count)?;

@@ -35,7 +35,7 @@ impl Keeper {
                 path.display()
             ));
         }
-        if path.is_file() && keep.resume.as_ref() != Some(&path) {
+        if path.is_file() && !keep.resumes_into_itself() {
             return Err(Failure::Kept(path));
         }
         // They cost some space, no more.

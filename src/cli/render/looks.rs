@@ -6,7 +6,8 @@ use crate::cli::failure::Failure;
 use crate::cli::looks::BarPlace;
 use crate::cli::source::Source;
 use crate::cli::views::Canvas;
-use spherule::atomic::{check_destination, write_atomically};
+use crate::cli::write_file::write_file;
+use spherule::atomic::check_destination;
 use spherule::color::bar::{Bar, Direction};
 use spherule::drawing::{DrawingError, Picture};
 use spherule::image::Image;
@@ -74,8 +75,7 @@ pub(super) fn write_bar(job: &Job, prepared: &Prepared) -> Result<(), Failure> {
     };
     let BarPlace::File(path, format) = place else { return Ok(()) };
     let bar = bar(legend, prepared.scene.settings.height)?.file(*format)?;
-    write_atomically(path, |writer| writer.write_all(&bar))
-        .map_err(|error| Failure::Write(path.clone(), error))
+    write_file(path, &bar)
 }
 
 /// Draws the color bar into its corner, if it has one.

@@ -1,6 +1,7 @@
 //! `spherule render`: a scene becomes a picture in a file.
 
 mod estimate;
+mod files;
 mod job;
 mod keeper;
 mod layers;
@@ -21,6 +22,7 @@ mod told;
 mod unseen;
 
 pub(super) use self::estimate::Estimate;
+use self::files::files;
 pub(super) use self::job::{Job, check_alpha};
 use self::keeper::Keeper;
 pub(super) use self::layers::alpha;
@@ -35,6 +37,7 @@ use super::args::RenderArgs;
 use super::command::Given;
 use super::progress::Meter;
 use super::views::draw_over as draw_look;
+use super::write_file::write_file;
 use super::{Failure, output, signals};
 use spherule::image::check_writable;
 use spherule::overlay::Matte;
@@ -58,13 +61,17 @@ pub(super) fn run(mut args: RenderArgs) -> Result<ExitCode, Failure> {
     args.memory.obey();
     let mut now = Given::of_process();
     part::keep(&mut args, &mut now.typed)?;
-    // Before the file is read: who goes on from it goes on from what was written last.
-    let Some(keeper) = Keeper::new(&args.keep)? else { return run_as(&args, None, None) };
     let Some(path) = &args.keep.resume else {
-        return run_as(&args, Some(&keeper.with(now, &args.output)), None);
+        files(&args).check()?;
+        let keeper = Keeper::new(&args.keep)?.map(|keeper| keeper.with(now, &args.output));
+        return run_as(&args, keeper.as_ref(), None);
     };
+    // The lock comes before the file is read: no other process writes it in between.
+    let keeper = Keeper::new(&args.keep)?;
     let (resumed, args, given) = Resumed::read(path, now)?;
-    run_as(&args, Some(&keeper.with(given, &args.output)), Some(resumed))
+    files(&args).check()?;
+    let keeper = keeper.map(|keeper| keeper.with(given, &args.output));
+    run_as(&args, keeper.as_ref(), Some(resumed))
 }
 
 fn run_as(
@@ -76,7 +83,7 @@ fn run_as(
     looks::check_bar(&job)?;
     terminal::check(job.report.terminal)?;
     if args.particles.frames().is_some() || args.views.turntable().is_some() {
-        return job.pool()?.install(|| sequence::run(&job));
+        return job.pool()?.install(|| sequence::run(&job, &files(args)));
     }
     check_writable(&job.output)?;
     job.pool()?.install(|| make_picture(&job, keeper, resumed))
@@ -102,24 +109,37 @@ fn finish_picture(
     prepared.tell(job, told);
     looks::write_bar(job, prepared)?;
     let traced = trace(job, prepared, keeper, unfinished);
-    let code = traced.signal.map_or(ExitCode::SUCCESS, ExitCode::from);
+    let finished = finish_traced(job, prepared, told, keeper, &traced);
+    // One that came while the picture was written ends a sequence, too.
+    let signal = traced.signal.or(signals::release());
+    finished?;
+    Ok(signal.map_or(ExitCode::SUCCESS, ExitCode::from))
+}
+
+/// Writes what was rendered: the picture, or the part.
+fn finish_traced(
+    job: &Job,
+    prepared: &mut Prepared,
+    told: &mut Told,
+    keeper: Option<&Keeper>,
+    traced: &Traced,
+) -> Result<(), Failure> {
     if let (Some(part), Some(keeper)) = (job.part, keeper) {
-        part::finish(job, part, prepared, keeper, &traced.render)?;
-        return Ok(code);
+        return part::finish(job, part, prepared, keeper, &traced.render);
     }
     if job.is_of_sequence() && !traced.render.is_complete() {
         let output = job.output.display();
         output::warn(format_args!("interrupted: {output} is unfinished and is not written"));
-        return Ok(code);
+        return Ok(());
     }
     if traced.render.samples().total == 0 {
         output::warn("interrupted before the first sample: nothing is written");
-        return Ok(code);
+        return Ok(());
     }
     let mut render = traced.render.render();
     write(job, prepared, told, &mut render)?;
     traced.tell(job, prepared, &render);
-    Ok(code)
+    Ok(())
 }
 
 /// Writes the picture, with what is drawn over it and beside it, and tells how it went.
@@ -133,7 +153,8 @@ fn write(
     let options = metadata::write_options(job, prepared, render);
     let mut channels = layers::channels(job, prepared, render);
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
-    render.image.write_layers(&job.output, &channels, &options)?;
+    let file = render.image.encode(job.format, &channels, &options)?;
+    write_file(&job.output, &file)?;
     Summary::new(job, prepared, render, &options).tell(job.report, told);
     Ok(())
 }

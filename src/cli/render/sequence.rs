@@ -17,6 +17,7 @@ use super::survey::Survey;
 use super::told::Told;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
+use crate::cli::files::Files;
 use crate::cli::looks::BarPlace;
 use crate::cli::output;
 use crate::cli::source::Source;
@@ -27,9 +28,11 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// Makes the pictures, until one fails or is interrupted.
-pub(super) fn run(job: &Job) -> Result<ExitCode, Failure> {
+///
+/// `files` are all files of the command but the pictures.
+pub(super) fn run(job: &Job, files: &Files) -> Result<ExitCode, Failure> {
     let (particles, _) = job.typed;
-    let Some(range) = particles.frames() else { return run_turn(job) };
+    let Some(range) = particles.frames() else { return run_turn(job, files) };
     let Source::Particles(path, options) = &job.source else {
         let message = "--frame is for a file of particles: name one";
         return Err(Failure::usage("render", message));
@@ -39,7 +42,7 @@ pub(super) fn run(job: &Job) -> Result<ExitCode, Failure> {
     let plan = Plan::new(Some(frames), job.views.turntable())?;
     let mut job = job.clone();
     job.looks.allow_empty = true;
-    check_outputs(&job, &plan)?;
+    check_outputs(&job, &plan, files)?;
     let mut reel = Reel::open(path, &options)?;
     let survey = look_at(&job, &plan, path, &options, &mut reel)?;
     survey.check(path)?;
@@ -48,11 +51,11 @@ pub(super) fn run(job: &Job) -> Result<ExitCode, Failure> {
         colors.ends.get_or_insert(ends);
     }
     tell_framing(&job, &plan);
-    Sequence { job, plan, told: Told::default() }.of_frames(path, &options, reel, &survey)
+    Sequence { job, plan, files, told: Told::default() }.of_frames(path, &options, reel, &survey)
 }
 
 /// Makes the pictures of a turn around one scene.
-fn run_turn(job: &Job) -> Result<ExitCode, Failure> {
+fn run_turn(job: &Job, files: &Files) -> Result<ExitCode, Failure> {
     if let Source::Particles(path, _) = &job.source
         && plan::is_stream(path)
     {
@@ -64,17 +67,21 @@ fn run_turn(job: &Job) -> Result<ExitCode, Failure> {
         return Err(Failure::usage("render", message));
     }
     let plan = Plan::new(None, job.views.turntable())?;
-    check_outputs(job, &plan)?;
-    Sequence { job: job.clone(), plan, told: Told::default() }.of_turn()
+    check_outputs(job, &plan, files)?;
+    Sequence { job: job.clone(), plan, files, told: Told::default() }.of_turn()
 }
 
-/// Finds out whether all pictures can be written, as far as their number is known.
-fn check_outputs(job: &Job, plan: &Plan) -> Result<(), Failure> {
+/// Finds out whether all pictures can be written, and replace no other file of the command, as far as their
+/// number is known.
+fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<(), Failure> {
     let known = (0..plan.count().unwrap_or(1)).map_while(|index| plan.shot(index));
+    let mut files = files.clone();
     for shot in known {
-        check_writable(numbered(&job.output, shot.number, plan.digits()))?;
+        let output = numbered(&job.output, shot.number, plan.digits());
+        files.writes("--output", &output);
+        check_writable(output)?;
     }
-    Ok(())
+    files.check()
 }
 
 /// Looks at all frames that are shown or, of what can be read only once, at the first.
@@ -141,6 +148,7 @@ fn stream_name(path: &Path) -> String {
 struct Sequence<'a> {
     job: Job<'a>,
     plan: Plan,
+    files: &'a Files,
     told: Told,
 }
 
@@ -202,6 +210,9 @@ impl Sequence<'_> {
         let Shot { frame, turn, .. } = *shot;
         let job = Job { output, turn, frame, common, ..self.job.clone() };
         check_writable(&job.output)?;
+        if self.plan.count().is_none() {
+            self.files.check_output("--output", &job.output)?;
+        }
         self.told.begin(shot.number);
         let mut prepared = Prepared::load(&job, particles)?;
         if self.plan.is_stream() && prepared.world.centers_out_of_view() > 0 {

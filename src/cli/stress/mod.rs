@@ -5,6 +5,7 @@ mod plot;
 mod table;
 
 pub(super) use self::args::{Args, EXAMPLES};
+use super::files::Files;
 use super::progress::{Meter, rate};
 use super::{Failure, output, threads};
 use indicatif::HumanCount;
@@ -34,6 +35,10 @@ struct Summary<'a> {
 /// Runs, tells, and fails if this program was wrong anywhere.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let format = args.plot.as_deref().map(plot_format).transpose()?;
+    let mut files = Files::new("stress");
+    args.csv.iter().for_each(|path| files.writes("--csv", path));
+    args.plot.iter().for_each(|path| files.writes("--plot", path));
+    files.check()?;
     for path in args.csv.iter().chain(&args.plot) {
         check_destination(path).map_err(|error| Failure::Write(path.clone(), error))?;
     }

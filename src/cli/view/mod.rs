@@ -36,9 +36,13 @@ mod worker;
 
 pub(super) use self::args::ViewerArgs;
 
+use self::command::Command;
 use self::headless::Headless;
+use self::script::Step;
 use super::Failure;
+use super::files::Files;
 use super::render::Job;
+use super::source::is_scene;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -71,6 +75,7 @@ pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
     refuse(args, &job)?;
     if let Some(path) = &args.headless_script {
         let steps = read_script(path)?;
+        script_files(args, path, &steps).check()?;
         let json = args.render.report.json;
         return job
             .pool()?
@@ -92,7 +97,33 @@ fn open(_: Job<'static>, _: &ViewerArgs) -> Result<ExitCode, Failure> {
     Err(Failure::Window(message.to_owned()))
 }
 
-fn read_script(path: &Path) -> Result<Vec<(usize, script::Step)>, Failure> {
+/// Files that a script reads and writes.
+fn script_files(args: &ViewerArgs, script: &Path, steps: &[(usize, Step)]) -> Files {
+    let mut files = Files::new("view");
+    args.render.scene.iter().for_each(|scene| files.reads_scene(scene));
+    files.reads("the script", script);
+    let mut saves = |step: &str, path: &Path| {
+        files.writes(step, path);
+        if is_scene(path) {
+            files.writes(&format!("the spheres of {step}"), &path.with_extension("csv"));
+        }
+    };
+    for (row, step) in steps {
+        match step {
+            Step::Save(path) => saves(&format!("line {row}: save"), path),
+            Step::Window(path) => saves(&format!("line {row}: window"), path),
+            _ => (),
+        }
+    }
+    let saved = |(_, step): &(usize, Step)| matches!(step, Step::Key(key) if keys::command(key) == Some(Command::Save));
+    if steps.iter().any(saved) {
+        saves("--output", &args.render.output);
+        saves("--output", &args.render.output.with_extension("toml"));
+    }
+    files
+}
+
+fn read_script(path: &Path) -> Result<Vec<(usize, Step)>, Failure> {
     let failed = |message: String| Failure::Window(format!("{}: {message}", path.display()));
     let text = std::fs::read_to_string(path)
         .map_err(|error| failed(format!("cannot be read: {error}")))?;

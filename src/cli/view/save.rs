@@ -51,10 +51,10 @@ pub(super) fn free_name(path: &Path) -> PathBuf {
     let suffix = path.extension().unwrap_or_default();
     let names = (1_u32..)
         .map(|number| path.with_file_name(format!("{stem}-{number:03}")).with_extension(suffix));
+    let is_there = |path: &Path| path.symlink_metadata().is_ok();
     let free = |name: &PathBuf| {
-        !name.exists()
-            && !name.with_extension("toml").exists()
-            && !name.with_extension("csv").exists()
+        let beside = ["toml", "csv", "pfm"].map(|suffix| name.with_extension(suffix));
+        !is_there(name) && !beside.iter().any(|path| is_there(path))
     };
     names.into_iter().find(free).unwrap_or_else(|| path.to_owned())
 }

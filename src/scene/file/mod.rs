@@ -24,9 +24,9 @@ use super::{
     Camera, Environment, EnvironmentMap, Light, Look, Material, NamedMaterial, Rgb, Scene,
     SceneError, Settings, Spheres,
 };
-use crate::memory::{self, read_at_most};
+use crate::memory::{self, Shortage, read_at_most};
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 /// Longest scene file, in bytes: a million spheres in words. More belong in a file of particles.
@@ -34,6 +34,36 @@ const LONGEST: u64 = 1 << 26;
 
 /// Bytes that a byte of a file becomes while it is read, at most: lists of short values.
 const TREE_BYTES: u64 = 100;
+
+/// Returns the files that a scene file names, whether they exist or not: particle files and the picture of
+/// the environment. A file that is no scene names none; [`Scene::load`] says what is wrong with it.
+pub fn included_files(path: &Path) -> Vec<PathBuf> {
+    let Some(text) = read_text(path).ok().filter(|text| check_memory(text).is_ok()) else {
+        return Vec::new();
+    };
+    let Ok(document) = text.parse::<toml::Table>() else { return Vec::new() };
+    let picture = document.get("environment").and_then(|environment| environment.get("file"));
+    let particles = document.get("file").and_then(toml::Value::as_array).into_iter().flatten();
+    let names = particles.filter_map(|file| file.get("path")).chain(picture);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    names.filter_map(toml::Value::as_str).map(|name| folder.join(name)).collect()
+}
+
+fn read_text(path: &Path) -> Result<String, SceneError> {
+    let bytes = File::open(path)
+        .and_then(|file| read_at_most(file, LONGEST))
+        .map_err(|error| SceneError::whole_file(path, format!("cannot be read: {error}")))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        SceneError::whole_file(path, format!("is not UTF-8 text (byte {at})"))
+            .with_help("a scene is a TOML file; a file of particles must not be named .toml")
+    })
+}
+
+/// Checks that there is memory for the tables of a text.
+fn check_memory(text: &str) -> Result<(), Shortage> {
+    memory::check(text.len() as u64 * TREE_BYTES)
+}
 
 impl Scene {
     /// Reads a scene file, and the files it names, whose paths are relative to the scene file.
@@ -43,14 +73,7 @@ impl Scene {
     /// A file cannot be read, or holds something that is no scene: the error says where and what to
     /// write.
     pub fn load(path: &Path) -> Result<Self, SceneError> {
-        let bytes = File::open(path)
-            .and_then(|file| read_at_most(file, LONGEST))
-            .map_err(|error| SceneError::whole_file(path, format!("cannot be read: {error}")))?;
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let at = error.utf8_error().valid_up_to();
-            SceneError::whole_file(path, format!("is not UTF-8 text (byte {at})"))
-                .with_help("a scene is a TOML file; a file of particles must not be named .toml")
-        })?;
+        let text = read_text(path)?;
         Self::parse(&text, &path.to_string_lossy(), path.parent().unwrap_or(Path::new("")))
     }
 
@@ -62,7 +85,7 @@ impl Scene {
     /// As [`Scene::load`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
         let source = Source { path: Path::new(name), text, folder };
-        memory::check(text.len() as u64 * TREE_BYTES)
+        check_memory(text)
             .map_err(|shortage| SceneError::whole_file(source.path, format!("needs {shortage}")))?;
         let document = DeTable::parse(text).map_err(|error| {
             let end = text.len()..text.len();

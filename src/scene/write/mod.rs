@@ -6,14 +6,20 @@ pub(super) mod sections;
 use self::sections::{camera, environment, light, look, material, quoted, render, slice, vector};
 use super::{
     Camera, EnvironmentMap, Look, NamedMaterial, Rgb, Scene, SceneError, Settings, Spheres,
+    included_files,
 };
 use crate::atomic::write_atomically;
 use crate::image::WriteOptions;
 use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fmt::Write as _;
+use std::fs;
 use std::io;
 use std::path::Path;
+
+/// First line of a scene that was written by a program: the files beside it, which it names, are replaced
+/// when it is written again.
+const MARK: &str = "# Written by spherule, as are the files that it names\n";
 
 /// Of a scene, all that says how its picture is made, and not what is in it.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +40,8 @@ pub struct Header<'a> {
 ///
 /// # Errors
 ///
-/// A file cannot be written, or the scene has what a scene file cannot say: materials whose names are
+/// A file cannot be written, a file beside the scene is in the way that no scene at `path` was written
+/// with, or the scene has what a scene file cannot say: materials whose names are
 /// empty, framed by blanks or not unique, or rows of materials that are not there.
 pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     let Scene { title, camera, settings, look, .. } = scene;
@@ -54,7 +61,11 @@ pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), Scene
     }
     check(scene).map_err(|message| SceneError::whole_file(path, message))?;
     let sky = path.with_extension("pfm");
+    if !scene.spheres.is_empty() {
+        check_beside(path, &columns)?;
+    }
     if let EnvironmentMap::Picture { image, .. } = &scene.environment.map {
+        check_beside(path, &sky)?;
         let written = image.write(&sky, &WriteOptions::default());
         written.map_err(|error| failed(&sky, &error))?;
     }
@@ -65,6 +76,19 @@ pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), Scene
     }
     write_atomically(path, |file| file.write_all(text.as_bytes()))
         .map_err(|error| failed(path, &error))
+}
+
+/// Refuses to replace a file beside a scene, unless it belongs to a scene that was written here before.
+fn check_beside(path: &Path, beside: &Path) -> Result<(), SceneError> {
+    let free = fs::symlink_metadata(beside).is_err();
+    let written = || fs::read(path).is_ok_and(|text| text.starts_with(MARK.as_bytes()));
+    if free || (written() && included_files(path).iter().any(|file| file == beside)) {
+        return Ok(());
+    }
+    let message =
+        format!("already exists, and belongs to no scene that was written to {}", path.display());
+    let error = SceneError::whole_file(beside, message);
+    Err(error.with_help("delete it, or give the scene another name"))
 }
 
 fn failed(path: &Path, error: &dyn std::error::Error) -> SceneError {
@@ -94,7 +118,7 @@ fn check(scene: &Scene) -> Result<(), String> {
 
 /// The whole TOML file.
 fn document(scene: &Scene, header: &Header, columns: &Path, sky: &Path) -> String {
-    let mut text = format!("title = {}\n\n", quoted(header.title));
+    let mut text = format!("{MARK}title = {}\n\n", quoted(header.title));
     text += &render(header.settings);
     text += &camera(header.camera);
     text += &look(header.look);

@@ -1,0 +1,33 @@
+//! Files that a render reads and writes.
+
+use crate::cli::args::RenderArgs;
+use crate::cli::files::Files;
+use crate::cli::looks::BarPlace;
+
+/// Returns the files of a render, but for numbered pictures: how many there are is not known yet.
+pub(in crate::cli) fn files(args: &RenderArgs) -> Files {
+    let mut files = Files::new("render");
+    if let Some(scene) = &args.scene {
+        files.reads_scene(scene);
+    }
+    let part = args.part.settled().is_some();
+    let many = args.views.turntable().is_some() || args.particles.frames().is_some();
+    if !part && !many {
+        files.writes("--output", &args.output);
+    }
+    if let Some(BarPlace::File(bar, _)) = &args.looks.color_bar {
+        files.writes("--color-bar", bar);
+    }
+    match (&args.keep.checkpoint, &args.keep.resume) {
+        (Some(kept), _) if part => files.writes("--part", kept),
+        (Some(kept), resumed) => {
+            files.writes("--checkpoint", kept);
+            if let Some(resumed) = resumed.as_ref().filter(|_| !args.keep.resumes_into_itself()) {
+                files.reads("the checkpoint of --resume", resumed);
+            }
+        }
+        (None, Some(resumed)) => files.writes("--resume", resumed),
+        (None, None) => (),
+    }
+    files
+}
