@@ -13,6 +13,7 @@
 //! counted in a warning; anything that is no number at all is an error with its line. A further
 //! format is a [`Format`], a sign to tell it by in `sniff`, and a `FrameReader`.
 
+mod alternates;
 mod builder;
 mod categories;
 mod cif;
@@ -43,6 +44,7 @@ mod sniff;
 mod source;
 mod spheres;
 mod text;
+mod undrawn;
 mod xyz;
 
 pub use categories::{Codes, Kind, Kinds, TextColumn};

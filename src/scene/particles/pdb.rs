@@ -5,16 +5,20 @@
 //! write (serial numbers in hexadecimal, hybrid-36 or asterisks), so this is our own: numbers that
 //! need not be read are not.
 
+use super::alternates::{AlternateAtom, Alternates};
 use super::builder::Builder;
 use super::categories::Kind;
 use super::element::{Element, is_virtual_site, of_aligned_name};
 use super::frame::{Cell, LengthUnit, ParticleFrame};
 use super::lines::{Line, Lines};
+use super::number;
 use super::options::{Format, ReadOptions};
 use super::reader::FrameReader;
 use super::schema::{Naming, Schema, Slot};
 use super::source::Source;
+use super::undrawn::Undrawn;
 use crate::scene::SceneError;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Names of the columns, and the bytes they take.
@@ -70,6 +74,7 @@ enum Record {
     Atom,
     Cell,
     Title,
+    Bond,
     Begin,
     End,
     Other,
@@ -81,6 +86,7 @@ impl Record {
             b"ATOM  " | b"HETATM" => Self::Atom,
             b"CRYST1" => Self::Cell,
             b"TITLE " => Self::Title,
+            b"CONECT" => Self::Bond,
             b"MODEL " => Self::Begin,
             b"ENDMDL" => Self::End,
             other if other.trim_ascii_end() == b"END" => Self::End,
@@ -108,15 +114,21 @@ impl FrameReader for Pdb {
         let others: Vec<(usize, Slot)> =
             schema.others().filter(|&(column, slot)| (column, slot) != (13, Slot::Kind)).collect();
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
-        let mut elsewhere = 0_u64;
-        let mut atoms = false;
+        let mut alternates = Alternates::default();
+        let mut bonds = HashSet::new();
+        let (mut atoms, mut ended) = (false, false);
         while let Some(line) = self.lines.next()? {
-            match Record::of(line.bytes) {
+            let record = Record::of(line.bytes);
+            // Bonds follow the last model; anything else belongs to the next frame.
+            if ended && !matches!(record, Record::Bond | Record::End) && !line.is_blank() {
+                self.lines.back();
+                break;
+            }
+            match record {
                 Record::Atom => {
                     atoms = true;
-                    if !is_first_place(line.bytes) {
-                        elsewhere += 1;
-                        continue;
+                    if !matches!(line.bytes.get(16), None | Some(b' ')) {
+                        alternates.add(builder.frame.len(), alternate(line.bytes));
                     }
                     builder.push(position(&line)?)?;
                     if !has_kind {
@@ -132,19 +144,17 @@ impl FrameReader for Pdb {
                     self.lines.back();
                     break;
                 }
-                Record::End if atoms => break,
-                Record::Begin | Record::End | Record::Other => (),
+                Record::Bond => add_bonds(&mut bonds, line.bytes),
+                Record::End => ended = atoms,
+                Record::Begin | Record::Other => (),
             }
         }
         if !atoms {
             return Ok(None);
         }
-        if elsewhere > 0 {
-            let warning =
-                format!("{elsewhere} atoms are at other places than the first and left out");
-            builder.frame.warnings.push(warning);
-        }
-        let frame = builder.finish();
+        let mut frame = builder.finish();
+        alternates.choose(&mut frame);
+        frame.add_undrawn(Undrawn::Bonds, bonds.len() as u64);
         let title = self.title.split_whitespace().collect::<Vec<_>>().join(" ");
         Ok(Some(ParticleFrame { title, cell: self.cell, unit: LengthUnit::Angstrom, ..frame }))
     }
@@ -169,6 +179,21 @@ impl FrameReader for Pdb {
 
     fn more(&mut self) -> Result<bool, SceneError> {
         self.skip()
+    }
+}
+
+/// Adds the bonds of a `CONECT` record, by the serial numbers of both atoms as they stand: each is
+/// listed from both ends, and double ones twice.
+fn add_bonds(bonds: &mut HashSet<[[u8; 5]; 2]>, line: &[u8]) {
+    let serial = |start: usize| {
+        let mut serial = [b' '; 5];
+        let field = bytes(line, start, start + 5);
+        serial[..field.len()].copy_from_slice(field);
+        (!field.is_empty()).then_some(serial)
+    };
+    let Some(first) = serial(6) else { return };
+    for other in [11, 16, 21, 26].into_iter().filter_map(serial) {
+        bonds.insert([first.min(other), first.max(other)]);
     }
 }
 
@@ -200,9 +225,15 @@ fn position(line: &Line) -> Result<[f64; 3], SceneError> {
     Ok([number(7)?, number(8)?, number(9)?])
 }
 
-/// Whether an atom is where it is most of the time: the first of its places, or the only one.
-fn is_first_place(line: &[u8]) -> bool {
-    matches!(line.get(16), None | Some(b' ' | b'A' | b'1'))
+/// The names of an atom at an alternate location.
+fn alternate(line: &[u8]) -> AlternateAtom<'_> {
+    AlternateAtom {
+        location: field(line, 2),
+        residue: [field(line, 4), field(line, 5), field(line, 6)],
+        residue_name: field(line, 3),
+        name: field(line, 1),
+        occupancy: number::parse(field(line, 10)).unwrap_or(1.0),
+    }
 }
 
 /// What tells the type of an atom: name, residue and element, as they stand.

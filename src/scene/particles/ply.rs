@@ -12,6 +12,7 @@ use super::reader::FrameReader;
 use super::scalar::{Order, Scalar};
 use super::schema::{Schema, Slot};
 use super::source::Source;
+use super::undrawn::Undrawn;
 use crate::scene::{SceneError, linear_from_srgb};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::Path;
@@ -167,7 +168,15 @@ impl FrameReader for Ply {
                 body.vertices(vertex, &mut builder)?;
             }
         }
-        Ok(Some(ParticleFrame { title: header.title, ..builder.finish() }))
+        let mut frame = builder.finish();
+        for element in &header.elements {
+            match &element.name[..] {
+                "face" | "tristrips" => frame.add_undrawn(Undrawn::Faces, element.count),
+                "edge" => frame.add_undrawn(Undrawn::Edges, element.count),
+                _ => (),
+            }
+        }
+        Ok(Some(ParticleFrame { title: header.title, ..frame }))
     }
 }
 

@@ -76,10 +76,17 @@ impl Iterator for Frames {
         if self.failed {
             return None;
         }
-        let frame = self.reader.next();
+        let frame = next_frame(&mut *self.reader);
         self.failed = frame.is_err();
         frame.transpose()
     }
+}
+
+/// The next frame, with warnings of what is in its columns and not drawn.
+fn next_frame(reader: &mut dyn FrameReader) -> Result<Option<ParticleFrame>, SceneError> {
+    let mut frame = reader.next()?;
+    frame.iter_mut().for_each(ParticleFrame::add_undrawn_columns);
+    Ok(frame)
 }
 
 /// Reads the frame that the options choose, as it is: nothing is scaled or dropped. Frames before
@@ -103,7 +110,7 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, S
             return Err(SceneError::whole_file(path, message));
         }
     }
-    let frame = frames.reader.next()?;
+    let frame = next_frame(&mut *frames.reader)?;
     let mut frame = match (frame, index) {
         (Some(frame), _) => frame,
         (None, 0) => return Err(SceneError::whole_file(path, "holds no particles")),

@@ -1,6 +1,9 @@
-//! CIF of crystals: a cell, the atoms that differ, and the symmetry that makes the others of them
+//! CIF of crystals: a cell, the atoms of the asymmetric unit, and the symmetry that repeats them
 //! (CIF core dictionary, <https://www.iucr.org/resources/cif/dictionaries/cif_core>).
 
+use super::declared::{Contents, Declared, Resolved};
+use super::hall::MOST;
+use super::occupancy::{Occupancies, Positions};
 use super::rows::Rows;
 use super::symmetry::{Operation, images};
 use super::tokens::{Token, Tokens};
@@ -14,6 +17,7 @@ use crate::scene::particles::options::{Format, ReadOptions, Role};
 use crate::scene::particles::reader::FrameReader;
 use crate::scene::particles::schema::Schema;
 use crate::scene::particles::source::Source;
+use crate::scene::particles::undrawn::Undrawn;
 use crate::scene::{SceneError, Spheres};
 use glam::DVec3;
 use memchr::memmem;
@@ -29,11 +33,23 @@ const SHARES: [(Role, &str); 3] =
 /// Columns of numbers, some of which may be unknown.
 const NUMBERS: [&str; 3] = ["occupancy", "U_iso_or_equiv", "B_iso_or_equiv"];
 
-/// What operations of symmetry are called, now and before.
-const OPERATIONS: [&str; 2] = ["_space_group_symop_operation_xyz", "_symmetry_equiv_pos_as_xyz"];
+/// Tags of symmetry operations: of now, of old files and of magnetic CIF.
+const OPERATIONS: [&str; 4] = [
+    "_space_group_symop_operation_xyz",
+    "_symmetry_equiv_pos_as_xyz",
+    "_space_group_symop_magn_operation_xyz",
+    "_space_group_symop_magn_centering_xyz",
+];
 
-/// No group of space has more operations.
-const MOST: usize = 192;
+/// Tags of Hermann-Mauguin symbols, of Hall symbols and of the numbers of space groups.
+const SYMBOLS: [&str; 4] = [
+    "_space_group_name_h-m_alt",
+    "_symmetry_space_group_name_h-m",
+    "_space_group_name_h-m_full",
+    "_space_group_name_h-m",
+];
+const HALL: [&str; 2] = ["_space_group_name_hall", "_symmetry_space_group_name_hall"];
+const NUMBERS_OF_GROUPS: [&str; 2] = ["_space_group_it_number", "_symmetry_int_tables_number"];
 
 /// What is taken for a title, the best last.
 const TITLES: [&str; 4] = [
@@ -52,24 +68,33 @@ pub(in super::super) struct Crystal {
 /// What a block says, in whatever order.
 struct Block {
     title: (usize, String),
-    group: String,
     lengths: [f64; 3],
     angles: [f64; 3],
-    operations: Vec<Operation>,
-    /// Places are shares of the edges.
-    atoms: Option<ParticleFrame>,
+    symmetry: Declared,
+    atoms: Option<Atoms>,
+    /// Rows of bonds and of anisotropic displacements.
+    bonds: u64,
+    displacements: u64,
+}
+
+/// The listed atoms.
+struct Atoms {
+    /// Positions are fractional coordinates.
+    frame: ParticleFrame,
+    occupancies: Occupancies,
 }
 
 impl Default for Block {
     fn default() -> Self {
         Self {
             title: (0, String::new()),
-            group: String::new(),
             lengths: [0.0; 3],
             // What they are where a file does not say.
             angles: [90.0; 3],
-            operations: Vec::new(),
+            symmetry: Declared::default(),
             atoms: None,
+            bonds: 0,
+            displacements: 0,
         }
     }
 }
@@ -86,6 +111,7 @@ impl Crystal {
             return Ok(());
         };
         let text = String::from_utf8_lossy(value).trim().to_owned();
+        let known = !matches!(&text[..], "" | "?" | ".");
         let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag == *letter);
         let number = || self.tokens.line().number(certain(text.as_bytes()));
         if let Some(edge) = axis(["_cell_length_a", "_cell_length_b", "_cell_length_c"]) {
@@ -95,20 +121,42 @@ impl Crystal {
         {
             block.angles[angle] = number()?;
         } else if let Some(rank) = TITLES.iter().position(|title| *title == tag) {
-            if text != "?" && text != "." && rank >= block.title.0 {
+            if known && rank >= block.title.0 {
                 block.title = (rank, text);
             }
-        } else if ["_symmetry_space_group_name_h-m", "_space_group_name_h-m_alt"].contains(&tag) {
-            block.group = text;
+        } else if known {
+            self.symmetry(tag, text, &mut block.symmetry)?;
+        }
+        Ok(())
+    }
+
+    /// Takes what a tag says of the symmetry, if it is of that.
+    fn symmetry(&self, tag: &str, text: String, symmetry: &mut Declared) -> Result<(), SceneError> {
+        if SYMBOLS.contains(&tag) {
+            symmetry.symbols.push(text);
+        } else if HALL.contains(&tag) {
+            symmetry.hall = Some(text);
+        } else if NUMBERS_OF_GROUPS.contains(&tag) {
+            symmetry.number = text.parse().ok();
         } else if OPERATIONS.contains(&tag) {
-            block.operations.push(self.operation(&text)?);
+            let operation = self.operation(&text)?;
+            let centering = tag == OPERATIONS[3];
+            let list = if centering { &mut symmetry.centerings } else { &mut symmetry.operations };
+            list.push(operation);
+            if list.len() > MOST {
+                let message = format!("more than {MOST} symmetry operations");
+                let error = self.tokens.error(message);
+                return Err(error.with_help("no space group has so many"));
+            }
         }
         Ok(())
     }
 
     fn operation(&self, text: &str) -> Result<Operation, SceneError> {
-        Operation::parse(text).ok_or_else(|| {
-            let error = self.tokens.error(format!("`{text}` is no operation of symmetry"));
+        // Magnetic CIF has the reversal of time as a fourth part.
+        let place = text.strip_suffix(",+1").or_else(|| text.strip_suffix(",-1")).unwrap_or(text);
+        Operation::parse(place).ok_or_else(|| {
+            let error = self.tokens.error(format!("`{text}` is no symmetry operation"));
             error.with_help("operations are written as in -x, y+1/2, z")
         })
     }
@@ -120,26 +168,42 @@ impl Crystal {
             tags.push(tag.to_owned());
         }
         self.tokens.back();
-        let is_share = |tag: &String| plain(tag) == format!("{SITE}{}", SHARES[0].1);
-        let is_operation = |tag: &String| OPERATIONS.contains(&&plain(tag)[..]);
-        if tags.iter().any(is_share) {
+        let tags_now: Vec<String> = tags.iter().map(|tag| plain(tag)).collect();
+        let is_site = |tag: &String| *tag == format!("{SITE}{}", SHARES[0].1);
+        let is_symmetry = |tag: &&String| {
+            let tags = OPERATIONS.iter().chain(&SYMBOLS).chain(&HALL).chain(&NUMBERS_OF_GROUPS);
+            tags.into_iter().any(|own| own == *tag)
+        };
+        if tags_now.iter().any(is_site) {
             block.atoms = Some(self.atoms(&tags)?);
-        } else if let Some(column) = tags.iter().position(is_operation) {
+        } else if tags_now.iter().any(|tag| is_symmetry(&tag)) {
             let mut rows = Rows::new(tags.len());
             while rows.read(&mut self.tokens)? {
-                let text = String::from_utf8_lossy(rows.field(column)).into_owned();
-                block.operations.push(self.operation(&text)?);
-                if block.operations.len() > MOST {
-                    let message = format!("more than {MOST} operations of symmetry");
-                    return Err(self.tokens.error(message).with_help("no group has so many"));
+                for (column, tag) in tags_now.iter().enumerate() {
+                    let text = String::from_utf8_lossy(rows.field(column)).trim().to_owned();
+                    if !matches!(&text[..], "" | "?" | ".") {
+                        self.symmetry(tag, text, &mut block.symmetry)?;
+                    }
                 }
             }
+        } else if tags_now.iter().any(|tag| tag.starts_with("_geom_bond_atom_site_label")) {
+            block.bonds += self.count_rows(tags.len())?;
+        } else if tags_now.iter().any(|tag| tag.starts_with("_atom_site_aniso_")) {
+            block.displacements += self.count_rows(tags.len())?;
         }
         Ok(())
     }
 
-    /// The atoms of a loop, their places in shares.
-    fn atoms(&mut self, tags: &[String]) -> Result<ParticleFrame, SceneError> {
+    fn count_rows(&mut self, columns: usize) -> Result<u64, SceneError> {
+        let (mut rows, mut count) = (Rows::new(columns), 0);
+        while rows.read(&mut self.tokens)? {
+            count += 1;
+        }
+        Ok(count)
+    }
+
+    /// Reads the atoms of a loop.
+    fn atoms(&mut self, tags: &[String]) -> Result<Atoms, SceneError> {
         let names = tags.iter().map(|tag| tag.get(SITE.len()..).unwrap_or(tag).to_owned());
         let names: Vec<String> = names.collect();
         let has_symbols = names.iter().any(|name| name == "type_symbol");
@@ -150,6 +214,7 @@ impl Crystal {
             let message = format!("no {SITE}{} in this loop of atoms", SHARES[axis].1);
             return Err(self.tokens.error(message));
         }
+        let mut occupancies = Occupancies::new(&names);
         let schema = Schema::with_roles(names, &self.options, &known)
             .map_err(|message| self.tokens.error(message))?;
         let mut builder = Builder::new(self.tokens.path(), Format::Cif, &Arc::new(schema));
@@ -161,48 +226,45 @@ impl Crystal {
                 nowhere += 1;
             } else {
                 builder.row(&self.tokens.line(), rows.fields().map(certain))?;
+                occupancies.read(&rows);
             }
         }
         if nowhere > 0 {
-            let warning = format!("{nowhere} atoms without a place are left out");
+            let warning = format!("{nowhere} atoms without coordinates are left out");
             builder.frame.warnings.push(warning);
         }
-        let mut atoms = builder.finish();
+        let mut frame = builder.finish();
         if !has_symbols {
-            for kind in &mut atoms.kinds.table {
+            for kind in &mut frame.kinds.table {
                 kind.element = kind.element.or_else(|| element(&kind.name));
             }
         }
-        Ok(atoms)
+        Ok(Atoms { frame, occupancies })
     }
 
     /// The frame of a block; `None` if it has no atoms.
     fn frame(&self, mut block: Block) -> Result<Option<ParticleFrame>, SceneError> {
-        let Some(mut atoms) = block.atoms.take() else { return Ok(None) };
+        let Some(Atoms { frame: mut atoms, mut occupancies }) = block.atoms.take() else {
+            return Ok(None);
+        };
         let fault = |message: String| SceneError::whole_file(self.tokens.path(), message);
         let (lengths, angles) = (block.lengths, block.angles);
         let cell = Cell::of_lengths(lengths, angles).ok_or_else(|| {
             let message = format!("there is no cell with edges {lengths:?} and angles {angles:?}");
             fault(message).with_help("a crystal needs _cell_length_a, _b and _c, and its angles")
         })?;
-        let places = block.operations.len().max(1) as u64 * atoms.len() as u64;
-        memory::check(places.saturating_mul(Spheres::BYTES))
-            .map_err(|shortage| fault(format!("its {places} places need {shortage}")))?;
-        if let [] | [_] = block.operations[..] {
-            place(&mut atoms, &cell);
-            let trivial = ["", "?", ".", "P1"].contains(&block.group.replace(' ', "").as_str());
-            if block.operations.is_empty() && !trivial {
-                let group = &block.group;
-                let warning = format!(
-                    "the operations of its symmetry, {group}, are not listed, so only the atoms \
-                     that are listed are drawn"
-                );
-                atoms.warnings.push(warning);
-            }
-        } else {
-            spread(&mut atoms, &block.operations, &cell);
-        }
+        leave_out_lesser_groups(&mut atoms, &mut occupancies);
+        let positions: Vec<DVec3> = (0..atoms.len()).map(|row| atoms.position(row)).collect();
+        let contents = Contents { cell: &cell, positions: &positions };
+        let Resolved { operations, warnings } = block.symmetry.resolve(contents);
+        atoms.warnings.extend(warnings);
+        let images = operations.len().max(1) as u64 * atoms.len() as u64;
+        memory::check(images.saturating_mul(Spheres::BYTES))
+            .map_err(|shortage| fault(format!("its {images} atoms need {shortage}")))?;
+        place(&mut atoms, &repeat(&positions, &operations, &cell), &occupancies, &cell);
         let (unit, title) = (LengthUnit::Angstrom, block.title.1);
+        atoms.add_undrawn(Undrawn::Bonds, block.bonds);
+        atoms.add_undrawn(Undrawn::Displacements, block.displacements);
         Ok(Some(ParticleFrame { cell: Some(cell), unit, title, ..atoms }))
     }
 }
@@ -226,27 +288,70 @@ impl FrameReader for Crystal {
     }
 }
 
-/// From shares to places.
-fn place(atoms: &mut ParticleFrame, cell: &Cell) {
-    for row in 0..atoms.len() {
-        let place = cell.point(atoms.position(row).to_array());
-        [atoms.x[row], atoms.y[row], atoms.z[row]] = place.to_array();
+/// Leaves out the atoms of all disorder groups but the main ones.
+fn leave_out_lesser_groups(atoms: &mut ParticleFrame, occupancies: &mut Occupancies) {
+    let keep = occupancies.main_groups();
+    let lesser = keep.iter().filter(|keep| !**keep).count();
+    if lesser > 0 {
+        atoms.retain(&keep);
+        occupancies.retain(&keep);
+        atoms.warnings.push(format!(
+            "{} left out: of each disorder, the group with the greatest occupancy is drawn",
+            counted(lesser, "listed atom is", "listed atoms are"),
+        ));
+    }
+    let about = occupancies.about_symmetry();
+    if about > 0 {
+        atoms.warnings.push(format!(
+            "{} disordered about a symmetry element: all images are drawn, though they overlap",
+            counted(about, "listed atom is", "listed atoms are"),
+        ));
     }
 }
 
-/// Puts all images of each atom in its place.
-fn spread(atoms: &mut ParticleFrame, operations: &[Operation], cell: &Cell) {
-    let (mut rows, mut places): (Vec<u32>, Vec<DVec3>) = (Vec::new(), Vec::new());
-    for row in 0..atoms.len() {
-        let images = images(atoms.position(row), operations, cell);
+/// Positions in fractional coordinates, and the rows of the listed atoms that they are images of.
+struct Images {
+    rows: Vec<u32>,
+    places: Vec<DVec3>,
+}
+
+/// All images of the listed positions; where there is no symmetry, the positions as they are.
+fn repeat(positions: &[DVec3], operations: &[Operation], cell: &Cell) -> Images {
+    let (mut rows, mut places) = (Vec::new(), Vec::new());
+    for (row, position) in positions.iter().enumerate() {
+        let images = if let [] | [_] = operations {
+            vec![*position]
+        } else {
+            images(*position, operations, cell)
+        };
         rows.extend(images.iter().map(|_| row as u32));
         places.extend(images);
     }
-    atoms.pick(&rows);
-    for (row, place) in places.into_iter().enumerate() {
-        [atoms.x[row], atoms.y[row], atoms.z[row]] = place.to_array();
+    Images { rows, places }
+}
+
+/// Puts an atom at each image, and of those that share a site the one with the greatest occupancy.
+fn place(atoms: &mut ParticleFrame, images: &Images, occupancies: &Occupancies, cell: &Cell) {
+    let Images { rows, places } = images;
+    let shared = occupancies.share(Positions { rows, places, cell });
+    atoms.pick(rows);
+    for (row, place) in places.iter().enumerate() {
+        [atoms.x[row], atoms.y[row], atoms.z[row]] = cell.point(place.to_array()).to_array();
     }
-    place(atoms, cell);
+    if shared.sites > 0 {
+        let others = shared.keep.iter().filter(|keep| !**keep).count();
+        atoms.retain(&shared.keep);
+        atoms.warnings.push(format!(
+            "{} shared by several atoms: the one with the greatest occupancy is drawn, and {} left \
+             out",
+            counted(shared.sites, "site is", "sites are"),
+            counted(others, "other is", "others are"),
+        ));
+    }
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
 
 /// The element that a label begins with, as `O1A` with oxygen.
@@ -261,7 +366,7 @@ fn plain(tag: &str) -> String {
 }
 
 /// A number without what says how certain it is: `0.123` of `0.123(4)`.
-fn certain(field: &[u8]) -> &[u8] {
+pub(super) fn certain(field: &[u8]) -> &[u8] {
     let open = field.strip_suffix(b")").and_then(|inner| memchr::memrchr(b'(', inner));
     open.map(|end| &field[..end]).filter(|value| number::parse(value).is_some()).unwrap_or(field)
 }

@@ -3,6 +3,7 @@
 use super::rows::Rows;
 use super::tokens::{Token, Tokens};
 use crate::scene::SceneError;
+use crate::scene::particles::alternates::{AlternateAtom, Alternates};
 use crate::scene::particles::builder::Builder;
 use crate::scene::particles::frame::{Cell, LengthUnit, ParticleFrame};
 use crate::scene::particles::lines::Lines;
@@ -11,6 +12,7 @@ use crate::scene::particles::options::{Format, ReadOptions};
 use crate::scene::particles::reader::FrameReader;
 use crate::scene::particles::schema::Schema;
 use crate::scene::particles::source::Source;
+use crate::scene::particles::undrawn::Undrawn;
 use std::sync::Arc;
 
 /// What the names of the columns begin with.
@@ -27,17 +29,63 @@ pub(in super::super) struct MmCif {
     title: String,
     lengths: [f64; 3],
     angles: [f64; 3],
+    /// Rows of `_struct_conn` before the atoms.
+    bonds: u64,
 }
 
 /// The loop that is being read.
 struct Sites {
     schema: Arc<Schema>,
-    /// Columns of the model's number and of the letter of an alternative place.
+    /// Column of the model's number.
     model: Option<usize>,
-    place: Option<usize>,
+    alternates: AlternateColumns,
     rows: Rows,
     /// Whether the row belongs to the next frame.
     pending: bool,
+}
+
+/// Columns that tell atoms at alternate locations, where the file has them.
+struct AlternateColumns {
+    location: Option<usize>,
+    residue: [Option<usize>; 3],
+    residue_name: Option<usize>,
+    name: Option<usize>,
+    occupancy: Option<usize>,
+}
+
+impl AlternateColumns {
+    fn new(names: &[String]) -> Self {
+        let column = |wanted: [&str; 2]| {
+            let mut columns =
+                wanted.iter().filter_map(|own| names.iter().position(|name| name == own));
+            columns.next()
+        };
+        Self {
+            location: column(["label_alt_id", "label_alt_id"]),
+            // Waters have numbers of their own only in the authors' numbering.
+            residue: [
+                column(["auth_asym_id", "label_asym_id"]),
+                column(["auth_seq_id", "label_seq_id"]),
+                column(["pdbx_PDB_ins_code", "pdbx_PDB_ins_code"]),
+            ],
+            residue_name: column(["label_comp_id", "auth_comp_id"]),
+            name: column(["label_atom_id", "auth_atom_id"]),
+            occupancy: column(["occupancy", "occupancy"]),
+        }
+    }
+
+    /// The names of a row's atom, if it is at an alternate location.
+    fn atom<'r>(&self, rows: &'r Rows) -> Option<AlternateAtom<'r>> {
+        let field = |column: Option<usize>| column.map_or(&b""[..], |column| rows.field(column));
+        let location = field(self.location);
+        (!matches!(location, b"" | b"." | b"?")).then(|| AlternateAtom {
+            location,
+            residue: self.residue.map(field),
+            residue_name: field(self.residue_name),
+            name: field(self.name),
+            occupancy: number::parse(field(self.occupancy)).unwrap_or(1.0),
+        })
+    }
 }
 
 impl MmCif {
@@ -49,6 +97,7 @@ impl MmCif {
             title: String::new(),
             lengths: [0.0; 3],
             angles: [0.0; 3],
+            bonds: 0,
         }
     }
 
@@ -79,7 +128,9 @@ impl MmCif {
         };
         let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag.ends_with(letter));
         let number = || number::parse(value).unwrap_or(0.0);
-        if tag == "_struct.title" {
+        if tag == "_struct_conn.id" {
+            self.bonds += 1;
+        } else if tag == "_struct.title" {
             self.title = String::from_utf8_lossy(value).trim().to_owned();
         } else if let Some(edge) = axis(["_cell.length_a", "_cell.length_b", "_cell.length_c"]) {
             self.lengths[edge] = number();
@@ -106,45 +157,50 @@ impl MmCif {
                 let help = "this is a crystal in shares of its cell: say that its format is cif";
                 return Err(self.tokens.error("no _atom_site.Cartn_x").with_help(help));
             }
+            if tags.iter().any(|tag| tag.starts_with("_struct_conn.")) {
+                let mut rows = Rows::new(tags.len());
+                while rows.read(&mut self.tokens)? {
+                    self.bonds += 1;
+                }
+            }
             return Ok(None);
         }
         let names: Vec<String> =
             tags.iter().map(|tag| tag.get(SITE.len()..).unwrap_or(tag).to_owned()).collect();
-        let column = |wanted: &str| names.iter().position(|name| name == wanted);
-        let (model, place) = (column("pdbx_PDB_model_num"), column("label_alt_id"));
+        let model = names.iter().position(|name| name == "pdbx_PDB_model_num");
+        let alternates = AlternateColumns::new(&names);
         let rows = Rows::new(names.len());
         let schema = Schema::new(names, &self.options).map_err(|message| {
             let help = "atoms of mmCIF have _atom_site.Cartn_x, Cartn_y and Cartn_z";
             self.tokens.error(message).with_help(help)
         })?;
-        Ok(Some(Sites { schema: Arc::new(schema), model, place, rows, pending: false }))
+        Ok(Some(Sites { schema: Arc::new(schema), model, alternates, rows, pending: false }))
     }
 
-    /// The atoms of the next model; they are put into a builder, if there is one. Whether there
-    /// are any, and how many of them were left out.
-    fn model(&mut self, mut builder: Option<&mut Builder>) -> Result<(bool, u64), SceneError> {
-        let Some(sites) = &mut self.sites else { return Ok((false, 0)) };
+    /// Passes over the atoms of the next model, or puts them into a builder. Whether there are any.
+    fn model(
+        &mut self,
+        mut taken: Option<(&mut Builder, &mut Alternates)>,
+    ) -> Result<bool, SceneError> {
+        let Some(sites) = &mut self.sites else { return Ok(false) };
         let mut model: Option<Vec<u8>> = None;
-        let mut elsewhere = 0;
         while std::mem::take(&mut sites.pending) || sites.rows.read(&mut self.tokens)? {
             let own = sites.model.map_or(&b""[..], |column| sites.rows.field(column));
             if model.as_deref().is_some_and(|model| model != own) {
                 sites.pending = true;
-                return Ok((true, elsewhere));
+                return Ok(true);
             }
             if model.is_none() {
                 model = Some(own.to_vec());
             }
-            let Some(builder) = &mut builder else { continue };
-            let place = sites.place.map_or(&b"."[..], |column| sites.rows.field(column));
-            if matches!(place, b"." | b"?" | b"A" | b"1") {
-                builder.row(&self.tokens.line(), sites.rows.fields())?;
-            } else {
-                elsewhere += 1;
+            let Some((builder, alternates)) = &mut taken else { continue };
+            if let Some(atom) = sites.alternates.atom(&sites.rows) {
+                alternates.add(builder.frame.len(), atom);
             }
+            builder.row(&self.tokens.line(), sites.rows.fields())?;
         }
         self.sites = None;
-        Ok((model.is_some(), elsewhere))
+        Ok(model.is_some())
     }
 
     /// Whether there is a loop of atoms at hand.
@@ -162,26 +218,24 @@ impl FrameReader for MmCif {
             let Some(schema) = self.sites.as_ref().map(|sites| sites.schema.clone()) else { break };
             let mut builder = Builder::new(self.tokens.path(), Format::MmCif, &schema);
             builder.declare(&[], &NUMBERS);
-            let (any, elsewhere) = self.model(Some(&mut builder))?;
-            if !any {
+            let mut alternates = Alternates::default();
+            if !self.model(Some((&mut builder, &mut alternates)))? {
                 continue;
             }
-            if elsewhere > 0 {
-                let warning =
-                    format!("{elsewhere} atoms are at other places than the first and left out");
-                builder.frame.warnings.push(warning);
-            }
+            let mut frame = builder.finish();
+            alternates.choose(&mut frame);
+            frame.add_undrawn(Undrawn::Bonds, self.bonds);
             let cell = Cell::of_lengths(self.lengths, self.angles);
             let cell = cell.filter(|_| self.lengths != [1.0; 3]);
             let (title, unit) = (self.title.clone(), LengthUnit::Angstrom);
-            return Ok(Some(ParticleFrame { cell, title, unit, ..builder.finish() }));
+            return Ok(Some(ParticleFrame { cell, title, unit, ..frame }));
         }
         Ok(None)
     }
 
     fn skip(&mut self) -> Result<bool, SceneError> {
         while self.is_open()? {
-            if self.model(None)?.0 {
+            if self.model(None)? {
                 return Ok(true);
             }
         }

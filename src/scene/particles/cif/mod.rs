@@ -5,8 +5,12 @@
 //! information file (CIF)", Acta Crystallographica A47, 1991).
 
 mod crystal;
+mod declared;
+mod hall;
 mod mmcif;
+mod occupancy;
 mod rows;
+mod space_group;
 mod symmetry;
 mod tokens;
 

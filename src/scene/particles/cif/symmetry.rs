@@ -1,25 +1,30 @@
-//! Operations of symmetry, as CIF writes them: `-x+y, y+1/2, z`.
+//! Symmetry operations, as CIF writes them: `-x+y, y+1/2, z`.
 
 use crate::scene::particles::frame::Cell;
 use crate::scene::particles::number;
 use glam::{DMat3, DVec3};
 
-/// Nearer to each other than this, in angstrom, images of one atom are one: places that a symmetry
-/// maps to themselves are written with few digits.
-const SAME: f64 = 0.1;
+/// Distance in angstrom below which images of an atom are one: coordinates of special positions are
+/// written with few digits.
+pub(super) const SAME: f64 = 0.1;
 
 /// So near below 1, a share of an edge is 0 but for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// From places, as shares of the cell's edges, to places that look alike.
+/// Translations of symmetry operations are multiples of this fraction of an edge.
+const TRANSLATION_STEPS: f64 = 24.0;
+
+/// A symmetry operation on fractional coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Operation {
-    matrix: DMat3,
-    shift: DVec3,
+    pub(super) matrix: DMat3,
+    pub(super) shift: DVec3,
 }
 
 impl Operation {
-    /// `None` if the text is no operation that maps a lattice to itself.
+    pub(super) const IDENTITY: Self = Self { matrix: DMat3::IDENTITY, shift: DVec3::ZERO };
+
+    /// Parses an operation; `None` if it does not map a lattice to itself.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
         let mut rows = text.split(',').map(row);
@@ -29,8 +34,34 @@ impl Operation {
         kept.then_some(Self { matrix, shift: DVec3::new(x.1, y.1, z.1) })
     }
 
-    /// The image of a place, in the cell.
-    fn image(&self, place: DVec3) -> DVec3 {
+    /// The operation that does `first` and then this one.
+    pub(super) fn after(&self, first: &Self) -> Self {
+        Self { matrix: self.matrix * first.matrix, shift: self.matrix * first.shift + self.shift }
+    }
+
+    /// The operation that undoes this one.
+    pub(super) fn inverse(&self) -> Self {
+        let matrix = self.matrix.inverse();
+        Self { matrix, shift: -(matrix * self.shift) }
+    }
+
+    /// The operation without rounding errors, and with its translation in the cell.
+    pub(super) fn rounded(&self) -> Self {
+        let columns = self.matrix.to_cols_array().map(f64::round);
+        let shift = (self.shift * TRANSLATION_STEPS).round();
+        let shift = shift - TRANSLATION_STEPS * (shift / TRANSLATION_STEPS).floor();
+        Self { matrix: DMat3::from_cols_array(&columns), shift: shift / TRANSLATION_STEPS }
+    }
+
+    /// Whether two operations differ by a translation of the lattice at most.
+    pub(super) fn same(&self, other: &Self) -> bool {
+        let away = self.shift - other.shift;
+        // Translations may be written with few digits, such as 0.333.
+        self.matrix == other.matrix && (away - away.round()).abs().max_element() < 0.01
+    }
+
+    /// The image of a position, in the cell.
+    pub(super) fn image(&self, place: DVec3) -> DVec3 {
         let image = self.matrix * place + self.shift;
         let share = |value: f64| {
             let share = value - value.floor();
@@ -72,17 +103,18 @@ fn fraction(text: &str) -> Option<f64> {
     }
 }
 
-/// All places in the cell that look like `place`, each once, as shares of the edges.
+/// Length of the step between two points in fractional coordinates, or between lattice images of them.
+pub(super) fn distance(one: DVec3, other: DVec3, cell: &Cell) -> f64 {
+    let away = one - other;
+    (cell.point((away - away.round()).to_array()) - cell.origin).length()
+}
+
+/// All symmetry-equivalent positions in the cell, each once, in fractional coordinates.
 pub(super) fn images(place: DVec3, operations: &[Operation], cell: &Cell) -> Vec<DVec3> {
     let mut images: Vec<DVec3> = Vec::new();
     for operation in operations {
         let image = operation.image(place);
-        let same = |other: &DVec3| {
-            let away = image - *other;
-            let away = cell.point((away - away.round()).to_array()) - cell.origin;
-            away.length() < SAME
-        };
-        if !images.iter().any(same) {
+        if !images.iter().any(|other| distance(image, *other, cell) < SAME) {
             images.push(image);
         }
     }

@@ -13,6 +13,7 @@ use super::frame::{Cell, NumberColumn, ParticleFrame};
 use super::options::{Format, Radii, ReadOptions, Role, component_names};
 use super::reader::FrameReader;
 use super::source::Source;
+use super::undrawn::Undrawn;
 use crate::scene::SceneError;
 use glam::DVec3;
 use std::path::Path;
@@ -220,6 +221,27 @@ impl Gsd {
         SceneError::whole_file(&self.path, message)
     }
 
+    /// Says what the frame has besides spheres.
+    fn add_undrawn(&mut self, frame: &mut ParticleFrame) -> Result<(), SceneError> {
+        let bonds = self.whole("bonds/N")?.and_then(|count| count.first().copied());
+        frame.add_undrawn(Undrawn::Bonds, bonds.unwrap_or(0.0) as u64);
+        let shapes = match self.file.texts(self.next, "particles/type_shapes")? {
+            Some(shapes) => Some(shapes),
+            None => self.file.texts(0, "particles/type_shapes")?,
+        };
+        let shapes: Vec<bool> =
+            shapes.unwrap_or_default().iter().map(|shape| is_shape(shape)).collect();
+        let codes = &frame.kinds.codes;
+        let rows = (0..codes.len())
+            .filter(|&row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default());
+        let count = rows.count() as u64;
+        frame.add_undrawn(Undrawn::Shapes, count);
+        if self.whole("particles/orientation")?.is_some() {
+            frame.add_undrawn(Undrawn::Orientations, frame.len() as u64);
+        }
+        Ok(())
+    }
+
     fn frame(&mut self) -> Result<ParticleFrame, SceneError> {
         let mut frame = ParticleFrame { format: Format::Gsd, ..ParticleFrame::default() };
         let count = self.whole("particles/N")?.and_then(|count| count.first().copied());
@@ -240,14 +262,21 @@ impl Gsd {
         let step = self.whole("configuration/step")?.and_then(|step| step.first().copied());
         frame.step = Some(step.unwrap_or(0.0) as i64);
         frame.cell = self.whole("configuration/box")?.and_then(|edges| cell(&edges));
+        self.add_undrawn(&mut frame)?;
         frame.columns = COLUMNS.map(str::to_owned).into();
         frame.columns.extend(parts.into_iter().map(|part| part.name));
         Ok(frame)
     }
 }
 
+/// Whether the description of a type's shape, in JSON, is of another shape than a sphere.
+fn is_shape(text: &str) -> bool {
+    let kind = text.split_once("\"type\"").map(|(_, kind)| kind.trim_start_matches([':', ' ']));
+    kind.is_some_and(|kind| !kind.starts_with("\"Sphere\""))
+}
+
 /// A box of HOOMD-blue, around the origin: lengths along the axes, and tilts as factors on them.
-fn cell(edges: &[f64]) -> Option<Cell> {
+pub(super) fn cell(edges: &[f64]) -> Option<Cell> {
     let &[x, y, z, xy, xz, yz] = edges else { return None };
     let a = DVec3::new(x, 0.0, 0.0);
     let b = DVec3::new(xy * y, y, 0.0);

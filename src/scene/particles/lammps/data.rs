@@ -7,6 +7,7 @@ use super::velocities::Velocities;
 use crate::scene::SceneError;
 use crate::scene::particles::builder::Builder;
 use crate::scene::particles::element::Element;
+use crate::scene::particles::fields::Fields;
 use crate::scene::particles::frame::{Cell, LengthUnit, ParticleFrame};
 use crate::scene::particles::lines::{Line, Lines};
 use crate::scene::particles::number;
@@ -65,6 +66,24 @@ impl Data {
         let section = Self::line(&mut self.lines)?.is_none_or(|line| is_section(line.bytes));
         self.lines.back();
         Ok(section)
+    }
+
+    /// Passes over the rows of a section, and counts them. A body takes several: its id and how many
+    /// whole and other numbers follow, and these numbers.
+    fn pass(&mut self, bodies: bool) -> Result<u64, SceneError> {
+        let (mut count, mut numbers) = (0, 0);
+        while !self.at_section()? {
+            let Some(line) = Self::line(&mut self.lines)? else { break };
+            let fields = Fields::blanks(content(line.bytes).unwrap_or_default());
+            if !bodies || numbers == 0 {
+                count += 1;
+                let counts = fields.skip(1).take(2).filter_map(number::whole);
+                numbers = counts.fold(0, u64::saturating_add);
+            } else {
+                numbers = numbers.saturating_sub(fields.count() as u64);
+            }
+        }
+        Ok(count)
     }
 
     fn masses(&mut self, head: &mut Head) -> Result<(), SceneError> {
@@ -137,7 +156,7 @@ impl Data {
         let rows = complete.split(|&byte| byte == b'\n').filter_map(content);
         let rows = rows.take_while(|row| !is_section(row)).take(ROWS);
         let fields = |row: &[u8]| {
-            let fields = crate::scene::particles::fields::Fields::blanks(row);
+            let fields = Fields::blanks(row);
             fields.map(<[u8]>::to_vec).collect()
         };
         Ok(rows.map(fields).collect())
@@ -166,6 +185,7 @@ impl FrameReader for Data {
         let mut head = Head { title: title.text().trim().to_owned(), ..Head::default() };
         let mut velocities = Velocities::take(&mut self.options);
         let mut frame = None;
+        let mut undrawn = Vec::new();
         while let Some(line) = Self::line(&mut self.lines)? {
             if !is_section(line.bytes) {
                 head.read(&line)?;
@@ -183,14 +203,19 @@ impl FrameReader for Data {
                         line.iter().try_for_each(|line| velocities.row(line))?;
                     }
                 }
-                // Their rows are passed over one by one, by the next turns of this loop.
-                _ => while !self.at_section()? && Self::line(&mut self.lines)?.is_some() {},
+                section => {
+                    let count = self.pass(section == "Bodies")?;
+                    undrawn.extend(super::undrawn(section).map(|kind| (kind, count)));
+                }
             }
         }
         let mut frame = frame.ok_or_else(|| {
             self.lines.ended("no section `Atoms`").with_help("the file is cut off, or no data file")
         })?;
         velocities.complete(&mut frame, &self.lines)?;
+        for (kind, count) in undrawn {
+            frame.add_undrawn(kind, count);
+        }
         Ok(Some(head.complete(frame)))
     }
 }

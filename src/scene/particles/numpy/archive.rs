@@ -57,7 +57,7 @@ impl Npz {
     }
 
     /// Names of the arrays.
-    fn names(&self) -> Vec<String> {
+    pub(super) fn names(&self) -> Vec<String> {
         let names = self.archive.file_names();
         names.filter_map(|name| name.ok()?.strip_suffix(".npy").map(str::to_owned)).collect()
     }
@@ -262,6 +262,25 @@ impl Npz {
     }
 }
 
+impl Npz {
+    /// Rows and columns of an array; `None` if it has more dimensions, or cannot be read.
+    pub(super) fn shape(&mut self, name: &str) -> Option<[u64; 2]> {
+        let array = self.open(name).ok()?;
+        (array.frames() <= 1).then(|| [array.count(), array.columns() as u64])
+    }
+
+    /// All numbers of an array.
+    pub(super) fn numbers(&mut self, name: &str) -> Result<Vec<f64>, SceneError> {
+        let path = self.path.clone();
+        let mut values = Vec::new();
+        self.open(name)?.rows(&path, |row| {
+            values.extend_from_slice(row.numbers);
+            Ok(())
+        })?;
+        Ok(values)
+    }
+}
+
 /// That an array has not as many rows as there are particles.
 fn number_of(path: &Path, name: &str, found: &str, count: usize) -> SceneError {
     let message = format!("the array `{name}` has {found}, but there are {count} particles");
@@ -301,6 +320,7 @@ impl FrameReader for Npz {
         }
         used.extend(frame.roles.iter().map(|(_, name)| name.clone()));
         self.keep(&mut frame, &used)?;
+        self.read_rest(&mut frame, &used)?;
         Ok(Some(frame))
     }
 }

@@ -6,6 +6,7 @@
 mod archive;
 mod array;
 mod header;
+mod rest;
 
 pub(super) use archive::Npz;
 

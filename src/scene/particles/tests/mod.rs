@@ -7,6 +7,7 @@ mod numpy;
 mod packings;
 mod ply;
 mod text;
+mod undrawn;
 mod xyz;
 
 use super::*;

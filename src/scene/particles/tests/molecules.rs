@@ -185,7 +185,11 @@ fn mmcif_has_a_loop_of_atoms() {
     assert_eq!((frame.numbers[0].values[2], frame.texts[0].text(2)), (2.5, "O5'"));
     assert_eq!(frame.title, "It''s a test");
     assert_eq!(frame.cell.map(|cell| cell.vectors[2]), Some(DVec3::Z * 40.0));
-    assert!(frame.warnings[0].starts_with("1 atoms are at other places"), "{:?}", frame.warnings);
+    assert!(
+        frame.warnings[0].starts_with("1 atoms at alternate locations"),
+        "{:?}",
+        frame.warnings
+    );
     assert_eq!(frames(MMCIF)[1], [4.5]);
     assert_eq!(frame_with(MMCIF, &at_frame("last")).expect("a frame").x, [4.5]);
     assert_eq!(super::frame(MMCIF.replace('\n', "\r\n")).x, [1.5, 2.5, 3.5]);

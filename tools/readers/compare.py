@@ -1,0 +1,382 @@
+#!/usr/bin/env python3
+"""Holds Spherule's readers of particle files against other programs: counts, frames, cells, first and last rows.
+
+    pip install ase gemmi gsd MDAnalysis plyfile
+    cargo build --release
+    tools/readers/compare.py FOLDER ...       # all files that Spherule reads, folders within them too
+    tools/readers/compare.py --answers        # write tests/data/particles/answers.toml
+
+For each file it prints what differs, by file and program. CIF of crystals is read by gemmi and ASE, whose atoms come in another order:
+they are compared as sets. It fails if anything differs.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+DATA = HERE.parents[1] / "tests/data/particles"
+ROWS = 3
+# Settings of crystals whose symbols leave the setting open, or are spelled as gemmi does not read them.
+SETTINGS = {
+    "diamond_fd3m_origin1": "F d -3 m:1",
+    "magnetite_fd3m": "F d -3 m:2",
+    "scheelite_i41a": "I 41/a:2",
+    "scheelite_i41a_origin1": "I 41/a:1",
+    "magnesite_r3c": "R -3 c:H",
+    "calcite_r3c_rhombohedral": "R -3 c:R",
+    "monoclinic_unique_c": "P 1 1 21/b",
+    "quartz_p3121": "P 31 2 1",
+    "screw_p41": "P 41",
+}
+
+
+class Unread(Exception):
+    """A file that a program does not read."""
+
+
+def main():
+    warnings.simplefilter("ignore")
+    options = arguments()
+    if options.answers:
+        return write_answers()
+    files = [file for folder in options.folders for file in (sorted(folder.rglob("*")) if folder.is_dir() else [folder])]
+    read, different = 0, 0
+    for file in files:
+        if not file.is_file() or file.suffix in (".py", ".pyc"):
+            continue
+        try:
+            own = spherule(options, file)
+        except Unread as fault:
+            if options.verbose:
+                print(f"- {file}: {fault}")
+            continue
+        for program in programs(file, own["format"]):
+            try:
+                other = program(file)
+            except Exception as fault:
+                if options.verbose:
+                    print(f"- {file}: {program.__name__}: {str(fault).splitlines()[:1]}")
+                continue
+            read += 1
+            faults = differences(own, other)
+            different += bool(faults)
+            for fault in faults:
+                print(f"{file} ({own['format']}, {program.__name__}): {fault}")
+    print(f"{read} comparisons, {different} with differences")
+    return 1 if different else 0
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="*", type=Path)
+    parser.add_argument("--spherule", type=Path, default=HERE.parents[1] / "target/release/spherule")
+    parser.add_argument("--answers", action="store_true", help="write answers.toml instead")
+    parser.add_argument("--verbose", action="store_true", help="name the files that are not compared, too")
+    return parser.parse_args()
+
+
+def spherule(options, file):
+    command = [options.spherule, "info", file, "--json", "--rows", "1000000" if ".cif" in file.name else str(ROWS)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    if done.returncode:
+        raise Unread(done.stderr.strip().splitlines()[:1])
+    info = json.loads(done.stdout)
+    particles = info["particles"]
+    if particles is None:
+        raise Unread("is a scene")
+    # Lengths in angstrom, as the other programs have them.
+    scale = {"nanometer": 10.0, "bohr": 0.529177210544}.get(particles["unit"], 1.0)
+    cell = particles["cell"]
+    rows = particles["rows"]
+    return {
+        "format": particles["format"],
+        "frames": particles["frames"],
+        "count": info["spheres"],
+        "cell": None if cell is None else np.array(cell["vectors"]) * scale,
+        "rows": np.array([row["position"] for row in rows["first"] + rows["last"]]) * scale,
+        "any_order": particles["format"] == "cif",
+        "warnings": particles.get("warnings", []) + info["warnings"],
+    }
+
+
+def differences(own, other):
+    if own["frames"] is not None and other["frames"] is not None and own["frames"] != other["frames"]:
+        yield f"{own['frames']} frames, not {other['frames']}"
+    if own["count"] != other["count"]:
+        yield f"{own['count']} atoms, not {other['count']} {own['warnings']}"
+        return
+    cells = [cell for cell in (own["cell"], other["cell"]) if cell is not None]
+    if len(cells) == 1:
+        yield f"cell {own['cell']}, not {other['cell']}"
+    # The axes of other programs may be turned: lengths and angles count.
+    elif cells and not np.allclose(cells[0] @ cells[0].T, cells[1] @ cells[1].T, rtol=1e-4, atol=1e-2):
+        yield f"cell {cells[0].tolist()}, not {cells[1].tolist()}"
+    if other["any_order"]:
+        if not same_sets(own["rows"], other["rows"], cells[0], cells[-1]):
+            yield "other positions"
+        return
+    rows = np.concatenate([other["rows"][:ROWS], other["rows"][-ROWS:]])
+    count = min(len(rows), len(own["rows"]))
+    own_rows = own["rows"]
+    if len(own_rows) == len(rows) and count and not np.allclose(own_rows, rows, rtol=1e-4, atol=2e-3):
+        yield f"rows {own_rows.tolist()}, not {rows.tolist()}"
+
+
+def same_sets(own, other, own_cell, other_cell):
+    """Whether two lists of positions are the same but for lattice translations and their order."""
+    if len(own) != len(other):
+        return False
+    own, other = own @ np.linalg.inv(own_cell), other @ np.linalg.inv(other_cell)
+    for place in other:
+        away = own - place
+        away -= away.round()
+        if np.linalg.norm(away @ own_cell, axis=1).min() > 0.02:
+            return False
+    return True
+
+
+def programs(file, format):
+    return {
+        "cif": [by_gemmi_crystal, by_ase],
+        "pdb": [by_gemmi, by_mdanalysis],
+        "mmcif": [by_gemmi],
+        "gro": [by_mdanalysis],
+        "xyz": [by_ase, by_mdanalysis],
+        "lammps-dump": [by_ase_dump, by_mdanalysis_dump],
+        "lammps-data": [by_ase_data],
+        "gsd": [by_gsd],
+        "ply": [by_plyfile],
+        "npy": [by_numpy],
+        "npz": [by_numpy],
+        "csv": [by_numpy_text],
+        "xyzr": [by_numpy_text],
+    }[format]
+
+
+def answer(program, positions, cell=None, frames=1, **more):
+    positions = np.asarray(positions, dtype=float)
+    return {"program": program, "frames": frames, "count": len(positions), "cell": cell, "rows": positions,
+            "any_order": False} | more
+
+
+def unpacked(file):
+    """The text of a file that may be packed."""
+    import bz2
+    import gzip
+    opener = {".gz": gzip.open, ".bz2": bz2.open}.get(file.suffix, open)
+    with opener(file, "rt", encoding="utf-8", errors="replace") as stream:
+        return stream.read()
+
+
+def by_gemmi_crystal(file):
+    import gemmi
+    block = next(block for block in gemmi.cif.read(str(file)) if block.find_values("_atom_site_fract_x"))
+    if file.stem in SETTINGS:
+        loop = block.init_loop("_symmetry_equiv_pos_", ["as_xyz"])
+        for operation in gemmi.SpaceGroup(SETTINGS[file.stem]).operations():
+            loop.add_row([f"'{operation.triplet()}'"])
+    structure = gemmi.make_small_structure_from_block(block)
+    if structure.symops:
+        structure.determine_and_set_spacegroup("s")
+    else:
+        structure.determine_and_set_spacegroup("h2n" if structure.spacegroup_hm else "an")
+    sites = structure.get_all_unit_cell_sites()
+    cell = np.array(structure.cell.orth.mat.tolist()).T
+    positions = np.array([structure.cell.orthogonalize(site.fract).tolist() for site in sites])
+    keep = greatest([site.occ for site in sites], positions, cell)
+    elements = [sites[at].element.name for at in keep]
+    return answer(f"gemmi {gemmi.__version__}", positions[keep], cell, None, any_order=True, elements=elements)
+
+
+def greatest(occupancies, positions, cell):
+    """Of the positions that are shared, those of the greatest occupancy."""
+    keep = []
+    for at in np.argsort(-np.array(occupancies), kind="stable"):
+        away = (positions[keep] - positions[at]) @ np.linalg.inv(cell)
+        away = (away - away.round()) @ cell
+        if not len(keep) or np.linalg.norm(away, axis=1).min() > 0.1:
+            keep.append(at)
+    return sorted(keep)
+
+
+def by_gemmi(file):
+    import gemmi
+    structure = gemmi.read_structure(str(file))
+    model = structure[0]
+    kept = []
+    for chain in model:
+        residues = {}
+        for residue in chain:
+            for atom in residue:
+                residues.setdefault(str(residue.seqid), []).append((residue.name, atom))
+        for atoms in residues.values():
+            kept += main_conformer(atoms)
+    if not kept:
+        raise Unread("no atoms")
+    kept.sort(key=lambda atom: atom.serial)
+    cell = structure.cell
+    has_cell = cell.is_crystal()
+    matrix = np.array(cell.orth.mat.tolist()).T if has_cell else None
+    return answer(f"gemmi {gemmi.__version__}", [atom.pos.tolist() for atom in kept], matrix, len(structure))
+
+
+def main_conformer(atoms):
+    """The atoms of a residue without those at alternate locations of lesser occupancy."""
+    means = {}
+    for _, atom in atoms:
+        if atom.has_altloc():
+            means.setdefault(atom.altloc, []).append(atom.occ)
+    if not means:
+        return [atom for _, atom in atoms]
+    order = sorted(means, key=lambda altloc: -np.mean(means[altloc]))
+    main = next(name for name, atom in atoms if atom.altloc == order[0])
+    best = {}
+    for name, atom in atoms:
+        if atom.has_altloc() and name == main:
+            other = best.get(atom.name)
+            if other is None or order.index(atom.altloc) < order.index(other.altloc):
+                best[atom.name] = atom
+    chosen = {id(atom) for atom in best.values()}
+    return [atom for _, atom in atoms if not atom.has_altloc() or id(atom) in chosen]
+
+
+def by_ase(file, **options):
+    import ase
+    import ase.io
+    frames = ase.io.read(file, index=":", **options)
+    atoms = frames[0]
+    cell = atoms.cell.array if atoms.cell.rank == 3 else None
+    crystal = ".cif" in file.name
+    return answer(f"ASE {ase.__version__}", atoms.positions, cell, None if crystal else len(frames), any_order=crystal,
+                  elements=atoms.get_chemical_symbols())
+
+
+def by_ase_dump(file):
+    return by_ase(file, format="lammps-dump-text", order=False)
+
+
+def by_ase_data(file):
+    import re
+    style = re.search(r"^Atoms\s*#\s*(\S+)", unpacked(file), re.M)
+    if not style:
+        raise Unread("no atom style")
+    return by_ase(file, format="lammps-data", atom_style=style[1], sort_by_id=False)
+
+
+def by_mdanalysis(file, **options):
+    import MDAnalysis
+    universe = MDAnalysis.Universe(str(file), **options)
+    cell = universe.trajectory.ts.triclinic_dimensions
+    return answer(f"MDAnalysis {MDAnalysis.__version__}", universe.atoms.positions, cell, len(universe.trajectory))
+
+
+def by_mdanalysis_dump(file):
+    return by_mdanalysis(file, topology_format="LAMMPSDUMP", format="LAMMPSDUMP")
+
+
+def by_gsd(file):
+    import gsd.hoomd
+    import gsd.version
+    with gsd.hoomd.open(file) as frames:
+        frame, count = frames[0], len(frames)
+    x, y, z, xy, xz, yz = frame.configuration.box
+    cell = np.array([[x, 0, 0], [xy * y, y, 0], [xz * z, yz * z, z]])
+    origin = -cell.sum(axis=0) / 2
+    return answer(f"gsd {gsd.version.version}", frame.particles.position, cell, count, origin=origin,
+                  radii=frame.particles.diameter / 2)
+
+
+def by_plyfile(file):
+    import plyfile
+    vertex = plyfile.PlyData.read(file)["vertex"]
+    return answer("plyfile", np.column_stack([vertex[axis] for axis in "xyz"]))
+
+
+def by_numpy(file):
+    arrays = np.load(file)
+    frames, cell, more = 1, None, {}
+    if file.suffix == ".npz":
+        names = ["position", "positions", "pos", "xyz", "points", "coordinates"]
+        places = next(arrays[name] for name in names if name in arrays)
+        if "radius" in arrays:
+            more["radii"] = arrays["radius"]
+        box = arrays.get("box")
+        if box is not None and box.shape == (6,):
+            x, y, z, xy, xz, yz = box
+            cell = np.array([[x, 0, 0], [xy * y, y, 0], [xz * z, yz * z, z]])
+            more["origin"] = -cell.sum(axis=0) / 2
+        elif box is not None and box.shape == (3, 3):
+            cell = box
+    else:
+        places = arrays
+    if places.ndim == 3:
+        places, frames = places[0], len(places)
+    return answer(f"NumPy {np.__version__}", places[:, :3], cell, frames, **more)
+
+
+def by_numpy_text(file):
+    text = unpacked(file)
+    skip = 1 if file.suffix == ".csv" else 0
+    rows = np.loadtxt(text.splitlines(), delimiter="," if skip else None, skiprows=skip, ndmin=2)
+    more = {"radii": rows[:, 3]} if rows.shape[1] == 4 else {}
+    return answer(f"NumPy {np.__version__}", rows[:, :3], None, 1, **more)
+
+
+FORMATS = {".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
+           ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif"}
+
+
+def write_answers():
+    """Writes what other programs read from each file, beside the files."""
+    lines = ["# Written by tools/readers/compare.py --answers; lengths in angstrom where the format has a unit."]
+    for file in sorted(DATA.iterdir()):
+        format = FORMATS.get(file.suffix)
+        if format is None or file.name in ("answers.toml", "space_groups.csv"):
+            continue
+        if format == "cif" and "_atom_site.Cartn_x" in file.read_text():
+            format = "mmcif"
+        found = first_answer(file, format)
+        lines += ["", "[[file]]", f'name = "{file.name}"', f'format = "{format}"', f'program = "{found["program"]}"']
+        if found["frames"] is not None:
+            lines.append(f"frames = {found['frames']}")
+        lines.append(f"count = {found['count']}")
+        if found["cell"] is not None:
+            lines.append(f"cell = {rounded(found['cell'])}")
+        if "origin" in found:
+            lines.append(f"origin = {rounded(found['origin'])}")
+        rows = found["rows"]
+        if found["any_order"]:
+            lines.append("any_order = true")
+            lines.append(f"elements = {json.dumps(found['elements'])}")
+            lines.append(f"first = {rounded(rows)}")
+        else:
+            lines += [f"first = {rounded(rows[:ROWS])}", f"last = {rounded(rows[-ROWS:])}"]
+            if "radii" in found:
+                lines.append(f"radii = {rounded(found['radii'][:ROWS])}")
+    (DATA / "answers.toml").write_text("\n".join(lines) + "\n")
+    return 0
+
+
+def first_answer(file, format):
+    """What the first program that reads the file reads from it."""
+    faults = []
+    for program in programs(file, format):
+        try:
+            return program(file)
+        except Exception as fault:
+            faults.append(f"{program.__name__}: {fault}")
+    raise SystemExit(f"{file}: {faults}")
+
+
+def rounded(values):
+    return json.dumps((np.asarray(values, dtype=float).round(5) + 0.0).tolist())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
