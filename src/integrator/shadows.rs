@@ -5,7 +5,7 @@ use super::gather::Starts;
 use super::stages;
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask, Packing, U32x16, set_bits};
-use crate::ray::{Columns3, GROUND, Hits, MISS, Rays};
+use crate::ray::{Columns3, ExactRay, GROUND, Hits, MISS, Rays};
 use crate::vec3::Vec3;
 use crate::world::{LightRow, LightSample, ROW, ReceiverRow, World};
 use glam::Vec3 as Point;
@@ -97,10 +97,20 @@ pub fn cast(
     work.shadows.push_row(&starts.at, (samples, lanes), (starts.carried.place, light));
 }
 
-/// Whether a sphere hides a light from a point of its inside: what lies behind its far side.
+/// Whether a sphere hides a light from a point of its inside: what lies behind its far side, or behind
+/// its cap.
 fn hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
     let own = work.hits.sphere[row];
-    own != GROUND && work.chord(world, row, sample.direction) < sample.t
+    own != GROUND
+        && (work.chord(world, row, sample.direction) < sample.t
+            || (!world.cut.is_empty() && cap_hides(world, work, row, sample)))
+}
+
+/// Whether the way to a light from the inside of a sphere crosses a flat cut.
+#[cold]
+fn cap_hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
+    let ray = ExactRay::new(work.surface.point.row(row), sample.direction, true);
+    world.cut.clip(&ray, work.hits.sphere[row]).to < sample.t
 }
 
 impl Shadows {

@@ -254,10 +254,19 @@ fn solve_cut(world: &World, work: &mut Workspace, row: usize) {
     }
     let (center, radius) = world.spheres.exact(hit as usize);
     if own == hit && world.cut.divides(center, radius) {
-        let normal = ray.at_from(center, t).normalize_or(-ray.direction.normalize());
+        let normal = leaving(ray.at_from(center, t), ray.direction.normalize());
         work.surface.point.set(row, (center + normal * radius).as_vec3());
         work.surface.normal.set(row, normal);
     }
+}
+
+/// The outward unit normal where a ray leaves a sphere, from the point seen from the center and the unit
+/// direction. Rounding may move the origin of a ray that grazes the sphere out of it: it leaves all the
+/// same.
+fn leaving(toward: DVec3, direction: DVec3) -> DVec3 {
+    let least = toward.length() * f64::from(f32::EPSILON);
+    let outward = (least - toward.dot(direction)).max(0.0);
+    (toward + direction * outward).normalize_or(direction)
 }
 
 /// Distance from a point of a sphere, with outward unit `normal`, through the inside to where

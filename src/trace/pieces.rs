@@ -68,13 +68,16 @@ impl Pieces {
         if span.to >= bound {
             return self.hits.set(row, bound, known);
         }
-        // It goes inside what it starts on, or the camera may be inside something, and then the
-        // ground.
+        // It goes on inside the sphere that it starts on, or the camera may be inside a sphere, and
+        // then so may the ground and other spheres.
         let around = || {
-            let inside = rays.own[row] >= GROUND && world.features.around_camera && span.to > 0.0;
             let holder = |point| tree.bvh.holder(tree.spheres, point);
-            let inside = inside && holder(rays.origin.row(row)).is_some();
-            inside.then(|| holder(rays.exact(row).at(span.to).as_vec3())).flatten()
+            let inside = world.features.around_camera
+                && span.to > 0.0
+                && holder(rays.origin.row(row)).is_some();
+            let cap = inside.then(|| holder(rays.exact(row).at(span.to).as_vec3())).flatten();
+            // Rounding may put the exit of a ray that grazes its own sphere inside of that.
+            cap.filter(|&sphere| sphere != rays.own[row])
         };
         let sphere = if known < GROUND { Some(known) } else { around() };
         self.hits.set(row, span.to, sphere.unwrap_or(MISS));

@@ -110,7 +110,7 @@ impl Cut {
             let t = -above / rise;
             if above.abs() <= ray.origin_error || (above > 0.0 && own < GROUND) {
                 if rise > 0.0 {
-                    span.to = 0.0;
+                    (span.to, span.exit) = (0.0, Some(plane.normal));
                 }
             } else if above > 0.0 {
                 if rise >= 0.0 {
@@ -189,6 +189,8 @@ mod tests {
         assert_eq!(plane.cap(&down, MISS, 3.0_f64.next_up()), None);
         assert_eq!(plane.cap(&ray(DVec3::ZERO, DVec3::Z), MISS, 1.0), Some(DVec3::Z));
         assert_eq!(Cut::default().cap(&down, MISS, 3.0), None);
+        // From inside, at the rim.
+        assert_eq!(plane.cap(&ray(DVec3::Z, DVec3::new(1.0, 0.0, 1.0)), 7, 0.0), Some(DVec3::Z));
         assert!(plane.divides(DVec3::ZERO, 1.5) && !plane.divides(DVec3::ZERO, 1.0));
     }
 }

@@ -6,6 +6,7 @@ mod common;
 mod camera;
 mod caustics;
 mod diffuse;
+mod enclosed;
 mod furnace;
 mod glass;
 mod lights;
