@@ -5,10 +5,10 @@
 use crate::folder::{Folder, text};
 use assert_cmd::Command;
 use std::ffi::OsStr;
-use std::fs::{self, File, Permissions};
+use std::fs::{self, File};
 use std::io::Write;
 use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{PermissionsExt, symlink};
+use std::os::unix::fs::symlink;
 use std::process::Output;
 use std::time::Duration;
 
@@ -150,19 +150,15 @@ fn pipes_that_end_early_are_refused() {
 }
 
 #[test]
-fn files_that_must_not_be_read_are_refused() {
+fn files_that_cannot_be_opened_are_refused() {
     let folder = Folder::new();
-    for name in ["secret.toml", "secret.xyz", "secret.png"] {
-        folder.write(name, "");
-        fs::set_permissions(folder.path(name), Permissions::from_mode(0o000)).unwrap();
+    // Links to themselves: unlike files without permissions, the superuser cannot open them either.
+    for name in ["loop.toml", "loop.xyz", "loop.png"] {
+        symlink(name, folder.path(name)).unwrap();
     }
-    if File::open(folder.path("secret.toml")).is_ok() {
-        // The superuser may read everything.
-        return;
-    }
-    refuse(&folder, "info secret.toml", "secret.toml: cannot be read");
-    refuse(&folder, "info secret.xyz", "secret.xyz: cannot be read");
-    refuse(&folder, "compare secret.png secret.png", "cannot read the picture");
+    refuse(&folder, "info loop.toml", "loop.toml: cannot be read");
+    refuse(&folder, "info loop.xyz", "loop.xyz: cannot be read");
+    refuse(&folder, "compare loop.png loop.png", "cannot read the picture");
 }
 
 #[test]
