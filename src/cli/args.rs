@@ -6,6 +6,7 @@ mod picture;
 pub(super) use field::{FieldArgs, Kind, ParameterArgs};
 pub(super) use picture::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
 
+use super::command_line::command_line;
 use super::keep::KeepArgs;
 use super::looks::LookArgs;
 use super::memory::MemoryArgs;
@@ -15,11 +16,17 @@ use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
 use super::{Failure, bench, compare, examples, merge, stress, view};
 use clap::{Parser, Subcommand};
+use spherule::image::Format;
 use std::path::PathBuf;
 
 /// Renders scenes made of spheres: exact visibility, and the same picture at every speed setting
 #[derive(Debug, Parser)]
-#[command(name = "spherule", version, after_help = examples::PROGRAM)]
+#[command(
+    name = "spherule",
+    version,
+    override_usage = "spherule [FILE] [OPTIONS]\n       spherule <COMMAND>",
+    after_help = examples::PROGRAM
+)]
 pub(super) struct Args {
     #[command(subcommand)]
     command: Option<Command>,
@@ -61,8 +68,13 @@ pub(super) struct RenderArgs {
     /// A scene (.toml), a file of particles (any other name) or - for particles on standard input;
     /// without it, a random field of spheres
     pub(super) scene: Option<PathBuf>,
-    /// The picture: .png, .ppm, .pfm or .exr
-    #[arg(short, long, value_name = "FILE", default_value = "spherule.png")]
+    #[arg(
+        short,
+        long,
+        value_name = "FILE",
+        default_value = "spherule.png",
+        help = picture_help()
+    )]
     pub(super) output: PathBuf,
     #[command(flatten)]
     pub(super) particles: ParticleArgs,
@@ -108,12 +120,25 @@ pub(super) struct CompletionsArgs {
     pub(super) shell: clap_complete::Shell,
 }
 
+/// Help of the option that names the picture.
+pub(super) fn picture_help() -> String {
+    format!(
+        "The picture: a name that ends in {}, or - for standard output",
+        Format::written_suffixes()
+    )
+}
+
+/// Help of a picture that is read.
+pub(super) fn read_help() -> String {
+    format!("The picture: {}", Format::read_names())
+}
+
 impl Args {
     /// Returns the command of this process, or what there is to print instead: help, the version, or what
     /// is wrong.
     pub(super) fn of_process() -> Result<Command, Failure> {
         let usual = || Command::Render(Box::new(RenderArgs::parse_from(["spherule"])));
-        let args = Self::try_parse().map_err(Failure::Usage)?;
+        let args = Self::try_parse_from(command_line()?).map_err(Failure::Usage)?;
         Ok(args.command.unwrap_or_else(usual))
     }
 }

@@ -1,6 +1,7 @@
 //! A command as it was typed, option by option: to be kept, and given again with other options.
 
 use super::args::Args;
+use super::command_line::command_line;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command, CommandFactory};
 use std::env;
@@ -44,7 +45,8 @@ impl Given {
 impl TypedOptions {
     /// What was typed of the command that renders, if this process was called with it.
     fn of_process() -> Self {
-        let matches = Args::command().try_get_matches_from(env::args_os());
+        let line = command_line().unwrap_or_default();
+        let matches = Args::command().try_get_matches_from(line);
         let matches = matches.ok().and_then(|mut all| all.remove_subcommand());
         matches.map_or(Self(Vec::new()), |(_, matches)| Self::of(&render_command(), &matches))
     }

@@ -1,6 +1,7 @@
 //! `spherule compare`: how far a picture is from a reference.
 
 use super::Failure;
+use super::args::read_help;
 use super::files::Files;
 use super::output;
 use indicatif::HumanCount;
@@ -13,8 +14,7 @@ use std::process::ExitCode;
 /// Two pictures.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// The picture: EXR, PFM, PNG, PPM or Radiance HDR
-    #[arg(value_name = "A")]
+    #[arg(value_name = "A", help = read_help())]
     picture: PathBuf,
     /// The reference
     #[arg(value_name = "B")]

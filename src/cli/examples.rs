@@ -4,6 +4,8 @@
 pub(super) const PROGRAM: &str = "\
 Examples:
   spherule                                   a random field of spheres, to spherule.png
+  spherule particles.xyz -o figure.png       the same as spherule render particles.xyz ...
+  spherule ./info                            a file that is named like a command
   spherule render scenes/weekend.toml -o weekend.png
   spherule info scenes/weekend.toml
 
@@ -26,6 +28,7 @@ Examples:
   spherule render protein.pdb --projection orthographic --turntable 90 -o turn.png
   spherule render protein.pdb --preset outline --background white -o outline.png
   spherule render grains.data --slice 'z>50%' --slice-mode caps -o section.png
+  spherule render scene.toml -o - --output-format jpeg | display
   spherule render scene.toml --region 100,50,64x64 -o detail.png
   spherule render scene.toml -o picture.exr --part 3/8     to picture.3-of-8.part, for merge
   spherule render scene.toml -o picture.exr --part from-env     in a job array or under mpirun

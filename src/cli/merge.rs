@@ -1,9 +1,10 @@
 //! `spherule merge`: parts of a render become the picture of the whole.
 
-use super::args::EncodingArgs;
+use super::args::{EncodingArgs, picture_help};
 use super::contents::plural;
 use super::files::Files;
 use super::memory::MemoryArgs;
+use super::picture_file;
 use super::render::{Subject, warnings};
 use super::settings::{self, List};
 use super::write_file::write_file;
@@ -12,7 +13,7 @@ use indicatif::HumanCount;
 use serde::Serialize;
 use spherule::checkpoint::{self, Caption};
 use spherule::film::Region;
-use spherule::image::{Channel, Format, check_writable};
+use spherule::image::{Channel, Format};
 use spherule::layers::{Features, Layer, Layers};
 use spherule::render::{Render, Share, Unfinished};
 use spherule::split::{Merge, MergeError};
@@ -26,8 +27,7 @@ pub(super) struct Args {
     /// What `spherule render --part` wrote, in any order
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
-    /// The picture: .png, .ppm, .pfm or .exr
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help = picture_help())]
     output: PathBuf,
     /// Merge what there is, though parts are missing or were interrupted: every pixel is the mean of the
     /// samples that it has, and black if it has none
@@ -75,21 +75,24 @@ struct Summary {
 /// Merges, writes and tells.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     args.memory.obey();
-    let format = Format::of_suffix(&args.output)?;
+    let format = picture_file::format(&args.output, args.encoding.output_format)?;
+    picture_file::check_stream("merge", &args.output, args.json)?;
     if !args.encoding.layers.is_empty() && format != Format::Exr {
-        let message =
-            format!("{format} has no room for --layers; end the name of --output in .exr");
+        let message = format!(
+            "{format} has no room for --layers; end the name of --output in .exr, or give --output-format exr"
+        );
         return Err(Failure::usage("merge", message));
     }
     let mut files = Files::new("merge");
     args.parts.iter().for_each(|part| files.reads("a part", part));
     files.writes("--output", &args.output);
     files.check()?;
-    check_writable(&args.output)?;
+    picture_file::check(&args.output)?;
     let merged = merge(args)?;
     let render = merged.whole.render();
     let channels = merged.channels(args, format, &render)?;
     let (region, settings) = (merged.whole.region(), merged.whole.settings());
+    picture_file::check_size("merge", region, format)?;
     let Caption { title, looks, .. } = &merged.caption;
     let subject = Subject { title, settings, region, looks };
     let options = subject.write_options(&args.encoding, format, &render);

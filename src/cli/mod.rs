@@ -4,6 +4,7 @@
 mod args;
 mod bench;
 mod command;
+mod command_line;
 mod compare;
 mod completions;
 mod contents;
@@ -22,6 +23,7 @@ mod names;
 mod output;
 mod part;
 mod particles;
+mod picture_file;
 mod processor;
 mod progress;
 mod render;

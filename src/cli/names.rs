@@ -1,7 +1,7 @@
 //! The words of the command line, and what each of them means.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use spherule::image::{Depth, PpmEncoding};
+use spherule::image::{Depth, Format, PpmEncoding};
 use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, LightChoice, SamplerKind, Tone};
 use spherule::split::Split;
@@ -71,6 +71,14 @@ pub(super) const TONES: Names<Tone> = Names(&[
     ("linear", Tone::Linear, "Clip at 1"),
     ("filmic", Tone::Filmic, "Roll highlights off"),
 ]);
+
+/// Reads the name of a format that is written.
+pub(super) fn formats() -> impl TypedValueParser<Value = Format> {
+    let named =
+        |name: &str| Format::WRITTEN.into_iter().find(|format| format.option_name() == name);
+    PossibleValuesParser::new(Format::WRITTEN.map(Format::option_name))
+        .try_map(move |name| named(&name).ok_or("not one of the names"))
+}
 
 /// Bits of a channel.
 pub(super) const BITS: Names<Depth> =

@@ -23,6 +23,9 @@ static OUTPUT_FAILURE: OnceLock<io::Error> = OnceLock::new();
 /// True once a message could not be written to standard error.
 static MESSAGE_LOST: AtomicBool = AtomicBool::new(false);
 
+/// True once standard output takes a picture.
+static RESERVED: AtomicBool = AtomicBool::new(false);
+
 /// Prints a line on standard output: what was asked for.
 pub(super) fn print(text: impl Display) {
     write(format_args!("{text}\n"));
@@ -30,11 +33,25 @@ pub(super) fn print(text: impl Display) {
 
 /// Prints text on standard output as it is, without an end of line.
 pub(super) fn write(text: Arguments) {
+    if RESERVED.load(Ordering::Relaxed) {
+        return tell_text(text);
+    }
     if OUTPUT_FAILURE.get().is_some() {
         return;
     }
     let mut output = anstream::stdout().lock();
     record(output.write_fmt(text).and_then(|()| output.flush()));
+}
+
+/// Leaves standard output to a picture: from now on results are printed on standard error.
+pub(super) fn reserve_for_picture() {
+    RESERVED.store(true, Ordering::Relaxed);
+}
+
+/// Writes a file's content to standard output.
+pub(super) fn write_bytes(content: &[u8]) {
+    let mut output = io::stdout().lock();
+    record(output.write_all(content).and_then(|()| output.flush()));
 }
 
 /// Prints one JSON object on standard output.
@@ -62,7 +79,11 @@ pub(super) fn error(text: impl Display) {
 
 /// Prints a line on standard error as it is.
 pub(super) fn tell_plain(text: impl Display) {
-    if is_lost(&writeln!(anstream::stderr().lock(), "{text}")) {
+    tell_text(format_args!("{text}\n"));
+}
+
+fn tell_text(text: Arguments) {
+    if is_lost(&anstream::stderr().lock().write_fmt(text)) {
         MESSAGE_LOST.store(true, Ordering::Relaxed);
     }
 }

@@ -111,20 +111,18 @@ pub(super) fn list(settings: &Settings, region: Region) -> List {
 /// How the format shows the picture; nothing for formats that hold it as it is.
 pub(super) fn list_encoding(format: Format, options: &WriteOptions) -> List {
     let mut list = List::new();
-    if shows(format) {
+    if !format.is_linear() {
         list.insert("exposure".to_owned(), json!(options.exposure));
         list.insert("tone".to_owned(), json!(TONES.name(&options.tone)));
         list.insert("bits".to_owned(), json!(bits(options.depth)));
+    }
+    if format == Format::Jpeg {
+        list.insert("quality".to_owned(), json!(options.quality));
     }
     if format == Format::Ppm {
         list.insert("ppm".to_owned(), json!(PPM.name(&options.ppm)));
     }
     list
-}
-
-/// Whether a format holds what a display shows, exposed and encoded, or else linear radiance.
-pub(super) fn shows(format: Format) -> bool {
-    matches!(format, Format::Png | Format::Ppm)
 }
 
 /// A region as it is typed.

@@ -1,16 +1,22 @@
 //! Writing whole output files, pipes among them.
 
-use super::{Failure, signals};
+use super::files::STREAM;
+use super::{Failure, output, signals};
 use spherule::atomic::write_atomically;
 use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Writes a file as a whole, or content to a device or a pipe.
+/// Writes a file as a whole, or content to a device, a pipe or standard output, which is called `-`.
 ///
 /// A pipe's reader may never come, or stop reading: meanwhile any signal ends the program at once, and after
 /// a signal only a reader that is there is written to.
 pub(super) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    if path == Path::new(STREAM) {
+        signals::release();
+        output::write_bytes(content);
+        return Ok(());
+    }
     let failed = |error: io::Error| Failure::Write(path.to_owned(), error);
     if is_special(path)
         && let Some(code) = signals::release()

@@ -19,10 +19,7 @@ pub enum ImageError {
         reason: io::Error,
     },
     /// The first bytes are of no format that is read here.
-    #[error(
-        "{path:?} is not a picture of a known format; convert it to EXR, PFM, PNG, PPM (P3 or P6) \
-         or Radiance HDR"
-    )]
+    #[error("{path:?} is not a picture of a known format; convert it to {}", Format::read_names())]
     UnknownContent {
         /// The file.
         path: PathBuf,
@@ -38,7 +35,10 @@ pub enum ImageError {
         reason: String,
     },
     /// The suffix of the destination names no format that is written here.
-    #[error("the suffix of {path:?} names no format; end the name in .png, .ppm, .pfm or .exr")]
+    #[error(
+        "the suffix of {path:?} names no format; end the name in {}",
+        Format::written_suffixes()
+    )]
     UnknownSuffix {
         /// The destination.
         path: PathBuf,

@@ -1,7 +1,9 @@
 //! File formats: how they are told apart, and the way to their codecs.
 
 use super::channel::ALPHA;
-use super::{Channel, Image, ImageError, Values, WriteOptions, exr, pfm, png, ppm, radiance};
+use super::{
+    Channel, Image, ImageError, Values, WriteOptions, exr, pfm, png, ppm, radiance, raster,
+};
 use crate::memory;
 use std::{
     fmt,
@@ -25,6 +27,8 @@ const MAGIC_LENGTH: u64 = 16;
 pub enum Format {
     /// `OpenEXR`: linear floats.
     Exr,
+    /// JPEG: sRGB codes of 8 bits, with loss.
+    Jpeg,
     /// Portable float map: linear floats, uncompressed.
     Pfm,
     /// Portable network graphics: sRGB codes of 8 or 16 bits.
@@ -33,9 +37,84 @@ pub enum Format {
     Ppm,
     /// Radiance HDR (RGBE): linear, read only.
     Radiance,
+    /// TIFF: sRGB codes of 8 or 16 bits; floats, which are linear, are only read.
+    Tiff,
+    /// WebP: sRGB codes of 8 bits, written without loss.
+    Webp,
 }
 
 impl Format {
+    /// Formats that are written, in the order in which they are listed.
+    pub const WRITTEN: [Self; 7] =
+        [Self::Png, Self::Exr, Self::Jpeg, Self::Tiff, Self::Webp, Self::Pfm, Self::Ppm];
+
+    /// Suffixes of its files, in lower case and without the point; the usual one first.
+    pub fn suffixes(self) -> &'static [&'static str] {
+        match self {
+            Self::Exr => &["exr"],
+            Self::Jpeg => &["jpg", "jpeg"],
+            Self::Pfm => &["pfm"],
+            Self::Png => &["png"],
+            Self::Ppm => &["ppm"],
+            Self::Radiance => &["hdr"],
+            Self::Tiff => &["tif", "tiff"],
+            Self::Webp => &["webp"],
+        }
+    }
+
+    /// The format's name in lower case, as options have it.
+    pub fn option_name(self) -> &'static str {
+        match self {
+            Self::Exr => "exr",
+            Self::Jpeg => "jpeg",
+            Self::Pfm => "pfm",
+            Self::Png => "png",
+            Self::Ppm => "ppm",
+            Self::Radiance => "radiance",
+            Self::Tiff => "tiff",
+            Self::Webp => "webp",
+        }
+    }
+
+    /// The usual suffixes of all formats that are written, as a list in a sentence: `.png, .exr or .jpg`.
+    pub fn written_suffixes() -> String {
+        Self::list_suffixes(|_| true)
+    }
+
+    /// The usual suffixes of the formats that are written and have a property.
+    pub fn list_suffixes(has: impl Fn(Self) -> bool) -> String {
+        let formats = Self::WRITTEN.into_iter().filter(|format| has(*format));
+        list(formats.map(|format| format!(".{}", format.suffixes()[0])))
+    }
+
+    /// The names of all formats that are read, as a list in a sentence.
+    pub fn read_names() -> String {
+        list(Self::WRITTEN.into_iter().chain([Self::Radiance]).map(|format| format.to_string()))
+    }
+
+    /// Returns whether files hold radiance as it is, not codes for a display.
+    pub fn is_linear(self) -> bool {
+        matches!(self, Self::Exr | Self::Pfm | Self::Radiance)
+    }
+
+    /// Returns whether files may have codes of 16 bits.
+    pub fn has_sixteen_bits(self) -> bool {
+        matches!(self, Self::Png | Self::Ppm | Self::Tiff)
+    }
+
+    /// Returns whether files have room for alpha.
+    pub fn has_alpha(self) -> bool {
+        matches!(self, Self::Exr | Self::Png | Self::Tiff | Self::Webp)
+    }
+
+    /// The largest width and height of a file.
+    pub fn largest_side(self) -> u32 {
+        match self {
+            Self::Webp => raster::WEBP_SIDE,
+            _ => u32::from(u16::MAX),
+        }
+    }
+
     /// The format that the first bytes of a file speak of, if it is one that is read here.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
         let starts = |magic: &[u8]| bytes.starts_with(magic);
@@ -46,6 +125,12 @@ impl Format {
             Some(Self::Exr)
         } else if starts(b"#?RADIANCE") || starts(b"#?RGBE") {
             Some(Self::Radiance)
+        } else if starts(b"\xFF\xD8\xFF") {
+            Some(Self::Jpeg)
+        } else if [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].into_iter().any(|magic| starts(magic)) {
+            Some(Self::Tiff)
+        } else if starts(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
+            Some(Self::Webp)
         } else if netpbm && (starts(b"PF") || starts(b"Pf")) {
             Some(Self::Pfm)
         } else if netpbm && (starts(b"P3") || starts(b"P6")) {
@@ -58,23 +143,20 @@ impl Format {
     /// The format that is written to a file of this name: by its suffix, in any case.
     ///
     /// # Errors
-    /// [`ImageError::UnknownSuffix`] if it is not `.png`, `.ppm`, `.pfm` or `.exr`.
+    /// [`ImageError::UnknownSuffix`] if it is that of no format in [`Format::WRITTEN`].
     pub fn of_suffix(path: &Path) -> Result<Self, ImageError> {
         let suffix = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        match suffix.as_str() {
-            "exr" => Ok(Self::Exr),
-            "pfm" => Ok(Self::Pfm),
-            "png" => Ok(Self::Png),
-            "ppm" => Ok(Self::Ppm),
-            _ => Err(ImageError::UnknownSuffix { path: path.to_owned() }),
-        }
+        let mut formats = Self::WRITTEN.into_iter();
+        formats
+            .find(|format| format.suffixes().contains(&suffix.as_str()))
+            .ok_or_else(|| ImageError::UnknownSuffix { path: path.to_owned() })
     }
 
     /// Whether files of this format have room for these channels.
     pub(super) fn holds(self, channels: &[Channel]) -> bool {
         match (self, channels) {
             (Self::Exr, _) | (_, []) => true,
-            (Self::Png, [Channel { name, values: Values::Floats(_) }]) => name == ALPHA,
+            (_, [Channel { name, values: Values::Floats(_) }]) => self.has_alpha() && name == ALPHA,
             _ => false,
         }
     }
@@ -86,10 +168,13 @@ impl Format {
     pub(super) fn decode(self, bytes: &[u8]) -> Result<Image, String> {
         let decode: fn(&[u8]) -> Result<Image, String> = match self {
             Self::Exr => exr::decode,
+            Self::Jpeg => raster::decode_jpeg,
             Self::Pfm => pfm::decode,
             Self::Png => png::decode,
             Self::Ppm => ppm::decode,
             Self::Radiance => radiance::decode,
+            Self::Tiff => raster::decode_tiff,
+            Self::Webp => raster::decode_webp,
         };
         catch_unwind(|| decode(bytes))
             .unwrap_or_else(|_| Err("the file is damaged; write it anew".into()))
@@ -104,11 +189,24 @@ impl Format {
     ) -> Result<Vec<u8>, String> {
         match self {
             Self::Exr => exr::encode(image, channels, &options.metadata),
+            Self::Jpeg => raster::encode_jpeg(image, options),
             Self::Pfm => Ok(pfm::encode(image)),
             Self::Png => png::encode(image, alpha(channels), options),
             Self::Ppm => Ok(ppm::encode(image, options)),
             Self::Radiance => Err("Radiance HDR is only read".into()),
+            Self::Tiff => raster::encode_tiff(image, alpha(channels), options),
+            Self::Webp => raster::encode_webp(image, alpha(channels), options),
         }
+    }
+}
+
+/// `a, b or c`.
+fn list(items: impl Iterator<Item = String>) -> String {
+    let items: Vec<String> = items.collect();
+    match items.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => String::new(),
     }
 }
 
@@ -124,10 +222,13 @@ impl fmt::Display for Format {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Self::Exr => "EXR",
+            Self::Jpeg => "JPEG",
             Self::Pfm => "PFM",
             Self::Png => "PNG",
             Self::Ppm => "PPM",
             Self::Radiance => "Radiance HDR",
+            Self::Tiff => "TIFF",
+            Self::Webp => "WebP",
         })
     }
 }
@@ -183,7 +284,7 @@ mod tests {
     use crate::image::tests::ramp;
     use proptest::prelude::*;
 
-    const ALL: [Format; 4] = [Format::Exr, Format::Pfm, Format::Png, Format::Ppm];
+    const ALL: [Format; 7] = Format::WRITTEN;
 
     /// A file of 4 x 1 red pixels, in the old encoding without runs.
     pub(in crate::image) const RADIANCE: &[u8] =
@@ -202,7 +303,8 @@ mod tests {
         assert_eq!(Format::of_suffix(Path::new("a/b.ExR")).unwrap(), Format::Exr);
         for name in ["a.hdr", "a", ".png", "a.png~"] {
             let message = Format::of_suffix(Path::new(name)).unwrap_err().to_string();
-            for suffix in [name, ".png", ".ppm", ".pfm", ".exr"] {
+            let suffixes = ALL.map(|format| format!(".{}", format.suffixes()[0]));
+            for suffix in suffixes.iter().map(String::as_str).chain([name]) {
                 assert!(message.contains(suffix), "{message}");
             }
         }
@@ -268,6 +370,7 @@ mod tests {
         fn damage_gives_a_picture_of_the_claimed_size_or_an_error(
             format in prop::sample::select(vec![
                 Format::Exr, Format::Pfm, Format::Png, Format::Ppm, Format::Radiance,
+                Format::Jpeg, Format::Tiff, Format::Webp,
             ]),
             damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         ) {

@@ -1,9 +1,9 @@
 //! What a picture file says about itself: settings, seed, version.
 
-use super::{Format, ImageError, exr, format, png, ppm};
+use super::{Format, ImageError, exr, format, png, ppm, raster};
 use std::{fmt::Write as _, path::Path};
 
-/// Ordered pairs of key and value, as PNG text chunks, PPM comments or EXR comments hold them.
+/// Ordered pairs of key and value, as PNG text chunks, PPM comments, EXR comments or XMP hold them.
 ///
 /// A key has 1 to 79 printable ASCII characters without a colon, and no space at its ends nor two
 /// in a row (the rule of PNG, and the colon ends it elsewhere). A value is any text without NUL.
@@ -104,7 +104,7 @@ fn unescape(text: &str) -> String {
     std::iter::from_fn(next).collect()
 }
 
-/// Reads what a PNG, PPM or EXR file says about itself; PFM and Radiance HDR give no entries.
+/// Reads what a picture's file says about itself; PFM and Radiance HDR give no entries.
 ///
 /// Entries come in file order; in a PNG file of another program all Latin-1 texts come first.
 ///
@@ -116,8 +116,11 @@ pub fn read_metadata(path: impl AsRef<Path>) -> Result<Metadata, ImageError> {
     let (format, bytes) = format::read_file(path)?;
     match format {
         Format::Exr => exr::metadata(&bytes),
+        Format::Jpeg => raster::jpeg_metadata(&bytes),
         Format::Png => png::metadata(&bytes),
         Format::Ppm => Ok(ppm::metadata(&bytes)),
+        Format::Tiff => raster::tiff_metadata(&bytes),
+        Format::Webp => raster::webp_metadata(&bytes),
         Format::Pfm | Format::Radiance => Ok(Metadata::new()),
     }
     .map_err(|reason| ImageError::malformed(path, format, reason))
@@ -139,7 +142,7 @@ mod tests {
         let unicode =
             entries(&[("z", "\u{3b1}\u{1f310}"), ("a", ""), ("seed", "x: y"), ("seed", "2")]);
         for metadata in [latin, unicode, Metadata::new()] {
-            for name in ["a.png", "a.exr", "a.ppm"] {
+            for name in ["a.png", "a.exr", "a.ppm", "a.jpg", "a.tiff", "a.webp"] {
                 let path = folder.path().join(name);
                 let options =
                     WriteOptions { metadata: metadata.clone(), ..WriteOptions::default() };

@@ -1,12 +1,13 @@
 //! Pictures: linear RGB in memory, and the files they come from and go to.
 //!
 //! A render is an [`Image`] of linear radiance. [`Image::write`] turns it into a file: as it is
-//! (EXR, PFM), or exposed, tone-mapped and sRGB-encoded for a display (PNG, PPM). [`Image::read`]
+//! (EXR, PFM), or exposed, tone-mapped and sRGB-encoded for a display (all others). [`Image::read`]
 //! is the way back, for environment maps and for [`compare()`]. Files appear whole or not at all
 //! ([`atomic::write_atomically`]), and [`check_writable`] finds a destination that cannot be
 //! written before hours are spent on the picture.
 
 mod channel;
+mod codes;
 pub mod compare;
 mod error;
 mod exr;
@@ -18,14 +19,16 @@ mod pfm;
 mod png;
 mod ppm;
 mod radiance;
+mod raster;
 pub mod tone;
+mod xmp;
 
 pub use self::channel::{Channel, Values};
 pub use self::compare::{CompareError, Comparison, Difference, compare};
 pub use self::error::ImageError;
 pub use self::format::Format;
 pub use self::metadata::{Metadata, read_metadata};
-pub use self::options::{Depth, PpmEncoding, WriteOptions};
+pub use self::options::{Depth, PpmEncoding, QUALITY, WriteOptions};
 
 use crate::atomic;
 use std::path::Path;
@@ -78,10 +81,9 @@ impl Image {
         self.pixels.iter().flatten().filter(|value| !value.is_finite()).count() as u64
     }
 
-    /// Reads an EXR, PFM, PNG, PPM (P3, P6) or Radiance HDR file; its content says which, not its
-    /// name.
+    /// Reads a picture in any [`Format`]; its content says in which, not its name.
     ///
-    /// PNG and PPM are decoded by the sRGB curve; the others are linear already. Gray becomes RGB,
+    /// Integer codes are decoded by the sRGB curve; floats are linear already. Gray becomes RGB,
     /// and alpha is dropped without dividing by it. Of an EXR file the first part with channels
     /// `R`, `G`, `B`, or `Y` alone, is read over its data window. Radiance values are divided by
     /// the header's `EXPOSURE`.
@@ -96,11 +98,10 @@ impl Image {
         format.decode(&bytes).map_err(|reason| ImageError::malformed(path, format, reason))
     }
 
-    /// Writes a PNG, PPM, PFM or EXR file, as the suffix of `path` says (in any case).
+    /// Writes a file in one of [`Format::WRITTEN`], as the suffix of `path` says (in any case).
     ///
-    /// PNG and PPM get exposed, tone-mapped, sRGB-encoded codes. EXR and PFM get the linear values
-    /// as they are, without exposure and tone, NaN and infinities included. PFM has no room for
-    /// metadata. The file is complete or absent: see [`atomic::write_atomically`].
+    /// EXR and PFM get the linear values as they are, without exposure and tone, NaN and infinities
+    /// included; the others get exposed, tone-mapped, sRGB-encoded codes. PFM has no room for metadata. The file is complete or absent: see [`atomic::write_atomically`].
     ///
     /// # Errors
     /// [`ImageError::UnknownSuffix`]; [`ImageError::Shape`] if the fields of the picture contradict
@@ -111,11 +112,11 @@ impl Image {
         self.write_layers(path, &[], options)
     }
 
-    /// Writes an EXR file that has more channels than `R`, `G` and `B`, or a PNG file that has `A`
-    /// besides; without any, what [`Image::write`] writes.
+    /// Writes an EXR file that has more channels than `R`, `G` and `B`, or a file of another format that
+    /// [has alpha](Format::has_alpha) with `A` besides; without any, what [`Image::write`] writes.
     ///
     /// With the channel `A`, alpha, the picture's colors are premultiplied: their share of each pixel
-    /// is in them. EXR holds them like this, and PNG the color that each share has.
+    /// is in them. EXR holds them like this, and the others the color that each share has.
     ///
     /// # Errors
     /// Those of [`Image::write`]; [`ImageError::Layers`] for another format, and
@@ -215,9 +216,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for (width, height) in [(1, 1), (1, 7), (7, 1), (5, 3), (33, 17)] {
             let image = ramp(width, height);
-            for (name, tolerance) in
-                [("a.exr", 0.0), ("a.PFM", 0.0), ("a.png", 0.01), ("a.ppm", 0.01)]
-            {
+            for (name, tolerance) in [
+                ("a.exr", 0.0),
+                ("a.PFM", 0.0),
+                ("a.png", 0.01),
+                ("a.ppm", 0.01),
+                ("a.tif", 0.01),
+                ("a.webp", 0.01),
+                ("a.jpeg", 0.2),
+            ] {
                 let path = folder.path().join(name);
                 image.write(&path, &WriteOptions::default()).unwrap();
                 let back = Image::read(&path).unwrap();
@@ -246,7 +253,7 @@ mod tests {
         fs::write(&good, b"old").unwrap();
         assert!(check_writable(&good).is_ok());
         assert_eq!(fs::read(&good).unwrap(), b"old");
-        for name in ["missing/a.png", "a.jpeg", "a", "good.png/a.exr"] {
+        for name in ["missing/a.png", "a.gif", "a", "good.png/a.exr"] {
             assert!(check_writable(folder.path().join(name)).is_err(), "{name}");
         }
         fs::create_dir(folder.path().join("folder.png")).unwrap();

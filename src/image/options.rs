@@ -8,18 +8,23 @@ use crate::scene::Tone;
 /// The default is what suits a preview: 8 bits, binary, no exposure, no tone curve, no metadata.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WriteOptions {
-    /// Bits of each channel of PNG and PPM; EXR and PFM are always 32-bit floats.
+    /// Bits of each channel of PNG, PPM and TIFF; JPEG and WebP have 8, EXR and PFM are 32-bit floats.
     pub depth: Depth,
+    /// Quality of JPEG, 1 to 100; the best has the largest files.
+    pub quality: u8,
     /// The dialect of PPM.
     pub ppm: PpmEncoding,
-    /// Stops, finite: PNG and PPM show the picture multiplied by 2 to this power.
+    /// Stops, finite: formats of codes show the picture multiplied by 2 to this power.
     pub exposure: f64,
-    /// From exposed radiance to display-linear values, for PNG and PPM.
+    /// From exposed radiance to display-linear values, for formats of codes.
     pub tone: Tone,
-    /// What the file says about itself: PNG text chunks, PPM comments, the EXR attribute
-    /// `comments`.
+    /// What the file says about itself: PNG text chunks, PPM comments, the EXR attribute `comments`, XMP in
+    /// JPEG, TIFF and WebP.
     pub metadata: Metadata,
 }
+
+/// Quality of JPEG files where nobody says another.
+pub const QUALITY: u8 = 90;
 
 /// Bits of each channel of a file with integer codes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,6 +50,7 @@ impl Default for WriteOptions {
     fn default() -> Self {
         Self {
             depth: Depth::default(),
+            quality: QUALITY,
             ppm: PpmEncoding::default(),
             exposure: 0.0,
             tone: Tone::Linear,
@@ -74,8 +80,8 @@ impl Depth {
 
     /// The bytes of samples in file order, the high byte first where there are two (PNG and PPM
     /// agree).
-    pub(super) fn pack<const N: usize>(self, codes: &[[u16; N]]) -> Vec<u8> {
-        let codes = codes.iter().flatten();
+    pub(super) fn pack(self, codes: &[u16]) -> Vec<u8> {
+        let codes = codes.iter();
         match self {
             Self::Eight => codes.map(|&code| code as u8).collect(),
             Self::Sixteen => codes.flat_map(|code| code.to_be_bytes()).collect(),

@@ -1,9 +1,8 @@
 //! PNG: sRGB codes of 8 or 16 bits, with the metadata in text chunks.
 
 use super::{
-    Depth, Image, Metadata, WriteOptions,
+    Depth, Image, Metadata, WriteOptions, codes,
     format::{claimed_area, damaged},
-    tone,
 };
 use ::png::{
     BitDepth, ColorType, Decoder, Encoder, EncodingError, Info, Reader, SrgbRenderingIntent,
@@ -37,11 +36,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, String> {
     let channels = frame.color_type.samples();
     let pixels = match frame.bit_depth {
         BitDepth::Sixteen => {
-            let codes: Vec<_> =
+            let samples: Vec<_> =
                 samples.as_chunks().0.iter().map(|&pair| u16::from_be_bytes(pair)).collect();
-            colors(&codes, channels, Depth::Sixteen)
+            codes::decode(&samples, channels, Depth::Sixteen)
         }
-        _ => colors(&samples, channels, Depth::Eight),
+        _ => codes::decode(&samples, channels, Depth::Eight),
     };
     if pixels.len() != area {
         return Err("its first frame does not fill its size; export a single picture".into());
@@ -54,18 +53,6 @@ fn open(bytes: &[u8]) -> Result<MemoryReader<'_>, String> {
     // Palettes become RGB, and 1, 2 and 4 bits of gray become 8.
     decoder.set_transformations(Transformations::EXPAND);
     decoder.read_info().map_err(|error| damaged(&error))
-}
-
-/// Decodes samples of 1 (gray) or 3 channels, or one more with alpha, which is dropped.
-fn colors<T: Copy + Into<usize>>(samples: &[T], channels: usize, depth: Depth) -> Vec<[f32; 3]> {
-    let table = tone::decode_table(depth.maximum());
-    let value = |sample: T| table[sample.into()];
-    let color = |pixel: &[T]| match *pixel {
-        [red, green, blue, ..] => [value(red), value(green), value(blue)],
-        [gray, ..] => [value(gray); 3],
-        [] => [0.0; 3],
-    };
-    samples.chunks_exact(channels).map(color).collect()
 }
 
 /// The text chunks before the pixels.
@@ -100,10 +87,7 @@ pub(super) fn encode(
     options: &WriteOptions,
 ) -> Result<Vec<u8>, String> {
     let mut info = Info::with_size(image.width, image.height);
-    let samples = match alpha {
-        None => options.depth.pack(&tone::codes(&image.pixels, options)),
-        Some(alpha) => options.depth.pack(&codes_with_alpha(image, alpha, options)),
-    };
+    let samples = options.depth.pack(&codes::encode(image, alpha, options));
     info.color_type = if alpha.is_some() { ColorType::Rgba } else { ColorType::Rgb };
     info.bit_depth = match options.depth {
         Depth::Eight => BitDepth::Eight,
@@ -112,18 +96,6 @@ pub(super) fn encode(
     let mut bytes = Vec::new();
     compress(&mut bytes, info, &options.metadata, &samples).map_err(|error| error.to_string())?;
     Ok(bytes)
-}
-
-/// The codes of the colors that shares of pixels have, and of the shares: alpha is linear.
-fn codes_with_alpha(image: &Image, alpha: &[f32], options: &WriteOptions) -> Vec<[u16; 4]> {
-    let straight = |(pixel, &alpha): (&[f32; 3], &f32)| {
-        if alpha > 0.0 { pixel.map(|value| value / alpha) } else { [0.0; 3] }
-    };
-    let colors: Vec<[f32; 3]> = image.pixels.iter().zip(alpha).map(straight).collect();
-    let maximum = f32::from(options.depth.maximum());
-    let share = |alpha: f32| (alpha.clamp(0.0, 1.0) * maximum).round() as u16;
-    let codes = tone::codes(&colors, options).into_iter().zip(alpha);
-    codes.map(|([red, green, blue], &alpha)| [red, green, blue, share(alpha)]).collect()
 }
 
 fn compress(
@@ -152,7 +124,7 @@ fn compress(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::tests::ramp;
+    use crate::image::{tests::ramp, tone};
 
     /// A file of `width` x 1 in any color type, written by the crate alone.
     fn file(width: u32, color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {

@@ -64,7 +64,7 @@ pub(super) fn encode(image: &Image, options: &WriteOptions) -> Vec<u8> {
     let codes = tone::codes(&image.pixels, options);
     let raster = match options.ppm {
         PpmEncoding::Plain => plain_raster(&codes),
-        PpmEncoding::Binary => options.depth.pack(&codes),
+        PpmEncoding::Binary => options.depth.pack(codes.as_flattened()),
     };
     [header.into_bytes(), raster].concat()
 }

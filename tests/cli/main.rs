@@ -4,6 +4,7 @@
 mod bench;
 mod figures;
 mod folder;
+mod formats;
 mod frames;
 mod inputs;
 mod layers;

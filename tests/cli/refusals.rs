@@ -58,7 +58,7 @@ fn bad_input_is_refused_in_words() {
         ("info empty.toml", 1, &["no spheres"]),
         ("info .", 1, &["cannot be read"]),
         ("render -o missing/a.png", 1, &["missing", "folder"]),
-        ("render -o a.jpg", 1, &["a.jpg", ".png"]),
+        ("render -o a.gif", 1, &["a.gif", ".png", ".webp"]),
         ("compare missing.png missing.png", 1, &["missing.png"]),
         ("compare key.toml key.toml", 1, &["not a picture"]),
         ("field", 2, &["--output"]),
@@ -69,7 +69,7 @@ fn bad_input_is_refused_in_words() {
         ("field volume --size -1 -o a.toml", 1, &["--size", "more than 0"]),
         ("field sphereflake --level 60 -o a.toml", 1, &["--level", "spheres"]),
         ("completions cobol", 2, &["cobol", "bash"]),
-        ("paint", 2, &["paint"]),
+        ("paint", 2, &["paint", "neither a command nor a file"]),
     ];
     for (line, code, words) in cases {
         let output = folder.run(&line.split(' ').collect::<Vec<_>>());

@@ -1,13 +1,13 @@
 //! What is said of the picture, of its file, of speed, and of reports.
 
 use crate::cli::names::{
-    BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
+    self, BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
     Traversal,
 };
 use crate::cli::values::{self, DepthLimit, SAMPLES, Size, THREADS, Target};
 use clap::value_parser;
 use spherule::film::Region;
-use spherule::image::{Depth, PpmEncoding};
+use spherule::image::{Depth, Format, PpmEncoding};
 use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Tone};
 use spherule::trace::Width;
@@ -69,15 +69,21 @@ pub(in crate::cli) struct PictureArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "File")]
 pub(in crate::cli) struct EncodingArgs {
-    /// Stops: PNG and PPM show the radiance multiplied by 2 to this power
+    /// Format of the picture [default: what the suffix of --output says, or png for -]
+    #[arg(long, value_name = "FORMAT", value_parser = names::formats())]
+    pub(in crate::cli) output_format: Option<Format>,
+    /// Exposure in stops: all formats but EXR and PFM show the radiance multiplied by 2 to this power
     #[arg(long, value_name = "STOPS", value_parser = values::exposure)]
     pub(in crate::cli) exposure: Option<f64>,
-    /// From radiance to what PNG and PPM can show
+    /// Tone curve, for all formats but EXR and PFM
     #[arg(long, value_parser = TONES.parser())]
     pub(in crate::cli) tone: Option<Tone>,
-    /// Bits of each channel of PNG and PPM [default: 8]
+    /// Bits of each channel of PNG, PPM and TIFF [default: 8]
     #[arg(long, value_parser = BITS.parser())]
     pub(in crate::cli) bits: Option<Depth>,
+    /// Quality of JPEG, 1 to 100 [default: 90]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=100))]
+    pub(in crate::cli) quality: Option<u8>,
     /// Dialect of PPM [default: binary]
     #[arg(long, value_parser = PPM.parser())]
     pub(in crate::cli) ppm: Option<PpmEncoding>,

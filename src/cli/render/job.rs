@@ -8,6 +8,7 @@ use crate::cli::keep::KeepArgs;
 use crate::cli::looks::{BarPlace, LookArgs};
 use crate::cli::names::{self, Traversal};
 use crate::cli::particles::ParticleArgs;
+use crate::cli::picture_file;
 use crate::cli::settings::region_text;
 use crate::cli::slices::SliceArgs;
 use crate::cli::source::Source;
@@ -59,10 +60,11 @@ impl<'a> Job<'a> {
     /// What was typed, made sense of.
     pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
         let seed = args.picture.seed.unwrap_or(0);
-        let format = Format::of_suffix(&args.output)?;
+        let format = picture_file::format(&args.output, args.encoding.output_format)?;
         if !args.encoding.layers.is_empty() && format != Format::Exr {
-            let message =
-                format!("{format} has no room for --layers; end the name of --output in .exr");
+            let message = format!(
+                "{format} has no room for --layers; end the name of --output in .exr, or give --output-format exr"
+            );
             return Err(Failure::usage("render", message));
         }
         check_alpha(&args.style.look(None, Look::default()), format)?;
@@ -158,13 +160,13 @@ impl<'a> Job<'a> {
 
 /// Refuses a transparent background in files that cannot have one.
 pub(in crate::cli) fn check_alpha(look: &Look, format: Format) -> Result<(), Failure> {
-    let holds = matches!(format, Format::Png | Format::Exr);
-    if !look.is_transparent() || holds {
+    if !look.is_transparent() || format.has_alpha() {
         return Ok(());
     }
+    let suffixes = Format::list_suffixes(Format::has_alpha);
     let message = format!(
-        "{format} has no room for a transparent background; end the name of --output in .png or \
-         .exr, or give --background white"
+        "{format} has no room for a transparent background; end the name of --output in {suffixes}, \
+         or give --background white"
     );
     Err(Failure::usage("render", message))
 }

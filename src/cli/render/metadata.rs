@@ -9,7 +9,7 @@ use crate::cli::args::EncodingArgs;
 use crate::cli::settings::{self, List};
 use serde_json::Value;
 use spherule::film::Region;
-use spherule::image::{Format, Metadata, WriteOptions};
+use spherule::image::{Format, Metadata, QUALITY, WriteOptions};
 use spherule::render::{Render, Stage};
 use spherule::scene::Settings;
 
@@ -59,7 +59,8 @@ impl Subject<'_> {
         render: &Render,
     ) -> WriteOptions {
         let mut options = WriteOptions {
-            depth: typed.bits.unwrap_or_default(),
+            depth: typed.bits.filter(|_| format.has_sixteen_bits()).unwrap_or_default(),
+            quality: typed.quality.unwrap_or(QUALITY),
             ppm: typed.ppm.unwrap_or_default(),
             exposure: typed.exposure.unwrap_or(self.settings.exposure),
             tone: typed.tone.unwrap_or(self.settings.tone),

@@ -38,8 +38,7 @@ use super::command::Given;
 use super::progress::Meter;
 use super::views::draw_over as draw_look;
 use super::write_file::write_file;
-use super::{Failure, output, signals};
-use spherule::image::check_writable;
+use super::{Failure, output, picture_file, signals};
 use spherule::overlay::Matte;
 use spherule::render::{End, Options, Render, Unfinished};
 use spherule::scene::Scene;
@@ -80,13 +79,30 @@ fn run_as(
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
+    check_stream(args)?;
     looks::check_bar(&job)?;
     terminal::check(job.report.terminal)?;
     if args.particles.frames().is_some() || args.views.turntable().is_some() {
         return job.pool()?.install(|| sequence::run(&job, &files(args)));
     }
-    check_writable(&job.output)?;
+    picture_file::check(&job.output)?;
     job.pool()?.install(|| make_picture(&job, keeper, resumed))
+}
+
+/// Refuses standard output for what is not one picture alone, and has all else printed elsewhere.
+fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
+    let refuse = |message: &str| Err(Failure::usage("render", message));
+    if picture_file::is_stream(&args.output) && args.part.settled().is_some() {
+        return refuse("--part writes a file that is named after --output: give --output a name");
+    }
+    if picture_file::is_stream(&args.output)
+        && (args.views.turntable().is_some() || args.particles.frames().is_some())
+    {
+        return refuse(
+            "--output - is for one picture: leave out --turntable, and give --frame one",
+        );
+    }
+    picture_file::check_stream("render", &args.output, args.report.json)
 }
 
 fn make_picture(

@@ -2,9 +2,8 @@
 
 use super::job::Job;
 use crate::cli::names::Traversal;
-use crate::cli::settings::shows;
 use spherule::World;
-use spherule::image::Format;
+use spherule::image::{Depth, Format};
 use spherule::scene::{Integrator, Roulette, Settings, Tone};
 
 /// The scattering from which roulette by throughput begins, from 1.
@@ -46,11 +45,16 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
         "--traversal scalar and stream have no packets",
     );
     let encoding = job.encoding;
-    let linear = !shows(job.format);
+    let linear = job.format.is_linear();
     let holds = format!("{} files hold linear radiance", job.format);
     note(exposed(job, settings), linear, "exposure", &holds);
     note(toned(job, settings), linear, "tone", &holds);
     note(encoding.bits.is_some(), linear, "--bits", "EXR and PFM files hold 32-bit floats");
+    let eight = !linear && !job.format.has_sixteen_bits();
+    let deep = encoding.bits.is_some_and(|bits| bits != Depth::Eight);
+    note(deep, eight, "--bits", &format!("{} files hold 8 bits", job.format));
+    let lossless = job.format != Format::Jpeg;
+    note(encoding.quality.is_some(), lossless, "--quality", "the file is no JPEG");
     let part = job.part.is_some();
     note(encoding.bits.is_some(), part, "--bits", "parts have no bits; say it to merge");
     note(encoding.ppm.is_some(), part, "--ppm", "parts are no pictures; say it to merge");

@@ -8,6 +8,7 @@ use super::{layers, looks, part, unseen};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
+use crate::cli::picture_file;
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::film::Region;
@@ -84,6 +85,9 @@ impl Prepared {
             ground.height = common.ground.unwrap_or(ground.height);
         }
         let region = job.region(&scene.settings)?;
+        if job.part.is_none() {
+            picture_file::check_size("render", region, job.format)?;
+        }
         let layered = !job.encoding.layers.is_empty() || !scene.look.is_plain();
         let share = part::share(job, region, &scene)?;
         Estimate::new(&scene, region, layers::need_statistics(job), layered)

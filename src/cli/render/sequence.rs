@@ -20,8 +20,8 @@ use crate::cli::failure::Failure;
 use crate::cli::files::Files;
 use crate::cli::looks::BarPlace;
 use crate::cli::output;
+use crate::cli::picture_file;
 use crate::cli::source::Source;
-use spherule::image::check_writable;
 use spherule::scene::SceneError;
 use spherule::scene::particles::{Coloring, Particles, ReadOptions, of_frame};
 use std::path::Path;
@@ -79,7 +79,7 @@ fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<(), Failure> {
     for shot in known {
         let output = numbered(&job.output, shot.number, plan.digits());
         files.writes("--output", &output);
-        check_writable(output)?;
+        picture_file::check(&output)?;
     }
     files.check()
 }
@@ -209,7 +209,7 @@ impl Sequence<'_> {
         let output = numbered(&self.job.output, shot.number, self.plan.digits());
         let Shot { frame, turn, .. } = *shot;
         let job = Job { output, turn, frame, common, ..self.job.clone() };
-        check_writable(&job.output)?;
+        picture_file::check(&job.output)?;
         if self.plan.count().is_none() {
             self.files.check_output("--output", &job.output)?;
         }

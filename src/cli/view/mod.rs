@@ -40,7 +40,7 @@ use self::command::Command;
 use self::headless::Headless;
 use self::script::Step;
 use super::Failure;
-use super::files::Files;
+use super::files::{Files, STREAM};
 use super::render::Job;
 use super::source::is_scene;
 use std::fmt::Write;
@@ -63,7 +63,7 @@ Keys and mouse:
         // Strings take what is written to them.
         let _ = writeln!(text, "  {keys:<26} {what}");
     }
-    text + "\n" + script::MANUAL
+    text + "\n" + &script::manual()
 }
 
 /// Shows a scene until the user has seen enough.
@@ -133,6 +133,8 @@ fn read_script(path: &Path) -> Result<Vec<(usize, Step)>, Failure> {
 /// Refuses options that say what to do with a picture once it is there.
 fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
     let has = [
+        ("--output -", args.render.output == Path::new(STREAM)),
+        ("--output-format", args.render.encoding.output_format.is_some()),
         ("--region", args.render.picture.region.is_some()),
         ("--layers", !args.render.encoding.layers.is_empty()),
         ("--color-bar", job.color_bar.is_some()),

@@ -3,6 +3,7 @@
 use super::command::{Button, Held};
 use super::keys;
 use glam::DVec2;
+use spherule::image::Format;
 use std::path::PathBuf;
 
 /// Steps of a drag that does not say how many.
@@ -12,7 +13,11 @@ const STEPS: u32 = 16;
 const MOST: usize = 1 << 20;
 
 /// The manual of scripts.
-pub(super) const MANUAL: &str = "\
+pub(super) fn manual() -> String {
+    MANUAL.replace("SUFFIXES", &Format::written_suffixes())
+}
+
+const MANUAL: &str = "\
 A script for --headless-script is a file of lines; # begins a comment:
   size 640x360                   the window's size
   key KEY                        such as c, F, ctrl+3, home
@@ -22,7 +27,7 @@ A script for --headless-script is a file of lines; # begins a comment:
   wheel STEPS X,Y                forward if positive; with shift after it, if held
   turn RIGHT UP                  degrees about the pivot
   wait N                         until the picture has N samples of each pixel
-  save FILE                      the picture: .png, .exr, .pfm or .ppm
+  save FILE                      the picture: SUFFIXES
   save FILE.toml                 the scene, which renders to the same picture
   window FILE.png                what the window shows, letters and all
   repeat N ... end               the lines between, N times; {} in a name is the count, from 000

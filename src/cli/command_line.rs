@@ -1,0 +1,104 @@
+//! The arguments of the process, with `render` put in where the user left it out.
+
+use super::Failure;
+use super::args::Args;
+use clap::CommandFactory;
+use std::env;
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// The command that a file's name alone stands for.
+const USUAL: &str = "render";
+
+/// Options of the program itself.
+const OWN: [&str; 4] = ["-h", "--help", "-V", "--version"];
+
+/// Least likeness of a word to a suggestion, 0..=1.
+const LIKENESS: f64 = 0.6;
+
+/// Files of a folder that are compared with a name that is not there.
+const COMPARED: usize = 10_000;
+
+/// Returns the arguments of this process, its own name first. A file or an option of `render` that comes
+/// first means `render`; the name of a command is never a file.
+pub(super) fn command_line() -> Result<Vec<OsString>, Failure> {
+    complete(env::args_os().collect(), &commands())
+}
+
+fn complete(mut line: Vec<OsString>, commands: &[String]) -> Result<Vec<OsString>, Failure> {
+    let Some(first) = line.get(1) else { return Ok(line) };
+    let is_among = |word: &str| first.to_str() == Some(word);
+    if OWN.into_iter().any(is_among) || commands.iter().any(|command| is_among(command)) {
+        return Ok(line);
+    }
+    if !first.as_encoded_bytes().starts_with(b"-") && !exists(Path::new(first)) {
+        return Err(Failure::usage("", unknown(first, commands)));
+    }
+    line.insert(1, USUAL.into());
+    Ok(line)
+}
+
+/// Names of all commands.
+fn commands() -> Vec<String> {
+    let mut program = Args::command();
+    program.build();
+    let commands = program.get_subcommands();
+    commands.flat_map(|command| command.get_name_and_visible_aliases()).map(str::to_owned).collect()
+}
+
+/// Returns whether there is a file, or something that keeps the system from telling.
+fn exists(path: &Path) -> bool {
+    fs::symlink_metadata(path).map_or_else(|error| error.kind() != ErrorKind::NotFound, |_| true)
+}
+
+fn unknown(word: &OsStr, commands: &[String]) -> String {
+    let text = word.to_string_lossy();
+    let path = Path::new(word);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let entries = fs::read_dir(folder.unwrap_or(Path::new("."))).into_iter().flatten();
+    let names = entries.take(COMPARED).flatten().map(|entry| entry.file_name());
+    let files = names.map(|name| path.with_file_name(name).to_string_lossy().into_owned());
+    let likeness = |name: &String| strsim::normalized_damerau_levenshtein(&text, name);
+    let all = commands.iter().cloned().chain(files).map(|name| (likeness(&name), name));
+    let best = all.filter(|(likeness, _)| *likeness >= LIKENESS);
+    let best = best.max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)));
+    let hint = best.map(|(_, name)| format!("; did you mean `{name}`?")).unwrap_or_default();
+    format!("`{text}` is neither a command nor a file{hint}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn completed(words: &[&str]) -> Result<Vec<OsString>, String> {
+        let line = std::iter::once(&"spherule").chain(words).map(Into::into).collect();
+        complete(line, &commands()).map_err(|failure| failure.to_string())
+    }
+
+    #[test]
+    fn files_and_options_are_rendered() {
+        for words in
+            [&["Cargo.toml", "--spp", "4"][..], &["--spp", "4"], &["-"], &["--", "a"], &["."]]
+        {
+            let line = completed(words).expect("a line that is understood");
+            assert_eq!(line[1], "render", "{words:?}");
+            assert_eq!(line[2..], *words, "{words:?}");
+        }
+        for words in [&[][..], &["info", "a"], &["render"], &["help"], &["--help"], &["-V"]] {
+            assert_eq!(completed(words).expect("a line").len(), words.len() + 1, "{words:?}");
+        }
+    }
+
+    #[test]
+    fn strange_words_are_told_what_is_like_them() {
+        for (word, like) in
+            [("rendr", "`render`"), ("Cargo.tmol", "`Cargo.toml`"), ("src/lib.r", "`src/lib.rs`")]
+        {
+            let message = completed(&[word]).expect_err("no such thing");
+            assert!(message.contains(word) && message.contains(like), "{message}");
+        }
+        assert!(!completed(&["quxquxqux"]).expect_err("no such thing").contains("mean"));
+    }
+}
