@@ -67,15 +67,20 @@ pub(super) fn stop() -> &'static AtomicBool {
 pub(super) fn go_on() -> Option<u8> {
     // In this order: a signal that comes in between sets both again.
     STOP.store(false, Ordering::SeqCst);
-    let signal = SIGNAL.load(Ordering::SeqCst);
-    STOP.fetch_or(signal != 0, Ordering::SeqCst);
-    (signal != 0).then_some(ENDED + signal as u8)
+    let code = received();
+    STOP.fetch_or(code.is_some(), Ordering::SeqCst);
+    code
 }
 
 /// Ends [`catch`]: from now on any signal ends the program at once, for there is nothing to save, or the
 /// program waits for someone else. Returns the exit code that a signal asks for which came before.
 pub(super) fn release() -> Option<u8> {
     ARMED.store(true, Ordering::SeqCst);
+    received()
+}
+
+/// The exit code that a signal asks for, if one came.
+pub(super) fn received() -> Option<u8> {
     let signal = SIGNAL.load(Ordering::SeqCst);
     (signal != 0).then_some(ENDED + signal as u8)
 }

@@ -4,13 +4,18 @@ use super::files::STREAM;
 use super::{Failure, output, signals};
 use spherule::atomic::write_atomically;
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::{thread, time::Duration};
+
+/// Time between two looks for a pipe's reader.
+#[cfg(target_os = "linux")]
+const PAUSE: Duration = Duration::from_millis(20);
 
 /// Writes a file as a whole, or content to a device, a pipe or standard output, which is called `-`.
 ///
-/// A pipe's reader may never come, or stop reading: meanwhile any signal ends the program at once, and after
-/// a signal only a reader that is there is written to.
+/// A pipe's reader may never come, or stop reading: a signal ends the wait.
 pub(super) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     if path == Path::new(STREAM) {
         signals::release();
@@ -18,41 +23,47 @@ pub(super) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
         return Ok(());
     }
     let failed = |error: io::Error| Failure::Write(path.to_owned(), error);
-    if is_special(path)
-        && let Some(code) = signals::release()
-    {
-        return if to_reader(path, content).map_err(failed)? {
-            Ok(())
-        } else {
-            Err(Failure::NoReader(path.to_owned(), code))
-        };
+    match open_pipe(path) {
+        Some(pipe) => {
+            let mut pipe = pipe?;
+            signals::release();
+            pipe.write_all(content).map_err(failed)
+        }
+        None => write_atomically(path, |writer| writer.write_all(content)).map_err(failed),
     }
-    write_atomically(path, |writer| writer.write_all(content)).map_err(failed)
 }
 
-/// Returns whether a path leads to a device, a pipe or the like.
-fn is_special(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|file| !file.is_file() && !file.is_dir())
-}
-
-/// Writes to a pipe if it has a reader, and returns whether it has; to a device in any case.
+/// Opens a pipe once it has a reader; `None` for a path that leads to no pipe. A signal that came, or comes
+/// before the reader, is an error.
 #[cfg(target_os = "linux")]
-fn to_reader(path: &Path, content: &[u8]) -> io::Result<bool> {
+fn open_pipe(path: &Path) -> Option<Result<fs::File, Failure>> {
     use rustix::fs::{Mode, OFlags, fcntl_getfl, fcntl_setfl, open};
     use rustix::io::Errno;
-    use std::io::Write;
+    use std::os::unix::fs::FileTypeExt;
+    if !fs::metadata(path).is_ok_and(|file| file.file_type().is_fifo()) {
+        return None;
+    }
     let flags = OFlags::WRONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
-    let pipe = match open(path, flags, Mode::empty()) {
-        Ok(pipe) => pipe,
-        Err(Errno::NXIO) => return Ok(false),
-        Err(error) => return Err(error.into()),
+    let opened = loop {
+        // Without this flag, opening waits for a reader whatever signals come.
+        match open(path, flags, Mode::empty()) {
+            Err(Errno::NXIO) => match signals::received() {
+                Some(code) => return Some(Err(Failure::NoReader(path.to_owned(), code))),
+                None => thread::sleep(PAUSE),
+            },
+            opened => break opened,
+        }
     };
-    fcntl_setfl(&pipe, fcntl_getfl(&pipe)? - OFlags::NONBLOCK)?;
-    fs::File::from(pipe).write_all(content).map(|()| true)
+    let waiting = opened.and_then(|pipe| {
+        fcntl_setfl(&pipe, fcntl_getfl(&pipe)? - OFlags::NONBLOCK)?;
+        Ok(fs::File::from(pipe))
+    });
+    Some(waiting.map_err(|error| Failure::Write(path.to_owned(), error.into())))
 }
 
-/// Waits for a reader, where there is no way to ask for one.
+/// Leaves pipes to [`write_atomically`], where there is no way to ask for a reader.
 #[cfg(not(target_os = "linux"))]
-fn to_reader(path: &Path, content: &[u8]) -> io::Result<bool> {
-    write_atomically(path, |writer| writer.write_all(content)).map(|()| true)
+fn open_pipe(_: &Path) -> Option<Result<fs::File, Failure>> {
+    signals::release();
+    None
 }

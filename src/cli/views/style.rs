@@ -14,7 +14,7 @@ pub(in crate::cli) struct StyleArgs {
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<Preset>,
     /// In the sky's place, which goes on lighting the scene: white, black or #rrggbb, before
-    /// --exposure; transparent, for PNG and EXR, where of the ground only shadows are left; or sky
+    /// --exposure; transparent, for PNG, EXR, TIFF and WebP, where of the ground only shadows are left; or sky
     /// [default: white with --preset, or else what the scene says]
     #[arg(long, value_name = "COLOR", value_parser = background)]
     background: Option<Typed>,
