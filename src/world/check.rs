@@ -215,3 +215,36 @@ pub(super) fn place(scene: &Scene, bytes: u64) -> Result<(Frame, Placement), Wor
     let pose = fit::pose(scene)?;
     Ok((Frame::of(&scene.spheres, &pose), pose))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_have_length_1() {
+        assert!(unit("it", DVec3::new(0.6, 0.0, -0.8)).is_ok());
+        for length in [0.0, 0.999, 1.001, f64::NAN, f64::INFINITY] {
+            assert!(unit("it", DVec3::Y * length).is_err(), "{length}");
+        }
+    }
+
+    #[test]
+    fn every_channel_of_a_color_is_checked() {
+        let with = |channel: usize, value: f32| {
+            let mut color = Rgb::splat(0.5);
+            color[channel] = value;
+            color
+        };
+        for channel in 0..3 {
+            assert!([0.0, 1.0].iter().all(|&value| share(with(channel, value))));
+            assert!([0.0, BRIGHTEST].iter().all(|&value| bright(with(channel, value))));
+            for bad in [-0.1, f32::NAN, f32::INFINITY] {
+                assert!(
+                    !share(with(channel, bad)) && !bright(with(channel, bad)),
+                    "{channel} {bad}"
+                );
+            }
+            assert!(!share(with(channel, 1.1)), "{channel}");
+        }
+    }
+}
