@@ -12,6 +12,7 @@ use super::looks::LookArgs;
 use super::memory::MemoryArgs;
 use super::part::PartArgs;
 use super::particles::ParticleArgs;
+use super::sequences::SequenceArgs;
 use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
 use super::{Failure, bench, compare, examples, merge, stress, view};
@@ -97,9 +98,18 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) memory: MemoryArgs,
     #[command(flatten)]
+    pub(super) sequence: SequenceArgs,
+    #[command(flatten)]
     pub(super) part: PartArgs,
     #[command(flatten)]
     pub(super) report: ReportArgs,
+}
+
+impl RenderArgs {
+    /// Whether it makes many pictures.
+    pub(super) fn is_sequence(&self) -> bool {
+        self.views.turntable().is_some() || self.particles.frames().is_some()
+    }
 }
 
 #[derive(Debug, clap::Args)]

@@ -26,7 +26,7 @@ pub(super) fn render_command() -> Command {
 }
 
 /// Options and their values; those without are switches.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct TypedOptions(Vec<(String, Vec<OsString>)>);
 
 /// A command, and the folder in which it was typed.

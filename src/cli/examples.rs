@@ -21,6 +21,8 @@ Examples:
   spherule render particles.xyz -o figure.png --integrator ao
   spherule render run.lammpstrj.gz --frame last --radii 0.5 -o last.png
   spherule render run.lammpstrj.gz --frame all -o frame-%04d.png
+  spherule render run.lammpstrj.gz --frame all --turntable 360 --fps 24 -o film.mp4
+  spherule render run.lammpstrj.gz --frame all -o frame-%04d.png --skip-existing --part 2/4
   spherule render run.dump --color-by c_pe --color-map inferno --color-bar energy.svg
   spherule render protein.pdb --select 'element != H and chain == A' -o chain.png
   spherule render salt.xyz --type Na:radius=1,material=glass --type Cl:color=#30a030
@@ -41,7 +43,8 @@ Examples:
   spherule render --resume long.checkpoint --spp 200000 --threads 8
 
 Ctrl-C and SIGTERM save the picture so far, and the checkpoint, and exit with code 130 and 143. A
-second one ends the program at once; files are whole then too.";
+second one ends the program at once; files are whole then too. Of a sequence, a picture that is
+interrupted is not written, but the checkpoint is.";
 
 /// Of `spherule merge`.
 pub(super) const MERGE: &str = "\

@@ -49,6 +49,8 @@ pub(crate) enum Failure {
     /// With the exit code of the signal.
     #[error("{}: interrupted, and nobody reads the pipe: nothing is written to it", .0.display())]
     NoReader(PathBuf, u8),
+    #[error("{}: {}", .0.display(), .1)]
+    Film(PathBuf, String),
     #[error("frame {0}: {1}")]
     Frame(u64, Box<Self>),
     #[error("{0}")]

@@ -14,8 +14,8 @@ const EVERY: (Duration, u32) = (Duration::from_secs(60), 100);
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Long renders")]
 pub(super) struct KeepArgs {
-    /// Keep all that it takes to go on with the render in this file: now and then, and when it
-    /// ends, be it by Ctrl-C, SIGTERM or --time
+    /// Save the state of the render to FILE, periodically and when it ends, also by Ctrl-C, SIGTERM or
+    /// --time; of a sequence, the picture that is being rendered and its place
     #[arg(long, value_name = "FILE")]
     pub(super) checkpoint: Option<PathBuf>,
     /// Time between two checkpoints, as in 60s or 10m; none for one at the end alone [default: 60s]
@@ -49,17 +49,12 @@ impl KeepArgs {
         self.checkpoint_every.map_or_else(usual, |Target(time)| time)
     }
 
-    /// Refuses what has no effect, and files for many pictures.
-    pub(super) fn check(&self, many: bool) -> Result<(), Failure> {
-        let message = match self.file() {
-            None if self.checkpoint_every.is_some() => {
-                "--checkpoint-every is for checkpoints: say --checkpoint FILE"
-            }
-            Some(_) if many => {
-                "a checkpoint keeps one picture: leave out --turntable, and give --frame one"
-            }
-            _ => return Ok(()),
-        };
-        Err(Failure::usage("render", message))
+    /// Refuses what has no effect.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        if self.file().is_none() && self.checkpoint_every.is_some() {
+            let message = "--checkpoint-every is for checkpoints: say --checkpoint FILE";
+            return Err(Failure::usage("render", message));
+        }
+        Ok(())
     }
 }

@@ -9,6 +9,7 @@ use spherule::drawing::Format;
 use spherule::scene::particles::{
     Coloring, ColumnColors, ElementColors, Legend, Looks, Selection, TypeLook,
 };
+use std::fmt;
 use std::path::PathBuf;
 
 /// How particles look.
@@ -76,6 +77,14 @@ pub(super) enum BarPlace {
 pub(super) struct Corner {
     pub(super) top: bool,
     pub(super) left: bool,
+}
+
+/// As it is typed.
+impl fmt::Display for Corner {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let found = CORNERS.iter().find(|(_, corner)| corner == self);
+        formatter.write_str(found.map_or("", |(name, _)| name))
+    }
 }
 
 /// What corners are called; the first is meant where none is named.

@@ -23,8 +23,8 @@ pub(super) struct ParticleArgs {
     /// What columns are, as in x=px,radius=size,type=species
     #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<Typed<Columns>>())]
     columns: Option<Typed<Columns>>,
-    /// The frame: first, last or a number from 0; or a numbered picture of each of many, from one
-    /// camera: all, A-B or A..B..STEP
+    /// The frame: first, last or a number from 0; or a numbered picture of each of many: all, A-B or
+    /// A..B..STEP, from one camera that frames all of them
     #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<Typed<FrameArg>>())]
     frame: Option<Typed<FrameArg>>,
     /// Radii: vdw or covalent by element, a column's, or one for all

@@ -16,6 +16,7 @@ mod pictures;
 mod processes;
 mod refusals;
 mod reports;
+mod sequences;
 mod slices;
 mod stress;
 mod viewer;

@@ -11,4 +11,5 @@ mod folder;
 mod kills;
 mod process;
 mod resume;
+mod sequences;
 mod signals;

@@ -16,7 +16,7 @@ const FROM_ENVIRONMENT: &str = "from-env";
 pub(super) struct PartArgs {
     /// Render part K of N to a file named after --output with .K-of-N.part at its end; from-env takes
     /// K, and N unless it is given, from the environment variables of Slurm, PBS, Grid Engine, LSF,
-    /// AWS Batch, Kubernetes, MPI or GNU parallel
+    /// AWS Batch, Kubernetes, MPI or GNU parallel. Of a sequence, part K is every Nth picture, whole
     #[arg(long, value_name = "K/N|from-env[/N]", value_parser = choice)]
     part: Option<Choice>,
     /// What parts differ in [default: samples, or tiles where there are fewer samples than parts]

@@ -10,8 +10,8 @@ pub(in crate::cli) fn files(args: &RenderArgs) -> Files {
     if let Some(scene) = &args.scene {
         files.reads_scene(scene);
     }
-    let part = args.part.settled().is_some();
-    let many = args.views.turntable().is_some() || args.particles.frames().is_some();
+    let many = args.is_sequence();
+    let part = args.part.settled().is_some() && !many;
     if !part && !many {
         files.writes("--output", &args.output);
     }

@@ -1,5 +1,6 @@
 //! What is to be rendered, how, and where to: validated as far as it can be without the scene.
 
+use super::film::Container;
 use super::looks::with_columns;
 use super::sequence::Common;
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
@@ -9,6 +10,7 @@ use crate::cli::looks::{BarPlace, LookArgs};
 use crate::cli::names::{self, Traversal};
 use crate::cli::particles::ParticleArgs;
 use crate::cli::picture_file;
+use crate::cli::sequences::SequenceArgs;
 use crate::cli::settings::region_text;
 use crate::cli::slices::SliceArgs;
 use crate::cli::source::Source;
@@ -24,6 +26,15 @@ use spherule::scene::{Look, Settings};
 use spherule::split::{Part, Split};
 use spherule::trace::{Tracer, Width};
 use std::path::PathBuf;
+
+/// The place of a picture among many.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::cli) struct Place {
+    /// From 0.
+    pub(in crate::cli) index: u64,
+    /// Whether no other one follows, as far as that is known.
+    pub(in crate::cli) last: bool,
+}
 
 /// A render to be done.
 #[derive(Clone)]
@@ -47,6 +58,13 @@ pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) common: Option<Common>,
     pub(in crate::cli) encoding: &'a EncodingArgs,
     pub(in crate::cli) keep: &'a KeepArgs,
+    pub(in crate::cli) sequence: SequenceArgs,
+    /// Its place among many pictures.
+    pub(in crate::cli) place: Option<Place>,
+    /// Which pictures of a sequence are made here, if not all are.
+    pub(in crate::cli) deal: Option<Part>,
+    /// The kind of the film that pictures go to, if they do.
+    pub(in crate::cli) film: Option<Container>,
     /// Which part of the render it is, if it is but one.
     pub(in crate::cli) part: Option<Part>,
     pub(in crate::cli) split: Option<Split>,
@@ -60,7 +78,26 @@ impl<'a> Job<'a> {
     /// What was typed, made sense of.
     pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
         let seed = args.picture.seed.unwrap_or(0);
-        let format = picture_file::format(&args.output, args.encoding.output_format)?;
+        // A format that is typed is that of pictures, whatever their names.
+        let film =
+            Container::of_suffix(&args.output).filter(|_| args.encoding.output_format.is_none());
+        if film.is_some() {
+            check_film(args)?;
+        } else if args.sequence.fps.is_some() {
+            let message =
+                "--fps is for films: end the name of --output in .mp4, .mov, .webm or .gif";
+            return Err(Failure::usage("render", message));
+        }
+        // Pictures of a film have codes of 8 bits, as those of PPM.
+        let format = match film {
+            Some(_) => Format::Ppm,
+            None => picture_file::format(&args.output, args.encoding.output_format)?,
+        };
+        if args.sequence.skip_existing && format == Format::Pfm {
+            let message = "--skip-existing needs pictures that say what they are: PFM has no room for \
+                           that; end the name of --output in .png, .ppm or .exr";
+            return Err(Failure::usage("render", message));
+        }
         if !args.encoding.layers.is_empty() && format != Format::Exr {
             let message = format!(
                 "{format} has no room for --layers; end the name of --output in .exr, or give --output-format exr"
@@ -85,7 +122,9 @@ impl<'a> Job<'a> {
             let message = "--preset is for a file of particles: a scene says how it looks";
             return Err(Failure::usage("render", message));
         }
-        args.keep.check(args.views.turntable().is_some() || args.particles.frames().is_some())?;
+        args.keep.check()?;
+        let part = args.part.settled();
+        let (part, deal) = if args.is_sequence() { (None, part) } else { (part, None) };
         let looks = args.looks.looks(args.particles.options().radius_scale);
         Ok(Self {
             source: with_columns(source, &looks)?,
@@ -103,7 +142,11 @@ impl<'a> Job<'a> {
             common: None,
             encoding: &args.encoding,
             keep: &args.keep,
-            part: args.part.settled(),
+            sequence: args.sequence,
+            place: None,
+            deal,
+            film,
+            part,
             split: args.part.split,
             speed: &args.speed,
             tracer: tracer(args.speed.traversal, args.speed.lanes),
@@ -114,7 +157,12 @@ impl<'a> Job<'a> {
 
     /// Whether it is one of many pictures.
     pub(in crate::cli) fn is_of_sequence(&self) -> bool {
-        self.turn.is_some() || self.frame.is_some()
+        self.place.is_some()
+    }
+
+    /// Whether the file of the picture says of which scene it is.
+    pub(in crate::cli) fn is_identified(&self) -> bool {
+        self.film.is_none() && (self.is_of_sequence() || self.sequence.skip_existing)
     }
 
     /// Whether a color bar is drawn into the picture.
@@ -156,6 +204,31 @@ impl<'a> Job<'a> {
         );
         Err(Failure::usage("render", message))
     }
+}
+
+/// Refuses what films cannot have.
+fn check_film(args: &RenderArgs) -> Result<(), Failure> {
+    let numbered = "write numbered pictures, as with -o NAME-%04d.png, and make the film of them";
+    let what = if !args.is_sequence() {
+        let message = "a film has many pictures: add --frame all or --turntable N, or end the name of \
+                       --output in .png";
+        return Err(Failure::usage("render", message));
+    } else if !args.encoding.layers.is_empty() {
+        "--layers"
+    } else if args.encoding.bits.is_some() || args.encoding.ppm.is_some() {
+        "--bits and --ppm"
+    } else if args.keep.file().is_some() {
+        "--checkpoint"
+    } else if args.part.settled().is_some() {
+        "--part"
+    } else if args.sequence.skip_existing {
+        "--skip-existing"
+    } else if args.style.look(None, Look::default()).is_transparent() {
+        "a transparent background"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::usage("render", format!("a film has no room for {what}: {numbered}")))
 }
 
 /// Refuses a transparent background in files that cannot have one.

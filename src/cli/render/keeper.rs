@@ -1,7 +1,8 @@
 //! Checkpoints of a render that goes on.
 
+use super::job::Job;
 use super::prepare::Prepared;
-use crate::cli::command::{Given, render_command};
+use crate::cli::command::{Given, TypedOptions, render_command};
 use crate::cli::keep::KeepArgs;
 use crate::cli::{Failure, output};
 use spherule::atomic::{check_destination, remove_leftovers};
@@ -18,7 +19,9 @@ pub(super) struct Keeper {
     path: PathBuf,
     _lock: Option<Lock>,
     folder: OsString,
-    arguments: Vec<OsString>,
+    typed: TypedOptions,
+    /// When the next checkpoint is due, whichever picture of a sequence that is in.
+    due: Mutex<Option<Instant>>,
     /// Why it could not be written last time, which is told once.
     failure: Mutex<Option<String>>,
 }
@@ -40,28 +43,46 @@ impl Keeper {
         }
         // They cost some space, no more.
         let _ = remove_leftovers(&path);
-        let (folder, arguments, failure) = (OsString::new(), Vec::new(), Mutex::default());
-        Ok(Some(Self { path, _lock: lock, folder, arguments, failure }))
+        let (folder, typed) = (OsString::new(), TypedOptions::default());
+        let (due, failure) = (Mutex::default(), Mutex::default());
+        Ok(Some(Self { path, _lock: lock, folder, typed, due, failure }))
     }
 
     /// The same with the command that is kept, and where the picture goes.
     pub(super) fn with(self, given: Given, output: &Path) -> Self {
-        let arguments = given.typed.lasting(output).arguments(&render_command());
-        Self { folder: given.folder.into(), arguments, ..self }
+        Self { folder: given.folder.into(), typed: given.typed.lasting(output), ..self }
     }
 
-    /// Writes a checkpoint, or says why it could not be: the render goes on. How long that took;
-    /// `None` if it failed.
+    /// When the next checkpoint is due; `None` for none but at the end.
+    pub(super) fn due(&self, keep: &KeepArgs) -> Option<Instant> {
+        let mut due = self.due.lock().ok()?;
+        if due.is_none() {
+            *due = keep.pause(Duration::ZERO).map(|pause| Instant::now() + pause);
+        }
+        *due
+    }
+
+    /// The same after one that took so long, if it could be written.
+    fn delay(&self, keep: &KeepArgs, took: Option<Duration>) {
+        if let Ok(mut due) = self.due.lock() {
+            *due = keep.pause(took.unwrap_or_default()).map(|pause| Instant::now() + pause);
+        }
+    }
+
+    /// Writes a checkpoint, or says why it could not be: the render goes on. Returns whether it was
+    /// written.
     pub(super) fn keep(
         &self,
+        job: &Job,
         prepared: &Prepared,
         caption: &Caption,
         render: &Unfinished,
-    ) -> Option<Duration> {
+    ) -> bool {
         let start = Instant::now();
-        let written = self.write(prepared, caption, render);
+        let written = self.write(job, prepared, caption, render);
         self.tell(written.as_ref().err());
-        written.ok().map(|()| start.elapsed())
+        self.delay(job.keep, written.is_ok().then(|| start.elapsed()));
+        written.is_ok()
     }
 
     /// Tells why there is no new checkpoint, unless it is why there was none before.
@@ -81,11 +102,17 @@ impl Keeper {
     /// Writes a checkpoint.
     pub(super) fn write(
         &self,
+        job: &Job,
         prepared: &Prepared,
         caption: &Caption,
         render: &Unfinished,
     ) -> io::Result<()> {
-        let (folder, arguments) = (self.folder.clone(), self.arguments.clone());
+        let folder = self.folder.clone();
+        let mut typed = self.typed.clone();
+        if let Some(place) = job.place {
+            typed.set("first_picture", place.index.to_string());
+        }
+        let arguments = typed.arguments(&render_command());
         let missing = || io::Error::other("the scene was not identified");
         let scene = prepared.identity.clone().ok_or_else(missing)?;
         let origin = Origin { scene, folder, arguments, caption: caption.clone() };

@@ -1,7 +1,6 @@
 //! Particles with the looks that the user chose.
 
 use super::job::Job;
-use super::prepare::Prepared;
 use crate::cli::failure::Failure;
 use crate::cli::looks::BarPlace;
 use crate::cli::source::Source;
@@ -66,15 +65,15 @@ pub(super) fn check_bar(job: &Job) -> Result<(), Failure> {
 }
 
 /// Writes the color bar, as high as the picture, if it has a file; refuses one of no numbers.
-pub(super) fn write_bar(job: &Job, prepared: &Prepared) -> Result<(), Failure> {
+pub(super) fn write_bar(job: &Job, legend: Option<&Legend>, height: u32) -> Result<(), Failure> {
     let Some(place) = job.color_bar else { return Ok(()) };
-    let Some(legend) = &prepared.legend else {
+    let Some(legend) = legend else {
         let message = "--color-bar tells what numbers have which colors: --color-by a column of \
                        numbers";
         return Err(Failure::usage("render", message));
     };
     let BarPlace::File(path, format) = place else { return Ok(()) };
-    let bar = bar(legend, prepared.scene.settings.height)?.file(*format)?;
+    let bar = bar(legend, height)?.file(*format)?;
     write_file(path, &bar)
 }
 

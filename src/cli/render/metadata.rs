@@ -4,14 +4,18 @@
 //! threads. Equal pictures have equal files.
 
 use super::job::Job;
-use super::prepare::Prepared;
+use super::layers;
+use super::prepare::{Placed, Prepared};
 use crate::cli::args::EncodingArgs;
+use crate::cli::looks::BarPlace;
 use crate::cli::settings::{self, List};
 use serde_json::Value;
 use spherule::film::Region;
 use spherule::image::{Format, Metadata, QUALITY, WriteOptions};
+use spherule::layers::Layer;
 use spherule::render::{Render, Stage};
-use spherule::scene::Settings;
+use spherule::scene::particles::Legend;
+use spherule::scene::{Identity, Settings};
 
 /// What a picture is of.
 pub(in crate::cli) struct Subject<'a> {
@@ -23,23 +27,59 @@ pub(in crate::cli) struct Subject<'a> {
     pub(in crate::cli) looks: &'a [(String, String)],
 }
 
+/// What a file says of its scene, if it is one of many pictures.
+pub(super) const SCENE: &str = "scene";
+
+/// What a file says of samples where their number does not follow from the settings.
+pub(super) const SAMPLES_TAKEN: &str = "samples taken";
+
+/// What a file says that is not what it was to be.
+pub(super) const INTERRUPTED: &str = "interrupted";
+
 /// All that the picture's file needs besides the picture.
 pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> WriteOptions {
     let subject = Subject {
         title: &prepared.title,
         settings: &prepared.scene.settings,
         region: prepared.region,
-        looks: &looks(job, prepared),
+        looks: &prepared.looks(job),
     };
     subject.write_options(job.encoding, job.format, render)
 }
 
-/// How particles are looked at, as a file says it.
-pub(super) fn looks(job: &Job, prepared: &Prepared) -> Vec<(String, String)> {
+/// What the file of a picture that is complete says, but for how its render went.
+pub(super) fn expected(job: &Job, placed: &Placed) -> Metadata {
+    let Placed { scene, region, legend, identity, .. } = placed;
+    let subject = Subject {
+        title: &job.source.title(scene),
+        settings: &scene.settings,
+        region: *region,
+        looks: &looks(job, legend.as_ref(), identity.as_ref()),
+    };
+    subject.describe(job.format, &subject.encoding(job.encoding, job.format))
+}
+
+/// How particles are looked at, as a file says it; a picture of many also says of which scene it is.
+pub(super) fn looks(
+    job: &Job,
+    legend: Option<&Legend>,
+    identity: Option<&Identity>,
+) -> Vec<(String, String)> {
     let (particles, looks) = job.typed;
-    let listed = particles.list(job.frame).into_iter().chain(looks.list(prepared.legend.as_ref()));
+    let listed = particles.list(job.frame).into_iter().chain(looks.list(legend));
     let listed = listed.chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
-    texts(listed.collect())
+    let mut listed = texts(listed.collect());
+    let Some(identity) = identity.filter(|_| job.is_identified()) else { return listed };
+    let layers: Vec<&str> =
+        layers::wanted(&job.encoding.layers).into_iter().map(Layer::name).collect();
+    if !layers.is_empty() {
+        listed.push(("layers".to_owned(), layers.join(",")));
+    }
+    if let Some(BarPlace::Inside(corner)) = job.color_bar {
+        listed.push(("color_bar".to_owned(), format!("inside:{corner}")));
+    }
+    listed.push((SCENE.to_owned(), identity.to_string()));
+    listed
 }
 
 fn texts(list: List) -> Vec<(String, String)> {
@@ -58,16 +98,21 @@ impl Subject<'_> {
         format: Format,
         render: &Render,
     ) -> WriteOptions {
-        let mut options = WriteOptions {
+        let mut options = self.encoding(typed, format);
+        options.metadata = self.metadata(format, &options, render);
+        options
+    }
+
+    /// The same without what the file says of itself.
+    fn encoding(&self, typed: &EncodingArgs, format: Format) -> WriteOptions {
+        WriteOptions {
             depth: typed.bits.filter(|_| format.has_sixteen_bits()).unwrap_or_default(),
             quality: typed.quality.unwrap_or(QUALITY),
             ppm: typed.ppm.unwrap_or_default(),
             exposure: typed.exposure.unwrap_or(self.settings.exposure),
             tone: typed.tone.unwrap_or(self.settings.tone),
             metadata: Metadata::new(),
-        };
-        options.metadata = self.metadata(format, &options, render);
-        options
+        }
     }
 
     /// What the file says of the picture, but for how it was rendered.
@@ -98,7 +143,10 @@ impl Subject<'_> {
             metadata.push("earlier targets", words.join("; "));
         }
         if self.settings.has_target() || !render.complete {
-            metadata.push("samples taken", render.samples.total.to_string());
+            metadata.push(SAMPLES_TAKEN, render.samples.total.to_string());
+        }
+        if !render.complete {
+            metadata.push(INTERRUPTED, "true");
         }
         if let Some(noise) = render.noise {
             metadata.push("error", noise.error.to_string());

@@ -1,7 +1,9 @@
 //! `spherule render`: a scene becomes a picture in a file.
 
 mod estimate;
+mod existing;
 mod files;
+mod film;
 mod job;
 mod keeper;
 mod layers;
@@ -23,11 +25,12 @@ mod unseen;
 
 pub(super) use self::estimate::Estimate;
 use self::files::files;
+use self::film::Film;
 pub(super) use self::job::{Job, check_alpha};
 use self::keeper::Keeper;
 pub(super) use self::layers::alpha;
 pub(super) use self::metadata::Subject;
-use self::prepare::Prepared;
+use self::prepare::{Placed, Prepared};
 use self::resume::Resumed;
 use self::summary::Summary;
 pub(super) use self::summary::warnings;
@@ -76,14 +79,20 @@ pub(super) fn run(mut args: RenderArgs) -> Result<ExitCode, Failure> {
 fn run_as(
     args: &RenderArgs,
     keeper: Option<&Keeper>,
-    resumed: Option<Resumed>,
+    mut resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
     check_stream(args)?;
     looks::check_bar(&job)?;
     terminal::check(job.report.terminal)?;
-    if args.particles.frames().is_some() || args.views.turntable().is_some() {
-        return job.pool()?.install(|| sequence::run(&job, &files(args)));
+    if args.is_sequence() {
+        let files = files(args);
+        return job.pool()?.install(|| sequence::run(&job, &files, keeper, resumed));
+    }
+    if let Some(resumed) = resumed.take_if(|_| args.sequence.first_picture.is_some()) {
+        return Err(
+            resumed.refuse("it keeps a sequence; leave --frame and --turntable as they were")
+        );
     }
     picture_file::check(&job.output)?;
     job.pool()?.install(|| make_picture(&job, keeper, resumed))
@@ -95,9 +104,7 @@ fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
     if picture_file::is_stream(&args.output) && args.part.settled().is_some() {
         return refuse("--part writes a file that is named after --output: give --output a name");
     }
-    if picture_file::is_stream(&args.output)
-        && (args.views.turntable().is_some() || args.particles.frames().is_some())
-    {
+    if picture_file::is_stream(&args.output) && args.is_sequence() {
         return refuse(
             "--output - is for one picture: leave out --turntable, and give --frame one",
         );
@@ -105,29 +112,57 @@ fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
     picture_file::check_stream("render", &args.output, args.report.json)
 }
 
+/// What pictures that are made one after another have in common.
+#[derive(Default)]
+struct Session<'a> {
+    told: Told,
+    keeper: Option<&'a Keeper>,
+    /// Where pictures go, if it is not to files of their own.
+    film: Option<Film>,
+}
+
 fn make_picture(
     job: &Job,
     keeper: Option<&Keeper>,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    let mut prepared = Prepared::load(job, None)?;
+    let mut session = Session { keeper, ..Session::default() };
+    make_placed(job, Placed::load(job, None)?, &mut session, resumed)
+}
+
+/// Makes the picture of a scene, unless it exists and is to be kept.
+fn make_placed(
+    job: &Job,
+    placed: Placed,
+    session: &mut Session,
+    resumed: Option<Resumed>,
+) -> Result<ExitCode, Failure> {
+    looks::write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
+    // After a signal, nothing is looked at any more: what follows is interrupted at once, and kept.
+    if resumed.is_none() && signals::go_on().is_none() && existing::is_there(job, &placed) {
+        let tell = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
+        session.told.keep(&job.output, tell);
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut prepared = placed.build(job)?;
     let unfinished = resumed.map(|resumed| resumed.go_on(job, &prepared)).transpose()?;
-    finish_picture(job, &mut prepared, &mut Told::default(), keeper, unfinished)
+    finish_picture(job, &mut prepared, session, unfinished)
 }
 
 fn finish_picture(
     job: &Job,
     prepared: &mut Prepared,
-    told: &mut Told,
-    keeper: Option<&Keeper>,
+    session: &mut Session,
     unfinished: Option<Unfinished>,
 ) -> Result<ExitCode, Failure> {
-    prepared.tell(job, told);
-    looks::write_bar(job, prepared)?;
-    let traced = trace(job, prepared, keeper, unfinished);
-    let finished = finish_traced(job, prepared, told, keeper, &traced);
-    // One that came while the picture was written ends a sequence, too.
-    let signal = traced.signal.or(signals::release());
+    prepared.tell(job, &mut session.told);
+    let traced = trace(job, prepared, session.keeper, unfinished);
+    let finished = finish_traced(job, prepared, session, &traced);
+    // One that came while the picture was written ends a sequence, too. If something is to be saved or
+    // removed then, the next picture sees to that: it is interrupted at once.
+    let saves = session.keeper.is_some() || session.film.is_some();
+    let goes_on = saves && job.place.is_some_and(|place| !place.last);
+    let signal = if goes_on { traced.signal } else { traced.signal.or(signals::release()) };
     finished?;
     Ok(signal.map_or(ExitCode::SUCCESS, ExitCode::from))
 }
@@ -136,16 +171,16 @@ fn finish_picture(
 fn finish_traced(
     job: &Job,
     prepared: &mut Prepared,
-    told: &mut Told,
-    keeper: Option<&Keeper>,
+    session: &mut Session,
     traced: &Traced,
 ) -> Result<(), Failure> {
-    if let (Some(part), Some(keeper)) = (job.part, keeper) {
+    if let (Some(part), Some(keeper)) = (job.part, session.keeper) {
         return part::finish(job, part, prepared, keeper, &traced.render);
     }
     if job.is_of_sequence() && !traced.render.is_complete() {
         let output = job.output.display();
         output::warn(format_args!("interrupted: {output} is unfinished and is not written"));
+        traced.advise(job);
         return Ok(());
     }
     if traced.render.samples().total == 0 {
@@ -153,7 +188,7 @@ fn finish_traced(
         return Ok(());
     }
     let mut render = traced.render.render();
-    write(job, prepared, told, &mut render)?;
+    write(job, prepared, session, &mut render)?;
     traced.tell(job, prepared, &render);
     Ok(())
 }
@@ -162,16 +197,18 @@ fn finish_traced(
 fn write(
     job: &Job,
     prepared: &mut Prepared,
-    told: &mut Told,
+    session: &mut Session,
     render: &mut Render,
 ) -> Result<(), Failure> {
     let matte = draw_over(job, prepared, render)?;
     let options = metadata::write_options(job, prepared, render);
     let mut channels = layers::channels(job, prepared, render);
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
-    let file = render.image.encode(job.format, &channels, &options)?;
-    write_file(&job.output, &file)?;
-    Summary::new(job, prepared, render, &options).tell(job.report, told);
+    match &mut session.film {
+        Some(film) => film.add(&render.image, &options)?,
+        None => write_file(&job.output, &render.image.encode(job.format, &channels, &options)?)?,
+    }
+    Summary::new(job, prepared, render, &options).tell(job.report, &mut session.told);
     Ok(())
 }
 
@@ -210,8 +247,10 @@ fn trace(
     let caption = part::caption(job, prepared);
     let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
     let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
-    let mut due = after(keeper.and_then(|_| job.keep.pause(Duration::ZERO)));
+    // Between the pictures of a sequence nothing is kept that is not due.
+    let last = job.place.is_none_or(|place| place.last);
     let (signal, kept) = loop {
+        let due = keeper.and_then(|keeper| keeper.due(job.keep));
         let drawn = after(terminal.as_ref().map(Terminal::pause));
         let stop = due.into_iter().chain(drawn).min();
         let show = |progress| {
@@ -226,13 +265,11 @@ fn trace(
         if let Some(terminal) = &mut terminal {
             terminal.draw(&render.film().resolve());
         }
-        let keep = keeper.filter(|_| ended || due.is_some_and(|due| due <= Instant::now()));
-        let took = keep.and_then(|keeper| keeper.keep(prepared, &caption, &render));
-        if keep.is_some() {
-            due = after(job.keep.pause(took.unwrap_or_default()));
-        }
+        let is_due = due.is_some_and(|due| due <= Instant::now());
+        let keep = keeper.filter(|_| is_due || ended && (last || end == End::Cancelled));
+        let kept = keep.is_some_and(|keeper| keeper.keep(job, prepared, &caption, &render));
         if ended {
-            break (signal.filter(|_| end == End::Cancelled), took.is_some());
+            break (signal.filter(|_| end == End::Cancelled), kept);
         }
     };
     meter.finish();
@@ -250,8 +287,14 @@ impl Traced {
             let share = 100.0 * prepared.taken(render);
             output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
         }
-        let stopped = matches!(render.end, End::Cancelled | End::Time);
-        if let Some(advice) = self.advice.as_ref().filter(|_| stopped && !job.report.quiet) {
+        if matches!(render.end, End::Cancelled | End::Time) {
+            self.advise(job);
+        }
+    }
+
+    /// Tells how to go on, if the render is kept.
+    fn advise(&self, job: &Job) {
+        if let Some(advice) = self.advice.as_ref().filter(|_| !job.report.quiet) {
             output::note(advice);
         }
     }

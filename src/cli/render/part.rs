@@ -6,7 +6,6 @@
 use super::job::Job;
 use super::keeper::Keeper;
 use super::layers;
-use super::metadata::looks;
 use super::prepare::Prepared;
 use crate::cli::args::RenderArgs;
 use crate::cli::command::TypedOptions;
@@ -39,19 +38,25 @@ pub(super) fn keep(args: &mut RenderArgs, typed: &mut TypedOptions) -> Result<()
         return Ok(());
     }
     let Some(part) = args.part.settle()? else { return Ok(()) };
+    typed.set("part", part.to_string());
+    if args.is_sequence() {
+        // Of a sequence, whole pictures are dealt out, and there is nothing to merge.
+        if args.part.split.is_some() {
+            let message = "--split is for parts of one picture; those of a sequence are whole \
+                           pictures: leave it out";
+            return Err(Failure::usage("render", message));
+        }
+        return Ok(());
+    }
     if args.keep.checkpoint.is_some() {
         let message = "--part keeps its render in the file of the part: leave out --checkpoint";
         return Err(Failure::usage("render", message));
     }
-    if args.views.turntable().is_some() {
-        let message = "--part is a part of one picture: leave out --turntable";
+    if args.sequence.skip_existing {
+        let message =
+            "--skip-existing is for pictures; the same command goes on with its part anyway";
         return Err(Failure::usage("render", message));
     }
-    if args.particles.frames().is_some() {
-        let message = "--part is a part of one picture: give --frame a single one";
-        return Err(Failure::usage("render", message));
-    }
-    typed.set("part", part.to_string());
     let file = path(&args.output, part, &number(part));
     if file.is_file() {
         typed.set("resume", &file);
@@ -88,7 +93,7 @@ pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
     let layers = layers::wanted(&job.encoding.layers);
     let title = prepared.title.clone();
     let drawn_over = !prepared.scene.look.is_plain() || job.draws_bar();
-    Caption { title, looks: looks(job, prepared), drawn_over, layers, ..Caption::default() }
+    Caption { title, looks: prepared.looks(job), drawn_over, layers, ..Caption::default() }
 }
 
 /// Completes the file of a part, and tells of it.
@@ -117,7 +122,7 @@ pub(super) fn finish(
         caption.features = features(world, settings, &options, &caption.layers, tiles);
     }
     keeper
-        .write(prepared, &caption, render)
+        .write(job, prepared, &caption, render)
         .map_err(|error| Failure::Write(keeper.path().to_owned(), error))?;
     if !job.report.quiet {
         let picture = job.output.display();

@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::told::Told;
-use super::{layers, looks, part, unseen};
+use super::{layers, looks, metadata, part, unseen};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -74,9 +74,19 @@ impl Staged {
     }
 }
 
-impl Prepared {
-    /// Loads the scene, puts in the job's settings, and builds the world; `given` are its particles,
-    /// if they were read before.
+/// A scene whose camera and lights have their places: all that makes the picture is known.
+pub(super) struct Placed {
+    pub(super) scene: Scene,
+    pub(super) legend: Option<Legend>,
+    pub(super) region: Region,
+    /// What the scene is told by, if someone asks.
+    pub(super) identity: Option<Identity>,
+    load: Duration,
+}
+
+impl Placed {
+    /// Loads the scene, puts in the job's settings, and places the camera; `given` are its particles, if
+    /// they were read before.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let Staged { mut scene, legend, load } = Staged::load(job, given)?;
         place_camera(job, &mut scene)?;
@@ -88,12 +98,19 @@ impl Prepared {
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
         }
+        let asked = job.keep.file().is_some() || job.is_identified();
+        let identity = asked.then(|| Identity::of(&scene));
+        Ok(Self { scene, legend, region, identity, load })
+    }
+
+    /// Builds the world, if there is memory for it.
+    pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
+        let Self { mut scene, legend, region, identity, load } = self;
         let layered = !job.encoding.layers.is_empty() || !scene.look.is_plain();
         let share = part::share(job, region, &scene)?;
         Estimate::new(&scene, region, layers::need_statistics(job), layered)
             .of_tiles(share.tiles.len())
             .check()?;
-        let identity = job.keep.file().map(|_| Identity::of(&scene));
         let start = Instant::now();
         let part = share.size() as f64 / Share::whole(region, scene.settings.spp).size() as f64;
         let samples = samples(region, &scene.settings) as f64 * part;
@@ -104,7 +121,7 @@ impl Prepared {
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
         let unseen = unseen::why(&world, region, scene.settings.spp);
-        Ok(Self {
+        Ok(Prepared {
             title: job.source.title(&scene).into_owned(),
             notes: notes(job, &scene.settings, &world),
             scene,
@@ -120,6 +137,13 @@ impl Prepared {
             unseen,
         })
     }
+}
+
+impl Prepared {
+    /// How particles are looked at, as a file says it.
+    pub(super) fn looks(&self, job: &Job) -> Vec<(String, String)> {
+        metadata::looks(job, self.legend.as_ref(), self.identity.as_ref())
+    }
 
     /// Tells what is worth knowing before the render takes its time.
     pub(super) fn tell(&self, job: &Job, told: &mut Told) {
@@ -128,6 +152,11 @@ impl Prepared {
             Some(_) if job.is_of_sequence() => told.see_no_sphere(),
             Some(why) => told.warn(why),
             None => {}
+        }
+        if job.common.as_ref().is_some_and(|common| !common.frames_all)
+            && self.world.centers_out_of_view() > 0
+        {
+            told.see_cropped();
         }
         if job.report.quiet {
             return;

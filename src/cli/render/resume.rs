@@ -10,6 +10,7 @@ use crate::cli::settings::region_text;
 use clap::{ArgMatches, FromArgMatches};
 use spherule::checkpoint::{self, Origin};
 use spherule::render::Unfinished;
+use spherule::scene::Settings;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -36,6 +37,11 @@ impl Resumed {
         Ok((Self { path: path.to_owned(), origin, render }, args, given))
     }
 
+    /// The same failure as of a render that cannot go on.
+    pub(super) fn refuse(self, why: &str) -> Failure {
+        Failure::Resume(self.path, why.to_owned())
+    }
+
     /// The render, if it can go on as it is typed now.
     pub(super) fn go_on(mut self, job: &Job, prepared: &Prepared) -> Result<Unfinished, Failure> {
         match self.difference(job, prepared) {
@@ -46,6 +52,13 @@ impl Resumed {
 
     /// What does not fit the render that was begun.
     fn difference(&mut self, job: &Job, prepared: &Prepared) -> Option<String> {
+        let (then, now) = (self.render.settings(), &prepared.scene.settings);
+        let targets = |of: &Settings| (of.spp, of.until_error, of.time);
+        if job.is_of_sequence() && targets(then) != targets(now) {
+            let why = "the pictures of a sequence would differ; leave --spp, --until-error and --time \
+                       as they were";
+            return Some(why.to_owned());
+        }
         if let Err(error) = self.render.raise(&prepared.scene.settings) {
             return Some(error.to_string());
         }

@@ -8,13 +8,15 @@ mod reel;
 
 use self::plan::{Frames, Plan, Shot};
 use self::reel::Reel;
-use super::finish_picture;
-use super::job::Job;
+use super::film::Film;
+use super::job::{Job, Place};
+use super::keeper::Keeper;
 use super::numbers::numbered;
-use super::prepare::Prepared;
+use super::prepare::Placed;
+use super::resume::Resumed;
 pub(in crate::cli) use super::survey::Common;
 use super::survey::Survey;
-use super::told::Told;
+use super::{Session, make_placed};
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::files::Files;
@@ -24,15 +26,29 @@ use crate::cli::picture_file;
 use crate::cli::source::Source;
 use spherule::scene::SceneError;
 use spherule::scene::particles::{Coloring, Particles, ReadOptions, of_frame};
+use spherule::split::Part;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Makes the pictures, until one fails or is interrupted.
 ///
 /// `files` are all files of the command but the pictures.
-pub(super) fn run(job: &Job, files: &Files) -> Result<ExitCode, Failure> {
+pub(super) fn run(
+    job: &Job,
+    files: &Files,
+    keeper: Option<&Keeper>,
+    resumed: Option<Resumed>,
+) -> Result<ExitCode, Failure> {
+    let resumed = match resumed {
+        Some(resumed) if job.sequence.first_picture.is_none() => {
+            let why = "it keeps a single picture; leave out --turntable, and give --frame one";
+            return Err(resumed.refuse(why));
+        }
+        resumed => resumed,
+    };
+    let session = Session { keeper, ..Session::default() };
     let (particles, _) = job.typed;
-    let Some(range) = particles.frames() else { return run_turn(job, files) };
+    let Some(range) = particles.frames() else { return run_turn(job, files, session, resumed) };
     let Source::Particles(path, options) = &job.source else {
         let message = "--frame is for a file of particles: name one";
         return Err(Failure::usage("render", message));
@@ -42,7 +58,7 @@ pub(super) fn run(job: &Job, files: &Files) -> Result<ExitCode, Failure> {
     let plan = Plan::new(Some(frames), job.views.turntable())?;
     let mut job = job.clone();
     job.looks.allow_empty = true;
-    check_outputs(&job, &plan, files)?;
+    let film = check_outputs(&job, &plan, files)?;
     let mut reel = Reel::open(path, &options)?;
     let survey = look_at(&job, &plan, path, &options, &mut reel)?;
     survey.check(path)?;
@@ -51,11 +67,17 @@ pub(super) fn run(job: &Job, files: &Files) -> Result<ExitCode, Failure> {
         colors.ends.get_or_insert(ends);
     }
     tell_framing(&job, &plan);
-    Sequence { job, plan, files, told: Told::default() }.of_frames(path, &options, reel, &survey)
+    let session = Session { film, ..session };
+    Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reel, &survey)
 }
 
 /// Makes the pictures of a turn around one scene.
-fn run_turn(job: &Job, files: &Files) -> Result<ExitCode, Failure> {
+fn run_turn(
+    job: &Job,
+    files: &Files,
+    session: Session,
+    resumed: Option<Resumed>,
+) -> Result<ExitCode, Failure> {
     if let Source::Particles(path, _) = &job.source
         && plan::is_stream(path)
     {
@@ -67,21 +89,33 @@ fn run_turn(job: &Job, files: &Files) -> Result<ExitCode, Failure> {
         return Err(Failure::usage("render", message));
     }
     let plan = Plan::new(None, job.views.turntable())?;
-    check_outputs(job, &plan, files)?;
-    Sequence { job: job.clone(), plan, files, told: Told::default() }.of_turn()
+    let film = check_outputs(job, &plan, files)?;
+    let session = Session { film, ..session };
+    Sequence { job: job.clone(), plan, files, session, resumed }.of_turn()
 }
 
-/// Finds out whether all pictures can be written, and replace no other file of the command, as far as their
-/// number is known.
-fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<(), Failure> {
-    let known = (0..plan.count().unwrap_or(1)).map_while(|index| plan.shot(index));
+/// Finds out whether all pictures that are made here can be written, and replace no other file of the
+/// command, as far as their number is known; returns the film that they go to, if they do.
+fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<Option<Film>, Failure> {
+    if let Some(container) = job.film {
+        files.check_output("--output", &job.output)?;
+        return Film::new(&job.output, container, job.sequence.fps).map(Some);
+    }
+    let known = (0..plan.count().unwrap_or(1)).filter(|&index| is_dealt(job, index));
     let mut files = files.clone();
-    for shot in known {
+    for shot in known.filter_map(|index| plan.shot(index)) {
         let output = numbered(&job.output, shot.number, plan.digits());
         files.writes("--output", &output);
         picture_file::check(&output)?;
     }
-    files.check()
+    files.check()?;
+    Ok(None)
+}
+
+/// Whether a picture is made here, of which others may be made elsewhere: they are dealt out in turn.
+fn is_dealt(job: &Job, index: u64) -> bool {
+    let own = |part: Part| index % u64::from(part.count()) == u64::from(part.number() - 1);
+    job.deal.is_none_or(own)
 }
 
 /// Looks at all frames that are shown or, of what can be read only once, at the first.
@@ -92,7 +126,7 @@ fn look_at(
     options: &ReadOptions,
     reel: &mut Reel,
 ) -> Result<Survey, Failure> {
-    let mut survey = Survey::default();
+    let mut survey = Survey::new(!plan.is_stream());
     let add = |survey: &mut Survey, number: u64, frame| {
         let particles = of_frame(path, frame, options)?;
         survey.add(job, particles, options).map_err(|error| error.of_frame(number))
@@ -128,12 +162,16 @@ fn tell_framing(job: &Job, plan: &Plan) {
         return;
     }
     match (plan.frame_count(), plan.count()) {
+        (Some(1), Some(1)) => {}
         (Some(frames), Some(pictures)) if job.views.turntable().is_some() => {
-            let (frames, pictures) = (plural(frames, "frame"), plural(pictures, "picture"));
-            output::note(format_args!("{pictures} of a turn show {frames}; the camera frames all"));
+            let (shown, frames) = (frames.min(pictures), plural(frames, "frame"));
+            let pictures = plural(pictures, "picture");
+            output::note(format_args!(
+                "{pictures} of a turn show {shown} of {frames}, and one camera frames all of these"
+            ));
         }
         (Some(frames), _) => {
-            output::note(format_args!("the camera frames all of {}", plural(frames, "frame")));
+            output::note(format_args!("one camera frames all of {}", plural(frames, "frame")));
         }
         _ => output::note("the camera frames the first frame: the input can be read only once"),
     }
@@ -149,19 +187,23 @@ struct Sequence<'a> {
     job: Job<'a>,
     plan: Plan,
     files: &'a Files,
-    told: Told,
+    session: Session<'a>,
+    /// The picture that goes on, which is the first.
+    resumed: Option<Resumed>,
 }
 
 impl Sequence<'_> {
     fn of_turn(mut self) -> Result<ExitCode, Failure> {
-        for shot in self.plan.shots() {
-            let code = self.picture(&shot, None, None)?;
+        for (index, shot) in (0..).zip(self.plan.shots()) {
+            if !self.is_made(index) {
+                continue;
+            }
+            let code = self.picture(index, &shot, None, None)?;
             if code != ExitCode::SUCCESS {
                 return Ok(code);
             }
         }
-        self.told.finish("numbers");
-        Ok(ExitCode::SUCCESS)
+        self.finish()
     }
 
     fn of_frames(
@@ -172,56 +214,94 @@ impl Sequence<'_> {
         survey: &Survey,
     ) -> Result<ExitCode, Failure> {
         for warning in &survey.warnings {
-            self.told.warn(warning);
+            self.session.told.warn(warning);
         }
-        let mut code = ExitCode::SUCCESS;
-        let mut made = 0;
-        while let Some(shot) = self.plan.shot(made) {
+        for index in 0.. {
+            let Some(shot) = self.plan.shot(index) else { break };
             let Some(number) = shot.frame else { break };
-            let again = self.plan.shot(made + 1).is_some_and(|next| next.frame == shot.frame);
+            if !self.is_made(index) {
+                // Of input that can be read only once, only reading tells whether there is more.
+                if self.plan.is_stream() && !reel.pass(number)? {
+                    break;
+                }
+                continue;
+            }
+            let again = self.plan.shot(index + 1).is_some_and(|next| next.frame == shot.frame);
             let frame = if again { reel.look(number)? } else { reel.take(number)? };
             let Some(frame) = frame else { break };
             let angle = shot.turn.map(|turn| self.job.views.angle(turn));
             let result = of_frame(path, frame, options).map_err(Failure::from);
             let result = result.and_then(|particles| {
                 let common = survey.common(&self.job, angle)?;
-                self.picture(&shot, Some(particles), Some(common))
+                self.picture(index, &shot, Some(particles), Some(common))
             });
-            code = result.map_err(|error| error.of_frame(number))?;
+            let code = result.map_err(|error| error.of_frame(number))?;
             if code != ExitCode::SUCCESS {
-                break;
+                self.session.told.finish(self.plan.noun());
+                return Ok(code);
             }
-            made += 1;
         }
-        self.told.finish(if self.plan.is_turn() { "numbers" } else { "frames" });
-        if code == ExitCode::SUCCESS {
-            self.plan.check_end(path, reel.passed())?;
-        }
-        Ok(code)
+        let missing = self.plan.check_end(path, reel.passed());
+        let code = self.finish()?;
+        missing.map(|()| code)
+    }
+
+    /// Whether a picture is made here and now.
+    fn is_made(&self, index: u64) -> bool {
+        is_dealt(&self.job, index) && index >= self.job.sequence.first_picture.unwrap_or(0)
+    }
+
+    /// Whether no picture follows that is made here, as far as that is known.
+    fn is_last(&self, index: u64) -> bool {
+        let stride = self.job.deal.map_or(1, |part| u64::from(part.count()));
+        self.plan.shot(index.saturating_add(stride)).is_none()
     }
 
     fn picture(
         &mut self,
+        index: u64,
         shot: &Shot,
         particles: Option<Particles>,
         common: Option<Common>,
     ) -> Result<ExitCode, Failure> {
-        let output = numbered(&self.job.output, shot.number, self.plan.digits());
-        let Shot { frame, turn, .. } = *shot;
-        let job = Job { output, turn, frame, common, ..self.job.clone() };
-        picture_file::check(&job.output)?;
-        if self.plan.count().is_none() {
-            self.files.check_output("--output", &job.output)?;
+        let Shot { frame, turn, number } = *shot;
+        let place = Some(Place { index, last: self.is_last(index) });
+        let mut job = Job { turn, frame, common, place, ..self.job.clone() };
+        if job.film.is_none() {
+            job.output = numbered(&self.job.output, number, self.plan.digits());
+            picture_file::check(&job.output)?;
+            if self.plan.count().is_none() {
+                self.files.check_output("--output", &job.output)?;
+            }
         }
-        self.told.begin(shot.number);
-        let mut prepared = Prepared::load(&job, particles)?;
-        if self.plan.is_stream() && prepared.world.centers_out_of_view() > 0 {
-            self.told.see_cropped();
-        }
-        let code = finish_picture(&job, &mut prepared, &mut self.told, None, None)?;
+        let session = &mut self.session;
+        session.told.begin(number);
+        let resumed = self.resumed.take();
+        let code = make_placed(&job, Placed::load(&job, particles)?, session, resumed)?;
         // A bar in a file is that of all pictures.
         self.job.color_bar = inside(self.job.color_bar);
         Ok(code)
+    }
+
+    /// Completes the film, and tells what is known at the end.
+    fn finish(self) -> Result<ExitCode, Failure> {
+        let Session { told, film, .. } = self.session;
+        told.finish(self.plan.noun());
+        if told.pictures() == 0 {
+            let which = self.job.deal.map_or_else(String::new, |part| format!(" of part {part}"));
+            output::warn(format_args!("there is no picture{which} to make"));
+        }
+        if !self.job.report.quiet && told.kept() > 0 {
+            let (kept, pictures) = (told.kept(), told.pictures());
+            output::note(format_args!("{kept} of {pictures} pictures existed and are kept"));
+        }
+        if let Some(film) = film {
+            let told = film.finish()?;
+            if !self.job.report.quiet {
+                output::print(told);
+            }
+        }
+        Ok(ExitCode::SUCCESS)
     }
 }
 

@@ -18,6 +18,8 @@ pub(in crate::cli) struct Common {
     pub(in crate::cli) camera: Camera,
     /// Height of the ground that a preset puts under all frames.
     pub(in crate::cli) ground: Option<f64>,
+    /// Whether the camera frames all pictures, and not only the first.
+    pub(in crate::cli) frames_all: bool,
 }
 
 /// What is known of the frames that were looked at; memory does not grow with their number.
@@ -33,9 +35,16 @@ pub(super) struct Survey {
     frames: u64,
     /// Frames that show a sphere.
     shown: u64,
+    /// Whether it looks at all frames, and not only at the first.
+    all: bool,
 }
 
 impl Survey {
+    /// Of `all` frames that are shown, or only of the first.
+    pub(super) fn new(all: bool) -> Self {
+        Self { all, ..Self::default() }
+    }
+
     /// Looks at a frame, of which this takes what it has to know.
     pub(super) fn add(
         &mut self,
@@ -97,7 +106,7 @@ impl Survey {
         job.style.light(&mut still);
         let ground = still.ground.map(|ground| ground.height);
         let camera = if angle.is_none() { still.camera } else { view(angle)?.camera };
-        Ok(Common { camera, ground })
+        Ok(Common { camera, ground, frames_all: self.all })
     }
 }
 

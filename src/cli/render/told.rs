@@ -2,6 +2,7 @@
 
 use crate::cli::output;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Most runs of numbers that a message lists.
 const LISTED: usize = 8;
@@ -20,6 +21,8 @@ pub(super) struct Told {
     empty: Vec<u64>,
     /// Pictures whose spheres are partly beyond their edges.
     cropped: Vec<u64>,
+    /// How many pictures existed and were kept.
+    kept: u64,
 }
 
 impl Told {
@@ -47,6 +50,24 @@ impl Told {
             output::note(text);
             self.notes.push(text.to_owned());
         }
+    }
+
+    /// Counts a picture that exists and is kept, and says so if it is asked to.
+    pub(super) fn keep(&mut self, output: &Path, tell: bool) {
+        self.kept += 1;
+        if tell {
+            output::note(format_args!("{}: exists and is kept", output.display()));
+        }
+    }
+
+    /// How many pictures there were.
+    pub(super) fn pictures(&self) -> u64 {
+        self.pictures
+    }
+
+    /// How many pictures existed and were kept.
+    pub(super) fn kept(&self) -> u64 {
+        self.kept
     }
 
     /// Remembers that the picture shows no sphere.

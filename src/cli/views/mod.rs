@@ -52,7 +52,8 @@ pub(super) struct ViewArgs {
     /// Share of the picture left free at its edges, 0 to 0.9, where the camera frames everything
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = camera::margin)]
     margin: Option<f64>,
-    /// So many pictures on a way around the vertical axis, NAME-000.png and so on
+    /// Render N pictures of a full turn around the vertical axis, NAME-000.png and so on; with many
+    /// frames, they are spread evenly over the N pictures
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(PICTURES))]
     turntable: Option<u32>,
 }

@@ -112,8 +112,9 @@ impl Plan {
         self.frames.as_ref().and_then(|frames| frames.count)
     }
 
-    pub(super) fn is_turn(&self) -> bool {
-        self.turn.is_some()
+    /// What the numbers of pictures are.
+    pub(super) fn noun(&self) -> &'static str {
+        if self.turn.is_some() { "numbers" } else { "frames" }
     }
 
     /// Whether its frames can be read only once.

@@ -30,12 +30,8 @@ impl Reel {
             return Ok(Some(frame));
         }
         self.held = None;
-        while self.passed < number {
-            let failure = |error| Failure::from(error).of_frame(self.passed);
-            if !self.frames.skip_frame().map_err(failure)? {
-                return Ok(None);
-            }
-            self.passed += 1;
+        if number > 0 && !self.pass(number - 1)? {
+            return Ok(None);
         }
         let failure = |error| Failure::from(error).of_frame(number);
         let frame = self.frames.next().transpose().map_err(failure)?;
@@ -43,7 +39,19 @@ impl Reel {
         Ok(frame)
     }
 
-    /// The same, of a frame that will be asked for once more.
+    /// Passes over all frames up to this one; whether there are so many.
+    pub(super) fn pass(&mut self, number: u64) -> Result<bool, Failure> {
+        while self.passed <= number {
+            let failure = |error| Failure::from(error).of_frame(self.passed);
+            if !self.frames.skip_frame().map_err(failure)? {
+                return Ok(false);
+            }
+            self.passed += 1;
+        }
+        Ok(true)
+    }
+
+    /// The same as [`Self::take`], of a frame that will be asked for once more.
     pub(super) fn look(&mut self, number: u64) -> Result<Option<ParticleFrame>, Failure> {
         let frame = self.take(number)?;
         self.held = frame.clone().map(|frame| (number, frame));

@@ -1,0 +1,282 @@
+//! Films: pictures that are piped to `ffmpeg` as they are made.
+
+use crate::cli::failure::Failure;
+use spherule::atomic::{Pending, check_destination, remove_leftovers};
+use spherule::image::tone::{Codes8, DisplayTransform};
+use spherule::image::{Image, WriteOptions};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::thread::{self, JoinHandle};
+
+/// The program that encodes films.
+const PROGRAM: &str = "ffmpeg";
+
+/// Pictures per second, unless another rate is given.
+const FPS: f64 = 30.0;
+
+/// Most bytes of messages of the program that are kept.
+const MESSAGES: u64 = 1 << 16;
+
+/// Lines of its messages that are shown.
+const SHOWN: usize = 8;
+
+/// Kinds of films, by the suffix of their names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::cli) enum Container {
+    Mp4,
+    Mov,
+    Webm,
+    Gif,
+}
+
+impl Container {
+    /// The kind of a film of this name; `None` for the name of a picture.
+    pub(in crate::cli) fn of_suffix(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "mp4" | "m4v" => Some(Self::Mp4),
+            "mov" => Some(Self::Mov),
+            "webm" => Some(Self::Webm),
+            "gif" => Some(Self::Gif),
+            _ => None,
+        }
+    }
+
+    /// The name of the format for `ffmpeg -f`.
+    fn muxer(self) -> &'static str {
+        match self {
+            Self::Mp4 => "mp4",
+            Self::Mov => "mov",
+            Self::Webm => "webm",
+            Self::Gif => "gif",
+        }
+    }
+
+    /// How colors are encoded: as players expect it of high definition, or with a palette.
+    fn encoding(self) -> &'static [&'static str] {
+        const VIDEO: [&str; 10] = [
+            "-vf",
+            "scale=out_color_matrix=bt709:out_range=tv",
+            "-pix_fmt",
+            "yuv420p",
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "bt709",
+        ];
+        const PALETTE: [&str; 2] =
+            ["-vf", "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse"];
+        if self == Self::Gif { &PALETTE } else { &VIDEO }
+    }
+}
+
+/// A film that grows by one picture after another, and takes its name when it is whole.
+pub(super) struct Film {
+    path: PathBuf,
+    container: Container,
+    fps: f64,
+    encoder: Option<Encoder>,
+    pictures: u64,
+}
+
+/// The program while it runs.
+struct Encoder {
+    /// Taken when the film is whole.
+    pending: Option<Pending>,
+    child: Child,
+    input: Option<ChildStdin>,
+    messages: Option<JoinHandle<String>>,
+    size: (u32, u32),
+}
+
+impl Film {
+    /// A film without pictures, once it is known that it can be written and that the program is there.
+    pub(super) fn new(
+        path: &Path,
+        container: Container,
+        fps: Option<f64>,
+    ) -> Result<Self, Failure> {
+        check_destination(path).map_err(|error| Failure::Write(path.to_owned(), error))?;
+        let found = Command::new(PROGRAM)
+            .arg("-version")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status();
+        if let Err(error) = found {
+            return Err(Failure::Film(path.to_owned(), missing(path, &error)));
+        }
+        // They cost some space, no more.
+        let _ = remove_leftovers(path);
+        let fps = fps.unwrap_or(FPS);
+        Ok(Self { path: path.to_owned(), container, fps, encoder: None, pictures: 0 })
+    }
+
+    /// Adds a picture of the size of the first one.
+    pub(super) fn add(&mut self, image: &Image, options: &WriteOptions) -> Result<(), Failure> {
+        let size = (image.width.next_multiple_of(2), image.height.next_multiple_of(2));
+        if self.encoder.is_none() {
+            let started = Encoder::start(&self.path, self.container, self.fps, size);
+            self.encoder = Some(started.map_err(|error| self.failure(&error.to_string()))?);
+        }
+        let Some(encoder) = &mut self.encoder else { return Ok(()) };
+        if encoder.size != size {
+            let (width, height) = encoder.size;
+            return Err(self.failure(&format!(
+                "a picture of {}x{} cannot follow one of {width}x{height}",
+                image.width, image.height
+            )));
+        }
+        let bytes = even_codes(image, options);
+        let written = encoder.input.as_mut().map_or(Ok(()), |input| input.write_all(&bytes));
+        if let Err(error) = written {
+            // It ended early, and says why.
+            let why = encoder.end().map_or(error.to_string(), |(status, said)| told(status, &said));
+            return Err(self.failure(&why));
+        }
+        self.pictures += 1;
+        Ok(())
+    }
+
+    /// Gives the film its name; returns what there is to say of it.
+    pub(super) fn finish(mut self) -> Result<String, Failure> {
+        let Some(mut encoder) = self.encoder.take() else {
+            return Err(self.failure("there is no picture for it"));
+        };
+        let (status, said) = encoder.end().map_err(|error| self.failure(&error.to_string()))?;
+        if !status.success() {
+            return Err(self.failure(&told(status, &said)));
+        }
+        if let Some(pending) = encoder.pending.take() {
+            if pending.path().metadata().is_ok_and(|file| file.len() == 0) {
+                return Err(self.failure(&format!("{PROGRAM} wrote nothing")));
+            }
+            pending.persist().map_err(|error| Failure::Write(self.path.clone(), error))?;
+        }
+        let (path, pictures, fps) = (self.path.display(), self.pictures, self.fps);
+        Ok(format!("{path}: a film of {pictures} pictures, {fps} per second"))
+    }
+
+    fn failure(&self, why: &str) -> Failure {
+        Failure::Film(self.path.clone(), format!("no film is written: {why}"))
+    }
+}
+
+impl Encoder {
+    fn start(path: &Path, container: Container, fps: f64, size: (u32, u32)) -> io::Result<Self> {
+        let pending = Pending::create(path)?;
+        let mut command = Command::new(PROGRAM);
+        command.args(["-hide_banner", "-loglevel", "error", "-y"]);
+        command.args(["-f", "rawvideo", "-pixel_format", "rgb24"]);
+        command.args(["-video_size", &format!("{}x{}", size.0, size.1)]);
+        command.args(["-framerate", &fps.to_string(), "-i", "-", "-an"]);
+        command.args(container.encoding()).args(["-f", container.muxer()]);
+        // A name that begins with a dash is no option.
+        command.arg(Path::new(".").join(pending.path()));
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
+        let mut child = command.spawn()?;
+        let input = child.stdin.take();
+        let messages = child.stderr.take().map(|stderr| thread::spawn(|| listen(stderr)));
+        Ok(Self { pending: Some(pending), child, input, messages, size })
+    }
+
+    /// Waits for the end of the program: how it ended, and what it said.
+    fn end(&mut self) -> io::Result<(ExitStatus, String)> {
+        drop(self.input.take());
+        let status = self.child.wait()?;
+        let said = self.messages.take().and_then(|messages| messages.join().ok());
+        Ok((status, said.unwrap_or_default()))
+    }
+}
+
+impl Drop for Encoder {
+    fn drop(&mut self) {
+        // Of a film that is interrupted, nothing is kept. It may have ended by itself.
+        if self.messages.is_some() {
+            let _ = self.child.kill();
+            let _ = self.end();
+        }
+    }
+}
+
+/// Keeps what the program says, and lets it say more.
+fn listen(mut stderr: impl Read) -> String {
+    let mut bytes = Vec::new();
+    let _ = stderr.by_ref().take(MESSAGES).read_to_end(&mut bytes);
+    let _ = io::copy(&mut stderr, &mut io::sink());
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// How the program failed, in its own words.
+fn told(status: ExitStatus, said: &str) -> String {
+    let lines: Vec<&str> = said.lines().filter(|line| !line.trim().is_empty()).collect();
+    let last = &lines[lines.len().saturating_sub(SHOWN)..];
+    let indented: Vec<String> = last.iter().map(|line| format!("\n  {line}")).collect();
+    format!("{PROGRAM} failed ({status}){}", indented.concat())
+}
+
+/// Why the program cannot be started, and what to do.
+fn missing(path: &Path, error: &io::Error) -> String {
+    let why = if error.kind() == ErrorKind::NotFound {
+        format!("{PROGRAM} is not in PATH")
+    } else {
+        format!("{PROGRAM} cannot be started: {error}")
+    };
+    let film = path.file_name().unwrap_or_default().to_string_lossy();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    format!(
+        "films take {PROGRAM}, and {why}; install it (apt install ffmpeg, dnf install ffmpeg-free, brew \
+         install ffmpeg, winget install ffmpeg, or from ffmpeg.org), or write numbered pictures with -o \
+         {stem}-%04d.png and make the film elsewhere:\n  \
+         {PROGRAM} -framerate 30 -pattern_type glob -i '{stem}-*.png' -pix_fmt yuv420p {film}"
+    )
+}
+
+/// Codes of 8 bits, red, green and blue, row by row; of an odd width or height the last column or row is
+/// there twice, because films have even ones.
+fn even_codes(image: &Image, options: &WriteOptions) -> Vec<u8> {
+    let codes = Codes8::new(DisplayTransform::new(options.exposure, options.tone));
+    let width = image.width as usize;
+    let mut bytes = Vec::new();
+    let rows = image.pixels.chunks_exact(width);
+    let odd = rows.clone().next_back().filter(|_| image.height % 2 == 1);
+    for row in rows.chain(odd) {
+        let odd = row.last().filter(|_| width % 2 == 1);
+        for pixel in row.iter().chain(odd) {
+            bytes.extend(pixel.map(|value| codes.code(value)));
+        }
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suffixes_tell_films_from_pictures() {
+        let of = |name: &str| Container::of_suffix(Path::new(name));
+        assert_eq!((of("a.mp4"), of("a.MOV")), (Some(Container::Mp4), Some(Container::Mov)));
+        assert_eq!((of("a.webm"), of("b/a.gif")), (Some(Container::Webm), Some(Container::Gif)));
+        assert_eq!((of("a.png"), of("mp4"), of("a.mp4.png")), (None, None, None));
+    }
+
+    #[test]
+    fn odd_sizes_repeat_their_last_row_and_column() {
+        let pixels = (0..3).map(|i| [i as f32 / 2.0; 3]).collect();
+        let image = Image::new(3, 1, pixels).unwrap();
+        let row = [0, 0, 0, 188, 188, 188, 255, 255, 255, 255, 255, 255];
+        assert_eq!(even_codes(&image, &WriteOptions::default()), [row, row].concat());
+        let even = Image::filled(2, 2, [0.0; 3]).unwrap();
+        assert_eq!(even_codes(&even, &WriteOptions::default()), [0; 12]);
+    }
+
+    #[test]
+    fn last_words_are_shown() {
+        let lines: Vec<String> = (0..20).map(|i| format!("line {i}\n\n")).collect();
+        let text = told(ExitStatus::default(), &lines.concat());
+        assert!(text.contains("\n  line 19") && !text.contains("line 11"), "{text}");
+    }
+}

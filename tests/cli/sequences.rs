@@ -1,0 +1,270 @@
+//! Sequences of pictures: frames in a turn, parts, pictures that exist, films.
+
+use crate::folder::{Folder, text};
+use spherule::image::{Image, WriteOptions, read_metadata};
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::process::{Command, Output};
+
+/// Frames of three particles, the last of which moves between the others.
+fn trajectory(frames: usize) -> String {
+    let frame = |i: usize| format!("3\n\nC 0 0 0\nN 9 2 3\nO {}.5 1 1\n", i + 1);
+    (0..frames).map(frame).collect()
+}
+
+fn folder(frames: usize) -> Folder {
+    let folder = Folder::new();
+    folder.write("a.xyz", &trajectory(frames));
+    folder
+}
+
+/// Runs `render a.xyz` at a small size, and returns what it says, in one line.
+#[track_caller]
+fn render(folder: &Folder, code: i32, args: &str) -> String {
+    let line = format!("render a.xyz --size 32x24 --spp 2 {args}");
+    said(&folder.run(&line.split(' ').collect::<Vec<_>>()), code, &line)
+}
+
+#[track_caller]
+fn said(output: &Output, code: i32, line: &str) -> String {
+    let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(output.status.code(), Some(code), "{line}: {said}");
+    said
+}
+
+/// The contents of all files whose names end like this.
+fn files(folder: &Folder, suffix: &str) -> BTreeMap<String, Vec<u8>> {
+    let entries = fs::read_dir(folder.root()).expect("a folder");
+    let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
+    let names = entries.map(|entry| name(entry.expect("an entry")));
+    let ours = names.filter(|name| name.ends_with(suffix));
+    ours.map(|name| (name.clone(), folder.read(&name))).collect()
+}
+
+#[test]
+fn frames_are_spread_over_the_pictures_of_a_turn() {
+    for (pictures, expected) in [(3, "0 1 2"), (6, "0 0 1 1 2 2"), (2, "0 1")] {
+        let folder = folder(3);
+        render(&folder, 0, &format!("--frame all --turntable {pictures} -q -o t.png"));
+        let found = files(&folder, ".png");
+        let frame = |name: &String| {
+            let metadata = read_metadata(folder.path(name)).expect("a picture");
+            metadata.value("frame").expect("its frame").to_owned()
+        };
+        let frames: Vec<String> = found.keys().map(frame).collect();
+        assert_eq!(frames.join(" "), expected);
+        let names: Vec<String> = (0..pictures).map(|i| format!("t-{i:03}.png")).collect();
+        assert!(found.keys().eq(&names), "{:?}", found.keys());
+        let all: Vec<_> = found.values().collect();
+        assert!((1..all.len()).all(|i| !all[..i].contains(&all[i])));
+    }
+    let folder = folder(3);
+    let input = assert_cmd::Command::new(env!("CARGO_BIN_EXE_spherule"))
+        .args(["render", "-", "--frame", "all", "--turntable", "3"])
+        .write_stdin(trajectory(3))
+        .current_dir(folder.root())
+        .output()
+        .expect("a program that runs");
+    assert!(said(&input, 2, "standard input").contains("cannot be counted"));
+}
+
+#[test]
+fn parts_of_a_sequence_are_its_pictures() {
+    for sequence in ["--frame all", "--turntable 5", "--frame 1..4 --turntable 7"] {
+        let folder = folder(5);
+        render(&folder, 0, &format!("{sequence} -q -o p.png"));
+        let whole = files(&folder, ".png");
+        for name in whole.keys() {
+            fs::remove_file(folder.path(name)).expect("it is there");
+        }
+        for part in ["3/3", "1/3", "2/3"] {
+            let before = files(&folder, ".png").len();
+            assert_eq!(render(&folder, 0, &format!("{sequence} -q -o p.png --part {part}")), "");
+            let own = files(&folder, ".png").len() - before;
+            assert!(own >= 1 && own <= whole.len().div_ceil(3), "{sequence} {part}: {own}");
+        }
+        assert!(files(&folder, ".png") == whole, "{sequence}");
+        assert_eq!(files(&folder, ".part").len(), 0);
+    }
+    let folder = folder(2);
+    let none = render(&folder, 0, "--frame all -q --part 3/4");
+    assert!(none.contains("no picture of part 3/4"), "{none}");
+    let split = render(&folder, 2, "--frame all -q --part 1/2 --split tiles");
+    assert!(split.contains("--split"), "{split}");
+    assert_eq!(files(&folder, ".png").len(), 0);
+}
+
+#[test]
+fn pictures_that_exist_are_kept_if_they_are_the_same() {
+    let folder = folder(6);
+    let sequence = "--frame all -o p.png";
+    render(&folder, 0, &format!("{sequence} -q"));
+    let whole = files(&folder, ".png");
+    let again = format!("{sequence} --skip-existing");
+    let numbers = |folder: &Folder| -> Vec<u64> {
+        let number = |name: &String| fs::metadata(folder.path(name)).expect("a file").ino();
+        files(folder, ".png").keys().map(number).collect()
+    };
+    let before = numbers(&folder);
+    let kept = render(&folder, 0, &again);
+    assert!(kept.contains("6 of 6 pictures existed"), "{kept}");
+    assert_eq!(numbers(&folder), before);
+    // One is missing, one cut off, one of other samples, one of another frame, one says nothing.
+    fs::remove_file(folder.path("p-0000.png")).expect("it is there");
+    let short = &whole["p-0001.png"];
+    fs::write(folder.path("p-0001.png"), &short[..short.len() - 40]).expect("written");
+    fs::write(folder.path("p-0003.png"), &whole["p-0002.png"]).expect("written");
+    render(&folder, 0, "--frame all -q -o q.png --spp 3");
+    fs::rename(folder.path("q-0002.png"), folder.path("p-0002.png")).expect("renamed");
+    let bare = Image::read(folder.path("p-0004.png")).expect("a picture");
+    bare.write(folder.path("p-0004.png"), &WriteOptions::default()).expect("written");
+    for name in files(&folder, ".png").into_keys().filter(|name| name.starts_with('q')) {
+        fs::remove_file(folder.path(&name)).expect("it is there");
+    }
+    let mended = render(&folder, 0, &again);
+    assert!(files(&folder, ".png") == whole, "{mended}");
+    for (name, why) in [
+        ("p-0001.png", "cannot be read"),
+        ("p-0002.png", "spp is 3, not 2"),
+        ("p-0003.png", "frame is 2, not 3"),
+        ("p-0004.png", "of which scene"),
+    ] {
+        assert!(mended.contains(&format!("{name}: exists, but")), "{name}: {mended}");
+        assert!(mended.contains(why), "{why}: {mended}");
+    }
+    assert!(mended.contains("1 of 6 pictures existed"));
+}
+
+#[test]
+fn other_scenes_and_settings_are_rendered_anew() {
+    let folder = folder(4);
+    render(&folder, 0, "--frame all -q -o p.exr");
+    let again = "--frame all -o p.exr --skip-existing";
+    for (args, why) in [
+        ("--view x", "view"),
+        ("--radii 0.4", "radii"),
+        ("--layers id", "layers"),
+        ("--select element!=O", "select"),
+        ("--background black", "background"),
+    ] {
+        let told = render(&folder, 0, &format!("{again} {args}"));
+        assert!(told.contains(why) && !told.contains("pictures existed"), "{args}: {told}");
+        // Back to what it was.
+        let back = render(&folder, 0, again);
+        assert!(!back.contains("pictures existed"), "{args}: {back}");
+    }
+    // Between the others, so that the camera stays where it stands.
+    let moved = trajectory(4).replace("O 3.5", "O 3.25");
+    folder.write("a.xyz", &moved);
+    let told = render(&folder, 0, again);
+    assert!(
+        told.contains("p-0002.exr: exists, but") && told.contains("its spheres differ"),
+        "{told}"
+    );
+    assert!(told.contains("3 of 4 pictures existed"), "{told}");
+    assert!(render(&folder, 2, "--frame all -o p.pfm --skip-existing").contains(".exr"));
+    // Single pictures too.
+    render(&folder, 0, "-q -o one.png --skip-existing");
+    let number = || fs::metadata(folder.path("one.png")).expect("a file").ino();
+    let first = number();
+    assert!(render(&folder, 0, "-o one.png --skip-existing").contains("and is kept"));
+    assert_eq!(number(), first);
+    render(&folder, 0, "-q -o one.png --skip-existing --seed 5");
+    assert_ne!(number(), first);
+}
+
+/// Has a shell script stand for `ffmpeg`, or nothing.
+fn film(folder: &Folder, script: Option<&str>, args: &str) -> Output {
+    let tools = folder.path("tools");
+    fs::create_dir_all(&tools).expect("a folder");
+    let program = tools.join("ffmpeg");
+    let _ = fs::remove_file(&program);
+    let mut path = tools.clone().into_os_string();
+    if let Some(script) = script {
+        let head = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\n";
+        fs::write(&program, format!("{head}{script}\n")).expect("a script");
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).expect("a script");
+        path.push(":/usr/bin:/bin");
+    }
+    let line = format!("render a.xyz --size 31x24 --spp 2 -q {args}");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_spherule"));
+    command.args(line.split(' ')).current_dir(folder.root()).env("PATH", path);
+    command.output().expect("a program that runs")
+}
+
+/// Keeps what it is given, and how it was called.
+const KEEPS: &str = "echo \"$@\" > called; cat > \"$last\"";
+
+#[test]
+fn films_are_piped_to_ffmpeg() {
+    let folder = folder(3);
+    let plain = "render a.xyz --frame all --size 31x24 --spp 2 -q -o p.ppm";
+    folder.succeed(&plain.split(' ').collect::<Vec<_>>());
+    let raster = |bytes: &[u8]| {
+        let codes = &bytes[bytes.len() - 31 * 24 * 3..];
+        let row = |row: &[u8]| [row, &row[row.len() - 3..]].concat();
+        codes.chunks(31 * 3).flat_map(row).collect::<Vec<u8>>()
+    };
+    let expected: Vec<u8> = files(&folder, ".ppm").values().flat_map(|file| raster(file)).collect();
+    for (name, format) in
+        [("f.mp4", "-f mp4"), ("f.mov", "-f mov"), ("f.webm", "-f webm"), ("f.gif", "-f gif")]
+    {
+        let output = film(&folder, Some(KEEPS), &format!("--frame all --fps 12.5 -o {name}"));
+        assert_eq!(said(&output, 0, name), "");
+        assert!(folder.read(name) == expected, "{name}");
+        let called = text(&folder.read("called"));
+        assert!(called.contains("-video_size 32x24 -framerate 12.5 -i -"), "{called}");
+        assert!(called.contains(format), "{called}");
+        assert_eq!(called.contains("-pix_fmt yuv420p"), name != "f.gif", "{called}");
+    }
+    let turn = film(&folder, Some(KEEPS), "--turntable 5 -o turn.mp4");
+    said(&turn, 0, "a turn");
+    assert_eq!(folder.read("turn.mp4").len(), 5 * 32 * 24 * 3);
+    assert!(text(&folder.read("called")).contains("-framerate 30 "));
+    assert_eq!(fs::read_dir(folder.root()).expect("a folder").count(), 3 + 5 + 3);
+}
+
+#[test]
+fn films_that_fail_leave_what_was_there() {
+    let folder = folder(3);
+    folder.write("f.mp4", "an older film");
+    for (script, expected) in [
+        ("echo Unknown encoder >&2; exit 3", "Unknown encoder"),
+        ("cat > /dev/null; echo no space >&2; exit 1", "no space"),
+        ("cat > /dev/null", "wrote nothing"),
+        ("head -c 100 > \"$last\"; kill -9 $$", "ffmpeg failed"),
+    ] {
+        let output = film(&folder, Some(script), "--frame all -o f.mp4");
+        let told = said(&output, 1, script);
+        assert!(told.contains("f.mp4") && told.contains(expected), "{script}: {told}");
+        assert_eq!(folder.read("f.mp4"), b"an older film", "{script}");
+    }
+    let told = said(&film(&folder, None, "--frame all -o f.mp4"), 1, "no ffmpeg");
+    for word in ["apt install ffmpeg", "-pattern_type glob -i 'f-*.png'", "-o f-%04d.png"] {
+        assert!(told.contains(word), "{word}: {told}");
+    }
+    let names = fs::read_dir(folder.root()).expect("a folder");
+    assert_eq!(names.count(), 3, "the input, the film and the tools");
+}
+
+#[test]
+fn what_films_cannot_have_is_refused() {
+    let folder = folder(2);
+    for (args, word) in [
+        ("-o f.mp4", "--frame all or --turntable N"),
+        ("--frame 1 -o f.webm", "--frame all"),
+        ("--frame all -o f.mp4 --checkpoint c", "--checkpoint"),
+        ("--frame all -o f.mp4 --part 1/2", "--part"),
+        ("--frame all -o f.mp4 --skip-existing", "--skip-existing"),
+        ("--frame all -o f.mp4 --layers id", "--layers"),
+        ("--frame all -o f.mp4 --bits 16", "--bits"),
+        ("--frame all -o f.mp4 --background transparent", "transparent"),
+        ("--frame all -o f.png --fps 20", "--fps"),
+        ("--frame all -o f.mp4 --fps 0", "per second"),
+    ] {
+        let told = said(&film(&folder, Some(KEEPS), args), 2, args);
+        assert!(told.contains(word), "{args}: {told}");
+    }
+    assert_eq!(fs::read_dir(folder.root()).expect("a folder").count(), 2);
+}
