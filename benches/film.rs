@@ -46,7 +46,7 @@ fn samplers(criterion: &mut Criterion) {
 fn film(criterion: &mut Criterion) {
     let samples = vec![Rgb::new(0.25, 0.5, 0.75); (TILE * TILE * SPP) as usize];
     let region = Region { x: 0, y: 0, width: TILE, height: TILE };
-    let mut film = Film::new(region, false);
+    let mut film = Film::new(region, false).expect("a region");
     assert_eq!(film.tiles[0].add(&samples, SPP), 0);
     assert!(film.resolve().pixels.iter().all(|pixel| *pixel == [0.25, 0.5, 0.75]));
     let mut group = criterion.benchmark_group("film");

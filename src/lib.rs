@@ -48,7 +48,7 @@
 //! (scene.settings.width, scene.settings.height) = (11, 11);
 //!
 //! let world = World::build(&scene)?;
-//! let picture = render(&world, &scene.settings, &Options::default()).image;
+//! let picture = render(&world, &scene.settings, &Options::default())?.image;
 //!
 //! let shades: Vec<char> = " .:-=+*#%@".chars().collect();
 //! let rows: Vec<String> = picture
@@ -69,7 +69,7 @@
 //!     " .:::.     ",
 //!     "           ",
 //! ]);
-//! # Ok::<(), spherule::world::WorldError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 #![forbid(unsafe_code)]
@@ -77,6 +77,7 @@
 // Vocabulary: knows nothing of scenes.
 pub mod color;
 pub mod lanes;
+pub mod suggest;
 pub mod vec3;
 
 pub mod exact;

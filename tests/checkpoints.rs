@@ -74,7 +74,8 @@ fn kept(scene: &Scene, share: Share, tasks: u32) -> Vec<u8> {
         statistics: true,
         ..Options::default()
     };
-    let mut render = Unfinished::begin_share(&world, &scene.settings, &options, share);
+    let mut render = Unfinished::begin_share(&world, &scene.settings, &options, share)
+        .expect("settings in range");
     render.run(&world, &options);
     written(&origin(scene), &render)
 }

@@ -56,7 +56,8 @@ fn run_in_pieces(unfinished: &mut Unfinished, world: &World, tasks: u64) -> u32 
 
 fn in_pieces(scene: &Scene, options: &Options, tasks: u64) -> Render {
     let world = World::build(scene).expect("the scene is sound");
-    let mut unfinished = Unfinished::begin(&world, &scene.settings, options);
+    let mut unfinished =
+        Unfinished::begin(&world, &scene.settings, options).expect("settings in range");
     assert!(run_in_pieces(&mut unfinished, &world, tasks) > 1);
     unfinished.render()
 }
@@ -118,7 +119,8 @@ fn more_samples_make_the_picture_of_so_many_from_the_start() {
         let options = Options { statistics: true, ..Options::default() };
         let world = World::build(&scene).expect("the scene is sound");
         let mut unfinished =
-            Unfinished::begin(&world, &Settings { spp: 5, ..scene.settings.clone() }, &options);
+            Unfinished::begin(&world, &Settings { spp: 5, ..scene.settings.clone() }, &options)
+                .expect("settings in range");
         for spp in [5, 5, 21, 32, 70] {
             let settings = Settings { spp, ..scene.settings.clone() };
             unfinished.raise(&settings).expect("it is more");
@@ -132,7 +134,8 @@ fn more_samples_make_the_picture_of_so_many_from_the_start() {
 
 /// A first target and a second one, which is asked for after so many tasks.
 fn two_targets(world: &World, settings: [&Settings; 2], after: u64) -> Render {
-    let mut unfinished = Unfinished::begin(world, settings[0], &Options::default());
+    let mut unfinished =
+        Unfinished::begin(world, settings[0], &Options::default()).expect("settings in range");
     run_for(&mut unfinished, world, after, 2);
     unfinished.raise(settings[1]).expect("it is more");
     run_in_pieces(&mut unfinished, world, 50);
@@ -151,7 +154,7 @@ fn it_does_not_matter_when_a_smaller_error_is_asked_for() {
         for tasks in [1, 40, 200] {
             assert_same(&two_targets(&world, [&first, &second], tasks), &late, "two targets");
         }
-        let alone = render(&world, &second, &Options::default());
+        let alone = render(&world, &second, &Options::default()).expect("settings in range");
         assert_eq!(alone.end, late.end);
         assert!(late.samples.total > 0 && late.noise.is_some());
     }
@@ -162,7 +165,8 @@ fn what_is_over_stays_as_it_is() {
     let scene = with(&still_life(), |settings| settings.until_error = Some(0.05));
     for scene in [scene, still_life()] {
         let world = World::build(&scene).expect("the scene is sound");
-        let mut unfinished = Unfinished::begin(&world, &scene.settings, &Options::default());
+        let mut unfinished = Unfinished::begin(&world, &scene.settings, &Options::default())
+            .expect("settings in range");
         assert!(!unfinished.render().complete);
         let end = unfinished.run(&world, &Options::default());
         let first = unfinished.render();
@@ -178,7 +182,8 @@ fn time_that_was_taken_counts() {
         (settings.time, settings.spp) = (Some(Duration::from_millis(150)), 1 << 16);
     });
     let world = World::build(&scene).expect("the scene is sound");
-    let mut unfinished = Unfinished::begin(&world, &scene.settings, &Options::default());
+    let mut unfinished =
+        Unfinished::begin(&world, &scene.settings, &Options::default()).expect("settings in range");
     assert_eq!(unfinished.run(&world, &Options::default()), End::Time);
     let first = unfinished.render();
     assert_eq!(unfinished.run(&world, &Options::default()), End::Time);
@@ -197,7 +202,8 @@ fn other_settings_and_less_are_refused() {
         let (mut first, mut second) = (scene.settings.clone(), scene.settings.clone());
         then(&mut first);
         now(&mut second);
-        let mut unfinished = Unfinished::begin(&world, &first, &Options::default());
+        let mut unfinished =
+            Unfinished::begin(&world, &first, &Options::default()).expect("settings in range");
         let error = unfinished.raise(&second).expect_err("it is refused");
         assert_eq!(unfinished.settings(), &first);
         error

@@ -16,7 +16,7 @@ fn picture(path: &Path, (width, height): (u32, u32), spp: u32) -> Render {
     (scene.settings.width, scene.settings.height) = (width, height);
     scene.settings.spp = spp;
     let world = World::build(&scene).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    render(&world, &scene.settings, &Options::default())
+    render(&world, &scene.settings, &Options::default()).expect("settings in range")
 }
 
 #[test]

@@ -235,7 +235,8 @@ fn half(eye: DVec3) -> Scene {
 fn half_a_ball_has_half_its_outline_and_a_round_cap() {
     let area = |scene: &Scene| {
         let world = World::build(scene).expect("a sound scene");
-        let found = layers(&world, &scene.settings, &Options::default(), &[Layer::Normal]);
+        let found = layers(&world, &scene.settings, &Options::default(), &[Layer::Normal])
+            .expect("settings in range");
         let sum = |of: fn(&spherule::layers::Features) -> f32| {
             found.pixels.iter().map(|pixel| f64::from(of(pixel))).sum::<f64>() * 16.0 / 4096.0
         };
@@ -293,7 +294,8 @@ fn a_section_through_a_crystal_is_flat() {
     (scene.settings.width, scene.settings.height) = (100, 100);
     let world = World::build(&scene).expect("a sound scene");
     assert_eq!((world.features.cut_away, world.features.cuts), (400, 1));
-    let found = layers(&world, &scene.settings, &Options::default(), &[Layer::Normal]);
+    let found = layers(&world, &scene.settings, &Options::default(), &[Layer::Normal])
+        .expect("settings in range");
     let flat = found.pixels.iter().filter(|pixel| pixel.normal[2] > 1.0 - 1e-6);
     assert!(flat.clone().all(|pixel| (pixel.depth - 19.7).abs() < 1e-4));
     let share = flat.count() as f64 / 1e4;

@@ -40,7 +40,8 @@ const STATISTICS: Options = Options {
 
 /// A share of a render, complete.
 fn take(world: &World, settings: &Settings, options: &Options, share: Share) -> Unfinished {
-    let mut render = Unfinished::begin_share(world, settings, options, share);
+    let mut render =
+        Unfinished::begin_share(world, settings, options, share).expect("settings in range");
     assert_eq!(render.run(world, options), End::Samples);
     render
 }
@@ -97,7 +98,7 @@ fn parts_come_to_the_bytes_of_the_whole() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     for options in [Options::default(), STATISTICS] {
-        let straight = render(&world, &scene.settings, &options);
+        let straight = render(&world, &scene.settings, &options).expect("settings in range");
         for (split, count) in [
             (Split::Samples, 1),
             (Split::Samples, 2),
@@ -124,7 +125,7 @@ fn regions_and_every_sampler_can_be_shared_out() {
     for sampler in [SamplerKind::Stratified, SamplerKind::Independent] {
         scene.settings.sampler = sampler;
         let options = Options { region, ..STATISTICS };
-        let straight = render(&world, &scene.settings, &options);
+        let straight = render(&world, &scene.settings, &options).expect("settings in range");
         for split in [Split::Samples, Split::Tiles] {
             let parts = parts(&world, &scene.settings, &options, split, 5);
             let merged = merge(false, parts).expect("they are all there").render();
@@ -153,10 +154,11 @@ fn layers_of_parts_are_those_of_the_whole() {
     let region = Region { x: 3, y: 5, width: 61, height: 37 };
     let options = Options { region: Some(region), ..Options::default() };
     let wanted = [Layer::Albedo, Layer::Depth, Layer::Id];
-    let straight = layers(&world, &scene.settings, &options, &wanted);
+    let straight = layers(&world, &scene.settings, &options, &wanted).expect("settings in range");
     let count = Film::tile_count(region);
     let piece = |tiles: std::ops::Range<u32>| {
-        let known = features(&world, &scene.settings, &options, &wanted, tiles.clone());
+        let known = features(&world, &scene.settings, &options, &wanted, tiles.clone())
+            .expect("settings in range");
         (tiles, known)
     };
     let pieces = [piece(5..count), piece(0..2), piece(2..5)];
@@ -169,7 +171,8 @@ fn one_file_is_as_it_was() {
     let mut scene = still_life();
     (scene.settings.until_error, scene.settings.spp) = (Some(0.2), 4096);
     let world = World::build(&scene).expect("the scene is sound");
-    let mut alone = Unfinished::begin(&world, &scene.settings, &STATISTICS);
+    let mut alone =
+        Unfinished::begin(&world, &scene.settings, &STATISTICS).expect("settings in range");
     assert_eq!(alone.run(&world, &STATISTICS), End::Error);
     let merged = merge(false, vec![alone.clone()]).expect("it is the whole");
     assert_same(&merged.render(), &alone.render(), "alone");
@@ -242,7 +245,7 @@ fn parts_of_other_renders_are_refused() {
         change(&mut other);
         let begin = |settings, options, samples| {
             let share = Share { samples, tiles: 0..1 };
-            Unfinished::begin_share(&world, settings, options, share)
+            Unfinished::begin_share(&world, settings, options, share).expect("settings in range")
         };
         let (usual, mut merge) = (Options::default(), Merge::new(true));
         let first = begin(&scene.settings, &usual, 0..3);
@@ -264,7 +267,7 @@ fn parts_of_other_renders_are_refused() {
     let mut merge = Merge::new(true);
     let part = |samples| {
         let share = Share { samples, tiles: 0..1 };
-        Unfinished::begin_share(&world, &scene.settings, &usual, share)
+        Unfinished::begin_share(&world, &scene.settings, &usual, share).expect("settings in range")
     };
     merge.add("a", &identity, part(0..3)).expect("it is the first");
     let other = Identity::of(&furnace());
@@ -280,7 +283,8 @@ fn parts_that_were_interrupted_are_refused_unless_that_may_be() {
     let cancel = AtomicBool::new(true);
     let options = Options { cancel: Some(&cancel), ..Options::default() };
     let share = whole(&scene.settings);
-    let mut part = Unfinished::begin_share(&world, &scene.settings, &options, share);
+    let mut part = Unfinished::begin_share(&world, &scene.settings, &options, share)
+        .expect("settings in range");
     assert_eq!(part.run(&world, &options), End::Cancelled);
     let wanted = 83 * 61 * 70;
     let (name, error) = ("file 1".to_owned(), merge(false, vec![part.clone()]));

@@ -2,8 +2,10 @@
 
 use crate::image::ImageError;
 use crate::paper::Unsupported;
+use crate::render::RenderError;
 use crate::scene::SceneError;
 use crate::scene::generate::GenerateError;
+use crate::suggest;
 use crate::workload::WorkloadError;
 use crate::world::WorldError;
 use std::io;
@@ -13,7 +15,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum BenchError {
     /// There is no scene of that name.
-    #[error("there is no scene \"{name}\" to measure; give some of {known}")]
+    #[error("there is no scene \"{name}\" to measure; {}", suggest::help(name, known.split(", "), "there are"))]
     UnknownScene {
         /// As it was asked for.
         name: String,
@@ -26,6 +28,9 @@ pub enum BenchError {
     /// A scene that cannot be rendered.
     #[error("{0}: {1}")]
     World(String, WorldError),
+    /// Settings that no render has.
+    #[error("{0}")]
+    Render(#[from] RenderError),
     /// Spheres that cannot be made.
     #[error("{0}: {1}")]
     Generate(String, GenerateError),

@@ -87,11 +87,14 @@ fn of_scene(
     let paper = Tracer::new(&scene.scene, &world, true)?;
     let draw = |renderer: usize| {
         let threading = match renderer {
-            0 => return Ok(render(&world, &settings, &render::Options::default()).image),
+            0 => {
+                let options = render::Options::default();
+                return Ok::<_, BenchError>(render(&world, &settings, &options)?.image);
+            }
             1 => Threading::Independent,
             _ => Threading::Critical,
         };
-        paper.render(&settings, threading).map(|render| render.image)
+        Ok(paper.render(&settings, threading)?.image)
     };
     let expected = [draw(0)?, draw(1)?];
     let times = Times::by_turns(options.rounds, NAMES.len() * pools.len(), |i| {

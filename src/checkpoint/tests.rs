@@ -30,7 +30,7 @@ fn stopped(world: &World, settings: &Settings, tasks: u64) -> Unfinished {
         statistics: true,
         ..Options::default()
     };
-    let mut render = Unfinished::begin(world, settings, &options);
+    let mut render = Unfinished::begin(world, settings, &options).unwrap();
     assert_eq!(render.run(world, &options), End::Cancelled);
     render
 }

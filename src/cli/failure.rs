@@ -15,6 +15,7 @@ use spherule::checkpoint::{CheckpointError, LockError};
 use spherule::drawing::DrawingError;
 use spherule::image::{CompareError, ImageError};
 use spherule::memory::Shortage;
+use spherule::render::RenderError;
 use spherule::scene::generate::GenerateError;
 use spherule::scene::{Place, SceneError};
 use spherule::split::MergeError;
@@ -36,6 +37,8 @@ pub(crate) enum Failure {
     Scene(Box<SceneError>),
     #[error("{0}: {1}")]
     World(String, WorldError),
+    #[error("{0}")]
+    Render(#[from] RenderError),
     #[error("{0}")]
     Image(#[from] ImageError),
     #[error("{0}")]

@@ -2,20 +2,21 @@
 //! typed.
 
 use spherule::film::Region;
-use spherule::scene::Roulette;
+use spherule::scene::{Roulette, Settings};
+use spherule::suggest;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Pixels each way, as in scene files.
-const PIXELS: RangeInclusive<u32> = 1..=65_535;
+/// Pixels each way.
+const PIXELS: RangeInclusive<u32> = Settings::PIXELS;
 
-/// Samples per pixel, as in scene files.
-pub(super) const SAMPLES: RangeInclusive<i64> = 1..=1 << 24;
+/// Samples per pixel.
+pub(super) const SAMPLES: RangeInclusive<i64> =
+    *Settings::SAMPLES.start() as i64..=*Settings::SAMPLES.end() as i64;
 
-/// Time limits, as in scene files.
-const TIMES: RangeInclusive<Duration> =
-    Duration::from_millis(1)..=Duration::from_secs(1_000_000_000);
+/// Time limits.
+const TIMES: RangeInclusive<Duration> = Settings::TIMES;
 
 /// Threads: far more than any processor has gains nothing and costs memory.
 pub(super) const THREADS: RangeInclusive<i64> = 1..=4096;
@@ -75,7 +76,9 @@ pub(super) fn depth(text: &str) -> Result<DepthLimit, String> {
     if text == "unlimited" {
         return Ok(DepthLimit(None));
     }
-    let limit = number(text).ok_or_else(|| format!("give 0 to {}, or unlimited", u32::MAX))?;
+    let near = || suggest::question(text, ["unlimited"]);
+    let limit =
+        number(text).ok_or_else(|| format!("give 0 to {}, or unlimited{}", u32::MAX, near()))?;
     Ok(DepthLimit(Some(limit)))
 }
 
@@ -88,7 +91,10 @@ pub(super) fn roulette(text: &str) -> Result<Roulette, String> {
             .filter(|probability| *probability > 0.0 && *probability <= 1.0)
             .map(Roulette::Fixed)
             .ok_or_else(|| {
-                "give none, throughput, or a probability of more than 0 and at most 1".to_owned()
+                let near = suggest::question(text, ["none", "throughput"]);
+                format!(
+                    "give none, throughput, or a probability of more than 0 and at most 1{near}"
+                )
             }),
     }
 }
@@ -125,10 +131,10 @@ pub(super) fn time(text: &str) -> Result<Target<Duration>, String> {
         })
 }
 
-/// Stops, in the range that scene files have too.
+/// Stops of exposure.
 pub(super) fn exposure(text: &str) -> Result<f64, String> {
     number(text)
-        .filter(|stops| (-100.0..=100.0).contains(stops))
+        .filter(|stops| Settings::EXPOSURES.contains(stops))
         .ok_or_else(|| "give a number of stops from -100 to 100, as in -1.5".to_owned())
 }
 

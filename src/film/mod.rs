@@ -17,6 +17,7 @@ pub use sums::Sums;
 pub use tile::{TILE, Tile, View};
 
 use crate::image::Image;
+use crate::scene::Settings;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -31,6 +32,58 @@ pub struct Region {
     pub width: u32,
     /// Rows.
     pub height: u32,
+}
+
+/// A region that no picture has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RegionError {
+    /// No pixels, or more than a picture can have each way.
+    #[error(
+        "a region of {} x {} pixels at {}, {} has no pixels or reaches beyond {most} each way",
+        .0.width, .0.height, .0.x, .0.y, most = Settings::PIXELS.end()
+    )]
+    Size(Region),
+    /// It reaches out of its picture.
+    #[error(
+        "a region of {} x {} pixels at {}, {} is not in a picture of {width} x {height}",
+        .region.width, .region.height, .region.x, .region.y
+    )]
+    Outside {
+        /// The region.
+        region: Region,
+        /// Pixels in a row of the picture.
+        width: u32,
+        /// Rows of the picture.
+        height: u32,
+    },
+}
+
+impl Region {
+    /// Checks that it has pixels, and no more than a picture can have.
+    ///
+    /// # Errors
+    /// [`RegionError::Size`].
+    pub fn check(self) -> Result<Self, RegionError> {
+        let most = *Settings::PIXELS.end();
+        self.is_in(most, most).then_some(self).ok_or(RegionError::Size(self))
+    }
+
+    /// Checks that it lies in a picture of this size.
+    ///
+    /// # Errors
+    /// One that does not, or that has no pixels.
+    pub fn check_in(self, width: u32, height: u32) -> Result<Self, RegionError> {
+        let region = self.check()?;
+        let outside = RegionError::Outside { region, width, height };
+        region.is_in(width, height).then_some(region).ok_or(outside)
+    }
+
+    fn is_in(self, width: u32, height: u32) -> bool {
+        let fits = |first: u32, count: u32, most: u32| {
+            count > 0 && u64::from(first) + u64::from(count) <= u64::from(most)
+        };
+        fits(self.x, self.width, width) && fits(self.y, self.height, height)
+    }
 }
 
 /// The sums of all pixels of a region.
@@ -49,16 +102,20 @@ impl Film {
         // More than two levels are rare.
         let (sums, picture) = (2 * size_of::<[f64; 3]>() as u64, size_of::<[f32; 3]>() as u64);
         let pixel = (sums + picture) * (1 + u64::from(squared));
-        u64::from(region.width) * u64::from(region.height) * pixel
+        (u64::from(region.width) * u64::from(region.height)).saturating_mul(pixel)
     }
 
     /// A black film; with sums of squares, which tell how samples spread, if `squared`.
-    pub fn new(region: Region, squared: bool) -> Self {
-        Self::with_tiles(region, 0..u32::MAX, squared)
+    ///
+    /// # Errors
+    /// A region that no picture has.
+    pub fn new(region: Region, squared: bool) -> Result<Self, RegionError> {
+        Ok(Self::with_tiles(region.check()?, 0..u32::MAX, squared))
     }
 
-    /// The same of some of the region's tiles alone, by their numbers, row by row from 0.
-    pub fn with_tiles(region: Region, tiles: Range<u32>, squared: bool) -> Self {
+    /// The same of some of the tiles alone, by their numbers, row by row from 0, of a region that
+    /// was checked.
+    pub(crate) fn with_tiles(region: Region, tiles: Range<u32>, squared: bool) -> Self {
         let regions = Self::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
         let tiles = regions.map(|region| Tile::new(region, squared)).collect();
         Self { region, tiles }
@@ -76,9 +133,9 @@ impl Film {
         })
     }
 
-    /// How many tiles a region of a picture has.
+    /// Returns how many tiles a region of a picture has.
     pub fn tile_count(region: Region) -> u32 {
-        region.width.div_ceil(TILE) * region.height.div_ceil(TILE)
+        region.width.div_ceil(TILE).saturating_mul(region.height.div_ceil(TILE))
     }
 
     /// Adds what a film of the same region has: other samples, other tiles, or both. Whether all that
@@ -100,7 +157,7 @@ impl Film {
     /// Puts black tiles without samples where there are none.
     pub fn fill(&mut self, squared: bool) {
         if self.tiles.len() < Self::tile_count(self.region) as usize {
-            let mut missing = Self::new(self.region, squared).tiles;
+            let mut missing = Self::with_tiles(self.region, 0..u32::MAX, squared).tiles;
             let there =
                 |tile: &Tile| self.tiles.binary_search_by_key(&tile.place(), Tile::place).is_ok();
             missing.retain(|tile| !there(tile));
@@ -187,7 +244,7 @@ mod tests {
     fn tiles_hold_every_pixel_once_whatever_the_size() {
         for (width, height) in [(1, 1), (16, 16), (17, 1), (1, 40), (33, 50)] {
             let region = Region { x: 5, y: 7, width, height };
-            let film = Film::new(region, false);
+            let film = Film::new(region, false).unwrap();
             let mut seen = vec![0; (width * height) as usize];
             for (x, y) in film.tiles.iter().flat_map(Tile::pixels) {
                 seen[((y - 7) * width + x - 5) as usize] += 1;
@@ -203,18 +260,41 @@ mod tests {
         assert!(Film::bytes(region, false) > 150_000_000_000);
         let region = Region { width: u32::MAX, height: u32::MAX >> 8, ..region };
         assert!(Film::bytes(region, true) > 1 << 62);
+        let endless = Region { x: u32::MAX, y: u32::MAX, width: u32::MAX, height: u32::MAX };
+        assert_eq!(Film::bytes(endless, true), u64::MAX);
+        assert_eq!(Film::tile_count(endless), u32::MAX);
+    }
+
+    #[test]
+    fn regions_that_no_picture_has_are_refused() {
+        let region = |x, y, width, height| Region { x, y, width, height };
+        for bad in [
+            region(0, 0, 0, 5),
+            region(0, 0, 5, 0),
+            region(u32::MAX, 0, 2, 2),
+            region(0, 65_535, 1, 1),
+            region(0, 0, u32::MAX, u32::MAX),
+        ] {
+            assert_eq!(Film::new(bad, false).err(), Some(RegionError::Size(bad)));
+            assert_eq!(bad.check_in(65_535, 65_535), Err(RegionError::Size(bad)));
+        }
+        assert!(region(65_534, 0, 1, 1).check().is_ok());
+        let outside = region(6, 0, 3, 1);
+        let error = RegionError::Outside { region: outside, width: 8, height: 8 };
+        assert_eq!(outside.check_in(8, 8), Err(error));
+        assert_eq!(outside.check_in(9, 1), Ok(outside));
     }
 
     #[test]
     fn packets_of_pixels_are_square() {
-        let film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false);
+        let film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false).unwrap();
         let first: Vec<_> = film.tiles[0].pixels().take(16).collect();
         assert!(first.iter().all(|&(x, y)| x < 4 && y < 4));
     }
 
     #[test]
     fn a_pixel_is_the_mean_of_its_samples() {
-        let mut film = Film::new(Region { x: 0, y: 0, width: 2, height: 1 }, false);
+        let mut film = Film::new(Region { x: 0, y: 0, width: 2, height: 1 }, false).unwrap();
         let sample = |x: f32| Rgb::new(x, 2.0 * x, 0.0);
         film.tiles[0].add(&[sample(1.0), sample(2.0), sample(3.0), sample(5.0)], 2);
         film.tiles[0].add(&[sample(6.0), sample(1.0)], 1);
@@ -223,7 +303,7 @@ mod tests {
 
     #[test]
     fn a_million_samples_do_not_stall() {
-        let mut film = Film::new(Region { x: 0, y: 0, width: 1, height: 1 }, false);
+        let mut film = Film::new(Region { x: 0, y: 0, width: 1, height: 1 }, false).unwrap();
         let block = vec![Rgb::splat(0.1); 1 << 12];
         for _ in 0..1 << 13 {
             film.tiles[0].add(&block, 1 << 12);

@@ -1,6 +1,8 @@
 //! What can go wrong with a picture file, and the mend.
 
 use super::Format;
+use crate::memory::Shortage;
+use crate::scene::Settings;
 use std::{
     io,
     path::{Path, PathBuf},
@@ -88,8 +90,25 @@ pub enum ImageError {
         /// Pixels that are there.
         count: usize,
     },
-    /// The exposure is not a finite number.
-    #[error("an exposure of {0} stops makes no picture; give a finite number, 0 for none")]
+    /// More pixels than memory holds.
+    #[error(
+        "a picture of {width} x {height} is too large{}; make it smaller",
+        .shortage.as_ref().map_or(String::new(), |shortage| format!(": it needs {shortage}"))
+    )]
+    Memory {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// What is lacking, if it is known.
+        shortage: Option<Shortage>,
+    },
+    /// The exposure is not in its range.
+    #[error(
+        "an exposure of {0} stops makes no picture; give a number from {least} to {most}, 0 for \
+         none",
+        least = Settings::EXPOSURES.start(), most = Settings::EXPOSURES.end()
+    )]
     Exposure(f64),
     /// An entry of the metadata that files cannot hold.
     #[error("the metadata entry {key:?} cannot be written: {reason}")]

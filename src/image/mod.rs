@@ -30,7 +30,7 @@ pub use self::format::Format;
 pub use self::metadata::{Metadata, read_metadata};
 pub use self::options::{Depth, PpmEncoding, QUALITY, WriteOptions};
 
-use crate::atomic;
+use crate::{atomic, memory};
 use std::path::Path;
 
 /// A picture in linear RGB with the primaries of sRGB.
@@ -59,11 +59,18 @@ impl Image {
     /// A picture of one color.
     ///
     /// # Errors
-    /// [`ImageError::Shape`] if `width` or `height` is 0, or if their product does not fit in
-    /// memory's address range.
+    /// [`ImageError::Shape`] if `width` or `height` is 0, and [`ImageError::Memory`] if so many
+    /// pixels need more memory than there is.
     pub fn filled(width: u32, height: u32, color: [f32; 3]) -> Result<Self, ImageError> {
-        let area = usize::try_from(u64::from(width) * u64::from(height)).unwrap_or(0);
-        Self::new(width, height, vec![color; area])
+        let area = u64::from(width) * u64::from(height);
+        let bytes = area.saturating_mul(size_of::<[f32; 3]>() as u64);
+        let too_large = |shortage| ImageError::Memory { width, height, shortage };
+        memory::check(bytes).map_err(|shortage| too_large(Some(shortage)))?;
+        let count = usize::try_from(area).map_err(|_| too_large(None))?;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| too_large(None))?;
+        pixels.resize(count, color);
+        Self::new(width, height, pixels)
     }
 
     /// The pixel in column `x` from the left and row `y` from the top; `None` outside of the
@@ -198,6 +205,11 @@ mod tests {
         assert!(Image::new(2, 3, vec![[0.0; 3]; 5]).is_err());
         assert!(Image::new(0, 3, vec![]).is_err());
         assert!(Image::filled(4, 0, [1.0; 3]).is_err());
+        for (width, height) in [(u32::MAX, u32::MAX), (u32::MAX, 1 << 30), (1 << 31, 1 << 31)] {
+            let error = Image::filled(width, height, [1.0; 3]).expect_err("too large");
+            assert!(matches!(error, ImageError::Memory { .. }), "{error}");
+            assert!(error.to_string().contains(&width.to_string()), "{error}");
+        }
         assert_eq!(Image::filled(2, 1, [1.0; 3]).unwrap().pixels, vec![[1.0; 3]; 2]);
     }
 

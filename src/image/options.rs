@@ -1,5 +1,6 @@
 //! How a picture is written.
 
+use super::tone::DisplayTransform;
 use super::{ImageError, Metadata};
 use crate::scene::Tone;
 
@@ -14,7 +15,8 @@ pub struct WriteOptions {
     pub quality: u8,
     /// The dialect of PPM.
     pub ppm: PpmEncoding,
-    /// Stops, finite: formats of codes show the picture multiplied by 2 to this power.
+    /// Stops, [`Settings::EXPOSURES`](crate::scene::Settings::EXPOSURES): formats of codes show the
+    /// picture multiplied by 2 to this power.
     pub exposure: f64,
     /// From exposed radiance to display-linear values, for formats of codes.
     pub tone: Tone,
@@ -62,9 +64,7 @@ impl Default for WriteOptions {
 impl WriteOptions {
     /// Refuses what no file can hold, whatever the format, so that options do not fail by suffix.
     pub(super) fn check(&self) -> Result<(), ImageError> {
-        if !self.exposure.is_finite() {
-            return Err(ImageError::Exposure(self.exposure));
-        }
+        DisplayTransform::new(self.exposure, self.tone)?;
         self.metadata.check()
     }
 }

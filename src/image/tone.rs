@@ -5,8 +5,8 @@
 //! largest code; [`Image::count_non_finite`](super::Image::count_non_finite) tells a caller that
 //! there are such values to warn of.
 
-use super::WriteOptions;
-use crate::scene::Tone;
+use super::{ImageError, WriteOptions};
+use crate::scene::{Settings, Tone};
 use rayon::prelude::*;
 
 /// The sRGB code, 0..=1, of a display-linear value in 0..=1 (IEC 61966-2-1:1999).
@@ -40,9 +40,22 @@ pub struct DisplayTransform {
 }
 
 impl DisplayTransform {
-    /// Multiplies radiance by `2^exposure` before the tone curve; `exposure` is in stops and
-    /// finite.
-    pub fn new(exposure: f64, tone: Tone) -> Self {
+    /// Multiplies radiance by `2^exposure` before the tone curve; `exposure` is in stops.
+    ///
+    /// # Errors
+    /// [`ImageError::Exposure`] beyond [`Settings::EXPOSURES`].
+    pub fn new(exposure: f64, tone: Tone) -> Result<Self, ImageError> {
+        if Settings::EXPOSURES.contains(&exposure) {
+            Ok(Self { gain: exposure.exp2(), tone })
+        } else {
+            Err(ImageError::Exposure(exposure))
+        }
+    }
+
+    /// Returns the transform of the nearest exposure in range; NaN counts as 0.
+    pub fn nearest(exposure: f64, tone: Tone) -> Self {
+        let (least, most) = (*Settings::EXPOSURES.start(), *Settings::EXPOSURES.end());
+        let exposure = if exposure.is_nan() { 0.0 } else { exposure.clamp(least, most) };
         Self { gain: exposure.exp2(), tone }
     }
 
@@ -95,8 +108,8 @@ impl Codes8 {
     /// The code of a radiance, 0..=255.
     #[inline]
     pub fn code(&self, radiance: f32) -> u8 {
-        // The maximum of NaN and 0 is 0.
-        let bits = radiance.max(0.0).to_bits();
+        // The maximum of NaN and 0 is 0; that of -0 and 0 may be either, and their sum is 0.
+        let bits = (radiance.max(0.0) + 0.0).to_bits();
         let mut code = self.first.get((bits >> FINE) as usize).copied().unwrap_or(0);
         while self.least.get(usize::from(code)).is_some_and(|least| bits >= *least) {
             code += 1;
@@ -107,7 +120,7 @@ impl Codes8 {
 
 /// The codes of pixels, as the options ask.
 pub(super) fn codes(pixels: &[[f32; 3]], options: &WriteOptions) -> Vec<[u16; 3]> {
-    let transform = DisplayTransform::new(options.exposure, options.tone);
+    let transform = DisplayTransform::nearest(options.exposure, options.tone);
     let maximum = options.depth.maximum();
     pixels.par_iter().map(|pixel| pixel.map(|value| transform.code(value, maximum))).collect()
 }
@@ -158,7 +171,7 @@ mod tests {
     #[test]
     fn tone_curves_increase_from_0_and_stay_in_range() {
         for tone in [Tone::Linear, Tone::Filmic] {
-            let transform = DisplayTransform::new(0.0, tone);
+            let transform = DisplayTransform::new(0.0, tone).unwrap();
             assert_eq!(transform.apply(0.0), 0.0);
             let values: Vec<_> = (-300..=300).map(|i| (0.1 * i as f32).exp2()).collect();
             for pair in values.windows(2) {
@@ -174,8 +187,8 @@ mod tests {
 
     #[test]
     fn tables_tell_the_same_codes() {
-        for (exposure, tone) in [(0.0, Tone::Linear), (-7.3, Tone::Filmic), (300.0, Tone::Linear)] {
-            let transform = DisplayTransform::new(exposure, tone);
+        for (exposure, tone) in [(0.0, Tone::Linear), (-7.3, Tone::Filmic), (100.0, Tone::Linear)] {
+            let transform = DisplayTransform::new(exposure, tone).unwrap();
             let table = Codes8::new(transform);
             let odd = [-1.0, -0.0, f32::NAN, f32::INFINITY, f32::MAX, f32::MIN_POSITIVE];
             let ends = table.least.iter().flat_map(|&bits| [bits.saturating_sub(1), bits]);
@@ -189,20 +202,24 @@ mod tests {
 
     #[test]
     fn a_stop_doubles() {
-        assert_eq!(DisplayTransform::new(1.0, Tone::Linear).apply(0.25), 0.5);
-        assert_eq!(DisplayTransform::new(-2.0, Tone::Linear).apply(1.0), 0.25);
+        assert_eq!(DisplayTransform::new(1.0, Tone::Linear).unwrap().apply(0.25), 0.5);
+        assert_eq!(DisplayTransform::new(-2.0, Tone::Linear).unwrap().apply(1.0), 0.25);
     }
 
     #[test]
     fn values_out_of_range_are_clamped() {
         for tone in [Tone::Linear, Tone::Filmic] {
-            for exposure in [-3000.0, -3.0, 0.0, 5.0, 3000.0] {
-                let transform = DisplayTransform::new(exposure, tone);
+            for exposure in [f64::NAN, f64::INFINITY, -3000.0, -100.1, 100.1] {
+                assert!(DisplayTransform::new(exposure, tone).is_err(), "{exposure}");
+                assert_eq!(DisplayTransform::nearest(exposure, tone).code(0.0, 255), 0);
+            }
+            for exposure in [-100.0, -3.0, 0.0, 5.0, 100.0] {
+                let transform = DisplayTransform::new(exposure, tone).unwrap();
                 assert_eq!(transform.code(f32::NAN, 255), 0);
                 assert_eq!(transform.code(f32::NEG_INFINITY, 255), 0);
                 assert_eq!(transform.code(-1.0, 65535), 0);
             }
-            let transform = DisplayTransform::new(0.0, tone);
+            let transform = DisplayTransform::new(0.0, tone).unwrap();
             assert_eq!(transform.code(f32::INFINITY, 255), 255);
             assert_eq!(transform.code(f32::MAX, 65535), 65535);
         }

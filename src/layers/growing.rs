@@ -7,7 +7,7 @@ use crate::film::{Film, Region, Tile, View};
 use crate::integrator::generate::{generate, generate_centers};
 use crate::integrator::workspace::Workspace;
 use crate::integrator::{Job, stages};
-use crate::render::{Options, passes, view};
+use crate::render::{self, Options, RenderError, passes, view};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{SamplerKind, Settings};
 use crate::world::World;
@@ -36,12 +36,18 @@ pub(super) struct Known {
 
 impl Growing {
     /// Layers of which nothing is known yet, of the region that `options` say.
-    pub fn begin(world: &World, settings: &Settings, options: &Options) -> Self {
-        let camera = &world.camera;
-        let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
-        let region = options.region.unwrap_or(whole);
-        let tiles = Film::new(region, false).tiles.into_iter().map(Known::new).collect();
-        Self { region, settings: settings.clone(), tiles }
+    ///
+    /// # Errors
+    /// Those of [`render()`](crate::render::render()).
+    pub fn begin(
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Self, RenderError> {
+        let region = render::check(world, settings, options)?;
+        let film = Film::with_tiles(region, 0..u32::MAX, false);
+        let tiles = film.tiles.into_iter().map(Known::new).collect();
+        Ok(Self { region, settings: settings.clone(), tiles })
     }
 
     /// Takes the samples that pixels lack of those that `settings` say, at most [`SAMPLES`]; false if
@@ -158,10 +164,10 @@ mod tests {
         for sampler in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
             let of = |spp| Settings { spp, sampler, ..scene.settings.clone() };
             let options = Options::default();
-            let mut growing = Growing::begin(&world, &of(1), &options);
+            let mut growing = Growing::begin(&world, &of(1), &options).unwrap();
             for spp in [1, 2, 5, 16, 20, 37, 36, 40] {
                 assert!(growing.grow(&world, &of(spp), &options));
-                let whole = layers(&world, &of(spp), &options, &[Layer::Depth]);
+                let whole = layers(&world, &of(spp), &options, &[Layer::Depth]).unwrap();
                 assert_eq!(growing.layers(), whole, "{sampler:?} {spp}");
             }
         }
@@ -174,10 +180,10 @@ mod tests {
         let world = World::build(&scene).unwrap();
         let flag = AtomicBool::new(true);
         let stopped = Options { cancel: Some(&flag), ..Options::default() };
-        let mut growing = Growing::begin(&world, &scene.settings, &stopped);
+        let mut growing = Growing::begin(&world, &scene.settings, &stopped).unwrap();
         assert!(!growing.grow(&world, &scene.settings, &stopped));
         assert!(growing.grow(&world, &scene.settings, &Options::default()));
-        let whole = layers(&world, &scene.settings, &Options::default(), &[Layer::Depth]);
+        let whole = layers(&world, &scene.settings, &Options::default(), &[Layer::Depth]).unwrap();
         assert_eq!(growing.layers(), whole);
     }
 }

@@ -14,7 +14,7 @@ use crate::image::{Channel, Values};
 use crate::integrator::Job;
 use crate::integrator::workspace::Workspace;
 use crate::ray::{GROUND, MISS};
-use crate::render::{Options, Statistics};
+use crate::render::{self, Options, RenderError, Statistics};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::Settings;
 use crate::world::World;
@@ -195,24 +195,34 @@ impl Layers {
 /// Only the region and the tracer of `options` count. Like the picture's, pixels are the same bytes
 /// for any number of threads and any tracer, in a region and in the whole. If `wanted` has nothing but
 /// [`Layer::Id`] and statistics, one ray for each pixel does, and only the ids are of use.
-pub fn layers(world: &World, settings: &Settings, options: &Options, wanted: &[Layer]) -> Layers {
-    let camera = &world.camera;
-    let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
-    let region = options.region.unwrap_or(whole);
+///
+/// # Errors
+/// Those of [`render()`](crate::render::render()).
+pub fn layers(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    wanted: &[Layer],
+) -> Result<Layers, RenderError> {
+    let region = render::check(world, settings, options)?;
     let tiles = 0..Film::tile_count(region);
-    let features = features(world, settings, options, wanted, tiles.clone());
-    Layers::gather(region, &[(tiles, features)])
+    let features = features(world, settings, options, wanted, tiles.clone())?;
+    Ok(Layers::gather(region, &[(tiles, features)]))
 }
 
 /// The same of some tiles of the region, by their numbers: the features of their pixels, tile by tile
 /// and in each in the order of [`Tile::pixels`](crate::film::Tile::pixels).
+///
+/// # Errors
+/// Those of [`render()`](crate::render::render()).
 pub fn features(
     world: &World,
     settings: &Settings,
     options: &Options,
     wanted: &[Layer],
     tiles: Range<u32>,
-) -> Vec<Features> {
+) -> Result<Vec<Features>, RenderError> {
+    let region = render::check(world, settings, options)?;
     let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
     let filter = PixelFilter::new(settings.filter);
     let (tracer, skips) = (options.tracer, options.skips);
@@ -220,9 +230,7 @@ pub fn features(
     let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
     let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
-    let camera = &world.camera;
-    let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
-    let tiles = Film::with_tiles(options.region.unwrap_or(whole), tiles, false).tiles;
+    let tiles = Film::with_tiles(region, tiles, false).tiles;
     let features: Vec<Vec<Features>> = tiles
         .into_par_iter()
         .map_init(
@@ -234,5 +242,5 @@ pub fn features(
             },
         )
         .collect();
-    features.into_iter().flatten().collect()
+    Ok(features.into_iter().flatten().collect())
 }

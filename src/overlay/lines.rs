@@ -136,7 +136,7 @@ mod tests {
     fn drawn(projection: Projection, line: Line, region: Region) -> Image {
         let (world, scene) = world(projection);
         let options = Options { region: Some(region), ..Options::default() };
-        let layers = layers(&world, &scene.settings, &options, &[Layer::Depth]);
+        let layers = layers(&world, &scene.settings, &options, &[Layer::Depth]).unwrap();
         let mut image = Image::filled(region.width, region.height, [0.0; 3]).unwrap();
         let overlay = Overlay { world: &world, region, layers: &layers, depths: None };
         overlay.draw_lines(&mut image, &[line], Pen { color: [1.0; 3], width: 2.0 });
@@ -199,11 +199,5 @@ mod tests {
         }
         let through = [DVec3::new(0.0, 0.1, 20.0), DVec3::new(0.0, 2.0, 0.0)];
         assert!(drawn(CENTRAL, through, WHOLE).pixels.iter().flatten().all(|x| x.is_finite()));
-    }
-
-    #[test]
-    fn lines_shine_through_what_is_not_covered() {
-        let pixel = Features { depth: 1.0, coverage: 0.25, ..Features::NONE };
-        assert_eq!([0.5, 1.0, 2.0].map(|distance| visible(distance, &pixel)), [1.0, 1.0, 0.75]);
     }
 }

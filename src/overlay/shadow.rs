@@ -1,7 +1,7 @@
 //! The shadow on the ground, by itself: how much of its light spheres take.
 
 use crate::image::Image;
-use crate::render::{End, Options, Unfinished};
+use crate::render::{self, End, Options, RenderError, Unfinished};
 use crate::scene::Settings;
 use crate::world::{Seen, World};
 
@@ -30,28 +30,46 @@ pub struct GroundRender {
 impl GroundRender {
     /// Pictures without samples yet; `None` if there is no ground. Of the options, only the region
     /// counts.
-    pub fn begin(world: &World, settings: &Settings, options: &Options) -> Option<Self> {
-        world.ground?;
+    ///
+    /// # Errors
+    /// Those of [`render()`](crate::render::render()).
+    pub fn begin(
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Option<Self>, RenderError> {
+        render::check(world, settings, options)?;
+        if world.ground.is_none() {
+            return Ok(None);
+        }
         let (settings, options) = plain(settings, options);
         let without = world.without_spheres();
-        let lit = Unfinished::begin(world, &settings, &options);
-        let bare = Unfinished::begin(&without, &settings, &options);
-        Some(Self { lit, bare, without })
+        let lit = Unfinished::begin(world, &settings, &options)?;
+        let bare = Unfinished::begin(&without, &settings, &options)?;
+        Ok(Some(Self { lit, bare, without }))
     }
 
     /// Takes the samples that they lack; false if `options` say that this is cancelled. The world is
     /// that of the beginning, and the same afterwards.
-    pub fn go_on(&mut self, world: &mut World, settings: &Settings, options: &Options) -> bool {
+    ///
+    /// # Errors
+    /// Those of [`render()`](crate::render::render()).
+    pub fn go_on(
+        &mut self,
+        world: &mut World,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<bool, RenderError> {
         let (settings, options) = plain(settings, options);
         for (picture, world) in [(&mut self.lit, &*world), (&mut self.bare, &self.without)] {
             if picture.raise(&settings).is_err() {
-                *picture = Unfinished::begin(world, &settings, &options);
+                *picture = Unfinished::begin(world, &settings, &options)?;
             }
         }
         let seen = world.seen.replace(Seen::default());
         let lit = self.lit.run(world, &options);
         world.seen = seen;
-        lit != End::Cancelled && self.bare.run(&self.without, &options) != End::Cancelled
+        Ok(lit != End::Cancelled && self.bare.run(&self.without, &options) != End::Cancelled)
     }
 
     /// What they tell.
@@ -73,11 +91,20 @@ fn plain<'a>(settings: &Settings, options: &Options<'a>) -> (Settings, Options<'
 ///
 /// `settings` say how many samples there are; only the tracer and the region of `options` count.
 /// The world is the same afterwards.
-pub fn ground(world: &mut World, settings: &Settings, options: &Options) -> Option<Ground> {
+///
+/// # Errors
+/// Those of [`render()`](crate::render::render()).
+pub fn ground(
+    world: &mut World,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Option<Ground>, RenderError> {
     let options = Options { cancel: None, ..*options };
-    let mut render = GroundRender::begin(world, settings, &options)?;
-    render.go_on(world, settings, &options);
-    Some(render.ground())
+    let Some(mut render) = GroundRender::begin(world, settings, &options)? else {
+        return Ok(None);
+    };
+    render.go_on(world, settings, &options)?;
+    Ok(Some(render.ground()))
 }
 
 /// What is missing in one picture beside another, as a share.

@@ -24,7 +24,7 @@ mod tests;
 pub use render::{Render, Threading};
 pub use shape::{Hit, What};
 
-use crate::scene::{ConductorFresnel, Material, NamedMaterial, Scene};
+use crate::scene::{ConductorFresnel, InvalidSetting, Material, NamedMaterial, Scene};
 use crate::world::{Camera, Environment, Frame, World};
 use glam::DVec3;
 use hierarchy::Node;
@@ -63,6 +63,9 @@ struct Surface {
 /// What the paper's tracer does not do.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unsupported {
+    /// A setting is out of its range.
+    #[error(transparent)]
+    Setting(#[from] InvalidSetting),
     /// It knows diffuse surfaces, mirrors of constant reflectance, mixtures of both, and emitters.
     #[error(
         "material `{0}` is none of the paper's; write lambertian, reflective, emitter or a smooth conductor of constant reflectance"

@@ -55,6 +55,7 @@ struct Worker<'a> {
 
 impl Plan {
     fn of(settings: &Settings) -> Result<Self, Unsupported> {
+        settings.check()?;
         let Integrator::Whitted { shadow_samples } = settings.integrator else {
             return Err(Unsupported::Integrator);
         };
@@ -81,7 +82,7 @@ impl Tracer {
     /// Renders with the threads of the current rayon pool.
     ///
     /// # Errors
-    /// The settings ask for another integrator, for roulette by throughput, or for more than
+    /// A setting is out of its range; the settings ask for another integrator, for roulette by throughput, or for more than
     /// [`Tracer::MOST_BOUNCES`] bounces.
     pub fn render(&self, settings: &Settings, threading: Threading) -> Result<Render, Unsupported> {
         let plan = Plan::of(settings)?;

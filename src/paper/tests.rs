@@ -29,7 +29,7 @@ fn picture(scene: &Scene, threading: Threading) -> Image {
 
 fn ours(scene: &Scene) -> Image {
     let world = World::build(scene).unwrap();
-    render(&world, &scene.settings, &Options::default()).image
+    render(&world, &scene.settings, &Options::default()).unwrap().image
 }
 
 /// Random numbers in 0..1.

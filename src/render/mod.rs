@@ -5,6 +5,7 @@
 //! stopped and go on as if nothing had been: see [`Unfinished`].
 
 mod adapt;
+mod error;
 mod outline;
 mod pass;
 mod schedule;
@@ -18,6 +19,8 @@ mod unlike;
 mod watch;
 
 pub use crate::integrator::skips::Skips;
+pub use error::RenderError;
+pub(crate) use error::check;
 pub(crate) use outline::Outline;
 pub(crate) use pass::view;
 pub use share::Share;
@@ -138,13 +141,19 @@ pub struct Statistics {
 /// Renders `world` with the threads of the current rayon pool.
 ///
 /// The picture is a function of the world and the settings alone: the same bytes for any number of
-/// threads and any tracer; a time limit decides only how many samples there are. `settings` have
-/// the picture's size that the world's camera was built for, and values in the ranges that their
-/// documentation states.
-pub fn render(world: &World, settings: &Settings, options: &Options) -> Render {
-    let mut unfinished = Unfinished::begin(world, settings, options);
+/// threads and any tracer; a time limit decides only how many samples there are.
+///
+/// # Errors
+/// Settings out of their ranges, or for a picture of another size than the world's camera was built
+/// for; a region that is not in the picture.
+pub fn render(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Render, RenderError> {
+    let mut unfinished = Unfinished::begin(world, settings, options)?;
     unfinished.run(world, options);
-    unfinished.render()
+    Ok(unfinished.render())
 }
 
 /// The samples of each pass.

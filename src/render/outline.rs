@@ -7,7 +7,6 @@ use super::{End, Totals, Unfinished};
 use crate::film::{Film, KeptTile, Region, TILE};
 use crate::noise::Slope;
 use crate::scene::Settings;
-use crate::world::check;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -63,13 +62,9 @@ impl Outline {
     /// What is wrong with it, if it is none that any render has: whatever it says, a render that
     /// goes on from it may show nonsense, but does not fail.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
-        demand(check::settings(&self.settings).is_ok(), "settings that no render has")?;
-        let Region { x, y, width, height } = self.region;
-        let fits = |first: u32, count: u32, most: u32| {
-            count > 0 && u64::from(first) + u64::from(count) <= u64::from(most)
-        };
-        let inside = fits(x, width, self.settings.width) && fits(y, height, self.settings.height);
-        demand(inside, "a region that is not in the picture")?;
+        demand(self.settings.check().is_ok(), "settings that no render has")?;
+        let inside = self.region.check_in(self.settings.width, self.settings.height);
+        demand(inside.is_ok(), "a region that is not in the picture")?;
         let whole = Share::whole(self.region, self.settings.spp);
         let share = self.share.common(&whole).filter(|common| *common == self.share);
         let share = share.filter(|share| !self.settings.has_target() || *share == whole);

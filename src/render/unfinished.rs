@@ -4,7 +4,9 @@ use super::share::Share;
 use super::state::State;
 use super::target::{self, End, Stage, Target};
 use super::watch::{Totals, Watch};
-use super::{Options, Render, Samples, Statistics, Unlike, adapt, pass, uniform, unlike};
+use super::{
+    Options, Render, RenderError, Samples, Statistics, Unlike, adapt, error, pass, uniform, unlike,
+};
 use crate::bvh::walk::Method;
 use crate::film::{Film, Region};
 use crate::integrator::Job;
@@ -52,21 +54,34 @@ pub struct Unfinished {
 impl Unfinished {
     /// A render that has no samples yet, of `world` by `settings`, both as [`super::render()`]
     /// takes them. Of the options, region and statistics are those of the whole render.
-    pub fn begin(world: &World, settings: &Settings, options: &Options) -> Self {
-        let share = Share::whole(region(world, options), settings.spp);
+    ///
+    /// # Errors
+    /// Those of [`super::render()`].
+    pub fn begin(
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Self, RenderError> {
+        let share = Share::whole(error::check(world, settings, options)?, settings.spp);
         Self::begin_share(world, settings, options, share)
     }
 
     /// The same of a share of the render, to be merged with others. The settings, which are those of
     /// the whole, have no target: no share knows how much is enough.
+    ///
+    /// # Errors
+    /// Those of [`super::render()`], and a share that is no part of the render.
     pub fn begin_share(
         world: &World,
         settings: &Settings,
         options: &Options,
         share: Share,
-    ) -> Self {
+    ) -> Result<Self, RenderError> {
         let statistics = options.statistics;
-        let region = region(world, options);
+        let region = error::check(world, settings, options)?;
+        if share.common(&Share::whole(region, settings.spp)).as_ref() != Some(&share) {
+            return Err(RenderError::Share(share));
+        }
         let mut film = Film::with_tiles(region, share.tiles.clone(), statistics);
         let state = with_job(world, settings, options, |job| {
             if options.tracer.method != Method::Brute && options.skips.empty_tiles {
@@ -77,7 +92,7 @@ impl Unfinished {
         });
         let stages = if settings.has_target() { vec![Stage::of(settings)] } else { Vec::new() };
         let (settings, totals, end) = (settings.clone(), Totals::default(), End::Cancelled);
-        Self { settings, stages, met: 0, statistics, share, state, totals, end }
+        Ok(Self { settings, stages, met: 0, statistics, share, state, totals, end })
     }
 
     /// Adds what another share of the same render has. Whether they are of the same kind; if not,
@@ -133,9 +148,10 @@ impl Unfinished {
     /// Exposure and tone may be any.
     ///
     /// # Errors
-    /// Anything else is other than at the beginning, or it asks for less; or samples are stratified
-    /// in a number of strata that would be another.
+    /// A setting is out of its range; anything else is other than at the beginning, or it asks for
+    /// less; or samples are stratified in a number of strata that would be another.
     pub fn raise(&mut self, settings: &Settings) -> Result<(), Unlike> {
+        settings.check()?;
         unlike::check(&self.settings, settings)?;
         if settings.spp != self.settings.spp && !self.is_whole() {
             return Err(Unlike::Share { then: self.settings.spp, now: settings.spp });
@@ -237,13 +253,6 @@ impl Unfinished {
     pub fn totals(&self) -> &Totals {
         &self.totals
     }
-}
-
-/// The part of the picture that is wanted.
-fn region(world: &World, options: &Options) -> Region {
-    let camera = &world.camera;
-    let whole = Region { x: 0, y: 0, width: camera.width, height: camera.height };
-    options.region.unwrap_or(whole)
 }
 
 /// Does something with what all tasks of a render share.

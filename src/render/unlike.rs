@@ -1,13 +1,16 @@
 //! Whether a render can go on by other settings.
 
 use super::{Unfinished, target};
-use crate::scene::{SamplerKind, Settings};
+use crate::scene::{InvalidSetting, SamplerKind, Settings};
 use std::fmt::Debug;
 use std::time::Duration;
 
 /// Why a render cannot go on by other settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unlike {
+    /// A setting is out of its range.
+    #[error(transparent)]
+    Invalid(#[from] InvalidSetting),
     /// What every sample depends on.
     #[error("{name} is {now}, but was {then} when the render began; leave it as it was")]
     Setting {

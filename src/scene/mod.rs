@@ -30,7 +30,9 @@ pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
 pub use look::{Background, Look};
 pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
 pub use preset::Preset;
-pub use settings::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Settings, Tone};
+pub use settings::{
+    Filter, Integrator, InvalidSetting, LightChoice, Roulette, SamplerKind, Settings, Tone,
+};
 pub use slice::{Slice, SliceMode, SlicePlane, bounds};
 pub use spheres::Spheres;
 pub use write::{Header, write, write_as};

@@ -4,9 +4,10 @@ use super::fit::{self, Placement};
 use super::{Frame, WorldError, spheres};
 use crate::image::Image;
 use crate::memory;
+use crate::scene::particles::Cell;
 use crate::scene::{
-    BRIGHTEST, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Integrator, Light,
-    Material, NamedMaterial, Pose, Projection, Rgb, Roulette, Scene, Settings, Slice, is_radiance,
+    BRIGHTEST, Background, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Lens,
+    Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Slice, is_radiance,
 };
 use glam::DVec3;
 
@@ -15,7 +16,7 @@ const UNIT: f64 = 1e-6;
 
 /// What does not ask how many spheres there are.
 pub(super) fn check_view(scene: &Scene) -> Result<(), WorldError> {
-    settings(&scene.settings)?;
+    scene.settings.check()?;
     camera(&scene.camera)
 }
 
@@ -26,8 +27,12 @@ pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
     scene.slices.iter().try_for_each(slice)?;
     environment(&scene.environment)?;
     scene.ground.as_ref().map_or(Ok(()), |plane| ground(plane, &scene.materials))?;
-    let colors = scene.spheres.color.iter().all(|&color| share(color));
-    demand(colors, || "a sphere's color must be 0 to 1 in each channel".to_owned())
+    look(&scene.look)?;
+    let wrong = scene.spheres.color.iter().position(|&color| !share(color));
+    wrong.map_or(Ok(()), |row| {
+        let color = scene.spheres.color[row];
+        albedo(&format!("the color of sphere {row}"), color)
+    })
 }
 
 fn demand(holds: bool, message: impl FnOnce() -> String) -> Result<(), WorldError> {
@@ -60,125 +65,158 @@ fn bright(color: Rgb) -> bool {
     (0..3).all(|channel| (0.0..=BRIGHTEST).contains(&color[channel]))
 }
 
+fn albedo(name: &str, color: Rgb) -> Result<(), WorldError> {
+    demand(share(color), || format!("{name} is {color}, but must be 0 to 1 in each channel"))
+}
+
+/// Real or imaginary part of an index of refraction.
+fn index(name: &str, color: Rgb) -> Result<(), WorldError> {
+    let holds = color.is_finite() && color.min_element() > 0.0;
+    demand(holds, || format!("{name} is {color}, but must be finite and more than 0"))
+}
+
 fn radiance(name: &str, color: Rgb) -> Result<(), WorldError> {
     demand(bright(color), || format!("{name} is {color}, but must be 0 to {BRIGHTEST:e}"))
 }
 
-/// Whether settings are in the ranges that their documentation states.
-pub(crate) fn settings(settings: &Settings) -> Result<(), WorldError> {
-    let pixels = 1..=65_535;
-    let (width, height) = (settings.width, settings.height);
-    demand(pixels.contains(&width) && pixels.contains(&height), || {
-        format!("a picture of {width} x {height} pixels: each must be 1 to 65535")
-    })?;
-    demand(settings.spp > 0, || "a pixel needs 1 sample or more".to_owned())?;
-    if let Roulette::Fixed(p) = settings.roulette {
-        number(p > 0.0 && p <= 1.0, "the probability of roulette", p, "more than 0, at most 1")?;
-    }
-    match settings.integrator {
-        Integrator::Whitted { shadow_samples: 0 } => {
-            Err(WorldError::Invalid("a light needs 1 shadow sample or more".to_owned()))
-        }
-        Integrator::Ao { distance } => {
-            number(distance > 0.0, "the distance of occlusion", distance, "more than 0")
-        }
-        Integrator::Path | Integrator::Whitted { .. } => Ok(()),
-    }
+fn finite(name: &str, vector: DVec3) -> Result<(), WorldError> {
+    demand(vector.is_finite(), || format!("{name} is {vector}, but must be finite"))
 }
 
+fn direction(name: &str, vector: DVec3) -> Result<(), WorldError> {
+    let holds = vector.is_finite() && vector != DVec3::ZERO;
+    demand(holds, || format!("{name} is {vector}, but must be finite and not zero"))
+}
+
+// Structures are taken apart without `..`, so that a field that is added later is not forgotten.
+
 fn camera(camera: &Camera) -> Result<(), WorldError> {
-    match camera.projection {
+    let Camera { projection, pose, up, lens, near } = camera;
+    match *projection {
         Projection::Perspective { fov } => {
-            number(
-                fov > 0.0 && fov < 180.0,
-                "the field of view",
-                fov,
-                "between 0 and 180 degrees",
-            )?;
+            let holds = fov > 0.0 && fov < 180.0;
+            number(holds, "the camera's `fov`", fov, "between 0 and 180 degrees")?;
         }
         Projection::Orthographic { height } => {
-            height.map_or(Ok(()), |height| more_than_0("the camera's height", height))?;
+            height.map_or(Ok(()), |height| more_than_0("the camera's `height`", height))?;
         }
     }
-    if let Pose::Fit { margin, .. } = camera.pose {
-        number(
-            (0.0..1.0).contains(&margin),
-            "the camera's margin",
-            margin,
-            "0 or more, less than 1",
-        )?;
+    match *pose {
+        Pose::LookAt { eye, target } => {
+            finite("the camera's `eye`", eye)?;
+            finite("the camera's `target`", target)?;
+        }
+        Pose::Fit { direction: toward, margin } => {
+            direction("the camera's `direction`", toward)?;
+            let holds = (0.0..1.0).contains(&margin);
+            number(holds, "the camera's `margin`", margin, "0 or more, less than 1")?;
+        }
     }
-    if let Some(lens) = camera.lens {
-        at_least_0("the aperture", lens.aperture)?;
-        lens.focus.map_or(Ok(()), |focus| more_than_0("the focus", focus))?;
+    if let Some(Lens { aperture, focus }) = *lens {
+        at_least_0("the camera's `aperture`", aperture)?;
+        focus.map_or(Ok(()), |focus| more_than_0("the camera's `focus`", focus))?;
     }
-    let up = camera.up.is_finite() && camera.up != DVec3::ZERO;
-    demand(up, || "the camera's `up` must be finite and not zero".to_owned())?;
-    at_least_0("the camera's `near`", camera.near)
+    direction("the camera's `up`", *up)?;
+    at_least_0("the camera's `near`", *near)
+}
+
+fn look(look: &Look) -> Result<(), WorldError> {
+    let Look { background, depth_cue: _, outline: _, cell } = look;
+    match *background {
+        Background::Color(color) => radiance("the look's `background`", color)?,
+        Background::Sky | Background::Transparent => (),
+    }
+    let Some(Cell { origin, vectors, periodic: _ }) = *cell else { return Ok(()) };
+    finite("the origin of the look's `cell`", origin)?;
+    vectors.into_iter().try_for_each(|edge| finite("an edge of the look's `cell`", edge))
 }
 
 fn material(named: &NamedMaterial) -> Result<(), WorldError> {
-    let sound = match &named.material {
-        Material::Lambertian { color } => share(*color),
-        Material::Conductor { fresnel, roughness } => {
-            let positive = |x: Rgb| x.is_finite() && x.min_element() > 0.0;
-            let metal = match *fresnel {
-                ConductorFresnel::Schlick(color) | ConductorFresnel::Constant(color) => {
-                    share(color)
-                }
-                ConductorFresnel::Exact { eta, k } => positive(eta) && positive(k),
-            };
-            metal && (0.0..=1.0).contains(roughness)
-        }
-        Material::Dielectric { ior, color } => *ior > 0.0 && ior.is_finite() && share(*color),
-        Material::Plastic { color, ior } => *ior > 1.0 && ior.is_finite() && share(*color),
-        Material::Reflective { color, diffuse, mirror } => {
-            share(*color) && *diffuse >= 0.0 && *mirror >= 0.0 && diffuse + mirror <= 1.0
-        }
-        Material::Emitter { radiance, albedo } => bright(*radiance) && share(*albedo),
+    let NamedMaterial { name, material } = named;
+    let field = |field: &str| format!("`{field}` of the material \"{name}\"");
+    let share = |name: &str, value: f64| {
+        number((0.0..=1.0).contains(&value), &field(name), value, "0 to 1")
     };
-    demand(sound, || format!("material \"{}\" is out of range: {:?}", named.name, named.material))
+    match *material {
+        Material::Lambertian { color } => albedo(&field("color"), color),
+        Material::Conductor { fresnel, roughness } => {
+            share("roughness", roughness)?;
+            match fresnel {
+                ConductorFresnel::Schlick(color) | ConductorFresnel::Constant(color) => {
+                    albedo(&field("color"), color)
+                }
+                ConductorFresnel::Exact { eta, k } => [("eta", eta), ("k", k)]
+                    .into_iter()
+                    .try_for_each(|(name, value)| index(&field(name), value)),
+            }
+        }
+        Material::Dielectric { ior, color } => {
+            more_than_0(&field("ior"), ior)?;
+            albedo(&field("color"), color)
+        }
+        Material::Plastic { color, ior } => {
+            let holds = ior > 1.0 && ior.is_finite();
+            number(holds, &field("ior"), ior, "finite and more than 1")?;
+            albedo(&field("color"), color)
+        }
+        Material::Reflective { color, diffuse, mirror } => {
+            albedo(&field("color"), color)?;
+            share("diffuse", diffuse)?;
+            share("mirror", mirror)?;
+            share("diffuse + mirror", diffuse + mirror)
+        }
+        Material::Emitter { radiance: emitted, albedo: reflected } => {
+            radiance(&field("radiance"), emitted)?;
+            albedo(&field("albedo"), reflected)
+        }
+    }
 }
 
 fn light(light: &Light) -> Result<(), WorldError> {
     match *light {
         Light::Sun { direction, irradiance, angular_radius } => {
-            unit("the direction of a sun", direction)?;
-            radiance("the irradiance of a sun", irradiance)?;
+            unit("the `direction` of a sun", direction)?;
+            radiance("the `irradiance` of a sun", irradiance)?;
             let holds = (0.0..90.0).contains(&angular_radius);
-            number(holds, "the angular radius of a sun", angular_radius, "0 or more, less than 90")
+            number(
+                holds,
+                "the `angular_radius` of a sun",
+                angular_radius,
+                "0 or more, less than 90",
+            )
         }
         Light::Point { position, intensity, .. } => {
             demand(position.is_finite(), || {
-                format!("a point light is at {position}, but must be somewhere finite")
+                format!("the `position` of a point light is {position}, but must be finite")
             })?;
             let sound = intensity.is_finite() && intensity.min_element() >= 0.0;
             demand(sound, || {
-                format!("the intensity of a point light is {intensity}, but must be 0 or more")
+                format!("the `intensity` of a point light is {intensity}, but must be 0 or more")
             })
         }
     }
 }
 
 fn slice(slice: &Slice) -> Result<(), WorldError> {
-    unit("the normal of a slice", slice.normal)?;
-    let distance = slice.distance;
-    number(distance.is_finite(), "the distance of a slice", distance, "finite")
+    let Slice { normal, distance, mode: _ } = *slice;
+    unit("the `normal` of a slice", normal)?;
+    number(distance.is_finite(), "the `distance` of a slice", distance, "finite")
 }
 
 fn environment(environment: &Environment) -> Result<(), WorldError> {
-    match &environment.map {
-        EnvironmentMap::Constant(color) => radiance("the environment's color", *color),
+    let Environment { map, illuminates: _ } = environment;
+    match map {
+        EnvironmentMap::Constant(color) => radiance("the environment's `color`", *color),
         EnvironmentMap::Gradient { bottom, top, up } => {
-            radiance("the environment's bottom", *bottom)?;
-            radiance("the environment's top", *top)?;
+            radiance("the environment's `bottom`", *bottom)?;
+            radiance("the environment's `top`", *top)?;
             unit("the environment's `up`", *up)
         }
         EnvironmentMap::Picture { image, up, rotation, scale } => {
+            at_least_0("the environment's `scale`", f64::from(*scale))?;
             picture(image, *scale)?;
             unit("the environment's `up`", *up)?;
-            number(rotation.is_finite(), "the environment's rotation", *rotation, "finite")?;
-            at_least_0("the environment's scale", f64::from(*scale))
+            number(rotation.is_finite(), "the environment's `rotation`", *rotation, "finite")
         }
     }
 }
@@ -197,10 +235,10 @@ fn picture(image: &Image, scale: f32) -> Result<(), WorldError> {
 
 /// The material's row exists.
 fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError> {
-    unit("the ground's normal", ground.normal)?;
-    let height = ground.height;
-    number(height.is_finite(), "the ground's height", height, "finite")?;
-    let material = materials.get(ground.material as usize).map(|named| &named.material);
+    let Ground { normal, height, material } = *ground;
+    unit("the ground's `normal`", normal)?;
+    number(height.is_finite(), "the ground's `height`", height, "finite")?;
+    let material = materials.get(material as usize).map(|named| &named.material);
     let solid = !matches!(material, Some(Material::Dielectric { .. } | Material::Emitter { .. }));
     demand(solid, || "the ground can be neither glass nor an emitter; use a sphere".to_owned())
 }
@@ -219,32 +257,220 @@ pub(super) fn place(scene: &Scene, bytes: u64) -> Result<(Frame, Placement), Wor
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::World;
+    use crate::scene::SliceMode;
+    use crate::scene::generate::default_scene;
+    use std::sync::Arc;
+
+    /// Values that no field takes, as far as it is not said otherwise.
+    const BAD: [f64; 4] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e300];
+
+    /// Refuses every bad value in a field, and names it.
+    fn refuse(name: &str, set: impl Fn(&mut Scene, f64)) {
+        let mut scene = default_scene(0);
+        set(&mut scene, 0.5);
+        World::build(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
+        for bad in BAD {
+            let mut scene = default_scene(0);
+            set(&mut scene, bad);
+            let error = World::build(&scene).expect_err(name).to_string();
+            assert!(error.contains(name), "{name} {bad}: {error}");
+        }
+    }
+
+    /// The same of a field that takes negative numbers, up to any size.
+    fn refuse_infinite(name: &str, set: impl Fn(&mut Scene, f64)) {
+        for bad in &BAD[..3] {
+            let mut scene = default_scene(0);
+            set(&mut scene, *bad);
+            let error = World::build(&scene).expect_err(name).to_string();
+            assert!(error.contains(name), "{name} {bad}: {error}");
+        }
+    }
+
+    fn made_of(scene: &mut Scene, material: Material) {
+        scene.materials.push(NamedMaterial { name: "own".to_owned(), material });
+    }
 
     #[test]
-    fn directions_have_length_1() {
-        assert!(unit("it", DVec3::new(0.6, 0.0, -0.8)).is_ok());
-        for length in [0.0, 0.999, 1.001, f64::NAN, f64::INFINITY] {
-            assert!(unit("it", DVec3::Y * length).is_err(), "{length}");
+    fn cameras_out_of_range_are_refused() {
+        let look_at = |eye, target| Pose::LookAt { eye, target };
+        refuse("`fov`", |scene, fov| {
+            scene.camera.projection = Projection::Perspective { fov };
+        });
+        refuse("`height`", |scene, height| {
+            scene.camera.projection = Projection::Orthographic { height: Some(height) };
+        });
+        refuse("`margin`", |scene, margin| {
+            scene.camera.pose = Pose::Fit { direction: DVec3::NEG_Z, margin };
+        });
+        refuse("`near`", |scene, near| scene.camera.near = near);
+        refuse("`aperture`", |scene, aperture| {
+            scene.camera.lens = Some(Lens { aperture, focus: None });
+        });
+        refuse("`focus`", |scene, focus| {
+            scene.camera.lens = Some(Lens { aperture: 0.1, focus: Some(focus) });
+        });
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let with = |value: f64| DVec3::ONE + axis.map(|on| if on > 0.0 { value } else { 0.0 });
+            refuse_infinite("`eye`", |scene, value| {
+                scene.camera.pose = look_at(with(value), DVec3::ZERO);
+            });
+            refuse_infinite("`target`", |scene, value| {
+                scene.camera.pose = look_at(DVec3::ZERO, with(value));
+            });
+            refuse_infinite("`direction`", |scene, value| {
+                scene.camera.pose = Pose::Fit { direction: with(value), margin: 0.0 };
+            });
+            refuse_infinite("`up`", |scene, value| scene.camera.up = with(value));
         }
     }
 
     #[test]
-    fn every_channel_of_a_color_is_checked() {
-        let with = |channel: usize, value: f32| {
-            let mut color = Rgb::splat(0.5);
-            color[channel] = value;
-            color
-        };
+    fn materials_out_of_range_are_refused() {
         for channel in 0..3 {
-            assert!([0.0, 1.0].iter().all(|&value| share(with(channel, value))));
-            assert!([0.0, BRIGHTEST].iter().all(|&value| bright(with(channel, value))));
-            for bad in [-0.1, f32::NAN, f32::INFINITY] {
-                assert!(
-                    !share(with(channel, bad)) && !bright(with(channel, bad)),
-                    "{channel} {bad}"
-                );
+            let gray = |value: f64| {
+                let mut color = Rgb::splat(0.25);
+                color[channel] = value as f32;
+                color
+            };
+            refuse("`color`", |scene, value| {
+                made_of(scene, Material::Lambertian { color: gray(value) });
+            });
+            refuse("`color`", |scene, value| {
+                let fresnel = ConductorFresnel::Schlick(gray(value));
+                made_of(scene, Material::Conductor { fresnel, roughness: 0.0 });
+            });
+            refuse("`eta`", |scene, value| {
+                let fresnel = ConductorFresnel::Exact { eta: gray(value), k: Rgb::ONE };
+                made_of(scene, Material::Conductor { fresnel, roughness: 0.0 });
+            });
+            refuse("`k`", |scene, value| {
+                let fresnel = ConductorFresnel::Exact { eta: Rgb::ONE, k: gray(value) };
+                made_of(scene, Material::Conductor { fresnel, roughness: 0.0 });
+            });
+            refuse("`color`", |scene, value| {
+                made_of(scene, Material::Dielectric { ior: 1.5, color: gray(value) });
+            });
+            refuse("`radiance`", |scene, value| {
+                let radiance = gray(value);
+                made_of(scene, Material::Emitter { radiance, albedo: Rgb::ZERO });
+            });
+            refuse("`albedo`", |scene, value| {
+                let albedo = gray(value);
+                made_of(scene, Material::Emitter { radiance: Rgb::ONE, albedo });
+            });
+            refuse("color of sphere 7", |scene, value| {
+                scene.spheres.color.resize(scene.spheres.len(), Rgb::ONE);
+                scene.spheres.color[7] = gray(value);
+            });
+        }
+        refuse("`roughness`", |scene, roughness| {
+            let fresnel = ConductorFresnel::Constant(Rgb::ONE);
+            made_of(scene, Material::Conductor { fresnel, roughness });
+        });
+        refuse("`ior`", |scene, ior| {
+            made_of(scene, Material::Dielectric { ior, color: Rgb::ONE });
+        });
+        refuse("`ior`", |scene, ior| {
+            made_of(scene, Material::Plastic { ior: ior + 1.0, color: Rgb::ONE });
+        });
+        for (name, shares) in [("`diffuse`", [1.0, 0.0]), ("`mirror`", [0.0, 1.0])] {
+            refuse(name, |scene, value| {
+                let [diffuse, mirror] =
+                    shares.map(|share: f64| if share > 0.0 { value } else { 0.25 });
+                made_of(scene, Material::Reflective { color: Rgb::ONE, diffuse, mirror });
+            });
+        }
+        refuse("sphere 3", |scene, value| scene.spheres.radius[3] = value);
+        refuse_infinite("sphere 3", |scene, value| scene.spheres.y[3] = value);
+    }
+
+    #[test]
+    fn light_out_of_range_is_refused() {
+        let sun = |direction, irradiance, angular_radius| Light::Sun {
+            direction,
+            irradiance: Rgb::splat(irradiance),
+            angular_radius,
+        };
+        refuse("`angular_radius`", |scene, value| {
+            scene.lights = vec![sun(DVec3::Y, 1.0, value)];
+        });
+        refuse("`irradiance`", |scene, value| {
+            scene.lights = vec![sun(DVec3::Y, value as f32, 1.0)];
+        });
+        refuse_infinite("`direction`", |scene, value| {
+            scene.lights = vec![sun(DVec3::new(0.0, 1.0, value), 1.0, 1.0)];
+        });
+        refuse("`intensity`", |scene, value| {
+            let intensity = Rgb::new(1.0, 1.0, value as f32);
+            let light = Light::Point { position: DVec3::splat(50.0), intensity, falloff: true };
+            scene.lights = vec![light];
+        });
+        refuse_infinite("`position`", |scene, value| {
+            let position = DVec3::new(0.0, value, 0.0);
+            scene.lights = vec![Light::Point { position, intensity: Rgb::ONE, falloff: false }];
+        });
+        let sky = |scene: &mut Scene, map| {
+            scene.environment = Environment { map, illuminates: true };
+        };
+        refuse("`color`", |scene, value| {
+            sky(scene, EnvironmentMap::Constant(Rgb::splat(value as f32)));
+        });
+        for (name, ends) in [("`bottom`", [true, false]), ("`top`", [false, true])] {
+            refuse(name, |scene, value| {
+                let [bottom, top] =
+                    ends.map(|end| Rgb::splat(if end { value as f32 } else { 1.0 }));
+                sky(scene, EnvironmentMap::Gradient { bottom, top, up: DVec3::Y });
+            });
+        }
+        let image = || Arc::new(Image { width: 2, height: 1, pixels: vec![[0.5; 3]; 2] });
+        let picture = |rotation: f64, scale: f64| EnvironmentMap::Picture {
+            image: image(),
+            up: DVec3::Y,
+            rotation,
+            scale: scale as f32,
+        };
+        refuse("`scale`", |scene, value| sky(scene, picture(0.0, value)));
+        refuse_infinite("`rotation`", |scene, value| sky(scene, picture(value, 1.0)));
+    }
+
+    #[test]
+    fn grounds_slices_and_looks_out_of_range_are_refused() {
+        let ground = |normal, height, material| Some(Ground { normal, height, material });
+        refuse_infinite("`height`", |scene, value| scene.ground = ground(DVec3::Y, value, 0));
+        refuse_infinite("`normal`", |scene, value| {
+            scene.ground = ground(DVec3::new(value, 1.0, 0.0), 0.0, 0);
+        });
+        let mut scene = default_scene(0);
+        scene.ground = ground(DVec3::Y, 0.0, 99);
+        let error = World::build(&scene).expect_err("no such material").to_string();
+        assert!(error.contains("material 99"), "{error}");
+        let slice = |normal, distance| Slice { normal, distance, mode: SliceMode::Remove };
+        refuse_infinite("`distance`", |scene, value| scene.slices = vec![slice(DVec3::Y, value)]);
+        refuse_infinite("`normal`", |scene, value| {
+            scene.slices = vec![slice(DVec3::new(0.0, value, 1.0), 0.0)];
+        });
+        refuse("`background`", |scene, value| {
+            scene.look.background = Background::Color(Rgb::new(0.5, 0.5, value as f32));
+        });
+        for row in 0..4 {
+            refuse_infinite("`cell`", |scene, value| {
+                let mut edges = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+                edges[row].y = value;
+                let [origin, a, b, c] = edges;
+                let cell = Cell { origin, vectors: [a, b, c], periodic: [true; 3] };
+                scene.look.cell = Some(cell);
+            });
+        }
+        for name in ["until_error", "exposure"] {
+            let mut scene = default_scene(0);
+            match name {
+                "exposure" => scene.settings.exposure = f64::NAN,
+                _ => scene.settings.until_error = Some(f64::NAN),
             }
-            assert!(!share(with(channel, 1.1)), "{channel}");
+            let error = World::build(&scene).expect_err(name).to_string();
+            assert!(error.contains(name), "{error}");
         }
     }
 }

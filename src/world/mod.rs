@@ -10,7 +10,7 @@ mod appearance;
 mod camera;
 mod caustics;
 mod census;
-pub(crate) mod check;
+mod check;
 mod cut;
 mod environment;
 mod fit;
@@ -45,7 +45,9 @@ use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
 use crate::memory::Shortage;
 use crate::ray::GROUND;
-use crate::scene::{self, Material, NamedMaterial, Rgb, Scene, Settings, SliceMode};
+use crate::scene::{
+    self, InvalidSetting, Material, NamedMaterial, Rgb, Scene, Settings, SliceMode,
+};
 use crate::spheres::Spheres;
 use fit::Placement;
 use spheres::Placed;
@@ -121,6 +123,9 @@ pub enum WorldError {
         /// What is wrong, and the mend.
         why: &'static str,
     },
+    /// A setting is out of its range.
+    #[error(transparent)]
+    Setting(#[from] InvalidSetting),
     /// A row of a column is invalid; scenes from files are checked before.
     #[error("{0}")]
     Invalid(String),

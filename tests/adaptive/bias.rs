@@ -57,6 +57,7 @@ fn shots(scene: &Scene, settings: Settings, statistics: bool) -> impl Fn(u64) ->
     move |seed| {
         let settings = Settings { seed, ..settings.clone() };
         render(&world, &settings, &Options { statistics, ..Options::default() })
+            .expect("settings in range")
     }
 }
 

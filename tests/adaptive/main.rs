@@ -90,6 +90,7 @@ fn each_seed(scene: &Scene, seeds: u64, statistics: bool) -> Vec<Render> {
     let one = |seed| {
         let settings = Settings { seed, ..scene.settings.clone() };
         render(&world, &settings, &Options { statistics, ..Options::default() })
+            .expect("settings in range")
     };
     (0..seeds).map(one).collect()
 }

@@ -180,7 +180,7 @@ pub(crate) fn shoot(scene: &Scene) -> Render {
 /// Builds and renders a scene, as told.
 pub(crate) fn shoot_with(scene: &Scene, options: &Options) -> Render {
     let world = World::build(scene).expect("the scene is sound");
-    let render = render(&world, &scene.settings, options);
+    let render = render(&world, &scene.settings, options).expect("settings in range");
     assert_eq!(render.counters.bad_samples, 0);
     render
 }
@@ -206,7 +206,9 @@ pub(crate) fn each_over_seeds<const N: usize>(
     let pictures: Vec<[f64; N]> = (0..SEEDS)
         .map(|seed| {
             let settings = Settings { seed, ..scene.settings.clone() };
-            numbers(&render(&world, &settings, &Options::default()).image)
+            numbers(
+                &render(&world, &settings, &Options::default()).expect("settings in range").image,
+            )
         })
         .collect();
     std::array::from_fn(|i| Estimate::of(pictures.iter().map(|numbers| numbers[i])))

@@ -110,13 +110,14 @@ fn look_at(scene: Option<Scene>) {
 /// Renders a world, and, if it is tiny, without its tree.
 fn draw(scene: &Scene, world: &World) {
     world.bvh.validate(&world.spheres).expect("a sound tree");
-    let picture = render(world, &scene.settings, &Options::default());
+    let picture = render(world, &scene.settings, &Options::default()).expect("settings in range");
     assert_eq!(picture.counters.bad_samples, 0, "samples that are no radiance");
     let sound = |value: &f32| value.is_finite() && *value >= 0.0;
     assert!(picture.image.pixels.iter().flatten().all(sound), "a radiance that is none");
     if scene.spheres.len() <= COMPARED {
         let tracer = Tracer { method: Method::Brute, width: Width::One };
-        let plain = render(world, &scene.settings, &Options { tracer, ..Options::default() });
+        let plain = render(world, &scene.settings, &Options { tracer, ..Options::default() })
+            .expect("settings in range");
         assert!(plain.image == picture.image, "another picture without the tree");
     }
 }

@@ -22,7 +22,7 @@ fn all_of(scene: &Scene) -> Layers {
 
 fn with(scene: &Scene, options: &Options) -> Layers {
     let world = World::build(scene).expect("the scene is sound");
-    layers(&world, &scene.settings, options, &Layer::ALL)
+    layers(&world, &scene.settings, options, &Layer::ALL).expect("settings in range")
 }
 
 /// What a window sees that is so narrow that nothing varies.
@@ -244,7 +244,8 @@ fn a_region_is_a_part_of_the_whole() {
 fn ids_alone_are_the_same_ids() {
     let scene = menagerie();
     let world = World::build(&scene).expect("the scene is sound");
-    let ids = layers(&world, &scene.settings, &Options::default(), &[Layer::Id]);
+    let ids = layers(&world, &scene.settings, &Options::default(), &[Layer::Id])
+        .expect("settings in range");
     let all = all_of(&scene);
     assert!(ids.pixels.iter().map(|pixel| pixel.id).eq(all.pixels.iter().map(|pixel| pixel.id)));
 }

@@ -17,14 +17,19 @@ const SIZE: u32 = 64;
 fn lifted(scene: &Scene) -> ([Image; 2], Matte) {
     let mut world = World::build(scene).expect("a sound scene");
     let options = Options::default();
-    let before = render(&world, &scene.settings, &options).image;
-    let ground = overlay::ground(&mut world, &scene.settings, &options);
-    let layers = layers(&world, &scene.settings, &options, &[Layer::Depth]);
+    let before = render(&world, &scene.settings, &options).expect("settings in range").image;
+    let ground = overlay::ground(&mut world, &scene.settings, &options).expect("settings in range");
+    let layers =
+        layers(&world, &scene.settings, &options, &[Layer::Depth]).expect("settings in range");
     let region = Region { x: 0, y: 0, width: SIZE, height: SIZE };
     let mut after = before.clone();
     let matte =
         Overlay { world: &world, region, layers: &layers, depths: None }.lift(&mut after, ground);
-    assert_eq!(render(&world, &scene.settings, &options).image, before, "the world is the same");
+    assert_eq!(
+        render(&world, &scene.settings, &options).expect("settings in range").image,
+        before,
+        "the world is the same"
+    );
     ([before, after], matte)
 }
 

@@ -83,7 +83,10 @@ fn every_builder_makes_the_same_picture() {
         add_dust(&mut scene);
         let pictures = Builder::ALL.map(|builder| {
             let world = World::build_with(&scene, builder).expect("the scene is sound");
-            (render(&world, &scene.settings, &Options::default()), world.spheres.id)
+            (
+                render(&world, &scene.settings, &Options::default()).expect("settings in range"),
+                world.spheres.id,
+            )
         });
         let [(picture, order), others @ ..] = &pictures;
         for (other, other_order) in others {

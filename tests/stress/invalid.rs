@@ -40,7 +40,7 @@ fn spheres_that_are_none() {
 fn cameras_that_see_nothing() {
     for fov in [0.0, -40.0, 180.0, 200.0, f64::NAN] {
         let projection = Projection::Perspective { fov };
-        assert_refused("field of view", |scene| scene.camera.projection = projection);
+        assert_refused("`fov`", |scene| scene.camera.projection = projection);
     }
     for height in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let projection = Projection::Orthographic { height: Some(height) };
@@ -70,18 +70,18 @@ fn cameras_that_see_nothing() {
 #[test]
 fn settings_out_of_range() {
     for (width, height) in [(0, 4), (4, 0), (65_536, 1)] {
-        assert_refused("pixels", |scene| {
+        assert_refused(if width == 4 { "`height`" } else { "`width`" }, |scene| {
             (scene.settings.width, scene.settings.height) = (width, height);
         });
     }
-    assert_refused("sample", |scene| scene.settings.spp = 0);
+    assert_refused("`spp`", |scene| scene.settings.spp = 0);
     for p in [0.0, -0.5, 1.5, f64::NAN] {
         assert_refused("roulette", |scene| scene.settings.roulette = Roulette::Fixed(p));
     }
-    assert_refused("shadow sample", |scene| {
+    assert_refused("`shadow_samples`", |scene| {
         scene.settings.integrator = Integrator::Whitted { shadow_samples: 0 };
     });
-    assert_refused("occlusion", |scene| {
+    assert_refused("`ao_distance`", |scene| {
         scene.settings.integrator = Integrator::Ao { distance: 0.0 };
     });
 }

@@ -66,7 +66,8 @@ fn a_world_is_the_same_through_another_camera() {
         let direction = DVec3::new(0.3, -0.2, 1.0).normalize();
         look(&mut scene, DVec3::Z * 7.0 + direction * distance, DVec3::Z * 7.0, fov);
         assert!(world.look(&scene).expect("a camera that sees something"));
-        let picture = render(&world, &scene.settings, &Options::default()).image;
+        let picture =
+            render(&world, &scene.settings, &Options::default()).expect("settings in range").image;
         assert!(picture == shoot(&scene).image, "from {distance}");
     }
     let mut scene = menagerie();

@@ -23,7 +23,7 @@ pub(super) fn kept(
     folder: &Path,
     scene: &NamedScene,
     (settings, sample): (&Settings, &Image),
-    render: impl FnOnce() -> Image,
+    render: impl FnOnce() -> Result<Image, BenchError>,
 ) -> Result<Image, BenchError> {
     let digest = digest(scene, settings, sample);
     let path = folder.join(format!("{}-{digest:016x}.pfm", scene.stem()));
@@ -36,7 +36,7 @@ pub(super) fn kept(
     fs::create_dir_all(folder).map_err(unwritable)?;
     // The room for the file is checked before hours go into it.
     check_destination(&path).map_err(unwritable)?;
-    let image = render();
+    let image = render()?;
     image.write(&path, &WriteOptions::default())?;
     Ok(image)
 }
@@ -86,7 +86,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let scene = NamedScene::named("furnace").unwrap().resized(2);
         let settings = &scene.scene.settings;
-        let render = |x: f32| move || Image::filled(2, 2, [x; 3]).unwrap();
+        let render = |x: f32| move || Ok(Image::filled(2, 2, [x; 3])?);
         let of = |settings: &Settings, sample, x| {
             let sample = Image::filled(2, 2, [sample; 3]).unwrap();
             kept(folder.path(), &scene, (settings, &sample), render(x)).unwrap().pixels[0][0]

@@ -19,7 +19,7 @@ use self::variants::{Case, Variant, cases};
 use super::rounds::Times;
 use super::scenes::NamedScene;
 use super::{BenchError, Options, Tell};
-use crate::render::{self, render};
+use crate::render::{self, RenderError, render};
 use crate::report::Report;
 use crate::scene::{Scene, Settings};
 use crate::trace::Tracer;
@@ -78,18 +78,23 @@ impl<'a> Contestant<'a> {
     }
 
     /// Renders once, as told: returns the time in seconds and how good the picture is.
-    fn turn(&self, told: &Settings, world: &World, reference: &Reference) -> (f64, Picture) {
+    fn turn(
+        &self,
+        told: &Settings,
+        world: &World,
+        reference: &Reference,
+    ) -> Result<(f64, Picture), RenderError> {
         let Settings { spp, until_error, seed, .. } = *told;
         let settings = Settings { spp, until_error, seed, ..self.settings.clone() };
         let options = render::Options { tracer: self.tracer, ..render::Options::default() };
-        let render = render(self.world.as_ref().unwrap_or(world), &settings, &options);
+        let render = render(self.world.as_ref().unwrap_or(world), &settings, &options)?;
         let pixels = render.image.pixels.len() as f64;
         let picture = Picture {
             squares: reference.squares(&render.image),
             samples: render.samples.total as f64 / pixels,
             rays: render.counters.rays() as f64 / pixels,
         };
-        (render.elapsed.as_secs_f64(), picture)
+        Ok((render.elapsed.as_secs_f64(), picture))
     }
 }
 
@@ -115,10 +120,10 @@ fn of_case(case: &Case, options: &Options, tell: Tell) -> Result<Outcome, BenchE
         let seed = own.seed.wrapping_add(round);
         let mut told = Settings { spp: levels[level], seed, until_error: None, ..own.clone() };
         if let Some(first) = pictures[level].last().filter(|_| contestant.variant.adaptive) {
-            told.until_error = Some(reference.relative_to_mean(first.squares).max(1e-6));
+            told.until_error = Some(reference.relative_to_mean(first.squares).clamp(1e-6, 1.0));
             told.spp = options.pick([64, Settings::HARD_SAMPLES, Settings::HARD_SAMPLES]);
         }
-        let (seconds, picture) = contestant.turn(&told, &world, &reference);
+        let (seconds, picture) = contestant.turn(&told, &world, &reference)?;
         pictures[i].push(picture);
         Ok::<_, BenchError>(seconds)
     })?;

@@ -49,15 +49,15 @@ impl Reference {
     ) -> Result<Self, BenchError> {
         let own = &scene.scene.settings;
         let picture =
-            |settings: &Settings| render(world, settings, &render::Options::default()).image;
-        let sample = folder.map(|_| picture(&Settings { spp: 1, ..own.clone() }));
+            |settings: &Settings| Ok(render(world, settings, &render::Options::default())?.image);
+        let sample = folder.map(|_| picture(&Settings { spp: 1, ..own.clone() })).transpose()?;
         let half = |seed: u64| {
             let settings = Settings { spp: samples, seed, ..own.clone() };
             match folder.zip(sample.as_ref()) {
                 Some((folder, sample)) => {
                     cache::kept(folder, scene, (&settings, sample), || picture(&settings))
                 }
-                None => Ok(picture(&settings)),
+                None => picture(&settings),
             }
         };
         let [first, second] = [half(SEEDS[0])?, half(SEEDS[1])?];

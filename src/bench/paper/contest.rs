@@ -80,7 +80,7 @@ impl Stage {
             Program::Brute(threading) => of_paper(&self.brute, threading),
             Program::Paper(threading) => of_paper(&self.paper, threading),
             Program::Spherule => {
-                let render = render(&self.world, settings, &render::Options::default());
+                let render = render(&self.world, settings, &render::Options::default())?;
                 Ok((render.image, render.counters.rays()))
             }
         }

@@ -7,7 +7,7 @@ use crate::bench::scenes::NamedScene;
 use crate::bench::{BenchError, Options};
 use crate::film::{Region, TILE};
 use crate::image::Image;
-use crate::render::{self, Render, render};
+use crate::render::{self, Render, RenderError, render};
 use crate::scene::{SamplerKind, Settings};
 use crate::world::World;
 
@@ -24,13 +24,13 @@ pub(super) fn measure(scene: NamedScene, options: &Options) -> Result<Outcome, B
     let until_error = options.pick([0.3, 0.15, 0.03]);
     let spp = options.pick([64, Settings::HARD_SAMPLES, Settings::HARD_SAMPLES]);
     let adaptive = Settings { until_error: Some(until_error), spp, ..plain.clone() };
-    let first = draw(&world, &adaptive, true);
+    let first = draw(&world, &adaptive, true)?;
     check(&world, &plain, &first)
         .map_err(|why| BenchError::Differ(format!("{}: {why}", scene.name)))?;
-    let spp = as_good(&world, &plain, squared_error(&world, &adaptive));
+    let spp = as_good(&world, &plain, squared_error(&world, &adaptive)?)?;
     let even = Settings { spp, ..plain };
     let times = Times::by_turns(options.rounds, 2, |contestant| {
-        let render = draw(&world, if contestant == 0 { &adaptive } else { &even }, false);
+        let render = draw(&world, if contestant == 0 { &adaptive } else { &even }, false)?;
         if contestant == 1 || render.image == first.image {
             return Ok(render.elapsed.as_secs_f64());
         }
@@ -45,7 +45,7 @@ pub(super) fn measure(scene: NamedScene, options: &Options) -> Result<Outcome, B
     Ok(Outcome { name: NAME, about, scene: scene.stem(), times })
 }
 
-fn draw(world: &World, settings: &Settings, statistics: bool) -> Render {
+fn draw(world: &World, settings: &Settings, statistics: bool) -> Result<Render, RenderError> {
     render(world, settings, &render::Options { statistics, ..render::Options::default() })
 }
 
@@ -60,7 +60,9 @@ fn check(world: &World, plain: &Settings, found: &Render) -> Result<(), String> 
             let region = Region { x, y, width: width_of, height };
             let spp = samples.get((y * width + x) as usize).copied().unwrap_or(0);
             let options = render::Options { region: Some(region), ..render::Options::default() };
-            let tile = render(world, &Settings { spp, ..plain.clone() }, &options).image;
+            let tile = render(world, &Settings { spp, ..plain.clone() }, &options)
+                .map_err(|error| error.to_string())?
+                .image;
             if tile.pixels != part(&found.image, region) {
                 return Err(format!("{spp} samples in the tile at {x}, {y} are not plain ones"));
             }
@@ -75,21 +77,24 @@ fn part(image: &Image, Region { x, y, width, height }: Region) -> Vec<[f32; 3]> 
 }
 
 /// Samples of every pixel that have this squared error; between powers of two it falls by a power.
-fn as_good(world: &World, plain: &Settings, wanted: f64) -> u32 {
+fn as_good(world: &World, plain: &Settings, wanted: f64) -> Result<u32, RenderError> {
     let error = |spp: u32| squared_error(world, &Settings { spp, ..plain.clone() });
-    let (mut spp, mut before, mut after) = (1, f64::INFINITY, error(1));
+    let (mut spp, mut before, mut after) = (1, f64::INFINITY, error(1)?);
     while after > wanted && spp < Settings::HARD_SAMPLES {
         spp *= 2;
-        (before, after) = (after, error(spp));
+        (before, after) = (after, error(spp)?);
     }
     let back = (wanted / after).log2() / (before / after).log2();
-    (f64::from(spp) * (-back).exp2()).round().max(1.0) as u32
+    Ok((f64::from(spp) * (-back).exp2()).round().max(1.0) as u32)
 }
 
 /// Mean squared error of a picture: half of the mean squared difference of two with other seeds.
-fn squared_error(world: &World, settings: &Settings) -> f64 {
-    let picture = |seed| draw(world, &Settings { seed, ..settings.clone() }, false).image.pixels;
-    let (one, other) = (picture(OTHER).into_flattened(), picture(OTHER + 1).into_flattened());
+fn squared_error(world: &World, settings: &Settings) -> Result<f64, RenderError> {
+    let picture = |seed| {
+        let render = draw(world, &Settings { seed, ..settings.clone() }, false)?;
+        Ok::<_, RenderError>(render.image.pixels.into_flattened())
+    };
+    let (one, other) = (picture(OTHER)?, picture(OTHER + 1)?);
     let squares = one.iter().zip(&other).map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2));
-    squares.sum::<f64>() / (2.0 * one.len() as f64)
+    Ok(squares.sum::<f64>() / (2.0 * one.len() as f64))
 }

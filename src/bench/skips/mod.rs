@@ -9,7 +9,7 @@ use super::rounds::Times;
 use super::scenes::{FIELD, NamedScene};
 use super::{BenchError, Options, Tell};
 use crate::image::Image;
-use crate::render::{self, Skips, render};
+use crate::render::{self, RenderError, Skips, render};
 use crate::report::Report;
 use crate::scene::{EnvironmentMap, Integrator, Material, Rgb, Scene};
 use crate::world::World;
@@ -145,7 +145,7 @@ fn of_saving(
     let mut first: Option<Image> = None;
     let times = Times::by_turns(options.rounds, 2, |contestant| {
         let skips = if contestant == 0 { Skips::ALL } else { saving.without };
-        let (seconds, image) = draw(&world, &scene, skips);
+        let (seconds, image) = draw(&world, &scene, skips)?;
         if *first.get_or_insert_with(|| image.clone()) == image {
             return Ok(seconds);
         }
@@ -156,10 +156,10 @@ fn of_saving(
     Ok(Outcome { name, about: (*about).to_owned(), scene: scene.stem(), times })
 }
 
-fn draw(world: &World, scene: &NamedScene, skips: Skips) -> (f64, Image) {
+fn draw(world: &World, scene: &NamedScene, skips: Skips) -> Result<(f64, Image), RenderError> {
     let options = render::Options { skips, ..render::Options::default() };
-    let render = render(world, &scene.scene.settings, &options);
-    (render.elapsed.as_secs_f64(), render.image)
+    let render = render(world, &scene.scene.settings, &options)?;
+    Ok((render.elapsed.as_secs_f64(), render.image))
 }
 
 #[cfg(test)]

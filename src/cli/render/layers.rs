@@ -5,7 +5,7 @@ use super::prepare::Prepared;
 use spherule::image::{Channel, Format, Values};
 use spherule::layers::{Layer, layers};
 use spherule::overlay::Matte;
-use spherule::render::{Options, Render};
+use spherule::render::{Options, Render, RenderError};
 use spherule::scene::Settings;
 
 /// Whether the render has to measure some of those that were asked for.
@@ -14,18 +14,22 @@ pub(super) fn need_statistics(job: &Job) -> bool {
 }
 
 /// The channels that were asked for: none takes no time.
-pub(super) fn channels(job: &Job, prepared: &Prepared, render: &Render) -> Vec<Channel> {
+pub(super) fn channels(
+    job: &Job,
+    prepared: &Prepared,
+    render: &Render,
+) -> Result<Vec<Channel>, RenderError> {
     let wanted = wanted(&job.encoding.layers);
     if wanted.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     // No more than the picture has: who interrupts a render does not want to wait.
     let settings = Settings { spp: render.samples.most.max(1), ..prepared.scene.settings.clone() };
     let options =
         Options { tracer: job.tracer, region: Some(prepared.region), ..Options::default() };
-    let mut layers = layers(&prepared.world, &settings, &options, &wanted);
+    let mut layers = layers(&prepared.world, &settings, &options, &wanted)?;
     layers.statistics.clone_from(&render.statistics);
-    layers.channels(&wanted)
+    Ok(layers.channels(&wanted))
 }
 
 /// Alpha as a channel, for files that are blended as radiance is or in codes.

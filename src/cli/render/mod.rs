@@ -43,7 +43,7 @@ use super::views::draw_over as draw_look;
 use super::write_file::write_file;
 use super::{Failure, output, picture_file, signals};
 use spherule::overlay::Matte;
-use spherule::render::{End, Options, Render, Unfinished};
+use spherule::render::{End, Options, Render, RenderError, Unfinished};
 use spherule::scene::Scene;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -156,7 +156,7 @@ fn finish_picture(
     unfinished: Option<Unfinished>,
 ) -> Result<ExitCode, Failure> {
     prepared.tell(job, &mut session.told);
-    let traced = trace(job, prepared, session.keeper, unfinished);
+    let traced = trace(job, prepared, session.keeper, unfinished)?;
     let finished = finish_traced(job, prepared, session, &traced);
     // One that came while the picture was written ends a sequence, too. If something is to be saved or
     // removed then, the next picture sees to that: it is interrupted at once.
@@ -202,7 +202,7 @@ fn write(
 ) -> Result<(), Failure> {
     let matte = draw_over(job, prepared, render)?;
     let options = metadata::write_options(job, prepared, render);
-    let mut channels = layers::channels(job, prepared, render);
+    let mut channels = layers::channels(job, prepared, render)?;
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
     match &mut session.film {
         Some(film) => film.add(&render.image, &options)?,
@@ -220,7 +220,7 @@ fn draw_over(
 ) -> Result<Option<Matte>, Failure> {
     let Scene { look, settings, .. } = &prepared.scene;
     let region = prepared.region;
-    let mut canvas = draw_look(look, &mut prepared.world, settings, region, render);
+    let mut canvas = draw_look(look, &mut prepared.world, settings, region, render)?;
     looks::draw_bar(job, prepared.legend.as_ref(), &mut canvas, look.ink())?;
     Ok(canvas.matte)
 }
@@ -231,7 +231,7 @@ fn trace(
     prepared: &Prepared,
     keeper: Option<&Keeper>,
     unfinished: Option<Unfinished>,
-) -> Traced {
+) -> Result<Traced, RenderError> {
     let meter = Meter::new(job.report.quiet || job.report.terminal);
     let options = Options {
         tracer: job.tracer,
@@ -243,7 +243,7 @@ fn trace(
     signals::catch();
     let (world, settings) = (&prepared.world, &prepared.scene.settings);
     let begin = || Unfinished::begin_share(world, settings, &options, prepared.share.clone());
-    let mut render = unfinished.unwrap_or_else(begin);
+    let mut render = unfinished.map_or_else(begin, Ok)?;
     let caption = part::caption(job, prepared);
     let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
     let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
@@ -274,7 +274,7 @@ fn trace(
     };
     meter.finish();
     let advice = keeper.filter(|_| kept).map(Keeper::advice);
-    Traced { render, signal, advice }
+    Ok(Traced { render, signal, advice })
 }
 
 impl Traced {

@@ -119,7 +119,7 @@ pub(super) fn finish(
             Options { tracer: job.tracer, region: Some(prepared.region), ..Options::default() };
         let (world, settings) = (&prepared.world, &prepared.scene.settings);
         let tiles = caption.tiles.clone();
-        caption.features = features(world, settings, &options, &caption.layers, tiles);
+        caption.features = features(world, settings, &options, &caption.layers, tiles)?;
     }
     keeper
         .write(job, prepared, &caption, render)

@@ -50,7 +50,7 @@ impl Developer {
             Some((exposure, tone, table)) if (exposure, tone) == (print.exposure, print.tone) => {
                 table
             }
-            _ => Codes8::new(DisplayTransform::new(print.exposure, print.tone)),
+            _ => Codes8::new(DisplayTransform::nearest(print.exposure, print.tone)),
         };
         let packed = |pixel: &[f32; 3]| {
             let [red, green, blue] = pixel.map(|value| u32::from(table.code(value)));

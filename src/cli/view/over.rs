@@ -8,7 +8,7 @@ use spherule::film::Region;
 use spherule::image::Image;
 use spherule::layers::Growing;
 use spherule::overlay::{GroundRender, Matte, Overlay, Runs};
-use spherule::render::Options;
+use spherule::render::{Options, RenderError};
 
 /// A picture with what is drawn over it.
 #[derive(Clone, Debug)]
@@ -40,19 +40,22 @@ impl Over {
         order: &Order,
         mut image: Image,
         options: &Options,
-    ) -> Option<Drawn> {
+    ) -> Result<Option<Drawn>, RenderError> {
         let settings = settings_of_layers(&order.settings, order.settings.spp);
-        let layers = self.layers.get_or_insert_with(|| Growing::begin(world, &settings, options));
+        let begin = || Growing::begin(world, &settings, options);
+        let known = self.layers.take().map_or_else(begin, Ok)?;
+        let layers = self.layers.insert(known);
         if !layers.grow(world, &settings, options) {
-            return None;
+            return Ok(None);
         }
         if order.look.is_transparent() {
-            let begin = || GroundRender::begin(world, &order.settings, options);
-            self.ground = self.ground.take().or_else(begin);
+            if self.ground.is_none() {
+                self.ground = GroundRender::begin(world, &order.settings, options)?;
+            }
             if let Some(ground) = &mut self.ground
-                && !ground.go_on(world, &order.settings, options)
+                && !ground.go_on(world, &order.settings, options)?
             {
-                return None;
+                return Ok(None);
             }
         }
         let ground = self.ground.as_ref().filter(|_| order.look.is_transparent());
@@ -63,6 +66,6 @@ impl Over {
         let layers = layers.layers();
         let overlay = Overlay { world, region, layers: &layers, depths };
         let matte = overlay.draw_look(&mut image, &order.look, ground.map(GroundRender::ground));
-        Some(Drawn { image, matte })
+        Ok(Some(Drawn { image, matte }))
     }
 }

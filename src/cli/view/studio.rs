@@ -11,7 +11,7 @@ use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::film::Region;
 use spherule::layers::{Layer, layers};
-use spherule::render::{End, Options, Unfinished};
+use spherule::render::{End, Options, RenderError, Unfinished};
 use spherule::scene::{Camera, Scene, Settings};
 use spherule::trace::Tracer;
 use std::sync::atomic::AtomicBool;
@@ -70,10 +70,10 @@ impl Studio {
         film = film.and_then(|mut film| goes_on(&mut film).then_some(film));
         let world = &mut self.stage.world;
         let begin = || {
-            let film = Unfinished::begin(world, &order.settings, &options);
-            (order.camera.clone(), film)
+            let film = Unfinished::begin(world, &order.settings, &options)?;
+            Ok::<_, RenderError>((order.camera.clone(), film))
         };
-        let (_, film) = self.film.insert(film.unwrap_or_else(begin));
+        let (_, film) = self.film.insert(film.map_or_else(begin, Ok)?);
         let before = film.totals().counters.rays();
         if film.run(world, &options) == End::Cancelled {
             return Ok(None);
@@ -81,7 +81,7 @@ impl Studio {
         let (image, rays) = (film.film().resolve(), film.totals().counters.rays() - before);
         let mut drawn = None;
         if !order.look.is_plain() {
-            drawn = self.over.draw(world, order, image.clone(), &options);
+            drawn = self.over.draw(world, order, image.clone(), &options)?;
             if drawn.is_none() {
                 return Ok(None);
             }
@@ -140,7 +140,7 @@ impl Studio {
         self.aim(camera, settings)?;
         let region = Region { x, y, width: 1, height: 1 };
         let options = Options { tracer: self.tracer, region: Some(region), ..Options::default() };
-        let found = layers(&self.stage.world, settings, &options, &[Layer::Id]);
+        let found = layers(&self.stage.world, settings, &options, &[Layer::Id])?;
         let row = found.pixels.first().map_or(usize::MAX, |pixel| pixel.id as usize);
         let scene = self.stage.scene.read().unwrap_or_else(PoisonError::into_inner);
         if row >= scene.spheres.len() {

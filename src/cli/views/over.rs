@@ -5,7 +5,7 @@ use spherule::film::Region;
 use spherule::image::Image;
 use spherule::layers::{self, Layer, layers};
 use spherule::overlay::{self, Matte, Overlay, ground};
-use spherule::render::{Options, Render};
+use spherule::render::{Options, Render, RenderError};
 use spherule::scene::{Look, Settings};
 
 /// A picture that is drawn over.
@@ -30,19 +30,19 @@ pub(in crate::cli) fn draw_over<'i>(
     settings: &Settings,
     region: Region,
     render: &'i mut Render,
-) -> Canvas<'i> {
+) -> Result<Canvas<'i>, RenderError> {
     let (most, mean) = (render.samples.most, mean_samples(region, render));
     let image = &mut render.image;
     if look.is_plain() {
-        return Canvas { image, matte: None };
+        return Ok(Canvas { image, matte: None });
     }
     let options = Options { region: Some(region), ..Options::default() };
     let floor = Settings { spp: mean, ..settings.clone() };
-    let ground = look.is_transparent().then(|| ground(world, &floor, &options)).flatten();
-    let layers = layers(world, &settings_of_layers(settings, most), &options, &[Layer::Depth]);
+    let ground = if look.is_transparent() { ground(world, &floor, &options)? } else { None };
+    let layers = layers(world, &settings_of_layers(settings, most), &options, &[Layer::Depth])?;
     let overlay = Overlay { world, region, layers: &layers, depths: None };
     let matte = overlay.draw_look(image, look, ground);
-    Canvas { image, matte }
+    Ok(Canvas { image, matte })
 }
 
 /// The settings for the layers of a picture of so many samples.

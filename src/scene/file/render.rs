@@ -9,29 +9,27 @@ use std::time::Duration;
 use toml::de::DeValue;
 
 /// Most pixels each way.
-const MOST_PIXELS: u64 = 65_535;
-/// Most samples per pixel: above, sums in single precision would stall.
-const MOST_SAMPLES: u64 = 1 << 24;
-/// Shortest time limit.
-const LEAST_SECONDS: f64 = 1e-3;
-/// Longest time limit: some thirty years.
-const MOST_SECONDS: f64 = 1e9;
+const MOST_PIXELS: u64 = *Settings::PIXELS.end() as u64;
+/// Most samples per pixel.
+const MOST_SAMPLES: u64 = *Settings::SAMPLES.end() as u64;
 
 pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
     let usual = Settings::default();
     let [width, height] =
         block.value("size").map_or(Ok([usual.width, usual.height]), |value| size(&value))?;
     let until_error = block.value("until_error").map(|v| v.number(Limits::AboveTo(0.0, 1.0)));
-    let time = block.value("time").map(|v| v.number(Limits::Within(LEAST_SECONDS, MOST_SECONDS)));
+    let [least, most] = [Settings::TIMES.start(), Settings::TIMES.end()].map(Duration::as_secs_f64);
+    let time = block.value("time").map(|v| v.number(Limits::Within(least, most)));
     let (until_error, time) = (until_error.transpose()?, time.transpose()?);
     let targeted = until_error.is_some() || time.is_some();
     let usual_spp = if targeted { Settings::HARD_SAMPLES } else { usual.spp };
     let spp = block.value("spp").map_or(Ok(u64::from(usual_spp)), |v| v.whole(1, MOST_SAMPLES))?;
     let depth = block.value("depth").map_or(Ok(usual.depth), |value| depth(&value))?;
     let seed = block.value("seed").map_or(Ok(usual.seed), |value| value.whole(0, u64::MAX))?;
-    let exposure = block
-        .value("exposure")
-        .map_or(Ok(usual.exposure), |value| value.number(Limits::Within(-100.0, 100.0)))?;
+    let exposure = block.value("exposure").map_or(Ok(usual.exposure), |value| {
+        let exposures = Settings::EXPOSURES;
+        value.number(Limits::Within(*exposures.start(), *exposures.end()))
+    })?;
     Ok(Settings {
         width,
         height,

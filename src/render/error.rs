@@ -1,0 +1,108 @@
+//! Reasons why a render cannot begin.
+
+use super::{Options, Share};
+use crate::film::{Region, RegionError};
+use crate::scene::{InvalidSetting, Settings};
+use crate::world::World;
+
+/// Why a render cannot begin.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RenderError {
+    /// A setting is out of its range.
+    #[error(transparent)]
+    Setting(#[from] InvalidSetting),
+    /// The region is not in the picture.
+    #[error(transparent)]
+    Region(#[from] RegionError),
+    /// A share of samples or tiles that the render has not.
+    #[error("{0} are no part of the render")]
+    Share(Share),
+    /// The settings are those of a picture of another size than the world's camera has.
+    #[error(
+        "the settings are for a picture of {} x {}, but the world's camera makes one of {} x {}; \
+         build the world with these settings, or call World::look",
+        .settings[0], .settings[1], .camera[0], .camera[1]
+    )]
+    Size {
+        /// Width and height of the settings.
+        settings: [u32; 2],
+        /// Width and height of the camera's picture.
+        camera: [u32; 2],
+    },
+}
+
+/// Checks the settings and the region of a render. Returns the region, which is the whole picture
+/// if the options name none.
+pub(crate) fn check(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Region, RenderError> {
+    settings.check()?;
+    let (width, height) = (world.camera.width, world.camera.height);
+    if (settings.width, settings.height) != (width, height) {
+        let settings = [settings.width, settings.height];
+        return Err(RenderError::Size { settings, camera: [width, height] });
+    }
+    let whole = Region { x: 0, y: 0, width, height };
+    Ok(options.region.unwrap_or(whole).check_in(width, height)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::RegionError;
+    use crate::layers::{Growing, Layer, layers};
+    use crate::overlay;
+    use crate::render::{Unfinished, render};
+    use crate::scene::generate::default_scene;
+
+    #[test]
+    fn nothing_begins_with_what_no_picture_has() {
+        let mut scene = default_scene(0);
+        (scene.settings.width, scene.settings.height) = (8, 6);
+        let mut world = World::build(&scene).unwrap();
+        let usual = || scene.settings.clone();
+        let part = |x, width| Options {
+            region: Some(Region { x, y: 0, width, height: 6 }),
+            ..Options::default()
+        };
+        let outside = Region { x: 7, y: 0, width: 2, height: 6 };
+        let cases = [
+            (
+                Settings { until_error: Some(f64::NAN), ..usual() },
+                Options::default(),
+                "until_error",
+            ),
+            (Settings { exposure: f64::NAN, ..usual() }, Options::default(), "exposure"),
+            (Settings { spp: 0, ..usual() }, Options::default(), "spp"),
+            (Settings { width: 9, ..usual() }, Options::default(), "World::look"),
+            (usual(), part(0, 0), "region"),
+            (usual(), part(7, 2), "region"),
+            (usual(), part(u32::MAX, u32::MAX), "region"),
+        ];
+        for (settings, options, name) in cases {
+            let error = render(&world, &settings, &options).expect_err(name);
+            assert!(error.to_string().contains(name), "{error}");
+            let same = |other: Option<RenderError>| assert_eq!(other.as_ref(), Some(&error));
+            same(Unfinished::begin(&world, &settings, &options).err());
+            same(layers(&world, &settings, &options, &[Layer::Depth]).err());
+            same(Growing::begin(&world, &settings, &options).err());
+            same(overlay::ground(&mut world, &settings, &options).err());
+        }
+        let error = render(&world, &usual(), &part(7, 2)).err();
+        let expected = RegionError::Outside { region: outside, width: 8, height: 6 };
+        assert_eq!(error, Some(RenderError::Region(expected)));
+    }
+
+    #[test]
+    fn a_render_does_not_go_on_with_settings_out_of_range() {
+        let mut scene = default_scene(0);
+        (scene.settings.width, scene.settings.height, scene.settings.spp) = (8, 6, 1);
+        let world = World::build(&scene).unwrap();
+        let mut begun = Unfinished::begin(&world, &scene.settings, &Options::default()).unwrap();
+        let dark = Settings { exposure: f64::INFINITY, ..scene.settings.clone() };
+        let error = begun.raise(&dark).expect_err("no exposure");
+        assert!(error.to_string().contains("exposure"), "{error}");
+    }
+}
