@@ -4,6 +4,7 @@ use super::settings::List;
 use glam::DVec3;
 use serde_json::json;
 use spherule::scene::{Scene, SceneError, Slice, SliceMode, SlicePlane, bounds};
+use spherule::suggest;
 use std::path::Path;
 
 /// What is cut away.
@@ -24,32 +25,43 @@ pub(super) struct SliceArgs {
 
 fn mode(name: &str) -> Result<SliceMode, String> {
     let found = SliceMode::ALL.iter().find(|(own, _)| *own == name).map(|(_, mode)| *mode);
-    let names = || SliceMode::ALL.map(|(name, _)| name).join(", ");
-    found.ok_or_else(|| format!("modes are {}", names()))
+    let names = || SliceMode::ALL.map(|(name, _)| name).into_iter();
+    found.ok_or_else(|| suggest::help(name, names(), "modes are"))
 }
 
 impl SliceArgs {
     /// Cuts a scene from `path`: by its own slices and by those that were typed, whose shares are of
-    /// `cell` if there is one. They may cut all spheres away only if that is allowed.
+    /// `cell` if there is one. They may cut all spheres away only if that is allowed. Returns the
+    /// normals of the planes that cut anything.
     pub(super) fn cut(
         &self,
         scene: &mut Scene,
         path: &Path,
         cell: Option<[DVec3; 2]>,
         allow_empty: bool,
-    ) -> Result<(), SceneError> {
+    ) -> Result<Vec<DVec3>, SceneError> {
         if !self.planes.is_empty() {
             let whole = cell.or_else(|| bounds(&scene.spheres)).unwrap_or_default();
             let mode = self.slice_mode.unwrap_or_default();
             scene.slices.extend(self.planes.iter().map(|plane| plane.slice(whole, mode)));
         }
+        let cuts = |slice: &&Slice| {
+            let spheres = &scene.spheres;
+            let reach = |row: usize| match slice.mode {
+                SliceMode::Caps => spheres.radius[row],
+                SliceMode::Remove | SliceMode::Hide => 0.0,
+            };
+            let cut = |row: usize| slice.depth(spheres.center(row)) + reach(row) > 0.0;
+            (0..spheres.len()).any(cut)
+        };
+        let normals = scene.slices.iter().filter(cuts).map(|slice| slice.normal).collect();
         let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
         if dropped > 0 && scene.spheres.is_empty() && !allow_empty {
             let message = format!("the slices cut all of its {dropped} spheres away");
             return Err(SceneError::whole_file(path, message)
                 .with_help("a slice names what is cut away: the other side is z<10, not z>10"));
         }
-        Ok(())
+        Ok(normals)
     }
 
     /// What makes the picture, for its file.

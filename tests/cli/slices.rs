@@ -45,6 +45,47 @@ fn planes_cut_particles_away() {
     assert_eq!(spheres(&folder, &["--replicate", "2,1,1", "--slice", "x>50%"]), 5);
 }
 
+/// Pixels of red and of all other colors in a cube of balls whose layers next to a cut are red.
+fn faces(planes: &[&str], red: impl Fn([u32; 3]) -> bool, args: &[&str]) -> [usize; 2] {
+    let folder = Folder::new();
+    let atom = |i: u32| {
+        let [x, y, z] = [i % 5, i / 5 % 5, i / 25];
+        format!("{} {x} {y} {z}\n", if red([x, y, z]) { "K" } else { "C" })
+    };
+    let atoms: Vec<String> = (0..125).map(atom).collect();
+    folder.write("cube.xyz", &format!("125\n\n{}", atoms.concat()));
+    let mut all = vec!["cube.xyz", "--radii", "0.55", "--type", "K:color=red"];
+    all.extend(["--type", "C:color=blue", "--preset", "chalk"]);
+    all.extend(planes.iter().flat_map(|plane| ["--slice", plane]));
+    folder.picture("a.png", &[&all, args].concat());
+    let image = Image::read(folder.path("a.png")).expect("a picture");
+    let count = |own: usize, other: usize| {
+        image.pixels.iter().filter(|pixel| pixel[own] > 2.0 * pixel[other]).count()
+    };
+    [count(0, 2), count(2, 0)]
+}
+
+#[test]
+fn cameras_that_nobody_placed_look_at_cuts() {
+    let modes: [&[&str]; 3] = [&[], &["--slice-mode", "caps"], &["--slice-mode", "hide"]];
+    for axis in 0..3 {
+        for (sign, layer) in [("<", 2), (">", 2)] {
+            let at = if sign == "<" { 1.5 } else { 2.5 };
+            let plane = format!("{}{sign}{at}", ["x", "y", "z"][axis]);
+            for mode in modes {
+                let [red, blue] = faces(&[&plane], |place| place[axis] == layer, mode);
+                assert!(red > 20 && 4 * red > blue, "{plane} {mode:?}: {red} {blue}");
+            }
+        }
+    }
+    let red = |place: [u32; 3]| place[0] == 2 || place[2] == 2;
+    let [red, blue] = faces(&["x<1.5", "z<1.5"], red, &[]);
+    assert!(red > blue, "{red} {blue}");
+    // A view that is named stays.
+    let [red, _] = faces(&["z<1.5"], |place| place[2] == 2, &["--view", "z"]);
+    assert_eq!(red, 0);
+}
+
 #[test]
 fn removal_is_selection() {
     let folder = folder();
@@ -88,7 +129,7 @@ fn planes_that_make_no_sense_are_refused() {
         (&["--slice", "x>-1"][..], 1, "cut all of its 5 spheres away"),
         (&["--slice", "w>1"], 2, "true of what is cut away"),
         (&["--slice", "x=200%"], 2, "true of what is cut away"),
-        (&["--slice", "x>1", "--slice-mode", "cap"], 2, "modes are remove, caps, hide"),
+        (&["--slice", "x>1", "--slice-mode", "cap"], 2, "did you mean `caps`"),
         (&["--slice-mode", "caps"], 2, "--slice"),
         (
             &["--slice", "x>1.5", "--slice-mode", "caps", "--type", "C:material=glass"],

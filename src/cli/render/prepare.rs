@@ -9,6 +9,7 @@ use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::picture_file;
+use glam::DVec3;
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::film::Region;
@@ -49,6 +50,8 @@ pub(super) struct Prepared {
 /// A scene with the job's settings in it, whose camera has no place yet.
 pub(super) struct Staged {
     pub(super) scene: Scene,
+    /// Normals of the slices that cut anything, toward what is cut away.
+    pub(super) cuts: Vec<DVec3>,
     pub(super) legend: Option<Legend>,
     load: Duration,
 }
@@ -60,7 +63,7 @@ impl Staged {
         let looks::Loaded { mut scene, legend, cell } = looks::load(job, given)?;
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
-        job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
+        let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
         let load = start.elapsed();
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
@@ -70,7 +73,7 @@ impl Staged {
             // The picture is written elsewhere, from what the part's settings say.
             job.encoding.replace(&mut scene.settings);
         }
-        Ok(Self { scene, legend, load })
+        Ok(Self { scene, cuts, legend, load })
     }
 }
 
@@ -88,8 +91,8 @@ impl Placed {
     /// Loads the scene, puts in the job's settings, and places the camera; `given` are its particles, if
     /// they were read before.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
-        let Staged { mut scene, legend, load } = Staged::load(job, given)?;
-        place_camera(job, &mut scene)?;
+        let Staged { mut scene, cuts, legend, load } = Staged::load(job, given)?;
+        place_camera(job, &mut scene, &cuts)?;
         job.style.light(&mut scene);
         if let (Some(ground), Some(common)) = (&mut scene.ground, &job.common) {
             ground.height = common.ground.unwrap_or(ground.height);
@@ -182,13 +185,13 @@ impl Prepared {
 }
 
 /// Places the camera, by itself or as in the other pictures of its sequence.
-fn place_camera(job: &Job, scene: &mut Scene) -> Result<(), Failure> {
+fn place_camera(job: &Job, scene: &mut Scene, cuts: &[DVec3]) -> Result<(), Failure> {
     match &job.common {
         Some(common) => {
             scene.camera = common.camera.clone();
             Ok(())
         }
-        None => job.views.frame(scene, job.turn),
+        None => job.views.frame(scene, job.turn, cuts),
     }
 }
 

@@ -54,7 +54,7 @@ impl Survey {
     ) -> Result<(), Failure> {
         self.frames += 1;
         let radius = guessed(&particles, options);
-        let Staged { mut scene, legend, .. } = Staged::load(job, Some(particles))?;
+        let Staged { mut scene, cuts, legend, .. } = Staged::load(job, Some(particles))?;
         if scene.spheres.is_empty() {
             return Ok(());
         }
@@ -62,7 +62,7 @@ impl Survey {
         if self.shown == 1 {
             self.radius = radius;
             self.warnings = std::mem::take(&mut scene.warnings);
-            job.views.choose(&mut scene)?;
+            job.views.choose(&mut scene, &cuts)?;
             self.bounds = SequenceBounds::new(&scene);
         }
         if let Some(legend) = legend {

@@ -4,6 +4,7 @@ use super::ViewArgs;
 use crate::cli::Failure;
 use glam::DVec3;
 use spherule::scene::{Camera, Pose, Projection, Scene};
+use spherule::suggest;
 use spherule::world::{WorldError, framing};
 use std::f64::consts::TAU;
 
@@ -40,7 +41,8 @@ impl View {
 pub(super) fn view(text: &str) -> Result<View, String> {
     let side = SIDES.iter().position(|side| side.0 == text).map(View::Side);
     let view = if text == "auto" { Some(View::Auto) } else { side };
-    view.ok_or_else(|| "sides are auto, x, y, z, -x, -y, -z and iso".to_owned())
+    let names = || SIDES.iter().map(|side| side.0).chain(["auto"]);
+    view.ok_or_else(|| suggest::help(text, names(), "sides are"))
 }
 
 /// 0 to 0.9.
@@ -51,12 +53,14 @@ pub(super) fn margin(text: &str) -> Result<f64, String> {
 
 impl ViewArgs {
     /// Places the camera of a scene that has its picture's size, in the picture `turn` of a turn.
+    /// `normals` are those of slices, as [`ViewArgs::choose`] takes them.
     pub(in crate::cli) fn frame(
         &self,
         scene: &mut Scene,
         turn: Option<u32>,
+        normals: &[DVec3],
     ) -> Result<(), Failure> {
-        self.choose(scene)?;
+        self.choose(scene, normals)?;
         let corners = corners(scene);
         if let Some(turn) = turn {
             framing::turn(scene, &corners, self.angle(turn));
@@ -71,8 +75,13 @@ impl ViewArgs {
         TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
     }
 
-    /// Sets how and from which side the camera of a scene looks, but not where it stands.
-    pub(in crate::cli) fn choose(&self, scene: &mut Scene) -> Result<(), Failure> {
+    /// Sets how and from which side the camera of a scene looks, but not where it stands. A view that
+    /// nobody named shows the faces of cuts, whose `normals` point to what is cut away.
+    pub(in crate::cli) fn choose(
+        &self,
+        scene: &mut Scene,
+        normals: &[DVec3],
+    ) -> Result<(), Failure> {
         if let Some(projection) = self.projection {
             let same = std::mem::discriminant(&projection)
                 == std::mem::discriminant(&scene.camera.projection);
@@ -82,6 +91,16 @@ impl ViewArgs {
         }
         if let Some(view) = self.view {
             scene.camera = of_view(view, scene);
+        }
+        if let Pose::Fit { direction, .. } = &mut scene.camera.pose {
+            match self.view {
+                None if *direction == Camera::FIT_DIRECTION => {
+                    *direction = framing::facing(*direction, normals);
+                }
+                // Broadside has two sides.
+                Some(View::Auto) if faces_away(*direction, normals) => *direction = -*direction,
+                _ => (),
+            }
         }
         match (&mut scene.camera.pose, self.margin) {
             (Pose::Fit { margin, .. }, Some(typed)) => *margin = typed,
@@ -94,6 +113,13 @@ impl ViewArgs {
         }
         Ok(())
     }
+}
+
+/// Whether more of the planes face away from a camera than toward it.
+fn faces_away(direction: DVec3, normals: &[DVec3]) -> bool {
+    let count =
+        |direction: DVec3| normals.iter().filter(|normal| direction.dot(**normal) < 0.0).count();
+    count(direction) < count(-direction)
 }
 
 /// What is to be in the picture besides spheres: the corners of a cell that is drawn.
