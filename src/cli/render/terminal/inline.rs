@@ -1,0 +1,151 @@
+//! Pictures as PNG files within the text, for Kitty and for iTerm.
+
+use super::Codes;
+
+/// Bytes of an escape sequence of Kitty, at most; a multiple of 4.
+const CHUNK: usize = 4096;
+
+/// The number of the picture, which the next one replaces.
+const NUMBER: u32 = 31;
+
+/// Returns a picture for the Kitty graphics protocol, in so many columns and rows of cells. The
+/// terminal does not answer, and leaves the cursor where it is.
+///
+/// <https://sw.kovidgoyal.net/kitty/graphics-protocol/>
+pub(super) fn kitty(codes: &Codes, [columns, rows]: [u32; 2]) -> Vec<u8> {
+    let data = base64(&png(codes));
+    let mut text = Vec::new();
+    let mut chunks = data.as_bytes().chunks(CHUNK).peekable();
+    let first = format!("a=T,f=100,i={NUMBER},q=2,C=1,c={columns},r={rows},");
+    let mut head = first.as_str();
+    while let Some(chunk) = chunks.next() {
+        let more = u8::from(chunks.peek().is_some());
+        text.extend(format!("\x1b_G{head}m={more};").bytes());
+        text.extend(chunk);
+        text.extend(b"\x1b\\");
+        head = "q=2,";
+    }
+    text
+}
+
+/// Returns a picture for iTerm's inline images, in so many columns and rows of cells.
+///
+/// <https://iterm2.com/documentation-images.html>
+pub(super) fn iterm(codes: &Codes, [columns, rows]: [u32; 2]) -> Vec<u8> {
+    let png = png(codes);
+    let size = png.len();
+    let data = base64(&png);
+    format!(
+        "\x1b]1337;File=inline=1;size={size};width={columns};height={rows};\
+         preserveAspectRatio=1:{data}\x07"
+    )
+    .into_bytes()
+}
+
+/// Returns the picture as a PNG file; an empty one if it has no pixels.
+fn png(codes: &Codes) -> Vec<u8> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, codes.width, codes.height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let written = encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(codes.pixels.as_flattened()));
+    if written.is_err() {
+        file.clear();
+    }
+    file
+}
+
+/// Returns bytes in base 64, with padding (RFC 4648, section 4).
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let byte = |at: usize| u32::from(group.get(at).copied().unwrap_or(0));
+        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for digit in 0..4 {
+            let value = (word >> (18 - 6 * digit)) & 63;
+            text.push(if digit <= group.len() { DIGITS[value as usize] as char } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn codes(width: u32, height: u32) -> Codes {
+        let value = |i: u32| [(i * 7) as u8, (i * 31) as u8, (i * i) as u8];
+        Codes { width, height, pixels: (0..width * height).map(value).collect() }
+    }
+
+    fn decoded(text: &str) -> Vec<u8> {
+        let value = |c: u8| match c {
+            b'A'..=b'Z' => c - b'A',
+            b'a'..=b'z' => c - b'a' + 26,
+            b'0'..=b'9' => c - b'0' + 52,
+            b'+' => 62,
+            _ => 63,
+        };
+        let digits = text.trim_end_matches('=');
+        let mut bytes = Vec::new();
+        for group in digits.as_bytes().chunks(4) {
+            let word = group.iter().fold(0, |word, &c| word << 6 | u32::from(value(c)));
+            let word = word << (6 * (4 - group.len()));
+            bytes.extend(&word.to_be_bytes()[1..group.len()]);
+        }
+        bytes
+    }
+
+    fn pixels(file: &[u8]) -> Vec<u8> {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().expect("PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        reader.next_frame(&mut pixels).expect("pixels");
+        pixels
+    }
+
+    #[test]
+    fn bytes_in_base_64_are_those_of_the_standard() {
+        let cases =
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")];
+        for (bytes, text) in cases {
+            assert_eq!(base64(bytes.as_bytes()), text);
+            assert_eq!(decoded(text), bytes.as_bytes());
+        }
+    }
+
+    #[test]
+    fn kitty_gets_a_file_in_chunks() {
+        let codes = codes(97, 61);
+        let text = String::from_utf8(kitty(&codes, [49, 16])).expect("text");
+        let parts: Vec<&str> = text.split_terminator("\x1b\\").collect();
+        assert!(parts.len() > 1 && text.ends_with("\x1b\\"));
+        let mut data = String::new();
+        for (place, part) in parts.iter().enumerate() {
+            let (head, chunk) = part.strip_prefix("\x1b_G").unwrap().split_once(';').unwrap();
+            let more = u8::from(place + 1 < parts.len());
+            let keys = "a=T,f=100,i=31,q=2,C=1,c=49,r=16,";
+            let expected = if place == 0 { keys } else { "q=2," };
+            assert_eq!(head, format!("{expected}m={more}"));
+            assert!(chunk.len() <= 4096 && (more == 0 || chunk.len() % 4 == 0));
+            data += chunk;
+        }
+        assert_eq!(pixels(&decoded(&data)), codes.pixels.as_flattened());
+    }
+
+    #[test]
+    fn iterm_gets_a_file_and_its_size() {
+        let codes = codes(5, 3);
+        let text = String::from_utf8(iterm(&codes, [5, 2])).expect("text");
+        let (head, data) = text.strip_suffix('\x07').unwrap().split_once(':').unwrap();
+        let file = decoded(data);
+        let size = file.len();
+        let expected =
+            format!("\x1b]1337;File=inline=1;size={size};width=5;height=2;preserveAspectRatio=1");
+        assert_eq!(head, expected);
+        assert_eq!(pixels(&file), codes.pixels.as_flattened());
+    }
+}

@@ -1,0 +1,241 @@
+//! The picture in the terminal, while it refines: as an image where the terminal takes one by the
+//! protocol of Kitty or iTerm or as sixels, or else in half blocks, two pixels in each character.
+
+mod blocks;
+mod inline;
+mod probe;
+mod sixels;
+
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use spherule::image::Image;
+use spherule::image::tone::{Codes8, DisplayTransform};
+use spherule::scene::Settings;
+use std::io::{self, IsTerminal, Write, stdin, stdout};
+use std::time::{Duration, Instant};
+
+/// Least time between two pictures; and in times of what drawing the last one took.
+const PAUSE: (Duration, u32) = (Duration::from_millis(250), 20);
+
+/// A way to show pictures in a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Protocol {
+    /// Images of the Kitty graphics protocol.
+    Kitty,
+    /// Inline images of iTerm2.
+    Iterm,
+    /// DEC's sixels.
+    Sixels,
+    /// Half blocks, in 24-bit color or else in 256 colors.
+    Blocks { true_color: bool },
+}
+
+/// The size of a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Screen {
+    /// Cells.
+    columns: u32,
+    /// Cells.
+    rows: u32,
+    /// Width and height of a cell, in pixels.
+    cell: [u32; 2],
+}
+
+/// A picture of codes for a display.
+struct Codes {
+    width: u32,
+    height: u32,
+    /// Red, green and blue, row by row.
+    pixels: Vec<[u8; 3]>,
+}
+
+/// A place in the terminal where one picture after another is drawn.
+pub(super) struct Terminal {
+    protocol: Protocol,
+    screen: Screen,
+    table: Codes8,
+    /// Lines of the picture that is there.
+    lines: u32,
+    /// Time that it took to draw it.
+    took: Duration,
+    /// Whether there was something wrong, and no more is drawn.
+    failed: bool,
+}
+
+/// Refuses to draw where nothing answers the question what can be drawn.
+pub(super) fn check(wanted: bool) -> Result<(), Failure> {
+    if wanted && !(stdin().is_terminal() && stdout().is_terminal()) {
+        let message = "--terminal is for a terminal, not for files and pipes";
+        return Err(Failure::usage("render", message));
+    }
+    Ok(())
+}
+
+impl Terminal {
+    /// A place for pictures that are shown as these settings say.
+    pub(super) fn new(settings: &Settings) -> Self {
+        let transform = DisplayTransform::nearest(settings.exposure, settings.tone);
+        Self {
+            protocol: probe::protocol(),
+            screen: probe::screen(),
+            table: Codes8::new(transform),
+            lines: 0,
+            took: Duration::ZERO,
+            failed: false,
+        }
+    }
+
+    /// Time until the next picture.
+    pub(super) fn pause(&self) -> Duration {
+        PAUSE.0.max(self.took * PAUSE.1)
+    }
+
+    /// Draws a picture in the place of the last one.
+    pub(super) fn draw(&mut self, image: &Image) {
+        if self.failed {
+            return;
+        }
+        let start = Instant::now();
+        let (text, lines) = self.text(image);
+        let mut output = stdout().lock();
+        let drawn = output.write_all(&text).and_then(|()| output.flush());
+        drop(output);
+        match drawn {
+            Ok(()) => self.lines = lines,
+            // Nobody looks any more.
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => self.failed = true,
+            Err(error) => {
+                self.failed = true;
+                output::warn(format_args!("the terminal does not take pictures: {error}"));
+            }
+        }
+        self.took = start.elapsed();
+    }
+
+    /// What draws a picture in the place of the last one, and how many lines it takes.
+    fn text(&self, image: &Image) -> (Vec<u8>, u32) {
+        let [columns, rows] = fit([image.width, image.height], self.screen);
+        let mut text = Vec::new();
+        if self.lines > 0 {
+            text.extend(format!("\x1b[{}A\r", self.lines).bytes());
+        }
+        // Room for the picture, which may scroll what is above it.
+        text.extend(b"\n".repeat(rows as usize));
+        text.extend(format!("\x1b[{rows}A\r").bytes());
+        match self.protocol {
+            Protocol::Blocks { true_color } => {
+                let codes = self.codes(image, [columns, 2 * rows]);
+                text.extend(blocks::text(&codes, true_color));
+            }
+            protocol => {
+                let [width, height] = self.screen.cell;
+                let codes = self.codes(image, [columns * width, rows * height]);
+                // The cursor comes back: terminals differ in where they leave it.
+                text.extend(b"\x1b7");
+                text.extend(match protocol {
+                    Protocol::Kitty => inline::kitty(&codes, [columns, rows]),
+                    Protocol::Iterm => inline::iterm(&codes, [columns, rows]),
+                    _ => sixels::text(&codes),
+                });
+                text.extend(format!("\x1b8\x1b[{rows}B\r").bytes());
+            }
+        }
+        (text, rows)
+    }
+
+    /// The codes of a picture, reduced to at most so many pixels.
+    fn codes(&self, image: &Image, [columns, rows]: [u32; 2]) -> Codes {
+        let (width, height) = (columns.min(image.width), rows.min(image.height));
+        let code = |pixel: [f32; 3]| pixel.map(|value| self.table.code(value));
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let pixels = pixels.map(|place| code(mean(image, place, (width, height)))).collect();
+        Codes { width, height, pixels }
+    }
+}
+
+/// The mean radiance of a picture in a pixel of a smaller one.
+fn mean(image: &Image, (x, y): (u32, u32), (width, height): (u32, u32)) -> [f32; 3] {
+    let range = |at: u32, small: u32, large: u32| {
+        let edge = |at: u32| (u64::from(at) * u64::from(large) / u64::from(small)) as u32;
+        edge(at)..edge(at + 1).max(edge(at) + 1)
+    };
+    let (columns, rows) = (range(x, width, image.width), range(y, height, image.height));
+    let mut sum = [0.0; 3];
+    let mut count = 0.0;
+    for row in rows {
+        for pixel in columns.clone().filter_map(|column| image.pixel(column, row)) {
+            (0..3).for_each(|channel| sum[channel] += pixel[channel]);
+            count += 1.0;
+        }
+    }
+    sum.map(|value| value / f32::max(count, 1.0))
+}
+
+/// Columns and rows of cells that a picture takes: as many as there are, with a line left for the
+/// prompt, but no more than it has pixels, of which two are above one another in a cell.
+fn fit([width, height]: [u32; 2], screen: Screen) -> [u32; 2] {
+    let most = [screen.columns.max(1), 2 * screen.rows.saturating_sub(1).max(1)].map(f64::from);
+    let size = [width, height].map(f64::from);
+    let scale = (most[0] / size[0]).min(most[1] / size[1]).min(1.0);
+    let columns = (size[0] * scale).round().max(1.0);
+    let rows = (size[1] * scale / 2.0).round().max(1.0);
+    [columns as u32, rows as u32]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCREEN: Screen = Screen { columns: 80, rows: 24, cell: [8, 16] };
+
+    fn terminal(protocol: Protocol) -> Terminal {
+        let settings = Settings::default();
+        let transform = DisplayTransform::nearest(settings.exposure, settings.tone);
+        let table = Codes8::new(transform);
+        let (lines, took, failed) = (0, Duration::ZERO, false);
+        Terminal { protocol, screen: SCREEN, table, lines, took, failed }
+    }
+
+    #[test]
+    fn pictures_fit_into_the_screen_and_are_not_enlarged() {
+        for (size, cells) in [
+            ([800, 600], [61, 23]),
+            ([1600, 100], [80, 3]),
+            ([100, 1600], [3, 23]),
+            ([40, 24], [40, 12]),
+            ([1, 1], [1, 1]),
+            ([65_535, 1], [80, 1]),
+        ] {
+            assert_eq!(fit(size, SCREEN), cells, "{size:?}");
+        }
+        let tiny = Screen { columns: 0, rows: 0, ..SCREEN };
+        assert_eq!(fit([800, 600], tiny), [1, 1]);
+    }
+
+    #[test]
+    fn smaller_pictures_are_means() {
+        let mut image = Image::filled(4, 2, [0.0; 3]).expect("a picture");
+        (image.pixels[0], image.pixels[5]) = ([1.0; 3], [1.0, 0.0, 0.0]);
+        assert_eq!(mean(&image, (0, 0), (2, 1)), [0.5, 0.25, 0.25]);
+        assert_eq!(mean(&image, (1, 0), (2, 1)), [0.0; 3]);
+        assert_eq!(mean(&image, (1, 1), (4, 2)), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn every_picture_takes_the_place_of_the_last() {
+        let image = Image::filled(40, 24, [0.5; 3]).expect("a picture");
+        let blocks = Protocol::Blocks { true_color: true };
+        for protocol in [Protocol::Kitty, Protocol::Iterm, Protocol::Sixels, blocks] {
+            let mut terminal = terminal(protocol);
+            let (first, lines) = terminal.text(&image);
+            assert_eq!(lines, 12);
+            terminal.lines = lines;
+            let (second, _) = terminal.text(&image);
+            assert_eq!(second, [b"\x1b[12A\r", &first[..]].concat(), "{protocol:?}");
+            // As many lines down as up.
+            assert!(first.starts_with(&[&b"\n".repeat(12)[..], b"\x1b[12A\r"].concat()));
+            let end = if protocol == blocks { &b"\x1b[0m\r\n"[..] } else { b"\x1b8\x1b[12B\r" };
+            assert!(first.ends_with(end), "{protocol:?}");
+        }
+    }
+}
