@@ -9,6 +9,7 @@ use spherule::drawing::Format;
 use spherule::scene::particles::{
     Coloring, ColumnColors, ElementColors, Legend, Looks, Selection, TypeLook,
 };
+use spherule::suggest;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -18,19 +19,20 @@ use std::path::PathBuf;
 pub(super) struct LookArgs {
     /// Draw those alone that a condition on columns holds for, as in 'element != H and z > 10':
     /// == != < <= > >=, and, or, not, + - * /, parentheses; texts as words or in quotes, names with
-    /// other signs than _ . : [ ] in backticks
+    /// other signs than _ . : [ ] in backticks. Columns have the file's names, or those that other
+    /// programs have for them: resname, resid, chainid, segid, name, bfactor, occ, serial, q, mol
     #[arg(long, value_name = "CONDITION", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<Typed<Selection>>())]
     select: Option<Typed<Selection>>,
     /// Colors of elements, also where the file has colors [default: the file's, or else jmol]
     #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
     colors: Option<Scheme>,
-    /// Color by a column of the file, or by x, y, z, radius, type, element or id: numbers by a map,
-    /// texts by ten colors in turn
+    /// Color by a column of the file, or by x, y, z, radius, type, element, id or index: numbers by a
+    /// map, texts by ten colors in turn. Names of other programs will do, as for --select
     #[arg(long, value_name = "COLUMN")]
     color_by: Option<String>,
-    /// The map of --color-by [default: viridis]
+    /// The map of --color-by; reversed with _r after its name, as in `viridis_r` [default: viridis]
     #[arg(long, value_name = "MAP", requires = "color_by", value_parser = map())]
-    color_map: Option<Map>,
+    color_map: Option<MapChoice>,
     /// What the ends of the map stand for; numbers beyond have the colors of the ends [default:
     /// auto, the least and the greatest]
     #[arg(
@@ -44,11 +46,11 @@ pub(super) struct LookArgs {
     /// Equal ratios are equal steps on the map, not equal differences
     #[arg(long, requires = "color_by")]
     color_log: bool,
-    /// Looks of a type, by its name or element, before all else; again for further types. Materials
-    /// are lambertian, plastic, metal, glass, mirror and emitter
+    /// Looks of a type, by its name or element, before all else; again for further types. Colors are
+    /// #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and emitter
     #[arg(
         long = "type",
-        value_name = "NAME:radius=R,color=#RRGGBB,material=M",
+        value_name = "NAME:radius=R,color=COLOR,material=M",
         value_parser = |text: &str| text.parse::<Typed<TypeLook>>()
     )]
     types: Vec<Typed<TypeLook>>,
@@ -117,9 +119,26 @@ impl Scheme {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ends(Option<[f64; 2]>);
 
-fn map() -> impl TypedValueParser<Value = Map> {
-    PossibleValuesParser::new(Map::ALL.map(|map| PossibleValue::new(map.name())))
-        .try_map(|name| Map::named(&name).ok_or("not one of the names"))
+/// Names of reversed maps, in the order of [`Map::ALL`].
+const REVERSED: [&str; 7] =
+    ["viridis_r", "cividis_r", "inferno_r", "magma_r", "plasma_r", "turbo_r", "coolwarm_r"];
+
+/// A color map, which may be reversed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct MapChoice {
+    map: Map,
+    reversed: bool,
+}
+
+fn map() -> impl TypedValueParser<Value = MapChoice> {
+    let names = Map::ALL.map(|map| PossibleValue::new(map.name()));
+    let reversed = REVERSED.map(|name| PossibleValue::new(name).hide(true));
+    PossibleValuesParser::new(names.into_iter().chain(reversed)).try_map(|name| {
+        let row = REVERSED.iter().position(|own| *own == name);
+        let map = row.map(|row| Map::ALL[row]).or_else(|| Map::named(&name));
+        let choice = |map| MapChoice { map, reversed: row.is_some() };
+        map.map(choice).ok_or("not one of the names")
+    })
 }
 
 /// `LOW,HIGH` or `auto`.
@@ -149,8 +168,12 @@ fn bar(text: &str) -> Result<BarPlace, String> {
         (Some(corner), _) => Ok(BarPlace::Inside(corner)),
         (None, Some(format)) => Ok(BarPlace::File(path, format)),
         (None, None) => {
-            let names = CORNERS.map(|(name, _)| name).join(", ");
-            Err(format!("end the name in .png or .svg, or write inside or inside:CORNER: {names}"))
+            let names = CORNERS.map(|(name, _)| name);
+            let near = text.strip_prefix("inside:").map(|corner| suggest::question(corner, names));
+            let (near, names) = (near.unwrap_or_default(), names.join(", "));
+            Err(format!(
+                "end the name in .png or .svg, or write inside or inside:CORNER: {names}{near}"
+            ))
         }
     }
 }
@@ -175,7 +198,8 @@ impl LookArgs {
             None => self.colors.and_then(|scheme| put("colors", json!(scheme.name()))),
         };
         if let Some(Legend { scale, .. }) = legend {
-            put("color_map", json!(scale.map.name()));
+            let reversed = if scale.reversed { "_r" } else { "" };
+            put("color_map", json!(format!("{}{reversed}", scale.map.name())));
             put("color_range", json!(format!("{},{}", scale.range.low(), scale.range.high())));
             if self.color_log {
                 put("color_log", json!(true));
@@ -189,7 +213,8 @@ impl LookArgs {
         if let Some(column) = self.color_by.clone() {
             return Coloring::Column(ColumnColors {
                 column,
-                map: self.color_map,
+                map: self.color_map.map(|choice| choice.map),
+                reversed: self.color_map.is_some_and(|choice| choice.reversed),
                 ends: self.color_range.and_then(|Ends(ends)| ends),
                 spacing: if self.color_log { Spacing::Logarithmic } else { Spacing::Linear },
             });
@@ -214,6 +239,13 @@ mod tests {
         assert_eq!(bar("inside:top-right"), corner(true, false));
         assert_eq!(bar("inside.svg"), Ok(BarPlace::File("inside.svg".into(), Format::Svg)));
         assert!(bar("inside:left").is_err() && bar("a.pdf").is_err() && bar("insider").is_err());
+    }
+
+    #[test]
+    fn every_map_can_be_reversed() {
+        for (map, reversed) in Map::ALL.into_iter().zip(REVERSED) {
+            assert_eq!(reversed, format!("{}_r", map.name()));
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ use serde_json::json;
 use spherule::scene::particles::{
     Columns, Element, Format, FrameChoice, LengthUnit, Particles, Radii, ReadOptions, count_frames,
 };
+use spherule::suggest;
 use std::path::Path;
 
 /// How a file of particles is read.
@@ -40,8 +41,8 @@ pub(super) struct ParticleArgs {
 
 fn format(name: &str) -> Result<Format, String> {
     let found = Format::ALL.iter().find(|(own, _)| *own == name).map(|(_, format)| *format);
-    let names = || Format::ALL.map(|(name, _)| name).join(", ");
-    found.ok_or_else(|| format!("formats are {}", names()))
+    let names = || Format::ALL.map(|(name, _)| name).into_iter();
+    found.ok_or_else(|| suggest::help(name, names(), "formats are"))
 }
 
 fn positive(text: &str) -> Result<f64, String> {

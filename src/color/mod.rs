@@ -9,6 +9,7 @@ pub mod bar;
 mod categories;
 pub mod elements;
 mod map;
+mod names;
 mod range;
 mod scale;
 mod srgb;
@@ -17,9 +18,9 @@ mod ticks;
 
 pub use categories::{CATEGORIES, category};
 pub use map::Map;
+pub use names::{names, parse};
 pub use range::{Range, RangeError, Spacing};
 pub use scale::Scale;
-pub(crate) use srgb::parse_hex;
 pub use srgb::{linear_from_srgb, srgb};
 pub use ticks::{Tick, ticks};
 

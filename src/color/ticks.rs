@@ -12,24 +12,24 @@ pub struct Tick {
     pub label: String,
 }
 
-/// At most `most` round numbers of a range, from low to high, evenly spaced.
+/// More numbers than any bar has room for.
+const MOST: usize = 1000;
+
+/// At most `most` round numbers of a range, and never more than a thousand, from low to high, evenly spaced.
 ///
 /// In a linear range they are multiples of 1, 2 or 5 times a power of ten; in a logarithmic one of
 /// several decades powers of ten, or these times 1, 2 and 5. There are at least two if `most` is 4 or
 /// more and the ends differ by more than a billionth of themselves; of a range of one number, it is that number.
 pub fn ticks(range: &Range, most: usize) -> Vec<Tick> {
+    let most = most.clamp(1, MOST);
     if range.low() == range.high() {
         return vec![Tick { value: range.low(), label: typeset(&format!("{}", range.low())) }];
     }
     let decades = match range.spacing() {
         Spacing::Linear => Vec::new(),
-        Spacing::Logarithmic => logarithmic(range, most.max(1)),
+        Spacing::Logarithmic => logarithmic(range, most),
     };
-    if decades.len() > 1 {
-        labeled(&decades, range)
-    } else {
-        labeled(&linear(range, most.max(1)), range)
-    }
+    if decades.len() > 1 { labeled(&decades, range) } else { labeled(&linear(range, most), range) }
 }
 
 /// A round number: a whole number times a power of ten.

@@ -6,7 +6,7 @@
 
 use super::{
     Background, Camera, Environment, EnvironmentMap, Ground, Integrator, Light, Look, Material,
-    NamedMaterial, Pose, Rgb, Scene, Settings,
+    NamedMaterial, Pose, Rgb, Scene,
 };
 use glam::DVec3;
 
@@ -66,12 +66,19 @@ impl Preset {
         }
     }
 
-    /// Sets how light is gathered.
-    pub fn set(self, settings: &mut Settings) {
-        settings.integrator = match self {
-            Self::Chalk => Integrator::Ao { distance: f64::INFINITY },
+    /// Returns the integrator. Ambient occlusion shades every surface as if it were matte, so it is
+    /// only for scenes without materials of their own.
+    pub fn integrator(self, own_materials: bool) -> Integrator {
+        match self {
+            Self::Chalk if !own_materials => Integrator::Ao { distance: f64::INFINITY },
             _ => Integrator::Path,
-        };
+        }
+    }
+
+    /// Sets the integrator of a scene whose other materials are the user's choice.
+    pub fn set(self, scene: &mut Scene) {
+        let own = scene.materials.iter().any(|row| row.material != self.material());
+        scene.settings.integrator = self.integrator(own);
     }
 
     /// What is drawn over the picture.
@@ -84,11 +91,16 @@ impl Preset {
         }
     }
 
-    /// Replaces all materials, which keep their names, and all light; the camera has its place.
-    pub fn light(self, scene: &mut Scene) {
+    /// Gives every sphere and the ground this look's material; names stay.
+    pub fn replace_materials(self, scene: &mut Scene) {
         for row in &mut scene.materials {
             row.material = self.material();
         }
+    }
+
+    /// Replaces environment, lights and ground. Materials stay: those of particles are set by
+    /// [`Scene::of_particles_with`]. The lights stand by the camera, which must be in its place.
+    pub fn light(self, scene: &mut Scene) {
         scene.environment = Environment { map: self.sky(scene), illuminates: true };
         scene.lights = match self {
             Self::Studio | Self::Glossy => studio(&scene.camera),
@@ -97,7 +109,9 @@ impl Preset {
         scene.ground = (self == Self::Studio).then(|| ground(scene));
     }
 
-    fn material(self) -> Material {
+    /// Returns the material of particles that have none of their own; their colors are factors on
+    /// its albedo.
+    pub fn material(self) -> Material {
         let color = Rgb::splat(BODY);
         match self {
             Self::Glossy => Material::Plastic { color, ior: 1.6 },
@@ -177,13 +191,30 @@ mod tests {
     fn every_look_makes_a_world() {
         for preset in Preset::ALL {
             let mut scene = scene();
-            preset.set(&mut scene.settings);
+            preset.replace_materials(&mut scene);
+            preset.set(&mut scene);
             preset.light(&mut scene);
             let world = World::build(&scene).unwrap();
             assert_eq!(world.ground.is_some(), preset == Preset::Studio);
             assert_eq!(scene.lights.is_empty(), !matches!(preset, Preset::Studio | Preset::Glossy));
             let ao = matches!(scene.settings.integrator, Integrator::Ao { .. });
             assert_eq!(ao, preset == Preset::Chalk);
+        }
+    }
+
+    #[test]
+    fn materials_of_the_user_stay_and_are_seen() {
+        let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
+        for preset in Preset::ALL {
+            let mut scene = Scene::of_particles_with(Particles::default(), "", &preset.material());
+            let material = glass.clone();
+            scene.materials.push(NamedMaterial { name: "glass".to_owned(), material });
+            scene.spheres.push(DVec3::ZERO, 1.0, 1, Rgb::X);
+            preset.set(&mut scene);
+            preset.light(&mut scene);
+            assert_eq!(scene.materials[0].material, preset.material());
+            assert_eq!(scene.materials[1].material, glass);
+            assert_eq!(scene.settings.integrator, Integrator::Path, "{}", preset.name());
         }
     }
 

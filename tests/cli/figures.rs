@@ -121,7 +121,7 @@ fn figures_that_cannot_be_are_refused() {
     let folder = folder();
     for (args, message) in [
         (&["--background", "transparent", "-o", "a.ppm"][..], "end the name of --output in .png"),
-        (&["--background", "clear"], "white, black, transparent"),
+        (&["--background", "clear"], "transparent or sky"),
         (&["--color-by", "q", "--color-bar", "inside:left"], "top-left"),
         (&["--color-by", "q", "--color-bar", "inside", "--region", "0,0,8x8"], "whole picture"),
         (&["--color-by", "species", "--color-bar", "inside"], "a column of numbers"),

@@ -32,6 +32,7 @@ fn colors_follow_elements_or_columns() {
         picture(&["--color-by", "id"]),
         picture(&["--color-by", "note"]),
         picture(&["--color-by", "q", "--color-map", "coolwarm"]),
+        picture(&["--color-by", "q", "--color-map", "coolwarm_r"]),
         picture(&["--color-by", "q", "--color-range", "0,1"]),
         picture(&["--color-by", "id", "--color-log"]),
         picture(&["--type", "C:material=mirror"]),
@@ -42,6 +43,45 @@ fn colors_follow_elements_or_columns() {
     for (place, picture) in pictures.iter().enumerate() {
         assert!(!pictures[..place].contains(picture), "{place}");
     }
+    assert!(picture(&["--color-by", "charge"]) == pictures[1], "an alias");
+    let blue = ["--type", "C:color=blue", "--type", "O:radius=0.5"];
+    assert!(picture(&blue) == pictures[12], "a color by name");
+}
+
+#[test]
+fn what_is_said_of_types_goes_before_presets() {
+    let materials = ["plastic", "metal", "glass", "mirror", "emitter"];
+    for preset in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
+        let look = |typed: &str| picture(&["--preset", preset, "--type", typed]);
+        let mut pictures = vec![picture(&["--preset", preset])];
+        for typed in materials.map(|name| format!("O:material={name}")) {
+            pictures.push(look(&typed));
+        }
+        pictures.push(look("O:color=#0000ff"));
+        pictures.push(look("O:radius=0.5"));
+        for (place, picture) in pictures.iter().enumerate() {
+            assert!(!pictures[..place].contains(picture), "{preset} {place}");
+        }
+        let colored = ["--preset", preset, "--color-by", "q", "--type", "O:material=glass"];
+        assert!(picture(&colored) != picture(&colored[..4]), "{preset}");
+    }
+}
+
+#[test]
+fn materials_of_a_column_stay_under_presets() {
+    let folder = folder();
+    folder.write("clay.csv", "x,y,z\n0,0,0\n3,0,0\n");
+    folder.write("made.csv", "x,y,z,kind\n0,0,0,\n3,0,0,Glass\n");
+    for preset in [&["--radii", "1"][..], &["--radii", "1", "--preset", "studio"]] {
+        let clay = folder.picture("a.ppm", &[&["clay.csv"], preset].concat());
+        let made = ["made.csv", "--columns", "material=kind"];
+        assert!(clay != folder.picture("a.ppm", &[&made, preset].concat()), "{preset:?}");
+    }
+    folder.write("odd.csv", "x,y,z,material\n0,0,0,oak\n3,0,0,glass\n");
+    let output = folder.run(&["render", "odd.csv", "--size", "9x9", "--spp", "1"]);
+    let said = text(&output.stderr);
+    assert!(output.status.success() && said.contains("oak"), "{said}");
+    assert!(!said.contains("glass, oak") && !said.contains("oak, glass"), "{said}");
 }
 
 #[test]
@@ -75,6 +115,9 @@ fn looks_that_cannot_be_are_refused() {
         (&["--color-by", "q"], 2, "for a file of particles"),
         (&["dust.csv", "--color-map", "magma"], 2, "--color-by"),
         (&["dust.csv", "--color-by", "q", "--color-map", "jet"], 2, "viridis"),
+        (&["dust.csv", "--color-by", "q", "--color-map", "virdis_r"], 2, "viridis"),
+        (&["dust.csv", "--color-by", "elment"], 1, "did you mean `element`"),
+        (&["dust.csv", "--type", "c:radius=1"], 1, "did you mean `C`"),
         (&["dust.csv", "--color-by", "q", "--color-range", "1"], 2, "the lower one first"),
         (&["dust.csv", "--color-by", "q", "--colors", "cpk"], 2, "cannot be used with"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "bar.pdf"], 2, ".png or .svg"),
@@ -83,7 +126,7 @@ fn looks_that_cannot_be_are_refused() {
         (&["dust.csv", "--select", "z > "], 2, "missing here z > ^"),
         (&["dust.csv", "--select", "mass > 1"], 1, "[selection:1:1] 1 │ mass > 1 · ────"),
         (&["dust.csv", "--select", "x > 9"], 1, "none of its 3 particles"),
-        (&["dust.csv", "--type", "C:material=wood"], 2, "materials are lambertian"),
+        (&["dust.csv", "--type", "C:material=wood"], 2, "materials are: lambertian"),
         (&["dust.csv", "--type", "Fe:radius=1"], 1, "`Fe`; there are C, O, H"),
         (&["dust.csv", "--color-by", "mass"], 1, "there are id, element, x, y, z, q, note, radius"),
         (&["dust.csv", "--color-by", "note", "--color-log"], 1, "`note` holds texts"),

@@ -70,7 +70,7 @@ fn settings_without_effect_are_refused() {
         (&["info", "run.dump", "--radii", "thick"], 2, "write vdw, covalent"),
         (&["info", "run.dump", "--frame", "second"], 2, "write first, last"),
         (&["info", "run.dump", "--columns", "width=size"], 2, "no role of a column"),
-        (&["info", "run.dump", "--format", "png"], 2, "formats are xyzr"),
+        (&["info", "run.dump", "--format", "png"], 2, "formats are: xyzr"),
         (&["info", "run.dump", "--frame", "2"], 1, "has no frame 2, but 2"),
         (&["info", "run.dump", "--radii", "vdw"], 1, "none of its particles has an element"),
         (&["info", "run.dump", "--radii", "column:q"], 1, "no column is named `q`"),

@@ -70,6 +70,23 @@ fn what_is_hidden_cut_colored_and_lit_is_saved_so() {
 }
 
 #[test]
+fn looks_by_key_keep_the_materials_of_types() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let salt = ["salt.xyz", "--radii", "1", "--type", "Cl:material=glass"];
+    for (args, keys) in
+        [(&[][..], "key p"), (&[], "key p\nkey p"), (&["--preset", "studio"], "key tab")]
+    {
+        let script = format!("size 64x48\n{keys}\nwait 2\nsave a.png\nsave a.toml\n");
+        view(&folder, &[&salt, args].concat(), &script);
+        assert_comes_back(&folder, 2);
+        let scene = text(&folder.read("a.toml"));
+        assert_eq!(scene.matches("dielectric").count(), 1, "{keys} {scene}");
+        assert!(scene.contains("lambertian") && scene.contains("\"path\""), "{scene}");
+    }
+}
+
+#[test]
 fn what_is_drawn_over_pictures_is_seen_and_saved() {
     let folder = Folder::new();
     let cell = SALT.replace("Properties", "Lattice=\"4 0 0 0 4 0 0 0 4\" pbc=\"T T T\" Properties");

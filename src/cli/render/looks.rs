@@ -55,7 +55,7 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
     let legend = job.looks.apply(path, &mut particles)?;
     let cell = job.views.repeat(path, &mut particles)?;
     let title = job.source.title(&Scene::default()).into_owned();
-    Ok(Loaded { scene: Scene::of_particles(particles, &title), legend, cell })
+    Ok(Loaded { scene: job.style.scene(particles, &title), legend, cell })
 }
 
 /// Finds out whether the color bar can be written, and changes nothing.

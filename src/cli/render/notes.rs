@@ -26,6 +26,9 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     note(shadow_samples, dark, "--shadow-samples", "the scene has no lights to sample");
     note(picture.ao_distance.is_some(), !ao, "--ao-distance", "only the integrator ao looks at it");
     let one_bounce = "the integrator ao follows no paths";
+    let materials = job.looks.types.iter().any(|look| look.material.is_some());
+    let matte = "the integrator ao shades every surface as matte";
+    note(materials, ao, "--type with a material", matte);
     note(picture.depth.is_some(), ao, "--depth", one_bounce);
     note(picture.roulette.is_some(), ao, "--roulette", one_bounce);
     let chosen = picture.light_choice.is_some();

@@ -5,6 +5,7 @@ use super::viewer::Facts;
 use crate::cli::failure::Failure;
 use crate::cli::render::Job;
 use crate::cli::source::Source;
+use crate::cli::views::scene_of_particles;
 use glam::DVec3;
 use spherule::World;
 use spherule::scene::particles::{
@@ -114,11 +115,14 @@ impl Base {
             numbers: std::mem::take(&mut particles.numbers),
             texts: std::mem::take(&mut particles.texts),
         };
-        let mut scene = match &self.scene {
-            Some(scene) => Scene { spheres: particles.spheres, ..scene.clone() },
-            None => Scene::of_particles(particles, &job.source.title(&Scene::default())),
+        let mut scene = if let Some(scene) = &self.scene {
+            Scene { spheres: particles.spheres, ..scene.clone() }
+        } else {
+            let preset = content.preset.as_ref().map(|(preset, _)| *preset);
+            let title = job.source.title(&Scene::default()).into_owned();
+            scene_of_particles(preset.or(job.style.preset()), particles, &title)
         };
-        job.slices.cut(
+        let cuts = job.slices.cut(
             &mut scene,
             Path::new(&*job.source.name()),
             cell.map(|cell| cell.bounds()),
@@ -127,7 +131,7 @@ impl Base {
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
         job.picture.replace(&mut scene.settings);
-        job.views.frame(&mut scene, None)?;
+        job.views.frame(&mut scene, None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         let up = scene.camera.up;
         framing::hold(&mut scene, &[]).map_err(failed)?;
@@ -135,6 +139,9 @@ impl Base {
         scene.camera.up = up;
         if let Some((preset, camera)) = &content.preset {
             let home = std::mem::replace(&mut scene.camera, camera.clone());
+            if self.scene.is_some() {
+                preset.replace_materials(&mut scene);
+            }
             preset.light(&mut scene);
             scene.camera = home;
             scene.look = job.style.look(Some(*preset), scene.look);
@@ -162,6 +169,9 @@ impl Base {
             frames: self.frames,
             size: size(&scene.spheres),
             look: scene.look,
+            own_materials: self.scene.is_none()
+                && (job.looks.types.iter().any(|look| look.material.is_some())
+                    || self.particles.material_names.iter().any(|name| !name.is_empty())),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::command::{Action, Command};
 use super::rig::Rig;
 use super::viewer::{Touched, Viewer, WIDER};
 use glam::DVec2;
-use spherule::scene::{Background, Camera, Integrator, Pose, Preset, Rgb, SamplerKind};
+use spherule::scene::{Background, Camera, Integrator, Pose, Preset, Rgb, SamplerKind, Settings};
 
 /// Degrees.
 const TURN: f64 = 15.0;
@@ -109,7 +109,9 @@ impl Viewer {
     fn expose(&mut self, steps: i8) {
         // In thirds, so that there and back is the same number.
         let thirds = (self.settings.exposure / EXPOSURE).round() + f64::from(steps);
-        self.settings.exposure = thirds * EXPOSURE;
+        let exposures = Settings::EXPOSURES;
+        let exposure = (thirds * EXPOSURE).clamp(*exposures.start(), *exposures.end());
+        self.settings.exposure = exposure;
         self.say(format!("exposure {:+.2} stops", self.settings.exposure));
     }
 
@@ -145,7 +147,7 @@ impl Viewer {
         self.say(name);
         self.touched = Touched::default();
         if let Some(preset) = next {
-            preset.set(&mut self.settings);
+            self.settings.integrator = preset.integrator(self.facts.own_materials);
         }
         // Lights stand by the camera that looks now, level.
         let camera = Camera { up: self.rig.vertical(), ..self.rig.camera.clone() };

@@ -4,6 +4,7 @@ use super::command::{Button, Held};
 use super::keys;
 use glam::DVec2;
 use spherule::image::Format;
+use spherule::suggest;
 use std::path::PathBuf;
 
 /// Steps of a drag that does not say how many.
@@ -11,6 +12,24 @@ const STEPS: u32 = 16;
 
 /// Most repetitions, and most lines that they make.
 const MOST: usize = 1 << 20;
+
+/// Words that begin a line.
+const STEP_NAMES: [&str; 14] = [
+    "size",
+    "key",
+    "click",
+    "double-click",
+    "drag",
+    "wheel",
+    "turn",
+    "wait",
+    "save",
+    "window",
+    "repeat",
+    "end",
+    "adapt",
+    "quit",
+];
 
 /// The manual of scripts.
 pub(super) fn manual() -> String {
@@ -106,7 +125,10 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
             Step::Size(width, height)
         }
         ["key", key] if keys::command(key).is_some() => Step::Key((*key).to_owned()),
-        ["key", key] => return Err(format!("`{key}` is no key that does anything")),
+        ["key", key] => {
+            let near = suggest::question(key, keys::BINDINGS.iter().map(|binding| binding.0));
+            return Err(format!("`{key}` is no key that does anything{near}"));
+        }
         ["click", at, held @ ..] => {
             Step::Click { place: place(at)?, held: Words::of(held)?.held, double: false }
         }
@@ -127,7 +149,10 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
         ["window", name] => Step::Window(named(name, count)),
         ["adapt"] => Step::Adapt,
         ["quit"] => Step::Quit,
-        [first, ..] => return Err(format!("`{first}` begins no step; see spherule view --help")),
+        [first, ..] => {
+            let near = suggest::question(first, STEP_NAMES);
+            return Err(format!("`{first}` begins no step; see spherule view --help{near}"));
+        }
         [] => return Err("nothing".to_owned()),
     })
 }
@@ -150,10 +175,14 @@ impl Words {
                 "shift" => all.held.shift = true,
                 "ctrl" => all.held.control = true,
                 "alt" => all.held.alt = true,
-                other => match other.strip_prefix("steps=") {
-                    Some(steps) => all.steps = number::<u32>(steps)?.clamp(1, MOST as u32),
-                    None => return Err(format!("`{other}` is no button, no key and no steps=N")),
-                },
+                other => {
+                    let steps = other.strip_prefix("steps=").ok_or_else(|| {
+                        let words = ["left", "middle", "right", "shift", "ctrl", "alt"];
+                        let near = suggest::question(other, words);
+                        format!("`{other}` is no button, no key and no steps=N{near}")
+                    })?;
+                    all.steps = number::<u32>(steps)?.clamp(1, MOST as u32);
+                }
             }
         }
         Ok(all)
@@ -220,6 +249,17 @@ mod tests {
         ] {
             let error = parse(text).unwrap_err();
             assert!(error.contains(line), "{text}: {error}");
+        }
+        for (text, near) in
+            [("kye c", "`key`"), ("key homee", "`home`"), ("drag 1,1 2,2 lfet", "`left`")]
+        {
+            let error = parse(text).unwrap_err();
+            assert!(error.contains(near), "{text}: {error}");
+        }
+        for name in
+            STEP_NAMES.iter().filter(|name| !["repeat", "end", "double-click"].contains(name))
+        {
+            assert!(MANUAL.contains(&format!("\n  {name}")), "{name}");
         }
         assert!(MANUAL.lines().skip(1).all(|line| line.starts_with("  ")));
     }

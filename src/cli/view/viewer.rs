@@ -44,6 +44,8 @@ pub(super) struct Facts {
     pub(super) size: f64,
     /// What the scene says is drawn over its pictures.
     pub(super) look: Look,
+    /// Whether particles have materials of their own, which looks do not replace.
+    pub(super) own_materials: bool,
 }
 
 /// What was changed of the scene's look by keys.

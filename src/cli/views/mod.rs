@@ -8,7 +8,7 @@ mod style;
 use self::camera::View;
 pub(super) use self::camera::corners;
 pub(super) use self::over::{Canvas, draw_over, settings_of_layers};
-pub(super) use self::style::StyleArgs;
+pub(super) use self::style::{StyleArgs, scene_of_particles};
 use super::names::Names;
 use super::settings::List;
 use clap::value_parser;

@@ -2,19 +2,21 @@
 
 use crate::cli::settings::List;
 use serde_json::json;
-use spherule::color::srgb;
-use spherule::scene::{Background, Look, Preset, Rgb, Scene};
+use spherule::scene::particles::Particles;
+use spherule::scene::{Background, Look, Preset, Scene};
+use spherule::{color, suggest};
 
 /// What the picture looks like.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Look")]
 pub(in crate::cli) struct StyleArgs {
-    /// Materials, light and lines of a file of particles by name: chalk, studio, cloudy, glossy,
-    /// depthcue or outline
+    /// Material, light and lines of a file of particles by name: chalk, studio, cloudy, glossy,
+    /// depthcue or outline. Radii, colors and materials of --type go before it
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<Preset>,
-    /// In the sky's place, which goes on lighting the scene: white, black or #rrggbb, before
-    /// --exposure; transparent, for PNG, EXR, TIFF and WebP, where of the ground only shadows are left; or sky
+    /// In the sky's place, which goes on lighting the scene: a CSS color such as white or #rrggbb,
+    /// before --exposure; transparent, for PNG, EXR, TIFF and WebP, where of the ground only shadows are
+    /// left; or sky
     /// [default: white with --preset, or else what the scene says]
     #[arg(long, value_name = "COLOR", value_parser = background)]
     background: Option<Typed>,
@@ -27,23 +29,35 @@ struct Typed {
     background: Background,
 }
 
+/// Makes a scene of particles; those without a material of their own have that of a preset.
+pub(in crate::cli) fn scene_of_particles(
+    preset: Option<Preset>,
+    particles: Particles,
+    title: &str,
+) -> Scene {
+    match preset {
+        Some(preset) => Scene::of_particles_with(particles, title, &preset.material()),
+        None => Scene::of_particles(particles, title),
+    }
+}
+
 fn preset(name: &str) -> Result<Preset, String> {
     let found = Preset::ALL.into_iter().find(|preset| preset.name() == name);
-    let names = || Preset::ALL.map(Preset::name).join(", ");
-    found.ok_or_else(|| format!("looks are {}", names()))
+    let names = || Preset::ALL.map(Preset::name).into_iter();
+    found.ok_or_else(|| suggest::help(name, names(), "looks are"))
 }
 
 fn background(text: &str) -> Result<Typed, String> {
-    let six = |digits: &&str| digits.len() == 6 && digits.bytes().all(|c| c.is_ascii_hexdigit());
-    let hex = |digits: &str| u32::from_str_radix(digits, 16).ok();
-    let color = |text: &str| text.strip_prefix('#').filter(six).and_then(hex).map(srgb);
     let background = match text {
-        "white" => Background::Color(Rgb::ONE),
-        "black" => Background::Color(Rgb::ZERO),
         "transparent" => Background::Transparent,
         "sky" => Background::Sky,
-        _ => color(text).map(Background::Color).ok_or_else(|| {
-            "give white, black, transparent, sky, or six digits as in \"#f0f4ff\"".to_owned()
+        _ => color::parse(text).map(Background::Color).ok_or_else(|| {
+            let words = ["transparent", "sky"].into_iter().chain(color::names());
+            let near = suggest::question(text, words);
+            format!(
+                "give a CSS color such as white, six digits as in \"#f0f4ff\", transparent or \
+                 sky{near}"
+            )
         })?,
     };
     Ok(Typed { text: text.to_owned(), background })
@@ -52,6 +66,11 @@ fn background(text: &str) -> Result<Typed, String> {
 impl StyleArgs {
     pub(in crate::cli) fn preset(&self) -> Option<Preset> {
         self.preset
+    }
+
+    /// Makes a scene of particles; those without a material of their own have this look's.
+    pub(in crate::cli) fn scene(&self, particles: Particles, title: &str) -> Scene {
+        scene_of_particles(self.preset, particles, title)
     }
 
     /// What is drawn over a picture: as a preset says or else the scene, but for the cell, and for
@@ -65,7 +84,7 @@ impl StyleArgs {
     /// Sets what the look says of settings and of what is drawn over the picture, before others are typed.
     pub(in crate::cli) fn set(&self, scene: &mut Scene) {
         if let Some(preset) = self.preset {
-            preset.set(&mut scene.settings);
+            preset.set(scene);
         }
         scene.look = self.look(self.preset, scene.look);
     }
@@ -93,6 +112,7 @@ impl StyleArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spherule::scene::Rgb;
 
     #[test]
     fn colors_and_looks_are_read() {
@@ -103,12 +123,13 @@ mod tests {
             ("#ffffff", color(Rgb::ONE)),
             ("black", color(Rgb::ZERO)),
             ("#FF0000", color(Rgb::X)),
+            ("Lime", color(Rgb::Y)),
             ("transparent", Background::Transparent),
             ("sky", Background::Sky),
         ] {
             assert_eq!(read(text), Ok(expected));
         }
-        for text in ["", "#", "#fff", "#-fffff", "#+fffff", "ffffff", "red", "#ggffff"] {
+        for text in ["", "#", "#fff", "#-fffff", "#+fffff", "ffffff", "rde", "#ggffff"] {
             assert!(read(text).is_err(), "{text}");
         }
         for look in Preset::ALL {

@@ -3,6 +3,7 @@
 use super::schema::Schema;
 use super::value::Value;
 use crate::scene::SceneError;
+use crate::suggest;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -46,7 +47,7 @@ impl<'a> Block<'a> {
             if !schema.names().any(|known| known == name) {
                 let message = format!("unknown key `{name}` in {}", schema.section);
                 let error = source.error(key.span(), message);
-                return Err(error.with_help(suggest(name, schema.names(), "known keys")));
+                return Err(error.with_help(suggest::help(name, schema.names(), "known keys")));
             }
         }
         Ok(block)
@@ -170,35 +171,7 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Longest word, in bytes, that is compared with others: that takes the product of their lengths.
-const COMPARED: usize = 64;
-/// Most words that an error lists.
-const LISTED: usize = 32;
-
 type Item<'a> = Spanned<DeValue<'a>>;
-
-/// The nearest of the known words, if one is near, or else all of them, which are `what`.
-pub(super) fn suggest<'w>(
-    word: &str,
-    known: impl Iterator<Item = &'w str> + Clone,
-    what: &str,
-) -> String {
-    let comparable = |word: &str| word.len() <= COMPARED;
-    // Two edits in five letters: a swap, a slip or two, but not another word.
-    let near = known
-        .clone()
-        .filter(|candidate| comparable(word) && comparable(candidate))
-        .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
-        .filter(|(edits, candidate)| {
-            let length = candidate.chars().count();
-            *edits < length && *edits * 10 <= length.max(3) * 4
-        })
-        .min_by_key(|(edits, _)| *edits);
-    match near {
-        Some((_, candidate)) => format!("did you mean `{candidate}`?"),
-        None => format!("{what}: {}", join(known.take(LISTED).map(str::to_owned), ", ")),
-    }
-}
 
 fn join(words: impl Iterator<Item = String>, separator: &str) -> String {
     words.collect::<Vec<_>>().join(separator)

@@ -4,6 +4,7 @@ use super::block::Block;
 use super::value::{Limits, Value};
 use crate::scene::particles::Cell;
 use crate::scene::{Background, Look, SceneError};
+use crate::{color, suggest};
 
 pub(super) fn read(block: &Block) -> Result<Look, SceneError> {
     let flag = |key| block.value(key).map_or(Ok(false), |value: Value| value.flag());
@@ -27,8 +28,13 @@ fn read_background(value: &Value) -> Result<Background, SceneError> {
     match value.item.as_str() {
         Some("sky") => Ok(Background::Sky),
         Some("transparent") => Ok(Background::Transparent),
-        Some(text) if !text.starts_with('#') => {
-            Err(value.must_be("a color, \"sky\" or \"transparent\""))
+        Some(text) if color::parse(text).is_none() => {
+            let error = value.must_be("a color, \"sky\" or \"transparent\"");
+            let words = ["sky", "transparent"].into_iter().chain(color::names());
+            Err(match suggest::nearest(text, words) {
+                Some(near) => error.with_help(format!("did you mean \"{near}\"?")),
+                None => error,
+            })
         }
         _ => value.color(Limits::Light).map(Background::Color),
     }

@@ -1,9 +1,10 @@
 //! `[material.NAME]` and `[ground]`: what things are made of.
 
-use super::block::{Block, suggest};
+use super::block::Block;
 use super::schema;
 use super::value::{Limits, Value};
 use crate::scene::{ConductorFresnel, Ground, Material, NamedMaterial, Rgb, SceneError};
+use crate::suggest;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -41,7 +42,7 @@ impl Materials {
         if self.rows.is_empty() {
             return format!("write a section [material.{name}]");
         }
-        suggest(name, self.rows.iter().map(|row| row.name.as_str()), "the scene's materials")
+        suggest::help(name, self.rows.iter().map(|row| row.name.as_str()), "the scene's materials")
     }
 
     /// All rows.

@@ -19,7 +19,7 @@ mod value;
 
 use self::block::{Block, Source};
 use self::materials::Materials;
-use super::particles::{self, Particles, ReadOptions};
+use super::particles::{self, Particles, ReadOptions, TypeMaterial, listed};
 use super::{
     Camera, Environment, EnvironmentMap, Light, Look, Material, NamedMaterial, Rgb, Scene,
     SceneError, Settings, Spheres,
@@ -31,6 +31,9 @@ use toml::de::DeTable;
 
 /// Longest scene file, in bytes: a million spheres in words. More belong in a file of particles.
 const LONGEST: u64 = 1 << 26;
+
+/// Name of the material of particles that have none of their own.
+const PARTICLES: &str = "particles";
 
 /// Bytes that a byte of a file becomes while it is read, at most: lists of short values.
 const TREE_BYTES: u64 = 100;
@@ -108,16 +111,30 @@ impl Scene {
 
     /// The same scene of particles that are read already.
     pub fn of_particles(particles: Particles, title: &str) -> Self {
-        let material = Material::Plastic { color: Rgb::splat(0.8), ior: 1.5 };
-        let named =
-            |name: &str| NamedMaterial { name: name.to_owned(), material: material.clone() };
+        Self::of_particles_with(particles, title, &TypeMaterial::Plastic.material(Rgb::ONE))
+    }
+
+    /// The same scene with another material for the particles that have none of their own. Those
+    /// that a [`TypeLook`](particles::TypeLook) gives a material, or a column of the file the name
+    /// of a [`TypeMaterial`], keep it.
+    pub fn of_particles_with(mut particles: Particles, title: &str, usual: &Material) -> Self {
+        let named = |name: &str| NamedMaterial { name: name.to_owned(), material: usual.clone() };
         let mut materials = Materials::default();
-        materials.row_or_add(named("particles"));
+        materials.row_or_add(named(PARTICLES));
         let mut rows = Vec::new();
-        for name in &particles.material_names {
-            let name = if name.is_empty() { "particles" } else { name };
-            let chosen = particles.materials.iter().find(|material| material.name == *name);
-            rows.push(materials.row_or_add(chosen.cloned().unwrap_or_else(|| named(name))));
+        let mut unknown = Vec::new();
+        for (code, name) in particles.material_names.iter().enumerate() {
+            let own = particles.own_material(code as u32);
+            if own.is_none() && !name.is_empty() {
+                unknown.push(name.as_str());
+            }
+            let name = if name.is_empty() { PARTICLES } else { name };
+            rows.push(materials.row_or_add(own.unwrap_or_else(|| named(name))));
+        }
+        if !unknown.is_empty() {
+            let known = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
+            let reason = format!("unknown materials, drawn in the usual one (known are {known})");
+            particles.warnings.push(format!("{title}: {}", listed(&reason, &unknown)));
         }
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);

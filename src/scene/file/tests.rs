@@ -99,7 +99,7 @@ fn sections_in_the_wrong_brackets_are_told() {
 #[test]
 fn every_range_is_kept() {
     let cases: [(&str, &[&str], &str); 44] = [
-        ("[look]\nbackground = ?", &["\"red\"", "\"#12\"", "-1", "[1, 2]"], "\"transparent\""),
+        ("[look]\nbackground = ?", &["\"rde\"", "\"#12\"", "-1", "[1, 2]"], "\"transparent\""),
         ("[look]\nbackground = ?", &["true", "2e30"], "[0, 1e30, 0.5]"),
         ("[look]\noutline = ?", &["1", "\"yes\""], "true"),
         (

@@ -1,7 +1,8 @@
 //! One value of a scene file: of the right type, finite, in its range; said once for every section.
 
-use super::block::{Source, suggest};
+use super::block::Source;
 use crate::scene::{BRIGHTEST, Rgb, SceneError};
+use crate::{color, suggest};
 use glam::DVec3;
 use std::ops::Range;
 use std::str::FromStr;
@@ -117,7 +118,7 @@ impl<'a> Value<'a> {
     pub(super) fn choice(&self, words: &[&'static str]) -> Result<&'static str, SceneError> {
         let text = self.text()?;
         words.iter().copied().find(|&word| word == text).ok_or_else(|| {
-            let help = suggest(text, words.iter().copied(), "possible values");
+            let help = suggest::help(text, words.iter().copied(), "possible values");
             self.error(format!("unknown {} \"{text}\"", self.name)).with_help(help)
         })
     }
@@ -162,18 +163,27 @@ impl<'a> Value<'a> {
         self.vector().map(unit)
     }
 
-    /// A color: three linear values, one for gray, or `"#rrggbb"` in sRGB; each value within
-    /// limits.
+    /// A color: three linear values, one for gray, or `"#rrggbb"` or a CSS name in sRGB; each value
+    /// within limits.
     pub(super) fn color(&self, limits: Limits) -> Result<Rgb, SceneError> {
         match self.item {
             DeValue::Array(_) => {
                 let [red, green, blue] = self.list()?;
                 Ok(Rgb::new(red.single(limits)?, green.single(limits)?, blue.single(limits)?))
             }
-            DeValue::String(text) => crate::color::parse_hex(text)
-                .ok_or_else(|| self.must_be("\"#rrggbb\" where it is a text")),
+            DeValue::String(text) => color::parse(text).ok_or_else(|| {
+                let error =
+                    self.must_be("\"#rrggbb\" or the name of a CSS color where it is a text");
+                match suggest::nearest(text, color::names()) {
+                    Some(name) => error.with_help(format!("did you mean \"{name}\"?")),
+                    None => error,
+                }
+            }),
             DeValue::Integer(_) | DeValue::Float(_) => self.single(limits).map(Rgb::splat),
-            _ => Err(self.must_be("[red, green, blue], one number for gray, or \"#rrggbb\"")),
+            _ => {
+                Err(self
+                    .must_be("[red, green, blue], one number for gray, \"#rrggbb\" or a CSS color"))
+            }
         }
     }
 

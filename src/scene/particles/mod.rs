@@ -13,6 +13,7 @@
 //! counted in a warning; anything that is no number at all is an error with its line. A further
 //! format is a [`Format`], a sign to tell it by in `sniff`, and a `FrameReader`.
 
+mod aliases;
 mod alternates;
 mod builder;
 mod categories;
@@ -56,6 +57,7 @@ pub use periodic::PeriodicError;
 pub use reader::{FrameCount, Frames, count_frames, read_frame};
 pub use select::{Fault, Selection};
 pub use spheres::Particles;
+pub(super) use spheres::listed;
 
 use super::SceneError;
 use std::path::Path;

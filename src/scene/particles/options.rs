@@ -1,5 +1,6 @@
 //! How to read a file of particles.
 
+use crate::suggest;
 use std::str::FromStr;
 
 /// How a file of particles is written.
@@ -85,7 +86,8 @@ impl FromStr for FrameChoice {
             "first" => Ok(Self::Index(0)),
             "last" => Ok(Self::Last),
             number => number.parse().map(Self::Index).map_err(|_| {
-                format!("`{number}` is no frame: write first, last or a number from 0")
+                let near = suggest::question(number, ["first", "last"]);
+                format!("`{number}` is no frame: write first, last or a number from 0{near}")
             }),
         }
     }
@@ -123,7 +125,11 @@ impl FromStr for Radii {
                 let radius =
                     number.parse().ok().filter(|radius| (0.0..f64::INFINITY).contains(radius));
                 radius.filter(|&radius| radius > 0.0).map(Self::Constant).ok_or_else(|| {
-                    format!("`{number}` are no radii: write vdw, covalent, column:NAME or a number of more than 0")
+                    let near = suggest::question(number, ["vdw", "covalent"]);
+                    format!(
+                        "`{number}` are no radii: write vdw, covalent, column:NAME or a number of \
+                         more than 0{near}"
+                    )
                 })
             }
         }
@@ -200,8 +206,9 @@ impl FromStr for Columns {
             };
             let found = Role::ALL.iter().find(|(own, _)| own.eq_ignore_ascii_case(role.trim()));
             let &(_, role) = found.ok_or_else(|| {
-                let names = Role::ALL.map(|(name, _)| name).join(", ");
-                format!("`{role}` is no role of a column; roles are {names}")
+                let names = Role::ALL.map(|(name, _)| name);
+                let help = suggest::help(role.trim(), names.into_iter(), "roles are");
+                format!("`{role}` is no role of a column; {help}")
             })?;
             columns.roles.push((role, name.trim().to_owned()));
         }
@@ -230,6 +237,36 @@ pub struct ReadOptions {
     /// Whether a frame without any sphere is valid, as among the frames of a trajectory, and not an
     /// error.
     pub allow_empty: bool,
+}
+
+impl ReadOptions {
+    /// Checks that every number is in its range.
+    ///
+    /// # Errors
+    /// Which one is not, and what it must be.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let Self {
+            format: _,
+            columns: _,
+            frame: _,
+            radii,
+            radius_scale,
+            scale,
+            atom_style: _,
+            allow_empty: _,
+        } = self;
+        let radius = match radii {
+            Radii::Missing(radius) | Radii::Constant(radius) => Some(*radius),
+            Radii::Auto | Radii::VanDerWaals | Radii::Covalent | Radii::Column(_) => None,
+        };
+        let numbers =
+            [("radius_scale", Some(*radius_scale)), ("scale", Some(*scale)), ("radii", radius)];
+        let mut numbers = numbers.into_iter().filter_map(|(name, number)| Some((name, number?)));
+        let wrong = numbers.find(|(_, number)| !(*number > 0.0 && number.is_finite()));
+        wrong.map_or(Ok(()), |(name, number)| {
+            Err(format!("`{name}` is {number}, but must be finite and more than 0"))
+        })
+    }
 }
 
 impl Default for ReadOptions {

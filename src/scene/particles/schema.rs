@@ -1,6 +1,8 @@
 //! Which column of a file is what.
 
+use super::aliases;
 use super::options::{Radii, ReadOptions, Role};
+use crate::suggest;
 
 /// What a column is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,15 +34,18 @@ pub(super) enum Naming {
 
 /// Names that are a role in any case, those that go first in front.
 const USUAL: [(Role, &[&str]); 10] = [
-    (Role::X, &["x", "pos_x", "position_x", "cartn_x", "points:0"]),
-    (Role::Y, &["y", "pos_y", "position_y", "cartn_y", "points:1"]),
-    (Role::Z, &["z", "pos_z", "position_z", "cartn_z", "points:2"]),
+    (Role::X, &["x", "pos_x", "position_x", "position.x", "cartn_x", "points:0"]),
+    (Role::Y, &["y", "pos_y", "position_y", "position.y", "cartn_y", "points:1"]),
+    (Role::Z, &["z", "pos_z", "position_z", "position.z", "cartn_z", "points:2"]),
     (Role::Radius, &["radius"]),
     (Role::Diameter, &["diameter"]),
-    (Role::Kind, &["element", "species", "symbol", "type_symbol", "type", "typeid"]),
-    (Role::Red, &["red"]),
-    (Role::Green, &["green"]),
-    (Role::Blue, &["blue"]),
+    (
+        Role::Kind,
+        &["element", "species", "symbol", "type_symbol", "type", "typeid", "particle type"],
+    ),
+    (Role::Red, &["red", "color.r"]),
+    (Role::Green, &["green", "color.g"]),
+    (Role::Blue, &["blue", "color.b"]),
     (Role::Material, &["material"]),
 ];
 
@@ -151,9 +156,33 @@ impl Schema {
     }
 }
 
+/// Returns the names of the role that a name tells, in any case; none for those of colors and
+/// materials, which are no columns of numbers or texts.
+pub(super) fn names_of_role(name: &str) -> Option<&'static [&'static str]> {
+    let named = |names: &&[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(name));
+    let roles = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
+    let mut rows = USUAL.iter().filter(|(role, _)| roles.contains(role)).map(|(_, names)| *names);
+    rows.find(named)
+}
+
+/// Says that a file has no column of a name: the nearest one that there is, or all of them.
+pub(super) fn unknown_column<'n>(
+    name: &str,
+    columns: impl Iterator<Item = &'n str> + Clone,
+) -> String {
+    let mut typed = aliases::typed(columns.clone());
+    typed.retain(|other| !other.eq_ignore_ascii_case(name));
+    match suggest::nearest(name, typed) {
+        Some(near) => format!("no column is named `{name}`; did you mean `{near}`?"),
+        None => format!("no column is named `{name}`; there are {}", suggest::list(columns)),
+    }
+}
+
 impl Naming {
     fn of(column: &str) -> Self {
-        let types = ["type", "typeid"].iter().any(|name| name.eq_ignore_ascii_case(column));
+        let types = ["type", "typeid", "particle type"]
+            .iter()
+            .any(|name| name.eq_ignore_ascii_case(column));
         if types { Self::Types } else { Self::Symbols }
     }
 }
@@ -192,13 +221,14 @@ impl Choice<'_> {
         same.or_else(|| self.names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
     }
 
+    /// The column with a name that a user typed, or with another name of the same thing.
     fn need(&self, wanted: &str) -> Result<usize, String> {
-        self.position(wanted).ok_or_else(|| self.missing(wanted))
+        let other = || aliases::of(wanted).find_map(|name| self.position(name));
+        self.position(wanted).or_else(other).ok_or_else(|| self.missing(wanted))
     }
 
     fn missing(&self, wanted: &str) -> String {
-        let names = self.names.join(", ");
-        format!("no column is named `{wanted}`; there are {names}")
+        unknown_column(wanted, self.names.iter().map(String::as_str))
     }
 
     /// The column of a role: what the user says, what the format knows, or what names tell.

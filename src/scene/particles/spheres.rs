@@ -2,7 +2,7 @@
 
 use super::categories::{Kinds, TextColumn};
 use super::frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
-use super::looks::{Column, ElementColors, ID};
+use super::looks::{Column, ElementColors, ID, INDEX, TypeMaterial};
 use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
 use crate::color::category;
@@ -54,7 +54,22 @@ impl Particles {
     /// Whether particles can be colored by a column of this name: one that was kept, one that has a
     /// role, or one that all particles have.
     pub fn can_color_by(&self, name: &str) -> bool {
-        name == ID || Column::find(self, name).is_some_and(|column| column.has_values())
+        [ID, INDEX].contains(&name)
+            || Column::find(self, name).is_some_and(|column| column.has_values())
+    }
+
+    /// Returns the material that a row of `material_names` stands for: one that was chosen, or one
+    /// that the file names by a word of [`TypeMaterial`].
+    pub(in crate::scene) fn own_material(&self, row: u32) -> Option<NamedMaterial> {
+        let name = &self.material_names[row as usize];
+        let chosen = self.materials.iter().find(|material| material.name == *name);
+        chosen.cloned().or_else(|| {
+            let spheres = &self.spheres;
+            let rows = (0..spheres.len()).filter(|&sphere| spheres.material_of(sphere) == row);
+            let color = common_color(spheres, rows);
+            let material = TypeMaterial::named(name)?.material(color);
+            Some(NamedMaterial { name: name.clone(), material })
+        })
     }
 
     /// Keeps the rows that `keep` is true for.
@@ -66,12 +81,20 @@ impl Particles {
     }
 }
 
+/// Returns the color that these spheres have in common, or white if they have several.
+pub(super) fn common_color(spheres: &Spheres, rows: impl Iterator<Item = usize>) -> Rgb {
+    let mut colors = rows.map(|row| spheres.color_of(row));
+    let first = colors.next().unwrap_or(Rgb::ONE);
+    if colors.all(|color| color == first) { first } else { Rgb::ONE }
+}
+
 /// Makes spheres of a frame; positions are moved, not copied.
 pub(super) fn spheres(
     path: &Path,
     mut frame: ParticleFrame,
     options: &ReadOptions,
 ) -> Result<Particles, SceneError> {
+    options.check().map_err(|message| SceneError::whole_file(path, message))?;
     let mut warnings = Warnings { path, list: Vec::new() };
     for warning in std::mem::take(&mut frame.warnings) {
         warnings.add(&warning);
@@ -146,7 +169,7 @@ impl Warnings<'_> {
 }
 
 /// A sentence about a few of many names.
-pub(super) fn listed(reason: &str, names: &[&str]) -> String {
+pub(in crate::scene) fn listed(reason: &str, names: &[&str]) -> String {
     let more = if names.len() > LISTED { ", ..." } else { "" };
     format!("{reason}: {}{more}", names[..names.len().min(LISTED)].join(", "))
 }

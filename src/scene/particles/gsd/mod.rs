@@ -8,10 +8,12 @@ mod file;
 pub(super) use file::MAGIC;
 
 use self::file::File;
+use super::aliases;
 use super::categories::Kind;
 use super::frame::{Cell, NumberColumn, ParticleFrame};
 use super::options::{Format, Radii, ReadOptions, Role, component_names};
 use super::reader::FrameReader;
+use super::schema::unknown_column;
 use super::source::Source;
 use super::undrawn::Undrawn;
 use crate::scene::SceneError;
@@ -109,8 +111,7 @@ impl Gsd {
                 let more = self.more_columns(count).into_iter().map(|part| part.name);
                 let names: Vec<String> =
                     COLUMNS.map(str::to_owned).into_iter().chain(more).collect();
-                let names = names.join(", ");
-                Err(self.fault(format!("no column is named `{name}`; there are {names}")))
+                Err(self.fault(unknown_column(name, names.iter().map(String::as_str))))
             }
         }
     }
@@ -151,9 +152,14 @@ impl Gsd {
         };
         let columns = &self.options.columns;
         // Positions and types are kept in their role.
-        let kept = columns.kept.iter().filter(|name| !of_role(name));
+        let aliased = columns.kept.iter().map(|name| {
+            let others = || aliases::of(name).map(str::to_owned);
+            let other = || others().find(|other| is_there(&other)).unwrap_or_else(|| name.clone());
+            if is_there(&name) || of_role(name) { name.clone() } else { other() }
+        });
+        let kept = aliased.filter(|name| !of_role(name));
         let names: Vec<String> =
-            kept.chain(columns.wanted.iter().filter(is_there)).cloned().collect();
+            kept.chain(columns.wanted.iter().filter(is_there).cloned()).collect();
         let all = COLUMNS.map(str::to_owned).into_iter();
         let mut rest: Vec<String> = all.chain(parts.iter().map(|part| part.name.clone())).collect();
         rest.retain(|name| !of_role(name) && !names.contains(name));

@@ -49,6 +49,8 @@ pub struct ColumnColors {
     pub column: String,
     /// The colors of numbers; `None` for the usual ones.
     pub map: Option<Map>,
+    /// Whether the map's high end is at the low end of the numbers.
+    pub reversed: bool,
     /// The numbers that the map's ends stand for, and for all beyond them; `None` for the least and
     /// the greatest there are.
     pub ends: Option<[f64; 2]>,
@@ -110,7 +112,8 @@ impl ColumnColors {
             Some([low, high]) => Range::new(low, high, self.spacing),
             None => Range::of(values, self.spacing),
         };
-        Ok(Scale::new(self.map.unwrap_or_default(), range?))
+        let scale = Scale::new(self.map.unwrap_or_default(), range?);
+        Ok(Scale { reversed: self.reversed, ..scale })
     }
 
     /// Maps and ranges are for numbers.

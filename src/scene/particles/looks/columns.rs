@@ -1,14 +1,19 @@
 //! Columns by their names: those of the file, and those that all particles have.
 
 use crate::scene::particles::Particles;
+use crate::scene::particles::aliases;
 use crate::scene::particles::categories::{Codes, Kind};
 use crate::scene::particles::options::Role;
+use crate::scene::particles::schema::unknown_column;
 use crate::scene::{Rgb, SceneError};
 use std::borrow::Cow;
 use std::path::Path;
 
 /// The particle's number: the file's, or else its place, from 0.
 pub(in super::super) const ID: &str = "id";
+
+/// The particle's place in the file, from 0.
+pub(in super::super) const INDEX: &str = "index";
 
 /// Names that mean something in every file, beside [`ID`] and [`ELEMENT`].
 const USUAL: [(&str, Role); 5] = [
@@ -33,11 +38,13 @@ pub(in super::super) enum Column<'p> {
 
 impl<'p> Column<'p> {
     /// The column of a name: one that was kept, one that tells positions, radii or types, or one
-    /// that all particles have. In any case, if there is no name that is the same letter by letter.
+    /// that all particles have. In any case, if there is no name that is the same letter by letter;
+    /// or under another name of the same thing, if there is none of this name.
     pub(in super::super) fn find(particles: &'p Particles, name: &str) -> Option<Self> {
-        let same = |own: &str| own == name;
-        Self::of(particles, same)
-            .or_else(|| Self::of(particles, |own| own.eq_ignore_ascii_case(name)))
+        let any_case = |name: &str| Self::of(particles, |own| own.eq_ignore_ascii_case(name));
+        Self::of(particles, |own| own == name)
+            .or_else(|| any_case(name))
+            .or_else(|| aliases::of(name).find_map(any_case))
     }
 
     fn of(particles: &'p Particles, named: impl Fn(&str) -> bool) -> Option<Self> {
@@ -110,21 +117,25 @@ impl<'p> Column<'p> {
 }
 
 /// Names of all columns there are.
-pub(in super::super) fn names(particles: &Particles) -> String {
+fn names(particles: &Particles) -> Vec<&str> {
     let mut names: Vec<&str> = particles.columns.iter().map(String::as_str).collect();
     let has_kinds = !particles.kinds.codes.is_empty();
     let usual = USUAL.iter().filter(|(_, role)| has_kinds || *role != Role::Kind);
-    let usual = usual.map(|(name, _)| *name).chain([ID]);
+    let usual = usual.map(|(name, _)| *name).chain([ID, INDEX]);
     for name in usual.chain(has_kinds.then_some(ELEMENT)) {
         if !names.contains(&name) {
             names.push(name);
         }
     }
-    names.join(", ")
+    names
+}
+
+/// Says that there is no column of a name, and which there are.
+pub(in super::super) fn unknown(particles: &Particles, name: &str) -> String {
+    unknown_column(name, names(particles).into_iter())
 }
 
 /// That there is no such column, and which there are.
 pub(super) fn missing(path: &Path, particles: &Particles, name: &str) -> SceneError {
-    let names = names(particles);
-    SceneError::whole_file(path, format!("no column is named `{name}`; there are {names}"))
+    SceneError::whole_file(path, unknown(particles, name))
 }

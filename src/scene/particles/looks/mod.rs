@@ -5,12 +5,12 @@ mod columns;
 mod types;
 
 pub use colors::{ColumnColors, ElementColors, Legend};
-pub(super) use columns::{Column, ID, names};
+pub(super) use columns::{Column, ID, INDEX, unknown};
 pub use types::{TypeLook, TypeMaterial};
 
-use super::Particles;
 use super::frame::NumberColumn;
 use super::select::Selection;
+use super::{Particles, aliases};
 use crate::scene::SceneError;
 use std::path::Path;
 
@@ -42,9 +42,19 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// The columns that these looks need, for
+    /// The columns that these looks need, and other names of them, for
     /// [`Columns::wanted`](super::Columns::wanted).
     pub fn columns(&self) -> Vec<String> {
+        let mut columns = self.typed_columns();
+        for at in 0..columns.len() {
+            let others = aliases::of(&columns[at]).map(str::to_owned).collect::<Vec<_>>();
+            columns.extend(others);
+        }
+        columns
+    }
+
+    /// The columns that these looks name.
+    fn typed_columns(&self) -> Vec<String> {
         let mut columns = self.select.as_ref().map_or_else(Vec::new, Selection::columns);
         if let Coloring::Column(colors) = &self.coloring {
             columns.push(colors.column.clone());
@@ -64,7 +74,10 @@ impl Looks {
         path: &Path,
         particles: &mut Particles,
     ) -> Result<Option<Legend>, SceneError> {
-        number(particles, &self.columns());
+        for look in &self.types {
+            look.check().map_err(|message| SceneError::whole_file(path, message))?;
+        }
+        number(particles, &self.typed_columns());
         if let Some(selection) = self.select.as_ref().filter(|_| !particles.spheres.is_empty()) {
             selection.apply(path, particles, self.allow_empty)?;
         }
@@ -80,16 +93,22 @@ impl Looks {
             Coloring::Column(colors) => colors.apply(path, particles)?,
         };
         self.types.iter().try_for_each(|look| look.apply(path, particles))?;
+        self.types.iter().try_for_each(|look| look.apply_material(path, particles))?;
         Ok(legend)
     }
 }
 
 /// Gives particles the numbers that files leave out, if they are asked for: before any is dropped.
 fn number(particles: &mut Particles, names: &[String]) {
-    let asked = names.iter().any(|name| name == ID);
-    if asked && Column::find(particles, ID).is_none() {
-        let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
-        particles.numbers.push(NumberColumn { name: ID.to_owned(), values });
+    for own in [ID, INDEX] {
+        let means = |name: &String| {
+            name.eq_ignore_ascii_case(own)
+                || aliases::of(own).any(|other| other.eq_ignore_ascii_case(name))
+        };
+        if names.iter().any(means) && Column::find(particles, own).is_none() {
+            let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
+            particles.numbers.push(NumberColumn { name: own.to_owned(), values });
+        }
     }
 }
 

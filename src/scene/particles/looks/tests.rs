@@ -1,7 +1,7 @@
 use super::*;
 use crate::color::elements::cpk;
 use crate::color::{Map, Spacing, category, srgb};
-use crate::scene::particles::{Columns, ReadOptions, read};
+use crate::scene::particles::{Columns, Radii, ReadOptions, read};
 use crate::scene::{Material, Rgb, Scene};
 
 const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n\
@@ -70,7 +70,7 @@ fn elements_have_the_colors_of_a_scheme() {
 fn what_is_missing_is_told() {
     let error = look_at(DUMP, &colored(by("speed"))).expect_err("no column");
     let expected =
-        "no column is named `speed`; there are type, x, y, z, radius, q, mol, id, element";
+        "no column is named `speed`; there are type, x, y, z, radius, q, mol, id, index, element";
     assert_eq!(error.message, expected);
     let dust = "x,y,z,q\n0,0,0,4\n1,1,1,\n2,2,2,8\n";
     let (particles, _) = look_at(dust, &colored(by("q"))).expect("colors");
@@ -109,6 +109,10 @@ fn what_glows_has_the_color_of_its_type() {
     };
     assert_eq!(radiance(&["H:color=#00ff00,material=emitter"]), Rgb::Y * 4.0);
     assert_eq!(radiance(&["O:material=emitter"]), srgb(0xFF_0D_0D) * 4.0);
+    let (before, after) = ("H:material=emitter", "H:color=#00ff00");
+    assert_eq!(radiance(&[before, after]), Rgb::Y * 4.0);
+    let again = "H:material=emitter,color=#0000ff";
+    assert_eq!(radiance(&[before, after, again]), Rgb::Z * 4.0);
 }
 
 #[test]
@@ -123,9 +127,28 @@ fn every_material_is_one_of_the_scene() {
 }
 
 #[test]
+fn materials_that_a_file_names_are_those_of_types() {
+    let made = "x,y,z,material,red,green,blue\n0,0,0,emitter,0,1,0\n1,0,0,GLASS,1,1,1\n\
+                2,0,0,oak,1,1,1\n3,0,0,,1,1,1\n";
+    let (particles, _) = look_at(made, &Looks::default()).expect("spheres");
+    let usual = Material::Lambertian { color: Rgb::ONE };
+    let scene = Scene::of_particles_with(particles, "made", &usual);
+    let material = |row| &scene.materials[scene.spheres.material_of(row) as usize].material;
+    let light = Material::Emitter { radiance: Rgb::Y * 4.0, albedo: Rgb::ZERO };
+    assert_eq!(*material(0), light);
+    assert!(matches!(material(1), Material::Dielectric { .. }));
+    assert_eq!([material(2), material(3)], [&usual; 2]);
+    let unknown = |text: &&String| text.contains("unknown materials");
+    let warnings: Vec<&String> = scene.warnings.iter().filter(unknown).collect();
+    assert!(warnings.len() == 1 && warnings[0].ends_with(": oak"), "{warnings:?}");
+}
+
+#[test]
 fn unknown_types_are_told_with_those_there_are() {
     let error = look_at(WATER, &typed(&["N:radius=1"])).expect_err("no nitrogen");
     assert_eq!(error.message, "no type is called `N`; there are O, H");
+    let error = look_at(WATER, &typed(&["h:radius=1"])).expect_err("no such case");
+    assert_eq!(error.message, "no type is called `h`; did you mean `H`?");
     let dust = "x,y,z\n0,0,0\n1,1,1\n";
     let error = look_at(dust, &typed(&["N:radius=1"])).expect_err("no types");
     assert!(error.message.contains("the file has no types"), "{error}");
@@ -133,8 +156,11 @@ fn unknown_types_are_told_with_those_there_are() {
         ("N", "write a type and its looks"),
         ("N:", "write a type and its looks"),
         ("N:radius=0", "`0` is no radius"),
-        ("N:color=red", "`red` is no color"),
-        ("N:material=wood", "materials are lambertian, plastic"),
+        ("N:color=rde", "`rde` is no color"),
+        ("N:color=steelbleu", "did you mean `steelblue`"),
+        ("N:material=wood", "materials are: lambertian, plastic"),
+        ("N:material=Glass", "did you mean `glass`"),
+        ("N:colour=red", "did you mean `color`"),
         ("N:size=1", "`size` is none of radius, color and material"),
     ] {
         let error = text.parse::<TypeLook>().expect_err(text);
@@ -143,10 +169,40 @@ fn unknown_types_are_told_with_those_there_are() {
 }
 
 #[test]
+fn numbers_out_of_range_are_refused() {
+    for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+        let usual = || TypeLook { name: "O".to_owned(), ..TypeLook::default() };
+        let mut looks = vec![("radius", TypeLook { radius: Some(bad), ..usual() })];
+        if bad != 0.0 {
+            let color = Some(Rgb::new(0.5, bad as f32, 0.5));
+            looks.push(("color", TypeLook { color, ..usual() }));
+        }
+        for (name, look) in looks {
+            let looks = Looks { types: vec![look], ..Looks::default() };
+            let error = look_at(WATER, &looks).expect_err(name);
+            assert!(error.message.contains(&format!("`{name}`")), "{error}");
+        }
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("water");
+        std::fs::write(&path, WATER).expect("a file");
+        let usual = ReadOptions::default;
+        for (name, options) in [
+            ("scale", ReadOptions { scale: bad, ..usual() }),
+            ("radius_scale", ReadOptions { radius_scale: bad, ..usual() }),
+            ("radii", ReadOptions { radii: Radii::Constant(bad), ..usual() }),
+            ("radii", ReadOptions { radii: Radii::Missing(bad), ..usual() }),
+        ] {
+            let error = read(&path, &options).expect_err(name);
+            assert!(error.message.contains(&format!("`{name}`")), "{error}");
+        }
+    }
+}
+
+#[test]
 fn ranges_are_those_of_what_is_drawn() {
     let select = Some("id > 0".parse().expect("a condition"));
     let looks = Looks { select, ..colored(by("id")) };
-    assert_eq!(looks.columns(), ["id", "id"]);
+    assert_eq!(looks.columns()[..2], ["id", "id"]);
     let (particles, legend) = look_at(DUMP, &looks).expect("colors");
     let range = legend.expect("a legend").scale.range;
     assert_eq!((range.low(), range.high()), (1.0, 2.0));

@@ -1,8 +1,10 @@
 //! Looks of single types.
 
-use crate::color::{Rgb, parse_hex};
+use crate::color::{self, Rgb};
+use crate::scene::particles::spheres::common_color;
 use crate::scene::particles::{Element, Kind, Particles};
 use crate::scene::{ConductorFresnel, Material, NamedMaterial, SceneError};
+use crate::suggest;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -45,8 +47,14 @@ impl TypeMaterial {
         Self::ALL.iter().find(|(_, material)| *material == self).map_or("", |(name, _)| name)
     }
 
-    /// The scene's material; what glows does so in this color.
-    fn material(self, color: Rgb) -> Material {
+    /// Returns the material of a name, in any case.
+    pub(in crate::scene) fn named(name: &str) -> Option<Self> {
+        let found = Self::ALL.iter().find(|(own, _)| own.eq_ignore_ascii_case(name));
+        found.map(|(_, material)| *material)
+    }
+
+    /// Returns the scene's material; an emitter emits light of this color.
+    pub(in crate::scene) fn material(self, color: Rgb) -> Material {
         let albedo = Rgb::splat(ALBEDO);
         match self {
             Self::Lambertian => Material::Lambertian { color: albedo },
@@ -90,7 +98,10 @@ impl FromStr for TypeLook {
                 "radius" => look.radius = Some(radius(value.trim())?),
                 "color" => look.color = Some(color(value.trim())?),
                 "material" => look.material = Some(material(value.trim())?),
-                other => return Err(format!("`{other}` is none of radius, color and material")),
+                other => {
+                    let near = suggest::question(other, ["radius", "color", "material"]);
+                    return Err(format!("`{other}` is none of radius, color and material{near}"));
+                }
             }
         }
         Ok(look)
@@ -103,26 +114,41 @@ fn radius(text: &str) -> Result<f64, String> {
 }
 
 fn color(text: &str) -> Result<Rgb, String> {
-    parse_hex(text).ok_or_else(|| format!("`{text}` is no color: write #rrggbb, as in #ff8000"))
+    color::parse(text).ok_or_else(|| {
+        let near = suggest::question(text, color::names());
+        format!("`{text}` is no color: write #rrggbb or the name of a CSS color{near}")
+    })
 }
 
 fn material(text: &str) -> Result<TypeMaterial, String> {
     let found = TypeMaterial::ALL.iter().find(|(name, _)| *name == text);
     found.map(|(_, material)| *material).ok_or_else(|| {
-        let names = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
-        format!("`{text}` is no material here; materials are {names}")
+        let names = TypeMaterial::ALL.map(|(name, _)| name);
+        let help = suggest::help(text, names.into_iter(), "materials are");
+        format!("`{text}` is no material here; {help}")
     })
 }
 
 impl TypeLook {
-    pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), SceneError> {
-        let chosen = self.kinds(&particles.kinds.table);
-        if !chosen.contains(&true) {
-            return Err(self.unknown(path, &particles.kinds.table));
+    /// Checks that radius and color are in their ranges.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let Self { name, radius, color, material: _ } = self;
+        if let Some(radius) = radius.filter(|radius| !(*radius > 0.0 && radius.is_finite())) {
+            let must = "but must be finite and more than 0";
+            return Err(format!("`radius` of the type `{name}` is {radius}, {must}"));
         }
-        let codes = &particles.kinds.codes;
-        let rows = (0..codes.len()).filter(|&row| chosen[codes.code(row) as usize]);
-        let rows: Vec<usize> = rows.collect();
+        let share = |color: &Rgb| (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]));
+        match color.filter(|color| !share(color)) {
+            Some(color) => {
+                Err(format!("`color` of the type `{name}` is {color}, but must be 0 to 1"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Sets radii and colors of the spheres of this type.
+    pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), SceneError> {
+        let rows = self.rows(path, particles)?;
         let spheres = &mut particles.spheres;
         if let Some(radius) = self.radius {
             for &row in &rows {
@@ -136,10 +162,44 @@ impl TypeLook {
                 spheres.color[row] = color;
             }
         }
-        if let Some(material) = self.material {
-            self.make(material, particles, &rows);
+        Ok(())
+    }
+
+    /// Sets the material of the spheres of this type, which have their final colors.
+    pub(super) fn apply_material(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+    ) -> Result<(), SceneError> {
+        let Some(material) = self.material else { return Ok(()) };
+        let rows = self.rows(path, particles)?;
+        let color = common_color(&particles.spheres, rows.iter().copied());
+        let name = format!("{}: {}", self.name, material.name());
+        let material = material.material(color);
+        let known = particles.materials.iter().any(|own| own.name == name);
+        let row = particles.material_names.iter().position(|own| known && *own == name);
+        let row = row.unwrap_or(particles.material_names.len()) as u32;
+        let spheres = &mut particles.spheres;
+        let count = spheres.len();
+        spheres.material.resize(count, 0);
+        for sphere in rows {
+            spheres.material[sphere] = row;
+        }
+        if !known {
+            particles.material_names.push(name.clone());
+            particles.materials.push(NamedMaterial { name, material });
         }
         Ok(())
+    }
+
+    /// Returns the spheres of this type.
+    fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, SceneError> {
+        let chosen = self.kinds(&particles.kinds.table);
+        if !chosen.contains(&true) {
+            return Err(self.unknown(path, &particles.kinds.table));
+        }
+        let codes = &particles.kinds.codes;
+        Ok((0..codes.len()).filter(|&row| chosen[codes.code(row) as usize]).collect())
     }
 
     /// Which types are meant.
@@ -167,27 +227,12 @@ impl TypeLook {
                 }
             }
         }
-        let names = names.join(", ");
-        SceneError::whole_file(
-            path,
-            format!("no type is called `{}`; there are {names}", self.name),
-        )
-    }
-
-    /// Has these spheres made of a material of their own.
-    fn make(&self, material: TypeMaterial, particles: &mut Particles, rows: &[usize]) {
-        let spheres = &mut particles.spheres;
-        let mut colors = rows.iter().map(|&row| spheres.color_of(row));
-        let first = colors.next().unwrap_or(Rgb::ONE);
-        let color = if colors.all(|color| color == first) { first } else { Rgb::ONE };
-        let name = format!("{}: {}", self.name, material.name());
-        let count = spheres.len();
-        spheres.material.resize(count, 0);
-        let row = particles.material_names.len() as u32;
-        for &sphere in rows {
-            spheres.material[sphere] = row;
-        }
-        particles.material_names.push(name.clone());
-        particles.materials.push(NamedMaterial { name, material: material.material(color) });
+        let near = suggest::nearest(&self.name, names.iter().copied());
+        let help = near.map_or_else(
+            || format!("there are {}", suggest::list(names.iter().copied())),
+            |near| format!("did you mean `{near}`?"),
+        );
+        let message = format!("no type is called `{}`; {help}", self.name);
+        SceneError::whole_file(path, message)
     }
 }

@@ -4,7 +4,8 @@ use super::grammar::{Node, Tree};
 use super::words::{Sign, Wrong};
 use crate::scene::particles::Particles;
 use crate::scene::particles::categories::Codes;
-use crate::scene::particles::looks::{Column, names};
+use crate::scene::particles::looks::{Column, unknown};
+use crate::suggest;
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -79,6 +80,30 @@ impl Number<'_> {
     }
 }
 
+/// Returns what to say of the first text that no particle has, if there is one.
+pub(super) fn absent(tree: &Tree, particles: &Particles) -> Option<String> {
+    match &tree.node {
+        Node::Any(parts) | Node::All(parts) => {
+            parts.iter().find_map(|part| absent(part, particles))
+        }
+        Node::Not(inner) => absent(inner, particles),
+        Node::Compare(_, sides) => {
+            let [left, right] = &**sides;
+            [(left, right), (right, left)].into_iter().find_map(|(column, other)| {
+                let (Node::Word(text) | Node::Text(text)) = &other.node else { return None };
+                let Some(Column::Texts { names, .. }) = column_of(column, particles) else {
+                    return None;
+                };
+                let known = names.iter().copied();
+                (!names.contains(&text.as_str())).then(|| {
+                    format!("no particle has `{text}`; {}", suggest::help(text, known, "there are"))
+                })
+            })
+        }
+        _ => None,
+    }
+}
+
 fn truth<'p>(tree: &Tree, particles: &'p Particles) -> Result<Truth<'p>, Wrong> {
     let all = |parts: &[Tree]| {
         parts.iter().map(|part| truth(part, particles)).collect::<Result<_, Wrong>>()
@@ -103,6 +128,13 @@ fn comparison<'p>(
         if !matches!(sign, Sign::Equal | Sign::NotEqual) {
             let span = left.span.start..right.span.end;
             return Err((span, "texts are equal or not: compare them by `==` or `!=`".to_owned()));
+        }
+        // A word is checked, a text in quotes means what it says.
+        if matches!(other.node, Node::Word(_))
+            && let [one, ..] = suggest::other_case(text, names.iter().copied())[..]
+        {
+            let message = format!("no particle has `{text}` here; did you mean `{one}`?");
+            return Err((other.span.clone(), format!("{message} (or write '{text}' in quotes)")));
         }
         let truths = names.iter().map(|name| (name == text) == (sign == Sign::Equal));
         return Ok(Truth::Texts(codes, truths.collect()));
@@ -151,6 +183,6 @@ fn column<'p>(name: &str, particles: &'p Particles) -> Result<Number<'p>, String
             }
             Ok(Number::Texts(codes, numbers))
         }
-        None => Err(format!("no column is named `{name}`; there are {}", names(particles))),
+        None => Err(unknown(particles, name)),
     }
 }

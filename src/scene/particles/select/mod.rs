@@ -37,7 +37,8 @@ const NAME: &str = "selection";
 /// From loose to tight: `or`, `and`, `not`, comparisons, `+ -`, `* /`; parentheses as usual. A word
 /// beside a column of texts is a text, whatever columns there are. Missing numbers are NaN: every
 /// comparison with them is false but `!=`. A column of texts is also one of numbers where its texts
-/// are numbers. Columns are those of the file, and `x`, `y`, `z`, `radius`, `type`, `element`, `id`.
+/// are numbers. Columns are those of the file, by its own names or those that other programs have for
+/// them, and `x`, `y`, `z`, `radius`, `type`, `element`, `id`, `index`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
     text: String,
@@ -109,7 +110,11 @@ impl Selection {
         })?;
         if !keep.contains(&true) && !allow_empty {
             let message = format!("none of its {} particles is selected", keep.len());
-            return Err(SceneError::whole_file(path, message));
+            let error = SceneError::whole_file(path, message);
+            return Err(match bind::absent(&self.tree, particles) {
+                Some(help) => error.with_help(help),
+                None => error,
+            });
         }
         if keep.contains(&false) {
             particles.retain(&keep);

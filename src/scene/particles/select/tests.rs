@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::particles::{Columns, ReadOptions, read};
+use crate::scene::particles::{Columns, Looks, ReadOptions, read};
 
 const ATOMS: &str = "id,element,residue,x,y,z,q\n1,H,x,0,0,0,-1\n2,C,12,1,0,5,0\n3,O,13,2,0,10,\n\
                      4,H,12,3,0,15,2.5\n";
@@ -12,10 +12,11 @@ fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
     let selection: Selection = condition
         .parse()
         .map_err(|fault: Fault| format!("{}: {}", &fault.text[fault.span], fault.message))?;
-    let columns = Columns { wanted: selection.columns(), ..Columns::default() };
+    let looks = Looks { select: Some(selection), ..Looks::default() };
+    let columns = Columns { wanted: looks.columns(), ..Columns::default() };
     let options = ReadOptions { columns, ..ReadOptions::default() };
     let mut particles = read(&path, &options).expect("particles");
-    selection.apply(&path, &mut particles, false).map_err(|error| match error.place {
+    looks.apply(&path, &mut particles).map_err(|error| match error.place {
         Some(place) => format!("{}: {}", &place.source_text[place.span], error.message),
         None => error.message,
     })?;
@@ -47,6 +48,10 @@ fn conditions_select_rows() {
         ("residue > 12", &[3.0]),
         ("residue == x", &[1.0]),
         ("Z == 15", &[4.0]),
+        ("Position.Z == 15 and charge > 2 and serial == 4 and index == 3", &[4.0]),
+        ("resname == 12", &[2.0, 4.0]),
+        ("element != 'h'", &[1.0, 2.0, 3.0, 4.0]),
+        ("element != Xe", &[1.0, 2.0, 3.0, 4.0]),
         ("radius > 1.5", &[2.0]),
     ] {
         assert_eq!(ids(condition), expected, "{condition}");
@@ -84,6 +89,10 @@ fn faults_are_told_at_their_place() {
         ("element > C", "element > C: texts are equal or not"),
         ("element > 5", "element: the column `element` holds texts"),
         ("z > 99", "none of its 4 particles is selected"),
+        ("elemnt == C", "elemnt: no column is named `elemnt`; did you mean `element`?"),
+        ("element == c", "c: no particle has `c` here; did you mean `C`?"),
+        ("element != h or z > 5", "h: no particle has `h` here; did you mean `H`?"),
+        ("'Cl' == element", "none of its 4 particles is selected"),
     ] {
         let fault = select(ATOMS, condition).expect_err(condition);
         assert!(fault.starts_with(expected), "{condition}: {fault}");
