@@ -237,7 +237,7 @@ fn missing(path: &Path, error: &io::Error) -> String {
 /// Codes of 8 bits, red, green and blue, row by row; of an odd width or height the last column or row is
 /// there twice, because films have even ones.
 fn even_codes(image: &Image, options: &WriteOptions) -> Vec<u8> {
-    let codes = Codes8::new(DisplayTransform::new(options.exposure, options.tone));
+    let codes = Codes8::new(DisplayTransform::nearest(options.exposure, options.tone));
     let width = image.width as usize;
     let mut bytes = Vec::new();
     let rows = image.pixels.chunks_exact(width);
