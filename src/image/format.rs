@@ -19,6 +19,9 @@ const MAXIMUM_PIXELS: u64 = 1 << 28;
 /// Longest file that is read, in bytes: more than a picture of so many pixels takes in any format.
 const LONGEST: u64 = 1 << 33;
 
+/// Message for a file on which a decoder panics.
+pub(super) const DAMAGED: &str = "the file is damaged; write it anew";
+
 /// No magic number is longer.
 const MAGIC_LENGTH: u64 = 16;
 
@@ -176,8 +179,7 @@ impl Format {
             Self::Tiff => raster::decode_tiff,
             Self::Webp => raster::decode_webp,
         };
-        catch_unwind(|| decode(bytes))
-            .unwrap_or_else(|_| Err("the file is damaged; write it anew".into()))
+        catch_unwind(|| decode(bytes)).unwrap_or_else(|_| Err(DAMAGED.into()))
     }
 
     /// Encodes a picture whose shape and options have been checked, with its channels if it is EXR.

@@ -1,7 +1,7 @@
 //! What a picture file says about itself: settings, seed, version.
 
 use super::{Format, ImageError, exr, format, png, ppm, raster};
-use std::{fmt::Write as _, path::Path};
+use std::{fmt::Write as _, panic::catch_unwind, path::Path};
 
 /// Ordered pairs of key and value, as PNG text chunks, PPM comments, EXR comments or XMP hold them.
 ///
@@ -114,7 +114,7 @@ fn unescape(text: &str) -> String {
 pub fn read_metadata(path: impl AsRef<Path>) -> Result<Metadata, ImageError> {
     let path = path.as_ref();
     let (format, bytes) = format::read_file(path)?;
-    match format {
+    let read = || match format {
         Format::Exr => exr::metadata(&bytes),
         Format::Jpeg => raster::jpeg_metadata(&bytes),
         Format::Png => png::metadata(&bytes),
@@ -122,8 +122,10 @@ pub fn read_metadata(path: impl AsRef<Path>) -> Result<Metadata, ImageError> {
         Format::Tiff => raster::tiff_metadata(&bytes),
         Format::Webp => raster::webp_metadata(&bytes),
         Format::Pfm | Format::Radiance => Ok(Metadata::new()),
-    }
-    .map_err(|reason| ImageError::malformed(path, format, reason))
+    };
+    // As where pictures are decoded: a decoder of another crate may panic.
+    let read = catch_unwind(read).unwrap_or_else(|_| Err(format::DAMAGED.to_owned()));
+    read.map_err(|reason| ImageError::malformed(path, format, reason))
 }
 
 #[cfg(test)]
@@ -171,6 +173,21 @@ mod tests {
         }
         assert!(entries(&[("k", "a\0b")]).check().is_err());
         assert!(entries(&[("a b", "v:\n")]).check().is_ok());
+    }
+
+    #[test]
+    fn lengths_that_are_only_claimed_take_no_memory() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.webp");
+        let metadata = entries(&[("seed", "7")]);
+        let options = WriteOptions { metadata, ..WriteOptions::default() };
+        Image::filled(2, 2, [0.5; 3]).unwrap().write(&path, &options).unwrap();
+        let mut bytes = std::fs::read(&path).unwrap();
+        let at = bytes.windows(4).position(|name| name == b"XMP ").unwrap();
+        bytes[at + 4..at + 8].copy_from_slice(&[0, 0, 0, 0xF0]);
+        bytes[4..8].copy_from_slice(&[0xFF; 4]);
+        std::fs::write(&path, bytes).unwrap();
+        assert!(read_metadata(&path).is_err());
     }
 
     #[test]

@@ -64,7 +64,12 @@ pub(super) fn tiff_metadata(bytes: &[u8]) -> Result<Metadata, String> {
 }
 
 pub(super) fn webp_metadata(bytes: &[u8]) -> Result<Metadata, String> {
-    metadata(WebPDecoder::new(Cursor::new(bytes)))
+    let packet = image_webp::WebPDecoder::new(Cursor::new(bytes)).and_then(|mut decoder| {
+        // A length that the file only claims takes no memory.
+        decoder.set_memory_limit(bytes.len());
+        decoder.xmp_metadata()
+    });
+    Ok(xmp::metadata(&packet.map_err(|error| damaged(&error))?.unwrap_or_default()))
 }
 
 fn metadata(decoder: ImageResult<impl ImageDecoder>) -> Result<Metadata, String> {

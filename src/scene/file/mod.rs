@@ -39,8 +39,12 @@ const PARTICLES: &str = "particles";
 const TREE_BYTES: u64 = 100;
 
 /// Returns the files that a scene file names, whether they exist or not: particle files and the picture of
-/// the environment. A file that is no scene names none; [`Scene::load`] says what is wrong with it.
+/// the environment. A file that is no scene names none; [`Scene::load`] says what is wrong with it. Nor does a
+/// pipe, which can be read only once.
 pub fn included_files(path: &Path) -> Vec<PathBuf> {
+    if !path.is_file() {
+        return Vec::new();
+    }
     let Some(text) = read_text(path).ok().filter(|text| check_memory(text).is_ok()) else {
         return Vec::new();
     };
