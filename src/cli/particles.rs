@@ -34,7 +34,7 @@ pub(super) struct ParticleArgs {
     /// Factor on all radii
     #[arg(long, value_name = "FACTOR", value_parser = positive)]
     radius_scale: Option<f64>,
-    /// Atom style of a LAMMPS data file that does not name it, such as full
+    /// Atom style of a LAMMPS data file that does not name it, such as full, or "hybrid sphere dipole"
     #[arg(long, value_name = "STYLE")]
     atom_style: Option<String>,
 }

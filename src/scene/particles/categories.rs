@@ -117,6 +117,21 @@ pub struct Kinds {
 }
 
 impl Kinds {
+    /// Has other types in the place of those of the table; types that become equal are one.
+    pub(super) fn rename(&mut self, kind: impl Fn(&str) -> Kind) {
+        let mut places = HashMap::new();
+        let old = std::mem::take(self);
+        let mut place = |old: &Kind| {
+            let new = kind(&old.name);
+            *places.entry(new).or_insert_with_key(|new| {
+                self.table.push(new.clone());
+                self.table.len() as u32 - 1
+            })
+        };
+        let codes: Vec<u32> = old.table.iter().map(place).collect();
+        (0..old.codes.len()).for_each(|row| self.codes.push(codes[old.codes.code(row) as usize]));
+    }
+
     /// The type of a particle; `None` if the file has no types.
     pub fn kind(&self, row: usize) -> Option<&Kind> {
         if self.codes.is_empty() { None } else { self.table.get(self.codes.code(row) as usize) }

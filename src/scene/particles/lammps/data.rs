@@ -1,7 +1,7 @@
 //! LAMMPS data files: a header, and sections in any order (<https://docs.lammps.org/read_data.html>).
 
 use super::bounds::tilted;
-use super::style::{self, STYLES};
+use super::style::{self, Chosen, Facts, Layout, Sample};
 use super::unit;
 use super::velocities::Velocities;
 use crate::scene::SceneError;
@@ -10,17 +10,15 @@ use crate::scene::particles::element::Element;
 use crate::scene::particles::fields::Fields;
 use crate::scene::particles::frame::{Cell, LengthUnit, ParticleFrame};
 use crate::scene::particles::lines::{Line, Lines};
+use crate::scene::particles::naming::{forget_elements, kind};
 use crate::scene::particles::number;
 use crate::scene::particles::options::{Format, ReadOptions, Role};
 use crate::scene::particles::reader::FrameReader;
-use crate::scene::particles::schema::Schema;
+use crate::scene::particles::schema::{Naming, Schema};
 use crate::scene::particles::source::Source;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-/// Rows that are looked at to guess an atom style.
-const ROWS: usize = 100;
 
 /// Reads the one frame of a data file.
 pub(in super::super) struct Data {
@@ -34,7 +32,12 @@ pub(in super::super) struct Data {
 struct Head {
     title: String,
     atoms: u64,
+    /// Number of atom types; 0 if the header does not say.
     types: u64,
+    /// Names of types, by their numbers.
+    labels: HashMap<String, String>,
+    /// Numbers of bonds, ellipsoids and the like.
+    counts: HashMap<&'static str, u64>,
     low: [f64; 3],
     high: [f64; 3],
     tilt: [f64; 3],
@@ -87,24 +90,43 @@ impl Data {
     }
 
     fn masses(&mut self, head: &mut Head) -> Result<(), SceneError> {
+        self.pairs(|line, name, mass| {
+            head.masses.insert(name, line.number(mass)?);
+            Ok(())
+        })
+    }
+
+    fn labels(&mut self, head: &mut Head) -> Result<(), SceneError> {
+        self.pairs(|_, number, label| {
+            head.labels.insert(number, String::from_utf8_lossy(label).into_owned());
+            Ok(())
+        })
+    }
+
+    /// Takes the first two fields of each row of a section.
+    fn pairs(
+        &mut self,
+        mut take: impl FnMut(&Line, String, &[u8]) -> Result<(), SceneError>,
+    ) -> Result<(), SceneError> {
         while !self.at_section()? {
             let Some(line) = Self::line(&mut self.lines)? else { break };
             let mut fields = line.fields();
-            if let (Some(name), Some(mass)) = (fields.next(), fields.next()) {
-                let name = String::from_utf8_lossy(name).into_owned();
-                head.masses.insert(name, line.number(mass)?);
+            if let (Some(first), Some(second)) = (fields.next(), fields.next()) {
+                take(&line, String::from_utf8_lossy(first).into_owned(), second)?;
             }
         }
         Ok(())
     }
 
-    fn atoms(&mut self, head: &Head, style: Option<&str>) -> Result<ParticleFrame, SceneError> {
-        let (names, warning) = self.names(head, style)?;
+    /// Reads the section `Atoms`, after whose name there may be a `comment`.
+    fn atoms(&mut self, head: &Head, comment: &str) -> Result<ParticleFrame, SceneError> {
+        let (layout, warning) = self.layout(head, comment)?;
         let known = [(Role::Kind, "type")];
-        let schema = Schema::with_roles(names, &self.options, &known)
+        let schema = Schema::with_roles(layout.columns, &self.options, &known)
             .map_err(|message| self.lines.ended(message))?;
         let path = self.lines.path().clone();
         let mut builder = Builder::new(&path, Format::LammpsData, &Arc::new(schema));
+        let is_doubtful = warning.is_some();
         builder.frame.warnings.extend(warning);
         for atom in 0..head.atoms {
             let Some(line) = Self::line(&mut self.lines)? else {
@@ -117,49 +139,78 @@ impl Data {
             }
             builder.row(&line, line.fields())?;
         }
-        Ok(builder.finish())
+        let mut frame = builder.finish();
+        if !is_doubtful {
+            frame.warnings.extend(head.unknown_type(&frame));
+        }
+        Ok(frame)
     }
 
-    /// What the columns are called, and a warning if that is a guess.
-    fn names(
+    /// The columns of the rows that follow, and a warning if they may be others.
+    fn layout(
         &mut self,
         head: &Head,
-        style: Option<&str>,
-    ) -> Result<(Vec<String>, Option<String>), SceneError> {
-        let asked = self.options.atom_style.as_deref().or(style);
-        if let Some(asked) = asked {
-            let asked = asked.split_whitespace().next().unwrap_or_default();
-            if let Some(columns) = style::columns(asked) {
-                return Ok((columns, None));
+        comment: &str,
+    ) -> Result<(Layout, Option<String>), SceneError> {
+        let sample = Sample::new(self.peek()?);
+        let facts = head.facts();
+        if let Some(style) = &self.options.atom_style {
+            let Some(Chosen { layout, misfit, .. }) = facts.named(style, &sample) else {
+                let error = self.lines.ended(format!("the atom style `{style}` is not known"));
+                return Err(error.with_help(format!("styles are {}", style::names().join(", "))));
+            };
+            let warning = misfit.map(|reason| {
+                format!("the atom style `{style}` does not fit the rows of `Atoms`: {reason}")
+            });
+            return Ok((layout, warning));
+        }
+        let named = facts.named(comment.trim(), &sample);
+        if let Some(Chosen { layout, misfit: None, .. }) = named {
+            return Ok((layout, None));
+        }
+        let guess = facts.guess(&sample);
+        match (named, guess) {
+            (Some(Chosen { misfit: Some(reason), .. }), Some(guess)) => {
+                let style = guess.layout.style.clone();
+                let warning = format!(
+                    "its rows do not fit the atom style of `Atoms #{comment}` ({reason}), and are \
+                     read as `{style}`; name another style with --atom-style"
+                );
+                Ok((guess.layout, Some(warning)))
             }
-            let message = format!("the atom style `{asked}` is not known");
-            let help = format!("styles are {}", STYLES.map(|(name, _)| name).join(", "));
-            return Err(self.lines.ended(message).with_help(help));
+            (Some(Chosen { layout, misfit: Some(reason), .. }), None)
+                if sample.width() >= layout.columns.len() =>
+            {
+                let warning = format!(
+                    "its rows do not fit the atom style of `Atoms #{comment}`: {reason}; name \
+                     another style with --atom-style"
+                );
+                Ok((layout, Some(warning)))
+            }
+            (_, Some(guess)) => {
+                let warning = guess.warning();
+                Ok((guess.layout, Some(warning)))
+            }
+            (named, None) => {
+                let why = named.and_then(|named| named.misfit).unwrap_or_else(|| {
+                    format!("its rows of {} columns fit no style", sample.width())
+                });
+                let message = format!("the atom style of the section `Atoms` is not known: {why}");
+                let names = style::names().join(", ");
+                let help = format!("name it with --atom-style, which takes {names}");
+                Err(self.lines.ended(message).with_help(help))
+            }
         }
-        let guess = style::guess(&self.peek()?, head.types);
-        if let [one] = guess[..] {
-            let warning = format!("names no atom style; its columns look like `{one}`");
-            return Ok((style::columns(one).unwrap_or_default(), Some(warning)));
-        }
-        let styles =
-            if guess.is_empty() { "none that is usual".to_owned() } else { guess.join(" or ") };
-        let message = format!("names no atom style, and its columns may be of {styles}");
-        let help = "write the style after the section's name, as in `Atoms # full`, or give it \
-                    as --atom-style";
-        Err(self.lines.ended(message).with_help(help))
     }
 
-    /// The fields of some of the next rows, which come again.
-    fn peek(&mut self) -> Result<Vec<Vec<Vec<u8>>>, SceneError> {
+    /// The fields of rows that follow, as many as a block has; they come again.
+    fn peek(&mut self) -> Result<Vec<Vec<String>>, SceneError> {
         let text = self.lines.ahead()?;
         let complete = memchr::memrchr(b'\n', text).map_or(text, |newline| &text[..newline]);
         let rows = complete.split(|&byte| byte == b'\n').filter_map(content);
-        let rows = rows.take_while(|row| !is_section(row)).take(ROWS);
-        let fields = |row: &[u8]| {
-            let fields = Fields::blanks(row);
-            fields.map(<[u8]>::to_vec).collect()
-        };
-        Ok(rows.map(fields).collect())
+        let rows = rows.take_while(|row| !is_section(row));
+        let fields = |row| Fields::blanks(row).map(|field| String::from_utf8_lossy(field).into());
+        Ok(rows.map(|row| fields(row).collect()).collect())
     }
 }
 
@@ -193,10 +244,10 @@ impl FrameReader for Data {
             }
             let text = line.text().into_owned();
             let (name, comment) = text.split_once('#').unwrap_or((&text, ""));
-            let style = Some(comment.trim()).filter(|comment| !comment.is_empty());
             match name.trim() {
                 "Masses" => self.masses(&mut head)?,
-                "Atoms" => frame = Some(self.atoms(&head, style)?),
+                "Atom Type Labels" => self.labels(&mut head)?,
+                "Atoms" => frame = Some(self.atoms(&head, comment)?),
                 "Velocities" if velocities.find(head.atoms) => {
                     while !self.at_section()? {
                         let line = Self::line(&mut self.lines)?;
@@ -245,9 +296,42 @@ impl Head {
             [b"bvec"] => self.general[1] = Some(vector(0)),
             [b"cvec"] => self.general[2] = Some(vector(0)),
             [b"abc", b"origin"] => self.general[3] = Some(vector(0)),
+            [thing] => {
+                let thing = style::counted().find(|counted| counted.as_bytes() == *thing);
+                let count = numbers.first().and_then(|count| number::whole(count));
+                self.counts.extend(thing.zip(count));
+            }
             _ => (),
         }
         Ok(())
+    }
+
+    /// What rows of atoms must agree with.
+    fn facts(&self) -> Facts<'_> {
+        Facts {
+            types: self.types,
+            labels: self.labels.values().map(String::as_str).collect(),
+            counts: self.counts.clone(),
+            cell: self.cell(),
+        }
+    }
+
+    /// A warning of the first type that the header does not know.
+    fn unknown_type(&self, frame: &ParticleFrame) -> Option<String> {
+        let mut numbers =
+            frame.kinds.table.iter().filter_map(|kind| number::whole(kind.name.as_bytes()));
+        let facts = self.facts();
+        let unknown = numbers.find(|&number| !facts.has_type(number))?;
+        Some(format!(
+            "an atom is of type {unknown}, but the header has {} atom types; if the columns are \
+             those of another atom style, name it with --atom-style",
+            self.types
+        ))
+    }
+
+    /// The name of a type, by its number or name.
+    fn label<'h>(&'h self, kind: &'h str) -> &'h str {
+        self.labels.get(kind).map_or(kind, String::as_str)
     }
 
     fn cell(&self) -> Option<Cell> {
@@ -269,9 +353,15 @@ impl Head {
     fn complete(self, mut frame: ParticleFrame) -> ParticleFrame {
         let units = self.title.split_once("units = ").map(|(_, units)| units);
         frame.unit = unit(units.and_then(|units| units.split([',', ' ']).next()).unwrap_or(""));
+        if !self.labels.is_empty() {
+            frame.kinds.rename(|name| kind(self.label(name), Naming::Types));
+            forget_elements(&mut frame.kinds, Naming::Types);
+        }
         if self.has_elements() {
+            let masses = self.masses.iter().map(|(name, mass)| (self.label(name), *mass));
+            let masses: HashMap<&str, f64> = masses.collect();
             for kind in &mut frame.kinds.table {
-                let mass = self.masses.get(&kind.name);
+                let mass = masses.get(kind.name.as_str());
                 kind.element = mass.and_then(|&mass| Element::from_mass(mass));
             }
             if frame.unit == LengthUnit::Unknown {

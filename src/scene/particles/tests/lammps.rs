@@ -104,25 +104,145 @@ fn data_files_have_sections_in_any_order() {
     assert_eq!((cell.origin, cell.vectors[1]), (DVec3::NEG_X, DVec3::new(0.5, 3.0, 0.0)));
 }
 
+/// A data file of these rows; `more` are lines of the header.
+fn data(more: &str, style: &str, rows: &[&str]) -> String {
+    let (count, rows) = (rows.len(), rows.join("\n"));
+    format!(
+        "LAMMPS\n\n{count} atoms\n{more}\n0 10 xlo xhi\n0 10 ylo yhi\n0 10 zlo zhi\n\nAtoms{style}\n\n{rows}\n"
+    )
+}
+
 #[test]
 fn atom_styles_are_named_guessed_or_asked_for() {
-    let text = |style: &str, row: &str| {
-        format!("LAMMPS\n\n1 atoms\n1 atom types\n\nAtoms{style}\n\n{row}\n")
-    };
-    let sphere = frame(text(" # sphere", "16 1 27.5 1 21.5 19.25 0.5 0 0 0"));
-    assert_eq!((sphere.radius[0], sphere.x[0]), (13.75, 21.5));
-    let guessed = frame(text("", "1 1 27.5 1 21.5 19.25 0.5"));
+    let text = |style: &str, row: &str| data("1 atom types", style, &[row]);
+    let sphere = frame(text(" # sphere", "16 1 27.5 1 1.5 9.25 0.5 0 0 0"));
+    assert_eq!((sphere.radius[0], sphere.x[0], sphere.warnings.len()), (13.75, 1.5, 0));
+    let guessed = frame(text("", "1 1 27.5 1 1.5 9.25 0.5"));
     assert_eq!(guessed.radius, [13.75]);
-    assert!(guessed.warnings[0].contains("look like `sphere`"), "{:?}", guessed.warnings);
-    let unclear = fault(text("", "1 1 1 1.0 0.5 1.5 2.5"));
-    assert_eq!(unclear.2, "names no atom style, and its columns may be of full or sphere");
-    let options = ReadOptions { atom_style: Some("full".to_owned()), ..ReadOptions::default() };
-    let asked = frame_with(text("", "1 1 1 1.0 0.5 1.5 2.5"), &options).expect("a frame");
-    assert!(asked.radius.is_empty());
-    assert_eq!(
-        fault(text(" # unheard/of", "1 1 0 0 0")).2,
-        "the atom style `unheard/of` is not known"
+    assert!(guessed.warnings[0].contains("read as `sphere`"), "{:?}", guessed.warnings);
+    let unclear = frame(text("", "1 1 1 1.0 0.5 1.5 2.5"));
+    assert!(unclear.radius.is_empty());
+    let [warning] = &unclear.warnings[..] else { panic!("{:?}", unclear.warnings) };
+    assert!(
+        ["`full`", "sphere", "--atom-style"].iter().all(|word| warning.contains(word)),
+        "{warning}"
     );
+    let asked = |style: &str, row: &str| {
+        let options = ReadOptions { atom_style: Some(style.to_owned()), ..ReadOptions::default() };
+        frame_with(text("", row), &options)
+    };
+    let sphere = asked("sphere", "1 1 1 1.0 0.5 1.5 2.5").expect("a frame");
+    assert_eq!((sphere.radius, sphere.warnings), (vec![0.5], vec![]));
+    let hybrid = asked("hybrid charge sphere", "1 1 0.5 1.5 2.5 -0.25 8 1").expect("a frame");
+    assert_eq!((hybrid.x[0], hybrid.radius[0], hybrid.warnings.len()), (0.5, 4.0, 0));
+    let wrong = asked("full", "1 1 3 1.0 0.5 1.5 2.5").expect("a frame");
+    assert!(wrong.warnings[0].contains("a type would be 3"), "{:?}", wrong.warnings);
+    let unknown = asked("unheard/of", "1 1 0 0 0").expect_err("no such style");
+    assert_eq!(unknown.message, "the atom style `unheard/of` is not known");
+    let help = unknown.help.expect("all styles");
+    assert!(
+        ["atomic", "wavepacket", "hybrid", "bpm/sphere"].iter().all(|style| help.contains(style))
+    );
+}
+
+#[test]
+fn comments_that_name_no_style_are_comments() {
+    let rows = ["1 7 1 -0.5 1.5 2.5 3.5", "2 7 2 0.5 4.5 5.5 6.5"];
+    for comment in [
+        "",
+        " # water molecules",
+        " # full",
+        " # id mol type q x y z",
+        " # unheard/of",
+        " # FULL/kk",
+    ] {
+        let frame = frame(data("2 atom types", comment, &rows));
+        assert_eq!((&frame.x[..], kinds(&frame)[1].0), (&[1.5, 4.5][..], "2"), "{comment}");
+        let is_named = comment.to_lowercase().contains("full");
+        assert_eq!(frame.warnings.is_empty(), is_named, "{comment}: {:?}", frame.warnings);
+    }
+    // A word that is a style, of which the rows are not.
+    let frame = frame(data("2 atom types", " # atomic positions", &rows));
+    assert_eq!(frame.x, [1.5, 4.5]);
+    assert!(frame.warnings[0].contains("read as `full`"), "{:?}", frame.warnings);
+    let error = frame_with(data("2 atom types", "", &["1 9 0.5 1.5 2.5"]), &ReadOptions::default());
+    let error = error.expect_err("type 9 of 2");
+    assert!(
+        error.help.is_some_and(|help| help.contains("--atom-style") && help.contains("wavepacket"))
+    );
+}
+
+#[test]
+fn all_styles_place_particles() {
+    for (style, more, row, expected) in [
+        ("electron", "", "1 1 -1.0 1 2.5 1.5 2.5 3.5", true),
+        ("wavepacket", "", "1 1 -1.0 1 2.5 7 0.5 0.25 1.5 2.5 3.5", true),
+        ("line", "1 lines", "1 1 1 1 2.0 1.5 2.5 3.5", true),
+        ("tri", "1 triangles", "1 1 1 1 2.0 1.5 2.5 3.5", true),
+        ("body", "1 bodies", "1 1 1 2.0 1.5 2.5 3.5", true),
+        ("ellipsoid", "1 ellipsoids", "1 1 1 2.0 1.5 2.5 3.5", true),
+        ("template", "", "1 31 2 2 1 1.5 2.5 3.5", true),
+        ("bpm/sphere", "", "1 31 1 3.0 2.0 1.5 2.5 3.5", true),
+        ("dipole", "", "1 1 -1.0 1.5 2.5 3.5 0.5 0.5 0", true),
+        ("spin", "", "1 1 1.5 2.5 3.5 0.0 0.6 0.8 2.2", true),
+        ("smd", "", "1 1 31 2.0 2.0 0.5 0.5 1.5 2.5 3.5 1.5 2.5 3.5", true),
+        ("mesont", "", "1 31 1 -1 2 0.5 0.5 3.5 0 1.5 2.5 3.5", true),
+        ("dielectric", "", "1 31 1 -1.0 1.5 2.5 3.5 0 0 1 0.5 1 1 1 0", true),
+        ("charge", "", "1 1 -1.0 1.5 2.5 3.5 0 -1 2", true),
+        ("rheo/thermal", "", "1 1 0 1000.5 2.5 1.5 2.5 3.5", false),
+        ("edpd", "", "1 1 0.5 1e5 1.5 2.5 3.5", false),
+    ] {
+        let header = format!("{more}\n1 atom types");
+        for (comment, is_told) in [(format!(" # {style}"), true), (String::new(), expected)] {
+            let frame = frame(data(&header, &comment, &[row]));
+            assert_eq!(frame.position(0), DVec3::new(1.5, 2.5, 3.5), "{style} {comment}");
+            assert_eq!(kinds(&frame)[0].0, "1", "{style} {comment}");
+            let told = frame.warnings.iter().all(|warning| warning.contains(&format!("`{style}`")));
+            assert_eq!(told, is_told, "{style}: {:?}", frame.warnings);
+        }
+    }
+    let species = frame(data("1 atom types", " # tdpd 2", &["1 1 1.5 2.5 3.5 0.25 0.5"]));
+    assert_eq!((species.x[0], species.warnings.len()), (1.5, 0));
+}
+
+#[test]
+fn types_are_as_many_as_the_header_says() {
+    // As LAMMPS reads and writes molecules of a template, and as its manual has them.
+    let written = ["1 31 1 1 2 1.5 2.5 3.5", "2 31 1 2 1 1.5 2.5 4.5", "3 32 1 1 2 5.5 2.5 3.5"];
+    let in_manual = ["1 2 31 1 1 1.5 2.5 3.5", "2 1 31 1 3 1.5 2.5 4.5", "3 2 32 1 1 5.5 2.5 3.5"];
+    for rows in [written, in_manual] {
+        let frame = frame(data("2 atom types", "  # template", &rows));
+        let names: Vec<&str> = kinds(&frame).iter().map(|kind| kind.0).collect();
+        assert_eq!((names, frame.x[2], frame.warnings.len()), (vec!["2", "1", "2"], 5.5, 0));
+    }
+    let rows: Vec<String> =
+        (0..40_000).map(|row| format!("{row} {} 1.5 2.5 3.5", row / 20_000 + 1)).collect();
+    let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+    let late = frame(data("1 atom types", " # atomic", &rows));
+    assert!(late.warnings[0].contains("an atom is of type 2"), "{:?}", late.warnings);
+    assert!(frame(data("2 atom types", " # atomic", &rows)).warnings.is_empty());
+}
+
+#[test]
+fn labels_are_names_of_types() {
+    let text = |sections: &str, comment: &str| {
+        let rows = ["1 1 1.5 2.5 3.5", "2 O 4.5 5.5 6.5", "3 C1 7.5 8.5 9.5"];
+        let text = data("2 atom types", comment, &rows);
+        text.replace("\nAtoms", &format!("\n{sections}Atoms"))
+    };
+    let labels = "Atom Type Labels\n\n1 C1\n2 O\n\n";
+    for comment in ["", " # atomic"] {
+        let frame = frame(text(labels, comment));
+        assert_eq!(kinds(&frame), [("C1", "C"), ("O", "O"), ("C1", "C")]);
+        assert_eq!(frame.kinds.table.len(), 2);
+    }
+    for masses in ["1 12.011\n2 15.999\n", "C1 12.011\nO 15.999\n"] {
+        let sections = format!("{labels}Masses\n\n{masses}\n");
+        assert_eq!(kinds(&frame(text(&sections, " # atomic")))[2], ("C1", "C"));
+    }
+    let after =
+        data("1 atom types", " # atomic", &["1 1 0.5 0.5 0.5"]) + "\nAtom Type Labels\n\n1 wax\n";
+    assert_eq!(kinds(&frame(after)), [("wax", "-")]);
 }
 
 #[test]
