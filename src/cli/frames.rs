@@ -25,7 +25,7 @@ impl FrameRange {
 
     /// Number of its frames up to `last`, which is included.
     pub(super) fn count_to(self, last: u64) -> u64 {
-        last.checked_sub(self.first).map_or(0, |span| span / self.step + 1)
+        last.checked_sub(self.first).map_or(0, |span| (span / self.step).saturating_add(1))
     }
 }
 
@@ -99,6 +99,12 @@ fn between(first: &str, last: &str, step: &str) -> Option<FrameRange> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn counts_of_frames_do_not_overflow() {
+        let all = FrameRange { first: 0, last: None, step: 1 };
+        assert_eq!((all.count_to(u64::MAX), all.count_to(9)), (u64::MAX, 10));
+    }
 
     #[test]
     fn ranges_are_read() {

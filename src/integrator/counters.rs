@@ -26,19 +26,19 @@ pub struct Counters {
 impl Counters {
     /// All rays.
     pub fn rays(&self) -> u64 {
-        self.camera_rays + self.bounce_rays + self.shadow_rays
+        self.camera_rays.saturating_add(self.bounce_rays).saturating_add(self.shadow_rays)
     }
 
-    /// Adds what another task did.
+    /// Adds what another task did. Files of parts may claim any counts, so sums saturate.
     pub fn add(&mut self, other: &Self) {
-        self.skipped_samples += other.skipped_samples;
-        self.camera_rays += other.camera_rays;
-        self.bounce_rays += other.bounce_rays;
-        self.shadow_rays += other.shadow_rays;
-        self.exact_decisions += other.exact_decisions;
-        self.cut_paths += other.cut_paths;
-        self.bad_samples += other.bad_samples;
-        self.nesting_overflows += other.nesting_overflows;
+        self.skipped_samples = self.skipped_samples.saturating_add(other.skipped_samples);
+        self.camera_rays = self.camera_rays.saturating_add(other.camera_rays);
+        self.bounce_rays = self.bounce_rays.saturating_add(other.bounce_rays);
+        self.shadow_rays = self.shadow_rays.saturating_add(other.shadow_rays);
+        self.exact_decisions = self.exact_decisions.saturating_add(other.exact_decisions);
+        self.cut_paths = self.cut_paths.saturating_add(other.cut_paths);
+        self.bad_samples = self.bad_samples.saturating_add(other.bad_samples);
+        self.nesting_overflows = self.nesting_overflows.saturating_add(other.nesting_overflows);
     }
 
     /// All of them.

@@ -68,13 +68,13 @@ impl Tasks {
 
     /// Adds those of another share of the render, as if both were rendered at once.
     pub(super) fn add(&mut self, other: &Self) {
-        self.count += other.count;
+        self.count = self.count.saturating_add(other.count);
         self.longest = self.longest.max(other.longest);
-        self.total += other.total;
+        self.total = self.total.saturating_add(other.total);
         self.whole = self.whole.max(other.whole);
         for (wave, more) in self.waves.iter_mut().zip(other.waves) {
             wave.longest = wave.longest.max(more.longest);
-            wave.total += more.total;
+            wave.total = wave.total.saturating_add(more.total);
         }
     }
 

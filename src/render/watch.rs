@@ -31,7 +31,7 @@ impl Totals {
         self.counters.add(&other.counters);
         self.times.add(&other.times);
         self.tasks.add(&other.tasks);
-        self.elapsed += other.elapsed;
+        self.elapsed = self.elapsed.saturating_add(other.elapsed);
     }
 }
 

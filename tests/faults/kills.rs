@@ -2,9 +2,9 @@
 
 use crate::folder::Folder;
 use crate::process::{names, samples, start};
+use crate::seed;
 use spherule::image::Image;
 use spherule::sampling::mix;
-use std::env;
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::process::Child;
@@ -29,10 +29,6 @@ const RENDERS: [&[&str]; 3] = [
     &["--size", "64x48", "--spp", "48", "--layers", "variance,samples", "-o", "a.exr"],
 ];
 
-fn number(name: &str) -> Option<u64> {
-    env::var(name).ok().map(|text| text.parse().expect("a number"))
-}
-
 /// What is random, as a function of the kills so far.
 struct Chance(u64);
 
@@ -45,8 +41,8 @@ impl Chance {
 
 #[test]
 fn killed_renders_come_to_the_same_bytes() {
-    let mut chance = Chance(number("SPHERULE_FAULT_SEED").unwrap_or(0));
-    let longer = Duration::from_secs(number("SPHERULE_FAULT_SECONDS").unwrap_or(0));
+    let mut chance = Chance(seed::seed("SPHERULE_FAULT_SEED"));
+    let longer = Duration::from_secs(seed::number("SPHERULE_FAULT_SECONDS").unwrap_or(0));
     let (begin, mut kills) = (Instant::now(), 0);
     for round in 0.. {
         kills += kill_through(RENDERS[round % RENDERS.len()], &mut chance);

@@ -2,14 +2,15 @@
 //! ends soon, in little memory, without a panic, with something sound or a short error.
 //!
 //! Each file of `corpus/`, among them all that once did harm, is read as it is; then so are mutants
-//! of them: some in every run of the tests, always the same, and any others for as long as one
-//! likes:
+//! of them, other ones in every run: their seed is the time, and a run that fails prints it.
+//! `SPHERULE_FUZZ_SEED` repeats a run, and `SPHERULE_FUZZ_SECONDS` sets the time for each of the
+//! targets:
 //!
 //! ```sh
 //! SPHERULE_FUZZ_SECONDS=600 SPHERULE_FUZZ_SEED=7 cargo test --release --test fuzz
 //! ```
 //!
-//! (so many seconds for each of the targets). The cases run in a process of their own ([`worker`]),
+//! The cases run in a process of their own ([`worker`]),
 //! so that those that end it, by too much memory, time or stack, are told like the others: with the
 //! name of a file in `target/tmp` that holds the input, reduced. Mend the reader, and put the input
 //! into the corpus.
@@ -18,6 +19,8 @@ mod mutate;
 mod png;
 mod process;
 mod reduce;
+#[path = "../common/seed.rs"]
+mod seed;
 mod targets;
 mod worker;
 
@@ -69,9 +72,9 @@ fn faults_are_told_and_overcome() {
 /// Runs a target on every seed, those of its corpus and `more`, and on mutants of them; the files
 /// `beside` are in the folder of each case.
 fn fuzz(target: &str, more: &[PathBuf], beside: &[PathBuf]) {
-    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
-    let seconds = number("SPHERULE_FUZZ_SECONDS").map(Duration::from_secs);
-    let mut mutator = Mutator::new(number("SPHERULE_FUZZ_SEED").unwrap_or(0));
+    let seconds = seed::number("SPHERULE_FUZZ_SECONDS").map(Duration::from_secs);
+    let seed = seed::seed("SPHERULE_FUZZ_SEED");
+    let mut mutator = Mutator::new(seed);
     let paths = [more, &files(&format!("tests/fuzz/corpus/{target}"))].concat();
     let read = |path: &PathBuf| fs::read(path).expect("a seed that can be read");
     let seeds: Vec<Vec<u8>> = paths.iter().map(read).collect();
@@ -90,7 +93,8 @@ fn fuzz(target: &str, more: &[PathBuf], beside: &[PathBuf]) {
         done += 1;
     }
     let messages: Vec<_> = faults.found.iter().map(|fault| fault.message.as_str()).collect();
-    let summary = format!("{target}: {} seeds and {done} mutants", seeds.len());
+    let files = seeds.len();
+    let summary = format!("{target}: {files} files and {done} mutants, SPHERULE_FUZZ_SEED={seed}");
     assert!(messages.is_empty(), "{summary}\n{}", messages.join("\n"));
 }
 

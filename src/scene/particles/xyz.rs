@@ -198,8 +198,12 @@ fn columns(line: &Line, value: &str) -> Result<Vec<String>, SceneError> {
     for property in parts.chunks(3) {
         let [name, kind, count] = property else { return Err(fault()) };
         let count: usize = count.trim().parse().map_err(|_| fault())?;
-        if !["S", "R", "I", "L"].contains(kind) || names.len() + count > COLUMNS {
+        if !["S", "R", "I", "L"].contains(kind) {
             return Err(fault());
+        }
+        if count > COLUMNS - names.len() {
+            let message = format!("`{name}:{kind}:{count}` makes more than {COLUMNS} columns");
+            return Err(line.whole(message).with_help("the count of a property is wrong"));
         }
         names.extend(component_names(name, count));
     }

@@ -53,3 +53,14 @@ fn lattices_without_volume_are_none() {
     assert_eq!(frame("1\nLattice=\"0 0 0 0 0 0 0 0 0\"\nC 1 2 3\n").cell, None);
     assert_eq!(frame("1\nLattice=\"1 0 0 0 1 0 0 0 nan\"\nC 1 2 3\n").cell, None);
 }
+
+#[test]
+fn counts_of_columns_that_no_file_has_are_refused() {
+    for count in ["10001", "18446744073709551615", "18446744073709551614", "9223372036854775807"] {
+        for properties in [format!(":I:1::S:{count}"), format!("pos:R:3:q:R:{count}")] {
+            let (line, _, message) = fault(format!("2\nProperties={properties}\n"));
+            assert_eq!((line, message.contains("10000 columns")), (2, true), "{message}");
+        }
+    }
+    assert!(fault("2\nProperties=pos:R:18446744073709551616\n").2.contains("no properties"));
+}
