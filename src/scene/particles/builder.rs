@@ -39,6 +39,7 @@ impl Builder {
         let mut frame = ParticleFrame { format, ..ParticleFrame::default() };
         frame.columns = schema.listed();
         frame.roles.clone_from(&schema.roles);
+        frame.unit = schema.unit;
         let rest = schema.extras.len() - schema.asked;
         let most_rows = schema.rest.checked_div(rest).map_or(usize::MAX, |rows| rows.max(1));
         Self {

@@ -121,7 +121,7 @@ impl Kinds {
     pub(super) fn rename(&mut self, kind: impl Fn(&str) -> Kind) {
         let mut places = HashMap::new();
         let old = std::mem::take(self);
-        let mut place = |old: &Kind| {
+        let place = |old: &Kind| {
             let new = kind(&old.name);
             *places.entry(new).or_insert_with_key(|new| {
                 self.table.push(new.clone());

@@ -5,9 +5,10 @@ use super::frame::ParticleFrame;
 use super::lines::{LONGEST, Line, Lines};
 use super::options::{Format, ReadOptions};
 use super::reader::FrameReader;
-use super::schema::Schema;
+use super::schema::{Schema, Slot};
 use super::source::Source;
 use super::spheres::listed;
+use super::{header, number};
 use crate::scene::SceneError;
 use csv_core::{ReadRecordResult, ReaderBuilder};
 use std::ops::Range;
@@ -40,7 +41,7 @@ impl Csv {
     /// The next line that is neither blank nor a comment.
     fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, SceneError> {
         while let Some(line) = lines.next()? {
-            if !line.is_blank() && !line.bytes.starts_with(b"#") {
+            if !line.is_blank() && !header::is_comment(line.bytes) {
                 lines.back();
                 break;
             }
@@ -86,6 +87,10 @@ impl FrameReader for Csv {
         if std::mem::replace(&mut self.done, true) {
             return Ok(None);
         }
+        // Excel's own first line, which says what stands between the columns.
+        if Self::line(&mut self.lines)?.is_some_and(|line| !line.bytes.starts_with(b"sep=")) {
+            self.lines.back();
+        }
         let Some(line) = Self::line(&mut self.lines)? else { return Ok(None) };
         let names = header_names(line.bytes);
         let separator = separator(line.bytes);
@@ -96,25 +101,27 @@ impl FrameReader for Csv {
                 return Err(line.error(span, format!("two columns are named `{name}`")));
             }
         }
-        let schema = Schema::new(names, &self.options).map_err(|error| {
-            line.whole(error).with_help(
-                "the header names x, y and z, and may name radius (or r, or diameter), element \
-                 or type, material, red, green and blue",
-            )
-        })?;
+        let help = header::columns_help(&names, &self.options);
+        let schema =
+            Schema::new(names, &self.options).map_err(|error| line.whole(error).with_help(help))?;
         let schema = Arc::new(schema);
         let mut builder = Builder::new(line.path(), Format::Csv, &schema);
         let path = self.lines.path().clone();
+        let mut has_commas = false;
         while let Some(line) = Self::line(&mut self.lines)? {
             let number = line.number_in_file();
             if !is_open(line.bytes) {
                 let row = Row { line, separator, schema: &schema };
-                row.read(&mut self.record, &mut builder)?;
+                has_commas |= row.read(&mut self.record, &mut builder)?;
                 continue;
             }
             self.whole_row()?;
             let line = Line::new(&path, number, &self.row);
-            Row { line, separator, schema: &schema }.read(&mut self.record, &mut builder)?;
+            let row = Row { line, separator, schema: &schema };
+            has_commas |= row.read(&mut self.record, &mut builder)?;
+        }
+        if has_commas {
+            builder.frame.warnings.push("commas are read as decimal points".to_owned());
         }
         if !schema.unused.is_empty() {
             let names: Vec<&str> = schema.unused.iter().map(String::as_str).collect();
@@ -132,7 +139,8 @@ struct Row<'r> {
 }
 
 impl Row<'_> {
-    fn read(&self, record: &mut Record, builder: &mut Builder) -> Result<(), SceneError> {
+    /// Reads the row; whether it has decimal commas.
+    fn read(&self, record: &mut Record, builder: &mut Builder) -> Result<bool, SceneError> {
         let bytes = self.line.bytes;
         if memchr::memchr(b'"', bytes).is_none() {
             return self.put(bytes.split(|&byte| byte == self.separator), builder);
@@ -147,11 +155,16 @@ impl Row<'_> {
         &self,
         fields: impl Iterator<Item = &'f [u8]>,
         builder: &mut Builder,
-    ) -> Result<(), SceneError> {
-        let mut columns = 0;
+    ) -> Result<bool, SceneError> {
+        let (mut columns, mut has_commas) = (0, false);
         for field in fields {
             if let Some(&slot) = self.schema.slots.get(columns) {
-                builder.put(slot, &self.line, field.trim_ascii()).map_err(|error| {
+                let field = field.trim_ascii();
+                let decimal =
+                    if self.may_have_comma(slot) { number::with_point(field) } else { None };
+                has_commas |= decimal.is_some();
+                let field = decimal.as_deref().unwrap_or(field);
+                builder.put(slot, &self.line, field).map_err(|error| {
                     let span = span(self.line.bytes, self.separator, columns);
                     let here = self.line.error(span, error.message);
                     SceneError { help: error.help, ..here }
@@ -164,7 +177,13 @@ impl Row<'_> {
             let message = format!("{columns} columns, but the header has {expected}");
             return Err(self.line.whole(message));
         }
-        builder.end_row()
+        builder.end_row()?;
+        Ok(has_commas)
+    }
+
+    /// Whether a field may have a comma for its decimal point.
+    fn may_have_comma(&self, slot: Slot) -> bool {
+        self.separator != b',' && !matches!(slot, Slot::Skip | Slot::Kind | Slot::Material)
     }
 }
 

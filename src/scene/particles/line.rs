@@ -78,7 +78,14 @@ impl<'l> Line<'l> {
     }
 
     fn not(&self, field: &[u8], what: &str) -> SceneError {
-        let shown = String::from_utf8_lossy(field.trim_ascii());
-        self.error_at(field.trim_ascii(), format!("`{shown}` is not {what}"))
+        let field = field.trim_ascii();
+        let shown = String::from_utf8_lossy(field);
+        let error = self.error_at(field, format!("`{shown}` is not {what}"));
+        if number::with_point(field).is_none() {
+            return error;
+        }
+        let help = "numbers have decimal points here; `sed 's/\\([0-9]\\),\\([0-9]\\)/\\1.\\2/g'` makes them of \
+                    decimal commas";
+        error.with_help(help)
     }
 }

@@ -13,6 +13,24 @@ fn rare(field: &[u8]) -> Option<f64> {
     text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
 }
 
+/// A number with a comma for its decimal point, with a point; `None` if it is none.
+pub(super) fn with_point(field: &[u8]) -> Option<Vec<u8>> {
+    let comma = memchr::memchr(b',', field)?;
+    let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-eEdD".contains(byte);
+    let (whole, rest) = (&field[..comma], &field[comma + 1..]);
+    if !whole.iter().chain(rest).all(is_part) || !rest.first()?.is_ascii_digit() {
+        return None;
+    }
+    let mut text = field.to_vec();
+    text[comma] = b'.';
+    parse(&text).map(|_| text)
+}
+
+/// The number that a field is, with a decimal point or a decimal comma.
+pub(super) fn parse_any_point(field: &[u8]) -> Option<f64> {
+    parse(field).or_else(|| parse(&with_point(field.trim_ascii())?))
+}
+
 /// The whole number that a field is, if it is one without a sign.
 pub(super) fn whole(field: &[u8]) -> Option<u64> {
     str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
@@ -56,6 +74,19 @@ mod tests {
         }
         assert_eq!(parse(&[0xFF]), None);
         assert_eq!((whole(b" 12 "), whole(b"-1"), whole(b"1.5")), (Some(12), None, None));
+    }
+
+    #[test]
+    fn decimal_commas_become_points() {
+        for (text, expected) in [("1,5", 1.5), ("-0,25e3", -250.0), ("+,5", 0.5), ("1,234", 1.234)]
+        {
+            let text = with_point(text.as_bytes()).expect("a number");
+            assert_eq!(parse(&text), Some(expected));
+        }
+        for text in ["1", "1,", ",", "1,2,3", "1.234,5", "1,234.5", "a,5", "1,-5", "1, 5"] {
+            assert_eq!(with_point(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!((parse_any_point(b" 1,5"), parse_any_point(b"1.5")), (Some(1.5), Some(1.5)));
     }
 
     proptest! {

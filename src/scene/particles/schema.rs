@@ -1,7 +1,9 @@
 //! Which column of a file is what.
 
 use super::aliases;
+use super::frame::LengthUnit;
 use super::options::{Radii, ReadOptions, Role};
+use super::units;
 use crate::suggest;
 
 /// What a column is for.
@@ -68,6 +70,8 @@ pub(super) struct Schema {
     pub(super) unused: Vec<String>,
     /// The column that each role is read from.
     pub(super) roles: Vec<(Role, String)>,
+    /// The unit of positions, if their names tell it.
+    pub(super) unit: LengthUnit,
 }
 
 impl Schema {
@@ -88,22 +92,36 @@ impl Schema {
     ) -> Result<Self, String> {
         let choice = Choice { names: &names, options, known };
         let mut slots = vec![Slot::Skip; names.len()];
+        let mut axes = [0; 3];
         for (axis, role) in [Role::X, Role::Y, Role::Z].into_iter().enumerate() {
             let column = choice.find(role)?.ok_or_else(|| choice.missing(USUAL[axis].1[0]))?;
             slots[column] = Slot::Position(axis);
+            axes[axis] = column;
         }
+        let [x, y, z] = axes.map(|column| names[column].as_str());
+        for axis in [y, z] {
+            if units::factor(axis, x)? != 1.0 {
+                return Err(format!("`{x}` and `{axis}` are in different units"));
+            }
+        }
+        let unit = units::length(x);
         let mut take = |column: Option<usize>, slot| {
             column.filter(|&at| slots[at] == Slot::Skip).map(|at| slots[at] = slot).is_some()
         };
         for (channel, column) in choice.colors()?.into_iter().flatten().enumerate() {
             take(Some(column), Slot::Color(channel));
         }
-        let has_radius = take(choice.find(Role::Radius)?, Slot::Radius(1.0));
+        let length = |column: Option<usize>, factor: f64| match column {
+            Some(column) => Ok(Slot::Radius(factor * units::factor(&names[column], x)?)),
+            None => Ok::<_, String>(Slot::Radius(factor)),
+        };
+        let radius = choice.find(Role::Radius)?;
+        let has_radius = take(radius, length(radius, 1.0)?);
         // `r` beside `g` and `b` is red.
-        let has_radius = has_radius || take(choice.position("r"), Slot::Radius(1.0));
-        if !has_radius {
-            take(choice.find(Role::Diameter)?, Slot::Radius(0.5));
-        }
+        let radius = choice.position("r");
+        let has_radius = has_radius || take(radius, length(radius, 1.0)?);
+        let diameter = choice.find(Role::Diameter)?.filter(|_| !has_radius);
+        take(diameter, length(diameter, 0.5)?);
         let kind = choice.find(Role::Kind)?;
         take(kind, Slot::Kind);
         take(choice.find(Role::Material)?, Slot::Material);
@@ -115,12 +133,12 @@ impl Schema {
         }
         let rest = options.columns.rest.unwrap_or(0);
         let unused = unused(&names, &slots);
-        let roles = roles(&names, &slots);
+        let roles = roles(&names, &slots, if has_radius { Role::Radius } else { Role::Diameter });
         while slots.last() == Some(&Slot::Skip) {
             slots.pop();
         }
         let has_color = slots.contains(&Slot::Color(0));
-        Ok(Self { slots, names, extras, asked, rest, naming, has_color, unused, roles })
+        Ok(Self { slots, names, extras, asked, rest, naming, has_color, unused, roles, unit })
     }
 
     /// The columns that are for something, except for those of positions.
@@ -192,12 +210,11 @@ fn unused(names: &[String], slots: &[Slot]) -> Vec<String> {
     columns.map(|(name, _)| name.clone()).collect()
 }
 
-/// The roles of columns.
-fn roles(names: &[String], slots: &[Slot]) -> Vec<(Role, String)> {
+/// The roles of columns; lengths that are no positions are those of `size`.
+fn roles(names: &[String], slots: &[Slot], size: Role) -> Vec<(Role, String)> {
     let role = |slot: &Slot| match *slot {
         Slot::Position(axis) => Some([Role::X, Role::Y, Role::Z][axis]),
-        Slot::Radius(1.0) => Some(Role::Radius),
-        Slot::Radius(_) => Some(Role::Diameter),
+        Slot::Radius(_) => Some(size),
         Slot::Kind => Some(Role::Kind),
         Slot::Color(channel) => Some([Role::Red, Role::Green, Role::Blue][channel]),
         Slot::Material => Some(Role::Material),
@@ -215,10 +232,17 @@ struct Choice<'c> {
 }
 
 impl Choice<'_> {
-    /// The column with a name, the same letter by letter if there is one.
+    /// The column with a name, the same letter by letter if there is one; or else the only one that
+    /// has it before a unit.
     fn position(&self, wanted: &str) -> Option<usize> {
         let same = self.names.iter().position(|name| name == wanted);
-        same.or_else(|| self.names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
+        let any_case = || self.names.iter().position(|name| name.eq_ignore_ascii_case(wanted));
+        let with_unit = || {
+            let bare = |name: &String| units::split(name).0.eq_ignore_ascii_case(wanted);
+            let mut columns = self.names.iter().enumerate().filter(|(_, name)| bare(name));
+            columns.next().map(|(column, _)| column).filter(|_| columns.next().is_none())
+        };
+        same.or_else(any_case).or_else(with_unit)
     }
 
     /// The column with a name that a user typed, or with another name of the same thing.

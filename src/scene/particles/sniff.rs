@@ -1,65 +1,71 @@
 //! What kind of file this is, told from how it begins.
 
 use super::fields::Fields;
+use super::foreign::{self, Foreign};
 use super::options::{Format, ReadOptions, Role};
 use super::source::Source;
-use super::{cif, csv, gro, gsd, number, numpy, pdb, ply};
+use super::{cif, gro, gsd, header, number, numpy, pdb, ply, units, utf16};
 use crate::scene::SceneError;
 
 /// What the formats are that can be told.
-const KNOWN: &str = "files of particles are rows of `x y z [radius]`, CSV with a header that \
+const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
-                     of crystals, GSD, PLY and arrays of NumPy";
+                     of crystals, GSD, PLY and arrays of NumPy; of others, name the format, as in --format xyz, \
+                     or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
 /// Lines within which a data file of LAMMPS tells its number of atoms.
 const DATA_HEADER: usize = 40;
 
-/// What files are that are no particles, though they are often taken for some.
-const OTHERS: [(&str, &str, &str); 5] = [
-    ("<!doctype html", "is a web page (HTML)", "a download went wrong: fetch the file itself"),
-    ("<html", "is a web page (HTML)", "a download went wrong: fetch the file itself"),
-    ("<?xml", "is an XML file", KNOWN),
-    ("version https://git-lfs", "is a pointer to a file that Git LFS keeps", "run `git lfs pull`"),
-    ("{", "is a JSON file", KNOWN),
-];
-
 /// The format that was asked for, or else the one the file seems to have.
 pub(super) fn format(source: &Source, options: &ReadOptions) -> Result<Format, SceneError> {
     let fault = |message: String| SceneError::whole_file(&source.path, message);
+    let refuse = |Foreign { name, help }: Foreign| {
+        fault(format!("is {name}, which is not read here")).with_help(help)
+    };
     let head = &source.head[..];
-    if head.get(257..262) == Some(b"ustar") {
-        let help = "unpack it first, and read one of its files; a name that ends in .gz is no sign";
-        return Err(fault("is a tar archive".to_owned()).with_help(help));
+    if let Some(foreign) = foreign::binary(head, &source.path) {
+        return Err(refuse(foreign));
     }
     if let Some(format) = binary(head) {
         return match options.format {
             Some(asked) if asked != format => {
                 let message = format!("is {}, not {}", format.name(), asked.name());
-                Err(fault(message).with_help("leave the format to the file"))
+                Err(fault(message)
+                    .with_help(format!("leave --format out, or give {}", format.name())))
             }
             _ => Ok(format),
         };
     }
     if let Some(asked @ (Format::Gsd | Format::Npy | Format::Npz | Format::Ply)) = options.format {
-        return Err(
-            fault(format!("is not {}", asked.name())).with_help("leave the format to the file")
-        );
+        let help = "leave --format out: the content tells the format";
+        return Err(fault(format!("is not {}", asked.name())).with_help(help));
     }
     if head.contains(&0) {
-        let error = fault("is not a text file: it holds zero bytes".to_owned());
-        return Err(error.with_help(KNOWN));
+        return Err(match utf16::unmarked(head) {
+            Some(encoding) => {
+                let help = format!(
+                    "make it UTF-8: iconv -f {encoding} -t UTF-8 FILE | spherule render - -o picture.png"
+                );
+                fault(format!("is text in {encoding}")).with_help(help)
+            }
+            None => fault("is not a text file: it holds zero bytes".to_owned()).with_help(KNOWN),
+        });
     }
     if let Some(format) = options.format {
         return Ok(format);
     }
-    let text = head.trim_ascii_start();
-    for (begin, message, help) in OTHERS {
-        let start = text.get(..begin.len()).unwrap_or_default();
-        if start.eq_ignore_ascii_case(begin.as_bytes()) {
-            return Err(fault(message.to_owned()).with_help(help));
-        }
+    let told = told(head, options);
+    // Titles of these files may say anything.
+    let is_titled = |format: &Format| matches!(format, Format::Gro | Format::LammpsData);
+    if let Some(&format) = told.as_ref().ok().filter(|format| is_titled(format)) {
+        return Ok(format);
     }
-    told(head, options).map_err(|message| fault(message).with_help(KNOWN))
+    let pqr =
+        || foreign::pqr(head, &source.path).filter(|_| matches!(told, Err(_) | Ok(Format::Pdb)));
+    match foreign::text(head, &source.path).or_else(pqr) {
+        Some(foreign) => Err(refuse(foreign)),
+        None => told.map_err(|message| fault(message).with_help(KNOWN)),
+    }
 }
 
 fn binary(head: &[u8]) -> Option<Format> {
@@ -69,7 +75,7 @@ fn binary(head: &[u8]) -> Option<Format> {
     if head.starts_with(numpy::MAGIC) {
         return Some(Format::Npy);
     }
-    if head.starts_with(b"PK\x03\x04") {
+    if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
         return Some(Format::Npz);
     }
     ply::is_ply(head).then_some(Format::Ply)
@@ -84,8 +90,12 @@ fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
         return Ok(Format::Gro);
     }
     let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
-    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
+    let mut lines = lines.filter(|line| !line.is_empty() && !header::is_comment(line));
     let Some(first) = lines.next() else { return Err("holds no particles".to_owned()) };
+    // The first line that Excel writes into some CSV files.
+    let is_excel = first.starts_with(b"sep=");
+    let first = if is_excel { lines.next().unwrap_or_default() } else { first };
+    let second = lines.clone().next();
     if let Some(format) = told_by_words(first, lines) {
         let crystal = format == Format::MmCif && cif::is_crystal(head);
         return Ok(if crystal { Format::Cif } else { format });
@@ -98,11 +108,19 @@ fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
         return Ok(Format::Xyzr);
     }
     let x = options.columns.roles.iter().find(|(role, _)| *role == Role::X);
-    let names = ["x", "pos_x", "position_x", "points:0"];
-    let names: Vec<&str> = names.into_iter().chain(x.map(|(_, name)| name.as_str())).collect();
-    let mut fields = csv::header_names(first).into_iter();
-    if fields.any(|field| names.iter().any(|name| field.eq_ignore_ascii_case(name))) {
-        return Ok(Format::Csv);
+    let usual = ["x", "pos_x", "position_x", "points:0"];
+    let usual: Vec<&str> = usual.into_iter().chain(x.map(|(_, name)| name.as_str())).collect();
+    let names = header::names(first);
+    let separated = header::is_separated(first);
+    let is_x = |name: &String| {
+        let bare = units::split(name).0;
+        usual.iter().any(|own| own.eq_ignore_ascii_case(name) || own.eq_ignore_ascii_case(bare))
+    };
+    let is_above = |row: &[u8]| header::is_header(&names) && header::is_row(&names, separated, row);
+    let is_even = |row: &[u8]| separated || Fields::blanks(row).count() == names.len();
+    let has_x = names.len() > 1 && names.iter().any(is_x) && second.is_none_or(is_even);
+    if has_x || second.is_some_and(is_above) {
+        return Ok(if separated { Format::Csv } else { Format::Xyzr });
     }
     let shown: String = String::from_utf8_lossy(first).chars().take(40).collect();
     Err(format!("is in no format known here: it begins with `{}`", shown.escape_debug()))
@@ -145,6 +163,12 @@ mod tests {
         assert_eq!(told("id,X,Y,Z\n1,2,3,4\n"), Ok(Format::Csv));
         assert_eq!(told("\"x\";\"y\";\"z\"\n"), Ok(Format::Csv));
         assert_eq!(told("x\ty\tz\n"), Ok(Format::Csv));
+        assert_eq!(told("sep=;\nx;y;z\n1;2;3\n"), Ok(Format::Csv));
+        assert_eq!(told("X (m), Y (m), Z (m)\n"), Ok(Format::Csv));
+        assert_eq!(told("x y z radius\n1 2 3 4\n"), Ok(Format::Xyzr));
+        assert_eq!(told("px py pz\n1 2,5 3\n"), Ok(Format::Xyzr));
+        assert_eq!(told("px;py;pz;name\n1;2,5;3;a\n"), Ok(Format::Csv));
+        assert!(told("four words of text\n1 2 3\n").is_err());
         assert!(told(" \n# nothing\n").is_err_and(|message| message == "holds no particles"));
         assert_eq!(told("ITEM: TIMESTEP\n0\n"), Ok(Format::LammpsDump));
         assert_eq!(told("# LAMMPS\n\n 17 atoms\n"), Ok(Format::LammpsData));

@@ -1,20 +1,26 @@
-//! Where bytes come from: a file or standard input, unpacked if it is packed.
+//! Where bytes come from: a file or standard input, unpacked if it is packed, and in UTF-8 if it is
+//! in UTF-16.
 //!
 //! What a file is packed with is told by how it begins, whatever its name says. All decoders are
 //! Rust, so that the program needs no library of the system.
 
+use super::header;
+use super::utf16::{self, Utf16};
 use crate::scene::SceneError;
 use flate2::read::MultiGzDecoder;
 use lzma_rust2::XzReader;
 use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+use std::io::{self, BufRead, BufReader, Chain, Cursor, Read, Write};
 use std::path::Path;
 use std::sync::Arc;
 
 /// How many bytes of a file are looked at to tell its format.
 pub(super) const HEAD: usize = 1 << 16;
+
+/// Longest preamble of comments that is looked through for what follows it.
+const PREAMBLE: usize = 1 << 24;
 
 /// Memory that an xz file may ask for, in KiB: four times as much as `xz -9` takes.
 const XZ_MEMORY: u32 = 1 << 18;
@@ -39,7 +45,7 @@ enum Packing {
 /// An open file: how it begins, and what follows.
 pub(super) struct Source {
     pub(super) path: Arc<Path>,
-    /// The first [`HEAD`] bytes, or all if there are fewer.
+    /// The first [`HEAD`] bytes, or all if there are fewer; more after a long preamble.
     pub(super) head: Vec<u8>,
     /// What follows.
     pub(super) reader: Box<dyn Read + Send>,
@@ -61,17 +67,46 @@ impl Source {
         } else {
             Box::new(File::open(&path).map_err(|error| fault(&error))?)
         };
-        let mut head = head(&mut raw).map_err(|error| fault(&error))?;
-        let Some(packing) = Packing::of(&head) else {
-            return Ok(Self { path, head, reader: raw });
-        };
-        let mut reader = packing.unpack(Cursor::new(head).chain(raw));
-        head = self::head(&mut reader).map_err(|error| fault(&error))?;
-        if let Some(inner) = Packing::of(&head) {
-            let message = format!("is packed twice ({}, then {})", inner.name(), packing.name());
-            return Err(SceneError::whole_file(&path, message).with_help("unpack it once"));
+        let head = head(&mut raw).map_err(|error| fault(&error))?;
+        let mut source = Self { path: path.clone(), head, reader: raw };
+        if let Some(packing) = Packing::of(&source.head) {
+            source =
+                source.through(|packed| packing.unpack(packed)).map_err(|error| fault(&error))?;
+            if let Some(inner) = Packing::of(&source.head) {
+                let message =
+                    format!("is packed twice ({}, then {})", inner.name(), packing.name());
+                return Err(SceneError::whole_file(&path, message).with_help("unpack it once"));
+            }
         }
-        Ok(Self { path, head, reader })
+        if let Some(unit) = utf16::mark(&source.head) {
+            let decode = |units| -> Box<dyn Read + Send> { Box::new(Utf16::new(units, unit)) };
+            source = source.through(decode).map_err(|error| fault(&error))?;
+        }
+        source.read_preamble().map_err(|error| fault(&error))?;
+        Ok(source)
+    }
+
+    /// What a decoder makes of it.
+    fn through(
+        self,
+        decode: impl FnOnce(Chain<Cursor<Vec<u8>>, Box<dyn Read + Send>>) -> Box<dyn Read + Send>,
+    ) -> io::Result<Self> {
+        let mut reader = decode(Cursor::new(self.head).chain(self.reader));
+        Ok(Self { path: self.path, head: head(&mut reader)?, reader })
+    }
+
+    /// Lengthens the head where there is little else in it than comments, so that it shows what
+    /// follows them.
+    fn read_preamble(&mut self) -> io::Result<()> {
+        let mut length = HEAD;
+        while self.head.len() >= length
+            && length < PREAMBLE
+            && length - comments(&self.head) < HEAD / 2
+        {
+            self.reader.by_ref().take(length as u64).read_to_end(&mut self.head)?;
+            length *= 2;
+        }
+        Ok(())
     }
 
     /// All of it again, for readers that go back and forth: the file itself, or a temporary copy
@@ -93,6 +128,17 @@ impl Source {
         io::copy(&mut self.reader, &mut file).map_err(fault)?;
         Ok(file)
     }
+}
+
+/// Bytes of the comments and blank lines that a text begins with.
+fn comments(text: &[u8]) -> usize {
+    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+    let lines = text.split_inclusive(|&byte| byte == b'\n');
+    let is_comment = |line: &&[u8]| {
+        let line = line.trim_ascii_start();
+        line.is_empty() || header::is_comment(line)
+    };
+    lines.take_while(is_comment).map(<[u8]>::len).sum()
 }
 
 fn head(reader: &mut impl Read) -> io::Result<Vec<u8>> {

@@ -1,12 +1,13 @@
 //! Several arrays in a ZIP archive, as `numpy.savez` writes them.
 
-use super::array::Array;
+use super::array::{Array, Turn};
 use super::schema;
 use crate::scene::particles::builder::{Builder, add, share};
 use crate::scene::particles::categories::{Codebook, Kind, TextColumn};
 use crate::scene::particles::frame::{NumberColumn, ParticleFrame};
 use crate::scene::particles::options::{Format, Radii, ReadOptions, Role, component_names};
 use crate::scene::particles::reader::FrameReader;
+use crate::scene::particles::schema::Schema;
 use crate::scene::particles::source::Source;
 use crate::scene::{Rgb, SceneError};
 use std::fs::File;
@@ -19,6 +20,12 @@ use zip::read::ZipFile;
 /// Names of arrays of positions, those that go first in front; radii and diameters; colors.
 const POSITIONS: [&str; 9] =
     ["position", "positions", "pos", "xyz", "points", "coordinates", "coords", "centers", "arr_0"];
+/// Names of arrays of coordinates along each axis.
+const AXES: [(Role, [&str; 3]); 3] = [
+    (Role::X, ["x", "pos_x", "position_x"]),
+    (Role::Y, ["y", "pos_y", "position_y"]),
+    (Role::Z, ["z", "pos_z", "position_z"]),
+];
 const RADII: [&str; 3] = ["radius", "radii", "r"];
 const DIAMETERS: [&str; 2] = ["diameter", "diameters"];
 const COLORS: [&str; 2] = ["color", "colors"];
@@ -73,13 +80,17 @@ impl Npz {
         usual.iter().find_map(same).cloned()
     }
 
-    fn open(&mut self, name: &str) -> Result<Array<ZipFile<'_, BufReader<File>>>, SceneError> {
+    fn open(
+        &mut self,
+        name: &str,
+        turn: Turn,
+    ) -> Result<Array<ZipFile<'_, BufReader<File>>>, SceneError> {
         let names = self.names().join(", ");
         let file = self.archive.by_name(&format!("{name}.npy")).map_err(|error| {
             let message = format!("the array `{name}` cannot be read ({error}); there are {names}");
             SceneError::whole_file(&self.path, message)
         })?;
-        Array::open(file).map_err(|message| {
+        Array::open(file, turn).map_err(|message| {
             SceneError::whole_file(&self.path, format!("the array `{name}` {message}"))
         })
     }
@@ -87,18 +98,42 @@ impl Npz {
     /// Positions, and the name of their array.
     fn positions(&mut self) -> Result<(Builder, String), SceneError> {
         let names = self.names();
+        let roles = &self.options.columns.roles;
+        let has_axes = roles.iter().any(|(role, _)| matches!(role, Role::Y | Role::Z));
+        let whole = self.find(Role::X, &POSITIONS).filter(|_| !has_axes);
+        let axes = AXES.map(|(role, usual)| self.find(role, &usual));
         let only = if names.len() == 1 { names.first().cloned() } else { None };
-        let name = self.find(Role::X, &POSITIONS).or(only).ok_or_else(|| {
-            let message = format!("no array is named `position`; there are {}", names.join(", "));
-            SceneError::whole_file(&self.path, message).with_help("name one, as in x=NAME")
-        })?;
+        let name = match (whole, axes, only) {
+            (None, [Some(x), Some(y), Some(z)], _) => return self.axes([x, y, z]),
+            (Some(name), ..) | (None, _, Some(name)) => name,
+            (None, _, None) if names.is_empty() => {
+                let error =
+                    SceneError::whole_file(&self.path, "is a ZIP archive without arrays of NumPy");
+                return Err(error.with_help(
+                    "unpack one of its files: unzip -p FILE NAME | spherule render - -o picture.png",
+                ));
+            }
+            (None, _, None) => {
+                let message =
+                    format!("no array is named `position`; there are {}", names.join(", "));
+                return Err(SceneError::whole_file(&self.path, message).with_help(
+                    "name one of rows `x y z`, as in --columns x=NAME, or one for each axis, as in \
+                     --columns x=NAME,y=NAME,z=NAME",
+                ));
+            }
+        };
         let path = self.path.clone();
-        let mut array = self.open(&name)?;
+        let mut array = self.open(&name, Turn::ToPositions)?;
         let schema = schema(&array, &ReadOptions::default()).map_err(|message| {
             SceneError::whole_file(&path, format!("the array `{name}` {message}"))
         })?;
         let schema = Arc::new(schema);
         let mut builder = Builder::new(&path, Format::Npz, &schema);
+        let warning = array.warning();
+        builder
+            .frame
+            .warnings
+            .extend(warning.map(|warning| format!("the array `{name}`: {warning}")));
         array.rows(&path, |row| {
             for (slot, &value) in schema.slots.iter().zip(row.numbers) {
                 builder.put_number(*slot, value);
@@ -123,7 +158,7 @@ impl Npz {
         let mut parts = Vec::new();
         for array in self.names() {
             // An archive may hold anything else beside.
-            let Ok(open) = self.open(&array) else { continue };
+            let Ok(open) = self.open(&array, Turn::ToRows(count as u64)) else { continue };
             let width = open.columns();
             let fits = open.count() == count as u64 && (1..=WIDEST).contains(&width);
             if fits && open.names().is_none() {
@@ -190,13 +225,54 @@ impl Npz {
         Ok(())
     }
 
+    /// Positions from an array for each axis.
+    fn axes(&mut self, names: [String; 3]) -> Result<(Builder, String), SceneError> {
+        let schema =
+            Schema::new(["x", "y", "z"].map(str::to_owned).into(), &ReadOptions::default())
+                .map_err(|message| SceneError::whole_file(&self.path, message))?;
+        let mut builder = Builder::new(&self.path, Format::Npz, &Arc::new(schema));
+        let [x, y, z] = &names;
+        self.coordinates(x, |value| builder.push([value, 0.0, 0.0]))?;
+        let count = builder.frame.len();
+        builder.frame.y = self.rows(y, 1, count)?;
+        builder.frame.z = self.rows(z, 1, count)?;
+        builder.frame.roles = [Role::X, Role::Y, Role::Z].into_iter().zip(names.clone()).collect();
+        let [x, ..] = names;
+        Ok((builder, x))
+    }
+
+    /// Hands on the numbers of an array with one in each row.
+    fn coordinates(
+        &mut self,
+        name: &str,
+        mut take: impl FnMut(f64) -> Result<(), SceneError>,
+    ) -> Result<(), SceneError> {
+        let path = self.path.clone();
+        let mut array = self.open(name, Turn::Never)?;
+        if array.is_text(0) || array.columns() != 1 {
+            let message = format!(
+                "the array `{name}` has {} columns, but x, y and z have one number in each row",
+                array.columns()
+            );
+            return Err(SceneError::whole_file(&path, message));
+        }
+        array.rows(&path, |row| take(row.numbers[0]))
+    }
+
     /// An array with as many rows as there are particles, of so many numbers each.
     fn rows(&mut self, name: &str, columns: usize, count: usize) -> Result<Vec<f64>, SceneError> {
         let path = self.path.clone();
-        let mut array = self.open(name)?;
+        let mut array = self.open(name, Turn::ToRows(count as u64))?;
         let fault = |found: &str| number_of(&path, name, found, count);
         if array.is_text(0) {
             let message = format!("the array `{name}` holds texts, but numbers are needed");
+            return Err(SceneError::whole_file(&path, message));
+        }
+        if columns > 1 && array.columns() != columns {
+            let message = format!(
+                "the array `{name}` has rows of {} numbers, but {columns} are needed",
+                array.columns()
+            );
             return Err(SceneError::whole_file(&path, message));
         }
         let mut values = Vec::new();
@@ -221,7 +297,7 @@ impl Npz {
         count: usize,
     ) -> Result<Option<TextColumn>, SceneError> {
         let path = self.path.clone();
-        let mut array = self.open(name)?;
+        let mut array = self.open(name, Turn::Never)?;
         if !array.is_text(0) {
             return Ok(None);
         }
@@ -264,8 +340,8 @@ impl Npz {
 
 impl Npz {
     /// Rows and columns of an array; `None` if it has more dimensions, or cannot be read.
-    pub(super) fn shape(&mut self, name: &str) -> Option<[u64; 2]> {
-        let array = self.open(name).ok()?;
+    pub(super) fn shape(&mut self, name: &str, turn: Turn) -> Option<[u64; 2]> {
+        let array = self.open(name, turn).ok()?;
         (array.frames() <= 1).then(|| [array.count(), array.columns() as u64])
     }
 
@@ -273,7 +349,7 @@ impl Npz {
     pub(super) fn numbers(&mut self, name: &str) -> Result<Vec<f64>, SceneError> {
         let path = self.path.clone();
         let mut values = Vec::new();
-        self.open(name)?.rows(&path, |row| {
+        self.open(name, Turn::Never)?.rows(&path, |row| {
             values.extend_from_slice(row.numbers);
             Ok(())
         })?;

@@ -19,6 +19,29 @@ pub(super) struct Array<R> {
     structured: bool,
     by_columns: bool,
     shape: Vec<u64>,
+    transposed: bool,
+}
+
+/// Whether an array of two dimensions is read as columns.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Turn {
+    /// It is rows.
+    Never,
+    /// If its shape is (3, N) or (4, N), and it cannot be rows of a position.
+    ToPositions,
+    /// If it has so many columns, and not as many rows.
+    ToRows(u64),
+}
+
+impl Turn {
+    fn applies(self, rows: u64, columns: u64) -> bool {
+        let is_position = |count: u64| (3..=4).contains(&count);
+        match self {
+            Self::Never => false,
+            Self::ToPositions => is_position(rows) && !is_position(columns),
+            Self::ToRows(count) => columns == count && rows != count,
+        }
+    }
 }
 
 /// A row of an array.
@@ -38,7 +61,7 @@ impl Row<'_> {
 
 impl<R: Read> Array<R> {
     /// Reads the header.
-    pub(super) fn open(reader: R) -> Result<Self, String> {
+    pub(super) fn open(reader: R, turn: Turn) -> Result<Self, String> {
         let mut reader = BufReader::with_capacity(1 << 16, reader);
         let cut = |error: io::Error| format!("cannot be read: {error}");
         let mut start = [0; 8];
@@ -61,12 +84,21 @@ impl<R: Read> Array<R> {
         let by_columns = after(&header, "fortran_order").ok_or_else(unclear)?.starts_with("True");
         let shape = after(&header, "shape").and_then(shape).ok_or_else(unclear)?;
         let rank = shape.len();
-        let array = Self { reader, fields, structured, by_columns, shape };
+        let mut array = Self { reader, fields, structured, by_columns, shape, transposed: false };
+        if let [rows, columns] = array.shape[..]
+            && !structured
+            && !array.fields[0].kind.is_text()
+            && turn.applies(rows, columns)
+        {
+            // The same numbers in the same order.
+            array.shape.reverse();
+            (array.by_columns, array.transposed) = (!by_columns, true);
+        }
         if !(1..=3 - usize::from(structured)).contains(&rank) || array.columns() > COLUMNS {
             let shape = array.shape;
             return Err(format!("is an array of shape {shape:?}, but rows are (count, 3 or 4)"));
         }
-        if by_columns && (rank > 2 || structured || array.is_text(0)) {
+        if array.by_columns && (rank > 2 || structured || array.is_text(0)) {
             let what = "is an array in Fortran's order of texts or of more than two dimensions";
             return Err(what.to_owned());
         }
@@ -79,6 +111,17 @@ impl<R: Read> Array<R> {
 
     fn field(&self, column: usize) -> &Field {
         &self.fields[if self.structured { column } else { 0 }]
+    }
+
+    /// A warning that rows are taken for columns, if they are.
+    pub(super) fn warning(&self) -> Option<String> {
+        let columns = self.columns();
+        self.transposed.then(|| {
+            let count = self.count();
+            format!(
+                "the shape ({columns}, {count}) is read as {columns} columns of {count} particles"
+            )
+        })
     }
 
     /// Whether a column holds texts.

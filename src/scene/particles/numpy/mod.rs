@@ -10,7 +10,7 @@ mod rest;
 
 pub(super) use archive::Npz;
 
-use self::array::Array;
+use self::array::{Array, Turn};
 use super::builder::Builder;
 use super::frame::ParticleFrame;
 use super::options::{Format, ReadOptions, Role};
@@ -40,7 +40,14 @@ impl Npy {
         let path = source.path;
         let reader: Box<dyn Read + Send> = Box::new(Cursor::new(source.head).chain(source.reader));
         let fault = |message: String| SceneError::whole_file(&path, message);
-        let array = Array::open(reader).map_err(fault)?;
+        let no_roles = options.columns.roles.is_empty();
+        let turn = if no_roles { Turn::ToPositions } else { Turn::Never };
+        let array = Array::open(reader, turn).map_err(|message| {
+            fault(message).with_help(
+                "make it an array of shape (count, 3): python3 -c \"import numpy; numpy.save('rows.npy', \
+                 numpy.load('FILE').reshape(-1, 3).astype('f8'))\"",
+            )
+        })?;
         let schema = Arc::new(schema(&array, options).map_err(fault)?);
         let left = array.frames();
         Ok(Self { array, schema, path, left })
@@ -71,7 +78,7 @@ fn columns<R: Read>(array: &Array<R>, options: &ReadOptions) -> Result<Schema, S
     if !(3..=4).contains(&columns) {
         return Err(format!(
             "is an array of {columns} columns, but a row is `x y z` or `x y z radius`; say which \
-             columns are what, as in x=2,y=3,z=4"
+             columns are what, as in --columns x=1,y=2,z=3,radius=4"
         ));
     }
     let roles = [Role::X, Role::Y, Role::Z, Role::Radius].into_iter();
@@ -86,6 +93,7 @@ impl FrameReader for Npy {
         }
         self.left -= 1;
         let mut builder = Builder::new(&self.path, Format::Npy, &self.schema);
+        builder.frame.warnings.extend(self.array.warning());
         let schema = self.schema.clone();
         self.array.rows(&self.path, |row| {
             for (column, (slot, &value)) in schema.slots.iter().zip(row.numbers).enumerate() {

@@ -1,6 +1,7 @@
 //! Arrays of an archive that are not columns of particles: the cell, and what is not drawn.
 
 use super::archive::Npz;
+use super::array::Turn;
 use crate::scene::SceneError;
 use crate::scene::particles::frame::{Cell, ParticleFrame};
 use crate::scene::particles::gsd;
@@ -23,11 +24,12 @@ impl Npz {
         let count = frame.len() as u64;
         let mut unused = Vec::new();
         for name in self.names().into_iter().filter(|name| !used.contains(name)) {
-            let Some([rows, columns]) = self.shape(&name) else {
+            let is = |names: &[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(&name));
+            let turn = if is(&CELLS) { Turn::Never } else { Turn::ToRows(count) };
+            let Some([rows, columns]) = self.shape(&name, turn) else {
                 unused.push(name);
                 continue;
             };
-            let is = |names: &[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(&name));
             if is(&CELLS) && frame.cell.is_none() && rows.saturating_mul(columns) <= 9 {
                 let values = self.numbers(&name)?;
                 frame.cell = cell([rows, columns], &values, frame);

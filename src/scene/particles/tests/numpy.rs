@@ -171,3 +171,64 @@ fn texts_are_no_places() {
     let many = "[('x', '|S9999999'), ('y', '|S9999999'), ('z', '<f4')]";
     assert_eq!(fault(npy(many, "(1,)", false, &[])).2, "has rows of 20000002 bytes");
 }
+
+#[test]
+fn arrays_of_columns_are_turned() {
+    let values: Vec<f32> = (0..15_u8).map(f32::from).collect();
+    let turned = frame(npy("<f4", "(3, 5)", false, &floats(&values)));
+    assert_eq!((turned.len(), turned.position(1)), (5, DVec3::new(1.0, 6.0, 11.0)));
+    assert!(turned.warnings[0].contains("(3, 5)"), "{:?}", turned.warnings);
+    let fortran = frame(npy("<f4", "(3, 5)", true, &floats(&values)));
+    assert_eq!(fortran.position(1), DVec3::new(3.0, 4.0, 5.0));
+    let four: Vec<f32> = (0..8_u8).map(f32::from).collect();
+    let four = frame(npy("<f4", "(4, 2)", false, &floats(&four)));
+    assert_eq!((four.position(1), four.radius[1]), (DVec3::new(1.0, 3.0, 5.0), 7.0));
+    // What may be rows is rows, and so is what has columns that are named.
+    let rows = frame(npy("<f4", "(4, 3)", false, &floats(&values[..12])));
+    assert_eq!((rows.len(), rows.position(1)), (4, DVec3::new(3.0, 4.0, 5.0)));
+    let named = frame_with(npy("<f4", "(3, 5)", false, &floats(&values)), &columns("x=2,y=3,z=5"));
+    assert_eq!(named.expect("a frame").position(1), DVec3::new(6.0, 7.0, 9.0));
+    let large: Vec<f32> = (0..60_000).map(|value| value as f32).collect();
+    let archive = npz(&[
+        ("position", npy("<f4", "(3, 20000)", false, &floats(&large))),
+        ("color", npy("<f4", "(3, 20000)", false, &floats(&vec![0.5; 60_000]))),
+        ("radius", npy("<f4", "(20000, 1)", false, &floats(&large[..20_000]))),
+    ]);
+    let turned = frame(archive);
+    assert_eq!((turned.len(), turned.x[7], turned.z[7]), (20_000, 7.0, 40_007.0));
+    assert_eq!((turned.radius[9], turned.color.len()), (9.0, 20_000));
+    let position = ("position", npy("<f4", "(2, 3)", false, &floats(&values[..6])));
+    let color = ("color", npy("<f4", "(3, 2)", false, &floats(&[1.0, 0.0, 0.5, 0.25, 0.0, 1.0])));
+    assert_eq!(frame(npz(&[position.clone(), color])).color[0].to_array(), [1.0, 0.5, 0.0]);
+    let color = ("color", npy("<f4", "(6,)", false, &floats(&values[..6])));
+    assert!(fault(npz(&[position, color])).2.contains("rows of 1 numbers"));
+}
+
+#[test]
+fn archives_may_have_an_array_for_each_axis() {
+    let array =
+        |values: &[f32]| npy("<f4", &format!("({},)", values.len()), false, &floats(values));
+    let (x, y, z) = (array(&[1.0, 4.0]), array(&[2.0, 5.0]), array(&[3.0, 6.0]));
+    for names in [["x", "y", "z"], ["X", "Y", "Z"], ["pos_x", "pos_y", "pos_z"]] {
+        let arrays = [
+            (names[2], z.clone()),
+            (names[0], x.clone()),
+            (names[1], y.clone()),
+            ("r", array(&[0.5, 0.25])),
+        ];
+        let frame = frame(npz(&arrays));
+        assert_eq!((frame.position(1), frame.radius[1]), (DVec3::new(4.0, 5.0, 6.0), 0.25));
+    }
+    let column = npy("<f4", "(4, 1)", false, &floats(&[1.0, 2.0, 3.0, 4.0]));
+    let columns_of_four = npz(&[("x", column.clone()), ("y", column.clone()), ("z", column)]);
+    assert_eq!(frame(columns_of_four).x, [1.0, 2.0, 3.0, 4.0]);
+    let named = npz(&[("a", x.clone()), ("b", y.clone()), ("c", z.clone()), ("q", x.clone())]);
+    let frame = frame_with(&named, &columns("x=a,y=b,z=c,q")).expect("a frame");
+    assert_eq!((frame.position(0), frame.numbers[0].values[1]), (DVec3::new(1.0, 2.0, 3.0), 4.0));
+    let unnamed = frame_with(&named, &ReadOptions::default()).expect_err("no names");
+    assert!(unnamed.help.is_some_and(|help| help.contains("--columns x=NAME,y=NAME,z=NAME")));
+    let short = npz(&[("x", x), ("y", y), ("z", array(&[1.0]))]);
+    assert_eq!(fault(short).2, "the array `z` has 1 numbers, but there are 2 particles");
+    let empty = fault(npz(&[])).2;
+    assert_eq!(empty, "is a ZIP archive without arrays of NumPy");
+}

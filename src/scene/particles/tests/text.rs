@@ -46,7 +46,7 @@ fn faulty_rows_have_a_line_and_a_column() {
         ("1\nProperties=pos:R\n0 0 0\n", (2, 1, "`pos:R` are no properties")),
         (
             "1\nProperties=pos:R:99999999999\n0 0 0\n",
-            (2, 1, "`pos:R:99999999999` are no properties"),
+            (2, 1, "`pos:R:99999999999` makes more than 10000 columns"),
         ),
         ("1\nLattice=\"1 0 0\"\nC 0 0 0\n", (2, 1, "Lattice is `1 0 0`, but must be 9 numbers")),
     ];
@@ -65,7 +65,7 @@ fn garbage_is_refused_with_a_reason() {
         (b"\x1F\x8B\x08rest", "the gzip data is damaged or cut off"),
         (b"BZh9rest", "the bzip2 data is damaged or cut off"),
         (b"abc\0def", "zero bytes"),
-        (b"BEGIN_SCENE\n", "no format known"),
+        (b"BEGIN_SCENERY\n", "no format known"),
         (b"1 2 3\n\xFF\xFE 2 3", "is not a number"),
     ];
     for (content, message) in cases {
@@ -259,4 +259,167 @@ fn the_first_value_that_is_not_missing_tells_what_a_column_is() {
     };
     assert_eq!(texts(name), [".", "?", "A", "."]);
     assert_eq!(texts(none), ["", "", ".", ""]);
+}
+
+#[test]
+fn headers_of_plain_rows_name_their_columns() {
+    for content in [
+        "# x y z radius v\n1 2 3 4 5\n6 7 8 9 10\n",
+        "# made by hand\n# x,y,z,radius,v\n1,2,3,4,5\n6,7,8,9,10\n",
+        "#x y z radius v\n# in arbitrary units\n1 2 3 4 5\n6 7 8 9 10\n",
+        "x y z radius v\n1 2 3 4 5\n6 7 8 9 10\n",
+        "# x (nm) y (nm) z (nm) radius (nm) v (m/s)\n1 2 3 4 5\n6 7 8 9 10\n",
+        "x [nm];y [nm];z [nm];radius [nm];v\n1;2;3;4;5\n6;7;8;9;10\n",
+        "# v\n# radius z y x v\n4 3 2 1 5\n9 8 7 6 10\n",
+        "% x y z radius v\n1 2 3 4 5\n6 7 8 9 10\n",
+    ] {
+        let frame = frame_with(content, &columns("v")).expect("a frame");
+        assert_eq!(
+            (frame.position(1), &frame.radius[..]),
+            (DVec3::new(6.0, 7.0, 8.0), &[4.0, 9.0][..]),
+            "{content}"
+        );
+        assert_eq!(frame.numbers[0].values, [5.0, 10.0], "{content}");
+        let expected =
+            if content.contains("nm") { LengthUnit::Nanometer } else { LengthUnit::Unknown };
+        assert_eq!(frame.unit, expected, "{content}");
+    }
+    let elements = frame("element x y z\nC 1 2 3\nO 4 5 6\n");
+    assert_eq!((kinds(&elements)[1], elements.x[1]), (("O", "O"), 4.0));
+    // Names that tell nothing of positions tell nothing.
+    assert_eq!(frame("# a b c d\n1 2 3 4\n").radius, [4.0]);
+    let chosen = frame_with("# a b c d\n1 2 3 4\n", &columns("x=c,y=b,z=a")).expect("a frame");
+    assert_eq!(chosen.x, [3.0]);
+    let numbered = frame_with("# a b c d\n1 2 3 4\n", &columns("x=4,y=2,z=1")).expect("a frame");
+    assert_eq!(numbered.x, [4.0]);
+    let unused = particles("# x y z radius charge\n1 2 3 4 5\n");
+    assert!(
+        unused.warnings[0].ends_with("columns that are not used: charge"),
+        "{:?}",
+        unused.warnings
+    );
+}
+
+#[test]
+fn what_is_not_told_by_names_comes_with_a_line_to_type() {
+    for (content, words) in [
+        ("px,py,pz\n1,2,3\n", "--columns x=px,y=py,z=pz"),
+        ("px py pz q\n1 2 3 4\n", "--columns x=px,y=py,z=pz"),
+        ("# px py pz q v\n1 2 3 4 5\n", "--columns x=px,y=py,z=pz"),
+        ("# x y mass\n1 2 3\n", "--columns"),
+        ("1 2 3 4 5 6\n", "--columns x=1,y=2,z=3,radius=4"),
+        ("1;2,5;3;4;5\n", "--columns x=1"),
+        ("! x y z\n1 2 3\n", "--format"),
+        ("1\nc\nC 1,5 2 3\n", "sed 's/"),
+    ] {
+        let error = frame_with(content, &ReadOptions::default()).expect_err(content);
+        assert!(error.help.as_ref().is_some_and(|help| help.contains(words)), "{content}: {error}");
+    }
+}
+
+#[test]
+fn lengths_in_several_units_are_converted_or_refused() {
+    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-15, "{found}");
+    let mixed = frame("x (m),y (m),z (m),diameter (mm)\n1,2,3,4\n");
+    near(mixed.radius[0], 0.002);
+    let roles: Vec<Role> = mixed.roles.iter().map(|(role, _)| *role).collect();
+    assert_eq!(
+        (roles, mixed.unit),
+        (vec![Role::X, Role::Y, Role::Z, Role::Diameter], LengthUnit::Meter)
+    );
+    near(frame("x (m),y (m),z (m),radius (um)\n1,2,3,4\n").radius[0], 4e-6);
+    assert!(fault("x (m),y (mm),z (m)\n1,2,3\n").2.contains("different units"));
+    assert!(fault("x (m),y (m),z (m),radius (px)\n1,2,3,4\n").2.contains("different units"));
+    assert!(fault("x (m),x (px),y,z\n1,2,3,4\n").2.contains("no column is named `x`"));
+    assert_eq!(frame("x (m),x,y,z\n1,2,3,4\n").x, [2.0]);
+}
+
+#[test]
+fn commas_may_be_decimal_points() {
+    for content in [
+        "1,5;2,5;3,5\n4;5;6\n",
+        "1,5\t2,5\t3,5\n4\t5\t6\n",
+        "1,5 2,5  3,5\n4 5 6\n",
+        "# x y z\n1,5 2,5 3,5 # one\n4 5 6\n",
+        "x;y;z\n1,5;2,5;3,5\n4;5;6\n",
+        "x\ty\tz\n1,5\t\"2,5\"\t3,5\n4\t5\t6\n",
+        "x y z\n1,5 2,5 3,5\n4 5 6\n",
+        "sep=;\nx;y;z\n1,5;2,5;3,5\n4;5;6\n",
+    ] {
+        let frame = frame(content);
+        assert_eq!(
+            (&frame.x[..], frame.position(0)),
+            (&[1.5, 4.0][..], DVec3::new(1.5, 2.5, 3.5)),
+            "{content}"
+        );
+        assert_eq!(frame.warnings, ["commas are read as decimal points"], "{content}");
+    }
+    for content in ["1, 2, 3\n", "1 ,2 ,3\n", "1,2,3\n", "1,2 3\n", " 1,2,3 \n"] {
+        let frame = frame(content);
+        assert_eq!(
+            (frame.position(0), frame.warnings.len()),
+            (DVec3::new(1.0, 2.0, 3.0), 0),
+            "{content}"
+        );
+    }
+    let texts = frame_with("x;y;z;name\n1,5;2;3;a,b\n", &columns("name")).expect("a frame");
+    assert_eq!(texts.texts[0].text(0), "a,b");
+    assert!(fault("x;y;z\n1.234,5;2;3\n").2.contains("is not a number"));
+}
+
+#[test]
+fn long_preambles_are_passed_over() {
+    for (rows, format) in
+        [("1 2 3 4\n5 6 7 8\n", Format::Xyzr), ("x,y,z,r\n1,2,3,4\n5,6,7,8\n", Format::Csv)]
+    {
+        for lines in [2_000, 20_000, 60_000] {
+            let content = "# a line of a long preamble of comments\n".repeat(lines) + rows;
+            let frame = frame(&content);
+            assert_eq!((frame.len(), frame.radius[1], frame.format), (2, 8.0, format), "{lines}");
+        }
+    }
+    let xyz = "# comment\n".repeat(20_000) + "1\nC\nC 1 2 3\n";
+    assert_eq!(kinds(&frame(xyz)), [("C", "C")]);
+    let (line, ..) = fault("#\n".repeat(20_000) + "1 2 x\n");
+    assert_eq!(line, 20_001);
+}
+
+#[test]
+fn text_in_utf_16_is_read_or_named() {
+    let text = "x;y;z;element\n1,5;2;3;O\n4;5;6;C\n";
+    let encodings: [fn(u16) -> [u8; 2]; 2] = [u16::to_le_bytes, u16::to_be_bytes];
+    for (encode, name) in encodings.into_iter().zip(["UTF-16LE", "UTF-16BE"]) {
+        let bytes = |text: &str| -> Vec<u8> { text.encode_utf16().flat_map(encode).collect() };
+        let frame = frame(bytes(&format!("\u{FEFF}{text}")));
+        assert_eq!((frame.x[0], kinds(&frame)[1]), (1.5, ("C", "C")));
+        let unmarked = frame_with(bytes(text), &ReadOptions::default()).expect_err(name);
+        assert!(unmarked.message.contains(name), "{unmarked}");
+        assert!(
+            unmarked.help.is_some_and(|help| help.contains(&format!("iconv -f {name} -t UTF-8")))
+        );
+    }
+}
+
+#[test]
+fn files_of_other_formats_come_with_a_command() {
+    let xtc = [&1995_u32.to_be_bytes()[..], &7_u32.to_be_bytes(), &[0; 44], &7_u32.to_be_bytes()]
+        .concat();
+    let sdf = b"241\n  tool\n\n  1  0  0  0  0  0  0  0  0  0999 V2000\n    0.0    0.0    0.0 C\nM  END\n";
+    for (content, name, command) in [
+        (&xtc[..], "XTC", "gmx trjconv"),
+        (sdf, "SDF", "obabel"),
+        (b"ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\n", "PQR", "awk"),
+    ] {
+        let error = frame_with(content, &ReadOptions::default()).expect_err(name);
+        assert!(
+            error.message.contains(name) && error.help.is_some_and(|help| help.contains(command))
+        );
+    }
+    // Titles may say anything, and formats may be asked for.
+    assert_eq!(frame("crystal\n1 atoms\n\nAtoms # atomic\n\n1 1 1 2 3\n").x, [1.0]);
+    let gro = "CRYSTAL\n 1\n    1MET      N    1   5.202   4.356   3.155\n   9 9 9\n";
+    assert_eq!(frame(gro).x, [5.202]);
+    let options = ReadOptions { format: Some(Format::Pdb), ..ReadOptions::default() };
+    let pqr = "ATOM      1  N   NTR     0      63.889  69.990 133.214  0.1414 1.8240\n";
+    assert_eq!(frame_with(pqr, &options).expect("a frame").x, [63.889]);
 }
