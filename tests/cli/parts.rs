@@ -164,7 +164,7 @@ fn what_parts_cannot_do_is_said() {
         ("--part 1/5 --split samples", &["5 parts", "by tiles"]),
         ("--part 1/2 --background white", &["--background", "--part"]),
         ("--part 1/2 --checkpoint c", &["--checkpoint", "--part"]),
-        ("a.xyz --part 1/2 --turntable 3", &["--turntable", "--part"]),
+        ("a.xyz --part 1/2 --turntable 3 --split tiles", &["--split", "whole"]),
     ];
     for (line, words) in cases {
         let args: Vec<&str> = line.split(' ').collect();

@@ -159,8 +159,10 @@ fn finish_picture(
     let traced = trace(job, prepared, session.keeper, unfinished)?;
     let finished = finish_traced(job, prepared, session, &traced);
     // One that came while the picture was written ends a sequence, too. If something is to be saved or
-    // removed then, the next picture sees to that: it is interrupted at once.
-    let saves = session.keeper.is_some() || session.film.is_some();
+    // removed then, the next picture sees to that: it is interrupted at once. But nothing waits for
+    // input that may never come.
+    let stream = job.common.as_ref().is_some_and(|common| !common.frames_all);
+    let saves = !stream && (session.keeper.is_some() || session.film.is_some());
     let goes_on = saves && job.place.is_some_and(|place| !place.last);
     let signal = if goes_on { traced.signal } else { traced.signal.or(signals::release()) };
     finished?;
