@@ -118,6 +118,9 @@ pub(super) struct InfoArgs {
     pub(super) scene: PathBuf,
     #[command(flatten)]
     pub(super) particles: ParticleArgs,
+    /// List the first and last N particles of a particle file
+    #[arg(long, value_name = "N")]
+    pub(super) rows: Option<usize>,
     /// One JSON object on standard output
     #[arg(long)]
     pub(super) json: bool,

@@ -66,7 +66,8 @@ Examples:
 pub(super) const INFO: &str = "\
 Examples:
   spherule info scene.toml
-  spherule info particles.csv --json";
+  spherule info particles.csv --json
+  spherule info trajectory.xyz --frame last --rows 3";
 
 /// Of `spherule compare`.
 pub(super) const COMPARE: &str = "\

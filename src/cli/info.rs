@@ -4,6 +4,7 @@ use super::args::InfoArgs;
 use super::contents::{dropped, found, plural, spheres};
 use super::files::Files;
 use super::particles::ParticleInfo;
+use super::rows::RowInfo;
 use super::source::Source;
 use super::{Failure, output, settings, slices};
 use indicatif::{BinaryBytes, HumanCount};
@@ -81,7 +82,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     files.reads_scene(&args.scene);
     files.check()?;
     let source = Source::of_path("info", &args.scene, &args.particles)?;
-    let (scene, particles) = load(&source)?;
+    let (scene, particles) = load(&source, args.rows)?;
     let world =
         World::build(&scene).map_err(|error| Failure::World(source.name().into_owned(), error))?;
     let info = Info { particles, ..Info::new(&source, &scene, &world) };
@@ -94,10 +95,17 @@ pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The scene, and what its file says if it is one of particles.
-fn load(source: &Source) -> Result<(Scene, Option<ParticleInfo>), Failure> {
-    let Source::Particles(path, options) = source else { return Ok((source.load()?, None)) };
+fn load(source: &Source, rows: Option<usize>) -> Result<(Scene, Option<ParticleInfo>), Failure> {
+    let Source::Particles(path, options) = source else {
+        if rows.is_some() {
+            let message = "--rows lists the particles of a particle file, not of a scene";
+            return Err(Failure::usage("info", message));
+        }
+        return Ok((source.load()?, None));
+    };
     let particles = spherule::scene::particles::read(path, options)?;
-    let info = ParticleInfo::new(path, options, &particles);
+    let mut info = ParticleInfo::new(path, options, &particles);
+    info.rows = rows.map(|count| RowInfo::new(&particles, count));
     Ok((Scene::of_particles(particles, &source.title(&Scene::default())), Some(info)))
 }
 

@@ -27,6 +27,7 @@ mod picture_file;
 mod processor;
 mod progress;
 mod render;
+mod rows;
 mod sequences;
 mod settings;
 mod signals;

@@ -1,6 +1,7 @@
 //! How the command line has files of particles read, and what it says of them.
 
 use super::frames::{FrameArg, FrameRange};
+use super::rows::RowInfo;
 use super::settings::List;
 use super::typed::{self, Typed};
 use super::{Failure, output};
@@ -123,6 +124,8 @@ pub(super) struct ParticleInfo {
     types: Vec<TypeInfo>,
     /// Null if the file has none.
     cell: Option<CellInfo>,
+    /// Null if they are not asked for.
+    pub(super) rows: Option<RowInfo>,
 }
 
 #[derive(Serialize)]
@@ -169,6 +172,7 @@ impl ParticleInfo {
                 vectors: cell.vectors.map(|vector| vector.to_array()),
                 periodic: cell.periodic,
             }),
+            rows: None,
         }
     }
 
@@ -198,5 +202,6 @@ impl ParticleInfo {
         if let Some(CellInfo { origin, vectors: [a, b, c], .. }) = &self.cell {
             output::print(format_args!("cell         {a:?}, {b:?}, {c:?} from {origin:?}"));
         }
+        self.rows.iter().for_each(RowInfo::print);
     }
 }

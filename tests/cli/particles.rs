@@ -44,6 +44,27 @@ fn files_say_what_is_in_them() {
 }
 
 #[test]
+fn rows_are_listed_from_both_ends() {
+    let folder = Folder::new();
+    folder.write("rows.csv", "x,y,z,radius\n0,0,0,1\n1,0,0,1\n2,0,0,1\n3,0,0,0.5\n");
+    folder.write("a.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
+    let rows = |count: &str| {
+        let info = folder.json(&["info", "rows.csv", "--rows", count, "--json"]);
+        let numbers = |end: &str| {
+            let rows = info["particles"]["rows"][end].as_array().expect("rows").iter();
+            rows.map(|row| row["row"].as_u64().expect("a number")).collect::<Vec<_>>()
+        };
+        (numbers("first"), numbers("last"))
+    };
+    assert_eq!(rows("1"), (vec![0], vec![3]));
+    assert_eq!(rows("3"), (vec![0, 1, 2], vec![3]));
+    assert_eq!(rows("9"), (vec![0, 1, 2, 3], vec![]));
+    let lines = folder.succeed(&["info", "rows.csv", "--rows", "1"]);
+    assert!(lines.contains("3: at [3.0, 0.0, 0.0], radius 0.5"), "{lines}");
+    assert_eq!(folder.run(&["info", "a.toml", "--rows", "1"]).status.code(), Some(2));
+}
+
+#[test]
 fn frames_and_radii_are_chosen() {
     let folder = Folder::new();
     folder.write("run.dump", DUMP);
