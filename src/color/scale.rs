@@ -113,4 +113,10 @@ mod tests {
             assert!(values.iter().zip(&colors).all(|(value, color)| scale.color(*value) == *color));
         }
     }
+
+    #[test]
+    fn positions_are_reversed_too() {
+        assert_eq!(scale().at(0.25), Map::Plasma.at(0.25));
+        assert_eq!(Scale { reversed: true, ..scale() }.at(0.25), Map::Plasma.at(0.75));
+    }
 }

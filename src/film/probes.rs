@@ -284,4 +284,13 @@ mod tests {
             assert_eq!((reading.squared, reading.radiance, reading.independent), (0.5, 0.5, 0.0));
         }
     }
+
+    #[test]
+    fn pilots_take_their_variance_from_neighbors() {
+        let samples = [1.0, 3.0, 5.0, 7.0].map(Rgb::splat);
+        let pilot = Pilot::new(&samples, 2, [2.0, 3.0].into_iter());
+        // Weighted they are 2, 6, 15 and 21: half the squared steps are 8, 40.5 and 18.
+        assert_eq!(pilot.sum, 44.0 / 2.0);
+        assert!((pilot.variance - 66.5 * 4.0 / 3.0 / 4.0).abs() < 1e-12, "{}", pilot.variance);
+    }
 }

@@ -162,7 +162,9 @@ pub(super) fn neighbors(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::{Density, Region};
     use crate::sampling::{mix, stream, unit};
+    use crate::scene::Rgb;
 
     /// Numbers in (0, 1) of a stream.
     fn uniform(key: u64, index: u64) -> f64 {
@@ -241,5 +243,42 @@ mod tests {
         assert_eq!(all(0), [0, 1, 3, 4]);
         assert_eq!(all(4), [0, 1, 2, 3, 4, 5]);
         assert_eq!(neighbors(0, 1, 1).collect::<Vec<_>>(), [(0, 4.0)]);
+    }
+
+    #[test]
+    fn neighbors_weigh_less_than_the_middle() {
+        let weights = neighbors(4, 3, 6).map(|(_, weight)| weight);
+        assert_eq!(weights.collect::<Vec<_>>(), [1.0, 2.0, 1.0, 2.0, 4.0, 2.0]);
+    }
+
+    #[test]
+    fn the_bound_adds_the_relative_variances_of_error_and_mean() {
+        let estimate = |value, variance| Estimate { value, variance, third: 0.0 };
+        let noise = Noise::new(estimate(4.0, 1.0), 4, estimate(2.0, 0.5));
+        assert_eq!(noise.error, 0.5);
+        let variance: f64 = 1.0 / 16.0 + 4.0 * 0.5 / 4.0;
+        let bound = 0.25 * (1.0 + DEVIATIONS * variance.sqrt());
+        assert!((noise.bound.powi(2) - bound).abs() < 1e-12, "{}", noise.bound);
+    }
+
+    #[test]
+    fn estimates_are_pooled_by_their_variances() {
+        let estimate = |value, variance| Estimate { value, variance, third: 0.0 };
+        assert_eq!(estimate(1.0, 1.0).with(estimate(5.0, 3.0)), estimate(2.0, 0.75));
+        assert_eq!(estimate(1.0, 0.0).with(estimate(5.0, 3.0)), estimate(1.0, 0.0));
+    }
+
+    #[test]
+    fn the_gain_is_the_variance_over_that_of_independent_samples() {
+        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false);
+        assert_eq!(gain(&film, 0), 1.0);
+        film.place_probes(Density { block: 64, replicas: 1 }, 1, |_| true);
+        let probes = &mut film.tiles[0].probes;
+        // Two samples of each stream, whose mean is 1 or 2: half the squared difference is 1/2, and
+        // half of each stream's variance of 2 is 1.
+        let samples = |stream: usize| [stream % 2, stream % 2 + 2].map(|x| Rgb::splat(x as f32));
+        let samples: Vec<Rgb> = (0..probes.streams()).flat_map(samples).collect();
+        probes.add(&samples, 2);
+        assert_eq!(gain(&film, 0), 0.5);
     }
 }

@@ -200,6 +200,8 @@ mod tests {
         assert_eq!(steps(timed, 1000), [0, 1, 2, 4, 8, 16, 32, 64, 100]);
         assert_eq!(steps(timed, 3), [0, 1, 2, 4, 8, 16, 32, 48, 64, 80, 96, 100]);
         assert_eq!(steps(Goal { first: 3, most: 3, timed: true }, 9), [0, 1, 2, 3]);
+        let odd = Goal { first: 12, ..timed };
+        assert_eq!(steps(odd, 1000), [0, 1, 2, 4, 8, 12, 24, 48, 96, 100]);
     }
 
     #[test]
@@ -241,5 +243,26 @@ mod tests {
         assert!(all.len() >= 2 && all[0] == 1 && !all.contains(&3), "{all:?}");
         let done = Goal { most: 16, ..goal };
         assert!(next_round(&film, &done, Slope::default(), 0.0).is_empty());
+    }
+
+    #[test]
+    fn older_news_count_half() {
+        let mut slope = Slope::default();
+        slope.learn(8.0, 3.0);
+        slope.learn(1.0, 1.0);
+        assert!((slope.exponent() - (5.0_f64 / 2.5).log2()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn probes_that_judge_do_not_steer() {
+        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false);
+        film.place_probes(Density { block: 64, replicas: 1 }, 1, |_| true);
+        // Places take turns, and each has two streams: the judges' alone differ.
+        let probes = &mut film.tiles[0].probes;
+        let radiance = |stream: usize| Rgb::splat(if stream % 4 == 3 { 2.0 } else { 1.0 });
+        let samples: Vec<Rgb> = (0..probes.streams()).map(radiance).collect();
+        probes.add(&samples, 1);
+        assert_eq!(steering_variance(&film.tiles[0]), 0.0);
+        assert!(crate::noise::squared_error(&film).value > 0.0);
     }
 }

@@ -200,4 +200,10 @@ mod tests {
         let through = [DVec3::new(0.0, 0.1, 20.0), DVec3::new(0.0, 2.0, 0.0)];
         assert!(drawn(CENTRAL, through, WHOLE).pixels.iter().flatten().all(|x| x.is_finite()));
     }
+
+    #[test]
+    fn lines_shine_through_what_is_not_covered() {
+        let pixel = Features { depth: 1.0, coverage: 0.25, ..Features::NONE };
+        assert_eq!([0.5, 1.0, 2.0].map(|distance| visible(distance, &pixel)), [1.0, 1.0, 0.75]);
+    }
 }

@@ -78,3 +78,19 @@ pub fn draw_alpha(alpha: &mut [f32], (width, height): (u32, u32), draw: impl Fn(
         *alpha = 1.0 - (1.0 - *alpha) * (white[1] - black[1]).clamp(0.0, 1.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where codes are blended, a shadow takes from a code what the code of the light that it leaves
+    /// lacks.
+    #[test]
+    fn shadows_are_encoded_as_the_light_that_they_leave() {
+        let matte = Matte { coverage: vec![0.0, 0.5, 0.0], shadow: vec![0.5, 0.0, 1.0] };
+        assert_eq!(matte.linear(), [0.5, 0.5, 1.0]);
+        for (found, expected) in matte.encoded().into_iter().zip([1.0 - 0.735_357, 0.5, 1.0]) {
+            assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+        }
+    }
+}

@@ -127,4 +127,18 @@ mod tests {
         assert_eq!(depths(&world), NONE);
         assert_eq!(Runs::of(&world).depths(&world), NONE);
     }
+
+    #[test]
+    fn what_is_behind_a_parallel_camera_counts_as_0() {
+        let mut scene = crate::scene::generate::default_scene(1);
+        scene.spheres = crate::scene::Spheres::default();
+        for z in [0.0, 10.0] {
+            scene.spheres.push(DVec3::Z * z, 1.0, 0, crate::scene::Rgb::ONE);
+        }
+        scene.camera.projection = Projection::Orthographic { height: Some(3.0) };
+        scene.camera.pose = Pose::LookAt { eye: DVec3::Z * 5.0, target: DVec3::ZERO };
+        let world = World::build(&scene).unwrap();
+        assert_eq!(depths(&world), [0.0, 6.0]);
+        assert_eq!(Runs::of(&world).depths(&world), [0.0, 6.0]);
+    }
 }

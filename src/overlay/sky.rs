@@ -53,11 +53,11 @@ impl Overlay<'_> {
 mod tests {
     use super::*;
     use crate::film::Region;
-    use crate::layers::{Layer, layers};
+    use crate::layers::{Features, Layer, Layers, layers};
     use crate::overlay::depths;
     use crate::render::{Options, render};
     use crate::scene::particles::Particles;
-    use crate::scene::{Pose, Projection, Rgb, Scene};
+    use crate::scene::{EnvironmentMap, Pose, Projection, Rgb, Scene};
     use crate::world::World;
     use glam::DVec3;
 
@@ -114,5 +114,67 @@ mod tests {
         let edge = (1..=3).map(|x| after.pixel(x, 12).unwrap()[1]).fold(1.0, f32::min);
         assert!(edge < 0.3, "{edge}");
         assert_eq!(depths(&World::build(&scene()).unwrap()).map(f64::round), [4.0, 14.0]);
+    }
+
+    /// White paper after something is drawn over it, 6 x 5 pixels whose left half is at depth 10 and
+    /// whose right half is `other`, in a scene of depths from 0 to 100.
+    fn halves(other: Features, draw: impl Fn(&Overlay, &mut Image)) -> Image {
+        let up = [0.0, 0.0, 1.0];
+        let left = Features { normal: up, depth: 10.0, coverage: 1.0, id: 1, ..Features::NONE };
+        let pixels = (0..30).map(|row| if row % 6 < 3 { left } else { other }).collect();
+        let layers = Layers { width: 6, height: 5, pixels, statistics: None };
+        let world = World::build(&scene()).unwrap();
+        let region = Region { x: 0, y: 0, width: 6, height: 5 };
+        let mut image = Image::filled(6, 5, [1.0; 3]).unwrap();
+        let depths = Some([0.0, 100.0]);
+        draw(&Overlay { world: &world, region, layers: &layers, depths }, &mut image);
+        image
+    }
+
+    #[test]
+    fn contours_are_as_strong_as_jumps_and_creases() {
+        let row = |depth: f32, cosine: f32| {
+            let normal = [(1.0 - cosine * cosine).sqrt(), 0.0, cosine];
+            let other = Features { normal, depth, coverage: 1.0, id: 2, ..Features::NONE };
+            let image = halves(other, |overlay, image| overlay.draw_contours(image, [0.0; 3]));
+            [1, 2, 3].map(|x| image.pixel(x, 2).unwrap()[1])
+        };
+        let close = |found: [f32; 3], strength: f32| {
+            // Smoothed, the nearer pixel has 0.9 of the strength, and those beside it a half of that.
+            let expected = [0.45, 0.9, 0.45].map(|share| 1.0 - share * strength);
+            let near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5);
+            assert!(near, "{found:?} {expected:?}");
+        };
+        // A jump is more than 2 % of the depths.
+        close(row(13.0, 1.0), 1.0);
+        close(row(11.0, 1.0), 0.0);
+        // A crease of 60 degrees.
+        close(row(11.0, 0.5), 0.7 * (0.5 - 0.1) / 0.7);
+    }
+
+    #[test]
+    fn fog_grows_with_the_square_of_the_depth() {
+        let other = Features { depth: 75.0, coverage: 1.0, id: 2, ..Features::NONE };
+        let image = halves(other, |overlay, image| overlay.fade(image, [0.0; 3], 0.5));
+        for (x, share) in [(0, 0.01), (5, 0.5625)] {
+            let left = image.pixel(x, 0).unwrap()[1];
+            assert!((left - (1.0 - 0.5 * share)).abs() < 1e-6, "{x} {left}");
+        }
+    }
+
+    #[test]
+    fn a_region_sees_its_part_of_the_sky() {
+        let mut scene = scene();
+        scene.camera.projection = Projection::Perspective { fov: 60.0 };
+        let (bottom, top) = (Rgb::ZERO, Rgb::ONE);
+        let up = DVec3::new(0.6, 0.8, 0.0);
+        scene.environment.map = EnvironmentMap::Gradient { bottom, top, up };
+        let world = World::build(&scene).unwrap();
+        let layers = Layers { width: 0, height: 0, pixels: Vec::new(), statistics: None };
+        let overlay = |region| Overlay { world: &world, region, layers: &layers, depths: None };
+        let part = overlay(Region { x: 11, y: 5, width: 4, height: 3 });
+        assert_eq!(part.sky(2, 1), overlay(WHOLE).sky(13, 6));
+        assert_ne!(part.sky(2, 1), overlay(WHOLE).sky(2, 6));
+        assert_ne!(part.sky(2, 1), overlay(WHOLE).sky(13, 1));
     }
 }

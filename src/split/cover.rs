@@ -74,4 +74,11 @@ mod tests {
             assert_eq!(all.iter().map(Share::size).sum::<u64>(), whole.size());
         }
     }
+
+    #[test]
+    fn shares_within_others_leave_no_holes() {
+        let whole = share(0..16, 0..10);
+        let shares = [share(0..10, 0..10), share(2..4, 0..10), share(12..16, 0..10)];
+        assert_eq!(holes(&whole, &shares), [share(10..12, 0..10)]);
+    }
 }

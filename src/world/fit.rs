@@ -287,7 +287,7 @@ fn center(spheres: &Spheres, i: usize) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Camera;
+    use crate::scene::{Camera, Rgb};
 
     fn spheres() -> Spheres {
         let mut spheres = Spheres::default();
@@ -336,5 +336,26 @@ mod tests {
             pose(&Scene { camera, ..Scene::default() }),
             Err(WorldError::Camera { .. })
         ));
+    }
+
+    #[test]
+    fn parallel_views_frame_what_is_wide() {
+        let placed = |pose: Pose| {
+            let mut scene = Scene::default();
+            for x in [-3.0, 5.0] {
+                scene.spheres.push(DVec3::new(x, 0.0, -10.0), 1.0, 0, Rgb::ONE);
+            }
+            (scene.settings.width, scene.settings.height) = (200, 100);
+            let projection = Projection::Orthographic { height: None };
+            scene.camera = Camera { projection, pose, up: DVec3::Y, ..Camera::default() };
+            super::pose(&scene).unwrap()
+        };
+        // The farther end is 6 beside the eye.
+        let looking = placed(Pose::LookAt { eye: DVec3::ZERO, target: DVec3::NEG_Z });
+        assert_eq!((looking.half_width, looking.half_height), (6.0, 3.0));
+        let framed = placed(Pose::Fit { direction: DVec3::NEG_Z, margin: 0.0 });
+        assert_eq!((framed.half_width, framed.half_height), (5.0, 2.5));
+        let middle = DVec3::new(1.0, 0.0, -10.0);
+        assert_eq!(framed.eye + framed.axes.forward * framed.distance, middle);
     }
 }

@@ -242,6 +242,9 @@ mod tests {
         let camera = broadside(&slab(turned()), &Camera::default());
         let Pose::Fit { direction, .. } = camera.pose else { panic!("it frames the slab") };
         assert!(direction.dot(turned()[2]).abs() > 0.98 && camera.up.dot(turned()[1]).abs() > 0.98);
+        // Of the two sides, the one with x to the right and y up.
+        let right = direction.cross(camera.up);
+        assert!(right.dot(DVec3::X) > 0.0 && camera.up.dot(DVec3::Y) > 0.0, "{right}");
     }
 
     #[test]
@@ -318,6 +321,36 @@ mod tests {
             let pixel = world.camera.pixel(seen);
             assert!(seen.z > 0.0 && pixel.x > 0.0 && pixel.y > 0.0, "{pixel}");
             assert!(pixel.x < 800.0 && pixel.y < 600.0, "{pixel}");
+        }
+    }
+
+    #[test]
+    fn a_turn_moves_the_camera_to_the_right() {
+        let mut scene = Scene::default();
+        scene.camera.up = DVec3::Y;
+        scene.camera.pose = Pose::LookAt { eye: DVec3::Z * 5.0, target: DVec3::ZERO };
+        turn(&mut scene, &[], std::f64::consts::FRAC_PI_2);
+        let Pose::LookAt { eye, target } = scene.camera.pose else { panic!("it stands") };
+        assert!(eye.distance(DVec3::X * 5.0) < 1e-12 && target == DVec3::ZERO, "{eye} {target}");
+    }
+
+    #[test]
+    fn a_turn_frames_the_ball_around_all_spheres() {
+        for (width, height) in [(800, 400), (400, 800)] {
+            let mut scene = Scene::default();
+            scene.spheres.push(DVec3::ZERO, 1.0, 0, Rgb::ONE);
+            scene.spheres.push(DVec3::X * 4.0, 3.0, 0, Rgb::ONE);
+            (scene.settings.width, scene.settings.height) = (width, height);
+            scene.camera.up = DVec3::Y;
+            scene.camera.projection = Projection::Perspective { fov: 60.0 };
+            scene.camera.pose = Pose::Fit { direction: DVec3::NEG_Z, margin: 0.2 };
+            turn(&mut scene, &[], 0.0);
+            let Pose::LookAt { eye, target } = scene.camera.pose else { panic!("it stands") };
+            // Both spheres end at -1 or 7. The ball touches the nearer edges of what the margin leaves.
+            assert_eq!(target, DVec3::X * 3.0);
+            let tangent = 30_f64.to_radians().tan() * f64::min(1.0, width as f64 / height as f64);
+            let radius = eye.distance(target) * tangent.atan().sin();
+            assert!((radius - 4.0 / 0.8).abs() < 1e-12, "{width} {radius}");
         }
     }
 }
