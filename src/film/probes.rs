@@ -293,4 +293,15 @@ mod tests {
         assert_eq!(pilot.sum, 44.0 / 2.0);
         assert!((pilot.variance - 66.5 * 4.0 / 3.0 / 4.0).abs() < 1e-12, "{}", pilot.variance);
     }
+
+    #[test]
+    fn rays_are_counted_by_sample_and_merged() {
+        let mut film = film(16, 16);
+        let probes = &mut film.tiles[0].probes;
+        (probes.samples, probes.rays) = (4, 40 * probes.streams() as u64);
+        assert_eq!(probes.rays_per_sample(), 10.0);
+        let other = probes.clone();
+        assert!(probes.merge(&other));
+        assert_eq!((probes.samples, probes.rays), (8, 2 * other.rays));
+    }
 }

@@ -206,4 +206,19 @@ mod tests {
         let pixel = Features { depth: 1.0, coverage: 0.25, ..Features::NONE };
         assert_eq!([0.5, 1.0, 2.0].map(|distance| visible(distance, &pixel)), [1.0, 1.0, 0.75]);
     }
+
+    #[test]
+    fn the_middle_of_a_line_in_the_picture_is_nearer_than_the_middle_of_the_line() {
+        for (projection, middle) in [(CENTRAL, 1.5), (PARALLEL, 2.0)] {
+            let (world, scene) = world(projection);
+            let layers = layers(&world, &scene.settings, &Options::default(), &[]);
+            let overlay = Overlay { world: &world, region: WHOLE, layers: &layers, depths: None };
+            let seen = [1.0, 3.0].map(|depth| DVec3::Z * depth * world.frame.scale);
+            let line = Projected { seen, pixel: [DVec2::ZERO; 2] };
+            // In perspective the harmonic mean.
+            assert!((overlay.distance(&line, 0.5) - middle).abs() < 1e-12, "{projection:?}");
+            let ends = [0.0, 1.0].map(|along| overlay.distance(&line, along));
+            assert_eq!(ends, [1.0, 3.0], "{projection:?}");
+        }
+    }
 }

@@ -233,4 +233,22 @@ mod tests {
         let mean = sum / COUNT;
         (mean, ((squares / COUNT - mean * mean).max(0.0) / COUNT).sqrt())
     }
+
+    #[test]
+    fn rows_are_what_their_lanes_are() {
+        let distance2: [[f64; 8]; 2] = [0, 1]
+            .map(|half| std::array::from_fn(|i| 1.0 + 0.7 * ((i * 5 + half * 3) % 11) as f64));
+        // In some lanes the point is inside.
+        let radius: [[f64; 8]; 2] =
+            [0, 1].map(|half| std::array::from_fn(|i| if (i + half) % 3 == 0 { 9.0 } else { 0.9 }));
+        let (row, outside) =
+            Cone::toward_spheres(distance2.map(F64x8::new), radius.map(F64x8::new));
+        let pdfs = row.pdfs().to_array();
+        for lane in 0..MAX_LANES {
+            let (half, i) = (lane / 8, lane % 8);
+            let alone = Cone::toward_sphere(distance2[half][i], radius[half][i]);
+            assert_eq!(alone.is_some(), outside >> lane & 1 == 1, "{lane}");
+            assert!(alone.is_none_or(|cone| cone.pdf() == pdfs[lane]), "{lane}");
+        }
+    }
 }

@@ -159,6 +159,7 @@ mod tests {
         let part = |count| Part::new(count, count).expect("the last one");
         let by = |count, split| part(count).share(&whole, split).map_err(|error| error.to_string());
         assert_eq!(by(40, None).map(|share| share.tiles), Ok(39..40));
+        assert_eq!(by(16, None).map(|share| share.samples), Ok(15..16));
         let samples = "40 parts are more than the 16 samples of a pixel; split it by tiles";
         assert_eq!(by(40, Some(Split::Samples)), Err(samples.to_owned()));
         let both = "41 parts are more than the 16 samples of a pixel; ask for 40 parts or fewer";

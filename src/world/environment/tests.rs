@@ -81,3 +81,10 @@ fn there_is_a_density_wherever_there_is_light() {
     assert!((90_000..130_000).contains(&lit.len()), "{}", lit.len());
     assert!(lit.iter().all(|&direction| picture.pdf(direction) > 0.0));
 }
+
+#[test]
+fn the_mean_luminance_of_one_color_is_that_color() {
+    let image = Image::filled(WIDTH as u32, HEIGHT as u32, [2.0; 3]).unwrap();
+    let picture = Picture::new(Arc::new(image), DVec3::Z, 0.0, 0.5);
+    assert!((picture.mean_luminance() - 1.0).abs() < 1e-6, "{}", picture.mean_luminance());
+}
