@@ -270,7 +270,7 @@ mod tests {
 
     #[test]
     fn the_gain_is_the_variance_over_that_of_independent_samples() {
-        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false);
+        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false).unwrap();
         assert_eq!(gain(&film, 0), 1.0);
         film.place_probes(Density { block: 64, replicas: 1 }, 1, |_| true);
         let probes = &mut film.tiles[0].probes;

@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn probes_that_judge_do_not_steer() {
-        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false);
+        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false).unwrap();
         film.place_probes(Density { block: 64, replicas: 1 }, 1, |_| true);
         // Places take turns, and each has two streams: the judges' alone differ.
         let probes = &mut film.tiles[0].probes;

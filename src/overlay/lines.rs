@@ -211,7 +211,7 @@ mod tests {
     fn the_middle_of_a_line_in_the_picture_is_nearer_than_the_middle_of_the_line() {
         for (projection, middle) in [(CENTRAL, 1.5), (PARALLEL, 2.0)] {
             let (world, scene) = world(projection);
-            let layers = layers(&world, &scene.settings, &Options::default(), &[]);
+            let layers = layers(&world, &scene.settings, &Options::default(), &[]).unwrap();
             let overlay = Overlay { world: &world, region: WHOLE, layers: &layers, depths: None };
             let seen = [1.0, 3.0].map(|depth| DVec3::Z * depth * world.frame.scale);
             let line = Projected { seen, pixel: [DVec2::ZERO; 2] };
