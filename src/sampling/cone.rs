@@ -243,12 +243,11 @@ mod tests {
             [0, 1].map(|half| std::array::from_fn(|i| if (i + half) % 3 == 0 { 9.0 } else { 0.9 }));
         let (row, outside) =
             Cone::toward_spheres(distance2.map(F64x8::new), radius.map(F64x8::new));
-        let pdfs = row.pdfs().to_array();
-        for lane in 0..MAX_LANES {
+        for (lane, pdf) in row.pdfs().to_array().into_iter().enumerate() {
             let (half, i) = (lane / 8, lane % 8);
             let alone = Cone::toward_sphere(distance2[half][i], radius[half][i]);
             assert_eq!(alone.is_some(), outside >> lane & 1 == 1, "{lane}");
-            assert!(alone.is_none_or(|cone| cone.pdf() == pdfs[lane]), "{lane}");
+            assert!(alone.is_none_or(|cone| cone.pdf() == pdf), "{lane}");
         }
     }
 }
