@@ -39,7 +39,8 @@ const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 
 /// How binary files begin: place, bytes, name, way.
-const MAGICS: [(usize, &[u8], &str, &str); 24] = [
+const MAGICS: [(usize, &[u8], &str, &str); 25] = [
+    (0, b"# vtk DataFile", "a VTK file", MESH),
     (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
     (0, b"CDF\x01", "a NetCDF file", WITH_TOPOLOGY),
     (0, b"CDF\x02", "a NetCDF file", WITH_TOPOLOGY),
@@ -97,8 +98,7 @@ const MAGICS: [(usize, &[u8], &str, &str); 24] = [
 ];
 
 /// Words that text files begin with, in any case: words, name, way.
-const WORDS: [(&str, &str, &str); 19] = [
-    ("# vtk datafile", "a VTK file", MESH),
+const WORDS: [(&str, &str, &str); 18] = [
     ("%version", "a topology of Amber", TOPOLOGY),
     ("title =", "a Tecplot file", MESH),
     ("title=", "a Tecplot file", MESH),
@@ -476,6 +476,10 @@ mod tests {
             (
                 zip(b"mimetypeapplication/vnd.oasis.opendocument.spreadsheet"),
                 ["spreadsheet", "csv"],
+            ),
+            (
+                b"# vtk DataFile Version 5.1\nx\nBINARY\n\0\0".to_vec(),
+                ["VTK", "meshio.read('run.bin')"],
             ),
             (b"PAR1\0\0".to_vec(), ["Parquet", "read_parquet('run.bin')"]),
             (b"spherule-checkpoint\n\0".to_vec(), ["render that", "--resume run.bin"]),
