@@ -6,11 +6,11 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde_json::{Value, json};
 use spherule::color::{Map, Spacing};
 use spherule::drawing::Format;
+use spherule::scene::Corner;
 use spherule::scene::particles::{
     Coloring, ColumnColors, ElementColors, Legend, Looks, Selection, TypeLook,
 };
 use spherule::suggest;
-use std::fmt;
 use std::path::PathBuf;
 
 /// How particles look.
@@ -74,29 +74,6 @@ pub(super) enum BarPlace {
     Inside(Corner),
 }
 
-/// A corner of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Corner {
-    pub(super) top: bool,
-    pub(super) left: bool,
-}
-
-/// As it is typed.
-impl fmt::Display for Corner {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let found = CORNERS.iter().find(|(_, corner)| corner == self);
-        formatter.write_str(found.map_or("", |(name, _)| name))
-    }
-}
-
-/// What corners are called; the first is meant where none is named.
-const CORNERS: [(&str, Corner); 4] = [
-    ("bottom-right", Corner { top: false, left: false }),
-    ("bottom-left", Corner { top: false, left: true }),
-    ("top-right", Corner { top: true, left: false }),
-    ("top-left", Corner { top: true, left: true }),
-];
-
 /// Schemes of colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Scheme {
@@ -157,10 +134,8 @@ fn ends(text: &str) -> Result<Ends, String> {
 /// `inside`, with or without a corner, or a name that ends in `.png` or `.svg`.
 fn bar(text: &str) -> Result<BarPlace, String> {
     let corner = match text.strip_prefix("inside") {
-        Some("") => Some(CORNERS[0].1),
-        Some(rest) => rest.strip_prefix(':').and_then(|name| {
-            CORNERS.iter().find(|(own, _)| *own == name).map(|(_, corner)| *corner)
-        }),
+        Some("") => Some(Corner::default()),
+        Some(rest) => rest.strip_prefix(':').and_then(Corner::named),
         None => None,
     };
     let path = PathBuf::from(text);
@@ -168,7 +143,7 @@ fn bar(text: &str) -> Result<BarPlace, String> {
         (Some(corner), _) => Ok(BarPlace::Inside(corner)),
         (None, Some(format)) => Ok(BarPlace::File(path, format)),
         (None, None) => {
-            let names = CORNERS.map(|(name, _)| name);
+            let names = Corner::ALL.map(|(name, _)| name);
             let near = text.strip_prefix("inside:").map(|corner| suggest::question(corner, names));
             let (near, names) = (near.unwrap_or_default(), names.join(", "));
             Err(format!(

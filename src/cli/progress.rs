@@ -6,7 +6,7 @@ use spherule::render::Progress;
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;
@@ -78,6 +78,60 @@ impl Meter {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Progress of loading, where it takes a while.
+pub(super) enum LoadMeter {
+    /// On a terminal; `None` until there is something to show.
+    Bar(Option<ProgressBar>),
+    /// In a file or a pipe: when the last line was written, or loading began, and the line.
+    Lines(Instant, String),
+    /// Nowhere.
+    Silent,
+}
+
+impl LoadMeter {
+    pub(super) fn new(quiet: bool) -> Self {
+        if quiet {
+            Self::Silent
+        } else if stderr().is_terminal() {
+            Self::Bar(None)
+        } else {
+            Self::Lines(Instant::now(), String::new())
+        }
+    }
+
+    /// Shows a step, and the share of it that is done, if that is known.
+    pub(super) fn show(&mut self, text: &str, done: Option<f64>) {
+        match self {
+            Self::Bar(bar) => {
+                let bar = bar.get_or_insert_with(load_bar);
+                bar.set_message(text.to_owned());
+                bar.set_position((done.unwrap_or(1.0) * STEPS) as u64);
+                bar.tick();
+            }
+            Self::Lines(last, line) if last.elapsed() >= PAUSE && line != text => {
+                *last = Instant::now();
+                text.clone_into(line);
+                output::tell_plain(text);
+            }
+            Self::Lines(..) | Self::Silent => (),
+        }
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(&self) {
+        if let Self::Bar(Some(bar)) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn load_bar() -> ProgressBar {
+    let bar = ProgressBar::new(STEPS as u64);
+    let style = ProgressStyle::with_template("{bar:40} {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
 }
 
 impl Line {

@@ -6,6 +6,7 @@
 //! puts a scene into files that load as the same scene.
 
 mod camera;
+mod color_bar;
 mod error;
 pub mod file;
 pub mod generate;
@@ -22,6 +23,7 @@ mod write;
 
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use camera::{Camera, Lens, Pose, Projection};
+pub use color_bar::{ColorBar, Corner};
 pub use error::{Place, SceneError};
 pub use file::included_files;
 pub use identity::Identity;
@@ -61,6 +63,8 @@ pub struct Scene {
     pub settings: Settings,
     /// What is drawn over the picture.
     pub look: Look,
+    /// A color bar in the picture, if there is one.
+    pub color_bar: Option<ColorBar>,
     /// What the user should hear of though it is no error: one sentence each, such as how many rows
     /// of a particle file were dropped and why.
     pub warnings: Vec<String>,

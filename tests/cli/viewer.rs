@@ -300,3 +300,155 @@ fn standard_input_is_read_once_with_all_its_columns() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert_eq!(text(&output.stdout), "sphere 3: type K, at 0 0 3, radius 1, q = 1\n");
 }
+
+/// The picture that a script writes as `w.png` in a window.
+fn window(folder: &Folder, args: &[&str], script: &str) -> Image {
+    view(folder, args, &format!("{script}\nwindow w.png"));
+    Image::read(folder.path("w.png")).expect("a picture")
+}
+
+fn at(image: &Image, x: u32, y: u32) -> [f32; 3] {
+    image.pixel(x, y).expect("a pixel of the picture")
+}
+
+/// Whether no pixel of these columns differs from the others of its row.
+fn is_free(image: &Image, columns: std::ops::Range<u32>, rows: std::ops::Range<u32>) -> bool {
+    rows.into_iter().all(|y| {
+        let mut row = columns.clone().map(|x| at(image, x, y));
+        let first = row.next();
+        row.all(|pixel| Some(pixel) == first)
+    })
+}
+
+#[test]
+fn help_fits_every_window_at_every_scale() {
+    let folder = Folder::new();
+    for (size, scale) in [("1280x720", "1"), ("640x360", "1.5"), ("320x240", "1")] {
+        let mut pages: Vec<Image> = Vec::new();
+        let plain = window(&folder, &[], &format!("size {size}\nscale {scale}\nkey tab\nwait 1"));
+        for count in 1.. {
+            let keys = "key ?\n".repeat(count);
+            let script = format!("size {size}\nscale {scale}\nkey tab\nwait 1\n{keys}");
+            let page = window(&folder, &[], &script);
+            if page == plain {
+                break;
+            }
+            assert!(!pages.contains(&page) && count < 60, "{size} at {scale}");
+            // Text ends before the window does.
+            assert!(is_free(&page, page.width - 3..page.width, 0..12), "{size} at {scale}");
+            pages.push(page);
+        }
+        assert_eq!(pages.len() == 1, size == "1280x720", "{} pages in {size}", pages.len());
+    }
+}
+
+#[test]
+fn the_status_line_is_wrapped_and_never_cut_off() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let paper = |image: &Image, y: u32| at(image, 0, y) == at(image, image.width - 1, y);
+    for scale in ["1", "1.5", "2"] {
+        let script = format!("scale {scale}\nwait 1\nclick 80,60");
+        let args = ["salt.xyz", "--radii", "4", "--background", "white", "--size", "160x200"];
+        let image = window(&folder, &args, &script);
+        let last = image.height - 40..image.height;
+        assert!(is_free(&image, image.width - 3..image.width, last.clone()), "{scale}");
+        assert!(last.into_iter().all(|y| paper(&image, y)), "{scale}");
+        // More than one line, but no more than half of the window.
+        let light = at(&image, 0, 0);
+        let dark = |y: u32| at(&image, 0, y).iter().zip(light).all(|(a, b)| *a < 0.5 * b);
+        let rows = (0..image.height).filter(|&y| dark(y)).count();
+        assert!((40..=100).contains(&rows), "{rows} rows at {scale}");
+    }
+}
+
+#[test]
+fn the_side_that_a_slice_removes_is_shaded() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let args = ["salt.xyz", "--radii", "1", "--background", "white"];
+    let plain = window(&folder, &args, "size 90x60\nkey tab\nwait 1");
+    let script = "size 90x60\nkey tab\nwait 1\nkey x\npress 45,55\nmove 45,5";
+    let cut = window(&folder, &args, script);
+    for y in [2, 30, 57] {
+        assert_eq!(at(&cut, 5, y), at(&plain, 5, y), "{y}");
+        let darker = |x: u32| at(&cut, x, y)[1] < 0.8 * at(&plain, x, y)[1];
+        assert!((86..90).all(darker), "{y}");
+    }
+    // What was shaded is gone.
+    let after = window(&folder, &args, &format!("{script}\nrelease\nwait 1\nkey a\nwait 1"));
+    assert_ne!(after, plain);
+}
+
+#[test]
+fn color_bars_are_shown_and_saved() {
+    let folder = Folder::new();
+    folder.write("salt.xyz", SALT);
+    let by_charge = ["salt.xyz", "--radii", "1", "--background", "white", "--color-by", "q"];
+    let with = window(&folder, &by_charge, "size 320x240\nwait 1");
+    let without = window(&folder, &by_charge, "size 320x240\nkey k\nkey tab\nwait 1");
+    let ends = [0x44_01_54, 0xFD_E7_25].map(spherule::color::srgb);
+    let near = |image: &Image, color: spherule::color::Rgb| {
+        let close =
+            |pixel: [f32; 3]| pixel.iter().zip(color.to_array()).all(|(a, b)| (a - b).abs() < 0.01);
+        (200..320).any(|x| (60..220).any(|y| close(at(image, x, y))))
+    };
+    assert!(ends.iter().all(|&color| near(&with, color)));
+    assert_ne!(with, without);
+    // In the picture it is the one of `render`, in that of the saved scene too.
+    let inside = [&by_charge[..], &["--color-bar", "inside:top-left"]].concat();
+    let by_charge = [&by_charge[..], &["--size", "160x200"]].concat();
+    let inside = [&inside[..], &["--size", "160x200"]].concat();
+    let script = "wait 2\nsave a.png\nsave a.exr\nsave a.toml\n";
+    view(&folder, &inside, script);
+    assert_comes_back(&folder, 2);
+    let picture = folder.read("a.png");
+    view(&folder, &by_charge, script);
+    assert!(picture != folder.read("a.png"), "no bar");
+    let view_args = ["--spp", "2", "--quiet", "-o", "r.png"];
+    folder.succeed(&[&["render"], &inside[..], &view_args].concat());
+    view(&folder, &inside, script);
+    folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.png"]);
+    assert_eq!(Image::read(folder.path("r.png")).ok(), Image::read(folder.path("b.png")).ok());
+    // A file of its own.
+    view(&folder, &[&by_charge[..], &["--color-bar", "bar.svg"]].concat(), script);
+    folder.succeed(&[&["render"], &by_charge[..], &["--color-bar", "c.svg"], &view_args].concat());
+    assert!(folder.read("bar.svg") == folder.read("c.svg"));
+    let output = folder.run(
+        &[
+            &["view", "salt.xyz", "--headless-script", "script.txt", "--color-by", "type"][..],
+            &["--color-bar", "inside"],
+        ]
+        .concat(),
+    );
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+}
+
+#[test]
+fn numbers_have_the_digits_that_they_are_worth() {
+    let folder = Folder::new();
+    let third = format!("{:.17}", 1.0_f64 / 3.0);
+    let tenth = f64::from(0.1_f32);
+    folder.write("a.csv", &format!("x,y,z,radius,q\n0,0,{tenth},5,{third}\n90,0,0,5,1e-12\n"));
+    let args = ["a.csv", "--view", "z", "--projection", "orthographic", "--size", "60x60"];
+    let lines = view(&folder, &args, "click 6,30\nclick 54,30");
+    let lines: Vec<&str> = lines.lines().collect();
+    assert_eq!(lines[0], "sphere 0: at 0 0 0.1, radius 5, q = 0.333333");
+    assert_eq!(lines[1], "sphere 1: at 90 0 0, radius 5, q = 1e-12");
+}
+
+/// Of so many spheres the viewer keeps no copy: it makes them once more for the saved scene.
+#[test]
+fn many_spheres_are_seen_and_saved() {
+    let folder = Folder::new();
+    let scene = "[[generate]]\nkind = \"volume\"\ncount = 1048600\n";
+    folder.write("many.toml", scene);
+    let script = "size 32x24\nwait 1\nclick 16,12\nsave a.png\nsave a.toml\nkey a\nkey 9\nwait 1";
+    let named = view(&folder, &["many.toml"], script);
+    assert!(named.starts_with("sphere ") && named.contains(", radius 0."), "{named}");
+    let render = ["render", "many.toml", "--size", "32x24", "--spp", "1", "--quiet", "-o", "r.png"];
+    folder.succeed(&render);
+    assert_eq!(Image::read(folder.path("a.png")).ok(), Image::read(folder.path("r.png")).ok());
+    let rows = text(&folder.read("a.csv")).lines().count();
+    assert_eq!(rows, 1_048_601);
+}

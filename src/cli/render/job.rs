@@ -165,11 +165,6 @@ impl<'a> Job<'a> {
         self.film.is_none() && (self.is_of_sequence() || self.sequence.skip_existing)
     }
 
-    /// Whether a color bar is drawn into the picture.
-    pub(in crate::cli) fn draws_bar(&self) -> bool {
-        matches!(self.color_bar, Some(BarPlace::Inside(_)))
-    }
-
     /// The threads that do it.
     pub(in crate::cli) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         threads::pool(self.threads)

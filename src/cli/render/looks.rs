@@ -11,7 +11,7 @@ use spherule::color::bar::{Bar, Direction};
 use spherule::drawing::{DrawingError, Picture};
 use spherule::image::Image;
 use spherule::scene::particles::{self, Cell, Legend, Looks, Particles};
-use spherule::scene::{Rgb, Scene};
+use spherule::scene::{ColorBar, Rgb, Scene};
 
 /// How long a color bar in a picture is, by the picture's height.
 const BAR_SHARE: f64 = 0.35;
@@ -59,36 +59,55 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
 }
 
 /// Finds out whether the color bar can be written, and changes nothing.
-pub(super) fn check_bar(job: &Job) -> Result<(), Failure> {
+pub(in crate::cli) fn check_bar(job: &Job) -> Result<(), Failure> {
     let Some(BarPlace::File(path, _)) = job.color_bar else { return Ok(()) };
     check_destination(path).map_err(|error| Failure::Write(path.clone(), error))
 }
 
+/// Refuses a color bar where colors stand for no numbers.
+pub(in crate::cli) fn check_legend(job: &Job, legend: Option<&Legend>) -> Result<(), Failure> {
+    if job.color_bar.is_none() || legend.is_some() {
+        return Ok(());
+    }
+    let message =
+        "--color-bar tells what numbers have which colors: --color-by a column of numbers";
+    Err(Failure::usage("render", message))
+}
+
 /// Writes the color bar, as high as the picture, if it has a file; refuses one of no numbers.
-pub(super) fn write_bar(job: &Job, legend: Option<&Legend>, height: u32) -> Result<(), Failure> {
-    let Some(place) = job.color_bar else { return Ok(()) };
-    let Some(legend) = legend else {
-        let message = "--color-bar tells what numbers have which colors: --color-by a column of \
-                       numbers";
-        return Err(Failure::usage("render", message));
+pub(in crate::cli) fn write_bar(
+    job: &Job,
+    legend: Option<&Legend>,
+    height: u32,
+) -> Result<(), Failure> {
+    check_legend(job, legend)?;
+    let (Some(BarPlace::File(path, format)), Some(legend)) = (job.color_bar, legend) else {
+        return Ok(());
     };
-    let BarPlace::File(path, format) = place else { return Ok(()) };
-    let bar = bar(legend, height)?.file(*format)?;
+    let Legend { scale, label } = legend;
+    let bar = Bar::new(scale, label, height, Direction::Up)?.file(*format)?;
     write_file(path, &bar)
 }
 
-/// Draws the color bar into its corner, if it has one.
-pub(super) fn draw_bar(
-    job: &Job,
-    legend: Option<&Legend>,
+/// The color bar that is drawn into the picture of particles.
+pub(in crate::cli) fn color_bar(job: &Job, legend: Option<&Legend>) -> Option<ColorBar> {
+    let (Some(BarPlace::Inside(corner)), Some(Legend { scale, label })) = (job.color_bar, legend)
+    else {
+        return None;
+    };
+    Some(ColorBar { scale: *scale, label: label.clone(), corner: *corner })
+}
+
+/// Draws a scene's color bar into its corner.
+pub(in crate::cli) fn draw_bar(
+    color_bar: &ColorBar,
     canvas: &mut Canvas,
     ink: Rgb,
-) -> Result<(), Failure> {
-    let (Some(BarPlace::Inside(corner)), Some(legend)) = (job.color_bar, legend) else {
-        return Ok(());
-    };
+) -> Result<(), DrawingError> {
+    let ColorBar { scale, label, corner } = color_bar;
     let (width, height) = (canvas.image.width, canvas.image.height);
-    let bar = bar(legend, (f64::from(height) * BAR_SHARE) as u32)?;
+    let length = (f64::from(height) * BAR_SHARE) as u32;
+    let bar = Bar::new(scale, label, length, Direction::Up)?;
     let size = bar.size();
     let x = if corner.left { 0 } else { width.saturating_sub(size.0) };
     let y = if corner.top { 0 } else { height.saturating_sub(size.1) };
@@ -97,8 +116,4 @@ pub(super) fn draw_bar(
     // What succeeds once does so again.
     canvas.draw(|image| _ = draw(image));
     Ok(())
-}
-
-fn bar(legend: &Legend, length: u32) -> Result<Bar, DrawingError> {
-    Bar::new(&legend.scale, &legend.label, length, Direction::Up)
 }

@@ -76,7 +76,7 @@ pub(super) fn looks(
         listed.push(("layers".to_owned(), layers.join(",")));
     }
     if let Some(BarPlace::Inside(corner)) = job.color_bar {
-        listed.push(("color_bar".to_owned(), format!("inside:{corner}")));
+        listed.push(("color_bar".to_owned(), format!("inside:{}", corner.name())));
     }
     listed.push((SCENE.to_owned(), identity.to_string()));
     listed

@@ -29,6 +29,7 @@ use self::film::Film;
 pub(super) use self::job::{Job, check_alpha};
 use self::keeper::Keeper;
 pub(super) use self::layers::alpha;
+pub(super) use self::looks::{check_bar, check_legend, color_bar, draw_bar, write_bar};
 pub(super) use self::metadata::Subject;
 use self::prepare::{Placed, Prepared};
 use self::resume::Resumed;
@@ -83,7 +84,7 @@ fn run_as(
 ) -> Result<ExitCode, Failure> {
     let job = Job::new(args)?;
     check_stream(args)?;
-    looks::check_bar(&job)?;
+    check_bar(&job)?;
     terminal::check(job.report.terminal)?;
     if args.is_sequence() {
         let files = files(args);
@@ -137,7 +138,7 @@ fn make_placed(
     session: &mut Session,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    looks::write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
+    write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
     // After a signal, nothing is looked at any more: what follows is interrupted at once, and kept.
     if resumed.is_none() && signals::go_on().is_none() && existing::is_there(job, &placed) {
         let tell = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
@@ -202,7 +203,7 @@ fn write(
     session: &mut Session,
     render: &mut Render,
 ) -> Result<(), Failure> {
-    let matte = draw_over(job, prepared, render)?;
+    let matte = draw_over(prepared, render)?;
     let options = metadata::write_options(job, prepared, render);
     let mut channels = layers::channels(job, prepared, render)?;
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
@@ -215,15 +216,13 @@ fn write(
 }
 
 /// Draws what is drawn over pictures. Returns what is left of one whose background is transparent.
-fn draw_over(
-    job: &Job,
-    prepared: &mut Prepared,
-    render: &mut Render,
-) -> Result<Option<Matte>, Failure> {
-    let Scene { look, settings, .. } = &prepared.scene;
+fn draw_over(prepared: &mut Prepared, render: &mut Render) -> Result<Option<Matte>, Failure> {
+    let Scene { look, color_bar, settings, .. } = &prepared.scene;
     let region = prepared.region;
     let mut canvas = draw_look(look, &mut prepared.world, settings, region, render)?;
-    looks::draw_bar(job, prepared.legend.as_ref(), &mut canvas, look.ink())?;
+    if let Some(color_bar) = color_bar {
+        draw_bar(color_bar, &mut canvas, look.ink())?;
+    }
     Ok(canvas.matte)
 }
 

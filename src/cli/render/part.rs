@@ -79,10 +79,10 @@ pub(super) fn share(job: &Job, region: Region, scene: &Scene) -> Result<Share, F
               none, and --spp",
         );
     }
-    if !scene.look.is_plain() || job.draws_bar() {
+    if !scene.look.is_plain() || scene.color_bar.is_some() {
         return refuse(
-            &"--cell, --background (which presets have), a scene's [look] and --color-bar inside \
-              are drawn over whole pictures: leave them out with --part",
+            &"--cell, --background (which presets have), a scene's [look] and [color_bar] and --color-bar \
+              inside are drawn over whole pictures: leave them out with --part",
         );
     }
     part.share(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))
@@ -92,7 +92,8 @@ pub(super) fn share(job: &Job, region: Region, scene: &Scene) -> Result<Share, F
 pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
     let layers = layers::wanted(&job.encoding.layers);
     let title = prepared.title.clone();
-    let drawn_over = !prepared.scene.look.is_plain() || job.draws_bar();
+    let Scene { look, color_bar, .. } = &prepared.scene;
+    let drawn_over = !look.is_plain() || color_bar.is_some();
     Caption { title, looks: prepared.looks(job), drawn_over, layers, ..Caption::default() }
 }
 

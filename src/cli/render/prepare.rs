@@ -61,9 +61,14 @@ impl Staged {
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
         let looks::Loaded { mut scene, legend, cell } = looks::load(job, given)?;
+        scene.color_bar = looks::color_bar(job, legend.as_ref()).or(scene.color_bar);
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
+        if scene.color_bar.is_some() && job.picture.region.is_some() {
+            let message = "a color bar inside is for a whole picture: leave --region out";
+            return Err(Failure::usage("render", message));
+        }
         let load = start.elapsed();
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());

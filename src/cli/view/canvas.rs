@@ -1,41 +1,37 @@
-//! What the window shows: a picture, as large as the window, and letters over it.
+//! What the window shows: a picture as large as the window, and lines, color bar and text over it.
 
+use super::colorbar;
 use super::develop::{Developer, Print};
-use super::keys;
+use super::help::Layout;
+use super::letters::{Letters, Target};
+use super::loading::Loading;
 use super::picture::Picture;
+use super::slicing;
 use super::viewer::Viewer;
-use glam::DVec2;
+use super::wrap::{flow, wrap};
 use indicatif::HumanCount;
-use plotters::backend::DrawingBackend;
-use plotters::style::RGBColor;
-use plotters::style::text_anchor::HPos;
-use spherule::drawing::{self, Area, Drawn, letters};
 use spherule::scene::Settings;
 
-/// Pixels: of letters, and of a line of them.
-const LETTERS: u32 = 14;
-const LINE: u32 = 20;
+/// The paper under text, and its letters.
+pub(super) const PAPER: u32 = 0x0018_181C;
+pub(super) const LIGHT: u32 = 0x00E6_E6E6;
+pub(super) const ACCENT: u32 = 0x00FF_C85A;
 
-/// Pixels from the first part of a line to the second.
-const INDENT: i32 = 180;
+/// Share of the picture that paper hides.
+const COVER: f32 = 0.9;
 
-const PAPER: RGBColor = RGBColor(24, 24, 28);
-const LIGHT: RGBColor = RGBColor(230, 230, 230);
-const ACCENT: RGBColor = RGBColor(255, 200, 90);
-
-/// What the window shows where there is no picture yet.
-const EMPTY: u32 = 0x0018_181C;
-
-/// Of the line along which is cut.
-const CUT: u32 = 0x00FF_C040;
+/// Share of the window's height that the status line may take.
+const STATUS: u32 = 2;
 
 /// Pixels as windows have them: `0x00RRGGBB`, row by row from the top left.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub(super) struct Canvas {
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) pixels: Vec<u32>,
     developer: Developer,
+    /// Letters for a display of this scale; `None` until text is drawn.
+    letters: Option<(f64, Letters)>,
 }
 
 impl Canvas {
@@ -43,56 +39,42 @@ impl Canvas {
     pub(super) fn draw(&mut self, viewer: &Viewer) {
         let Settings { width, height, .. } = viewer.settings;
         (self.width, self.height) = (width, height);
-        self.pixels.resize(width as usize * height as usize, EMPTY);
+        self.pixels.resize(width as usize * height as usize, PAPER);
         match &viewer.shown {
             Some(picture) => self.show(picture, &viewer.settings),
-            None => self.pixels.fill(EMPTY),
+            None => self.pixels.fill(PAPER),
         }
-        if let Some([a, b]) = viewer.cut() {
-            self.line(a, b);
+        let mut target = Target { pixels: &mut self.pixels, width, height };
+        if let Some(cut) = viewer.cut() {
+            slicing::draw(&mut target, cut, viewer.scale);
         }
-        if viewer.status {
-            self.strip(&[("", &status(viewer))], height.saturating_sub(LINE));
+        let same = |(scale, _): &(f64, Letters)| *scale == viewer.scale;
+        if !self.letters.as_ref().is_some_and(same) {
+            self.letters = Letters::new(viewer.scale).map(|letters| (viewer.scale, letters));
         }
-        if viewer.help {
-            self.strip(&keys::HELP, 0);
+        // Without its font the viewer shows pictures still.
+        let Some((_, letters)) = &mut self.letters else { return };
+        let text = if viewer.status { status(viewer) } else { Vec::new() };
+        let top = draw_status(letters, &text, &mut target);
+        if let Some(legend) =
+            viewer.facts.legend.as_ref().filter(|_| viewer.bar && !viewer.facts.color_bar)
+        {
+            colorbar::draw(letters, legend, &mut target, top);
+        }
+        if let Some(loading) = &viewer.loading {
+            draw_loading(letters, loading, &mut target);
+        }
+        if let Some(page) = viewer.help {
+            draw_help(letters, page, &mut target);
         }
     }
 
-    /// Shows a picture; what it was developed to, if the window still asks for the same.
+    /// Shows a picture: the pixels that it was developed to, if the window still asks for the same.
     fn show(&mut self, picture: &Picture, settings: &Settings) {
         let print = Print::of(settings);
         match picture.developed.as_ref().filter(|developed| developed.print == print) {
             Some(developed) => self.pixels.copy_from_slice(&developed.pixels),
             None => self.developer.develop(picture.seen(), print, &mut self.pixels),
-        }
-    }
-
-    fn line(&mut self, a: DVec2, b: DVec2) {
-        let steps = (b - a).abs().max_element().ceil().max(1.0);
-        for step in 0..=steps as usize {
-            let at = a.lerp(b, step as f64 / steps).round();
-            let inside = at.cmpge(DVec2::ZERO).all()
-                && at.x < f64::from(self.width)
-                && at.y < f64::from(self.height);
-            if inside {
-                self.pixels[at.y as usize * self.width as usize + at.x as usize] = CUT;
-            }
-        }
-    }
-
-    /// Lines of text on a strip as wide as the window: side by side where there are too many.
-    fn strip(&mut self, lines: &[(&str, &str)], top: u32) {
-        let most = (self.height - top) / LINE;
-        let columns = (lines.len() as u32).div_ceil(most.max(1)).max(1);
-        let rows = (lines.len() as u32).div_ceil(columns);
-        let size = (self.width, (rows * LINE).min(self.height - top));
-        let text = Text { lines, rows: rows.max(1), columns, size };
-        // Letters that cannot be drawn leave the picture as it is.
-        let Ok(codes) = drawing::codes(&text, PAPER) else { return };
-        let first = top as usize * self.width as usize;
-        for (pixel, code) in self.pixels[first..].iter_mut().zip(codes.as_chunks::<3>().0) {
-            *pixel = code.iter().fold(0, |packed, &channel| packed << 8 | u32::from(channel));
         }
     }
 
@@ -103,38 +85,79 @@ impl Canvas {
     }
 }
 
-/// Lines of text, of two parts if there is something in the first.
-struct Text<'a> {
-    lines: &'a [(&'a str, &'a str)],
-    rows: u32,
-    columns: u32,
-    size: (u32, u32),
+/// Draws the status line at the bottom, in as many lines as it takes; returns where it begins.
+fn draw_status(letters: &mut Letters, parts: &[String], target: &mut Target) -> u32 {
+    if parts.is_empty() {
+        return target.height;
+    }
+    let (line, margin) = (letters.line(), letters.margin());
+    let most = (target.height / STATUS / line).max(1) as usize;
+    let lines = flow(letters, parts, target.width.saturating_sub(2 * margin), most);
+    let top = target.height.saturating_sub(lines.len() as u32 * line);
+    target.fill_rows(top..target.height, PAPER, COVER);
+    for (text, y) in lines.iter().zip((top..).step_by(line as usize)) {
+        letters.draw(text, (margin, y), LIGHT, target);
+    }
+    top
 }
 
-impl drawing::Picture for Text<'_> {
-    fn size(&self) -> (u32, u32) {
-        self.size
+/// Draws what is being loaded in the middle of the window, with a bar below.
+fn draw_loading(letters: &mut Letters, loading: &Loading, target: &mut Target) {
+    let (line, margin) = (letters.line(), letters.margin());
+    let width = target.width.saturating_sub(2 * margin);
+    let lines = wrap(letters, &loading.text(), width, (target.height / 2 / line).max(1) as usize);
+    let height = (lines.len() as u32 + 1) * line;
+    let top = target.height.saturating_sub(height) / 2;
+    target.fill_rows(top..top + height, PAPER, COVER);
+    let mut y = top;
+    for text in &lines {
+        let x = target.width.saturating_sub(letters.width(text)) / 2;
+        letters.draw(text, (x, y), LIGHT, target);
+        y += line;
     }
-
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
-        let style = |color| letters(LETTERS, color, HPos::Left);
-        for (place, (left, right)) in (0..).zip(self.lines) {
-            let y = (place % self.rows * LINE + LINE / 2) as i32;
-            let x = (place / self.rows * self.size.0 / self.columns + LINE / 2) as i32;
-            let indent = if left.is_empty() { 0 } else { INDENT };
-            area.draw_text(left, &style(ACCENT), (x, y))?;
-            area.draw_text(right, &style(LIGHT), (x + indent, y))?;
+    let Some(done) = loading.done else { return };
+    let end = margin + (f64::from(width) * done.clamp(0.0, 1.0)) as u32;
+    for row in y + line / 4..y + line / 2 {
+        for column in margin..margin + width {
+            let (color, cover) = if column < end { (ACCENT, 1.0) } else { (LIGHT, 0.2) };
+            target.blend((column as i32, row as i32), color, cover);
         }
-        Ok(())
     }
 }
 
-/// The status line.
-pub(super) fn status(viewer: &Viewer) -> String {
+/// Draws a page of the help at the top.
+fn draw_help(letters: &mut Letters, page: usize, target: &mut Target) {
+    let Layout { pages, width, indent } = Layout::new(letters, target.width, target.height);
+    let (line, margin) = (letters.line(), letters.margin());
+    let page = page.min(pages.len().saturating_sub(1));
+    let Some(columns) = pages.get(page) else { return };
+    let rows = columns.iter().map(Vec::len).max().unwrap_or(0) as u32;
+    let more = pages.len() > 1;
+    let lines = rows + u32::from(more);
+    target.fill_rows(0..lines * line, PAPER, 1.0);
+    for (column, x) in columns.iter().zip((margin..).step_by(width as usize)) {
+        for (row, y) in column.iter().zip((0..).step_by(line as usize)) {
+            letters.draw(&row.keys, (x, y), ACCENT, target);
+            letters.draw(&row.what, (x + indent, y), LIGHT, target);
+        }
+    }
+    if more {
+        let text = format!("page {} of {}: ? for the next", page + 1, pages.len());
+        let text = wrap(letters, &text, target.width.saturating_sub(2 * margin), 1).concat();
+        letters.draw(&text, (margin, rows * line), ACCENT, target);
+    }
+}
+
+/// The parts of the status line.
+pub(super) fn status(viewer: &Viewer) -> Vec<String> {
     let facts = &viewer.facts;
     let mut parts = vec![format!("{} spheres", HumanCount(facts.spheres as u64))];
     if let Some(picture) = &viewer.shown {
-        parts.push(format!("{} of {} samples", picture.samples, viewer.settings.spp));
+        parts.push(format!(
+            "{} of {} samples",
+            HumanCount(picture.samples.into()),
+            HumanCount(viewer.settings.spp.into())
+        ));
         if let Some(noise) = viewer.noise {
             parts.push(format!("noise {:.2} %", 100.0 * noise));
         }
@@ -142,10 +165,11 @@ pub(super) fn status(viewer: &Viewer) -> String {
         parts.push(format!("{:.1} Mrays/s", rate / 1e6));
     }
     if let Some(frames) = facts.frames.filter(|frames| *frames > 1) {
-        parts.push(format!("frame {} of {frames}", facts.frame));
+        let frame = HumanCount(facts.frame);
+        parts.push(format!("frame {frame} of {}", HumanCount(frames)));
     }
     if !viewer.message.is_empty() {
         parts.push(viewer.message.clone());
     }
-    parts.join("  |  ")
+    parts
 }

@@ -17,6 +17,8 @@ pub(super) enum Event {
     Key(String),
     /// The window has this size, in pixels.
     Resize(u32, u32),
+    /// The display's scale, by which letters are larger.
+    Scale(f64),
     /// The window is to close.
     #[cfg(feature = "view")]
     Close,
@@ -63,6 +65,7 @@ pub(super) enum Command {
     Hide,
     ShowAll,
     Color(i8),
+    Bar,
     Slice,
     Frame(i64),
     Samples(i8),

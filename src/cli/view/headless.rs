@@ -1,9 +1,10 @@
 //! A viewer without a window: it does what a script says, one thing after the other.
 
 use super::command::{Action, Event, Held};
-use super::load::Base;
+use super::load::{Loader, Stage};
+use super::loading::{Progress, Watch};
 use super::pace::Pace;
-use super::save::{Seen, save_picture, save_scene};
+use super::save::{Seen, save_bar, save_picture, save_scene};
 use super::script::Step;
 use super::session::Session;
 use super::times::Times;
@@ -13,25 +14,34 @@ use crate::cli::render::Job;
 use glam::DVec2;
 use spherule::atomic::write_atomically;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// A viewer, and all that a window's threads do for it.
-pub(super) struct Headless<'a> {
+pub(super) struct Headless {
     session: Session,
-    job: &'a Job<'a>,
-    base: Option<Base>,
+    job: Arc<Job<'static>>,
+    loader: Loader,
     times: Times,
 }
 
-impl<'a> Headless<'a> {
+impl Headless {
     /// Loads what the job speaks of.
-    pub(super) fn new(job: &'a Job<'a>) -> Result<Self, Failure> {
-        let mut session = Session::new(Pace::Whole);
-        let base = Base::load(job, &session.viewer.content, None)?;
-        let stage = base.stage(job, &session.viewer.content)?;
-        session.begin(stage, job);
-        Ok(Self { session, job, base: Some(base), times: Times::default() })
+    pub(super) fn new(job: Job<'static>) -> Result<Self, Failure> {
+        let job = Arc::new(job);
+        let (session, loader) = (Session::new(Pace::Whole), Loader::new(Arc::clone(&job)));
+        let mut own = Self { session, job, loader, times: Times::default() };
+        let stage = own.load()?;
+        own.session.begin(stage, &own.job);
+        Ok(own)
+    }
+
+    /// Loads what the viewer wants to show.
+    fn load(&mut self) -> Result<Stage, Failure> {
+        let progress = Arc::new(Progress::default());
+        let _watch = Watch::start(&progress, self.job.report.quiet, |_| ());
+        self.loader.load(&self.session.viewer.content, &progress)
     }
 
     /// Does all that a script says.
@@ -49,8 +59,18 @@ impl<'a> Headless<'a> {
     fn step(&mut self, step: &Step) -> Result<bool, Failure> {
         match step {
             Step::Size(width, height) => return self.event(Event::Resize(*width, *height)),
+            Step::Scale(scale) => return self.event(Event::Scale(*scale)),
             Step::Key(key) => return self.event(Event::Key(key.clone())),
             Step::Click { place, held, double } => self.click(*place, *held, *double)?,
+            Step::Press { place, button, held } => {
+                self.event(Event::Pointer(*place))?;
+                return self.event(Event::Press { button: *button, held: *held, double: false });
+            }
+            Step::Move(place) => {
+                self.event(Event::Pointer(*place))?;
+                self.show_motion()?;
+            }
+            Step::Release => return self.event(Event::Release),
             Step::Drag { from, to, button, held, steps } => {
                 self.event(Event::Pointer(*from))?;
                 self.event(Event::Press { button: *button, held: *held, double: false })?;
@@ -91,10 +111,8 @@ impl<'a> Headless<'a> {
                 self.save(&path.with_extension("toml"))?;
             }
             Some(Action::Load) => {
-                let content = self.session.viewer.content.clone();
-                let base = Base::load(self.job, &content, self.base.take())?;
-                self.session.set(base.stage(self.job, &content)?);
-                self.base = Some(base);
+                let stage = self.load()?;
+                self.session.set(stage);
             }
             Some(Action::Frame(side)) => self.session.frame(side),
             Some(Action::Pick(pixel, purpose)) => {
@@ -177,9 +195,10 @@ impl<'a> Headless<'a> {
             matte,
         };
         if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
-            return save_scene(&seen, &studio.stage.scene, path);
+            return save_scene(&seen, &studio.stage.scene, studio.stage.origin.as_ref(), path);
         }
-        save_picture(&seen, path)
+        save_picture(&seen, path)?;
+        save_bar(&self.job, &viewer.facts, settings.height)
     }
 
     /// Writes what a window would show.

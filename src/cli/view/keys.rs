@@ -4,7 +4,7 @@ use super::command::Command;
 
 /// Keys, as events and scripts write them, and what they do. Where OVITO or Blender have a key for
 /// something, it is theirs.
-pub(super) const BINDINGS: [(&str, Command); 58] = [
+pub(super) const BINDINGS: [(&str, Command); 59] = [
     ("?", Command::Help),
     ("f1", Command::Help),
     ("home", Command::Fit),
@@ -47,6 +47,7 @@ pub(super) const BINDINGS: [(&str, Command); 58] = [
     ("H", Command::ShowAll),
     ("c", Command::Color(1)),
     ("C", Command::Color(-1)),
+    ("k", Command::Bar),
     ("x", Command::Slice),
     ("right", Command::Frame(1)),
     ("left", Command::Frame(-1)),
@@ -66,7 +67,7 @@ pub(super) const BINDINGS: [(&str, Command); 58] = [
 ];
 
 /// Keys and gestures, and what they do, in words.
-pub(super) const HELP: [(&str, &str); 35] = [
+pub(super) const HELP: [(&str, &str); 36] = [
     ("left or middle drag", "turn about the pivot"),
     ("right drag, shift+drag", "move across"),
     ("wheel, ctrl+drag", "nearer, farther; the wheel, toward the pointer"),
@@ -93,7 +94,8 @@ pub(super) const HELP: [(&str, &str); 35] = [
     ("d o", "fade what is far; contours; on and off"),
     ("c C", "color by the next, the last column"),
     ("h delete", "hide the type of the sphere that was clicked"),
-    ("x", "then a drag: cut off what is right of that line"),
+    ("k", "color bar on, off"),
+    ("x", "then a drag: cut off the side that is shaded"),
     ("H", "show all types, and what was cut off"),
     ("right left", "next, last frame"),
     ("page-down page-up", "ten frames on, back"),
@@ -101,7 +103,7 @@ pub(super) const HELP: [(&str, &str); 35] = [
     ("] [", "twice, half as many samples in the end"),
     ("tab", "status line on, off"),
     ("s ctrl+s", "save the picture and its scene"),
-    ("? f1 esc q ctrl+q ctrl+w", "this help; close it, quit"),
+    ("? f1 esc q ctrl+q ctrl+w", "this help, page by page; close it, quit"),
 ];
 
 /// What a key does, if anything.

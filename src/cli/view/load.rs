@@ -1,22 +1,27 @@
 //! From what the viewer wants to show to a world.
 
 use super::content::Content;
+use super::digits;
+use super::loading::{Progress, Step};
 use super::viewer::Facts;
 use crate::cli::failure::Failure;
-use crate::cli::render::Job;
+use crate::cli::render::{Job, check_legend, color_bar};
 use crate::cli::source::Source;
 use crate::cli::views::scene_of_particles;
 use glam::DVec3;
+use rayon::prelude::*;
 use spherule::World;
 use spherule::scene::particles::{
-    self, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Looks, NumberColumn, Particles,
-    ReadOptions, Role, TextColumn,
+    self, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend, Looks,
+    NumberColumn, Particles, ReadOptions, ReadProgress, Role, TextColumn,
 };
-use spherule::scene::{Scene, Spheres};
+use spherule::scene::{Rgb, Scene, Spheres};
 use spherule::world::framing;
 use std::collections::HashSet;
+use std::fs::Metadata;
 use std::path::Path;
 use std::sync::{Arc, RwLock};
+use std::time::SystemTime;
 
 /// Values of columns that are read though nothing asks for them yet: of 200 000 particles, 20
 /// columns.
@@ -27,6 +32,16 @@ const SHORT: u64 = 1 << 26;
 
 /// Columns that there are without a file's.
 const USUAL: [&str; 5] = ["x", "y", "z", "radius", "type"];
+
+/// Spheres of which no second copy is kept: they are read again when they are needed.
+const MANY: usize = 1 << 20;
+
+/// Spheres that stand for [`MANY`] where only their outline matters.
+const SKETCH: usize = 100_000;
+
+/// Why many spheres of standard input can't be read again.
+const READ_ONCE: &str = "standard input can be read only once, and holds too many spheres to keep a \
+                         copy of them: write it to a file";
 
 /// What was read, as it was read.
 pub(super) struct Base {
@@ -41,12 +56,25 @@ pub(super) struct Base {
 
 /// What is to be seen, and what is known of it.
 pub(super) struct Stage {
-    /// With its spheres, as it is saved.
+    /// With its spheres, or with a sketch of them.
     pub(super) scene: Arc<RwLock<Scene>>,
     pub(super) world: World,
+    /// Where the spheres come from, if the scene has only a sketch of them.
+    pub(super) origin: Option<Origin>,
+    #[cfg(feature = "view")]
+    pub(super) content: Content,
     pub(super) labels: Labels,
     pub(super) facts: Facts,
     pub(super) warnings: Vec<String>,
+}
+
+/// What is needed to read a stage's spheres once more.
+#[derive(Clone)]
+pub(super) struct Origin {
+    job: Arc<Job<'static>>,
+    content: Content,
+    /// The time and the length of the file when it was read.
+    stamp: Option<(SystemTime, u64)>,
 }
 
 /// What is known of spheres besides where they are.
@@ -63,18 +91,18 @@ impl Base {
         job: &Job,
         content: &Content,
         before: Option<Self>,
+        progress: &Progress,
     ) -> Result<Self, Failure> {
         let has_color = |base: &Self| {
-            content
-                .color
-                .as_ref()
-                .is_none_or(|name| !base.more_columns || base.particles.can_color_by(name))
+            let known = |name: &String| base.particles.can_color_by(name);
+            !base.more_columns || content.color.as_ref().is_none_or(known)
         };
         let enough = |base: &Self| base.frame == content.frame && has_color(base);
         let frames = before.as_ref().and_then(|base| base.frames);
         if let Some(base) = before.filter(enough) {
             return Ok(base);
         }
+        progress.begin(Step::reading(&job.source.name()));
         let Source::Particles(path, options) = &job.source else {
             job.views.refuse_cells()?;
             return Ok(Self::of_scene(job.source.load()?));
@@ -85,11 +113,13 @@ impl Base {
         }
         options.columns.wanted.extend(content.color.clone());
         options.columns.rest = Some(VALUES);
+        options.progress = progress.read.clone();
         let mut particles = particles::read(path, &options)?;
         let more_columns = path.is_file() && has_many_values(&particles);
         let select = Looks { select: job.looks.select.clone(), ..Looks::default() };
         select.apply(path, &mut particles)?;
         job.views.repeat(path, &mut particles)?;
+        options.progress = ReadProgress::default();
         let frames = frames.or_else(|| count(path, &options, content.frame.is_some()));
         Ok(Self { particles, scene: None, frame: content.frame, frames, more_columns })
     }
@@ -99,29 +129,108 @@ impl Base {
         let spheres = std::mem::take(&mut scene.spheres);
         let kind = |name: &String| Kind { name: name.clone(), element: None, virtual_site: false };
         let table = scene.materials.iter().map(|material| kind(&material.name)).collect();
-        let codes = (0..spheres.len()).map(|row| spheres.material_of(row)).collect();
-        let kinds = Kinds { table, codes: Codes::Words(codes) };
+        let codes = if spheres.material.is_empty() {
+            Codes::Bytes(vec![0; spheres.len()])
+        } else {
+            Codes::Words(spheres.material.clone())
+        };
+        let kinds = Kinds { table, codes };
         let particles = Particles { spheres, kinds, ..Particles::default() };
         Self { particles, scene: Some(scene), frame: None, frames: None, more_columns: false }
     }
 
-    /// Makes what was read look as it is to look, and builds its world.
-    pub(super) fn stage(&self, job: &Job, content: &Content) -> Result<Stage, Failure> {
-        let mut particles = self.particles.clone();
-        dress(job, content, &mut particles)?;
+    /// What is known of it for the viewer, but for what follows from its looks.
+    fn facts(&self, job: &Job) -> Facts {
+        let own = other_columns(&self.particles);
+        let own = own.filter(|name| self.more_columns || self.particles.can_color_by(name));
+        let has_types = !self.particles.kinds.codes.is_empty();
+        let usual = USUAL.into_iter().filter(|name| *name != "type" || has_types);
+        Facts {
+            columns: own.chain(usual).map(str::to_owned).collect(),
+            frame: self.frame.unwrap_or(0),
+            frames: self.frames,
+            own_materials: self.scene.is_none()
+                && (job.looks.types.iter().any(|look| look.material.is_some())
+                    || self.particles.material_names.iter().any(|name| !name.is_empty())),
+            ..Facts::default()
+        }
+    }
+}
+
+/// Particles as they are to look, in a scene that has no camera yet.
+struct Dressed {
+    scene: Scene,
+    labels: Labels,
+    legend: Option<Legend>,
+    cell: Option<Cell>,
+}
+
+impl Dressed {
+    fn new(
+        job: &Job,
+        content: &Content,
+        mut particles: Particles,
+        scene: Option<Scene>,
+    ) -> Result<Self, Failure> {
+        let legend = dress(job, content, &mut particles)?;
         let cell = particles.cell;
         let labels = Labels {
-            kinds: particles.kinds.clone(),
+            kinds: std::mem::take(&mut particles.kinds),
             numbers: std::mem::take(&mut particles.numbers),
             texts: std::mem::take(&mut particles.texts),
         };
-        let mut scene = if let Some(scene) = &self.scene {
-            Scene { spheres: particles.spheres, ..scene.clone() }
+        let scene = if let Some(scene) = scene {
+            Scene { spheres: particles.spheres, ..scene }
         } else {
             let preset = content.preset.as_ref().map(|(preset, _)| *preset);
             let title = job.source.title(&Scene::default()).into_owned();
             scene_of_particles(preset.or(job.style.preset()), particles, &title)
         };
+        Ok(Self { scene, labels, legend, cell })
+    }
+}
+
+/// Loads one stage after another, and keeps what was read last unless that is too much.
+pub(super) struct Loader {
+    job: Arc<Job<'static>>,
+    base: Option<Base>,
+    /// Whether anything was read yet.
+    began: bool,
+}
+
+impl Loader {
+    pub(super) fn new(job: Arc<Job<'static>>) -> Self {
+        Self { job, base: None, began: false }
+    }
+
+    /// Reads what is to be seen, makes it look as it is to look, and builds its world.
+    pub(super) fn load(
+        &mut self,
+        content: &Content,
+        progress: &Progress,
+    ) -> Result<Stage, Failure> {
+        let job = &self.job;
+        let first = !std::mem::replace(&mut self.began, true);
+        if !first && self.base.is_none() && is_standard_input(&job.source) {
+            return Err(Failure::Window(READ_ONCE.to_owned()));
+        }
+        let stamp = stamp(&job.source);
+        let read = Base::load(job, content, self.base.take(), progress)?;
+        let facts = read.facts(job);
+        let many = read.particles.spheres.len() > MANY;
+        let has_scene = read.scene.is_some();
+        let (particles, scene) = if many {
+            (read.particles, read.scene)
+        } else {
+            let parts = (read.particles.clone(), read.scene.clone());
+            self.base = Some(read);
+            parts
+        };
+        let Dressed { mut scene, labels, legend, cell } =
+            Dressed::new(job, content, particles, scene)?;
+        if first {
+            check_legend(job, legend.as_ref())?;
+        }
         let cuts = job.slices.cut(
             &mut scene,
             Path::new(&*job.source.name()),
@@ -130,6 +239,7 @@ impl Base {
         )?;
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
+        scene.color_bar = color_bar(job, legend.as_ref()).or(scene.color_bar);
         job.picture.replace(&mut scene.settings);
         job.views.frame(&mut scene, None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
@@ -139,7 +249,7 @@ impl Base {
         scene.camera.up = up;
         if let Some((preset, camera)) = &content.preset {
             let home = std::mem::replace(&mut scene.camera, camera.clone());
-            if self.scene.is_some() {
+            if has_scene {
                 preset.replace_materials(&mut scene);
             }
             preset.light(&mut scene);
@@ -148,39 +258,97 @@ impl Base {
         } else {
             job.style.light(&mut scene);
         }
-        let samples = u64::from(scene.settings.width) * u64::from(scene.settings.height) * 64;
-        let builder = job.builder(scene.spheres.len(), samples);
-        let world = World::build_with(&scene, builder).map_err(failed)?;
-        let facts = self.facts(&scene, &labels, job);
-        let warnings = std::mem::take(&mut scene.warnings);
-        Ok(Stage { scene: Arc::new(RwLock::new(scene)), world, labels, facts, warnings })
-    }
-
-    fn facts(&self, scene: &Scene, labels: &Labels, job: &Job) -> Facts {
-        let own = other_columns(&self.particles);
-        let own = own.filter(|name| self.more_columns || self.particles.can_color_by(name));
-        let usual = USUAL.into_iter().filter(|name| *name != "type" || labels.has_types());
-        Facts {
-            title: job.source.title(scene).into_owned(),
-            spheres: scene.spheres.len(),
+        let count = scene.spheres.len();
+        let facts = Facts {
+            title: job.source.title(&scene).into_owned(),
+            spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
-            columns: own.chain(usual).map(str::to_owned).collect(),
-            frame: self.frame.unwrap_or(0),
-            frames: self.frames,
             size: size(&scene.spheres),
             look: scene.look,
-            own_materials: self.scene.is_none()
-                && (job.looks.types.iter().any(|look| look.material.is_some())
-                    || self.particles.material_names.iter().any(|name| !name.is_empty())),
-        }
+            color_bar: scene.color_bar.is_some(),
+            legend,
+            ..facts
+        };
+        progress.begin(Step::Building(count));
+        let samples = u64::from(scene.settings.width) * u64::from(scene.settings.height) * 64;
+        let builder = job.builder(count, samples);
+        let world = if many {
+            let sketch = sketch(&scene.spheres);
+            let world = World::build_taking(&mut scene, builder).map_err(failed)?;
+            scene.spheres = sketch;
+            world
+        } else {
+            World::build_with(&scene, builder).map_err(failed)?
+        };
+        let origin = || Origin { job: Arc::clone(job), content: content.clone(), stamp };
+        let origin = many.then(origin);
+        let warnings = std::mem::take(&mut scene.warnings);
+        let scene = Arc::new(RwLock::new(scene));
+        Ok(Stage {
+            scene,
+            world,
+            origin,
+            #[cfg(feature = "view")]
+            content: content.clone(),
+            labels,
+            facts,
+            warnings,
+        })
     }
 }
 
-impl Labels {
-    fn has_types(&self) -> bool {
-        !self.kinds.codes.is_empty() && !self.kinds.table.is_empty()
+impl Origin {
+    /// Reads the spheres of the stage once more.
+    ///
+    /// # Errors
+    /// The file can't be read twice, has changed, or can't be read any more.
+    pub(super) fn spheres(&self) -> Result<Spheres, Failure> {
+        let name = self.job.source.name();
+        let failed = |why: &str| Err(Failure::Window(format!("{name}: {why}")));
+        if is_standard_input(&self.job.source) {
+            return Err(Failure::Window(READ_ONCE.to_owned()));
+        }
+        if self.stamp != stamp(&self.job.source) {
+            return failed("the file has changed since it was read: open it once more");
+        }
+        let base = Base::load(&self.job, &self.content, None, &Progress::default())?;
+        let dressed = Dressed::new(&self.job, &self.content, base.particles, base.scene)?;
+        Ok(dressed.scene.spheres)
     }
+}
 
+fn is_standard_input(source: &Source) -> bool {
+    matches!(source, Source::Particles(path, _) if path.as_os_str() == "-")
+}
+
+/// The time and the length of a source's file; `None` if it is none.
+fn stamp(source: &Source) -> Option<(SystemTime, u64)> {
+    let (Source::Particles(path, _) | Source::Toml(path)) = source else { return None };
+    let data = path.metadata().ok().filter(Metadata::is_file)?;
+    Some((data.modified().ok()?, data.len()))
+}
+
+/// Some of many spheres: those that reach farthest in some directions, and others in even steps.
+fn sketch(spheres: &Spheres) -> Spheres {
+    let count = spheres.len();
+    let signs = [-1.0, 0.0, 1.0];
+    let directions = signs.into_iter().flat_map(|x| {
+        signs.into_iter().flat_map(move |y| signs.map(|z| DVec3::new(x, y, z).normalize_or_zero()))
+    });
+    let farthest = |direction: DVec3| {
+        let reach = |row: usize| spheres.center(row).dot(direction) + spheres.radius[row];
+        (0..count).into_par_iter().max_by(|&a, &b| reach(a).total_cmp(&reach(b)))
+    };
+    let mut rows: Vec<usize> = directions.filter_map(farthest).collect();
+    rows.extend((0..count).step_by(count.div_ceil(SKETCH).max(1)));
+    let mut some = Spheres::default();
+    for row in rows {
+        some.push(spheres.center(row), spheres.radius[row], 0, Rgb::ONE);
+    }
+    some
+}
+
+impl Labels {
     /// The type of a sphere, if it has one.
     pub(super) fn kind(&self, row: usize) -> Option<&str> {
         self.kinds.kind(row).map(|kind| kind.name.as_str())
@@ -196,15 +364,21 @@ impl Labels {
     pub(super) fn columns(&self, row: usize) -> impl Iterator<Item = String> {
         let numbers = self.numbers.iter().filter(|column| column.name != "id");
         let numbers = numbers.filter_map(move |column| {
-            column.values.get(row).map(|value| format!("{} = {value}", column.name))
+            let value = *column.values.get(row)?;
+            let text = digits::value(value, digits::range(&column.values));
+            Some(format!("{} = {text}", column.name))
         });
         let texts = self.texts.iter().filter(move |column| row < column.codes.len());
         numbers.chain(texts.map(move |column| format!("{} = {}", column.name, column.text(row))))
     }
 }
 
-/// Drops what is not drawn, and colors the rest.
-fn dress(job: &Job, content: &Content, particles: &mut Particles) -> Result<(), Failure> {
+/// Drops what is not drawn, and colors the rest; returns what the colors stand for.
+fn dress(
+    job: &Job,
+    content: &Content,
+    particles: &mut Particles,
+) -> Result<Option<Legend>, Failure> {
     let condition = content.condition();
     if condition.is_some() && !particles.numbers.iter().any(|column| column.name == "id") {
         let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
@@ -218,8 +392,7 @@ fn dress(job: &Job, content: &Content, particles: &mut Particles) -> Result<(), 
     let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
     let looks = Looks { select, coloring, types: job.looks.types.clone(), allow_empty: false };
     let name = job.source.name();
-    looks.apply(Path::new(name.as_ref()), particles)?;
-    Ok(())
+    Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }
 
 /// Whether particles have more values than are read though nothing asks for them.

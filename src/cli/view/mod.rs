@@ -11,12 +11,17 @@
 mod args;
 mod canvas;
 mod checks;
+mod colorbar;
 mod command;
 mod content;
 mod develop;
+mod digits;
 mod headless;
+mod help;
 mod keys;
+mod letters;
 mod load;
+mod loading;
 mod obey;
 mod over;
 mod pace;
@@ -26,6 +31,7 @@ mod rig;
 mod save;
 mod script;
 mod session;
+mod slicing;
 mod studio;
 mod times;
 mod viewer;
@@ -33,6 +39,7 @@ mod viewer;
 mod window;
 #[cfg(feature = "view")]
 mod worker;
+mod wrap;
 
 pub(super) use self::args::ViewerArgs;
 
@@ -41,7 +48,8 @@ use self::headless::Headless;
 use self::script::Step;
 use super::Failure;
 use super::files::{Files, STREAM};
-use super::render::Job;
+use super::looks::BarPlace;
+use super::render::{Job, check_bar};
 use super::source::is_scene;
 use std::fmt::Write;
 use std::path::Path;
@@ -71,16 +79,16 @@ pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
     // A thread that reads or builds when the window closes is not waited for: what it refers to
     // lives as long as the process.
     let args: &'static ViewerArgs = Box::leak(args);
+    args.render.memory.obey();
     let job = Job::new(&args.render)?;
     refuse(args, &job)?;
+    check_bar(&job)?;
     if let Some(path) = &args.headless_script {
         let steps = read_script(path)?;
         script_files(args, path, &steps).check()?;
         let json = args.render.report.json;
-        return job
-            .pool()?
-            .install(|| Headless::new(&job)?.run(&steps, json))
-            .map(|()| ExitCode::SUCCESS);
+        let pool = job.pool()?;
+        return pool.install(|| Headless::new(job)?.run(&steps, json)).map(|()| ExitCode::SUCCESS);
     }
     open(job, args)
 }
@@ -116,6 +124,9 @@ fn script_files(args: &ViewerArgs, script: &Path, steps: &[(usize, Step)]) -> Fi
         }
     }
     let saved = |(_, step): &(usize, Step)| matches!(step, Step::Key(key) if keys::command(key) == Some(Command::Save));
+    if let Some(BarPlace::File(bar, _)) = &args.render.looks.color_bar {
+        saves("--color-bar", bar);
+    }
     if steps.iter().any(saved) {
         saves("--output", &args.render.output);
         saves("--output", &args.render.output.with_extension("toml"));
@@ -137,7 +148,7 @@ fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
         ("--output-format", args.render.encoding.output_format.is_some()),
         ("--region", args.render.picture.region.is_some()),
         ("--layers", !args.render.encoding.layers.is_empty()),
-        ("--color-bar", job.color_bar.is_some()),
+        ("--part", job.part.is_some()),
         ("--turntable", job.views.turntable().is_some()),
         ("--checkpoint", args.render.keep.checkpoint.is_some()),
         ("--resume", args.render.keep.resume.is_some()),

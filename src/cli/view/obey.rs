@@ -1,6 +1,7 @@
 //! What a viewer does when a key is pressed.
 
 use super::command::{Action, Command};
+use super::help;
 use super::rig::Rig;
 use super::viewer::{Touched, Viewer, WIDER};
 use glam::DVec2;
@@ -43,14 +44,14 @@ impl Viewer {
     /// Does what a key says, and says what others have to do for it.
     pub(super) fn obey(&mut self, command: Command) -> Option<Action> {
         match command {
-            Command::Help => self.help = !self.help,
+            Command::Help => self.next_page(),
             Command::Status => self.status = !self.status,
             Command::Escape if self.cutting => self.cutting = false,
-            Command::Escape if self.help => self.help = false,
+            Command::Escape if self.help.is_some() => self.help = None,
             Command::Escape | Command::Quit => return Some(Action::Quit),
             Command::Slice => {
                 self.cutting = true;
-                self.say("drag a line: what is right of it goes");
+                self.say("drag a line: the side that is shaded goes");
             }
             Command::Fit => return Some(Action::Frame(None)),
             Command::Side(side) => return Some(Action::Frame(Some(side))),
@@ -63,6 +64,7 @@ impl Viewer {
             Command::Background(step) => self.next_background(step),
             Command::DepthCue | Command::Outline => self.toggle(command),
             Command::Color(step) => return Some(self.next_color(step)),
+            Command::Bar => self.toggle_bar(),
             Command::Frame(step) => return self.next_frame(step),
             Command::Hide => return self.hide(),
             Command::ShowAll => {
@@ -79,6 +81,23 @@ impl Viewer {
     /// Tells something in the status line.
     pub(super) fn say(&mut self, message: impl Into<String>) {
         self.message = message.into();
+    }
+
+    /// Shows the first or the next page of the help, and nothing after the last.
+    fn next_page(&mut self) {
+        let size = (self.settings.width, self.settings.height);
+        let next = self.help.map_or(0, |page| page + 1);
+        self.help = (next < help::pages(size, self.scale)).then_some(next);
+    }
+
+    fn toggle_bar(&mut self) {
+        self.bar = !self.bar;
+        self.say(match (&self.facts.legend, self.facts.color_bar) {
+            (None, _) => "no numbers are colored: press c",
+            (_, true) => "the color bar is part of the picture",
+            (_, false) if self.bar => "color bar: on",
+            _ => "color bar: off",
+        });
     }
 
     /// Moves the camera by steps.

@@ -1,7 +1,9 @@
 //! What was seen as files: the picture, and a scene that renders to it.
 
+use super::load::Origin;
+use super::viewer::Facts;
 use crate::cli::failure::Failure;
-use crate::cli::render::{Subject, alpha, check_alpha};
+use crate::cli::render::{Job, Subject, alpha, check_alpha, write_bar};
 use spherule::film::Region;
 use spherule::image::{Channel, Format, Image, WriteOptions};
 use spherule::overlay::Matte;
@@ -36,12 +38,28 @@ pub(super) fn save_picture(seen: &Seen, path: &Path) -> Result<(), Failure> {
     Ok(seen.image.write_layers(path, &channels, &options)?)
 }
 
+/// Writes the color bar, if it has a file of its own and colors stand for numbers.
+pub(super) fn save_bar(job: &Job, facts: &Facts, height: u32) -> Result<(), Failure> {
+    match &facts.legend {
+        Some(legend) => write_bar(job, Some(legend), height),
+        None => Ok(()),
+    }
+}
+
 /// Writes the scene, with its spheres in a file beside it.
-pub(super) fn save_scene(seen: &Seen, scene: &RwLock<Scene>, path: &Path) -> Result<(), Failure> {
+pub(super) fn save_scene(
+    seen: &Seen,
+    scene: &RwLock<Scene>,
+    origin: Option<&Origin>,
+    path: &Path,
+) -> Result<(), Failure> {
     let Seen { title, camera, settings, ref look, .. } = *seen;
+    let header = Header { title, camera, settings, look };
     // Who looks at the scene meanwhile does not wait.
     let scene = scene.read().unwrap_or_else(PoisonError::into_inner);
-    Ok(write_as(&scene, &Header { title, camera, settings, look }, path)?)
+    let Some(origin) = origin else { return Ok(write_as(&scene, &header, path)?) };
+    let whole = Scene { spheres: origin.spheres()?, ..scene.clone() };
+    Ok(write_as(&whole, &header, path)?)
 }
 
 /// `view-002.png` if there is a picture or a scene `view-001` already.

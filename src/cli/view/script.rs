@@ -2,6 +2,7 @@
 
 use super::command::{Button, Held};
 use super::keys;
+use super::viewer::SCALES;
 use glam::DVec2;
 use spherule::image::Format;
 use spherule::suggest;
@@ -14,11 +15,15 @@ const STEPS: u32 = 16;
 const MOST: usize = 1 << 20;
 
 /// Words that begin a line.
-const STEP_NAMES: [&str; 14] = [
+const STEP_NAMES: [&str; 18] = [
     "size",
+    "scale",
     "key",
     "click",
     "double-click",
+    "press",
+    "move",
+    "release",
     "drag",
     "wheel",
     "turn",
@@ -39,9 +44,13 @@ pub(super) fn manual() -> String {
 const MANUAL: &str = "\
 A script for --headless-script is a file of lines; # begins a comment:
   size 640x360                   the window's size
+  scale 1.5                      the display's scale, by which letters are larger
   key KEY                        such as c, F, ctrl+3, home
   click X,Y                      with ctrl, shift or alt after it, if held
   double-click X,Y
+  press X,Y                      a drag begins, with what drag takes but steps=N after it
+  move X,Y                       the pointer goes there
+  release                        the drag ends
   drag X,Y X,Y                   with left, middle or right, ctrl, shift or alt, and steps=N, after it
   wheel STEPS X,Y                forward if positive; with shift after it, if held
   turn RIGHT UP                  degrees about the pivot
@@ -57,8 +66,12 @@ A script for --headless-script is a file of lines; # begins a comment:
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Step {
     Size(u32, u32),
+    Scale(f64),
     Key(String),
     Click { place: DVec2, held: Held, double: bool },
+    Press { place: DVec2, button: Button, held: Held },
+    Move(DVec2),
+    Release,
     Drag { from: DVec2, to: DVec2, button: Button, held: Held, steps: u32 },
     Wheel { steps: f64, place: DVec2, held: Held },
     Turn(DVec2),
@@ -124,6 +137,14 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
             let (width, height) = pair(size, 'x')?;
             Step::Size(width, height)
         }
+        ["scale", scale] => {
+            let scale = finite(scale)?;
+            if !SCALES.contains(&scale) {
+                let (least, most) = (SCALES.start(), SCALES.end());
+                return Err(format!("a scale of {scale}, but scales are {least} to {most}"));
+            }
+            Step::Scale(scale)
+        }
         ["key", key] if keys::command(key).is_some() => Step::Key((*key).to_owned()),
         ["key", key] => {
             let near = suggest::question(key, keys::BINDINGS.iter().map(|binding| binding.0));
@@ -135,6 +156,12 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
         ["double-click", at] => {
             Step::Click { place: place(at)?, held: Held::default(), double: true }
         }
+        ["press", at, how @ ..] => {
+            let Words { button, held, .. } = Words::of(how)?;
+            Step::Press { place: place(at)?, button, held }
+        }
+        ["move", at] => Step::Move(place(at)?),
+        ["release"] => Step::Release,
         ["drag", from, to, how @ ..] => {
             let Words { button, held, steps } = Words::of(how)?;
             Step::Drag { from: place(from)?, to: place(to)?, button, held, steps }
@@ -241,6 +268,9 @@ mod tests {
             ("wait 1\njump", "line 2"),
             ("key ctrl+alt+9", "line 1"),
             ("drag 1,2 3", "line 1"),
+            ("scale 0", "line 1"),
+            ("scale nan", "line 1"),
+            ("press 1", "line 1"),
             ("drag 1,2 3,4 up", "line 1"),
             ("wheel nan 1,1", "line 1"),
             ("repeat 1000000\nrepeat 1000000\nquit\nend\nend", "line 2"),

@@ -73,7 +73,9 @@ pub(super) fn builder(job: &Job, viewer: &Viewer) -> spherule::bvh::build::Build
 pub(super) fn begin(viewer: &mut Viewer, stage: &Stage, samples: u32) {
     let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
     let settings = Settings { spp: samples, ..scene.settings.clone() };
+    let scale = viewer.scale;
     *viewer = Viewer::new(&scene.camera, &settings, viewer.pace);
+    viewer.scale = scale;
     viewer.loaded(stage.facts.clone());
 }
 

@@ -1,18 +1,22 @@
 //! Who makes the pictures that the viewer orders, and knows what is at a pixel.
 
 use super::develop::{Developed, Developer};
+use super::digits;
 use super::load::Stage;
-use super::over::Over;
+use super::over::{Drawn, Over};
 use super::picture::{Order, Picture};
 use super::rig::Rig;
 use crate::cli::failure::Failure;
+use crate::cli::render::draw_bar;
+use crate::cli::views::Canvas;
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::film::Region;
 use spherule::layers::{Layer, layers};
 use spherule::render::{End, Options, RenderError, Unfinished};
-use spherule::scene::{Camera, Scene, Settings};
+use spherule::scene::{Camera, ColorBar, Scene, Settings};
 use spherule::trace::Tracer;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
@@ -29,6 +33,8 @@ pub(super) struct Studio {
     film: Option<(Camera, Unfinished)>,
     over: Over,
     developer: Developer,
+    /// Drawn into whole pictures.
+    color_bar: Option<ColorBar>,
 }
 
 /// What is at a pixel.
@@ -43,8 +49,19 @@ pub(super) struct Picked {
 
 impl Studio {
     pub(super) fn new(stage: Stage, tracer: Tracer, builder: Builder) -> Self {
-        let (over, developer) = (Over::default(), Developer::default());
-        Self { stage, tracer, builder, aimed: Scene::default(), film: None, over, developer }
+        let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+        let color_bar = scene.color_bar.clone();
+        drop(scene);
+        Self {
+            stage,
+            tracer,
+            builder,
+            aimed: Scene::default(),
+            film: None,
+            over: Over::default(),
+            developer: Developer::default(),
+            color_bar,
+        }
     }
 
     /// Goes on with another scene.
@@ -86,6 +103,14 @@ impl Studio {
                 return Ok(None);
             }
         }
+        let whole = (order.settings.width, order.settings.height) == order.print.size;
+        if let Some(bar) = self.color_bar.as_ref().filter(|_| whole) {
+            let plain = || Drawn { image: image.clone(), matte: None };
+            let Drawn { image, matte } = drawn.get_or_insert_with(plain);
+            let mut canvas = Canvas { image, matte: matte.take() };
+            draw_bar(bar, &mut canvas, order.look.ink())?;
+            *matte = canvas.matte;
+        }
         let (version, samples) = (order.version, order.settings.spp);
         let mut picture = Picture {
             version,
@@ -122,7 +147,14 @@ impl Studio {
         }
         let mut scene = self.stage.scene.write().unwrap_or_else(PoisonError::into_inner);
         (scene.camera, scene.settings) = (camera.clone(), settings.clone());
-        self.stage.world = World::build_with(&scene, self.builder).map_err(failed)?;
+        let built = match &self.stage.origin {
+            None => World::build_with(&scene, self.builder),
+            Some(origin) => {
+                let spheres = origin.spheres()?;
+                World::build_taking(&mut Scene { spheres, ..scene.clone() }, self.builder)
+            }
+        };
+        self.stage.world = built.map_err(failed)?;
         self.over = Over::default();
         Ok(())
     }
@@ -142,17 +174,15 @@ impl Studio {
         let options = Options { tracer: self.tracer, region: Some(region), ..Options::default() };
         let found = layers(&self.stage.world, settings, &options, &[Layer::Id])?;
         let row = found.pixels.first().map_or(usize::MAX, |pixel| pixel.id as usize);
-        let scene = self.stage.scene.read().unwrap_or_else(PoisonError::into_inner);
-        if row >= scene.spheres.len() {
-            return Ok(None);
-        }
-        let (center, radius) = (scene.spheres.center(row), scene.spheres.radius[row]);
+        let Some((center, radius)) = self.sphere(row) else { return Ok(None) };
         let labels = &self.stage.labels;
         let id = labels.id(row).unwrap_or(row as f64);
         let kind = labels.kind(row).map(str::to_owned);
-        let [a, b, c] = center.to_array();
+        let extent = self.stage.facts.size;
+        let [a, b, c] = center.to_array().map(|value| digits::length(value, extent));
+        let length = digits::value(radius, extent);
         let named = kind.as_ref().map_or(String::new(), |kind| format!("type {kind}, "));
-        let mut text = format!("sphere {id}: {named}at {a} {b} {c}, radius {radius}");
+        let mut text = format!("sphere {id}: {named}at {a} {b} {c}, radius {length}");
         for column in labels.columns(row) {
             text += ", ";
             text += &column;
@@ -160,9 +190,24 @@ impl Studio {
         let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let size = DVec2::new(f64::from(settings.width), f64::from(settings.height));
         let offset = (place - size / 2.0) / size.y;
-        let ray =
-            Rig::new(camera.clone(), self.stage.facts.size).ray(offset * DVec2::new(1.0, -1.0));
+        let ray = Rig::new(camera.clone(), extent).ray(offset * DVec2::new(1.0, -1.0));
         Ok(Some(Picked { text, kind, point: meet(ray, center, radius) }))
+    }
+}
+
+impl Studio {
+    /// Center and radius of a row of the scene, from the world where the scene has only a sketch: the
+    /// world's numbers are of single precision.
+    fn sphere(&self, row: usize) -> Option<(DVec3, f64)> {
+        if self.stage.origin.is_none() {
+            let scene = self.stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+            let there = row < scene.spheres.len();
+            return there.then(|| (scene.spheres.center(row), scene.spheres.radius[row]));
+        }
+        let World { spheres, frame, .. } = &self.stage.world;
+        let place = spheres.id.par_iter().position_any(|&id| id as usize == row)?;
+        let (center, radius) = spheres.exact(place);
+        Some((center / frame.scale + frame.shift, radius / frame.scale))
     }
 }
 

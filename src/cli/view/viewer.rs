@@ -5,14 +5,19 @@
 use super::command::{Action, Button, Event, Held, Purpose};
 use super::content::{Content, Cut};
 use super::keys;
+use super::loading::Loading;
 use super::pace::Pace;
 use super::picture::Picture;
 use super::rig::Rig;
 use glam::DVec2;
+use spherule::scene::particles::Legend;
 use spherule::scene::{Background, Camera, Look, Settings};
 
 /// Least and most pixels on a side of the window.
 const SIDES: (u32, u32) = (16, 16_384);
+
+/// Scales of displays.
+pub(super) const SCALES: std::ops::RangeInclusive<f64> = 0.25..=8.0;
 
 /// Pixels that the pointer may move in a click.
 const CLICK: f64 = 4.0;
@@ -46,6 +51,10 @@ pub(super) struct Facts {
     pub(super) look: Look,
     /// Whether particles have materials of their own, which looks do not replace.
     pub(super) own_materials: bool,
+    /// The numbers that colors stand for, if they stand for any, and whether the picture has a color
+    /// bar of its own.
+    pub(super) legend: Option<Legend>,
+    pub(super) color_bar: bool,
 }
 
 /// What was changed of the scene's look by keys.
@@ -84,8 +93,15 @@ pub(super) struct Viewer {
     pub(super) named: Option<String>,
     /// What was done last, for the status line.
     pub(super) message: String,
-    pub(super) help: bool,
+    /// The page of the help that is shown, from 0.
+    pub(super) help: Option<usize>,
     pub(super) status: bool,
+    /// Whether a color bar is shown where the picture has none.
+    pub(super) bar: bool,
+    /// The display's scale.
+    pub(super) scale: f64,
+    /// What is being loaded, if it takes a while.
+    pub(super) loading: Option<Loading>,
     /// Whether the next drag cuts.
     pub(super) cutting: bool,
     pub(super) shown: Option<Picture>,
@@ -112,8 +128,11 @@ impl Viewer {
             pace,
             named: None,
             message: "press ? for help".to_owned(),
-            help: false,
+            help: None,
             status: true,
+            bar: true,
+            scale: 1.0,
+            loading: None,
             cutting: false,
             shown: None,
             noise: None,
@@ -128,6 +147,7 @@ impl Viewer {
     pub(super) fn loaded(&mut self, facts: Facts) {
         self.rig.resize(facts.size);
         self.facts = facts;
+        self.loading = None;
         self.change();
     }
 
@@ -193,6 +213,9 @@ impl Viewer {
                 (self.settings.width, self.settings.height) = (side(width), side(height));
                 self.change();
             }
+            Event::Scale(scale) => {
+                self.scale = scale.clamp(*SCALES.start(), *SCALES.end());
+            }
             #[cfg(feature = "view")]
             Event::Close => return Some(Action::Quit),
         }
@@ -209,7 +232,7 @@ impl Viewer {
     fn point(&mut self, place: DVec2) {
         let moved = self.in_heights(place) - self.in_heights(self.pointer);
         if let Some(Drag::Click(start, button, held)) = self.drag {
-            if place.distance(start) <= CLICK {
+            if place.distance(start) <= CLICK * self.scale.max(1.0) {
                 return;
             }
             self.drag = Some(drag_of(button, held));

@@ -10,6 +10,9 @@ mod input;
 use self::input::Input;
 use super::canvas::Canvas;
 use super::command::{Action, Event};
+use super::content::Content;
+use super::load::Origin;
+use super::loading::Loading;
 use super::pace::Pace;
 use super::session;
 use super::times::Times;
@@ -45,6 +48,11 @@ struct App {
     screen: Option<(Rc<Window>, Screen)>,
     /// What is saved; `None` until something was loaded.
     scene: Option<Arc<RwLock<Scene>>>,
+    /// Where its spheres come from, if it has only a sketch of them.
+    origin: Option<Origin>,
+    /// What was loaded last.
+    loaded: Content,
+    job: Arc<Job<'static>>,
     savers: Vec<JoinHandle<()>>,
     /// Files that are being written.
     files: u32,
@@ -80,7 +88,9 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     let (output, sized) = (job.output.clone(), job.picture.size);
     let samples = job.picture.spp.unwrap_or(session::SAMPLES);
     let told = proxy.clone();
-    let workers = Workers::start(job, move |news| told.send_event(news).is_ok())?;
+    let name = job.source.name().into_owned();
+    let job = Arc::new(job);
+    let workers = Workers::start(&job, move |news| told.send_event(news).is_ok())?;
     let mut settings = Settings { width: 1280, height: 720, ..Settings::default() };
     if let Some(size) = sized {
         (settings.width, settings.height) = (size.width, size.height);
@@ -93,6 +103,9 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
         workers,
         screen: None,
         scene: None,
+        origin: None,
+        loaded: Content::default(),
+        job,
         savers: Vec::new(),
         files: 0,
         closed: false,
@@ -105,7 +118,7 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
         clock: Clock::default(),
         failure: None,
     };
-    app.viewer.say("loading");
+    app.viewer.loading = Some(Loading::of(&name));
     app.workers.load(&app.viewer.content);
     let ended = events.run_app(&mut app);
     let opened = app.closed || app.screen.is_some();
@@ -234,6 +247,7 @@ impl App {
             Surface::new(&context, Rc::clone(&window)).map_err(|error| no_display(&error))?;
         let size = window.inner_size();
         self.viewer.handle(Event::Resize(size.width, size.height));
+        self.viewer.handle(Event::Scale(window.scale_factor()));
         self.screen = Some((window, screen));
         Ok(())
     }

@@ -5,7 +5,8 @@
 
 use super::command::Purpose;
 use super::content::Content;
-use super::load::{Base, Stage};
+use super::load::{Loader, Stage};
+use super::loading::{Loading, Progress, Watch};
 use super::picture::{Order, Picture};
 use super::studio::{Picked, Studio};
 use crate::cli::failure::Failure;
@@ -20,6 +21,8 @@ use std::thread;
 
 /// What a window hears of.
 pub(super) enum News {
+    /// How far loading is.
+    Loading(Loading),
     /// There is something else to be seen.
     Staged(Result<Box<Stage>, Failure>),
     /// An order is done; nothing if it was cancelled.
@@ -51,7 +54,7 @@ impl Workers {
     /// # Errors
     /// The pools of threads cannot be started.
     pub(super) fn start(
-        job: Job<'static>,
+        job: &Arc<Job<'static>>,
         tell: impl Fn(News) -> bool + Clone + Send + 'static,
     ) -> Result<Self, Failure> {
         let (contents, wanted) = channel();
@@ -60,7 +63,9 @@ impl Workers {
         let (loaders, renderers) = (job.pool()?, job.pool()?);
         let (tracer, builder) = (job.tracer, job.builder(usize::MAX, u64::MAX));
         let loaded = tell.clone();
-        thread::spawn(move || load(&loaders, &job, &wanted, loaded));
+        let loader = Loader::new(Arc::clone(job));
+        let quiet = job.report.quiet;
+        thread::spawn(move || load(&loaders, loader, &wanted, loaded, quiet));
         thread::spawn(move || {
             let studio = |stage| Studio::new(stage, tracer, builder);
             render(&renderers, &todo, studio, tell);
@@ -109,19 +114,22 @@ impl Workers {
 }
 
 /// Loads the newest of what is wanted, again and again.
-fn load(pool: &ThreadPool, job: &Job, wanted: &Receiver<Content>, tell: impl Fn(News) -> bool) {
-    let mut base = None;
+fn load(
+    pool: &ThreadPool,
+    mut loader: Loader,
+    wanted: &Receiver<Content>,
+    tell: impl Fn(News) -> bool + Clone + Send + 'static,
+    quiet: bool,
+) {
     while let Ok(mut content) = wanted.recv() {
         while let Ok(newer) = wanted.try_recv() {
             content = newer;
         }
-        let before = base.take();
-        let staged = pool.install(|| {
-            let read = Base::load(job, &content, before)?;
-            let stage = read.stage(job, &content);
-            base = Some(read);
-            stage.map(Box::new)
-        });
+        let progress = Arc::new(Progress::default());
+        let told = tell.clone();
+        let watch = Watch::start(&progress, quiet, move |loading| _ = told(News::Loading(loading)));
+        let staged = pool.install(|| loader.load(&content, &progress).map(Box::new));
+        drop(watch);
         if !tell(News::Staged(staged)) {
             return;
         }

@@ -7,6 +7,7 @@
 
 mod block;
 mod camera;
+mod color_bar;
 mod environment;
 mod lights;
 mod look;
@@ -158,11 +159,13 @@ fn read(source: &Source, root: &Block) -> Result<Scene, SceneError> {
     let settings = root.block("render", &schema::RENDER)?;
     let camera = root.block("camera", &schema::CAMERA)?;
     let look = root.block("look", &schema::LOOK)?;
+    let color_bar = root.block("color_bar", &schema::COLOR_BAR)?;
     let mut scene = Scene {
         title: title.to_owned(),
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
         camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
         look: look.map_or(Ok(Look::default()), |block| look::read(&block))?,
+        color_bar: color_bar.map(|block| color_bar::read(&block)).transpose()?,
         slices: slices::read(root)?,
         lights: lights::read(root)?,
         ..Scene::default()

@@ -38,6 +38,7 @@ pub(super) const ROOT: Schema = plain(
         ("render", &[]),
         ("camera", &[]),
         ("look", &[]),
+        ("color_bar", &[]),
         ("environment", &[]),
         ("ground", &[]),
         ("slice", &[]),
@@ -95,6 +96,18 @@ pub(super) const CAMERA: Schema = Schema {
 
 pub(super) const LOOK: Schema =
     plain("[look]", &[("background", &[]), ("depth_cue", &[]), ("outline", &[]), ("cell", &[])]);
+
+pub(super) const COLOR_BAR: Schema = plain(
+    "[color_bar]",
+    &[
+        ("range", &[]),
+        ("log", &[]),
+        ("map", &[]),
+        ("reversed", &[]),
+        ("label", &[]),
+        ("corner", &[]),
+    ],
+);
 
 pub(super) const ENVIRONMENT: Schema = Schema {
     section: "[environment]",
@@ -184,11 +197,12 @@ pub(super) const FILE: Schema = plain(
 mod tests {
     use super::*;
 
-    const ALL: [&Schema; 12] = [
+    const ALL: [&Schema; 13] = [
         &ROOT,
         &RENDER,
         &CAMERA,
         &LOOK,
+        &COLOR_BAR,
         &ENVIRONMENT,
         &GROUND,
         &SLICE,

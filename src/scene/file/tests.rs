@@ -98,7 +98,9 @@ fn sections_in_the_wrong_brackets_are_told() {
 /// Texts with one value each that is out of its range, and one that is just inside.
 #[test]
 fn every_range_is_kept() {
-    let cases: [(&str, &[&str], &str); 44] = [
+    let cases: [(&str, &[&str], &str); 46] = [
+        ("[color_bar]\nrange = ?", &["[2, 1]", "[0, inf]", "1", "[1]"], "[1, 1]"),
+        ("[color_bar]\nrange = [1, 2]\ncorner = ?", &["\"left\"", "1"], "\"top-left\""),
         ("[look]\nbackground = ?", &["\"rde\"", "\"#12\"", "-1", "[1, 2]"], "\"transparent\""),
         ("[look]\nbackground = ?", &["true", "2e30"], "[0, 1e30, 0.5]"),
         ("[look]\noutline = ?", &["1", "\"yes\""], "true"),

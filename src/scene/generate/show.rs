@@ -31,6 +31,7 @@ pub fn default_scene(seed: u64) -> Scene {
         ground: Some(ground),
         slices: Vec::new(),
         look: Look::default(),
+        color_bar: None,
         lights: vec![sun()],
         environment: sky(),
         camera: camera(),

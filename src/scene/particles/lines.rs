@@ -32,7 +32,7 @@ pub(super) struct Lines {
 
 impl Lines {
     pub(super) fn new(source: Source) -> Self {
-        let Source { path, mut head, reader } = source;
+        let Source { path, mut head, reader, .. } = source;
         if head.starts_with(b"\xEF\xBB\xBF") {
             head.drain(..3);
         }
@@ -169,6 +169,7 @@ impl Lines {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::particles::ReadProgress;
 
     /// Gives a few bytes at a time, as pipes do.
     struct Drops(Vec<u8>, usize);
@@ -184,7 +185,8 @@ mod tests {
 
     fn lines(text: &str, drop: usize) -> Lines {
         let reader = Box::new(Drops(text.as_bytes().to_vec(), drop));
-        Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader })
+        let progress = ReadProgress::default();
+        Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader, progress })
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! How to read a file of particles.
 
+use super::progress::ReadProgress;
 use crate::suggest;
 use std::str::FromStr;
 
@@ -237,6 +238,8 @@ pub struct ReadOptions {
     /// Whether a frame without any sphere is valid, as among the frames of a trajectory, and not an
     /// error.
     pub allow_empty: bool,
+    /// Counts the bytes that are read.
+    pub progress: ReadProgress,
 }
 
 impl ReadOptions {
@@ -254,6 +257,7 @@ impl ReadOptions {
             scale,
             atom_style: _,
             allow_empty: _,
+            progress: _,
         } = self;
         let radius = match radii {
             Radii::Missing(radius) | Radii::Constant(radius) => Some(*radius),
@@ -280,6 +284,7 @@ impl Default for ReadOptions {
             scale: 1.0,
             atom_style: None,
             allow_empty: false,
+            progress: ReadProgress::default(),
         }
     }
 }

@@ -37,7 +37,7 @@ impl Frames {
     ///
     /// The file cannot be read, or is in no format known here.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Self, SceneError> {
-        let source = Source::open(path)?;
+        let source = Source::open(path, &options.progress)?;
         let format = sniff::format(&source, options)?;
         let reader: Box<dyn FrameReader> = match format {
             Format::Xyzr => Box::new(text::Rows::new(source, options)),

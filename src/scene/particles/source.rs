@@ -5,6 +5,7 @@
 //! Rust, so that the program needs no library of the system.
 
 use super::header;
+use super::progress::{CountedFile, ReadProgress};
 use super::utf16::{self, Utf16};
 use crate::scene::SceneError;
 use flate2::read::MultiGzDecoder;
@@ -49,6 +50,7 @@ pub(super) struct Source {
     pub(super) head: Vec<u8>,
     /// What follows.
     pub(super) reader: Box<dyn Read + Send>,
+    pub(super) progress: ReadProgress,
 }
 
 /// Whether this path stands for standard input.
@@ -58,17 +60,18 @@ pub(super) fn is_standard_input(path: &Path) -> bool {
 
 impl Source {
     /// Opens a file, or standard input for `-`.
-    pub(super) fn open(path: &Path) -> Result<Self, SceneError> {
+    pub(super) fn open(path: &Path, progress: &ReadProgress) -> Result<Self, SceneError> {
         let path: Arc<Path> = path.into();
         let fault =
             |error: &io::Error| SceneError::whole_file(&path, format!("cannot be read: {error}"));
         let mut raw: Box<dyn Read + Send> = if is_standard_input(&path) {
             Box::new(io::stdin())
         } else {
-            Box::new(File::open(&path).map_err(|error| fault(&error))?)
+            let file = File::open(&path).map_err(|error| fault(&error))?;
+            Box::new(CountedFile::new(file, progress))
         };
         let head = head(&mut raw).map_err(|error| fault(&error))?;
-        let mut source = Self { path: path.clone(), head, reader: raw };
+        let mut source = Self { path: path.clone(), head, reader: raw, progress: progress.clone() };
         if let Some(packing) = Packing::of(&source.head) {
             source =
                 source.through(|packed| packing.unpack(packed)).map_err(|error| fault(&error))?;
@@ -92,7 +95,7 @@ impl Source {
         decode: impl FnOnce(Chain<Cursor<Vec<u8>>, Box<dyn Read + Send>>) -> Box<dyn Read + Send>,
     ) -> io::Result<Self> {
         let mut reader = decode(Cursor::new(self.head).chain(self.reader));
-        Ok(Self { path: self.path, head: head(&mut reader)?, reader })
+        Ok(Self { path: self.path, head: head(&mut reader)?, reader, progress: self.progress })
     }
 
     /// Lengthens the head where there is little else in it than comments, so that it shows what
@@ -111,7 +114,7 @@ impl Source {
 
     /// All of it again, for readers that go back and forth: the file itself, or a temporary copy
     /// of what was packed or came through a pipe.
-    pub(super) fn into_file(mut self) -> Result<File, SceneError> {
+    pub(super) fn into_file(mut self) -> Result<CountedFile, SceneError> {
         let fault = |error: io::Error| {
             SceneError::whole_file(&self.path, format!("cannot be read: {error}"))
         };
@@ -120,13 +123,13 @@ impl Source {
             let mut again = vec![0; self.head.len()];
             let regular = file.metadata().is_ok_and(|metadata| metadata.is_file());
             if regular && file.read_exact(&mut again).is_ok() && again == self.head {
-                return Ok(file);
+                return Ok(CountedFile::new(file, &self.progress));
             }
         }
         let mut file = tempfile::tempfile().map_err(fault)?;
         file.write_all(&self.head).map_err(fault)?;
         io::copy(&mut self.reader, &mut file).map_err(fault)?;
-        Ok(file)
+        Ok(CountedFile::new(file, &self.progress))
     }
 }
 

@@ -3,7 +3,9 @@
 
 pub(super) mod sections;
 
-use self::sections::{camera, environment, light, look, material, quoted, render, slice, vector};
+use self::sections::{
+    camera, color_bar, environment, light, look, material, quoted, render, slice, vector,
+};
 use super::{
     Camera, EnvironmentMap, Look, NamedMaterial, Rgb, Scene, SceneError, Settings, Spheres,
     included_files,
@@ -122,6 +124,7 @@ fn document(scene: &Scene, header: &Header, columns: &Path, sky: &Path) -> Strin
     text += &render(header.settings);
     text += &camera(header.camera);
     text += &look(header.look);
+    text += &scene.color_bar.as_ref().map_or_else(String::new, color_bar);
     text += &environment(&scene.environment, &name(sky));
     for NamedMaterial { name, material: surface } in &scene.materials {
         let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
@@ -174,11 +177,12 @@ fn write_columns(scene: &Scene, file: &mut dyn io::Write) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::{Map, Range, Scale, Spacing};
     use crate::scene::generate::default_scene;
     use crate::scene::particles::Cell;
     use crate::scene::{
-        BRIGHTEST, Background, ConductorFresnel, Filter, Ground, Integrator, Lens, Light,
-        LightChoice, Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
+        BRIGHTEST, Background, ColorBar, ConductorFresnel, Corner, Filter, Ground, Integrator,
+        Lens, Light, LightChoice, Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
@@ -278,6 +282,18 @@ mod tests {
             scene.camera.lens = Some(Lens { aperture: choice as f64 / 3.0, focus });
             let again = round_trip(&scene);
             assert!(same(&scene, &again), "{scene:?}\n{again:?}");
+        }
+    }
+
+    #[test]
+    fn color_bars_come_back() {
+        let range = Range::new(1.0 / 3.0, 7e30, Spacing::Logarithmic).unwrap();
+        let scale = Scale { reversed: true, ..Scale::new(Map::Plasma, range) };
+        for (_, corner) in Corner::ALL {
+            let label = "c_pe \"per atom\"\nand more".to_owned();
+            let color_bar = Some(ColorBar { scale, label, corner });
+            let again = round_trip(&Scene { color_bar: color_bar.clone(), ..Scene::default() });
+            assert_eq!(again.color_bar, color_bar);
         }
     }
 

@@ -1,9 +1,10 @@
 //! The sections of a scene file as text.
 
+use crate::color::{Scale, Spacing};
 use crate::scene::{
-    Background, Camera, ConductorFresnel, Environment, EnvironmentMap, Filter, Integrator, Lens,
-    Light, LightChoice, Look, Material, Pose, Projection, Rgb, Roulette, SamplerKind, Settings,
-    Slice, Tone,
+    Background, Camera, ColorBar, ConductorFresnel, Environment, EnvironmentMap, Filter,
+    Integrator, Lens, Light, LightChoice, Look, Material, Pose, Projection, Rgb, Roulette,
+    SamplerKind, Settings, Slice, Tone,
 };
 use glam::DVec3;
 
@@ -101,6 +102,18 @@ pub(in crate::scene) fn look(look: &Look) -> String {
     let Look { depth_cue, outline, .. } = look;
     format!(
         "[look]\nbackground = {background}\ndepth_cue = {depth_cue}\noutline = {outline}\n{cell}\n"
+    )
+}
+
+/// Colors for what is beyond the range have no words in a scene file.
+pub(in crate::scene) fn color_bar(bar: &ColorBar) -> String {
+    let Scale { map, reversed, range, .. } = bar.scale;
+    let (low, high, map) = (range.low(), range.high(), map.name());
+    let log = range.spacing() == Spacing::Logarithmic;
+    let (label, corner) = (quoted(&bar.label), bar.corner.name());
+    format!(
+        "[color_bar]\nrange = [{low:?}, {high:?}]\nlog = {log}\nmap = \"{map}\"\n\
+         reversed = {reversed}\nlabel = {label}\ncorner = \"{corner}\"\n\n"
     )
 }
 

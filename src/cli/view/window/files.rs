@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::cli::output;
-use crate::cli::view::save::{Seen, free_name, save_picture, save_scene};
+use crate::cli::view::save::{Seen, free_name, save_bar, save_picture, save_scene};
 use crate::cli::view::worker::News;
 use std::sync::Arc;
 use winit::event_loop::ActiveEventLoop;
@@ -36,13 +36,17 @@ impl App {
         let (scene, picture, path) = (Arc::clone(scene), picture.clone(), free_name(&self.output));
         let (title, camera) = (self.viewer.facts.title.clone(), self.viewer.rig.camera.clone());
         let (tell, look) = (Arc::clone(&self.tell), self.viewer.look());
+        let (job, origin) = (Arc::clone(&self.job), self.origin.clone());
+        let facts = self.viewer.facts.clone();
         self.viewer.say(format!("saving {}", path.display()));
         let saver = std::thread::spawn(move || {
             let (image, matte) = picture.seen();
             let (title, camera, settings) = (&*title, &camera, &settings);
             let seen = Seen { title, camera, settings, look, image, matte };
+            let toml = path.with_extension("toml");
             let saved = save_picture(&seen, &path)
-                .and_then(|()| save_scene(&seen, &scene, &path.with_extension("toml")));
+                .and_then(|()| save_bar(&job, &facts, settings.height))
+                .and_then(|()| save_scene(&seen, &scene, origin.as_ref(), &toml));
             tell(News::Saved(saved.map(|()| path)));
         });
         self.savers.push(saver);

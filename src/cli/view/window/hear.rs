@@ -1,6 +1,7 @@
 //! What the window's threads tell it.
 
 use super::App;
+use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::view::command::Event;
 use crate::cli::view::load::Stage;
@@ -20,6 +21,7 @@ impl App {
             self.saved(events);
         }
         match news {
+            News::Loading(loading) => self.viewer.loading = Some(loading),
             News::Staged(Ok(stage)) => self.set(stage),
             News::Staged(Err(failure)) if self.scene.is_none() => {
                 self.failure = Some(failure);
@@ -42,16 +44,23 @@ impl App {
                 output::print(format_args!("{} {}", path.display(), scene.display()));
                 self.viewer.say(format!("saved {} and {}", path.display(), scene.display()));
             }
-            News::Staged(Err(failure))
-            | News::Picture(Err(failure))
-            | News::Picked(Err(failure), _)
-            | News::Saved(Err(failure)) => {
-                let message = failure.to_string();
-                output::warn(&message);
-                self.viewer.say(message);
+            News::Staged(Err(failure)) => {
+                // What is shown is what was loaded last.
+                self.viewer.content = self.loaded.clone();
+                self.viewer.loading = None;
+                self.complain(&failure);
             }
+            News::Picture(Err(failure))
+            | News::Picked(Err(failure), _)
+            | News::Saved(Err(failure)) => self.complain(&failure),
         }
         self.go_on();
+    }
+
+    fn complain(&mut self, failure: &Failure) {
+        let message = failure.to_string();
+        output::warn(&message);
+        self.viewer.say(message);
     }
 
     /// Shows what was loaded.
@@ -68,6 +77,8 @@ impl App {
             window.set_title(&self.viewer.facts.title);
         }
         self.scene = Some(Arc::clone(&stage.scene));
+        self.origin.clone_from(&stage.origin);
+        self.loaded.clone_from(&stage.content);
         self.workers.set(stage);
     }
 

@@ -27,6 +27,9 @@ impl Input {
         match event {
             WindowEvent::CloseRequested => Some(Event::Close),
             WindowEvent::Resized(size) => Some(Event::Resize(size.width, size.height)),
+            WindowEvent::ScaleFactorChanged { scale_factor, .. } => {
+                Some(Event::Scale(*scale_factor))
+            }
             WindowEvent::ModifiersChanged(modifiers) => {
                 self.held = held(modifiers.state());
                 None

@@ -181,12 +181,13 @@ fn is_blank(byte: u8) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::particles::ReadProgress;
     use crate::scene::particles::source::Source;
 
     fn words(text: &str) -> Result<Vec<String>, String> {
         let head = text.as_bytes().to_vec();
-        let source =
-            Source { path: Path::new("c").into(), head, reader: Box::new(std::io::empty()) };
+        let (reader, progress) = (Box::new(std::io::empty()), ReadProgress::default());
+        let source = Source { path: Path::new("c").into(), head, reader, progress };
         let mut tokens = Tokens::new(Lines::new(source));
         let mut words = Vec::new();
         while let Some(token) = tokens.next().map_err(|error| error.message)? {

@@ -1,9 +1,9 @@
 //! The container: named chunks of numbers, found by an index (gsd.readthedocs.io, "File layer").
 
 use crate::scene::SceneError;
+use crate::scene::particles::progress::CountedFile;
 use crate::scene::particles::scalar::{Order, Scalar};
 use std::collections::{BTreeMap, HashMap};
-use std::fs;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ const NAMES: u64 = 1 << 24;
 /// An open file.
 pub(super) struct File {
     path: Arc<Path>,
-    content: fs::File,
+    content: CountedFile,
     length: u64,
     names: HashMap<String, u16>,
     /// Chunks by frame and name.
@@ -49,7 +49,7 @@ fn word(bytes: &[u8], at: usize) -> u64 {
 }
 
 impl File {
-    pub(super) fn open(path: &Arc<Path>, mut content: fs::File) -> Result<Self, SceneError> {
+    pub(super) fn open(path: &Arc<Path>, mut content: CountedFile) -> Result<Self, SceneError> {
         let unreadable =
             |error: io::Error| SceneError::whole_file(path, format!("cannot be read: {error}"));
         let length = content.seek(SeekFrom::End(0)).map_err(unreadable)?;

@@ -6,11 +6,11 @@ use crate::scene::particles::builder::{Builder, add, share};
 use crate::scene::particles::categories::{Codebook, Kind, TextColumn};
 use crate::scene::particles::frame::{NumberColumn, ParticleFrame};
 use crate::scene::particles::options::{Format, Radii, ReadOptions, Role, component_names};
+use crate::scene::particles::progress::CountedFile;
 use crate::scene::particles::reader::FrameReader;
 use crate::scene::particles::schema::Schema;
 use crate::scene::particles::source::Source;
 use crate::scene::{Rgb, SceneError};
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ struct Part {
 /// Reads positions, radii and colors from arrays of one archive.
 pub(in super::super) struct Npz {
     path: Arc<Path>,
-    archive: ZipArchive<BufReader<File>>,
+    archive: ZipArchive<BufReader<CountedFile>>,
     options: ReadOptions,
     done: bool,
 }
@@ -84,7 +84,7 @@ impl Npz {
         &mut self,
         name: &str,
         turn: Turn,
-    ) -> Result<Array<ZipFile<'_, BufReader<File>>>, SceneError> {
+    ) -> Result<Array<ZipFile<'_, BufReader<CountedFile>>>, SceneError> {
         let names = self.names().join(", ");
         let file = self.archive.by_name(&format!("{name}.npy")).map_err(|error| {
             let message = format!("the array `{name}` cannot be read ({error}); there are {names}");

@@ -1,0 +1,146 @@
+//! Progress of loading, for the window and for the terminal.
+
+use crate::cli::progress::LoadMeter;
+use indicatif::HumanCount;
+use spherule::scene::particles::ReadProgress;
+use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// Time between two reports.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// How far loading is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Loading {
+    step: Step,
+    /// Share of the step that is done, 0..=1; `None` if that is unknown.
+    pub(super) done: Option<f64>,
+}
+
+/// A step of loading.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Step {
+    /// Reading or generating the spheres of this file.
+    Reading(String),
+    /// Building the tree over so many spheres.
+    Building(usize),
+}
+
+/// Progress of what a thread loads, which others look at.
+#[derive(Debug, Default)]
+pub(super) struct Progress {
+    /// Bytes of the file that is read.
+    pub(super) read: ReadProgress,
+    step: Mutex<Option<Step>>,
+}
+
+/// Reports of progress, until this is dropped.
+pub(super) struct Watch {
+    stop: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Loading {
+    /// The first report: nothing is read yet.
+    #[cfg(feature = "view")]
+    pub(super) fn of(name: &str) -> Self {
+        Self { step: Step::reading(name), done: None }
+    }
+
+    /// The step and how far it is, in words.
+    pub(super) fn text(&self) -> String {
+        let step = match &self.step {
+            Step::Reading(name) => format!("reading {name}"),
+            Step::Building(spheres) => {
+                format!("building the tree over {} spheres", HumanCount(*spheres as u64))
+            }
+        };
+        match self.done {
+            Some(done) => format!("{step}: {:.0} %", 100.0 * done),
+            None => step,
+        }
+    }
+}
+
+impl Step {
+    /// Of a file, whose folders are left out.
+    pub(super) fn reading(name: &str) -> Self {
+        let file = Path::new(name).file_name().map(|name| name.to_string_lossy().into_owned());
+        Self::Reading(file.unwrap_or_else(|| name.to_owned()))
+    }
+}
+
+impl Progress {
+    /// Begins a step.
+    pub(super) fn begin(&self, step: Step) {
+        *self.step.lock().unwrap_or_else(PoisonError::into_inner) = Some(step);
+    }
+
+    fn loading(&self) -> Option<Loading> {
+        let step = self.step.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        let done = match step {
+            Step::Reading(_) => self.read.share(),
+            Step::Building(_) => None,
+        };
+        Some(Loading { step, done })
+    }
+}
+
+impl Watch {
+    /// Reports on the terminal, unless `quiet`, and by `tell`.
+    pub(super) fn start(
+        progress: &Arc<Progress>,
+        quiet: bool,
+        tell: impl Fn(Loading) + Send + 'static,
+    ) -> Self {
+        let (stop, stopped) = channel();
+        let progress = Arc::clone(progress);
+        let thread = std::thread::spawn(move || {
+            let mut meter = LoadMeter::new(quiet);
+            while stopped.recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout) {
+                if let Some(loading) = progress.loading() {
+                    meter.show(&loading.text(), loading.done);
+                    tell(loading);
+                }
+            }
+            meter.finish();
+        });
+        Self { stop: Some(stop), thread: Some(thread) }
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        drop(self.stop.take());
+        if let Some(thread) = self.thread.take() {
+            // A meter that panicked has said so.
+            let _ = thread.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_told_with_their_share() {
+        let progress = Progress::default();
+        assert_eq!(progress.loading(), None);
+        progress.begin(Step::reading("some/where/big.csv"));
+        assert_eq!(
+            progress.loading().map(|loading| loading.text()),
+            Some("reading big.csv".into())
+        );
+        progress.read.expect(200);
+        progress.read.add(50);
+        let loading = progress.loading().expect("a step");
+        assert_eq!((loading.text().as_str(), loading.done), ("reading big.csv: 25 %", Some(0.25)));
+        progress.begin(Step::Building(10_000_000));
+        let text = progress.loading().expect("a step").text();
+        assert_eq!(text, "building the tree over 10,000,000 spheres");
+    }
+}
