@@ -59,7 +59,7 @@ impl World {
         let outside = |&row: &usize| {
             let seen = self.camera.view(self.spheres.center(row).as_dvec3());
             let pixel = self.camera.pixel(seen);
-            let ahead = self.camera.is_orthographic() || seen.z > 0.0;
+            let ahead = seen.z > self.camera.near();
             !(ahead && pixel.cmpge(DVec2::ZERO).all() && pixel.cmple(size).all())
         };
         (0..self.spheres.len()).into_par_iter().filter(outside).count() as u64

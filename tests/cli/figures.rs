@@ -25,8 +25,8 @@ fn picture(folder: &Folder, args: &[&str]) {
     folder.succeed(&[&SMALL[..], &["a.xyz", "--radii", "0.5", "--view", "z"], args].concat());
 }
 
-/// Red, green, blue and alpha of each pixel.
-fn codes(folder: &Folder, name: &str) -> Vec<[u8; 4]> {
+/// Red, green, blue and alpha of each pixel of a PNG file.
+pub(crate) fn codes(folder: &Folder, name: &str) -> Vec<[u8; 4]> {
     let file = BufReader::new(File::open(folder.path(name)).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a header");
     let mut codes = vec![0; reader.output_buffer_size().expect("a size")];

@@ -1,5 +1,6 @@
 //! Picture formats, pictures on standard output, and files that are rendered without a command's name.
 
+use crate::figures::codes;
 use crate::folder::{Folder, SMALL, text};
 use spherule::image::{Format, Image, compare, read_metadata};
 use std::fs::File;
@@ -60,9 +61,12 @@ fn alpha_is_held_where_there_is_room() {
     for name in ["a.png", "a.tif", "a.webp"] {
         folder.picture(name, &clear);
     }
-    let read = |name| image::open(folder.path(name)).expect("a picture").to_rgba8();
-    let png = read("a.png");
-    assert!(png.pixels().any(|pixel| pixel[3] == 0) && png.pixels().any(|pixel| pixel[3] == 255));
+    let read = |name| -> Vec<[u8; 4]> {
+        let picture = image::open(folder.path(name)).expect("a picture").into_rgba8();
+        picture.pixels().map(|pixel| pixel.0).collect()
+    };
+    let png = codes(&folder, "a.png");
+    assert!(png.iter().any(|pixel| pixel[3] == 0) && png.iter().any(|pixel| pixel[3] == 255));
     assert!(read("a.tif") == png && read("a.webp") == png);
     for name in ["a.jpg", "a.ppm", "a.pfm"] {
         let output = folder.run(&[&SMALL[..], &clear, &["-o", name]].concat());
