@@ -14,7 +14,8 @@ struct Answers {
     file: Vec<Answer>,
 }
 
-/// What another program reads from a file, lengths in angstrom where the format has a unit.
+/// Contents that another program reads from a file, lengths in angstrom where the format has a
+/// unit.
 #[derive(Deserialize)]
 struct Answer {
     name: String,

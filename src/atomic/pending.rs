@@ -20,7 +20,8 @@ impl Pending {
     /// An empty file in the folder of its destination.
     ///
     /// # Errors
-    /// What [`super::write_atomically`] returns before it writes anything; a device or a pipe is refused.
+    /// The errors of [`super::write_atomically`] before it writes anything; a device or a pipe is
+    /// refused.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         match Destination::find(path.as_ref())? {
             Destination::Special(_) => {
@@ -33,7 +34,7 @@ impl Pending {
         }
     }
 
-    /// Where the file is until it is whole.
+    /// Returns the path of the file until it is whole.
     pub fn path(&self) -> &Path {
         self.temporary.path()
     }
@@ -41,7 +42,7 @@ impl Pending {
     /// Gives the file, which is whole, the name of its destination.
     ///
     /// # Errors
-    /// What the system says; the file at the destination is then untouched.
+    /// The system's error; the file at the destination is then untouched.
     pub fn persist(self) -> io::Result<()> {
         // The program may have replaced the file that was opened here.
         let file = File::open(self.temporary.path())?;

@@ -106,7 +106,7 @@ pub(super) struct RenderArgs {
 }
 
 impl RenderArgs {
-    /// Whether it makes many pictures.
+    /// Returns whether it makes many pictures.
     pub(super) fn is_sequence(&self) -> bool {
         self.views.turntable().is_some() || self.particles.frames().is_some()
     }

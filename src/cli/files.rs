@@ -31,7 +31,7 @@ struct FileUse {
     identity: Option<FileIdentity>,
 }
 
-/// What a command does with a file. A checkpoint that is resumed into itself is written.
+/// Access of a command to a file. A checkpoint that is resumed into itself is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Access {
     Read,

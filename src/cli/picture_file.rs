@@ -1,4 +1,4 @@
-//! Where a picture goes: a file, whose suffix is its format, or standard output.
+//! Destination of a picture: a file, whose suffix is its format, or standard output.
 
 use super::files::STREAM;
 use super::{Failure, output};

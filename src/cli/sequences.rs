@@ -1,6 +1,6 @@
-//! What is said of sequences of pictures.
+//! Options for sequences of pictures.
 
-/// How the pictures of a sequence are made.
+/// Options for the pictures of a sequence.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Sequences, of --frame all or --turntable")]
 pub(super) struct SequenceArgs {

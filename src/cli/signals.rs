@@ -10,7 +10,8 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// The first signal that came; 0 for none.
 static SIGNAL: AtomicUsize = AtomicUsize::new(0);
 
-/// Whether the next signal ends the program at once: after the first one, and while nothing is lost by it.
+/// True if the next signal ends the program at once: after the first one, and while nothing is lost
+/// by it.
 static ARMED: AtomicBool = AtomicBool::new(false);
 
 /// Registers the handlers.

@@ -100,7 +100,7 @@ pub enum ImageError {
         width: u32,
         /// Rows.
         height: u32,
-        /// What is lacking, if it is known.
+        /// The memory that is lacking, if it is known.
         shortage: Option<Shortage>,
     },
     /// The exposure is not in its range.

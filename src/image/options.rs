@@ -20,7 +20,7 @@ pub struct WriteOptions {
     pub exposure: f64,
     /// From exposed radiance to display-linear values, for formats of codes.
     pub tone: Tone,
-    /// What the file says about itself: PNG text chunks, PPM comments, the EXR attribute `comments`, XMP in
+    /// Metadata of the file: PNG text chunks, PPM comments, the EXR attribute `comments`, XMP in
     /// JPEG, TIFF and WebP.
     pub metadata: Metadata,
 }

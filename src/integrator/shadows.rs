@@ -97,8 +97,8 @@ pub fn cast(
     work.shadows.push_row(&starts.at, (samples, lanes), (starts.carried.place, light));
 }
 
-/// Whether a sphere hides a light from a point of its inside: what lies behind its far side, or behind
-/// its cap.
+/// Returns whether a sphere hides a light from a point of its inside: the light is behind its far
+/// side, or behind its cap.
 fn hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
     let own = work.hits.sphere[row];
     own != GROUND
@@ -106,7 +106,7 @@ fn hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> b
             || (!world.cut.is_empty() && cap_hides(world, work, row, sample)))
 }
 
-/// Whether the way to a light from the inside of a sphere crosses a flat cut.
+/// Returns whether the way to a light from the inside of a sphere crosses a flat cut.
 #[cold]
 fn cap_hides(world: &World, work: &Workspace, row: usize, sample: &LightSample) -> bool {
     let ray = ExactRay::new(work.surface.point.row(row), sample.direction, true);

@@ -83,8 +83,7 @@ pub fn draw_alpha(alpha: &mut [f32], (width, height): (u32, u32), draw: impl Fn(
 mod tests {
     use super::*;
 
-    /// Where codes are blended, a shadow takes from a code what the code of the light that it leaves
-    /// lacks.
+    /// The alpha of a shadow for blending codes is what the code of the light that it leaves lacks.
     #[test]
     fn shadows_are_encoded_as_the_light_that_they_leave() {
         let matte = Matte { coverage: vec![0.0, 0.5, 0.0], shadow: vec![0.5, 0.0, 1.0] };

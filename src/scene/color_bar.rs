@@ -7,9 +7,9 @@ use crate::color::Scale;
 pub struct ColorBar {
     /// From numbers to colors.
     pub scale: Scale,
-    /// What the numbers are.
+    /// Label that says what the numbers are.
     pub label: String,
-    /// Where the bar is.
+    /// Position of the color bar.
     pub corner: Corner,
 }
 

@@ -20,7 +20,7 @@ pub struct SceneError {
     pub help: Option<String>,
     /// Where in the file; `None` if the whole file is meant.
     pub place: Option<Box<Place>>,
-    /// Whether the file ends before what it announces: it is cut off, or still being written.
+    /// True if the file ends before what it announces: it is cut off, or still being written.
     pub cut_off: bool,
 }
 

@@ -223,7 +223,7 @@ struct Sides {
 }
 
 impl Sides {
-    /// Of the tangents of half the picture's width and height.
+    /// Creates the normals from the tangents of half the picture's width and height.
     fn new((tan_x, tan_y): (f64, f64)) -> Self {
         let normal = |tangent: f64| (tangent.atan().cos(), tangent.atan().sin());
         let ((cos_x, sin_x), (cos_y, sin_y)) = (normal(tan_x), normal(tan_y));
@@ -246,8 +246,8 @@ impl Sides {
 /// Limits by which a sphere can decide where a camera stands that frames everything.
 pub(super) const LIMITS: usize = 11;
 
-/// What decides where a camera stands that frames everything: [`Limits::of`] a sphere is small where it
-/// counts.
+/// Axes and planes by which spheres decide where a camera stands that frames everything: a sphere
+/// decides where its value of [`Limits::of`] is the least.
 #[derive(Clone, Debug)]
 pub(super) struct Limits {
     axes: Axes,

@@ -15,7 +15,7 @@ const SWEEPS: usize = 20;
 /// Cosine of the angle between the view and a face's normal from which on the face is seen well.
 const SEEN: f64 = 0.25;
 
-/// How far a view of several faces leans to the side, so that depth is seen.
+/// Factor by which a view of several faces leans to the side, so that depth is seen.
 const TILT: f64 = 0.5;
 
 /// Fixes the scene's camera, which may be one that frames all spheres, so that it frames these

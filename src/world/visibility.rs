@@ -1,12 +1,12 @@
-//! What a picture shows of a world's spheres, by geometry alone: a picture without any is more often a
-//! mistake than wanted.
+//! Visibility of a world's spheres in a picture, by geometry alone: a picture without any is more
+//! often a mistake than wanted.
 
 use super::{Kind, World};
 use crate::film::Region;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// What a picture shows of a world's spheres.
+/// Visibility of a world's spheres in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visibility {
     /// There is a sphere in the picture.
@@ -23,8 +23,8 @@ pub enum Visibility {
 }
 
 impl World {
-    /// What a region of the picture shows of the spheres with so many samples per pixel. Spheres hide
-    /// only each other; the ground may hide all of them.
+    /// Returns the visibility of the spheres in a region of the picture with so many samples per
+    /// pixel. Spheres hide only each other; the ground may hide all of them.
     pub fn visibility(&self, region: Region, samples: u32) -> Visibility {
         let spheres = self.seen.as_ref().map_or(&self.spheres, |seen| &seen.spheres);
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
@@ -53,7 +53,7 @@ impl World {
         }
     }
 
-    /// How many spheres have their centers outside of the picture.
+    /// Returns the number of spheres whose centers are outside of the picture.
     pub fn centers_out_of_view(&self) -> u64 {
         let size = DVec2::new(f64::from(self.camera.width), f64::from(self.camera.height));
         let outside = |&row: &usize| {
@@ -65,7 +65,7 @@ impl World {
         (0..self.spheres.len()).into_par_iter().filter(outside).count() as u64
     }
 
-    /// Whether the ground is between a sphere and a camera that looks from one point.
+    /// Returns whether the ground is between a sphere and a camera that looks from one point.
     fn is_under_ground(&self, center: glam::DVec3, radius: f64) -> bool {
         let opaque = self.features.ground_kind.is_some_and(|kind| kind != Kind::Dielectric);
         let Some(ground) = self.ground.filter(|_| opaque) else { return false };

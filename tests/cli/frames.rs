@@ -88,7 +88,7 @@ fn trajectory(frames: &[&[[f64; 3]]]) -> String {
     frames.iter().map(frame).collect()
 }
 
-/// Whether a picture shows anything but the sky, and whether that keeps off the edges.
+/// Returns whether a picture shows anything but the sky, and whether that keeps off the edges.
 fn shown(folder: &Folder, name: &str) -> (bool, bool) {
     let image = Image::read(folder.path(name)).expect("a picture");
     let painted = |x: u32, y: u32| image.pixel(x, y).is_some_and(|pixel| pixel[1] < 0.9);

@@ -311,7 +311,7 @@ fn at(image: &Image, x: u32, y: u32) -> [f32; 3] {
     image.pixel(x, y).expect("a pixel of the picture")
 }
 
-/// Whether no pixel of these columns differs from the others of its row.
+/// Returns whether no pixel of these columns differs from the others of its row.
 fn is_free(image: &Image, columns: std::ops::Range<u32>, rows: std::ops::Range<u32>) -> bool {
     rows.into_iter().all(|y| {
         let mut row = columns.clone().map(|x| at(image, x, y));
@@ -437,7 +437,7 @@ fn numbers_have_the_digits_that_they_are_worth() {
     assert_eq!(lines[1], "sphere 1: at 90 0 0, radius 5, q = 1e-12");
 }
 
-/// Of so many spheres the viewer keeps no copy: it makes them once more for the saved scene.
+/// The viewer keeps no copy of so many spheres: it makes them once more for the saved scene.
 #[test]
 fn many_spheres_are_seen_and_saved() {
     let folder = Folder::new();

@@ -186,7 +186,8 @@ fn glass_lets_no_light_through_a_closed_sphere() {
     }
 }
 
-/// What a closed sphere around a light shows: the same light wherever it is lit from, as often as it is reflected.
+/// A closed sphere around a light shows that light alone, as often as it is reflected, whatever
+/// light is outside.
 #[test]
 fn light_inside_lights_the_inside_alone() {
     let albedo = 0.5;

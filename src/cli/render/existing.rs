@@ -6,10 +6,11 @@ use super::prepare::Placed;
 use crate::cli::output;
 use spherule::image::{Image, Metadata, read_metadata};
 
-/// What files say of how a render went, not of what it was to be.
+/// Metadata keys that say how a render went, not what it was to be.
 const RESULTS: [&str; 4] = ["rounds", SAMPLES_TAKEN, "error", "error bound"];
 
-/// Whether the file of a picture is that picture already; says why it is not, if there is one.
+/// Returns whether the file of the picture is that picture already; says why it is not, if there is
+/// one.
 pub(super) fn is_there(job: &Job, placed: &Placed) -> bool {
     if !job.sequence.skip_existing || !job.output.exists() {
         return false;
@@ -44,7 +45,8 @@ fn difference(job: &Job, placed: &Placed) -> Option<String> {
     }
 }
 
-/// What a file says otherwise than is expected; `measured` ones say how many samples they took.
+/// Returns the first difference of a file's metadata from what is expected; `measured` ones say how
+/// many samples they took.
 fn differs(expected: &Metadata, found: &Metadata, measured: bool) -> Option<String> {
     if found.value(SCENE).is_none() {
         return Some("does not say of which scene it is".to_owned());

@@ -52,7 +52,8 @@ impl Container {
         }
     }
 
-    /// How colors are encoded: as players expect it of high definition, or with a palette.
+    /// Returns the options that encode colors: as players expect it of high definition, or with a
+    /// palette.
     fn encoding(self) -> &'static [&'static str] {
         const VIDEO: [&str; 10] = [
             "-vf",
@@ -209,7 +210,7 @@ fn listen(mut stderr: impl Read) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// How the program failed, in its own words.
+/// Returns the message for a failure of the program, with the last lines of what it said.
 fn told(status: ExitStatus, said: &str) -> String {
     let lines: Vec<&str> = said.lines().filter(|line| !line.trim().is_empty()).collect();
     let last = &lines[lines.len().saturating_sub(SHOWN)..];

@@ -32,7 +32,7 @@ use std::path::PathBuf;
 pub(in crate::cli) struct Place {
     /// From 0.
     pub(in crate::cli) index: u64,
-    /// Whether no other one follows, as far as that is known.
+    /// True if no other one follows, as far as that is known.
     pub(in crate::cli) last: bool,
 }
 
@@ -54,14 +54,14 @@ pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) turn: Option<u32>,
     /// Which of many frames it is.
     pub(in crate::cli) frame: Option<u64>,
-    /// What it has in common with the other pictures of its sequence.
+    /// Properties that it shares with the other pictures of its sequence.
     pub(in crate::cli) common: Option<Common>,
     pub(in crate::cli) encoding: &'a EncodingArgs,
     pub(in crate::cli) keep: &'a KeepArgs,
     pub(in crate::cli) sequence: SequenceArgs,
     /// Its place among many pictures.
     pub(in crate::cli) place: Option<Place>,
-    /// Which pictures of a sequence are made here, if not all are.
+    /// The part of a sequence's pictures that is made here, if not all are.
     pub(in crate::cli) deal: Option<Part>,
     /// The kind of the film that pictures go to, if they do.
     pub(in crate::cli) film: Option<Container>,
@@ -155,12 +155,12 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Whether it is one of many pictures.
+    /// Returns whether it is one of many pictures.
     pub(in crate::cli) fn is_of_sequence(&self) -> bool {
         self.place.is_some()
     }
 
-    /// Whether the file of the picture says of which scene it is.
+    /// Returns whether the file of the picture says of which scene it is.
     pub(in crate::cli) fn is_identified(&self) -> bool {
         self.film.is_none() && (self.is_of_sequence() || self.sequence.skip_existing)
     }

@@ -27,13 +27,13 @@ pub(in crate::cli) struct Subject<'a> {
     pub(in crate::cli) looks: &'a [(String, String)],
 }
 
-/// What a file says of its scene, if it is one of many pictures.
+/// Metadata key of the scene's identity, in the files of pictures that are identified.
 pub(super) const SCENE: &str = "scene";
 
-/// What a file says of samples where their number does not follow from the settings.
+/// Metadata key of the samples taken, where their number does not follow from the settings.
 pub(super) const SAMPLES_TAKEN: &str = "samples taken";
 
-/// What a file says that is not what it was to be.
+/// Metadata key of a file that is not what it was to be.
 pub(super) const INTERRUPTED: &str = "interrupted";
 
 /// All that the picture's file needs besides the picture.
@@ -47,7 +47,7 @@ pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> 
     subject.write_options(job.encoding, job.format, render)
 }
 
-/// What the file of a picture that is complete says, but for how its render went.
+/// Returns the metadata that the file of a complete picture has, but for how its render went.
 pub(super) fn expected(job: &Job, placed: &Placed) -> Metadata {
     let Placed { scene, region, legend, identity, .. } = placed;
     let subject = Subject {
@@ -59,7 +59,8 @@ pub(super) fn expected(job: &Job, placed: &Placed) -> Metadata {
     subject.describe(job.format, &subject.encoding(job.encoding, job.format))
 }
 
-/// How particles are looked at, as a file says it; a picture of many also says of which scene it is.
+/// Returns the settings by which particles are looked at, as a file lists them; a picture of many
+/// also says of which scene it is.
 pub(super) fn looks(
     job: &Job,
     legend: Option<&Legend>,

@@ -113,12 +113,12 @@ fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
     picture_file::check_stream("render", &args.output, args.report.json)
 }
 
-/// What pictures that are made one after another have in common.
+/// State that pictures share that are made one after another.
 #[derive(Default)]
 struct Session<'a> {
     told: Told,
     keeper: Option<&'a Keeper>,
-    /// Where pictures go, if it is not to files of their own.
+    /// The film that pictures go to, if they do not go to files of their own.
     film: Option<Film>,
 }
 

@@ -87,7 +87,7 @@ pub(super) struct Placed {
     pub(super) scene: Scene,
     pub(super) legend: Option<Legend>,
     pub(super) region: Region,
-    /// What the scene is told by, if someone asks.
+    /// Identity of the scene, if someone asks.
     pub(super) identity: Option<Identity>,
     load: Duration,
 }
@@ -148,7 +148,7 @@ impl Placed {
 }
 
 impl Prepared {
-    /// How particles are looked at, as a file says it.
+    /// Returns the settings by which particles are looked at, as a file lists them.
     pub(super) fn looks(&self, job: &Job) -> Vec<(String, String)> {
         metadata::looks(job, self.legend.as_ref(), self.identity.as_ref())
     }

@@ -1,7 +1,8 @@
 //! Numbered pictures: of many frames of a file, of a turn, or of frames in a turn.
 //!
-//! What would otherwise change from picture to picture without anything in the file changing is the
-//! same in all of them: see [`super::survey`]. A file is read twice for that, standard input once.
+//! Properties that would otherwise change from picture to picture without anything in the file
+//! changing are the same in all of them: see [`super::survey`]. A file is read twice for that,
+//! standard input once.
 
 mod plan;
 mod reel;
@@ -112,7 +113,8 @@ fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<Option<Film>, 
     Ok(None)
 }
 
-/// Whether a picture is made here, of which others may be made elsewhere: they are dealt out in turn.
+/// Returns whether a picture is made here. Others may be made elsewhere: they are dealt out in
+/// turn.
 fn is_dealt(job: &Job, index: u64) -> bool {
     let own = |part: Part| index % u64::from(part.count()) == u64::from(part.number() - 1);
     job.deal.is_none_or(own)
@@ -177,7 +179,7 @@ fn tell_framing(job: &Job, plan: &Plan) {
     }
 }
 
-/// What can be read only once, as users know it.
+/// Returns the name of input that can be read only once, as users know it.
 fn stream_name(path: &Path) -> String {
     if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
 }
@@ -246,12 +248,12 @@ impl Sequence<'_> {
         missing.map(|()| code)
     }
 
-    /// Whether a picture is made here and now.
+    /// Returns whether a picture is made here and now.
     fn is_made(&self, index: u64) -> bool {
         is_dealt(&self.job, index) && index >= self.job.sequence.first_picture.unwrap_or(0)
     }
 
-    /// Whether no picture follows that is made here, as far as that is known.
+    /// Returns whether no picture follows that is made here, as far as that is known.
     fn is_last(&self, index: u64) -> bool {
         let stride = self.job.deal.map_or(1, |part| u64::from(part.count()));
         self.plan.shot(index.saturating_add(stride)).is_none()

@@ -1,5 +1,5 @@
-//! What the pictures of a sequence have in common, found before the first one is rendered: where the
-//! camera stands, which numbers the colors stand for, and a radius that was guessed.
+//! Properties that the pictures of a sequence share, found before the first one is rendered: where
+//! the camera stands, which numbers the colors stand for, and a radius that was guessed.
 
 use super::job::Job;
 use super::prepare::Staged;
@@ -12,17 +12,17 @@ use spherule::world::WorldError;
 use spherule::world::framing::SequenceBounds;
 use std::path::Path;
 
-/// What a picture has in common with the others of its sequence.
+/// Properties that a picture shares with the others of its sequence.
 #[derive(Clone)]
 pub(in crate::cli) struct Common {
     pub(in crate::cli) camera: Camera,
     /// Height of the ground that a preset puts under all frames.
     pub(in crate::cli) ground: Option<f64>,
-    /// Whether the camera frames all pictures, and not only the first.
+    /// True if the camera frames all pictures, and not only the first.
     pub(in crate::cli) frames_all: bool,
 }
 
-/// What is known of the frames that were looked at; memory does not grow with their number.
+/// Findings about the frames that were looked at; memory does not grow with their number.
 #[derive(Default)]
 pub(super) struct Survey {
     bounds: Option<SequenceBounds>,
@@ -30,17 +30,17 @@ pub(super) struct Survey {
     pub(super) ends: Option<[f64; 2]>,
     /// The radius of all particles, before it is scaled, if it may have been guessed.
     radius: Option<f64>,
-    /// What was said of the first frame that shows a sphere.
+    /// Warnings about the first frame that shows a sphere.
     pub(super) warnings: Vec<String>,
     frames: u64,
     /// Frames that show a sphere.
     shown: u64,
-    /// Whether it looks at all frames, and not only at the first.
+    /// True if it looks at all frames, and not only at the first.
     all: bool,
 }
 
 impl Survey {
-    /// Of `all` frames that are shown, or only of the first.
+    /// Creates a survey of `all` frames that are shown, or only of the first.
     pub(super) fn new(all: bool) -> Self {
         Self { all, ..Self::default() }
     }
@@ -94,7 +94,7 @@ impl Survey {
         Err(SceneError::whole_file(path, message).with_help(help))
     }
 
-    /// What a picture has in common with all others, in a turn by `angle`.
+    /// Returns the properties that a picture shares with all others, in a turn by `angle`.
     pub(super) fn common(&self, job: &Job, angle: Option<f64>) -> Result<Common, Failure> {
         let view = |angle| {
             let found = self.bounds.as_ref().ok_or(WorldError::NothingToFit);

@@ -7,7 +7,7 @@ use std::path::Path;
 /// Most runs of numbers that a message lists.
 const LISTED: usize = 8;
 
-/// What was told of the pictures so far.
+/// Messages about the pictures so far.
 #[derive(Debug, Default)]
 pub(super) struct Told {
     /// The picture that is spoken of: its frame, or its number.
@@ -21,7 +21,7 @@ pub(super) struct Told {
     empty: Vec<u64>,
     /// Pictures whose spheres are partly beyond their edges.
     cropped: Vec<u64>,
-    /// How many pictures existed and were kept.
+    /// Number of pictures that existed and were kept.
     kept: u64,
 }
 
@@ -60,12 +60,12 @@ impl Told {
         }
     }
 
-    /// How many pictures there were.
+    /// Returns the number of pictures so far.
     pub(super) fn pictures(&self) -> u64 {
         self.pictures
     }
 
-    /// How many pictures existed and were kept.
+    /// Returns the number of pictures that existed and were kept.
     pub(super) fn kept(&self) -> u64 {
         self.kept
     }

@@ -1,4 +1,4 @@
-//! What the window shows: a picture as large as the window, and lines, color bar and text over it.
+//! Contents of the window: a picture as large as the window, and lines, color bar and text over it.
 
 use super::colorbar;
 use super::develop::{Developer, Print};

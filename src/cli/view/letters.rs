@@ -40,7 +40,7 @@ struct Glyph {
     advance: i32,
 }
 
-/// Where text is drawn: pixels `0x00RRGGBB`, row by row.
+/// Surface that text is drawn on: pixels `0x00RRGGBB`, row by row.
 pub(super) struct Target<'p> {
     pub(super) pixels: &'p mut [u32],
     pub(super) width: u32,

@@ -50,7 +50,7 @@ pub(super) struct Base {
     scene: Option<Scene>,
     frame: Option<u64>,
     frames: Option<u64>,
-    /// Whether columns that are not there can be read from the file.
+    /// True if columns that are not there can be read from the file.
     more_columns: bool,
 }
 
@@ -59,7 +59,7 @@ pub(super) struct Stage {
     /// With its spheres, or with a sketch of them.
     pub(super) scene: Arc<RwLock<Scene>>,
     pub(super) world: World,
-    /// Where the spheres come from, if the scene has only a sketch of them.
+    /// Source of the spheres, if the scene has only a sketch of them.
     pub(super) origin: Option<Origin>,
     #[cfg(feature = "view")]
     pub(super) content: Content,
@@ -68,7 +68,7 @@ pub(super) struct Stage {
     pub(super) warnings: Vec<String>,
 }
 
-/// What is needed to read a stage's spheres once more.
+/// Data that is needed to read a stage's spheres once more.
 #[derive(Clone)]
 pub(super) struct Origin {
     job: Arc<Job<'static>>,
@@ -139,7 +139,7 @@ impl Base {
         Self { particles, scene: Some(scene), frame: None, frames: None, more_columns: false }
     }
 
-    /// What is known of it for the viewer, but for what follows from its looks.
+    /// Returns the facts about it for the viewer, but for those that follow from its looks.
     fn facts(&self, job: &Job) -> Facts {
         let own = other_columns(&self.particles);
         let own = own.filter(|name| self.more_columns || self.particles.can_color_by(name));
@@ -194,7 +194,7 @@ impl Dressed {
 pub(super) struct Loader {
     job: Arc<Job<'static>>,
     base: Option<Base>,
-    /// Whether anything was read yet.
+    /// True if loading ever began.
     began: bool,
 }
 
@@ -395,7 +395,7 @@ fn dress(
     Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }
 
-/// Whether particles have more values than are read though nothing asks for them.
+/// Returns whether particles have more values than are read though nothing asks for them.
 fn has_many_values(particles: &Particles) -> bool {
     other_columns(particles).count().saturating_mul(particles.spheres.len()) > VALUES
 }

@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Time between two reports.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// How far loading is.
+/// Progress of loading.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Loading {
     step: Step,
@@ -66,7 +66,7 @@ impl Loading {
 }
 
 impl Step {
-    /// Of a file, whose folders are left out.
+    /// Creates the step of reading a file, which is named without its folders.
     pub(super) fn reading(name: &str) -> Self {
         let file = Path::new(name).file_name().map(|name| name.to_string_lossy().into_owned());
         Self::Reading(file.unwrap_or_else(|| name.to_owned()))

@@ -49,7 +49,7 @@ pub(super) struct Facts {
     pub(super) size: f64,
     /// What the scene says is drawn over its pictures.
     pub(super) look: Look,
-    /// Whether particles have materials of their own, which looks do not replace.
+    /// True if particles have materials of their own, which looks do not replace.
     pub(super) own_materials: bool,
     /// The numbers that colors stand for, if they stand for any, and whether the picture has a color
     /// bar of its own.
@@ -96,11 +96,11 @@ pub(super) struct Viewer {
     /// The page of the help that is shown, from 0.
     pub(super) help: Option<usize>,
     pub(super) status: bool,
-    /// Whether a color bar is shown where the picture has none.
+    /// True if a color bar is shown where the picture has none.
     pub(super) bar: bool,
     /// The display's scale.
     pub(super) scale: f64,
-    /// What is being loaded, if it takes a while.
+    /// Progress of what is being loaded, if it takes a while.
     pub(super) loading: Option<Loading>,
     /// Whether the next drag cuts.
     pub(super) cutting: bool,

@@ -48,9 +48,9 @@ struct App {
     screen: Option<(Rc<Window>, Screen)>,
     /// What is saved; `None` until something was loaded.
     scene: Option<Arc<RwLock<Scene>>>,
-    /// Where its spheres come from, if it has only a sketch of them.
+    /// Source of its spheres, if it has only a sketch of them.
     origin: Option<Origin>,
-    /// What was loaded last.
+    /// Content that was loaded last.
     loaded: Content,
     job: Arc<Job<'static>>,
     savers: Vec<JoinHandle<()>>,

@@ -21,7 +21,7 @@ use std::thread;
 
 /// What a window hears of.
 pub(super) enum News {
-    /// How far loading is.
+    /// Progress of loading.
     Loading(Loading),
     /// There is something else to be seen.
     Staged(Result<Box<Stage>, Failure>),

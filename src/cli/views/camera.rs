@@ -115,7 +115,7 @@ impl ViewArgs {
     }
 }
 
-/// Whether more of the planes face away from a camera than toward it.
+/// Returns whether more of the planes face away from a camera than toward it.
 fn faces_away(direction: DVec3, normals: &[DVec3]) -> bool {
     let count =
         |direction: DVec3| normals.iter().filter(|normal| direction.dot(**normal) < 0.0).count();

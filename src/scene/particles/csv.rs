@@ -181,7 +181,7 @@ impl Row<'_> {
         Ok(has_commas)
     }
 
-    /// Whether a field may have a comma for its decimal point.
+    /// Returns whether a field may have a comma for its decimal point.
     fn may_have_comma(&self, slot: Slot) -> bool {
         self.separator != b',' && !matches!(slot, Slot::Skip | Slot::Kind | Slot::Material)
     }

@@ -4,12 +4,12 @@
 use super::{fields::Fields, number};
 use std::path::Path;
 
-/// What a file is, and what to do.
+/// Kind of a file that is not read, and what to do with it.
 #[derive(Debug, PartialEq)]
 pub(super) struct Foreign {
     /// A name after "is".
     pub(super) name: String,
-    /// What to type.
+    /// Advice on what to type.
     pub(super) help: String,
 }
 
@@ -38,7 +38,7 @@ const RESTART: &str = "have LAMMPS write it as text: lmp -restart2data {file} {s
 const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}";
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 
-/// How binary files begin: place, bytes, name, way.
+/// Bytes by which binary files are known: place, bytes, name, way.
 const MAGICS: [(usize, &[u8], &str, &str); 25] = [
     (0, b"# vtk DataFile", "a VTK file", MESH),
     (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
@@ -190,7 +190,7 @@ fn foreign(name: &str, way: &str, path: &Path) -> Foreign {
     Foreign { name: name.to_owned(), help: filled(&way, path) }
 }
 
-/// What a binary file is that begins so.
+/// Returns the kind of a binary file that begins so, if it is known.
 pub(super) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
     let begins =
         |place: usize, bytes: &[u8]| head.get(place..).is_some_and(|rest| rest.starts_with(bytes));
@@ -227,14 +227,14 @@ pub(super) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
         .then(|| foreign("a TNG trajectory of GROMACS", TRAJECTORY, path))
 }
 
-/// What a ZIP archive is that is a document.
+/// Returns the kind of a ZIP archive that is a document.
 fn archive(head: &[u8], path: &Path) -> Option<Foreign> {
     let has = |text: &[u8]| memchr::memmem::find(head, text).is_some();
     let is_sheet = has(b"[Content_Types].xml") || has(b"opendocument.spreadsheet");
     is_sheet.then(|| foreign("a workbook of a spreadsheet", SHEET, path))
 }
 
-/// What a text file is that begins so.
+/// Returns the kind of a text file that begins so, if it is known.
 pub(super) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
     let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
     let lines: Vec<&[u8]> =
@@ -292,7 +292,7 @@ pub(super) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
     Some(foreign(name, way, path))
 }
 
-/// Whether a line is `ANIMSTEPS` or the like with a number.
+/// Returns whether a line is `ANIMSTEPS` or the like with a number.
 fn is_steps(words: &str, line: &[u8]) -> bool {
     let mut fields = Fields::blanks(line).skip(1);
     ["animsteps", "atoms"].contains(&words)
@@ -409,7 +409,8 @@ fn is_mesh(first: &[u8]) -> bool {
     vertex.is_some_and(|numbers| numbers.len() >= 3) || first.starts_with(b"mtllib ")
 }
 
-/// What a file is that begins as PDB does but has charges and radii in columns that are not fixed.
+/// Recognizes a PQR file, which begins as PDB does but has charges and radii in columns that are
+/// not fixed.
 pub(super) fn pqr(head: &[u8], path: &Path) -> Option<Foreign> {
     let suffix = |wanted: &str| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
@@ -428,7 +429,7 @@ pub(super) fn pqr(head: &[u8], path: &Path) -> Option<Foreign> {
     is_pqr.then(|| foreign("a PQR file, with charges and radii", way, path))
 }
 
-/// Whether a row ends in five numbers, and has other columns than PDB.
+/// Returns whether a row ends in five numbers, and has other columns than PDB.
 fn is_pqr_atom(line: &[u8]) -> bool {
     let fields: Vec<&[u8]> = Fields::blanks(line).collect();
     let last = fields.len().checked_sub(5).map(|first| &fields[first..]).unwrap_or_default();

@@ -3,7 +3,7 @@
 use super::options::ReadOptions;
 use super::{csv, fields::Fields, number};
 
-/// Whether a line is a comment, as programs for rows of numbers write it.
+/// Returns whether a line is a comment, as programs for rows of numbers write it.
 pub(super) fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"#") || line.starts_with(b"%")
 }
@@ -28,18 +28,19 @@ pub(super) fn names(line: &[u8]) -> Vec<String> {
     names
 }
 
-/// Whether something other than blanks stands between the names.
+/// Returns whether something other than blanks stands between the names.
 pub(super) fn is_separated(line: &[u8]) -> bool {
     line.iter().any(|byte| b",;\t".contains(byte))
 }
 
-/// Whether a line has three names or more, and no number: the header of a table.
+/// Returns whether a line has three names or more, and no number: the header of a table.
 pub(super) fn is_header(names: &[String]) -> bool {
     let is_name = |name: &String| !name.is_empty() && number::parse(name.as_bytes()).is_none();
     names.len() >= 3 && names.iter().all(is_name)
 }
 
-/// Whether a row may stand below a header: it has as many fields, and three numbers or more.
+/// Returns whether a row may stand below a header: it has as many fields, and three numbers or
+/// more.
 pub(super) fn is_row(names: &[String], separated: bool, row: &[u8]) -> bool {
     let fields: Vec<Vec<u8>> = if separated {
         csv::header_names(row).into_iter().map(String::into_bytes).collect()
@@ -50,7 +51,7 @@ pub(super) fn is_row(names: &[String], separated: bool, row: &[u8]) -> bool {
     fields.len() == names.len() && numbers.count() >= 3
 }
 
-/// What to type so that columns of other names than usual are read.
+/// Returns advice on what to type so that columns of other names than usual are read.
 pub(super) fn columns_help(names: &[String], options: &ReadOptions) -> String {
     let typed = |name: &String| !name.contains([',', '=']) && !name.is_empty();
     let taken = |name: &&String| !options.columns.roles.iter().any(|(_, own)| own == *name);

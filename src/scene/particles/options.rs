@@ -235,7 +235,7 @@ pub struct ReadOptions {
     /// The atom style of a LAMMPS data file, such as `full`; `None`: what the file says, or else
     /// what its columns look like.
     pub atom_style: Option<String>,
-    /// Whether a frame without any sphere is valid, as among the frames of a trajectory, and not an
+    /// True if a frame without any sphere is valid, as among the frames of a trajectory, and not an
     /// error.
     pub allow_empty: bool,
     /// Counts the bytes that are read.
@@ -246,7 +246,7 @@ impl ReadOptions {
     /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// Which one is not, and what it must be.
+    /// A message that names the first that is not, and says what it must be.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self {
             format: _,

@@ -1,5 +1,5 @@
-//! Where bytes come from: a file or standard input, unpacked if it is packed, and in UTF-8 if it is
-//! in UTF-16.
+//! Source of bytes: a file or standard input, unpacked if it is packed, and in UTF-8 if it is in
+//! UTF-16.
 //!
 //! What a file is packed with is told by how it begins, whatever its name says. All decoders are
 //! Rust, so that the program needs no library of the system.
@@ -89,7 +89,7 @@ impl Source {
         Ok(source)
     }
 
-    /// What a decoder makes of it.
+    /// Returns the source of the bytes that a decoder makes of these.
     fn through(
         self,
         decode: impl FnOnce(Chain<Cursor<Vec<u8>>, Box<dyn Read + Send>>) -> Box<dyn Read + Send>,

@@ -53,9 +53,9 @@ impl Comments {
 struct Layout {
     columns: usize,
     has_ids: bool,
-    /// Whether a header names them.
+    /// True if a header names the columns.
     has_names: bool,
-    /// Whether commas are decimal points.
+    /// True if commas are decimal points.
     decimal_commas: bool,
 }
 
@@ -120,7 +120,7 @@ impl Layout {
         Schema::with_roles(names.clone(), options, &known).map_err(|error| line.whole(error))
     }
 
-    /// Whether columns can be told without names, or the options say what they are.
+    /// Returns whether columns can be told without names, or the options say what they are.
     fn has_usual_columns(&self, options: &ReadOptions) -> bool {
         let columns = self.columns.saturating_sub(usize::from(self.has_ids));
         (3..=4).contains(&columns) || !options.columns.roles.is_empty()
@@ -152,15 +152,15 @@ impl Layout {
     }
 }
 
-/// How many of x, y and z are among names, be it with units.
+/// Returns the number of x, y and z that are among names, be it with units.
 fn axes(names: &[String]) -> usize {
     let has =
         |axis: &&str| names.iter().any(|name| units::split(name).0.eq_ignore_ascii_case(axis));
     ["x", "y", "z"].iter().filter(|axis| has(axis)).count()
 }
 
-/// Whether the commas of rows are decimal points: something else stands between their fields, of
-/// which three or more are numbers, and those with a comma have digits around it.
+/// Returns whether the commas of rows are decimal points: something else stands between their
+/// fields, of which three or more are numbers, and those with a comma have digits around it.
 fn has_decimal_commas<'l>(lines: impl Iterator<Item = &'l [u8]>) -> bool {
     let mut any = false;
     let content = lines.map(|line| &line[..memchr::memchr(b'#', line).unwrap_or(line.len())]);

@@ -21,7 +21,7 @@ const SHAPES: [&str; 2] = ["shape", "aspherical_shape"];
 const ORIENTATIONS: [&str; 6] =
     ["quat", "quaternion", "quaternions", "orient", "orientation", "orientations"];
 
-/// What LAMMPS writes before the names of computes, fixes, variables and properties.
+/// Prefixes that LAMMPS writes before the names of computes, fixes, variables and properties.
 const PREFIXES: [&str; 7] = ["c_", "f_", "v_", "i_", "d_", "i2_", "d2_"];
 
 impl Undrawn {
@@ -75,7 +75,8 @@ impl ParticleFrame {
     }
 }
 
-/// Whether a column is one of those names, or an axis of it as in `quatw`, `shape_x` or `c_q[1]`.
+/// Returns whether a column is one of those names, or an axis of it as in `quatw`, `shape_x` or
+/// `c_q[1]`.
 fn is_axis_of(column: &str, names: &[&str]) -> bool {
     let column = column.to_ascii_lowercase();
     let own = PREFIXES.iter().find_map(|prefix| column.strip_prefix(prefix)).unwrap_or(&column);

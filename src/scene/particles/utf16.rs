@@ -13,7 +13,7 @@ pub(super) struct Utf16<R> {
     /// Bytes that no character was made of yet: half a unit, or the first half of a pair.
     rest: Vec<u8>,
     text: Vec<u8>,
-    /// How much of the text was given.
+    /// Number of bytes of `text` that were given.
     given: usize,
     ended: bool,
 }
@@ -48,7 +48,8 @@ pub(super) fn unmarked(head: &[u8]) -> Option<&'static str> {
 }
 
 impl<R: Read> Utf16<R> {
-    /// Of a text that begins with a byte order mark, which told how bytes become a `unit`.
+    /// Creates a reader of a text that begins with a byte order mark, which told how bytes become a
+    /// `unit`.
     pub(super) fn new(inner: R, unit: fn([u8; 2]) -> u16) -> Self {
         Self { inner, unit, rest: Vec::new(), text: Vec::new(), given: 0, ended: false }
     }

@@ -54,7 +54,7 @@ impl Xyz {
         Ok(None)
     }
 
-    /// What the comment says, and the columns of the `count` rows that follow.
+    /// Reads the comment, and the columns of the `count` rows that follow.
     fn head(&mut self, count: u64) -> Result<(Comment, Arc<Schema>), SceneError> {
         let comment = match self.lines.next()? {
             Some(line) => Comment::new(&line, &self.options)?,

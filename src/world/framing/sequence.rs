@@ -14,15 +14,15 @@ pub struct SequenceBounds {
     /// With the camera and the size of the picture, and without spheres.
     view: Scene,
     limits: Limits,
-    /// Of each limit, the sphere that has the least.
+    /// The sphere that has the least value of each limit: that value, its center and its radius.
     deciding: [Option<(f64, DVec3, f64)>; LIMITS],
     /// A ball that holds everything: center and radius.
     ball: Option<(DVec3, f64)>,
 }
 
 impl SequenceBounds {
-    /// Of no scenes yet; the camera, which frames everything, is that of `view`. `None` if it has a place
-    /// of its own.
+    /// Creates the bounds of no scenes yet; the camera, which frames everything, is that of `view`.
+    /// `None` if it has a place of its own.
     pub fn new(view: &Scene) -> Option<Self> {
         let limits = Limits::new(view)?;
         let view = Scene {

@@ -1,4 +1,4 @@
-//! Which pictures a sequence has.
+//! Plan of a sequence: the pictures that it has.
 
 use super::{refuse, stream_name};
 use crate::cli::failure::Failure;
@@ -16,11 +16,11 @@ const TURN_DIGITS: usize = 3;
 /// Frames that are shown, in order.
 pub(super) struct Frames {
     range: FrameRange,
-    /// How many of the range there are; `None` for input that can be read only once.
+    /// Number of the range's frames; `None` for input that can be read only once.
     count: Option<u64>,
     /// Frames of the file that are not cut off, if the range has no end.
     end: Option<u64>,
-    /// What is wrong after them.
+    /// The error that comes after them, if there is one.
     rest: Option<SceneError>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Shot {
     pub(super) turn: Option<u32>,
 }
 
-/// Whether input can be read only once.
+/// Returns whether input can be read only once.
 pub(super) fn is_stream(path: &Path) -> bool {
     path.as_os_str() == "-" || path.exists() && !path.is_file()
 }
@@ -71,7 +71,7 @@ impl Frames {
     }
 }
 
-/// What a file of so many frames lacks of a range.
+/// Returns a message that says what a file of so many frames lacks of a range, if it lacks any.
 fn missing(range: FrameRange, whole: u64) -> Option<String> {
     if whole == 0 {
         return Some("holds no particles".to_owned());
@@ -112,12 +112,12 @@ impl Plan {
         self.frames.as_ref().and_then(|frames| frames.count)
     }
 
-    /// What the numbers of pictures are.
+    /// Returns the noun for the numbers of pictures.
     pub(super) fn noun(&self) -> &'static str {
         if self.turn.is_some() { "numbers" } else { "frames" }
     }
 
-    /// Whether its frames can be read only once.
+    /// Returns whether its frames can be read only once.
     pub(super) fn is_stream(&self) -> bool {
         self.frames.as_ref().is_some_and(|frames| frames.count.is_none())
     }
@@ -159,7 +159,7 @@ impl Plan {
         shots.into_iter()
     }
 
-    /// What is wrong after the frames of a range without an end.
+    /// Returns the error that comes after the frames of a range without an end.
     pub(super) fn rest(&self) -> Option<SceneError> {
         let frames = self.frames.as_ref().filter(|frames| frames.end.is_some())?;
         frames.rest.clone()
@@ -170,7 +170,7 @@ impl Plan {
         self.frames.as_ref().and_then(|frames| frames.end)
     }
 
-    /// Whether input that can be read only once had all frames, of which `passed` came.
+    /// Checks that input that can be read only once had all frames, of which `passed` came.
     pub(super) fn check_end(&self, path: &Path, passed: u64) -> Result<(), Failure> {
         let Some(Frames { range, count: None, .. }) = &self.frames else { return Ok(()) };
         // Frames after the last step were not looked for.

@@ -58,7 +58,7 @@ pub(super) struct Terminal {
     lines: u32,
     /// Time that it took to draw it.
     took: Duration,
-    /// Whether there was something wrong, and no more is drawn.
+    /// True if something went wrong, and no more is drawn.
     failed: bool,
 }
 
@@ -112,7 +112,8 @@ impl Terminal {
         self.took = start.elapsed();
     }
 
-    /// What draws a picture in the place of the last one, and how many lines it takes.
+    /// Returns the bytes that draw a picture in the place of the last one, and the number of lines
+    /// that it takes.
     fn text(&self, image: &Image) -> (Vec<u8>, u32) {
         let [columns, rows] = fit([image.width, image.height], self.screen);
         let mut text = Vec::new();

@@ -1,5 +1,5 @@
-//! What the terminal can show, and how large it is: asked of the terminal itself, or else of the
-//! environment.
+//! Detection of what the terminal can show, and of its size: asked of the terminal itself, or else
+//! of the environment.
 
 use super::{Protocol, Screen};
 
@@ -44,7 +44,7 @@ fn takes_kitty(answer: &[u8]) -> bool {
     answer.windows(YES.len()).any(|part| part == YES)
 }
 
-/// Whether 4, sixels, is among the terminal's attributes: `ESC [ ? 62 ; 4 c`.
+/// Returns whether 4, sixels, is among the terminal's attributes: `ESC [ ? 62 ; 4 c`.
 fn takes_sixels(answer: &[u8]) -> bool {
     let attributes = attributes(answer).unwrap_or_default();
     attributes.split(|byte| *byte == b';').skip(1).any(|attribute| attribute == b"4")

@@ -20,7 +20,7 @@ const EQUAL_DISTANCE: f64 = 0.01;
 /// Number of listed positions that are looked at to tell origins apart.
 const POSITIONS: usize = 60;
 
-/// What a block says of its symmetry.
+/// Symmetry as a block declares it.
 #[derive(Default)]
 pub(super) struct Declared {
     pub(super) operations: Vec<Operation>,
@@ -242,8 +242,8 @@ fn misfit(operations: &[Operation], cell: &Cell) -> f64 {
     misfit
 }
 
-/// How the listed positions and their images fill the cell: with the right origin, atoms are farther
-/// apart and, as special positions are taken, fewer.
+/// Measure of how the listed positions and their images fill the cell: with the right origin, atoms
+/// are farther apart and, as special positions are taken, fewer.
 struct Packing {
     /// The least distance in angstrom.
     spacing: f64,
@@ -274,7 +274,7 @@ impl Packing {
     }
 }
 
-/// Whether two groups have the same rotations and as many translations.
+/// Returns whether two groups have the same rotations and as many translations.
 fn are_alike(one: &[Operation], other: &[Operation]) -> bool {
     let has = |group: &[Operation], operation: &Operation| {
         group.iter().any(|own| own.matrix == operation.matrix)

@@ -47,7 +47,7 @@ pub(super) struct Positions<'p> {
 /// The positions that are drawn of those that share a site.
 pub(super) struct Shared {
     pub(super) keep: Vec<bool>,
-    /// How many of them stand for others too.
+    /// Number of them that stand for others too.
     pub(super) sites: usize,
 }
 
@@ -83,12 +83,14 @@ impl Occupancies {
         self.groups.retain(|_| *kept.next().unwrap_or(&true));
     }
 
-    /// How many atoms are disordered about an element of symmetry, and so overlap with their images.
+    /// Returns the number of atoms that are disordered about an element of symmetry, and so overlap
+    /// with their images.
     pub(super) fn about_symmetry(&self) -> usize {
         self.groups.iter().filter(|group| group.name.starts_with('-')).count()
     }
 
-    /// Whether each listed atom belongs to the main group of its disorder assembly, or to none.
+    /// Returns for each listed atom whether it belongs to the main group of its disorder assembly,
+    /// or to none.
     pub(super) fn main_groups(&self) -> Vec<bool> {
         let mut keep = vec![true; self.values.len()];
         let mut assemblies: Vec<(&str, Vec<usize>)> = Vec::new();

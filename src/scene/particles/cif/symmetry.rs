@@ -53,7 +53,7 @@ impl Operation {
         Self { matrix: DMat3::from_cols_array(&columns), shift: shift / TRANSLATION_STEPS }
     }
 
-    /// Whether two operations differ by a translation of the lattice at most.
+    /// Returns whether two operations differ by a translation of the lattice at most.
     pub(super) fn same(&self, other: &Self) -> bool {
         let away = self.shift - other.shift;
         // Translations may be written with few digits, such as 0.333.

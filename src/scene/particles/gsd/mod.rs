@@ -275,7 +275,7 @@ impl Gsd {
     }
 }
 
-/// Whether the description of a type's shape, in JSON, is of another shape than a sphere.
+/// Returns whether the description of a type's shape, in JSON, is of another shape than a sphere.
 fn is_shape(text: &str) -> bool {
     let kind = text.split_once("\"type\"").map(|(_, kind)| kind.trim_start_matches([':', ' ']));
     kind.is_some_and(|kind| !kind.starts_with("\"Sphere\""))

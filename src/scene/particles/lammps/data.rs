@@ -306,7 +306,7 @@ impl Head {
         Ok(())
     }
 
-    /// What rows of atoms must agree with.
+    /// Returns the properties that rows of atoms must agree with.
     fn facts(&self) -> Facts<'_> {
         Facts {
             types: self.types,

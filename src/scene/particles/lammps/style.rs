@@ -98,7 +98,7 @@ pub(super) struct Layout {
     pub(super) style: String,
     /// Names of the columns.
     pub(super) columns: Vec<String>,
-    /// Whether columns of unknown number and meaning follow.
+    /// True if columns of unknown number and meaning follow.
     open: bool,
 }
 
@@ -167,12 +167,12 @@ fn hybrid(words: &[&str]) -> Vec<Layout> {
     if once == each { vec![once] } else { vec![once, each] }
 }
 
-/// What LAMMPS calls the property in a column.
+/// Returns the name that LAMMPS has for the property in a column.
 fn property(column: &str) -> &str {
     SYNONYMS.iter().find(|names| names.contains(&column)).map_or(column, |names| names[0])
 }
 
-/// What a header says of the rows that follow.
+/// Properties of the rows below, as the header declares them.
 #[derive(Default)]
 pub(super) struct Facts<'h> {
     /// Number of atom types; 0 if the header does not say.
@@ -195,7 +195,7 @@ pub(super) struct Sample {
     columns: Vec<Summary>,
 }
 
-/// What is true of all values of a column.
+/// Properties that all values of a column have.
 #[derive(Clone, Copy)]
 struct Summary {
     finite: bool,
@@ -218,7 +218,7 @@ impl Summary {
         summary
     }
 
-    /// Whether all are whole numbers of at least `least`.
+    /// Returns whether all are whole numbers of at least `least`.
     fn is_whole(self, least: f64) -> bool {
         self.integral && self.least >= least
     }
@@ -245,7 +245,7 @@ impl Sample {
         self.rows.iter().all(|row| row.len() == self.width())
     }
 
-    /// Whether columns 6 to 8 are unit vectors, or zero for some rows.
+    /// Returns whether columns 6 to 8 are unit vectors, or zero for some rows.
     fn has_spins(&self) -> bool {
         let length = |row: &Vec<String>| {
             let value = |text: &String| number::parse(text.as_bytes()).unwrap_or(f64::NAN);
@@ -366,7 +366,7 @@ impl Facts<'_> {
         self.counts.get(thing).copied().unwrap_or(0)
     }
 
-    /// Whether values may be in a column of this name, other than that of types.
+    /// Returns whether values may be in a column of this name, other than that of types.
     fn may_be(&self, name: &str, column: Summary) -> bool {
         let flag =
             |things: &str| column.is_whole(0.0) && column.greatest <= 1.0 && self.count(things) > 0;
@@ -404,7 +404,7 @@ impl Facts<'_> {
         Some(format!("a type would be {value}, but the header has {types} atom types"))
     }
 
-    /// Whether a number is that of a type.
+    /// Returns whether a number is that of a type.
     pub(super) fn has_type(&self, number: u64) -> bool {
         (1..=if self.types > 0 { self.types } else { u64::MAX }).contains(&number)
     }
@@ -429,7 +429,7 @@ impl Facts<'_> {
     }
 }
 
-/// Whether two layouts that fit place the same spheres of the same types.
+/// Returns whether two layouts that fit place the same spheres of the same types.
 fn drawn_alike(first: &Layout, second: &Layout, sample: &Sample) -> bool {
     let same_column = |name: &str| match (first.position(name), second.position(name)) {
         (Some(first), Some(second)) => sample.same(first, second),

@@ -24,7 +24,7 @@ pub(super) struct Velocities {
     lends_ids: bool,
     /// Most atoms for which the section is read; where it is not asked for by name there is a limit.
     most: u64,
-    /// Whether the file has the section.
+    /// True if the file has the section.
     found: bool,
     values: Option<HashMap<u64, [f64; 3]>>,
 }

@@ -49,7 +49,7 @@ pub struct ColumnColors {
     pub column: String,
     /// The colors of numbers; `None` for the usual ones.
     pub map: Option<Map>,
-    /// Whether the map's high end is at the low end of the numbers.
+    /// True if the map's high end is at the low end of the numbers.
     pub reversed: bool,
     /// The numbers that the map's ends stand for, and for all beyond them; `None` for the least and
     /// the greatest there are.
@@ -101,7 +101,7 @@ impl ColumnColors {
         Ok(legend)
     }
 
-    /// What colors stand for where there is no particle: known if the ends of the map are.
+    /// Returns the legend where there is no particle: known if the ends of the map are.
     pub(super) fn legend_of_ends(&self, unit: LengthUnit) -> Option<Legend> {
         let scale = self.ends.and_then(|_| self.scale(&[]).ok())?;
         Some(Legend { scale, label: self.label(unit) })

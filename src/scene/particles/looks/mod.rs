@@ -37,7 +37,7 @@ pub struct Looks {
     pub coloring: Coloring,
     /// Looks of single types, before all else; of two for one type the later one wins.
     pub types: Vec<TypeLook>,
-    /// Whether a selection may leave nothing, as in some frames of a trajectory.
+    /// True if a selection may leave nothing, as in some frames of a trajectory.
     pub allow_empty: bool,
 }
 

@@ -22,7 +22,7 @@ pub(super) struct Array<R> {
     transposed: bool,
 }
 
-/// Whether an array of two dimensions is read as columns.
+/// Condition for an array of two dimensions to be read as columns.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turn {
     /// It is rows.

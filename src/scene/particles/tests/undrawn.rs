@@ -1,4 +1,4 @@
-//! What is in a file besides spheres is said once.
+//! Tests that each thing in a file besides spheres is told of once.
 
 use super::*;
 
