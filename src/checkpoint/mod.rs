@@ -25,8 +25,8 @@ mod lock;
 mod read;
 mod write;
 
-pub use lock::{Lock, LockError, is_locked};
-pub use read::{CheckpointError, inspect, read};
+pub use lock::{Lock, LockError};
+pub use read::{CheckpointError, read};
 pub use write::write;
 
 use crate::layers::{Features, Layer};

@@ -15,7 +15,7 @@ use super::particles::ParticleArgs;
 use super::sequences::SequenceArgs;
 use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
-use super::{Failure, bench, compare, examples, merge, status, stress, view};
+use super::{Failure, bench, compare, examples, merge, stress, view};
 use clap::{Parser, Subcommand};
 use spherule::image::Format;
 use std::path::PathBuf;
@@ -44,9 +44,6 @@ pub(super) enum Command {
     /// Put the parts of a render together that several machines have made
     #[command(allow_negative_numbers = true, after_help = examples::MERGE)]
     Merge(merge::Args),
-    /// Tell what parts of a render have been done, what is missing, and how long it will take
-    #[command(after_help = examples::STATUS)]
-    Status(status::Args),
     /// Write a generated scene: a TOML file, and its spheres in a CSV file beside it
     #[command(allow_negative_numbers = true, after_help = examples::FIELD)]
     Field(FieldArgs),

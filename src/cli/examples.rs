@@ -54,16 +54,6 @@ Examples:
   spherule merge picture.*.part -o picture.exr
   spherule merge picture.1-of-3.part picture.3-of-3.part --partial -o preview.png";
 
-/// Of `spherule status`.
-pub(super) const STATUS: &str = "\
-Exit codes: 0 all is there and can be merged, 3 something is still to be rendered, 1 a file is of no
-use, 2 command line not understood
-
-Examples:
-  spherule status picture.*.part
-  until spherule status picture.*.part; do sleep 60; done
-  spherule status long.checkpoint --json";
-
 /// Of `spherule field`.
 pub(super) const FIELD: &str = "\
 Examples:

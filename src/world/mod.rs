@@ -14,7 +14,6 @@ mod check;
 mod cut;
 mod environment;
 mod fit;
-mod footprint;
 mod frame;
 pub mod framing;
 mod ground;
@@ -31,7 +30,6 @@ pub(crate) use caustics::{Found, Looking, Sent, Way};
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use environment::{Environment, Picture, Radiance, SkySample};
-pub use footprint::{ColorColumn, Footprint};
 pub use frame::Frame;
 pub use ground::Ground;
 pub use lights::{
@@ -47,14 +45,22 @@ use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
 use crate::memory::Shortage;
 use crate::ray::GROUND;
-use crate::scene::{self, InvalidSetting, Rgb, Scene, Settings};
+use crate::scene::{
+    self, InvalidSetting, Material, NamedMaterial, Rgb, Scene, Settings, SliceMode,
+};
 use crate::spheres::Spheres;
 use fit::Placement;
 use spheres::Placed;
 use std::borrow::Cow;
 
+/// Bytes that a sphere takes while a world is built, at most.
+const SPHERE_BYTES: u64 = 64;
+
 /// Rays that a sample takes, with its bounces and its looks for light; about, for choosing the tree.
 const RAYS_PER_SAMPLE: u64 = 4;
+
+/// The same where every sphere may be a light.
+const EMITTER_BYTES: u64 = 240;
 
 /// Everything that a render reads, immutable.
 #[derive(Clone, Debug)]
@@ -166,6 +172,18 @@ impl World {
         Self::assemble(scene, Cow::Owned(spheres), &at, builder)
     }
 
+    /// Bytes that [`World::build_taking`] takes at most, beside those of the scene.
+    pub fn bytes_beside(scene: &Scene) -> u64 {
+        let given_back = scene.spheres.len() as u64 * scene::Spheres::POSITION_BYTES;
+        Self::bytes_for(scene).saturating_sub(given_back)
+    }
+
+    fn bytes_for(scene: &Scene) -> u64 {
+        // The camera may have a tree of its own.
+        let hides = scene.slices.iter().any(|slice| slice.mode == SliceMode::Hide);
+        Self::bytes(scene.spheres.len() as u64 * (1 + u64::from(hides)), &scene.materials)
+    }
+
     /// Builds what is in its place.
     fn assemble(
         scene: &Scene,
@@ -247,6 +265,14 @@ impl World {
         self.camera = Camera::build(scene, &pose, &self.frame);
         self.features = std::mem::take(&mut self.features).seen_by(self);
         Ok(true)
+    }
+
+    /// Bytes that the world of so many spheres takes while it is built, at most: columns, and the
+    /// rows that the tree is made of.
+    pub fn bytes(spheres: u64, materials: &[NamedMaterial]) -> u64 {
+        let emits = |row: &NamedMaterial| matches!(row.material, Material::Emitter { .. });
+        let each = if materials.iter().any(emits) { EMITTER_BYTES } else { SPHERE_BYTES };
+        spheres.saturating_mul(each)
     }
 
     /// The material of what was hit: a sphere's row or [`GROUND`].

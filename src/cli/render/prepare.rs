@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::told::Told;
-use super::{looks, metadata, part, unseen};
+use super::{layers, looks, metadata, part, unseen};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -35,8 +35,6 @@ pub(super) struct Prepared {
     pub(super) load: Duration,
     /// Time for the columns and the tree.
     pub(super) build: Duration,
-    /// Bytes that the process was estimated to have in memory at most, before the world was built.
-    pub(super) estimate: u64,
     /// Settings that have no effect.
     pub(super) notes: Vec<String>,
     /// What colors stand for, if they stand for numbers.
@@ -116,8 +114,11 @@ impl Placed {
     /// Builds the world, if there is memory for it.
     pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
         let Self { mut scene, legend, region, identity, load } = self;
+        let layered = !job.encoding.layers.is_empty() || !scene.look.is_plain();
         let share = part::share(job, region, &scene)?;
-        let estimate = Estimate::new(&scene, region, job).of_tiles(share.tiles.len()).check()?;
+        Estimate::new(&scene, region, layers::need_statistics(job), layered)
+            .of_tiles(share.tiles.len())
+            .check()?;
         let start = Instant::now();
         let part = share.size() as f64 / Share::whole(region, scene.settings.spp).size() as f64;
         let samples = samples(region, &scene.settings) as f64 * part;
@@ -138,7 +139,6 @@ impl Placed {
             builder,
             load,
             build,
-            estimate,
             legend,
             identity,
             warnings,

@@ -62,8 +62,6 @@ struct Statistics {
     tree_bytes: usize,
     /// Of the process until now, all else included; null where the system does not tell.
     peak_bytes: Option<u64>,
-    /// What that was estimated to be before the world was built.
-    estimated_peak_bytes: u64,
     load_seconds: f64,
     build_seconds: f64,
     render_seconds: f64,
@@ -225,7 +223,6 @@ impl Statistics {
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),
             peak_bytes: spherule::memory::peak(),
-            estimated_peak_bytes: prepared.estimate,
             load_seconds: prepared.load.as_secs_f64(),
             build_seconds: prepared.build.as_secs_f64(),
             render_seconds: seconds,

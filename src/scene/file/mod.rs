@@ -26,7 +26,6 @@ use super::{
     SceneError, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
-use memchr::memchr_iter;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -37,12 +36,8 @@ const LONGEST: u64 = 1 << 26;
 /// Name of the material of particles that have none of their own.
 const PARTICLES: &str = "particles";
 
-/// Bytes that signs of a file become while it is parsed: of keys, values of lists, lines and sections, as
-/// measured over files of spheres.
-const SIGN_BYTES: [(u8, u64); 4] = [(b'=', 106), (b',', 373), (b'\n', 71), (b'[', 270)];
-
-/// Bytes that every byte of a file becomes besides.
-const TEXT_BYTES: u64 = 8;
+/// Bytes that a byte of a file becomes while it is read, at most: lists of short values.
+const TREE_BYTES: u64 = 100;
 
 /// Returns the files that a scene file names, whether they exist or not: particle files and the picture of
 /// the environment. A file that is no scene names none; [`Scene::load`] says what is wrong with it. Nor does a
@@ -75,7 +70,7 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
 
 /// Checks that there is memory for the tables of a text.
 fn check_memory(text: &str) -> Result<(), Shortage> {
-    memory::check(parse_bytes(text))
+    memory::check(text.len() as u64 * TREE_BYTES)
 }
 
 impl Scene {
@@ -156,12 +151,6 @@ impl Scene {
             ..Self::default()
         }
     }
-}
-
-/// Bytes that parsing a text takes, about.
-fn parse_bytes(text: &str) -> u64 {
-    let of_sign = |(sign, bytes)| memchr_iter(sign, text.as_bytes()).count() as u64 * bytes;
-    SIGN_BYTES.into_iter().map(of_sign).sum::<u64>() + text.len() as u64 * TEXT_BYTES
 }
 
 /// Reads all sections, in an order in which each finds what it refers to.

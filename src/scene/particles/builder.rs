@@ -13,11 +13,8 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Rows that are read before anyone asks whether there is memory for more.
-const FIRST_ROOM: usize = 1 << 16;
-
-/// Bytes of columns that may be copied when they grow; allocators extend larger ones where they are.
-const COPIED: u64 = 1 << 27;
+/// Number of rows before memory is looked at for the first time.
+const ROOM: usize = 1 << 16;
 
 /// A frame that is being read.
 pub(super) struct Builder {
@@ -30,7 +27,7 @@ pub(super) struct Builder {
     kind_rows: HashMap<Kind, u32>,
     materials: Codebook,
     extras: Vec<Extra>,
-    /// The number of rows at which to ask for memory again.
+    /// The number of rows from which on there may be too little memory.
     room: usize,
     /// Number of rows beyond which only columns are kept that were asked for by name.
     most_rows: usize,
@@ -55,7 +52,7 @@ impl Builder {
             materials: Codebook::default(),
             extras: schema.extras.iter().map(|name| Extra::new(name)).collect(),
             schema: schema.clone(),
-            room: FIRST_ROOM.min(most_rows),
+            room: ROOM.min(most_rows),
             most_rows,
             needed_columns: schema.needed_columns(),
         }
@@ -202,47 +199,24 @@ impl Builder {
         column.codes.push(code);
     }
 
-    /// Finds out whether there is memory for some more rows. Where the columns double, which their
-    /// lengths are powers of two for, address space for as many as there are is needed at once.
+    /// Before columns grow, which take twice the memory then: whether there is so much.
     fn check_room(&mut self) -> Result<(), SceneError> {
-        let rows = self.room;
-        if rows == self.most_rows {
+        let count = self.frame.x.len() as u64;
+        if self.room == self.most_rows {
             self.extras[self.schema.asked..].fill_with(|| Extra::LeftOut);
         }
-        let next = (rows + rows / 8).min((rows + 1).next_power_of_two()).max(FIRST_ROOM);
-        self.room = if rows < self.most_rows { next.min(self.most_rows) } else { next };
-        let (count, more) = (rows as u64, (self.room - rows) as u64);
+        let next = self.room.next_power_of_two().max(ROOM / 2) * 2;
+        self.room = if self.room < self.most_rows { next.min(self.most_rows) } else { next };
         if count >= Spheres::MAX {
             let message = format!("holds more than {} particles", Spheres::MAX);
             return Err(SceneError::whole_file(&self.path, message));
         }
-        let bytes = self.row_bytes();
-        let grown = if rows.is_power_of_two() { count * bytes } else { 0 };
-        // The columns as they are stay reserved until their copies are there, where they are copied.
-        let reserve = grown + grown.min(COPIED);
-        memory::check_growth(more * bytes, reserve).map_err(|shortage| {
-            let message =
-                format!("holds more than {count} particles; more of them need {shortage}");
+        let kept = self.extras.iter().filter(|extra| !matches!(extra, Extra::LeftOut)).count();
+        let bytes = Spheres::BYTES + 8 * kept as u64;
+        memory::check(count * bytes).map_err(|shortage| {
+            let message = format!("holds more than {count} particles, which need {shortage}");
             SceneError::whole_file(&self.path, message)
         })
-    }
-
-    /// Number of other columns that are kept.
-    fn kept_extras(&self) -> usize {
-        self.extras.iter().filter(|extra| !matches!(extra, Extra::LeftOut)).count()
-    }
-
-    /// Bytes of a row in all columns, by the rows that there are.
-    fn row_bytes(&self) -> u64 {
-        let frame = &self.frame;
-        let column = |bytes: usize, there: bool| if there { bytes } else { 0 };
-        let bytes = size_of::<[f64; 3]>()
-            + column(size_of::<f64>(), !frame.radius.is_empty())
-            + column(size_of::<Rgb>(), self.schema.has_color())
-            + column(frame.kinds.codes.width(), !frame.kinds.codes.is_empty())
-            + column(frame.materials.codes.width(), !frame.materials.codes.is_empty())
-            + size_of::<f64>() * self.kept_extras();
-        bytes as u64
     }
 
     /// What was read.

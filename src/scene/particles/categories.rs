@@ -36,15 +36,6 @@ impl Codes {
         self.len() == 0
     }
 
-    /// Bytes of a code.
-    pub(super) fn width(&self) -> usize {
-        match self {
-            Self::Bytes(_) => 1,
-            Self::Shorts(_) => 2,
-            Self::Words(_) => 4,
-        }
-    }
-
     /// The code of row `row`, which is less than [`Codes::len`].
     #[inline]
     pub fn code(&self, row: usize) -> u32 {

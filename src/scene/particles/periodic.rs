@@ -148,21 +148,9 @@ impl Particles {
         if spheres > Spheres::MAX {
             return Err(PeriodicError::TooMany(count, spheres));
         }
-        // A column is copied before it is dropped.
-        let there = self.spheres.len() as u64;
-        let bytes = (spheres - there) * self.row_bytes() + there * size_of::<f64>() as u64;
-        memory::check(bytes).map_err(|shortage| PeriodicError::Memory(count, spheres, shortage))?;
+        memory::check(spheres * (Spheres::BYTES + 8 * self.numbers.len() as u64))
+            .map_err(|shortage| PeriodicError::Memory(count, spheres, shortage))?;
         Ok(count as usize)
-    }
-
-    /// Bytes of a row in all columns.
-    fn row_bytes(&self) -> u64 {
-        let spheres = &self.spheres;
-        let texts = self.texts.iter().map(|column| &column.codes);
-        let codes = texts.chain([&self.kinds.codes]).filter(|codes| !codes.is_empty());
-        let codes: usize = codes.map(Codes::width).sum();
-        let numbers = size_of::<f64>() * self.numbers.len();
-        spheres.row_bytes() + (numbers + codes) as u64
     }
 
     fn repeat_columns(&mut self, count: usize) {

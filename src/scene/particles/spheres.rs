@@ -6,7 +6,6 @@ use super::looks::{Column, ElementColors, ID, INDEX, TypeMaterial};
 use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
 use crate::color::category;
-use crate::memory;
 use crate::scene::error::clipped;
 use crate::scene::spheres::retain;
 use crate::scene::{NamedMaterial, Rgb, SceneError, Spheres};
@@ -103,8 +102,6 @@ pub(super) fn spheres(
     if frame.is_empty() && !options.allow_empty {
         return Err(SceneError::whole_file(path, "holds no particles"));
     }
-    memory::check(bytes_to_add(&frame))
-        .map_err(|shortage| SceneError::whole_file(path, format!("its spheres need {shortage}")))?;
     if options.scale != 1.0 {
         let columns = [&mut frame.x, &mut frame.y, &mut frame.z];
         columns.into_iter().flatten().for_each(|value| *value *= options.scale);
@@ -150,16 +147,6 @@ pub(super) fn spheres(
         unit: frame.unit,
         warnings: warnings.list,
     })
-}
-
-/// Bytes of the columns that a frame does not have, but spheres do.
-fn bytes_to_add(frame: &ParticleFrame) -> u64 {
-    let radius = if frame.radius.is_empty() { size_of::<f64>() } else { 0 };
-    let kinds = &frame.kinds.table;
-    let by_kind = kinds.len() > 1 || kinds.iter().any(|kind| kind.element.is_some());
-    let color = if frame.color.is_empty() && by_kind { size_of::<Rgb>() } else { 0 };
-    let material = if frame.materials.names.len() > 1 { size_of::<u32>() } else { 0 };
-    (frame.len() * (radius + color + material)) as u64
 }
 
 /// Sentences with the file's name before them.
