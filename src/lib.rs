@@ -104,6 +104,7 @@ pub mod film;
 pub mod layers;
 pub mod noise;
 pub mod overlay;
+pub mod prepared;
 pub mod render;
 pub mod split;
 
@@ -113,6 +114,7 @@ pub mod drawing;
 pub mod atomic;
 pub mod image;
 pub mod memory;
+mod sealed;
 
 // Judge what is above, and give it work.
 pub mod paper;

@@ -12,7 +12,7 @@ const TASK: usize = 1 << 12;
 
 /// The columns of [`LEAF`] spheres side by side, so that a leaf is two lines of cache.
 #[repr(C, align(64))]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Block {
     /// Centers, x.
     pub x: [f32; LEAF],
@@ -83,6 +83,24 @@ impl Spheres {
             id: rows(count).map(|i| row(i).1).collect(),
             precise: Vec::new(),
         }
+    }
+
+    /// Of blocks and the ids of their rows. `None` if a row has no sphere, or one that is not finite, or
+    /// if rows are left over.
+    pub(crate) fn from_blocks(blocks: Vec<Block>, id: Vec<u32>) -> Option<Self> {
+        if blocks.len() != id.len().div_ceil(LEAF) {
+            return None;
+        }
+        let spheres = Self { blocks, id, precise: Vec::new() };
+        let is_sphere = |row: usize| {
+            let radius = spheres.radius(row);
+            spheres.center(row).is_finite() && radius > 0.0 && radius < f32::INFINITY
+        };
+        let rows = spheres.len();
+        let unused = rows..spheres.blocks.len() * LEAF;
+        let right =
+            (0..rows).all(is_sphere) && unused.into_iter().all(|row| spheres.radius(row).is_nan());
+        right.then_some(spheres)
     }
 
     /// Appends a sphere.

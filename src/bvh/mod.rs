@@ -15,6 +15,7 @@ mod order;
 mod others;
 mod packet;
 mod ready;
+mod rows;
 mod settle;
 mod single;
 mod stream;
@@ -22,6 +23,7 @@ mod waiting;
 pub mod walk;
 
 pub use beam::Beam;
+pub(crate) use rows::NodeRow;
 
 use crate::lanes::U32x16;
 use crate::spheres::{LEAF, Spheres};

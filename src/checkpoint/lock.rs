@@ -5,6 +5,10 @@ use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Time after which a lock that is not held for a render is given back.
+const MOMENT: Duration = Duration::from_millis(2);
 
 /// The right to write a file: no other process has it as long as this is there.
 ///
@@ -40,6 +44,7 @@ impl Lock {
     pub fn take(path: &Path) -> Result<Option<Self>, LockError> {
         let failed = |error| LockError::Failed(path.to_owned(), error);
         let beside = beside(path).map_err(failed)?;
+        let mut again = false;
         loop {
             let file = OpenOptions::new().write(true).create(true).truncate(false).open(&beside);
             let file = file.map_err(failed)?;
@@ -52,6 +57,12 @@ impl Lock {
             }
             match file.try_lock() {
                 Ok(()) => {}
+                // `is_locked` has locks for a moment.
+                Err(TryLockError::WouldBlock) if !again => {
+                    again = true;
+                    std::thread::sleep(MOMENT);
+                    continue;
+                }
                 Err(TryLockError::WouldBlock) => return Err(LockError::Held(path.to_owned())),
                 Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
                     return Ok(None);
@@ -64,6 +75,13 @@ impl Lock {
             }
         }
     }
+}
+
+/// Whether another process has the lock on a file. Changes nothing, and says no where there are no locks.
+pub fn is_locked(path: &Path) -> bool {
+    let open = beside(path).and_then(File::open);
+    // A shared lock, which is given back at once, can be had of files that are open for reading.
+    open.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
 impl Drop for Lock {
@@ -110,9 +128,11 @@ mod tests {
             let lock = Lock::take(&path).unwrap();
             assert!(lock.is_some());
             assert!(matches!(Lock::take(&path), Err(LockError::Held(_))));
+            assert!(is_locked(&path) && !is_locked(&folder.path().join("other")));
             assert!(Lock::take(&folder.path().join("other")).is_ok());
             drop(lock);
         }
+        assert!(!is_locked(&path));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 

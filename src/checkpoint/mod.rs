@@ -25,8 +25,8 @@ mod lock;
 mod read;
 mod write;
 
-pub use lock::{Lock, LockError};
-pub use read::{CheckpointError, read};
+pub use lock::{Lock, LockError, is_locked};
+pub use read::{CheckpointError, inspect, read};
 pub use write::write;
 
 use crate::layers::{Features, Layer};
@@ -43,9 +43,6 @@ const FORMAT: u32 = 3;
 
 /// The program that writes: another may make other bytes of the same samples.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
-
-/// Bytes of the hash at the end.
-const HASH: u64 = 32;
 
 /// Where a render comes from: what it takes to begin it again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

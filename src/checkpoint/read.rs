@@ -1,9 +1,10 @@
 //! A file becomes an unfinished render.
 
 use super::blocks::{PACKED, TILES, unpack};
-use super::{FORMAT, HASH, MAGIC, Origin, PROGRAM};
+use super::{FORMAT, MAGIC, Origin, PROGRAM};
 use crate::memory::{self, Shortage};
-use crate::render::{Outline, Unfinished};
+use crate::render::{Outline, Status, Unfinished};
+use crate::sealed::SEAL;
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek};
 use std::path::{Path, PathBuf};
@@ -54,6 +55,25 @@ pub fn read(path: &Path) -> Result<(Origin, Unfinished), CheckpointError> {
     read_from(BufReader::new(file), length.len()).map_err(|fault| fault.of(path))
 }
 
+/// Reads how far a render is that [`super::write()`] wrote, without its sums.
+///
+/// # Errors
+/// Those of [`read`], but for memory.
+pub fn inspect(path: &Path) -> Result<(Origin, Status), CheckpointError> {
+    let failed = |error| CheckpointError::Read(path.to_owned(), error);
+    let file = File::open(path).map_err(failed)?;
+    let length = file.metadata().map_err(failed)?;
+    if !length.is_file() {
+        return Err(CheckpointError::Foreign(path.to_owned()));
+    }
+    let read = |mut reader: BufReader<File>| {
+        let sealed = check_seal(&mut reader, length.len())?;
+        let (origin, outline) = head(&mut reader.take(sealed), sealed)?;
+        Ok((origin, outline.status()))
+    };
+    read(BufReader::new(file)).map_err(|fault: Fault| fault.of(path))
+}
+
 /// Why bytes cannot be gone on from.
 pub(super) enum Fault {
     Read(io::Error),
@@ -90,20 +110,27 @@ pub(super) fn read_from(
     mut reader: impl Read + Seek,
     length: u64,
 ) -> Result<(Origin, Unfinished), Fault> {
+    let sealed = check_seal(&mut reader, length)?;
+    unpack_all(&mut reader.take(sealed), sealed)
+}
+
+/// Checks format and hash of a file of so many bytes, and returns to its head. The number of bytes from
+/// there to the hash.
+fn check_seal(reader: &mut (impl Read + Seek), length: u64) -> Result<u64, Fault> {
     let start = (MAGIC.len() + size_of_val(&FORMAT)) as u64;
     let mut magic = Vec::new();
     reader.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic)?;
     if magic != MAGIC {
         return Err(Fault::Foreign);
     }
-    match u32::from_le_bytes(array(&mut reader)?) {
+    match u32::from_le_bytes(array(reader)?) {
         FORMAT => {}
         other => return Err(Fault::Format(other)),
     }
-    let sealed = length.checked_sub(start + HASH).ok_or(Fault::Damaged("its end is missing"))?;
-    check_hash(&mut reader, sealed)?;
+    let sealed = length.checked_sub(start + SEAL).ok_or(Fault::Damaged("its end is missing"))?;
+    check_hash(reader, sealed)?;
     reader.seek(io::SeekFrom::Start(start))?;
-    unpack_all(&mut reader.take(sealed), sealed)
+    Ok(sealed)
 }
 
 /// Whether the hash is that of all that comes before it; `sealed` bytes of that are left.
@@ -118,15 +145,7 @@ fn check_hash(reader: &mut impl Read, sealed: u64) -> Result<(), Fault> {
 
 /// Head and blocks; of what they say, only that has been checked that someone made a hash of it.
 fn unpack_all(reader: &mut impl Read, length: u64) -> Result<(Origin, Unfinished), Fault> {
-    let size = u64::from_le_bytes(array(reader)?);
-    let head = bytes(reader, size, length)?;
-    let unread = |_| Fault::Damaged("its head cannot be read");
-    let (program, head) = postcard::take_from_bytes::<String>(&head).map_err(unread)?;
-    if program != PROGRAM {
-        return Err(Fault::Program(program));
-    }
-    let (origin, outline): (Origin, Outline) = postcard::from_bytes(head).map_err(unread)?;
-    outline.check().map_err(Fault::Damaged)?;
+    let (origin, outline) = head(reader, length)?;
     check_size(&outline, length)?;
     let mut render = outline.begin();
     for tiles in render.film_mut().tiles.chunks_mut(TILES) {
@@ -136,6 +155,20 @@ fn unpack_all(reader: &mut impl Read, length: u64) -> Result<(Origin, Unfinished
     }
     let rest = io::copy(reader, &mut io::sink())?;
     if rest == 0 { Ok((origin, render)) } else { Err(Fault::Damaged("it is too long")) }
+}
+
+/// All but the sums.
+fn head(reader: &mut impl Read, length: u64) -> Result<(Origin, Outline), Fault> {
+    let size = u64::from_le_bytes(array(reader)?);
+    let head = bytes(reader, size, length)?;
+    let unread = |_| Fault::Damaged("its head cannot be read");
+    let (program, head) = postcard::take_from_bytes::<String>(&head).map_err(unread)?;
+    if program != PROGRAM {
+        return Err(Fault::Program(program));
+    }
+    let (origin, outline): (Origin, Outline) = postcard::from_bytes(head).map_err(unread)?;
+    outline.check().map_err(Fault::Damaged)?;
+    Ok((origin, outline))
 }
 
 /// Whether so few bytes can hold the sums, and there is memory for them.

@@ -2,6 +2,7 @@ use super::read::{Fault, read_from};
 use super::*;
 use crate::render::{End, Options, Unfinished};
 use crate::scene::{Scene, Settings, generate};
+use crate::sealed::SEAL;
 use crate::world::World;
 use std::fs;
 use std::io::Cursor;
@@ -122,7 +123,7 @@ fn no_flipped_bit_is_overlooked() {
 
 /// Puts the right hash at the end of bytes that someone has changed.
 fn sealed(bytes: &mut [u8]) -> &[u8] {
-    let (content, hash) = bytes.split_at_mut(bytes.len() - HASH as usize);
+    let (content, hash) = bytes.split_at_mut(bytes.len() - SEAL as usize);
     hash.copy_from_slice(blake3::hash(content).as_bytes());
     bytes
 }
@@ -132,7 +133,7 @@ fn forgeries_with_the_right_hash_are_refused_or_harmless() {
     let Kept { bytes, .. } = kept(6);
     let head = MAGIC.len() + 12;
     let mut refused = 0;
-    for at in MAGIC.len()..bytes.len() - HASH as usize {
+    for at in MAGIC.len()..bytes.len() - SEAL as usize {
         // The head counts most: lengths, counts, places of tiles.
         if at > head + 4000 && at % 31 != 0 {
             continue;
@@ -156,7 +157,7 @@ fn absurd_sizes_take_no_memory() {
         forged.extend(FORMAT.to_le_bytes());
         forged.extend((head.len() as u64).to_le_bytes());
         forged.extend(head);
-        forged.extend([0; HASH as usize]);
+        forged.extend([0; SEAL as usize]);
         parse(sealed(&mut forged)).err().map(|fault| matches!(fault, Fault::Damaged(_)))
     };
     let mut large = outline();

@@ -4,6 +4,7 @@ use super::blocks::{TILES, pack};
 use super::{FORMAT, MAGIC, Origin, PROGRAM};
 use crate::atomic::write_atomically;
 use crate::render::{Outline, Unfinished};
+use crate::sealed::Sealing;
 use rayon::prelude::*;
 use std::io::{self, Write};
 use std::path::Path;
@@ -20,29 +21,15 @@ pub fn write(path: &Path, origin: &Origin, render: &Unfinished) -> io::Result<()
     let head = postcard::to_stdvec(&(PROGRAM, origin, Outline::of(render)));
     let head = head.map_err(io::Error::other)?;
     write_atomically(path, |writer| {
-        let mut sealed = Sealed { writer, hasher: blake3::Hasher::new() };
-        sealed.write(&MAGIC)?;
-        sealed.write(&FORMAT.to_le_bytes())?;
-        sealed.write(&(head.len() as u64).to_le_bytes())?;
-        sealed.write(&head)?;
+        let mut sealing = Sealing::new(writer);
+        sealing.write_all(&MAGIC)?;
+        sealing.write_all(&FORMAT.to_le_bytes())?;
+        sealing.write_all(&(head.len() as u64).to_le_bytes())?;
+        sealing.write_all(&head)?;
         for tiles in render.film().tiles.chunks(TILES * AHEAD * rayon::current_num_threads()) {
             let blocks: Vec<Vec<u8>> = tiles.par_chunks(TILES).map(pack).collect();
-            blocks.iter().try_for_each(|block| sealed.write(block))?;
+            blocks.iter().try_for_each(|block| sealing.write_all(block))?;
         }
-        let hash = sealed.hasher.finalize();
-        writer.write_all(hash.as_bytes())
+        sealing.seal()
     })
-}
-
-/// What is written, and its hash so far.
-struct Sealed<'a> {
-    writer: &'a mut dyn Write,
-    hasher: blake3::Hasher,
-}
-
-impl Sealed<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.hasher.update(bytes);
-        self.writer.write_all(bytes)
-    }
 }

@@ -15,7 +15,7 @@ use super::particles::ParticleArgs;
 use super::sequences::SequenceArgs;
 use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
-use super::{Failure, bench, compare, examples, merge, stress, view};
+use super::{Failure, bench, compare, examples, merge, part, status, stress, view};
 use clap::{Parser, Subcommand};
 use spherule::image::Format;
 use std::path::PathBuf;
@@ -44,6 +44,9 @@ pub(super) enum Command {
     /// Put the parts of a render together that several machines have made
     #[command(allow_negative_numbers = true, after_help = examples::MERGE)]
     Merge(merge::Args),
+    /// Tell what parts of a render have been done, what is missing, and how long it will take
+    #[command(after_help = examples::STATUS)]
+    Status(status::Args),
     /// Write a generated scene: a TOML file, and its spheres in a CSV file beside it
     #[command(allow_negative_numbers = true, after_help = examples::FIELD)]
     Field(FieldArgs),
@@ -101,6 +104,15 @@ pub(super) struct RenderArgs {
     pub(super) sequence: SequenceArgs,
     #[command(flatten)]
     pub(super) part: PartArgs,
+    /// Write the scene with its tree to FILE, and render nothing. Parts, and other renders, of FILE begin
+    /// at once; settings may be others then, but not spheres, looks and camera
+    #[arg(
+        long,
+        value_name = "FILE",
+        help_heading = part::HEADING,
+        conflicts_with_all = ["output", "part", "checkpoint", "resume", "turntable", "skip_existing", "layers"]
+    )]
+    pub(super) prepare: Option<PathBuf>,
     #[command(flatten)]
     pub(super) report: ReportArgs,
 }

@@ -34,6 +34,7 @@ Examples:
   spherule render scene.toml --region 100,50,64x64 -o detail.png
   spherule render scene.toml -o picture.exr --part 3/8     to picture.3-of-8.part, for merge
   spherule render scene.toml -o picture.exr --part from-env     in a job array or under mpirun
+  spherule render scene.toml --prepare scene.prepared     for parts to begin at once: render that file
   parallel spherule render scene.toml -o picture.exr --part {}/8 ::: $(seq 8)
   spherule render scene.toml -o picture.exr --layers albedo,normal,depth,id
   spherule render scene.toml --memory-limit 4GB     refused at once if it would take more
@@ -53,6 +54,16 @@ The picture has the bytes of one that was rendered as a whole, and the layers of
 Examples:
   spherule merge picture.*.part -o picture.exr
   spherule merge picture.1-of-3.part picture.3-of-3.part --partial -o preview.png";
+
+/// Of `spherule status`.
+pub(super) const STATUS: &str = "\
+Exit codes: 0 all is there and can be merged, 3 something is still to be rendered, 1 a file is of no
+use, 2 command line not understood
+
+Examples:
+  spherule status picture.*.part
+  until spherule status picture.*.part; do sleep 60; done
+  spherule status long.checkpoint --json";
 
 /// Of `spherule field`.
 pub(super) const FIELD: &str = "\

@@ -15,6 +15,7 @@ use spherule::checkpoint::{CheckpointError, LockError};
 use spherule::drawing::DrawingError;
 use spherule::image::{CompareError, ImageError};
 use spherule::memory::Shortage;
+use spherule::prepared::{PrepareError, PreparedError};
 use spherule::render::RenderError;
 use spherule::scene::generate::GenerateError;
 use spherule::scene::{Place, SceneError};
@@ -62,6 +63,10 @@ pub(crate) enum Failure {
     Layers(String, String),
     #[error("{0}")]
     Checkpoint(#[from] CheckpointError),
+    #[error("{0}")]
+    Prepared(#[from] PreparedError),
+    #[error("{0}: {1}")]
+    Prepare(String, PrepareError),
     #[error("{0}")]
     Lock(#[from] LockError),
     #[error(

@@ -33,8 +33,8 @@ pub(super) struct LookArgs {
     /// The map of --color-by; reversed with _r after its name, as in `viridis_r` [default: viridis]
     #[arg(long, value_name = "MAP", requires = "color_by", value_parser = map())]
     color_map: Option<MapChoice>,
-    /// What the ends of the map stand for; numbers beyond have the colors of the ends [default:
-    /// auto, the least and the greatest]
+    /// Numbers at the ends of the map; numbers beyond have the colors of the ends [default: auto, the
+    /// least and the greatest, in a sequence those of all frames]
     #[arg(
         long,
         value_name = "LOW,HIGH|auto",

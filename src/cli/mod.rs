@@ -33,6 +33,7 @@ mod settings;
 mod signals;
 mod slices;
 mod source;
+mod status;
 mod stress;
 mod threads;
 mod typed;
@@ -53,6 +54,7 @@ pub(crate) fn run() -> Result<ExitCode, Failure> {
     match Args::of_process()? {
         Command::Render(args) => render::run(*args),
         Command::Merge(args) => merge::run(&args),
+        Command::Status(args) => Ok(status::run(&args)),
         Command::View(args) => view::run(args),
         Command::Field(args) => field::run(&args),
         Command::Info(args) => info::run(&args),

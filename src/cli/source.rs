@@ -2,6 +2,7 @@
 
 use super::Failure;
 use super::particles::ParticleArgs;
+use spherule::prepared::is_prepared;
 use spherule::scene::particles::ReadOptions;
 use spherule::scene::{Scene, SceneError, generate};
 use std::borrow::Cow;
@@ -13,6 +14,8 @@ use std::path::{Path, PathBuf};
 pub(super) enum Source {
     /// A scene file.
     Toml(PathBuf),
+    /// A scene with its tree, as `render --prepare` writes it.
+    Prepared(PathBuf),
     /// A file of particles, and how to read it.
     Particles(PathBuf, Box<ReadOptions>),
     /// The random field that shows what the program does.
@@ -30,6 +33,9 @@ impl Source {
         args: &ParticleArgs,
     ) -> Result<Self, Failure> {
         let toml = is_scene(path);
+        if is_prepared(path) {
+            return Ok(Self::Prepared(path.to_owned()));
+        }
         if toml && args.any() {
             let message = "how to read particles is what a scene says of each of its files: write \
                            format, radius and scale in its [[file]]";
@@ -46,6 +52,12 @@ impl Source {
     pub(super) fn load(&self) -> Result<Scene, SceneError> {
         match self {
             Self::Toml(path) => Scene::load(path),
+            Self::Prepared(path) => {
+                let error =
+                    SceneError::whole_file(path, "is a scene that was prepared for rendering");
+                Err(error
+                    .with_help("render it with `spherule render`, or name the file it was made of"))
+            }
             Self::Particles(path, options) => Scene::from_particles(path, options),
             Self::Field { seed } => Ok(generate::default_scene(*seed)),
         }
@@ -54,7 +66,9 @@ impl Source {
     /// As the user knows it.
     pub(super) fn name(&self) -> Cow<'_, str> {
         match self {
-            Self::Toml(path) | Self::Particles(path, _) => path.to_string_lossy(),
+            Self::Toml(path) | Self::Prepared(path) | Self::Particles(path, _) => {
+                path.to_string_lossy()
+            }
             Self::Field { .. } => Cow::Borrowed("the random field"),
         }
     }

@@ -96,12 +96,14 @@ pub struct Film {
 }
 
 impl Film {
-    /// Bytes that a film of so many pixels takes, at most, and the picture that it becomes; with sums
-    /// of squares, and the variance that they become, if `squared`.
+    /// Bytes that a film of so many pixels takes, as most are, and the picture that it becomes; with sums
+    /// of squares, the variance that they become, and counts of samples, if `squared`.
     pub fn bytes(region: Region, squared: bool) -> u64 {
-        // More than two levels are rare.
-        let (sums, picture) = (2 * size_of::<[f64; 3]>() as u64, size_of::<[f32; 3]>() as u64);
-        let pixel = (sums + picture) * (1 + u64::from(squared));
+        // A second level of sums is rare, but squares have one nearly always.
+        let (sums, picture) = (size_of::<[f64; 3]>() as u64, size_of::<[f32; 3]>() as u64);
+        let pixel = sums + sums / 4 + picture;
+        let squares = 2 * sums + picture + size_of::<u32>() as u64;
+        let pixel = if squared { pixel + squares } else { pixel };
         (u64::from(region.width) * u64::from(region.height)).saturating_mul(pixel)
     }
 

@@ -177,10 +177,11 @@ impl Layers {
         Self { width, height, pixels, statistics: None }
     }
 
-    /// Bytes that the layers of a region take, their channels included, at most.
+    /// Bytes that the layers of a region take while they are found.
     pub fn bytes(region: Region) -> u64 {
-        let pixel = 2 * size_of::<Features>() as u64;
-        Film::bytes(region, false) + u64::from(region.width) * u64::from(region.height) * pixel
+        // Tile by tile, then row by row; and what is left of tiles.
+        let pixel = 2 * size_of::<Features>() as u64 + 10;
+        u64::from(region.width) * u64::from(region.height) * pixel
     }
 
     /// The channels of some layers, for [`Image::write_layers`](crate::Image::write_layers); none for

@@ -6,6 +6,7 @@
 //! is more.
 
 mod group;
+mod process;
 
 use std::fmt;
 use std::io::{self, Read};
@@ -47,6 +48,17 @@ pub enum Bound {
     ControlGroup,
     /// The limit of [`limit_to`].
     Limit,
+    /// The limit of the process's virtual memory (`RLIMIT_AS`, `ulimit -v`).
+    AddressSpace,
+    /// The limit of the process's data (`RLIMIT_DATA`, `ulimit -d`).
+    Data,
+}
+
+impl Bound {
+    /// Whether memory counts as soon as it is reserved, before anything is written to it.
+    fn counts_reserved(self) -> bool {
+        matches!(self, Self::AddressSpace | Self::Data)
+    }
 }
 
 /// Bounds what this process takes in all to so many bytes, as far as it asks before it takes them:
@@ -57,6 +69,11 @@ pub fn limit_to(bytes: u64) {
 
 /// What this process can still take without swapping; `None` if the system does not tell.
 pub fn left() -> Option<Left> {
+    bounds().min_by_key(|left| left.bytes)
+}
+
+/// What each of the bounds that there are leaves to this process.
+fn bounds() -> impl Iterator<Item = Left> {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
     let machine = Some(system.available_memory()).filter(|&bytes| bytes > 0);
@@ -67,7 +84,12 @@ pub fn left() -> Option<Left> {
         (Bound::Limit, limit.map(|limit| limit.saturating_sub(taken(&mut system)))),
     ];
     let left = bounds.into_iter().filter_map(|(bound, bytes)| Some(Left { bytes: bytes?, bound }));
-    left.min_by_key(|left| left.bytes)
+    left.chain(process::left())
+}
+
+/// Bytes that this process has in memory; 0 if the system does not tell.
+pub fn resident() -> u64 {
+    taken(&mut System::new())
 }
 
 /// Bytes that this process has in memory; 0 if the system does not tell.
@@ -80,11 +102,8 @@ fn taken(system: &mut System) -> u64 {
 
 /// Bytes of memory that this process has held at most until now; `None` if the system does not tell.
 pub fn peak() -> Option<u64> {
-    // What Linux calls the high-water mark, in KiB.
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes << 10)
+    // Linux calls it the high-water mark.
+    process::status("VmHWM:")
 }
 
 /// Finds out whether `need` more bytes can be had.
@@ -92,12 +111,30 @@ pub fn peak() -> Option<u64> {
 /// # Errors
 /// There are fewer.
 pub fn check(need: u64) -> Result<(), Shortage> {
-    if need <= SMALL && LIMIT.load(Ordering::Relaxed) == u64::MAX {
+    check_growth(need, need)
+}
+
+/// Finds out whether `need` more bytes can be had of columns that grow, and reserve `reserve` more at
+/// once when they do.
+///
+/// # Errors
+/// There are fewer.
+pub(crate) fn check_growth(need: u64, reserve: u64) -> Result<(), Shortage> {
+    let limited = LIMIT.load(Ordering::Relaxed) < u64::MAX || process::is_limited();
+    if need.max(reserve) <= SMALL && !limited {
         return Ok(());
     }
-    let left = left();
-    let enough = left.is_none_or(|left| need <= left.bytes) && reservable(need);
-    if enough { Ok(()) } else { Err(Shortage { need, left }) }
+    let needed = |bound: Bound| if bound.counts_reserved() { reserve } else { need };
+    let bounds: Vec<Left> = bounds().collect();
+    let exceeded = bounds.iter().filter(|left| needed(left.bound) > left.bytes);
+    if let Some(left) = exceeded.copied().min_by_key(|left| left.bytes) {
+        return Err(Shortage { need: needed(left.bound), left: Some(left) });
+    }
+    if reservable(reserve) {
+        return Ok(());
+    }
+    let left = bounds.into_iter().min_by_key(|left| left.bytes);
+    Err(Shortage { need: reserve, left })
 }
 
 /// Everything that a reader gives, up to a limit in bytes.
@@ -114,8 +151,8 @@ pub(crate) fn read_at_most(reader: impl Read, limit: u64) -> io::Result<Vec<u8>>
     Err(io::Error::new(io::ErrorKind::FileTooLarge, message))
 }
 
-/// Whether an allocation of so many bytes would succeed: limits of the process (`ulimit -v`), and
-/// systems that promise no more than they have, show in nothing else.
+/// Whether an allocation of so many bytes would succeed: systems that promise no more than they have
+/// show it in nothing else.
 fn reservable(need: u64) -> bool {
     let probe = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
     usize::try_from(need).is_ok_and(probe)
@@ -140,19 +177,18 @@ struct Told(Option<Left>);
 
 impl fmt::Display for Told {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(left) = self.0.filter(|left| left.bytes > 0) else {
-            return formatter.write_str(if self.0.is_some() {
-                "none is left"
-            } else {
-                "less is left"
-            });
-        };
+        let Some(left) = self.0 else { return formatter.write_str("less is left") };
         let of = match left.bound {
             Bound::Machine => "",
             Bound::ControlGroup => " in the control group",
             Bound::Limit => " of the memory limit",
+            Bound::AddressSpace => " of the limit of virtual memory (ulimit -v)",
+            Bound::Data => " of the limit of the process's data (ulimit -d)",
         };
-        write!(formatter, "{} are left{of}", Size(left.bytes))
+        match left.bytes {
+            0 => write!(formatter, "none is left{of}"),
+            bytes => write!(formatter, "{} are left{of}", Size(bytes)),
+        }
     }
 }
 
@@ -206,7 +242,13 @@ mod tests {
         let group = told(22_460_000_000, Bound::ControlGroup);
         assert_eq!(group, machine.clone() + " in the control group");
         assert_eq!(told(22_460_000_000, Bound::Limit), machine + " of the memory limit");
-        assert_eq!(told(0, Bound::Limit), "192.0 GB of memory, where none is left");
+        assert_eq!(
+            told(0, Bound::Limit),
+            "192.0 GB of memory, where none is left of the memory limit"
+        );
+        let space = told(22_460_000_000, Bound::AddressSpace);
+        assert!(space.ends_with("22.5 GB are left of the limit of virtual memory (ulimit -v)"));
+        assert!(told(1, Bound::Data).contains("(ulimit -d)"));
         let unknown = Shortage { need: 1_500_000, left: None };
         assert_eq!(unknown.to_string(), "1.5 MB of memory, where less is left");
     }

@@ -120,6 +120,31 @@ mod tests {
         }
     }
 
+    /// A sphere whose center is far away may begin nearest of all.
+    #[test]
+    fn large_spheres_reach_beyond_the_centers_of_their_run() {
+        let mut scene = crate::scene::generate::default_scene(1);
+        scene.camera.pose = Pose::LookAt { eye: DVec3::ZERO, target: DVec3::X };
+        for place in 0..3 {
+            scene.spheres = crate::scene::Spheres::default();
+            for (middle, count) in
+                [(DVec3::NEG_X * 100.0, 512), (DVec3::X * 130.0, 2048), (DVec3::Y * 200.0, 512)]
+            {
+                for i in 0..count {
+                    let t = f64::from(i);
+                    let spread = DVec3::new((t * 12.9).sin(), (t * 78.2).sin(), (t * 37.7).cos());
+                    let is_large = count == 2048 && i == 300 + 600 * place;
+                    let radius = if is_large { 40.0 } else { 0.01 };
+                    scene.spheres.push(middle + spread, radius, 0, crate::scene::Rgb::ONE);
+                }
+            }
+            let world = World::build(&scene).unwrap();
+            let [near, far] = depths(&world);
+            assert!((88.0..92.0).contains(&near) && (199.0..202.0).contains(&far), "{near} {far}");
+            assert_eq!(Runs::of(&world).depths(&world), [near, far], "{place}");
+        }
+    }
+
     #[test]
     fn worlds_without_spheres_have_no_depth() {
         let scene = crate::scene::generate::default_scene(1);

@@ -2,6 +2,7 @@
 
 use super::share::Share;
 use super::state::{State, Step};
+use super::status::Status;
 use super::target::Stage;
 use super::{End, Totals, Unfinished};
 use crate::film::{Film, KeptTile, Region, TILE};
@@ -89,6 +90,29 @@ impl Outline {
         let last = self.stages.last().copied();
         let expected = self.settings.has_target().then(|| Stage::of(&self.settings));
         demand(last == expected && self.met <= self.stages.len(), "other targets than it has")
+    }
+
+    /// Progress of the render. It has passed [`Outline::check`].
+    pub(crate) fn status(&self) -> Status {
+        let tiles = Film::tile_regions(self.region).skip(self.share.tiles.start as usize);
+        let pixels = tiles.map(|tile| u64::from(tile.width) * u64::from(tile.height));
+        let wanted = self.share.samples.len() as u64;
+        let counts = pixels.zip(&self.tiles).map(|(pixels, tile)| {
+            (pixels.saturating_mul(tile.samples.into()), pixels.saturating_mul(wanted))
+        });
+        let (samples, wanted) = counts.fold((0_u64, 0_u64), |sum, count| {
+            (sum.0.saturating_add(count.0), sum.1.saturating_add(count.1))
+        });
+        Status {
+            settings: self.settings.clone(),
+            region: self.region,
+            share: self.share.clone(),
+            statistics: self.statistics,
+            samples,
+            wanted,
+            complete: self.end != End::Cancelled,
+            elapsed: self.totals.elapsed,
+        }
     }
 
     /// Bytes of the sums of the film, at most.

@@ -1,6 +1,7 @@
 //! Whether a render can go on by other settings.
 
-use super::{Unfinished, target};
+use super::{Status, Unfinished, target};
+use crate::film::Region;
 use crate::scene::{InvalidSetting, SamplerKind, Settings};
 use std::fmt::Debug;
 use std::time::Duration;
@@ -75,19 +76,35 @@ pub(super) fn check(then: &Settings, now: &Settings) -> Result<(), Unlike> {
 /// In what two renders differ, if their shares do not belong together: by which name, and what it is in
 /// both.
 pub(crate) fn difference(a: &Unfinished, b: &Unfinished) -> Option<(&'static str, String, String)> {
-    let all = |render: &Unfinished| -> Vec<(&'static str, String)> {
-        let settings = render.settings();
-        let rest: [(&'static str, &dyn Debug); 5] = [
-            ("spp", &settings.spp),
-            ("exposure", &settings.exposure),
-            ("tone", &settings.tone),
-            ("region", &render.region()),
-            ("whether statistics are kept", &render.statistics()),
-        ];
-        let rest = rest.map(|(name, value)| (name, format!("{value:?}")));
-        samples(settings).into_iter().chain(rest).collect()
-    };
+    let all =
+        |render: &Unfinished| of_all_parts(render.settings(), render.region(), render.statistics());
     first_difference(&all(a), &all(b))
+}
+
+impl Status {
+    /// The first setting, by name, in which two renders differ whose parts are not of one picture, and its
+    /// values.
+    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        let all = |status: &Self| of_all_parts(&status.settings, status.region, status.statistics);
+        first_difference(&all(self), &all(other))
+    }
+}
+
+/// Settings that all parts of a picture share, by name.
+fn of_all_parts(
+    settings: &Settings,
+    region: Region,
+    statistics: bool,
+) -> Vec<(&'static str, String)> {
+    let rest: [(&'static str, &dyn Debug); 5] = [
+        ("spp", &settings.spp),
+        ("exposure", &settings.exposure),
+        ("tone", &settings.tone),
+        ("region", &region),
+        ("whether statistics are kept", &statistics),
+    ];
+    let rest = rest.map(|(name, value)| (name, format!("{value:?}")));
+    samples(settings).into_iter().chain(rest).collect()
 }
 
 /// What every sample depends on, by name.

@@ -89,6 +89,12 @@ impl Report {
             "tables": self.tables.iter().map(Table::json).collect::<Vec<_>>(),
         })
     }
+
+    /// Returns whether a file holds a report as [`Report::json`] makes it.
+    pub fn is_json(content: &[u8]) -> bool {
+        let Ok(report) = serde_json::from_slice::<Value>(content) else { return false };
+        report["machine"]["version"].is_string() && report["tables"].is_array()
+    }
 }
 
 #[cfg(test)]

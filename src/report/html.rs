@@ -45,6 +45,12 @@ pub fn page(machine: &Machine, reports: &[Report]) -> Result<String, DrawingErro
     Ok(page + "</body>\n</html>\n")
 }
 
+/// Returns whether a file holds a page as [`page`] makes it, of this or another version.
+pub fn is_page(content: &[u8]) -> bool {
+    let start = String::from_utf8_lossy(&content[..content.len().min(HEAD.len())]);
+    start.starts_with("<!DOCTYPE html>") && start.contains("<title>Spherule, measured</title>")
+}
+
 fn section(report: &Report) -> Result<String, DrawingError> {
     let [name, title, about] = [&report.name, &report.title, &report.about].map(|x| escape(x));
     // Writing to a string cannot fail.

@@ -136,6 +136,15 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
+    fn positions_outside_take_the_density_of_the_nearest_cell() {
+        let distribution = Distribution::new(&[1.0, 2.0, 5.0]).expect("positive weights");
+        for (position, nearest) in [(-0.5, 0.0), (1.0, ONE_BELOW), (7.0, ONE_BELOW)] {
+            assert_eq!(distribution.pdf(position), distribution.pdf(nearest), "{position}");
+        }
+        assert!((distribution.pdf(1.0) - 5.0 / 8.0 * 3.0).abs() < 1e-6);
+    }
+
+    #[test]
     fn draws_follow_the_weights() {
         let weights: Vec<f64> = (0..100).map(|i| f64::from(i % 7) * f64::from(i)).collect();
         let total: f64 = weights.iter().sum();

@@ -148,6 +148,61 @@ mod tests {
         }
     }
 
+    /// A draw at which the filter's table has a row, by that row.
+    fn draw_of_row(row: u32) -> f32 {
+        (1.0 - f64::from(row).powi(2) / f64::from(1 << 21)) as f32
+    }
+
+    #[test]
+    fn offsets_are_quantiles_of_the_profile() {
+        // Quantiles of a normal distribution of deviation 0.5 cut at 2, by SciPy's `truncnorm`.
+        let truths = [
+            (100, 1.294_966_137),
+            (400, 0.715_131_469),
+            (724, 0.337_303_986),
+            (1000, 0.029_044_805),
+        ];
+        let filter = PixelFilter::new(Filter::Gaussian);
+        for (row, truth) in truths {
+            let [dx, _] = filter.offset([draw_of_row(row), 0.5]);
+            assert!((f64::from(dx) - truth).abs() < 3e-6, "{row}: {dx}, not {truth}");
+        }
+        // The integral of the four terms from the middle on, over that of all.
+        let below = |x: f64| {
+            let sine = |harmonic: f64| (harmonic * FRAC_PI_2 * x).sin() / (harmonic * FRAC_PI_2);
+            let terms = 0.488_29 * sine(1.0) + 0.141_28 * sine(2.0) + 0.011_68 * sine(3.0);
+            0.5 + (0.358_75 * x + terms) / (4.0 * 0.358_75)
+        };
+        let filter = PixelFilter::new(Filter::BlackmanHarris);
+        for row in [8, 100, 400, 724, 1000] {
+            let u = draw_of_row(row);
+            let [dx, _] = filter.offset([u, 0.5]);
+            let share = below(f64::from(dx));
+            assert!((share - f64::from(u)).abs() < 1e-6, "{row}: {share}, not {u}");
+        }
+    }
+
+    #[test]
+    fn rows_of_offsets_are_those_of_their_lanes() {
+        for kind in [Filter::Box, Filter::Gaussian, Filter::BlackmanHarris] {
+            let filter = PixelFilter::new(kind);
+            let us: Vec<[f32; 2]> = random_pairs(16, 4).collect();
+            let lanes = [0, 1].map(|axis| F32x16::new(std::array::from_fn(|i| us[i][axis])));
+            let rows = filter.offset_row(lanes).map(F32x16::to_array);
+            for (lane, u) in us.into_iter().enumerate() {
+                assert_eq!(rows.map(|row| row[lane]), filter.offset(u), "{kind:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_middle_of_the_draws_is_the_middle_of_the_pixel() {
+        // Between the multiples of 2^-24 lies a draw at which the table is at its very end.
+        for kind in [Filter::Gaussian, Filter::BlackmanHarris] {
+            assert_eq!(PixelFilter::new(kind).offset([0.5_f32.next_down(); 2]), [0.0; 2]);
+        }
+    }
+
     #[test]
     fn offsets_follow_the_profile() {
         for (filter, profile) in [

@@ -141,6 +141,34 @@ mod tests {
     }
 
     #[test]
+    fn the_number_of_a_light_has_the_digits_of_two() {
+        let below = crate::sampling::ONE_BELOW;
+        let draw = |coarse, fine| LightDraw::new([0.25, 0.75, coarse, fine]);
+        assert_eq!(draw(0.5, 0.0).light, 0.5);
+        assert_eq!(draw(0.5, 0.5).light, 0.5 + 2.0_f64.powi(-24));
+        assert_eq!(draw(0.0, 0.125).light, 2.0_f64.powi(-26));
+        assert_eq!(draw(0.5, 0.5).point, [0.25, 0.75]);
+        // Two numbers of 24 digits may sum to more than 1; the largest below it is taken.
+        let most = draw(below, below).light;
+        assert!(most < 1.0 && most >= f64::from(below), "{most}");
+    }
+
+    #[test]
+    fn rows_of_lights_are_those_of_their_lanes() {
+        let below = crate::sampling::ONE_BELOW;
+        let numbers = |step: usize| -> [f32; 16] {
+            std::array::from_fn(
+                |lane| if lane == 9 { below } else { (lane * step % 16) as f32 / 16.0 },
+            )
+        };
+        let columns = [1, 3, 5, 7].map(numbers);
+        let [low, high] = LightDraw::light_row(columns.map(F32x16::new)).map(F64x8::to_array);
+        for (lane, light) in low.into_iter().chain(high).enumerate() {
+            assert_eq!(light, LightDraw::new(columns.map(|column| column[lane])).light, "{lane}");
+        }
+    }
+
+    #[test]
     fn the_best_dimensions_go_to_pixel_and_first_direction() {
         let sampler = Sampler::new(SamplerKind::Sobol, 4, 16);
         let path = sampler.start(1, 2, 3);

@@ -274,11 +274,36 @@ mod tests {
                     let light = sampler.light_row(together, bounce).map(|x| x.to_array()[5]);
                     assert_eq!(LightDraw::new(light), sampler.light(&row[5], bounce));
                 }
+                for bounce in [0, 3, 99] {
+                    let (which, [u, v]) = sampler.caustic_row(together, bounce);
+                    let each = [u, v, which].map(|x| x.to_array()[5]);
+                    let [u, v, which, _] = sampler.draw4(&row[5].other(), lights(bounce));
+                    assert_eq!(each, [u, v, which], "{kind:?} {bounce}");
+                }
                 let [x, y] = sampler.pixel_row(together).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.pixel(&row[3]));
                 let [x, y] = sampler.lens_row(together).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.lens(&row[3]));
             }
+        }
+    }
+
+    #[test]
+    fn states_are_kept_by_path() {
+        let sampler = Sampler::new(SamplerKind::Sobol, 4, 16);
+        let mut states = PathStates::with_paths(3);
+        let paths = [0, 1, 2].map(|path| sampler.start(path, 7, 70_000 + path));
+        for (path, state) in paths.iter().enumerate() {
+            states.set(path, state);
+        }
+        for (path, state) in paths.iter().enumerate() {
+            let [place, seed] = state.sobol();
+            assert_eq!(states.state(path, place), *state);
+            // What a row of paths draws from is this place, in the sequence of this seed.
+            let places = Places { places: U32x16::splat(place), seeds: U32x16::splat(seed) };
+            let row = PathRow::new(places, U32x16::splat(path as u32), &states);
+            let drawn = sampler.draw4_row(&row, 1).map(|x| x.to_array()[0]);
+            assert_eq!(drawn, sampler.draw4(state, 1));
         }
     }
 }

@@ -152,6 +152,25 @@ mod tests {
         }
     }
 
+    /// The function `permute` of Kensler's memo, compiled from the C there, turns by the whole key.
+    #[test]
+    fn permutations_are_those_of_the_memo() {
+        let truths = [
+            (12, 0xdead_beef_u32, [4, 9, 0, 3, 10, 8]),
+            (1000, 0x0000_0001, [998, 803, 104, 663, 527, 857]),
+            (1000, 0x5163_3e2d, [226, 630, 892, 82, 403, 495]),
+            (1 << 20, 0xdead_beef, [900_072, 542_096, 492_225, 811_299, 607_727, 1_002_318]),
+            (1 << 20, 0x5163_3e2d, [840_458, 911_152, 866_104, 254_205, 84_371, 711_801]),
+        ];
+        for (length, key, truth) in truths {
+            let images: [u32; 6] = std::array::from_fn(|i| {
+                let turned = permute(i as u32 * (length / 6), length, u64::from(key));
+                ((u64::from(turned) + u64::from(key)) % u64::from(length)) as u32
+            });
+            assert_eq!(images, truth, "{length} {key:#x}");
+        }
+    }
+
     #[test]
     fn every_index_goes_everywhere() {
         const LENGTH: u32 = 12;
@@ -218,6 +237,10 @@ mod tests {
         assert_ne!(first, further);
         let cell = |[u, v]: [f32; 2]| ((u * 4.0) as u32, (v * 4.0) as u32);
         assert_eq!(cell(first), cell(further));
+        for index in 0..16 {
+            let [first, further] = [index, index + 16].map(|index| strata.in_cell(index, mix(2)));
+            assert_eq!(cell(first), cell(further), "{index}");
+        }
         let [u, v] = Strata::new(0).in_cell(u32::MAX, mix(1));
         assert!((0.0..1.0).contains(&u) && (0.0..1.0).contains(&v));
     }

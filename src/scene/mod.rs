@@ -19,7 +19,7 @@ mod preset;
 mod settings;
 mod slice;
 mod spheres;
-mod write;
+pub(crate) mod write;
 
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use camera::{Camera, Lens, Pose, Projection};

@@ -3,6 +3,7 @@
 use super::Rgb;
 use glam::DVec3;
 use std::collections::TryReserveError;
+use std::mem::take;
 
 /// Spheres in columns: row `i` of every column belongs to sphere `i`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,13 +81,20 @@ impl Spheres {
     pub fn append(&mut self, mut other: Self, rows: &[u32]) {
         let row = |material: u32| rows.get(material as usize).copied().unwrap_or(0);
         let (before, added) = (self.len(), other.len());
-        let materials = (0..added).map(|sphere| row(other.material_of(sphere)));
-        extend(&mut self.material, before, 0, materials);
-        extend(&mut self.color, before, Rgb::ONE, (0..added).map(|sphere| other.color_of(sphere)));
-        append_or_take(&mut self.x, &mut other.x);
-        append_or_take(&mut self.y, &mut other.y);
-        append_or_take(&mut self.z, &mut other.z);
-        append_or_take(&mut self.radius, &mut other.radius);
+        other.material.iter_mut().for_each(|material| *material = row(*material));
+        append_usual(&mut self.material, before, take(&mut other.material), (added, row(0)), 0);
+        append_usual(&mut self.color, before, take(&mut other.color), (added, Rgb::ONE), Rgb::ONE);
+        append_or_take(&mut self.x, other.x);
+        append_or_take(&mut self.y, other.y);
+        append_or_take(&mut self.z, other.z);
+        append_or_take(&mut self.radius, other.radius);
+    }
+
+    /// Bytes of a sphere in the columns that are there.
+    pub(crate) fn row_bytes(&self) -> u64 {
+        let material = if self.material.is_empty() { 0 } else { size_of::<u32>() };
+        let color = if self.color.is_empty() { 0 } else { size_of::<Rgb>() };
+        Self::POSITION_BYTES + (material + color) as u64
     }
 
     /// Makes room for `additional` spheres without materials and colors.
@@ -122,9 +130,27 @@ where
     column.extend(values);
 }
 
+/// Appends a column that may be empty where all of its `count` values are `value` to one that may be
+/// empty where all of its `before` values are `usual`.
+fn append_usual<T: Copy + PartialEq>(
+    column: &mut Vec<T>,
+    before: usize,
+    other: Vec<T>,
+    (count, value): (usize, T),
+    usual: T,
+) {
+    if other.is_empty() {
+        extend(column, before, usual, std::iter::repeat_n(value, count));
+    } else if before == 0 && other.iter().any(|value| *value != usual) {
+        *column = other;
+    } else {
+        extend(column, before, usual, other.iter().copied());
+    }
+}
+
 /// Appends without a copy where there is nothing to append to: columns can be gigabytes.
-fn append_or_take(column: &mut Vec<f64>, other: &mut Vec<f64>) {
-    if column.is_empty() { std::mem::swap(column, other) } else { column.append(other) }
+fn append_or_take(column: &mut Vec<f64>, mut other: Vec<f64>) {
+    if column.is_empty() { *column = other } else { column.append(&mut other) }
 }
 
 #[cfg(test)]
@@ -141,6 +167,25 @@ mod tests {
         assert_eq!(spheres.material, [0, 3, 0]);
         assert_eq!(spheres.color, [Rgb::ONE, Rgb::ONE, Rgb::X]);
         assert_eq!(spheres.center(1), DVec3::Y);
+    }
+
+    #[test]
+    fn columns_are_taken_where_there_are_none() {
+        let mut added = Spheres::default();
+        added.push(DVec3::X, 1.0, 1, Rgb::ONE);
+        added.push(DVec3::Y, 1.0, 0, Rgb::X);
+        let colors = added.color.as_ptr();
+        let mut spheres = Spheres::default();
+        spheres.append(added.clone(), &[0, 0]);
+        assert!(spheres.material.is_empty());
+        let mut spheres = Spheres::default();
+        spheres.append(added, &[2, 3]);
+        assert_eq!((&spheres.material[..], spheres.color.as_ptr()), (&[3, 2][..], colors));
+        let mut plain = Spheres::default();
+        plain.push(DVec3::Z, 1.0, 0, Rgb::ONE);
+        spheres.append(plain, &[4]);
+        assert_eq!(spheres.material, [3, 2, 4]);
+        assert_eq!(spheres.color, [Rgb::ONE, Rgb::X, Rgb::ONE]);
     }
 
     #[test]

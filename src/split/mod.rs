@@ -59,6 +59,10 @@ pub enum SplitError {
     },
 }
 
+/// Samples of each pixel from which on it takes a part by samples less than a thirtieth of its time to
+/// add them up and to write the sums of all pixels.
+const ENOUGH: u32 = 16;
+
 /// What would do instead.
 fn mend(samples: u32, tiles: u32, count: u32) -> String {
     if samples >= count {
@@ -88,13 +92,15 @@ impl Part {
     }
 
     /// Its share of the whole: no two parts have anything in common, and all together have everything.
-    /// Without a `split`, it is by samples if there are enough of them, or else by tiles.
+    /// Without a `split`, it is by samples if every part has at least 16 of each pixel or there
+    /// are fewer tiles than parts, and by tiles otherwise.
     ///
     /// # Errors
     /// There are fewer samples, or tiles, than parts.
     pub fn share(self, whole: &Share, split: Option<Split>) -> Result<Share, SplitError> {
         let (count, samples, tiles) = (self.count(), whole.samples.end, whole.tiles.end);
-        let usual = if samples < count && tiles >= count { Split::Tiles } else { Split::Samples };
+        let few = samples < count.saturating_mul(ENOUGH);
+        let usual = if few && tiles >= count { Split::Tiles } else { Split::Samples };
         match split.unwrap_or(usual) {
             Split::Samples if samples < count => Err(SplitError::Samples { count, samples, tiles }),
             Split::Tiles if tiles < count => Err(SplitError::Tiles { count, samples, tiles }),
@@ -138,6 +144,21 @@ mod tests {
     use super::*;
 
     #[test]
+    fn short_renders_are_split_by_tiles() {
+        let share = |samples, tiles, count| {
+            let part = Part::new(1, count).expect("it is one of them");
+            part.share(&Share { samples: 0..samples, tiles: 0..tiles }, None)
+        };
+        let by_tiles = |samples, tiles, count| {
+            let share = share(samples, tiles, count).expect("there are enough");
+            share.samples == (0..samples)
+        };
+        assert!(by_tiles(64, 300, 64) && by_tiles(63, 64, 4));
+        assert!(!by_tiles(64, 300, 4) && !by_tiles(1024, 300, 64) && !by_tiles(64, 63, 64));
+        assert!(matches!(share(3, 3, 4), Err(SplitError::Samples { .. })));
+    }
+
+    #[test]
     fn parts_have_everything_once() {
         let whole = Share { samples: 0..70, tiles: 0..129 };
         for count in [1, 2, 3, 7, 64, 70] {
@@ -159,7 +180,7 @@ mod tests {
         let part = |count| Part::new(count, count).expect("the last one");
         let by = |count, split| part(count).share(&whole, split).map_err(|error| error.to_string());
         assert_eq!(by(40, None).map(|share| share.tiles), Ok(39..40));
-        assert_eq!(by(16, None).map(|share| share.samples), Ok(15..16));
+        assert_eq!(by(16, Some(Split::Samples)).map(|share| share.samples), Ok(15..16));
         let samples = "40 parts are more than the 16 samples of a pixel; split it by tiles";
         assert_eq!(by(40, Some(Split::Samples)), Err(samples.to_owned()));
         let both = "41 parts are more than the 16 samples of a pixel; ask for 40 parts or fewer";

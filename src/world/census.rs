@@ -2,6 +2,7 @@
 
 use super::World;
 use super::materials::Kind;
+use super::parts::LeftOut;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -46,22 +47,21 @@ pub struct Features {
 }
 
 impl Features {
-    /// Of a world of so many spheres of the user's, of which slices leave so many there, so many of
-    /// which have a radius in it.
-    pub(super) fn census(world: &World, [given, shown, placed]: [usize; 3]) -> Self {
+    /// Counts what there is in a world, beside the spheres of its scene that are not.
+    pub(super) fn census(world: &World, left_out: LeftOut) -> Self {
         let mut spheres_by_kind = [0; Kind::COUNT];
         for row in 0..world.spheres.len() {
             spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
         }
         Self {
             spheres_by_kind,
-            vanished: (shown - placed) as u64,
-            cut_away: (given - shown) as u64,
+            vanished: left_out.vanished,
+            cut_away: left_out.cut_away,
             cuts: world.cut.len() as u64,
             around_camera: false,
             unseen: world.seen.as_ref().map_or(0, |seen| world.spheres.len() - seen.spheres.len())
                 as u64,
-            hidden: (placed - world.spheres.len()) as u64,
+            hidden: left_out.hidden,
             ground_kind: world.ground.map(|ground| ground.material.kind()),
             colors: world.appearance.color.is_some(),
             lights: !world.lights.is_empty(),

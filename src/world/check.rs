@@ -246,12 +246,17 @@ fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError
 /// Finds where everything is, once nothing is wrong with it and so many bytes can be had.
 pub(super) fn place(scene: &Scene, bytes: u64) -> Result<(Frame, Placement), WorldError> {
     memory::check(bytes).map_err(|shortage| WorldError::Memory(scene.spheres.len(), shortage))?;
-    memory::check(super::Environment::bytes(&scene.environment))
-        .map_err(WorldError::Environment)?;
+    memory_of_sky(scene)?;
     spheres::validate(scene)?;
     check(scene)?;
     let pose = fit::pose(scene)?;
     Ok((Frame::of(&scene.spheres, &pose), pose))
+}
+
+/// Finds out whether there is memory for the light of the environment.
+pub(super) fn memory_of_sky(scene: &Scene) -> Result<(), WorldError> {
+    let bytes = super::Environment::bytes(&scene.environment);
+    memory::check(bytes).map_err(WorldError::Environment)
 }
 
 #[cfg(test)]

@@ -3,10 +3,11 @@
 use super::WorldError;
 use crate::scene::{Pose, Projection, Scene, Spheres};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// The camera in the user's coordinates.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Placement {
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Placement {
     /// Where rays start.
     pub eye: DVec3,
     /// Unit axes of the picture: to the right, up, and into the scene.
@@ -22,8 +23,8 @@ pub(super) struct Placement {
 }
 
 /// Unit axes of the picture.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Axes {
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Axes {
     pub right: DVec3,
     pub up: DVec3,
     pub forward: DVec3,

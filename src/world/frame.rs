@@ -3,6 +3,7 @@
 use crate::scene::Spheres;
 use crate::world::fit::Placement;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// How many spheres at most are looked at to find where the scene is.
 const SAMPLES: usize = 1 << 16;
@@ -18,7 +19,7 @@ const LEAST_EXTENT: f64 = 1.0 / (1 << 16) as f64;
 /// is a multiple of a power of two of about the scene's extent; subtracting it from coordinates
 /// that were single precision is exact, and a scene that is near its origin is not shifted at all.
 /// The scale is a power of two too, so a scene scaled by one renders to the same bytes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// In the user's coordinates.
     pub shift: DVec3,
@@ -58,6 +59,12 @@ impl Frame {
     pub(super) fn extent(&self) -> f64 {
         let extent = power_of_two_above(self.reach) * self.scale;
         if self.reach > 0.0 && extent > 0.0 { extent } else { 1.0 }
+    }
+
+    /// Whether it maps finite points to finite points.
+    pub(super) fn is_finite(&self) -> bool {
+        let scale = self.scale > 0.0 && self.scale < f64::INFINITY;
+        scale && self.shift.is_finite() && self.reach.is_finite()
     }
 
     /// A point.

@@ -65,6 +65,11 @@ impl Kind {
 pub struct MaterialId(u32);
 
 impl MaterialId {
+    /// Number of a material, for files.
+    pub(crate) fn bits(self) -> u32 {
+        self.0
+    }
+
     const ROW_BITS: u32 = 29;
 
     fn new(kind: Kind, row: usize) -> Self {
@@ -162,7 +167,7 @@ pub struct Materials {
 }
 
 impl Materials {
-    pub(super) fn build(scene: &[NamedMaterial]) -> Self {
+    pub(crate) fn build(scene: &[NamedMaterial]) -> Self {
         let mut tables = Self::default();
         for named in scene {
             let id = tables.add(&named.material);
@@ -184,8 +189,23 @@ impl Materials {
         }
     }
 
+    /// The material of a number that [`MaterialId::bits`] gave; `None` if there is none.
+    pub(crate) fn find(&self, bits: u32) -> Option<MaterialId> {
+        let kind = *Kind::ALL.get((bits >> MaterialId::ROW_BITS) as usize)?;
+        let id = MaterialId(bits);
+        let rows = match kind {
+            Kind::Lambertian => self.lambertian.len(),
+            Kind::Conductor => self.conductor.len(),
+            Kind::Dielectric => self.dielectric.len(),
+            Kind::Plastic => self.plastic.len(),
+            Kind::Reflective => self.reflective.len(),
+            Kind::Emitter => self.emitter.len(),
+        };
+        (id.row() < rows).then_some(id)
+    }
+
     /// The material in row `row` of the scene's list.
-    pub(super) fn id(&self, row: u32) -> MaterialId {
+    pub(crate) fn id(&self, row: u32) -> MaterialId {
         self.ids.get(row as usize).copied().unwrap_or_default()
     }
 

@@ -14,11 +14,13 @@ mod check;
 mod cut;
 mod environment;
 mod fit;
+mod footprint;
 mod frame;
 pub mod framing;
 mod ground;
 mod lights;
 mod materials;
+mod parts;
 mod seen;
 mod spheres;
 mod visibility;
@@ -30,6 +32,8 @@ pub(crate) use caustics::{Found, Looking, Sent, Way};
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use environment::{Environment, Picture, Radiance, SkySample};
+pub(crate) use fit::Placement;
+pub use footprint::{ColorColumn, Footprint};
 pub use frame::Frame;
 pub use ground::Ground;
 pub use lights::{
@@ -38,35 +42,28 @@ pub use lights::{
 pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };
+pub(crate) use parts::{LeftOut, Parts};
 pub use seen::Seen;
 pub use visibility::Visibility;
 
 use crate::bvh::Bvh;
-use crate::bvh::build::{Builder, build};
+use crate::bvh::build::Builder;
 use crate::memory::Shortage;
 use crate::ray::GROUND;
-use crate::scene::{
-    self, InvalidSetting, Material, NamedMaterial, Rgb, Scene, Settings, SliceMode,
-};
+use crate::scene::{self, InvalidSetting, Rgb, Scene, Settings};
 use crate::spheres::Spheres;
-use fit::Placement;
-use spheres::Placed;
 use std::borrow::Cow;
-
-/// Bytes that a sphere takes while a world is built, at most.
-const SPHERE_BYTES: u64 = 64;
 
 /// Rays that a sample takes, with its bounces and its looks for light; about, for choosing the tree.
 const RAYS_PER_SAMPLE: u64 = 4;
-
-/// The same where every sphere may be a light.
-const EMITTER_BYTES: u64 = 240;
 
 /// Everything that a render reads, immutable.
 #[derive(Clone, Debug)]
 pub struct World {
     /// From the user's coordinates to the world's.
     pub frame: Frame,
+    /// The camera in the user's coordinates.
+    pub(crate) placement: Placement,
     /// The spheres, in the order of the tree's leaves.
     pub spheres: Spheres,
     /// What they look like.
@@ -172,42 +169,29 @@ impl World {
         Self::assemble(scene, Cow::Owned(spheres), &at, builder)
     }
 
-    /// Bytes that [`World::build_taking`] takes at most, beside those of the scene.
-    pub fn bytes_beside(scene: &Scene) -> u64 {
-        let given_back = scene.spheres.len() as u64 * scene::Spheres::POSITION_BYTES;
-        Self::bytes_for(scene).saturating_sub(given_back)
-    }
-
-    fn bytes_for(scene: &Scene) -> u64 {
-        // The camera may have a tree of its own.
-        let hides = scene.slices.iter().any(|slice| slice.mode == SliceMode::Hide);
-        Self::bytes(scene.spheres.len() as u64 * (1 + u64::from(hides)), &scene.materials)
-    }
-
     /// Builds what is in its place.
     fn assemble(
         scene: &Scene,
         from: Cow<scene::Spheres>,
-        (frame, pose): &(Frame, Placement),
+        at: &(Frame, Placement),
         builder: Builder,
     ) -> Result<Self, WorldError> {
-        let given = from.len();
+        Ok(Self::complete(scene, Parts::build(scene, from, at, builder)?))
+    }
+
+    /// Adds to the spheres and their tree all that follows from them and from the rest of the scene.
+    pub(crate) fn complete(scene: &Scene, parts: Parts) -> Self {
+        let Parts { frame, placement, spheres, bvh, appearance, seen, left_out } = parts;
         let materials = Materials::build(&scene.materials);
-        let cut = Cut::build(&scene.slices, frame);
-        let Placed { mut spheres, looks, shown, hidden } =
-            Placed::build(from, &scene.slices, frame);
-        let placed = spheres.len();
-        let bvh = build(&mut spheres, builder);
-        let appearance = Appearance::build(looks, &spheres.id, &materials);
-        cut::refuse_glass(&cut, &spheres, &appearance)?;
-        let seen = Seen::build(&hidden, &spheres, builder);
-        let camera = Camera::build(scene, pose, frame);
+        let cut = Cut::build(&scene.slices, &frame);
+        let camera = Camera::build(scene, &placement, &frame);
         let environment = Environment::build(&scene.environment);
-        let ground = scene.ground.as_ref().map(|ground| Ground::build(ground, frame, &materials));
+        let ground = scene.ground.as_ref().map(|ground| Ground::build(ground, &frame, &materials));
         let lights =
-            Lights::build(scene, (frame, &cut), (&spheres, &appearance), &materials, &environment);
+            Lights::build(scene, (&frame, &cut), (&spheres, &appearance), &materials, &environment);
         let mut world = Self {
-            frame: *frame,
+            frame,
+            placement,
             spheres,
             appearance,
             bvh,
@@ -221,9 +205,9 @@ impl World {
             camera,
             features: Features::default(),
         };
-        world.features = Features::census(&world, [given, shown, placed]);
+        world.features = Features::census(&world, left_out);
         world.casters = Casters::find(&world);
-        Ok(world)
+        world
     }
 
     /// The same world without its spheres, and so without the light of those that glow.
@@ -232,6 +216,7 @@ impl World {
         features.glass_at_camera.clear();
         Self {
             frame: self.frame,
+            placement: self.placement,
             spheres: Spheres::default(),
             appearance: Appearance::NONE,
             bvh: Bvh::default(),
@@ -263,16 +248,9 @@ impl World {
             return Ok(false);
         }
         self.camera = Camera::build(scene, &pose, &self.frame);
+        self.placement = pose;
         self.features = std::mem::take(&mut self.features).seen_by(self);
         Ok(true)
-    }
-
-    /// Bytes that the world of so many spheres takes while it is built, at most: columns, and the
-    /// rows that the tree is made of.
-    pub fn bytes(spheres: u64, materials: &[NamedMaterial]) -> u64 {
-        let emits = |row: &NamedMaterial| matches!(row.material, Material::Emitter { .. });
-        let each = if materials.iter().any(emits) { EMITTER_BYTES } else { SPHERE_BYTES };
-        spheres.saturating_mul(each)
     }
 
     /// The material of what was hit: a sphere's row or [`GROUND`].

@@ -1,7 +1,7 @@
 //! What the camera sees, where slices hide spheres from it: a tree of the other spheres.
 
-use crate::bvh::Bvh;
 use crate::bvh::build::{Builder, build};
+use crate::bvh::{Bvh, NodeRow};
 use crate::spheres::Spheres;
 
 /// The spheres that camera rays are tested against.
@@ -16,6 +16,18 @@ pub struct Seen {
 }
 
 impl Seen {
+    /// Of the rows of a world's spheres and the nodes over them. `None` if there are no such rows, or the
+    /// nodes are no tree.
+    pub(crate) fn of_rows(row: Vec<u32>, nodes: &[NodeRow], all: &Spheres) -> Option<Self> {
+        let mut spheres = Spheres::with_capacity(row.len());
+        for &row in &row {
+            let (row, id) = (row as usize, *all.id.get(row as usize)?);
+            spheres.push(all.center(row), all.radius(row), id);
+        }
+        let bvh = Bvh::from_rows(nodes, spheres.blocks().len())?;
+        Some(Self { spheres, bvh, row })
+    }
+
     /// Those of a world's spheres that are not hidden, by their places in the user's scene; `None`
     /// if none is.
     pub(super) fn build(hidden: &[bool], all: &Spheres, builder: Builder) -> Option<Self> {

@@ -122,6 +122,33 @@ fn roulette_is_measured_on_the_scenes_asked_for() {
 }
 
 #[test]
+fn only_earlier_reports_are_replaced() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("out")).unwrap();
+    folder.write("out/points.csv", "x,y,z\n0,0,0\n1,2,3\n");
+    folder.write("out/notes.png", "mine");
+    folder.write("own.toml", "[[file]]\npath = \"out/points.csv\"\nradius = 0.5\n");
+    let (own, paper) = ("own.toml", "paper-field-20");
+    // Other files of the folder are in nobody's way, nor are those of earlier reports.
+    for scene in [own, paper, own] {
+        quick(&folder, &["threads", "--scenes", scene, "--threads-up-to", "1"]);
+    }
+    for name in ["build.csv", "build.svg", "build.json", "build.html"] {
+        let folder = Folder::new();
+        fs::create_dir(folder.path("out")).unwrap();
+        folder.write(&format!("out/{name}"), "{\"mine\": 1}");
+        let args = ["bench", "build", "--quick", "--scenes", "paper400", "-o", "out"];
+        let output = folder.run(&args);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{name}: {message}");
+        assert!(message.contains(name) && message.contains("already exists"), "{message}");
+        assert!(output.stdout.is_empty(), "nothing is measured");
+        assert_eq!(folder.read(&format!("out/{name}")), b"{\"mine\": 1}");
+        assert_eq!(fs::read_dir(folder.path("out")).unwrap().count(), 1);
+    }
+}
+
+#[test]
 fn wrong_commands_harm_nothing() {
     let folder = Folder::new();
     folder.write("file", "old");

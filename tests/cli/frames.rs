@@ -1,7 +1,7 @@
 //! Many frames of a file on the command line.
 
 use crate::folder::{Folder, SMALL, text};
-use spherule::image::Image;
+use spherule::image::{Image, read_metadata};
 
 /// A particle that moves one unit to the right from frame to frame, and a column that grows.
 fn moving(frames: usize) -> String {
@@ -69,13 +69,74 @@ fn colors_stand_for_the_same_numbers_in_all_frames() {
     run(&folder, &[&colors[..], &["--frame", "all", "-o", "b.png"]].concat());
     run(
         &folder,
-        &[&colors[..2], &["--color-range", "0,1", "--frame", "all", "-o", "c.png"]].concat(),
+        &[&colors[..2], &["--color-range", "0,7", "--frame", "all", "-o", "c.png"]].concat(),
     );
+    let bar = text(&folder.read("bar.svg"));
+    assert!(bar.contains(">\n7\n<") && bar.contains(">\n0\n<"), "{bar}");
     for frame in 0..4 {
         let read =
             |name: &str| Image::read(folder.path(&format!("{name}-000{frame}.png"))).unwrap();
         assert_eq!(read("b"), read("c"), "{frame}");
     }
+}
+
+#[test]
+fn ranges_are_those_of_the_frames_that_have_numbers() {
+    let folder = Folder::new();
+    let header = "Properties=species:S:1:pos:R:3:q:R:1";
+    let frame = |q: [&str; 2]| format!("2\n{header}\nC 0 0 0 {}\nC 3 0 0 {}\n", q[0], q[1]);
+    let frames = [["nan", "nan"], ["-2", "5"], ["nan", "0.5"]].map(frame);
+    folder.write("a.xyz", &frames.concat());
+    folder.write("none.xyz", &[frame(["nan", "nan"]), frame(["-1", "inf"])].concat());
+    for (options, range) in [("", "-2,5"), (" --color-log", "0.5,5")] {
+        let line = format!("render a.xyz --frame all --color-by q {TINY} -o a.png{options}");
+        let told = said(&folder, 0, &line);
+        assert!(told.contains("gray for want of `q`: 2 of"), "{told}");
+        for frame in 0..3 {
+            let path = folder.path(&format!("a-000{frame}.png"));
+            let metadata = read_metadata(path).expect("a picture");
+            assert_eq!(metadata.value("color_range"), Some(range), "{line}: {frame}");
+        }
+    }
+    let none = "render none.xyz --frame all --color-by q --color-log -o n.png";
+    let told = said(&folder, 1, none);
+    assert!(told.contains("`q` has no colors"), "{told}");
+    assert!(!names(&folder).iter().any(|name| name.starts_with('n')));
+}
+
+#[test]
+fn types_have_one_color_in_all_frames() {
+    let folder = Folder::new();
+    let head = |count: usize| format!("{count}\nProperties=species:S:1:pos:R:3:chain:S:1\n");
+    let left = |name: &str| format!("{name} 0 0 0 {name}\n");
+    let right = |name: &str| format!("{name} 4 0 0 {name}\n");
+    let frames = [
+        [head(2), left("Q1"), right("Q2")],
+        [head(2), right("Q2"), left("Q1")],
+        [head(2), right("Q3"), left("Q1")],
+        [head(1), right("Q2"), String::new()],
+    ];
+    folder.write("a.xyz", &frames.map(|frame| frame.concat()).concat());
+    let middle = |frame: u32, x: u32| {
+        let image = Image::read(folder.path(&format!("a-000{frame}.png"))).expect("a picture");
+        image.pixel(x, 12).expect("a pixel")
+    };
+    let alike = |a: [f32; 3], b: [f32; 3]| (0..3).all(|c| (a[c] - b[c]).abs() < 0.1);
+    let shown = TINY.replace("--spp 4", "--spp 64");
+    for coloring in ["", " --color-by type", " --color-by chain"] {
+        let line = format!("render a.xyz --frame all --radii 1 --view z {shown} -o a.png");
+        said(&folder, 0, &format!("{line}{coloring}"));
+        let lefts = [0, 1, 2].map(|frame| middle(frame, 11));
+        let rights = [0, 1, 2, 3].map(|frame| middle(frame, 28));
+        assert!(alike(lefts[0], lefts[1]) && alike(lefts[0], lefts[2]), "{coloring}: {lefts:?}");
+        assert!(alike(rights[0], rights[1]) && alike(rights[0], rights[3]), "{rights:?}");
+        assert!(!alike(rights[0], rights[2]) && !alike(lefts[0], rights[0]), "{rights:?}");
+    }
+    // A type may be missing in some of the frames, but not in all.
+    let typed = "render a.xyz --frame all --radii 1 -o t.png --size 24x16 --spp 1 -q";
+    assert_eq!(said(&folder, 0, &format!("{typed} --type Q3:color=red")), "");
+    let unknown = said(&folder, 1, &format!("{typed} --type Q4:color=red"));
+    assert!(unknown.contains("no type is called `Q4`"), "{unknown}");
 }
 
 /// Frames of particles of one kind at these places, each with a title of its own.

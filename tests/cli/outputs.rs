@@ -19,7 +19,7 @@ fn standard_output_that_cannot_be_written_is_an_error() {
     folder.picture("a.png", &[]);
     folder.succeed(&[&SMALL[..], &["-o", "p.png", "--part", "1/1"]].concat());
     let small = [&SMALL[..5], &["-o", "b.png"]].concat();
-    let lines: [&[&str]; 17] = [
+    let lines: [&[&str]; 20] = [
         &small,
         &[&small[..], &["--json"]].concat(),
         &[&small[..], &["--stats"]].concat(),
@@ -33,6 +33,9 @@ fn standard_output_that_cannot_be_written_is_an_error() {
         &["field", "-o", "f.toml"],
         &["stress", "--rays", "640"],
         &["completions", "bash"],
+        &["bench", "build", "--quick", "--scenes", "paper400"],
+        &["status", "p.1-of-1.part"],
+        &["status", "p.1-of-1.part", "--json"],
         &["--help"],
         &["render", "--help"],
         &["help", "field"],
@@ -81,6 +84,8 @@ fn with_inputs() -> Folder {
     folder.write("lit.toml", &format!("{sky}[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n"));
     folder.write("listed.toml", "[[file]]\npath = \"sub/../points.csv\"\n");
     folder.write("points.csv", "x,y,z\n0,0,0\n");
+    folder.write("table.toml", "[[file]]\npath = \"build-x.csv\"\n");
+    folder.write("build-x.csv", "x,y,z\n0,0,0\n");
     fs::create_dir(folder.path("sub")).expect("a folder");
     folder.succeed(&[&SMALL[..], &["-o", "p.png", "--part", "1/1"]].concat());
     folder.succeed(&[&SMALL[..], &["-o", "old.png", "--checkpoint", "kept"]].concat());
@@ -156,7 +161,7 @@ fn outputs_replace_neither_inputs_nor_each_other() {
         ),
         ("info points.csv --json >> points.csv".to_owned(), ["standard output", "points.csv"]),
         ("compare sky.exr sky.pfm >> sky.pfm".to_owned(), ["standard output", "sky.pfm"]),
-        ("bench build --quick --scenes listed.toml -o .".to_owned(), ["--output", "points.csv"]),
+        ("bench build --quick --scenes table.toml -o .".to_owned(), ["--output", "build-x.csv"]),
     ];
     for (line, words) in lines {
         let output = shell(&folder, &format!("exec \"$0\" {line}"));

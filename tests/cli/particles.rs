@@ -102,3 +102,34 @@ fn settings_without_effect_are_refused() {
         assert!(said.contains(message), "{args:?}: {said}");
     }
 }
+
+#[test]
+fn elements_of_molecules_are_told_from_names_of_atoms() {
+    let folder = Folder::new();
+    let row = |number: usize, name: &str, element: &str| {
+        let x = 1.5 * number as f64;
+        format!(
+            "ATOM  {number:5} {name:4} MOL A   1    {x:8.3}   0.000   0.000  1.00  0.00          {element:>2}\n"
+        )
+    };
+    let rows = [(" CA ", "C"), (" CB ", "C"), ("HB1 ", "H"), (" OG ", "O"), ("CA  ", "CA")];
+    let rows =
+        rows.iter().enumerate().map(|(place, (name, element))| row(place + 1, name, element));
+    folder.write("a.pdb", &rows.collect::<String>());
+    let cif = "data_a\nloop_\n_atom_site.id\n_atom_site.type_symbol\n_atom_site.label_atom_id\n\
+        _atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n1 C CA 0 0 0\n2 C CB 2 0 0\n\
+        3 H HB1 4 0 0\n4 O OG 6 0 0\n5 CA CA 8 0 0\n";
+    folder.write("a.cif", cif);
+    let spheres = |file: &str, condition: &str, more: &[&str]| {
+        let args = [&SMALL[..], &[file, "--select", condition, "--json", "-o", "a.png"], more];
+        folder.json(&args.concat())["statistics"]["spheres"].as_u64().expect("a count")
+    };
+    for file in ["a.pdb", "a.cif"] {
+        assert_eq!(spheres(file, "element == C", &[]), 2, "{file}");
+        assert_eq!(spheres(file, "element != H", &[]), 4, "{file}");
+        assert_eq!(spheres(file, "element == Ca", &[]), 1, "{file}");
+    }
+    assert_eq!(spheres("a.pdb", "name == CA", &[]), 2);
+    assert_eq!(spheres("a.pdb", "type == CA", &[]), 2);
+    assert_eq!(spheres("a.pdb", "type == C", &["--columns", "type=element"]), 2);
+}

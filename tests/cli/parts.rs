@@ -93,9 +93,12 @@ fn environments_tell_parts() {
 #[test]
 fn what_does_not_belong_together_is_named() {
     let folder = Folder::new();
-    render(&folder, &["-o", "a.png"], &["1/4", "2/4", "4/4", "1/2"]);
-    render(&folder, &["-o", "b.png", "--seed", "5"], &["3/4"]);
-    render(&folder, &["-o", "c.exr", "--layers", "id"], &["3/4"]);
+    let render = |args: &[&str], parts: &[&str]| {
+        render(&folder, &[args, &["--split", "samples"]].concat(), parts);
+    };
+    render(&["-o", "a.png"], &["1/4", "2/4", "4/4", "1/2"]);
+    render(&["-o", "b.png", "--seed", "5"], &["3/4"]);
+    render(&["-o", "c.exr", "--layers", "id"], &["3/4"]);
     let merge =
         |args: &[&str]| folder.run(&[&["merge", "-o", "x.png", "a.4-of-4.part"], args].concat());
     let hole = merge(&["a.2-of-4.part"]);
@@ -134,16 +137,16 @@ fn damaged_parts_are_refused() {
 #[test]
 fn the_same_command_goes_on_with_a_part_and_another_one_does_not() {
     let folder = Folder::new();
-    render(&folder, &["-o", "a.png"], &["2/2"]);
+    let samples = ["-o", "a.png", "--split", "samples"];
+    render(&folder, &samples, &["2/2"]);
     let first = folder.read("a.2-of-2.part");
-    render(&folder, &["-o", "a.png"], &["2/2"]);
+    render(&folder, &samples, &["2/2"]);
     folder.succeed(&["merge", "a.2-of-2.part", "--partial", "-o", "once.pfm", "-q"]);
     fs::write(folder.path("a.2-of-2.part"), &first).expect("it can be written");
     folder.succeed(&["render", "--resume", "a.2-of-2.part", "--quiet"]);
     folder.succeed(&["merge", "a.2-of-2.part", "--partial", "-o", "twice.pfm", "-q"]);
     assert!(folder.read("once.pfm") == folder.read("twice.pfm"));
-    let other =
-        folder.run(&[&SMALL, &["--part", "2/2", "-o", "a.png", "--filter", "box"][..]].concat());
+    let other = folder.run(&[&SMALL, &samples[..], &["--part", "2/2", "--filter", "box"]].concat());
     refused(&other, 1, &["a.2-of-2.part", "filter"]);
     let split = ["--part", "2/2", "-o", "a.png", "--split", "tiles"];
     refused(&folder.run(&[&SMALL, &split[..]].concat()), 1, &["a.2-of-2.part", "samples 3 to 4"]);

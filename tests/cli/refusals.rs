@@ -36,12 +36,12 @@ fn bad_input_is_refused_in_words() {
         (
             "render --memory-limit 90MB --size 2000x2000",
             1,
-            &["400 spheres (", "2000 x 2000 pixels (240.0 MB)", "of the memory limit", "--size"],
+            &["400 spheres (", "2000 x 2000 pixels (216.0 MB)", "of the memory limit", "--size"],
         ),
         (
             "render --size 65535x65535",
             1,
-            &["65535 x 65535 pixels (257.7 GB) need 257.7 GB", "left", "--size or --region"],
+            &["65535 x 65535 pixels (231.9 GB) need 231.9 GB", "left", "--size or --region"],
         ),
         (
             "render --size 65535x65535 --layers all -o a.exr",

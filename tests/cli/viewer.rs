@@ -443,7 +443,8 @@ fn many_spheres_are_seen_and_saved() {
     let folder = Folder::new();
     let scene = "[[generate]]\nkind = \"volume\"\ncount = 1048600\n";
     folder.write("many.toml", scene);
-    let script = "size 32x24\nwait 1\nclick 16,12\nsave a.png\nsave a.toml\nkey a\nkey 9\nwait 1";
+    let script = "size 32x24\nwait 1\nclick 16,12\nsave a.png\nsave a.toml\nkey c\nwait 1\nsave c.png\n\
+                  key C\nwait 1\nsave d.png\nkey a\nkey 9\nwait 1";
     let named = view(&folder, &["many.toml"], script);
     assert!(named.starts_with("sphere ") && named.contains(", radius 0."), "{named}");
     let render = ["render", "many.toml", "--size", "32x24", "--spp", "1", "--quiet", "-o", "r.png"];
@@ -451,4 +452,8 @@ fn many_spheres_are_seen_and_saved() {
     assert_eq!(Image::read(folder.path("a.png")).ok(), Image::read(folder.path("r.png")).ok());
     let rows = text(&folder.read("a.csv")).lines().count();
     assert_eq!(rows, 1_048_601);
+    // Another world takes the place of the first one, and then the first one again.
+    let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    assert_ne!(read("c.png"), read("a.png"));
+    assert_eq!(read("d.png"), read("a.png"));
 }

@@ -26,6 +26,7 @@ use item::Item;
 use median::Median;
 use morton::Morton;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering::Relaxed;
 use surface_area::SurfaceArea;
 
@@ -41,7 +42,7 @@ const CROWD: usize = 64;
 const RAYS_PER_SPHERE: u64 = 4;
 
 /// How the tree is made: never what is found in it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Builder {
     /// Halves on the longest axis.
     Median,

@@ -1,6 +1,5 @@
 //! The command as typed.
 
-use crate::cli::Failure;
 use crate::cli::threads;
 use crate::cli::values::{SAMPLES, THREADS};
 use clap::{Subcommand, value_parser};
@@ -8,9 +7,6 @@ use spherule::bench::paper::Scale;
 use spherule::bench::{Effort, Options};
 use spherule::scene::included_files;
 use std::path::{Path, PathBuf};
-
-/// Suffixes of the files of a report.
-const SUFFIXES: [&str; 5] = ["csv", "json", "svg", "png", "html"];
 
 #[derive(Debug, clap::Args)]
 pub(in crate::cli) struct Args {
@@ -117,29 +113,9 @@ impl Common {
         !self.scenes.is_empty()
     }
 
-    /// Refuses scenes of which a file lies where reports are written: a table could have its name.
-    pub(super) fn check_files(&self) -> Result<(), Failure> {
-        let folder = self.output.canonicalize().ok();
-        let in_folder = |file: &Path| {
-            let file = file.canonicalize().ok();
-            folder.is_some() && file.as_deref().and_then(Path::parent) == folder.as_deref()
-        };
-        let is_report = |file: &Path| {
-            let suffix = file.extension().unwrap_or_default();
-            SUFFIXES.iter().any(|report| suffix.eq_ignore_ascii_case(report))
-        };
-        let files = self.scenes.iter().flat_map(|scene| included_files(Path::new(scene)));
-        match files.into_iter().find(|file| in_folder(file) && is_report(file)) {
-            Some(file) => {
-                let (file, folder) = (file.display(), self.output.display());
-                let message = format!(
-                    "{file}, which a scene reads, lies in {folder}, where a table or a plot could \
-                     replace it; give --output another folder"
-                );
-                Err(Failure::usage("bench", message))
-            }
-            None => Ok(()),
-        }
+    /// Files that the scenes read.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        self.scenes.iter().flat_map(|scene| included_files(Path::new(scene))).collect()
     }
 
     /// What is asked of a measurement.

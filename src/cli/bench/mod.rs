@@ -13,52 +13,52 @@ use spherule::bench::{
 use spherule::report::{Machine, Report};
 use std::process::ExitCode;
 
-/// A measurement.
-type Run = fn(&Options, Tell) -> Result<Report, BenchError>;
+/// A measurement: the name of its report, and how it is made.
+type Benchmark = (&'static str, fn(&Options, Tell) -> Result<Report, BenchError>);
 
-/// What `all` runs, in this order.
-const ALL: [Run; 7] = [
-    traversal::measure,
-    build::measure,
-    threads::measure,
-    skips::measure,
-    convergence::measure,
-    paper::measure,
-    roulette::measure,
-];
+const TRAVERSAL: Benchmark = ("traversal", traversal::measure);
+const BUILD: Benchmark = ("build", build::measure);
+const THREADS: Benchmark = ("threads", threads::measure);
+const SKIPS: Benchmark = ("skips", skips::measure);
+const ERROR: Benchmark = ("error", convergence::measure);
+const PAPER: Benchmark = ("paper", paper::measure);
+const ROULETTE: Benchmark = ("roulette", roulette::measure);
+
+/// The measurements of `all`, in their order.
+const ALL: [Benchmark; 7] = [TRAVERSAL, BUILD, THREADS, SKIPS, ERROR, PAPER, ROULETTE];
 
 /// Measures, prints tables, and writes files.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     match &args.measurement {
-        Measurement::Traversal(common) => one(common, "traversal", traversal::measure),
-        Measurement::Threads(args) => {
-            of((&args.common, &args.options()), "threads", &[threads::measure])
-        }
-        Measurement::Build(common) => one(common, "build", build::measure),
-        Measurement::Skips(common) => one(common, "skips", skips::measure),
-        Measurement::Error(common) => one(common, "error", convergence::measure),
-        Measurement::Paper(args) => of((&args.common, &args.options()), "paper", &[paper::measure]),
-        Measurement::Roulette(common) => one(common, "roulette", roulette::measure),
+        Measurement::Traversal(common) => run_one(common, &common.options(), TRAVERSAL),
+        Measurement::Threads(args) => run_one(&args.common, &args.options(), THREADS),
+        Measurement::Build(common) => run_one(common, &common.options(), BUILD),
+        Measurement::Skips(common) => run_one(common, &common.options(), SKIPS),
+        Measurement::Error(common) => run_one(common, &common.options(), ERROR),
+        Measurement::Paper(args) => run_one(&args.common, &args.options(), PAPER),
+        Measurement::Roulette(common) => run_one(common, &common.options(), ROULETTE),
         Measurement::All(common) if common.has_scenes() => {
             let message = "--scenes is for single measurements: each has scenes of its own";
             Err(Failure::usage("bench", message))
         }
-        Measurement::All(common) => of((common, &common.options()), "report", &ALL),
+        Measurement::All(common) => run_all(common, &common.options(), "report", &ALL),
     }
 }
 
-fn one(common: &Common, name: &str, run: Run) -> Result<ExitCode, Failure> {
-    of((common, &common.options()), name, &[run])
+fn run_one(common: &Common, options: &Options, benchmark: Benchmark) -> Result<ExitCode, Failure> {
+    run_all(common, options, benchmark.0, &[benchmark])
 }
 
-/// Runs some measurements. The page is called `page`.
-fn of(
-    (common, options): (&Common, &Options),
+/// Runs some measurements, and writes their reports and a page of this name.
+fn run_all(
+    common: &Common,
+    options: &Options,
     page: &str,
-    runs: &[Run],
+    benchmarks: &[Benchmark],
 ) -> Result<ExitCode, Failure> {
-    common.check_files()?;
     let folder = Folder::new(&common.output)?;
+    let names: Vec<&str> = benchmarks.iter().map(|(name, _)| *name).collect();
+    folder.check_free(&common.inputs(), page, &names)?;
     let count = cores::count(common.threads);
     let pool = cores::pool(count)?;
     let tell = |words: &str| {
@@ -67,8 +67,8 @@ fn of(
         }
     };
     let mut reports = Vec::new();
-    for run in runs {
-        let report = pool.install(|| run(options, &tell))?;
+    for (_, measure) in benchmarks {
+        let report = pool.install(|| measure(options, &tell))?;
         if !common.quiet {
             print(&report);
         }

@@ -10,16 +10,19 @@ use std::num::NonZeroU32;
 /// What says which part.
 const FROM_ENVIRONMENT: &str = "from-env";
 
+/// Heading of the options for several machines.
+pub(super) const HEADING: &str = "Parts, for several machines; `spherule merge` puts them together";
+
 /// Which share of the render this is.
 #[derive(Clone, Copy, Debug, clap::Args)]
-#[command(next_help_heading = "Parts, for several machines; `spherule merge` puts them together")]
+#[command(next_help_heading = HEADING)]
 pub(super) struct PartArgs {
     /// Render part K of N to a file named after --output with .K-of-N.part at its end; from-env takes
     /// K, and N unless it is given, from the environment variables of Slurm, PBS, Grid Engine, LSF,
     /// AWS Batch, Kubernetes, MPI or GNU parallel. Of a sequence, part K is every Nth picture, whole
     #[arg(long, value_name = "K/N|from-env[/N]", value_parser = choice)]
     part: Option<Choice>,
-    /// What parts differ in [default: samples, or tiles where there are fewer samples than parts]
+    /// What parts differ in [default: tiles, or samples where each part has 16 or more of every pixel]
     #[arg(long, requires = "part", value_parser = SPLITS.parser())]
     pub(super) split: Option<Split>,
 }

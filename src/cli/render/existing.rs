@@ -72,7 +72,7 @@ fn scene_differs(expected: &str, found: &str) -> String {
     let mut parts = expected.split(", ").zip(found.split(", "));
     let other = parts.find(|(expected, found)| expected != found);
     let name = other.and_then(|(part, _)| part.split(' ').next()).unwrap_or("scene");
-    format!("shows another scene: its {name} differs")
+    format!("shows another scene: other {name}")
 }
 
 #[cfg(test)]

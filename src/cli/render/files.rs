@@ -12,7 +12,9 @@ pub(in crate::cli) fn files(args: &RenderArgs) -> Files {
     }
     let many = args.is_sequence();
     let part = args.part.settled().is_some() && !many;
-    if !part && !many {
+    if let Some(prepared) = &args.prepare {
+        files.writes("--prepare", prepared);
+    } else if !part && !many {
         files.writes("--output", &args.output);
     }
     if let Some(BarPlace::File(bar, _)) = &args.looks.color_bar {

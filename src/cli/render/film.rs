@@ -134,7 +134,8 @@ impl Film {
         let written = encoder.input.as_mut().map_or(Ok(()), |input| input.write_all(&bytes));
         if let Err(error) = written {
             // It ended early, and says why.
-            let why = encoder.end().map_or(error.to_string(), |(status, said)| told(status, &said));
+            let why =
+                encoder.end().map_or(error.to_string(), |(status, said)| failed(status, &said));
             return Err(self.failure(&why));
         }
         self.pictures += 1;
@@ -148,7 +149,7 @@ impl Film {
         };
         let (status, said) = encoder.end().map_err(|error| self.failure(&error.to_string()))?;
         if !status.success() {
-            return Err(self.failure(&told(status, &said)));
+            return Err(self.failure(&failed(status, &said)));
         }
         if let Some(pending) = encoder.pending.take() {
             if pending.path().metadata().is_ok_and(|file| file.len() == 0) {
@@ -211,7 +212,7 @@ fn listen(mut stderr: impl Read) -> String {
 }
 
 /// Returns the message for a failure of the program, with the last lines of what it said.
-fn told(status: ExitStatus, said: &str) -> String {
+fn failed(status: ExitStatus, said: &str) -> String {
     let lines: Vec<&str> = said.lines().filter(|line| !line.trim().is_empty()).collect();
     let last = &lines[lines.len().saturating_sub(SHOWN)..];
     let indented: Vec<String> = last.iter().map(|line| format!("\n  {line}")).collect();
@@ -277,7 +278,7 @@ mod tests {
     #[test]
     fn last_words_are_shown() {
         let lines: Vec<String> = (0..20).map(|i| format!("line {i}\n\n")).collect();
-        let text = told(ExitStatus::default(), &lines.concat());
+        let text = failed(ExitStatus::default(), &lines.concat());
         assert!(text.contains("\n  line 19") && !text.contains("line 11"), "{text}");
     }
 }

@@ -3,6 +3,7 @@
 use super::film::Container;
 use super::looks::with_columns;
 use super::sequence::Common;
+use super::store;
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::failure::Failure;
 use crate::cli::keep::KeepArgs;
@@ -118,6 +119,9 @@ impl<'a> Job<'a> {
             }
             None => Source::Field { seed },
         };
+        if matches!(source, Source::Prepared(_)) {
+            store::refuse_changes(args)?;
+        }
         if args.style.preset().is_some() && !matches!(source, Source::Particles(..)) {
             let message = "--preset is for a file of particles: a scene says how it looks";
             return Err(Failure::usage("render", message));

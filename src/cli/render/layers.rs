@@ -2,8 +2,9 @@
 
 use super::job::Job;
 use super::prepare::Prepared;
+use spherule::film::Region;
 use spherule::image::{Channel, Format, Values};
-use spherule::layers::{Layer, layers};
+use spherule::layers::{Layer, Layers, layers};
 use spherule::overlay::Matte;
 use spherule::render::{Options, Render, RenderError};
 use spherule::scene::Settings;
@@ -27,7 +28,12 @@ pub(super) fn channels(
     let settings = Settings { spp: render.samples.most.max(1), ..prepared.scene.settings.clone() };
     let options =
         Options { tracer: job.tracer, region: Some(prepared.region), ..Options::default() };
-    let mut layers = layers(&prepared.world, &settings, &options, &wanted)?;
+    let mut layers = if wanted.iter().all(|layer| layer.is_statistic()) {
+        let Region { width, height, .. } = prepared.region;
+        Layers { width, height, pixels: Vec::new(), statistics: None }
+    } else {
+        layers(&prepared.world, &settings, &options, &wanted)?
+    };
     layers.statistics.clone_from(&render.statistics);
     Ok(layers.channels(&wanted))
 }

@@ -24,7 +24,7 @@ pub(super) fn with_columns(source: Source, looks: &Looks) -> Result<Source, Fail
             Ok(Source::Particles(path, options))
         }
         other if *looks == Looks::default() => Ok(other),
-        Source::Toml(_) | Source::Field { .. } => {
+        Source::Toml(_) | Source::Prepared(_) | Source::Field { .. } => {
             let message = "looks of particles are for a file of particles: a scene says itself how \
                            its spheres look";
             Err(Failure::usage("render", message))

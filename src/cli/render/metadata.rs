@@ -49,27 +49,26 @@ pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> 
 
 /// Returns the metadata that the file of a complete picture has, but for how its render went.
 pub(super) fn expected(job: &Job, placed: &Placed) -> Metadata {
-    let Placed { scene, region, legend, identity, .. } = placed;
+    let Placed { scene, region, legend, identity, stored, .. } = placed;
+    let listed = stored.as_ref().map(|stored| stored.looks.as_slice());
     let subject = Subject {
         title: &job.source.title(scene),
         settings: &scene.settings,
         region: *region,
-        looks: &looks(job, legend.as_ref(), identity.as_ref()),
+        looks: &looks(job, listed, legend.as_ref(), identity.as_ref()),
     };
     subject.describe(job.format, &subject.encoding(job.encoding, job.format))
 }
 
 /// Returns the settings by which particles are looked at, as a file lists them; a picture of many
-/// also says of which scene it is.
+/// also says of which scene it is. What a prepared scene lists takes the place of what was typed.
 pub(super) fn looks(
     job: &Job,
+    prepared: Option<&[(String, String)]>,
     legend: Option<&Legend>,
     identity: Option<&Identity>,
 ) -> Vec<(String, String)> {
-    let (particles, looks) = job.typed;
-    let listed = particles.list(job.frame).into_iter().chain(looks.list(legend));
-    let listed = listed.chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
-    let mut listed = texts(listed.collect());
+    let mut listed = prepared.map_or_else(|| typed(job, legend), <[_]>::to_vec);
     let Some(identity) = identity.filter(|_| job.is_identified()) else { return listed };
     let layers: Vec<&str> =
         layers::wanted(&job.encoding.layers).into_iter().map(Layer::name).collect();
@@ -81,6 +80,14 @@ pub(super) fn looks(
     }
     listed.push((SCENE.to_owned(), identity.to_string()));
     listed
+}
+
+/// The same of the command line.
+fn typed(job: &Job, legend: Option<&Legend>) -> Vec<(String, String)> {
+    let (particles, looks) = job.typed;
+    let listed = particles.list(job.frame).into_iter().chain(looks.list(legend));
+    let listed = listed.chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
+    texts(listed.collect())
 }
 
 fn texts(list: List) -> Vec<(String, String)> {

@@ -1,4 +1,4 @@
-//! `spherule render`: a scene becomes a picture in a file.
+//! `spherule render`: renders a scene to a picture in a file.
 
 mod estimate;
 mod existing;
@@ -12,16 +12,17 @@ mod memory;
 mod metadata;
 mod noise;
 mod notes;
+mod notices;
 mod numbers;
 mod part;
 mod prepare;
 mod resume;
 mod sequence;
+mod store;
 mod summary;
 mod survey;
 mod terminal;
-mod told;
-mod unseen;
+mod visibility;
 
 pub(super) use self::estimate::Estimate;
 use self::files::files;
@@ -31,12 +32,12 @@ use self::keeper::Keeper;
 pub(super) use self::layers::alpha;
 pub(super) use self::looks::{check_bar, check_legend, color_bar, draw_bar, write_bar};
 pub(super) use self::metadata::Subject;
+use self::notices::Notices;
 use self::prepare::{Placed, Prepared};
 use self::resume::Resumed;
 use self::summary::Summary;
 pub(super) use self::summary::warnings;
 use self::terminal::Terminal;
-use self::told::Told;
 use super::args::RenderArgs;
 use super::command::Given;
 use super::progress::Meter;
@@ -50,16 +51,16 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// How a render ended.
+/// Result of a render, complete or not.
 struct Traced {
     render: Unfinished,
-    /// The code to exit with, if a signal ended it.
+    /// Exit code, if a signal ended it.
     signal: Option<u8>,
-    /// How it is gone on with, if it is kept.
+    /// Command that resumes it, if a checkpoint was written.
     advice: Option<String>,
 }
 
-/// Renders and writes the picture, and tells how it went.
+/// Renders, writes the picture, and prints a summary.
 pub(super) fn run(mut args: RenderArgs) -> Result<ExitCode, Failure> {
     args.memory.obey();
     let mut now = Given::of_process();
@@ -82,6 +83,7 @@ fn run_as(
     keeper: Option<&Keeper>,
     mut resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
+    store::refuse_sequence(args)?;
     let job = Job::new(args)?;
     check_stream(args)?;
     check_bar(&job)?;
@@ -95,11 +97,14 @@ fn run_as(
             resumed.refuse("it keeps a sequence; leave --frame and --turntable as they were")
         );
     }
+    if let Some(file) = &args.prepare {
+        return job.pool()?.install(|| store::write(&job, file));
+    }
     picture_file::check(&job.output)?;
     job.pool()?.install(|| make_picture(&job, keeper, resumed))
 }
 
-/// Refuses standard output for what is not one picture alone, and has all else printed elsewhere.
+/// Refuses standard output for anything but a single picture, and reserves it for that picture.
 fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
     let refuse = |message: &str| Err(Failure::usage("render", message));
     if picture_file::is_stream(&args.output) && args.part.settled().is_some() {
@@ -113,10 +118,10 @@ fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
     picture_file::check_stream("render", &args.output, args.report.json)
 }
 
-/// State that pictures share that are made one after another.
+/// State that the pictures of a run share.
 #[derive(Default)]
 struct Session<'a> {
-    told: Told,
+    notices: Notices,
     keeper: Option<&'a Keeper>,
     /// The film that pictures go to, if they do not go to files of their own.
     film: Option<Film>,
@@ -142,7 +147,7 @@ fn make_placed(
     // After a signal, nothing is looked at any more: what follows is interrupted at once, and kept.
     if resumed.is_none() && signals::go_on().is_none() && existing::is_there(job, &placed) {
         let tell = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
-        session.told.keep(&job.output, tell);
+        session.notices.count_kept(&job.output, tell);
         return Ok(ExitCode::SUCCESS);
     }
     let mut prepared = placed.build(job)?;
@@ -156,7 +161,7 @@ fn finish_picture(
     session: &mut Session,
     unfinished: Option<Unfinished>,
 ) -> Result<ExitCode, Failure> {
-    prepared.tell(job, &mut session.told);
+    prepared.tell(job, &mut session.notices);
     let traced = trace(job, prepared, session.keeper, unfinished)?;
     let finished = finish_traced(job, prepared, session, &traced);
     // One that came while the picture was written ends a sequence, too. If something is to be saved or
@@ -196,7 +201,7 @@ fn finish_traced(
     Ok(())
 }
 
-/// Writes the picture, with what is drawn over it and beside it, and tells how it went.
+/// Draws over the picture, writes it and its layers, and prints a summary.
 fn write(
     job: &Job,
     prepared: &mut Prepared,
@@ -211,11 +216,11 @@ fn write(
         Some(film) => film.add(&render.image, &options)?,
         None => write_file(&job.output, &render.image.encode(job.format, &channels, &options)?)?,
     }
-    Summary::new(job, prepared, render, &options).tell(job.report, &mut session.told);
+    Summary::new(job, prepared, render, &options).tell(job.report, &mut session.notices);
     Ok(())
 }
 
-/// Draws what is drawn over pictures. Returns what is left of one whose background is transparent.
+/// Draws the look and the color bar over a picture; returns the matte of a transparent background.
 fn draw_over(prepared: &mut Prepared, render: &mut Render) -> Result<Option<Matte>, Failure> {
     let Scene { look, color_bar, settings, .. } = &prepared.scene;
     let region = prepared.region;
@@ -226,7 +231,7 @@ fn draw_over(prepared: &mut Prepared, render: &mut Render) -> Result<Option<Matt
     Ok(canvas.matte)
 }
 
-/// Renders from the beginning, or from where a render was stopped.
+/// Renders from the beginning, or resumes a render.
 fn trace(
     job: &Job,
     prepared: &Prepared,
@@ -248,7 +253,7 @@ fn trace(
     let caption = part::caption(job, prepared);
     let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
     let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
-    // Between the pictures of a sequence nothing is kept that is not due.
+    // Between the pictures of a sequence, checkpoints are written only when they are due.
     let last = job.place.is_none_or(|place| place.last);
     let (signal, kept) = loop {
         let due = keeper.and_then(|keeper| keeper.due(job.keep));
@@ -279,7 +284,7 @@ fn trace(
 }
 
 impl Traced {
-    /// Tells of a picture that is not all that was asked for.
+    /// Warns of an incomplete picture.
     fn tell(&self, job: &Job, prepared: &Prepared, render: &Render) {
         let output = job.output.display();
         if !render.complete && prepared.scene.settings.has_target() {
@@ -293,7 +298,7 @@ impl Traced {
         }
     }
 
-    /// Tells how to go on, if the render is kept.
+    /// Prints the command that resumes the render, if a checkpoint was written.
     fn advise(&self, job: &Job) {
         if let Some(advice) = self.advice.as_ref().filter(|_| !job.report.quiet) {
             output::note(advice);

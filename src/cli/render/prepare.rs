@@ -1,50 +1,56 @@
-//! From a job to a world that can be rendered.
+//! Preparation of a render: from a job to a world.
 
 use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
-use super::told::Told;
-use super::{layers, looks, metadata, part, unseen};
+use super::notices::Notices;
+use super::{looks, metadata, part, visibility};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::picture_file;
+use crate::cli::source::Source;
 use glam::DVec3;
 use spherule::World;
 use spherule::bvh::build::Builder;
 use spherule::film::Region;
+use spherule::prepared::{self, PreparedScene};
 use spherule::render::{Render, Share};
 use spherule::scene::particles::{Cell, Legend, Particles};
 use spherule::scene::{Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A world that can be rendered, and how it came about.
+/// A world that can be rendered, and what was found on the way to it.
 pub(super) struct Prepared {
-    /// Without its spheres, which are the world's now.
+    /// The scene without its spheres: the world has taken them.
     pub(super) scene: Scene,
     pub(super) title: String,
     pub(super) world: World,
     /// The part of the picture that is rendered.
     pub(super) region: Region,
-    /// What of that is rendered here.
+    /// The share of that part that is rendered by this process.
     pub(super) share: Share,
-    /// How the tree was built.
+    /// Builder of the tree.
     pub(super) builder: Builder,
     /// Time for reading or generating.
     pub(super) load: Duration,
     /// Time for the columns and the tree.
     pub(super) build: Duration,
+    /// Estimated peak memory of the process in bytes, from before the world was built.
+    pub(super) estimate: u64,
     /// Settings that have no effect.
     pub(super) notes: Vec<String>,
-    /// What colors stand for, if they stand for numbers.
+    /// The numbers that colors stand for, if they stand for any.
     pub(super) legend: Option<Legend>,
-    /// What the scene is told by, if the render is kept.
+    /// Looks of particles as a prepared scene lists them for the picture's file.
+    looks: Option<Vec<(String, String)>>,
+    /// Identity of the scene, if the file of the picture or a checkpoint records it.
     pub(super) identity: Option<Identity>,
-    /// What is wrong with the input.
+    /// Warnings about the input.
     pub(super) warnings: Vec<String>,
-    /// Why the picture shows no sphere, if it shows none.
-    pub(super) unseen: Option<String>,
+    /// Reason why the picture shows no sphere, if it shows none.
+    pub(super) empty: Option<String>,
 }
 
 /// A scene with the job's settings in it, whose camera has no place yet.
@@ -65,10 +71,7 @@ impl Staged {
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
-        if scene.color_bar.is_some() && job.picture.region.is_some() {
-            let message = "a color bar inside is for a whole picture: leave --region out";
-            return Err(Failure::usage("render", message));
-        }
+        check_region(job, &scene)?;
         let load = start.elapsed();
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
@@ -82,20 +85,25 @@ impl Staged {
     }
 }
 
-/// A scene whose camera and lights have their places: all that makes the picture is known.
+/// A scene whose camera and lights are placed. Everything that the picture depends on is known.
 pub(super) struct Placed {
     pub(super) scene: Scene,
     pub(super) legend: Option<Legend>,
     pub(super) region: Region,
-    /// Identity of the scene, if someone asks.
+    /// Identity of the scene, if the file of the picture or a checkpoint records it.
     pub(super) identity: Option<Identity>,
+    /// The world, if the scene is a prepared one.
+    pub(super) stored: Option<Box<PreparedScene>>,
     load: Duration,
 }
 
 impl Placed {
-    /// Loads the scene, puts in the job's settings, and places the camera; `given` are its particles, if
+    /// Loads the scene, applies the job's settings, and places the camera; `given` are its particles, if
     /// they were read before.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
+        if let Source::Prepared(path) = &job.source {
+            return Self::open(job, path);
+        }
         let Staged { mut scene, cuts, legend, load } = Staged::load(job, given)?;
         place_camera(job, &mut scene, &cuts)?;
         job.style.light(&mut scene);
@@ -108,27 +116,56 @@ impl Placed {
         }
         let asked = job.keep.file().is_some() || job.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
-        Ok(Self { scene, legend, region, identity, load })
+        Ok(Self { scene, legend, region, identity, stored: None, load })
     }
 
-    /// Builds the world, if there is memory for it.
-    pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
-        let Self { mut scene, legend, region, identity, load } = self;
-        let layered = !job.encoding.layers.is_empty() || !scene.look.is_plain();
-        let share = part::share(job, region, &scene)?;
-        Estimate::new(&scene, region, layers::need_statistics(job), layered)
-            .of_tiles(share.tiles.len())
-            .check()?;
+    /// Opens a prepared scene, and puts in the job's settings.
+    fn open(job: &Job, path: &Path) -> Result<Self, Failure> {
         let start = Instant::now();
-        let part = share.size() as f64 / Share::whole(region, scene.settings.spp).size() as f64;
-        let samples = samples(region, &scene.settings) as f64 * part;
-        let builder = job.builder(scene.spheres.len(), samples as u64);
-        let world = World::build_taking(&mut scene, builder)
-            .map_err(|error| Failure::World(job.source.name().into_owned(), error))?;
+        let mut stored = prepared::read(path)?;
+        let mut scene = std::mem::take(&mut stored.scene);
+        let load = start.elapsed();
+        check_region(job, &scene)?;
+        check_alpha(&scene.look, job.format)?;
+        job.picture.replace(&mut scene.settings);
+        if job.part.is_some() {
+            job.encoding.replace(&mut scene.settings);
+        }
+        let region = job.region(&scene.settings)?;
+        if job.part.is_none() {
+            picture_file::check_size("render", region, job.format)?;
+        }
+        let identity = Some(stored.identity.clone());
+        Ok(Self { scene, legend: None, region, identity, stored: Some(Box::new(stored)), load })
+    }
+
+    /// Builds the world, unless its estimated memory exceeds the limit.
+    pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
+        let Self { mut scene, legend, region, identity, stored, load } = self;
+        let share = part::share(job, region, &scene)?;
+        let estimate = Estimate::new(&scene, region, job).of_tiles(share.tiles.len()).check()?;
+        let start = Instant::now();
+        let name = || job.source.name().into_owned();
+        let mut looks = None;
+        let (world, builder) = if let Some(mut stored) = stored {
+            stored.scene = scene;
+            looks = Some(std::mem::take(&mut stored.looks));
+            let builder = stored.builder;
+            let built = stored.build().map_err(|error| Failure::Prepare(name(), error))?;
+            scene = built.0;
+            (built.1, builder)
+        } else {
+            let part = share.size() as f64 / Share::whole(region, scene.settings.spp).size() as f64;
+            let samples = samples(region, &scene.settings) as f64 * part;
+            let builder = job.builder(scene.spheres.len(), samples as u64);
+            let world = World::build_taking(&mut scene, builder)
+                .map_err(|error| Failure::World(name(), error))?;
+            (world, builder)
+        };
         let build = start.elapsed();
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
-        let unseen = unseen::why(&world, region, scene.settings.spp);
+        let empty = visibility::explain_empty(&world, region, scene.settings.spp);
         Ok(Prepared {
             title: job.source.title(&scene).into_owned(),
             notes: notes(job, &scene.settings, &world),
@@ -139,37 +176,39 @@ impl Placed {
             builder,
             load,
             build,
+            estimate,
             legend,
+            looks,
             identity,
             warnings,
-            unseen,
+            empty,
         })
     }
 }
 
 impl Prepared {
-    /// Returns the settings by which particles are looked at, as a file lists them.
+    /// Returns the settings of how particles look, as the metadata of a picture lists them.
     pub(super) fn looks(&self, job: &Job) -> Vec<(String, String)> {
-        metadata::looks(job, self.legend.as_ref(), self.identity.as_ref())
+        metadata::looks(job, self.looks.as_deref(), self.legend.as_ref(), self.identity.as_ref())
     }
 
-    /// Tells what is worth knowing before the render takes its time.
-    pub(super) fn tell(&self, job: &Job, told: &mut Told) {
-        self.warnings.iter().for_each(|text| told.warn(text));
-        match &self.unseen {
-            Some(_) if job.is_of_sequence() => told.see_no_sphere(),
-            Some(why) => told.warn(why),
+    /// Prints warnings and notes before the render takes its time.
+    pub(super) fn tell(&self, job: &Job, notices: &mut Notices) {
+        self.warnings.iter().for_each(|text| notices.warn(text));
+        match &self.empty {
+            Some(_) if job.is_of_sequence() => notices.count_empty(),
+            Some(why) => notices.warn(why),
             None => {}
         }
         if job.common.as_ref().is_some_and(|common| !common.frames_all)
             && self.world.centers_out_of_view() > 0
         {
-            told.see_cropped();
+            notices.count_cropped();
         }
         if job.report.quiet {
             return;
         }
-        self.notes.iter().for_each(|text| told.note(text));
+        self.notes.iter().for_each(|text| notices.note(text));
         if job.report.verbose {
             output::note(format_args!("found: {}", found(&self.world).join(", ")));
             for skipped in self.world.features.skipped() {
@@ -178,18 +217,27 @@ impl Prepared {
         }
     }
 
-    /// Samples that a complete render takes.
+    /// Returns the number of samples of a complete render.
     pub(super) fn samples(&self) -> u64 {
         samples(self.region, &self.scene.settings)
     }
 
-    /// Share of the samples that a render has taken, 0..=1.
+    /// Returns the share of the samples that a render has taken, 0..=1.
     pub(super) fn taken(&self, render: &Render) -> f64 {
         render.samples.total as f64 / self.samples() as f64
     }
 }
 
-/// Places the camera, by itself or as in the other pictures of its sequence.
+/// Refuses to draw a color bar into a part of a picture.
+fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
+    if scene.color_bar.is_none() || job.picture.region.is_none() {
+        return Ok(());
+    }
+    let message = "a color bar inside is for a whole picture: leave --region out";
+    Err(Failure::usage("render", message))
+}
+
+/// Places the camera: for this scene alone, or for all pictures of its sequence.
 fn place_camera(job: &Job, scene: &mut Scene, cuts: &[DVec3]) -> Result<(), Failure> {
     match &job.common {
         Some(common) => {
@@ -200,7 +248,7 @@ fn place_camera(job: &Job, scene: &mut Scene, cuts: &[DVec3]) -> Result<(), Fail
     }
 }
 
-/// Samples of a part of the picture.
+/// Returns the number of samples of a part of the picture.
 fn samples(region: Region, settings: &Settings) -> u64 {
     u64::from(region.width) * u64::from(region.height) * u64::from(settings.spp)
 }

@@ -26,7 +26,7 @@ use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
 use spherule::scene::SceneError;
-use spherule::scene::particles::{Coloring, Particles, ReadOptions, of_frame};
+use spherule::scene::particles::{Coloring, Particles, ReadOptions};
 use spherule::split::Part;
 use std::path::Path;
 use std::process::ExitCode;
@@ -62,14 +62,12 @@ pub(super) fn run(
     let film = check_outputs(&job, &plan, files)?;
     let mut reel = Reel::open(path, &options)?;
     let survey = look_at(&job, &plan, path, &options, &mut reel)?;
-    survey.check(path)?;
-    survey.fix_radius(&mut options);
-    if let (Coloring::Column(colors), Some(ends)) = (&mut job.looks.coloring, survey.ends) {
-        colors.ends.get_or_insert(ends);
-    }
+    survey.check(path, &job.looks)?;
     tell_framing(&job, &plan);
+    survey.fix_radius(&mut options);
+    survey.fix_colors(&mut job.looks.coloring);
     let session = Session { film, ..session };
-    Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reel, &survey)
+    Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reel, survey)
 }
 
 /// Makes the pictures of a turn around one scene.
@@ -130,7 +128,7 @@ fn look_at(
 ) -> Result<Survey, Failure> {
     let mut survey = Survey::new(!plan.is_stream());
     let add = |survey: &mut Survey, number: u64, frame| {
-        let particles = of_frame(path, frame, options)?;
+        let particles = survey.particles(path, frame, options)?;
         survey.add(job, particles, options).map_err(|error| error.of_frame(number))
     };
     if plan.count().is_none() {
@@ -175,7 +173,14 @@ fn tell_framing(job: &Job, plan: &Plan) {
         (Some(frames), _) => {
             output::note(format_args!("one camera frames all of {}", plural(frames, "frame")));
         }
-        _ => output::note("the camera frames the first frame: the input can be read only once"),
+        _ => {
+            let ranged =
+                matches!(&job.looks.coloring, Coloring::Column(colors) if colors.ends.is_none());
+            let colors = if ranged { ", and colors have its range" } else { "" };
+            output::note(format_args!(
+                "the camera frames the first frame{colors}: the input can be read only once"
+            ));
+        }
     }
 }
 
@@ -213,10 +218,10 @@ impl Sequence<'_> {
         path: &Path,
         options: &ReadOptions,
         mut reel: Reel,
-        survey: &Survey,
+        mut survey: Survey,
     ) -> Result<ExitCode, Failure> {
         for warning in &survey.warnings {
-            self.session.told.warn(warning);
+            self.session.notices.warn(warning);
         }
         for index in 0.. {
             let Some(shot) = self.plan.shot(index) else { break };
@@ -232,14 +237,14 @@ impl Sequence<'_> {
             let frame = if again { reel.look(number)? } else { reel.take(number)? };
             let Some(frame) = frame else { break };
             let angle = shot.turn.map(|turn| self.job.views.angle(turn));
-            let result = of_frame(path, frame, options).map_err(Failure::from);
+            let result = survey.particles(path, frame, options).map_err(Failure::from);
             let result = result.and_then(|particles| {
                 let common = survey.common(&self.job, angle)?;
                 self.picture(index, &shot, Some(particles), Some(common))
             });
             let code = result.map_err(|error| error.of_frame(number))?;
             if code != ExitCode::SUCCESS {
-                self.session.told.finish(self.plan.noun());
+                self.session.notices.summarize(self.plan.noun());
                 return Ok(code);
             }
         }
@@ -277,7 +282,7 @@ impl Sequence<'_> {
             }
         }
         let session = &mut self.session;
-        session.told.begin(number);
+        session.notices.start_picture(number);
         let resumed = self.resumed.take();
         let code = make_placed(&job, Placed::load(&job, particles)?, session, resumed)?;
         // A bar in a file is that of all pictures.
@@ -287,20 +292,20 @@ impl Sequence<'_> {
 
     /// Completes the film, and tells what is known at the end.
     fn finish(self) -> Result<ExitCode, Failure> {
-        let Session { told, film, .. } = self.session;
-        told.finish(self.plan.noun());
-        if told.pictures() == 0 {
+        let Session { notices, film, .. } = self.session;
+        notices.summarize(self.plan.noun());
+        if notices.pictures() == 0 {
             let which = self.job.deal.map_or_else(String::new, |part| format!(" of part {part}"));
             output::warn(format_args!("there is no picture{which} to make"));
         }
-        if !self.job.report.quiet && told.kept() > 0 {
-            let (kept, pictures) = (told.kept(), told.pictures());
+        if !self.job.report.quiet && notices.kept() > 0 {
+            let (kept, pictures) = (notices.kept(), notices.pictures());
             output::note(format_args!("{kept} of {pictures} pictures existed and are kept"));
         }
         if let Some(film) = film {
-            let told = film.finish()?;
+            let summary = film.finish()?;
             if !self.job.report.quiet {
-                output::print(told);
+                output::print(summary);
             }
         }
         Ok(ExitCode::SUCCESS)

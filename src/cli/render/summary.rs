@@ -3,8 +3,8 @@
 use super::job::Job;
 use super::memory;
 use super::noise::{NoiseSummary, missed};
+use super::notices::Notices;
 use super::prepare::Prepared;
-use super::told::Told;
 use crate::cli::args::ReportArgs;
 use crate::cli::contents::{found, plural, spheres};
 use crate::cli::output;
@@ -62,6 +62,8 @@ struct Statistics {
     tree_bytes: usize,
     /// Of the process until now, all else included; null where the system does not tell.
     peak_bytes: Option<u64>,
+    /// What that was estimated to be before the world was built.
+    estimated_peak_bytes: u64,
     load_seconds: f64,
     build_seconds: f64,
     render_seconds: f64,
@@ -102,7 +104,7 @@ impl<'a> Summary<'a> {
         listed.extend(settings::list_encoding(job.format, options));
         let mut new_warnings = warnings(&render.counters, &prepared.scene.settings);
         new_warnings.extend(missed(render, &prepared.scene.settings));
-        let known = prepared.warnings.iter().chain(&prepared.unseen);
+        let known = prepared.warnings.iter().chain(&prepared.empty);
         Self {
             program: "spherule",
             version: env!("CARGO_PKG_VERSION"),
@@ -122,7 +124,7 @@ impl<'a> Summary<'a> {
     }
 
     /// Prints it, as JSON or else as lines, and the warnings that are new.
-    pub(super) fn tell(&self, report: ReportArgs, told: &mut Told) {
+    pub(super) fn tell(&self, report: ReportArgs, notices: &mut Notices) {
         if report.json {
             output::print_json(self);
         } else if !report.quiet {
@@ -132,7 +134,7 @@ impl<'a> Summary<'a> {
             }
         }
         let old = self.warnings.len() - self.new_warnings;
-        self.warnings[old..].iter().for_each(|text| told.warn(text));
+        self.warnings[old..].iter().for_each(|text| notices.warn(text));
     }
 
     fn print_stages(&self) {
@@ -175,7 +177,7 @@ impl<'a> Summary<'a> {
             HumanCount(statistics.bounce_rays),
             HumanCount(statistics.shadow_rays),
             plural(statistics.exact_decisions, "decision"),
-            memory::told(statistics.spheres, columns, statistics.peak_bytes),
+            memory::describe(statistics.spheres, columns, statistics.peak_bytes),
         ));
         self.noise.iter().for_each(NoiseSummary::print);
     }
@@ -223,6 +225,7 @@ impl Statistics {
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),
             peak_bytes: spherule::memory::peak(),
+            estimated_peak_bytes: prepared.estimate,
             load_seconds: prepared.load.as_secs_f64(),
             build_seconds: prepared.build.as_secs_f64(),
             render_seconds: seconds,

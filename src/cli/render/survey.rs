@@ -6,7 +6,9 @@ use super::prepare::Staged;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::views::corners;
-use spherule::scene::particles::{Particles, Radii, ReadOptions};
+use spherule::scene::particles::{
+    Coloring, Looks, ParticleFrame, Particles, Radii, ReadOptions, SharedNames, of_frame,
+};
 use spherule::scene::{Camera, SceneError};
 use spherule::world::WorldError;
 use spherule::world::framing::SequenceBounds;
@@ -26,8 +28,12 @@ pub(in crate::cli) struct Common {
 #[derive(Default)]
 pub(super) struct Survey {
     bounds: Option<SequenceBounds>,
-    /// Ends of the color map.
-    pub(super) ends: Option<[f64; 2]>,
+    /// Ends of the color map: the least and the greatest number in all frames.
+    ends: Option<[f64; 2]>,
+    /// True if colors stand for numbers, also where no frame has one that has a color.
+    numeric: bool,
+    /// Types and texts, whose places choose their colors.
+    names: SharedNames,
     /// The radius of all particles, before it is scaled, if it may have been guessed.
     radius: Option<f64>,
     /// Warnings about the first frame that shows a sphere.
@@ -45,7 +51,19 @@ impl Survey {
         Self { all, ..Self::default() }
     }
 
-    /// Looks at a frame, of which this takes what it has to know.
+    /// Returns the particles of a frame, with types and texts at the places that they have in all
+    /// frames.
+    pub(super) fn particles(
+        &mut self,
+        path: &Path,
+        mut frame: ParticleFrame,
+        options: &ReadOptions,
+    ) -> Result<Particles, SceneError> {
+        self.names.share(&mut frame);
+        of_frame(path, frame, options)
+    }
+
+    /// Looks at the particles of a frame.
     pub(super) fn add(
         &mut self,
         job: &Job,
@@ -54,6 +72,9 @@ impl Survey {
     ) -> Result<(), Failure> {
         self.frames += 1;
         let radius = guessed(&particles, options);
+        if let Coloring::Column(colors) = &job.looks.coloring {
+            self.numeric |= colors.is_numeric(&particles);
+        }
         let Staged { mut scene, cuts, legend, .. } = Staged::load(job, Some(particles))?;
         if scene.spheres.is_empty() {
             return Ok(());
@@ -67,7 +88,8 @@ impl Survey {
         }
         if let Some(legend) = legend {
             let range = legend.scale.range;
-            self.ends.get_or_insert([range.low(), range.high()]);
+            let [low, high] = self.ends.unwrap_or([range.low(), range.high()]);
+            self.ends = Some([low.min(range.low()), high.max(range.high())]);
         }
         if let Some(bounds) = &mut self.bounds {
             bounds.add(&scene, &corners(&scene));
@@ -82,10 +104,23 @@ impl Survey {
         }
     }
 
-    /// Refuses frames that all show no sphere.
-    pub(super) fn check(&self, path: &Path) -> Result<(), SceneError> {
+    /// Has colors stand for the same numbers in all frames.
+    pub(super) fn fix_colors(&self, coloring: &mut Coloring) {
+        if let (Coloring::Column(colors), Some(ends)) = (coloring, self.ends) {
+            colors.ends.get_or_insert(ends);
+        }
+    }
+
+    /// Refuses frames that all show no sphere, or that all lack what looks are for.
+    pub(super) fn check(&self, path: &Path, looks: &Looks) -> Result<(), SceneError> {
         if self.shown > 0 {
-            return Ok(());
+            looks.check_types(path, &self.names)?;
+            return match &looks.coloring {
+                Coloring::Column(colors) if self.numeric && self.ends.is_none() => {
+                    Err(colors.no_range(path))
+                }
+                _ => Ok(()),
+            };
         }
         let frames = plural(self.frames, "frame");
         let message = format!("shows no sphere in the {frames} that the camera is to frame");

@@ -142,8 +142,11 @@ fn draw_help(letters: &mut Letters, page: usize, target: &mut Target) {
         }
     }
     if more {
-        let text = format!("page {} of {}: ? for the next", page + 1, pages.len());
-        let text = wrap(letters, &text, target.width.saturating_sub(2 * margin), 1).concat();
+        let (page, count, width) = (page + 1, pages.len(), target.width.saturating_sub(2 * margin));
+        let long = format!("page {page} of {count}: ? for the next");
+        let fits = letters.width(&long) <= width;
+        let text = if fits { long } else { format!("{page} of {count}: ?") };
+        let text = wrap(letters, &text, width, 1).concat();
         letters.draw(&text, (margin, rows * line), ACCENT, target);
     }
 }
@@ -151,7 +154,10 @@ fn draw_help(letters: &mut Letters, page: usize, target: &mut Target) {
 /// The parts of the status line.
 pub(super) fn status(viewer: &Viewer) -> Vec<String> {
     let facts = &viewer.facts;
-    let mut parts = vec![format!("{} spheres", HumanCount(facts.spheres as u64))];
+    let mut parts = Vec::new();
+    if facts.spheres > 0 || viewer.loading.is_none() {
+        parts.push(format!("{} spheres", HumanCount(facts.spheres as u64)));
+    }
     if let Some(picture) = &viewer.shown {
         parts.push(format!(
             "{} of {} samples",

@@ -111,8 +111,9 @@ impl Headless {
                 self.save(&path.with_extension("toml"))?;
             }
             Some(Action::Load) => {
+                self.session.make_room();
                 let stage = self.load()?;
-                self.session.set(stage);
+                self.session.set(stage, &self.job);
             }
             Some(Action::Frame(side)) => self.session.frame(side),
             Some(Action::Pick(pixel, purpose)) => {

@@ -1,4 +1,4 @@
-//! From what the viewer wants to show to a world.
+//! Loading of what the viewer shows: particles or a scene, their looks, and their world.
 
 use super::content::Content;
 use super::digits;
@@ -23,27 +23,27 @@ use std::path::Path;
 use std::sync::{Arc, RwLock};
 use std::time::SystemTime;
 
-/// Values of columns that are read though nothing asks for them yet: of 200 000 particles, 20
-/// columns.
+/// Maximum number of values in columns that are read before they are asked for: 20 columns of 200 000
+/// particles.
 const VALUES: usize = 4_000_000;
 
-/// Bytes of a file that is gone through to count its frames.
+/// Maximum length in bytes of a file whose frames are counted at once.
 const SHORT: u64 = 1 << 26;
 
-/// Columns that there are without a file's.
+/// Columns that every file has.
 const USUAL: [&str; 5] = ["x", "y", "z", "radius", "type"];
 
-/// Spheres of which no second copy is kept: they are read again when they are needed.
+/// Number of spheres from which no second copy is kept: they are read again when they are needed.
 const MANY: usize = 1 << 20;
 
-/// Spheres that stand for [`MANY`] where only their outline matters.
+/// Number of spheres in the sketch of a large scene, which serves where only the outline matters.
 const SKETCH: usize = 100_000;
 
 /// Why many spheres of standard input can't be read again.
 const READ_ONCE: &str = "standard input can be read only once, and holds too many spheres to keep a \
                          copy of them: write it to a file";
 
-/// What was read, as it was read.
+/// Particles or a scene as read, before looks are applied.
 pub(super) struct Base {
     particles: Particles,
     /// All of a scene file but its spheres; `None` for a file of particles.
@@ -54,7 +54,7 @@ pub(super) struct Base {
     more_columns: bool,
 }
 
-/// What is to be seen, and what is known of it.
+/// A scene that is shown, its world, and the facts about it.
 pub(super) struct Stage {
     /// With its spheres, or with a sketch of them.
     pub(super) scene: Arc<RwLock<Scene>>,
@@ -77,7 +77,7 @@ pub(super) struct Origin {
     stamp: Option<(SystemTime, u64)>,
 }
 
-/// What is known of spheres besides where they are.
+/// Types and columns of the spheres.
 #[derive(Default)]
 pub(super) struct Labels {
     kinds: Kinds,
@@ -86,7 +86,7 @@ pub(super) struct Labels {
 }
 
 impl Base {
-    /// Reads what a job speaks of. `before` is what was read last, which may be known to do.
+    /// Reads the job's source. `before` was read last, and is returned if it has all that is needed.
     pub(super) fn load(
         job: &Job,
         content: &Content,
@@ -157,7 +157,7 @@ impl Base {
     }
 }
 
-/// Particles as they are to look, in a scene that has no camera yet.
+/// Particles with their looks applied, in a scene whose camera is not placed yet.
 struct Dressed {
     scene: Scene,
     labels: Labels,
@@ -190,7 +190,7 @@ impl Dressed {
     }
 }
 
-/// Loads one stage after another, and keeps what was read last unless that is too much.
+/// Loads one stage after another, and keeps what was read last unless it is large.
 pub(super) struct Loader {
     job: Arc<Job<'static>>,
     base: Option<Base>,
@@ -203,7 +203,7 @@ impl Loader {
         Self { job, base: None, began: false }
     }
 
-    /// Reads what is to be seen, makes it look as it is to look, and builds its world.
+    /// Reads the source if necessary, applies the looks, and builds the world.
     pub(super) fn load(
         &mut self,
         content: &Content,
@@ -298,6 +298,11 @@ impl Loader {
 }
 
 impl Origin {
+    /// Returns whether the spheres can be read once more, as far as that is known before.
+    pub(super) fn is_readable(&self) -> bool {
+        !is_standard_input(&self.job.source) && self.stamp == stamp(&self.job.source)
+    }
+
     /// Reads the spheres of the stage once more.
     ///
     /// # Errors
@@ -373,7 +378,7 @@ impl Labels {
     }
 }
 
-/// Drops what is not drawn, and colors the rest; returns what the colors stand for.
+/// Drops hidden particles and colors the rest; returns the legend of the colors.
 fn dress(
     job: &Job,
     content: &Content,

@@ -2,7 +2,7 @@
 
 use super::canvas::Canvas;
 use super::command::Purpose;
-use super::load::Stage;
+use super::load::{Origin, Stage};
 use super::pace::Pace;
 use super::studio::{Picked, Studio};
 use super::viewer::Viewer;
@@ -41,11 +41,21 @@ impl Session {
         self.studio = Some(Studio::new(stage, job.tracer, builder(job, &self.viewer)));
     }
 
+    /// Drops a large world that can be read again, to make room for the next.
+    pub(super) fn make_room(&mut self) {
+        let is_large =
+            |studio: &mut Studio| studio.stage.origin.as_ref().is_some_and(Origin::is_readable);
+        drop(self.studio.take_if(is_large));
+    }
+
     /// Shows another scene from where the camera stands.
-    pub(super) fn set(&mut self, stage: Stage) {
+    pub(super) fn set(&mut self, stage: Stage, job: &Job) {
         self.viewer.loaded(stage.facts.clone());
-        if let Some(studio) = &mut self.studio {
-            studio.set(stage);
+        match &mut self.studio {
+            Some(studio) => studio.set(stage),
+            None => {
+                self.studio = Some(Studio::new(stage, job.tracer, builder(job, &self.viewer)));
+            }
         }
     }
 

@@ -52,6 +52,8 @@ struct App {
     origin: Option<Origin>,
     /// Content that was loaded last.
     loaded: Content,
+    /// Content to return to if loading fails, once its world was dropped to make room for the next.
+    fallback: Option<Content>,
     job: Arc<Job<'static>>,
     savers: Vec<JoinHandle<()>>,
     /// Files that are being written.
@@ -105,6 +107,7 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
         scene: None,
         origin: None,
         loaded: Content::default(),
+        fallback: None,
         job,
         savers: Vec::new(),
         files: 0,
@@ -181,7 +184,7 @@ impl App {
         match action {
             None => (),
             Some(Action::Quit) => return self.quit(events),
-            Some(Action::Load) => self.workers.load(&self.viewer.content),
+            Some(Action::Load) => self.load(),
             Some(Action::Save) => {
                 self.saving = true;
                 self.viewer.say("saving as soon as the picture is whole");
@@ -197,6 +200,18 @@ impl App {
             }
         }
         self.go_on();
+    }
+
+    /// Has the viewer's content loaded. A large world leaves the memory first if it can be read again.
+    fn load(&mut self) {
+        if self.origin.as_ref().is_some_and(Origin::is_readable) {
+            self.fallback = Some(self.loaded.clone());
+        }
+        if self.fallback.is_some() {
+            self.workers.replace(&self.viewer.content);
+        } else {
+            self.workers.load(&self.viewer.content);
+        }
     }
 
     /// Orders the next picture and shows what is new.

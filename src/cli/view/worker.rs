@@ -32,16 +32,25 @@ pub(super) enum News {
     Saved(Result<PathBuf, Failure>),
 }
 
+/// What is to be loaded.
+struct Request {
+    content: Content,
+    /// Closed once the world that is shown is dropped, if it is dropped before.
+    dropped: Option<Receiver<()>>,
+}
+
 /// What is to be rendered.
 enum Task {
     Set(Box<Stage>),
+    /// Drops the world, and then the sender.
+    Drop(Sender<()>),
     Expose(Order, Arc<AtomicBool>),
     Pick((Camera, Settings), (u32, u32), Purpose),
 }
 
 /// The threads, as the window sees them.
 pub(super) struct Workers {
-    contents: Sender<Content>,
+    requests: Sender<Request>,
     tasks: Sender<Task>,
     /// What was ordered last, and the flag that cancels it.
     ordered: Option<(Order, Arc<AtomicBool>)>,
@@ -57,7 +66,7 @@ impl Workers {
         job: &Arc<Job<'static>>,
         tell: impl Fn(News) -> bool + Clone + Send + 'static,
     ) -> Result<Self, Failure> {
-        let (contents, wanted) = channel();
+        let (requests, wanted) = channel();
         let (tasks, todo) = channel();
         // A render waits for all threads of its pool: it does not share them with a reader.
         let (loaders, renderers) = (job.pool()?, job.pool()?);
@@ -70,13 +79,25 @@ impl Workers {
             let studio = |stage| Studio::new(stage, tracer, builder);
             render(&renderers, &todo, studio, tell);
         });
-        Ok(Self { contents, tasks, ordered: None })
+        Ok(Self { requests, tasks, ordered: None })
     }
 
     /// Has something loaded.
     pub(super) fn load(&self, content: &Content) {
-        // Who does not receive has ended, and so does the window.
-        let _ = self.contents.send(content.clone());
+        self.request(content, None);
+    }
+
+    /// Has something loaded after the world that is shown has left the memory.
+    pub(super) fn replace(&mut self, content: &Content) {
+        self.cancel();
+        let (done, dropped) = channel();
+        let _ = self.tasks.send(Task::Drop(done));
+        self.request(content, Some(dropped));
+    }
+
+    fn request(&self, content: &Content, dropped: Option<Receiver<()>>) {
+        // A thread that does not receive has ended, and so does the window.
+        let _ = self.requests.send(Request { content: content.clone(), dropped });
     }
 
     /// Has pictures made of what was loaded.
@@ -117,19 +138,31 @@ impl Workers {
 fn load(
     pool: &ThreadPool,
     mut loader: Loader,
-    wanted: &Receiver<Content>,
+    wanted: &Receiver<Request>,
     tell: impl Fn(News) -> bool + Clone + Send + 'static,
     quiet: bool,
 ) {
-    while let Ok(mut content) = wanted.recv() {
-        while let Ok(newer) = wanted.try_recv() {
-            content = newer;
+    let mut next = None;
+    while let Some(mut request) = next.take().or_else(|| wanted.recv().ok()) {
+        if let Some(newest) = wanted.try_iter().last() {
+            request = newest;
+        }
+        let Request { content, dropped } = request;
+        let replaces = dropped.is_some();
+        if let Some(dropped) = dropped {
+            // Nothing is sent: this waits until the sender is gone.
+            let _ = dropped.recv();
         }
         let progress = Arc::new(Progress::default());
         let told = tell.clone();
         let watch = Watch::start(&progress, quiet, move |loading| _ = told(News::Loading(loading)));
         let staged = pool.install(|| loader.load(&content, &progress).map(Box::new));
         drop(watch);
+        next = wanted.try_iter().last();
+        if replaces && next.is_some() {
+            // Two large worlds do not fit into the memory of one.
+            continue;
+        }
         if !tell(News::Staged(staged)) {
             return;
         }
@@ -148,6 +181,10 @@ fn render(
         let mut last = None;
         for task in std::iter::once(first).chain(todo.try_iter()) {
             match (task, &mut studio) {
+                (Task::Drop(done), _) => {
+                    (studio, last) = (None, None);
+                    drop(done);
+                }
                 (Task::Set(stage), None) => studio = Some(new(*stage)),
                 (Task::Set(stage), Some(studio)) => studio.set(*stage),
                 (Task::Expose(order, cancel), _) => last = Some((order, cancel)),

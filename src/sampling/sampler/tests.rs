@@ -254,3 +254,45 @@ fn a_row_of_a_split_is_its_points() {
         }
     }
 }
+
+#[test]
+fn replicas_are_independent() {
+    for kind in KINDS {
+        let sampler = Sampler::new(kind, 5, 16);
+        let mut seen = HashSet::new();
+        for sampler in
+            [sampler, sampler.replica(0), sampler.replica(1), sampler.replica(0).replica(0)]
+        {
+            assert!(seen.insert(bits(sampler.draw4(&sampler.start(3, 4, 5), 0))), "{kind:?}");
+        }
+        let again = sampler.replica(1);
+        assert!(!seen.insert(bits(again.draw4(&again.start(3, 4, 5), 0))), "{kind:?}");
+    }
+}
+
+/// Two keys that give the same numbers would make two pixels alike.
+#[test]
+fn every_bit_of_a_key_counts() {
+    for kind in KINDS {
+        let sampler = Sampler::new(kind, 5, 16);
+        let path = sampler.start(3, 4, 5);
+        let mut replicas = HashSet::from([sampler.replica(0).seed]);
+        let mut splits = HashSet::from([sampler.split(&path, 1, 4).key]);
+        let mut beyond = HashSet::from([bits(sampler.draw4(&path, 64))]);
+        let mut others = HashSet::from([path.other().key]);
+        for bit in 0..64 {
+            let seed = sampler.seed ^ 1 << bit;
+            let path = PathState { key: path.key ^ 1 << bit, ..path };
+            assert!(replicas.insert(Sampler { seed, ..sampler }.replica(0).seed), "{bit}");
+            assert!(splits.insert(sampler.split(&path, 1, 4).key), "{kind:?} {bit}");
+            assert!(beyond.insert(bits(sampler.draw4(&path, 64))), "{kind:?} {bit}");
+            assert!(others.insert(path.other().key), "{bit}");
+        }
+    }
+}
+
+#[test]
+fn debug_output_names_the_points_without_their_tables() {
+    let text = format!("{:?}", Sampler::new(SamplerKind::Sobol, 5, 16));
+    assert!(text.contains("Sobol { .. }") && text.len() < 200, "{text}");
+}

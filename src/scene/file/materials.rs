@@ -45,6 +45,12 @@ impl Materials {
         suggest::help(name, self.rows.iter().map(|row| row.name.as_str()), "the scene's materials")
     }
 
+    /// Whether the material of a row emits light; one that is still to be added does not.
+    pub(super) fn emits(&self, row: u32) -> bool {
+        let named = self.rows.get(row as usize).map(|named| &named.material);
+        matches!(named, Some(Material::Emitter { .. }))
+    }
+
     /// All rows.
     pub(super) fn rows(&self) -> &[NamedMaterial] {
         &self.rows

@@ -20,12 +20,14 @@ mod value;
 
 use self::block::{Block, Source};
 use self::materials::Materials;
+use super::error::clipped;
 use super::particles::{self, Particles, ReadOptions, TypeMaterial, listed};
 use super::{
     Camera, Environment, EnvironmentMap, Light, Look, Material, NamedMaterial, Rgb, Scene,
     SceneError, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
+use memchr::memchr_iter;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -36,8 +38,12 @@ const LONGEST: u64 = 1 << 26;
 /// Name of the material of particles that have none of their own.
 const PARTICLES: &str = "particles";
 
-/// Bytes that a byte of a file becomes while it is read, at most: lists of short values.
-const TREE_BYTES: u64 = 100;
+/// Bytes that signs of a file become while it is parsed: of keys, values of lists, lines and sections, as
+/// measured over files of spheres.
+const SIGN_BYTES: [(u8, u64); 4] = [(b'=', 106), (b',', 373), (b'\n', 71), (b'[', 270)];
+
+/// Bytes that every byte of a file becomes besides.
+const TEXT_BYTES: u64 = 8;
 
 /// Returns the files that a scene file names, whether they exist or not: particle files and the picture of
 /// the environment. A file that is no scene names none; [`Scene::load`] says what is wrong with it. Nor does a
@@ -70,7 +76,7 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
 
 /// Checks that there is memory for the tables of a text.
 fn check_memory(text: &str) -> Result<(), Shortage> {
-    memory::check(text.len() as u64 * TREE_BYTES)
+    memory::check(parse_bytes(text))
 }
 
 impl Scene {
@@ -139,7 +145,7 @@ impl Scene {
         if !unknown.is_empty() {
             let known = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
             let reason = format!("unknown materials, drawn in the usual one (known are {known})");
-            particles.warnings.push(format!("{title}: {}", listed(&reason, &unknown)));
+            particles.warnings.push(format!("{title}: {}", clipped(listed(&reason, &unknown))));
         }
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);
@@ -151,6 +157,12 @@ impl Scene {
             ..Self::default()
         }
     }
+}
+
+/// Bytes that parsing a text takes, about.
+fn parse_bytes(text: &str) -> u64 {
+    let of_sign = |(sign, bytes)| memchr_iter(sign, text.as_bytes()).count() as u64 * bytes;
+    SIGN_BYTES.into_iter().map(of_sign).sum::<u64>() + text.len() as u64 * TEXT_BYTES
 }
 
 /// Reads all sections, in an order in which each finds what it refers to.

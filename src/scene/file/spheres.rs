@@ -7,7 +7,7 @@ use super::value::{Limits, Value};
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
 use crate::scene::particles::{self, Format, Radii, ReadOptions};
 use crate::scene::{Rgb, Scene, SceneError, Spheres};
-use crate::{memory, world::World};
+use crate::{memory, world::Footprint};
 
 pub(super) fn read(
     source: &Source,
@@ -48,7 +48,15 @@ fn read_generate(
     let generator = generator(block)?;
     let seed = block.value("seed").map_or(Ok(0), |value| value.whole(0, u64::MAX))?;
     let own = block.has("material").then(|| materials::row(block, materials));
-    check_room(spheres.len(), generator.count(), materials).map_err(|message| {
+    let row = match &own {
+        Some(Ok(row)) => *row,
+        _ => materials.position(materials::DEFAULT).unwrap_or(materials.rows().len() as u32),
+    };
+    let mut added = generator.footprint();
+    let emits = !added.materials && materials.emits(row);
+    added.emitters = if emits { added.spheres } else { 0 };
+    added.materials |= row > 0;
+    check_room(spheres, &added, 0, materials).map_err(|message| {
         let count = block.value("count").or_else(|| block.value("level"));
         count.map_or_else(|| block.error(message.as_str()), |value| value.error(message.as_str()))
     })?;
@@ -156,7 +164,8 @@ fn read_file(
         return Err(error.with_help("paths are relative to the folder of the scene file"));
     }
     let particles = particles::read(&path, &options)?;
-    check_room(scene.spheres.len(), particles.spheres.len() as u64, materials)
+    let added = Footprint::of_columns(&particles.spheres, &[]);
+    check_room(&scene.spheres, &added, added.scene(), materials)
         .map_err(|message| file.error(message))?;
     let mut rows = Vec::new();
     for name in &particles.material_names {
@@ -180,12 +189,18 @@ fn format(value: &Value) -> Result<Format, SceneError> {
     Ok(format.map_or(Format::Xyzr, |(_, format)| format))
 }
 
-/// What is wrong with so many spheres, if anything is.
-fn check_room(before: usize, added: u64, materials: &Materials) -> Result<(), String> {
-    let total = (before as u64).saturating_add(added);
-    if total <= Spheres::MAX {
-        // The columns here, and then the world's: too few even for these need no long wait.
-        let need = added * Spheres::BYTES + World::bytes(total, materials.rows());
+/// What is wrong with so many more spheres, if anything is; `held` bytes of them are there already.
+fn check_room(
+    before: &Spheres,
+    added: &Footprint,
+    held: u64,
+    materials: &Materials,
+) -> Result<(), String> {
+    let before = Footprint::of_columns(before, materials.rows());
+    let (total, added) = (before.with(added), added.spheres);
+    if total.spheres <= Spheres::MAX {
+        // The columns here, and then the world's: too little even for these needs no long wait.
+        let need = total.peak().saturating_sub(before.scene()).saturating_sub(held);
         return memory::check(need)
             .map_err(|shortage| format!("asks for {added} spheres, which need {shortage}"));
     }

@@ -20,6 +20,7 @@ pub use weekend::Weekend;
 
 use super::{NamedMaterial, Spheres};
 use crate::memory;
+use crate::world::{ColorColumn, Footprint};
 use thiserror::Error;
 
 /// Spheres, and the materials they bring along.
@@ -79,6 +80,7 @@ impl Generator {
     /// memory holds: this is found before anything is made. Or some of them are beyond double
     /// precision.
     pub fn generate(&self, seed: u64) -> Result<Group, GenerateError> {
+        self.check_memory()?;
         let group = match self {
             Self::Grid(grid) => grid.generate(),
             Self::Field(field) => field.generate(seed),
@@ -92,6 +94,30 @@ impl Generator {
         let message = "is too large or too small: double precision does not hold all spheres";
         require((0..spheres.len()).all(sound), self.measure(), message)?;
         Ok(group)
+    }
+
+    /// Refuses more spheres than memory holds; what no scene holds is refused later.
+    fn check_memory(&self) -> Result<(), GenerateError> {
+        let count = self.count();
+        if count > Spheres::MAX {
+            return Ok(());
+        }
+        memory::check(self.footprint().scene()).or_else(|shortage| {
+            let parameter = if matches!(self, Self::Sphereflake(_)) { "level" } else { "count" };
+            require(false, parameter, format!("asks for {count} spheres: {shortage}"))
+        })
+    }
+
+    /// Counts that decide how much memory its spheres take.
+    pub fn footprint(&self) -> Footprint {
+        let (colors, materials) = match self {
+            Self::Field(field) => (field.colors, field.mix.is_some()),
+            Self::Volume(volume) => (volume.colors, false),
+            Self::Weekend(_) => (true, true),
+            Self::Grid(_) | Self::Lattice(_) | Self::Sphereflake(_) => (false, false),
+        };
+        let colors = if colors { ColorColumn::Rows } else { ColorColumn::None };
+        Footprint { spheres: self.count(), colors, materials, ..Footprint::default() }
     }
 
     /// The parameter that scales it.
@@ -133,10 +159,6 @@ fn room(count: u64, parameter: &'static str) -> Result<Spheres, GenerateError> {
         format!("asks for {count} spheres; a scene holds 1 to {most}")
     };
     require((1..=most).contains(&count), parameter, message)?;
-    let enough = memory::check(count * Spheres::BYTES);
-    enough.or_else(|shortage| {
-        require(false, parameter, format!("asks for {count} spheres: {shortage}"))
-    })?;
     let mut spheres = Spheres::default();
     let reserved = usize::try_from(count).is_ok_and(|count| spheres.try_reserve(count).is_ok());
     require(reserved, parameter, format!("asks for {count} spheres, more than memory holds"))?;

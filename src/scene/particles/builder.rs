@@ -13,8 +13,11 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Number of rows before memory is looked at for the first time.
-const ROOM: usize = 1 << 16;
+/// Rows that are read before anyone asks whether there is memory for more.
+const FIRST_ROOM: usize = 1 << 16;
+
+/// Bytes of columns that may be copied when they grow; allocators extend larger ones where they are.
+const COPIED: u64 = 1 << 27;
 
 /// A frame that is being read.
 pub(super) struct Builder {
@@ -27,7 +30,7 @@ pub(super) struct Builder {
     kind_rows: HashMap<Kind, u32>,
     materials: Codebook,
     extras: Vec<Extra>,
-    /// The number of rows from which on there may be too little memory.
+    /// The number of rows at which to ask for memory again.
     room: usize,
     /// Number of rows beyond which only columns are kept that were asked for by name.
     most_rows: usize,
@@ -52,7 +55,7 @@ impl Builder {
             materials: Codebook::default(),
             extras: schema.extras.iter().map(|name| Extra::new(name)).collect(),
             schema: schema.clone(),
-            room: ROOM.min(most_rows),
+            room: FIRST_ROOM.min(most_rows),
             most_rows,
             needed_columns: schema.needed_columns(),
         }
@@ -199,24 +202,47 @@ impl Builder {
         column.codes.push(code);
     }
 
-    /// Before columns grow, which take twice the memory then: whether there is so much.
+    /// Finds out whether there is memory for some more rows. Where the columns double, which their
+    /// lengths are powers of two for, address space for as many as there are is needed at once.
     fn check_room(&mut self) -> Result<(), SceneError> {
-        let count = self.frame.x.len() as u64;
-        if self.room == self.most_rows {
+        let rows = self.room;
+        if rows == self.most_rows {
             self.extras[self.schema.asked..].fill_with(|| Extra::LeftOut);
         }
-        let next = self.room.next_power_of_two().max(ROOM / 2) * 2;
-        self.room = if self.room < self.most_rows { next.min(self.most_rows) } else { next };
+        let next = (rows + rows / 8).min((rows + 1).next_power_of_two()).max(FIRST_ROOM);
+        self.room = if rows < self.most_rows { next.min(self.most_rows) } else { next };
+        let (count, more) = (rows as u64, (self.room - rows) as u64);
         if count >= Spheres::MAX {
             let message = format!("holds more than {} particles", Spheres::MAX);
             return Err(SceneError::whole_file(&self.path, message));
         }
-        let kept = self.extras.iter().filter(|extra| !matches!(extra, Extra::LeftOut)).count();
-        let bytes = Spheres::BYTES + 8 * kept as u64;
-        memory::check(count * bytes).map_err(|shortage| {
-            let message = format!("holds more than {count} particles, which need {shortage}");
+        let bytes = self.row_bytes();
+        let grown = if rows.is_power_of_two() { count * bytes } else { 0 };
+        // The columns as they are stay reserved until their copies are there, where they are copied.
+        let reserve = grown + grown.min(COPIED);
+        memory::check_growth(more * bytes, reserve).map_err(|shortage| {
+            let message =
+                format!("holds more than {count} particles; more of them need {shortage}");
             SceneError::whole_file(&self.path, message)
         })
+    }
+
+    /// Number of other columns that are kept.
+    fn kept_extras(&self) -> usize {
+        self.extras.iter().filter(|extra| !matches!(extra, Extra::LeftOut)).count()
+    }
+
+    /// Bytes of a row in all columns, by the rows that there are.
+    fn row_bytes(&self) -> u64 {
+        let frame = &self.frame;
+        let column = |bytes: usize, there: bool| if there { bytes } else { 0 };
+        let bytes = size_of::<[f64; 3]>()
+            + column(size_of::<f64>(), !frame.radius.is_empty())
+            + column(size_of::<Rgb>(), self.schema.has_color())
+            + column(frame.kinds.codes.width(), !frame.kinds.codes.is_empty())
+            + column(frame.materials.codes.width(), !frame.materials.codes.is_empty())
+            + size_of::<f64>() * self.kept_extras();
+        bytes as u64
     }
 
     /// What was read.
@@ -239,4 +265,74 @@ pub(super) fn share(value: f64) -> f32 {
 pub(super) fn add(names: &mut Vec<String>, name: &str) -> u32 {
     names.push(name.to_owned());
     names.len() as u32 - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::particles::ReadOptions;
+
+    fn builder(columns: &str) -> Builder {
+        let options =
+            ReadOptions { columns: columns.parse().expect("columns"), ..ReadOptions::default() };
+        let names = ["x", "y", "z", "radius", "type", "red", "green", "blue", "q", "t"];
+        let schema = Schema::new(names.map(str::to_owned).into(), &options).expect("a schema");
+        Builder::new(&Path::new("p").into(), Format::Csv, &Arc::new(schema))
+    }
+
+    fn push(builder: &mut Builder, rows: usize, kinds: usize) {
+        let path = Path::new("p").into();
+        for row in 0..rows {
+            let text = format!("1,2,3,4,{},0,0,1,5,6", row % kinds);
+            let line = Line::new(&path, 1, text.as_bytes());
+            builder.row(&line, line.bytes.split(|&byte| byte == b',')).expect("a row");
+        }
+    }
+
+    /// Bytes that the columns of a frame take.
+    fn bytes(frame: &ParticleFrame) -> u64 {
+        let numbers = frame.numbers.iter().map(|column| column.values.len()).sum::<usize>();
+        let codes = frame.kinds.codes.len() * frame.kinds.codes.width();
+        let doubles = 3 * frame.x.len() + frame.radius.len() + numbers;
+        (8 * doubles + size_of_val(&frame.color[..]) + codes) as u64
+    }
+
+    #[test]
+    fn rows_take_the_bytes_of_their_columns() {
+        for (columns, kinds) in [("", 1), ("q", 1), ("q,t", 3), ("q,t", 300)] {
+            let mut builder = builder(columns);
+            push(&mut builder, 300, kinds);
+            let expected = builder.row_bytes() * 300;
+            assert_eq!(bytes(&builder.finish()), expected, "{columns} {kinds}");
+        }
+    }
+
+    #[test]
+    fn memory_is_asked_for_in_steps_of_an_eighth_that_end_where_columns_double() {
+        let mut builder = builder("");
+        let mut rooms = Vec::new();
+        let mut before = builder.room;
+        assert_eq!(before, FIRST_ROOM);
+        while before < 1 << 20 {
+            builder.check_room().expect("memory");
+            rooms.push(builder.room);
+            assert!(builder.room > before && builder.room <= before + before / 8, "{before}");
+            assert!(builder.room <= (before + 1).next_power_of_two());
+            before = builder.room;
+        }
+        for power in 17..=20 {
+            assert!(rooms.contains(&(1 << power)), "{rooms:?}");
+        }
+    }
+
+    #[test]
+    fn more_particles_than_a_scene_holds_are_refused() {
+        let mut builder = builder("");
+        builder.room = Spheres::MAX as usize;
+        let error = builder.check_room().expect_err("too many");
+        assert!(error.message.contains("more than"), "{error}");
+        builder.room = Spheres::MAX as usize - 1;
+        let message = builder.check_room().err().map_or_else(String::new, |error| error.message);
+        assert!(!message.ends_with("particles"), "{message}");
+    }
 }

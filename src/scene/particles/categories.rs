@@ -36,6 +36,15 @@ impl Codes {
         self.len() == 0
     }
 
+    /// Bytes of a code.
+    pub(super) fn width(&self) -> usize {
+        match self {
+            Self::Bytes(_) => 1,
+            Self::Shorts(_) => 2,
+            Self::Words(_) => 4,
+        }
+    }
+
     /// The code of row `row`, which is less than [`Codes::len`].
     #[inline]
     pub fn code(&self, row: usize) -> u32 {
@@ -67,6 +76,12 @@ impl Codes {
         } else {
             Self::Words(all.map(|row| self.code(row)).collect())
         };
+    }
+
+    /// Replaces each code by its entry in `places`.
+    pub(super) fn renumber(&mut self, places: &[u32]) {
+        let old = std::mem::take(self);
+        (0..old.len()).for_each(|row| self.push(places[old.code(row) as usize]));
     }
 
     /// Keeps the rows that `keep` is true for.
@@ -213,7 +228,10 @@ mod tests {
             codes.push(code);
             let narrow = matches!(codes, Codes::Bytes(_));
             assert_eq!(narrow, codes.len() <= 2);
+            let width = [1, 1, 2, 2, 4, 4][codes.len() - 1];
+            assert_eq!((codes.width(), codes.is_empty()), (width, false));
         }
+        assert!(Codes::default().is_empty());
         let all: Vec<u32> = (0..codes.len()).map(|row| codes.code(row)).collect();
         assert_eq!(all, [0, 255, 256, 3, 65_536, 7]);
         codes.retain(&[true, false, false, true, true, false]);

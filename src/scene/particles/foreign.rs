@@ -39,7 +39,7 @@ const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 
 /// Bytes by which binary files are known: place, bytes, name, way.
-const MAGICS: [(usize, &[u8], &str, &str); 25] = [
+const MAGICS: [(usize, &[u8], &str, &str); 26] = [
     (0, b"# vtk DataFile", "a VTK file", MESH),
     (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
     (0, b"CDF\x01", "a NetCDF file", WITH_TOPOLOGY),
@@ -57,6 +57,12 @@ const MAGICS: [(usize, &[u8], &str, &str); 25] = [
     (0, b"LASF", "a LAS point cloud", CLOUD),
     (0, b"ASTM-E57", "an E57 point cloud", CLOUD),
     (0, b"# .PCD", "a PCD point cloud", CLOUD),
+    (
+        0,
+        b"spherule-prepared\n",
+        "a scene that was prepared for rendering",
+        "render it: spherule render {file} -o {stem}.png; or name the file that it was made of",
+    ),
     (
         0,
         b"spherule-checkpoint\n",
@@ -358,12 +364,13 @@ fn is_poscar(lines: &[&[u8]]) -> bool {
         && (counts(5) && positions(6) || counts(6) && positions(7))
 }
 
-/// Two comments, then a number of atoms or of points and three numbers, four times.
+/// Two comments, then a number of atoms or of points and three numbers, four times, the first of which may
+/// be followed by another number. Rows of a table, five numbers each, are none.
 fn is_cube(lines: &[&[u8]]) -> bool {
-    let is_grid = |line: &&[u8]| {
+    let is_grid = |line: &[u8], most: usize| {
         let fields: Vec<&[u8]> = Fields::blanks(line).collect();
         let count = fields.first().map(|count| count.strip_prefix(b"-").unwrap_or(count));
-        (4..=5).contains(&fields.len())
+        (4..=most).contains(&fields.len())
             && count.is_some_and(|count| number::whole(count).is_some())
             && fields[1..].iter().all(|field| number::parse(field).is_some())
     };
@@ -371,7 +378,8 @@ fn is_cube(lines: &[&[u8]]) -> bool {
     // The first line of an XYZ file is a number.
     lines.len() > 6
         && number::whole(lines[0]).is_none()
-        && lines[2..6].iter().all(is_grid)
+        && is_grid(lines[2], 5)
+        && lines[3..6].iter().all(|line| is_grid(line, 4))
         && is_atom(&lines[6])
 }
 
@@ -483,6 +491,7 @@ mod tests {
                 ["VTK", "meshio.read('run.bin')"],
             ),
             (b"PAR1\0\0".to_vec(), ["Parquet", "read_parquet('run.bin')"]),
+            (b"spherule-prepared\n\0".to_vec(), ["prepared", "render run.bin -o run.png"]),
             (b"spherule-checkpoint\n\0".to_vec(), ["render that", "--resume run.bin"]),
         ] {
             let found = named(&content, "data/run.bin").replace("data/", "");
@@ -563,5 +572,89 @@ mod tests {
             named("ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\n".as_bytes(), "a.pdb.gz"),
             ""
         );
+    }
+
+    #[test]
+    fn tables_are_not_foreign() {
+        for columns in 3..=10 {
+            for (comments, first) in
+                (0..5).flat_map(|comments| (0..3).map(move |id| (comments, id)))
+            {
+                let numbers = " 1.0000000".repeat(columns - 1);
+                let rows = (first..first + 20).map(|id| format!("{id}{numbers}\n"));
+                let table = "# a comment\n".repeat(comments) + &rows.collect::<String>();
+                assert_eq!(named(table.as_bytes(), "a.txt"), "", "{table}");
+            }
+        }
+    }
+
+    #[test]
+    fn binary_files_that_only_begin_alike_are_not_named() {
+        let words = |words: &[u32], order: fn(u32) -> [u8; 4]| -> Vec<u8> {
+            words.iter().flat_map(|word| order(*word)).chain([0; 300]).collect()
+        };
+        let head = u32::from_le_bytes(*b"HEAD");
+        let other = u32::from_le_bytes(*b"POS ");
+        let gadget = words(&[8, head, 264, 8, 256], u32::to_le_bytes);
+        assert!(named(&gadget, "a").contains("Gadget"));
+        for content in [
+            words(&[1995, 0], u32::to_be_bytes),
+            words(&[1993, 12], u32::to_be_bytes),
+            words(&[7, 13], u32::to_be_bytes),
+            [&85_u32.to_le_bytes()[..], b"CORD", &[0; 90]].concat(),
+            words(&[84, 1], u32::to_le_bytes),
+            words(&[256], u32::to_le_bytes),
+            [&[0; 260][..], &256_u32.to_le_bytes(), &[0; 40]].concat(),
+            words(&[8, head, 264, 9], u32::to_le_bytes),
+            words(&[8, other, 264, 8], u32::to_le_bytes),
+            words(&[9, head, 264, 8], u32::to_le_bytes),
+        ] {
+            assert_eq!(binary(&content, Path::new("a")), None, "{:?}", &content[..20]);
+        }
+    }
+
+    #[test]
+    fn text_files_of_every_form_are_named() {
+        let mol = |counts: &str, end: &str| format!("a\n  b\n\n{counts}\n    2.0 0.0 0.0 C\n{end}");
+        for (content, word) in [
+            (mol("  0  0  0     0  0            999 V3000", ""), "SDF"),
+            (mol(" 12 12", "M  END\n"), "SDF"),
+            ("ZONE T=\"a\"\n1 2 3\n".to_owned(), "Tecplot"),
+            ("ZONE\n1 2 3\n".to_owned(), "Tecplot"),
+            ("solid part\n facet normal 0 0 1\nfacet normal 0 0 1\n".to_owned(), "STL"),
+            ("ANIMSTEPS 5\nCRYSTAL\n".to_owned(), "XSF"),
+            ("<?xml version=\"1.0\"?>\n<cml>\n".to_owned(), "CML"),
+            ("<molecule xmlns=\"http://www.xml-cml.org/schema\">\n".to_owned(), "CML"),
+            ("<?xml version=\"1.0\"?>\n<atoms>\n".to_owned(), "XML"),
+            ("v 1 2 3\nv 1 2 4\n".to_owned(), "OBJ"),
+        ] {
+            let found = named(content.as_bytes(), "in.txt");
+            assert!(found.contains(word), "{word}: {found}: {content}");
+        }
+    }
+
+    #[test]
+    fn text_files_that_only_begin_alike_are_not_named() {
+        let amber = "   1.0000000   2.0000000   3.0000000\n";
+        for content in [
+            "solid x y z\n1 2 3 4\n",
+            "x y z name\n1 2 3 facet\nfacet 1 2 3\n",
+            "PSF x y z\n1 2 3 4\n",
+            "PSF CMAP\n1 2 3\n",
+            "x y z name\n1 2 3 !N\n",
+            "a\nb\nc\nxx yy V2000\n",
+            "x y z r\n1 2 3 4\n5 6 7 8\n123 1 2 3\n",
+            "8\n1.0\n1 0 0\n0 1 0\n0 0 1\nO 1 1 2\nC 1 1 1\n",
+            "a\n1.0\nx\ny\nz\n1 2\nC 1 2 3\n",
+            "a\n1 2 3 4\n1 2 3\n1 2 3\n1 2 3\n2\nC 1 2 3\n",
+            "a\nb\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n1 2 3 4 5\n",
+            "a\nb\n1 2 3 4\n1 2 3 4\n1 2 3 4\n1 2 3 4",
+            &format!("2\n2\n{amber}"),
+            &format!("a\n2\n{}", amber.replace("2.0000000", "2.000000x")),
+            "ANIMSTEPS x y\n1 2 3\n",
+            "v 1\nv 2\n",
+        ] {
+            assert_eq!(named(content.as_bytes(), "a.txt"), "", "{content}");
+        }
     }
 }

@@ -98,4 +98,15 @@ mod tests {
         assert!(help(&["a b", "py", "pz"]).contains("--columns 'x=a b,y=py,z=pz';"));
         assert!(help(&["px", "py"]).contains("--columns x=NAME"));
     }
+
+    #[test]
+    fn help_names_columns_that_are_free_and_can_be_typed() {
+        let names = ["a,b", "", "c=d", "px", "py", "pz", "q"].map(str::to_owned);
+        let help = |roles: &str| {
+            let columns = roles.parse().expect("columns");
+            columns_help(&names, &ReadOptions { columns, ..ReadOptions::default() })
+        };
+        assert!(help("").contains("--columns x=px,y=py,z=pz;"), "{}", help(""));
+        assert!(help("radius=px").contains("--columns x=py,y=pz,z=q;"), "{}", help("radius=px"));
+    }
 }

@@ -89,3 +89,25 @@ impl<'l> Line<'l> {
         error.with_help(help)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_at_the_bytes_of_a_part() {
+        let (path, text) = (Path::new("p").into(), b"ab cd \xC3\xA4f".to_vec());
+        let line = Line::new(&path, 3, &text);
+        let copy = b"cd".to_vec();
+        for (field, column, span) in [
+            (&text[3..5], 4, 3..5),
+            (&text[6..], 7, 6..9),
+            (&text[9..], 9, 9..9),
+            // A copy may stand anywhere in the line.
+            (&copy[..], 1, 0..9),
+        ] {
+            let place = line.error_at(field, "wrong").place.expect("a place");
+            assert_eq!((place.line, place.column, place.span), (3, column, span));
+        }
+    }
+}

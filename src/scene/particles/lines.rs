@@ -74,6 +74,17 @@ impl Lines {
         self.number -= 1;
     }
 
+    /// Passes over blank lines; returns whether any other line follows, which is not passed.
+    pub(super) fn more(&mut self) -> Result<bool, SceneError> {
+        while let Some(line) = self.next()? {
+            if !line.is_blank() {
+                self.back();
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
     /// What follows, a block or less, which is not passed.
     pub(super) fn ahead(&mut self) -> Result<&[u8], SceneError> {
         while self.end - self.start < BLOCK / 4 && self.fill()? {}
@@ -210,9 +221,11 @@ mod tests {
             for count in 0..7 {
                 let mut lines = lines("1\n22\n333\n4444\n5", drop);
                 assert_eq!(lines.skip(count).expect("lines"), count.min(5));
-                let next = lines.next().expect("a line").map(|line| line.text().into_owned());
+                let next = lines.next().expect("a line");
+                let next = next.map(|line| (line.text().into_owned(), line.number_in_file()));
                 let expected = ["1", "22", "333", "4444", "5"].get(count as usize);
-                assert_eq!(next.as_deref(), expected.copied(), "{drop} {count}");
+                let expected = expected.map(|text| ((*text).to_owned(), count as usize + 1));
+                assert_eq!(next, expected, "{drop} {count}");
             }
         }
     }
@@ -232,5 +245,48 @@ mod tests {
         let mut lines = lines(&"1".repeat(LONGEST + BLOCK), BLOCK);
         let error = lines.next().err().expect("a fault");
         assert!(error.message.contains("longer than"), "{error}");
+    }
+
+    #[test]
+    fn a_part_of_what_follows_is_seen_ahead() {
+        let text = "1".repeat(60_000) + "\n" + &"2".repeat(200_000);
+        let mut long = lines(&text, 70_000);
+        assert!(long.ahead().expect("bytes").len() >= BLOCK / 4);
+        assert_eq!(long.next().expect("a line").map(|line| line.bytes.len()), Some(60_000));
+        let ahead = long.ahead().expect("bytes");
+        assert!(ahead.len() >= BLOCK / 4 && ahead.iter().all(|byte| *byte == b'2'));
+        assert_eq!(long.next().expect("a line").map(|line| line.bytes.len()), Some(200_000));
+        assert_eq!(lines("a\nb", 1).ahead().expect("bytes"), b"a\nb");
+    }
+
+    /// Gives these bytes, then errors of these kinds.
+    struct Fails(&'static [u8], Vec<io::ErrorKind>);
+
+    impl Read for Fails {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            if let Some(kind) = self.1.pop() {
+                return Err(kind.into());
+            }
+            self.0.read(buffer)
+        }
+    }
+
+    fn failing(kinds: &[io::ErrorKind]) -> Lines {
+        let reader = Box::new(Fails(b"one\ntwo\n", kinds.to_vec()));
+        let progress = ReadProgress::default();
+        Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader, progress })
+    }
+
+    #[test]
+    fn reads_go_on_after_a_signal_and_other_faults_are_told() {
+        let mut lines = failing(&[io::ErrorKind::Interrupted; 3]);
+        assert_eq!(lines.skip(9).expect("lines"), 2);
+        for (kind, cut_off) in
+            [(io::ErrorKind::UnexpectedEof, true), (io::ErrorKind::PermissionDenied, false)]
+        {
+            let error = failing(&[kind]).next().err().expect("a fault");
+            assert_eq!(error.cut_off, cut_off, "{error}");
+        }
+        assert!(failing(&[]).ended("too short").cut_off);
     }
 }

@@ -44,6 +44,7 @@ mod reader;
 mod scalar;
 mod schema;
 mod select;
+mod shared_names;
 mod sniff;
 mod source;
 mod spheres;
@@ -62,6 +63,7 @@ pub use periodic::PeriodicError;
 pub use progress::ReadProgress;
 pub use reader::{FrameCount, Frames, count_frames, read_frame};
 pub use select::{Fault, Selection};
+pub use shared_names::SharedNames;
 pub use spheres::Particles;
 pub(super) use spheres::listed;
 

@@ -12,7 +12,7 @@ use super::element::{Element, is_virtual_site, of_aligned_name};
 use super::frame::{Cell, LengthUnit, ParticleFrame};
 use super::lines::{Line, Lines};
 use super::number;
-use super::options::{Format, ReadOptions};
+use super::options::{Format, ReadOptions, Role};
 use super::reader::FrameReader;
 use super::schema::{Naming, Schema, Slot};
 use super::source::Source;
@@ -66,6 +66,8 @@ pub(super) struct Pdb {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
     cell: Option<Cell>,
+    /// Whether each `CRYST1` follows its model: it does where the first model has none before it.
+    cell_follows: bool,
     title: String,
 }
 
@@ -76,6 +78,7 @@ enum Record {
     Title,
     Bond,
     Begin,
+    EndModel,
     End,
     Other,
 }
@@ -88,7 +91,7 @@ impl Record {
             b"TITLE " => Self::Title,
             b"CONECT" => Self::Bond,
             b"MODEL " => Self::Begin,
-            b"ENDMDL" => Self::End,
+            b"ENDMDL" => Self::EndModel,
             other if other.trim_ascii_end() == b"END" => Self::End,
             _ => Self::Other,
         }
@@ -99,9 +102,11 @@ impl Pdb {
     pub(super) fn new(source: Source, options: &ReadOptions) -> Self {
         let names = COLUMNS.map(|(name, ..)| name.to_owned()).into();
         let schema = Schema::new(names, options);
-        let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
+        let typed = options.columns.roles.iter().any(|(role, _)| *role == Role::Kind);
+        let named = |schema| Arc::new(if typed { schema } else { of_atom_names(schema) });
         let lines = Lines::new(source);
-        Self { lines, schema: schema.map(named), cell: None, title: String::new() }
+        let title = String::new();
+        Self { lines, schema: schema.map(named), cell: None, cell_follows: false, title }
     }
 }
 
@@ -110,17 +115,22 @@ impl FrameReader for Pdb {
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let mut builder = Builder::new(self.lines.path(), Format::Pdb, &schema);
         builder.declare(&TEXTS, &["occupancy", "b_factor"]);
-        // The type comes from several columns, unless the user names another.
-        let others: Vec<(usize, Slot)> =
-            schema.others().filter(|&(column, slot)| (column, slot) != (13, Slot::Kind)).collect();
+        let others: Vec<(usize, Slot)> = schema.others().collect();
+        // Unless the user names a column, the type comes from several.
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
         let mut alternates = Alternates::default();
         let mut bonds = HashSet::new();
         let (mut atoms, mut ended) = (false, false);
         while let Some(line) = self.lines.next()? {
             let record = Record::of(line.bytes);
-            // Bonds follow the last model; anything else belongs to the next frame.
-            if ended && !matches!(record, Record::Bond | Record::End) && !line.is_blank() {
+            // Bonds follow the last model, and a cell may follow its own; anything else belongs to
+            // the next frame.
+            let belongs = match record {
+                Record::Bond | Record::EndModel | Record::End => true,
+                Record::Cell => self.cell_follows,
+                _ => line.is_blank(),
+            };
+            if ended && !belongs {
                 self.lines.back();
                 break;
             }
@@ -145,8 +155,15 @@ impl FrameReader for Pdb {
                     break;
                 }
                 Record::Bond => add_bonds(&mut bonds, line.bytes),
-                Record::End => ended = atoms,
-                Record::Begin | Record::Other => (),
+                Record::EndModel if atoms => {
+                    ended = true;
+                    self.cell_follows |= self.cell.is_none();
+                }
+                Record::End => {
+                    ended = atoms;
+                    self.cell_follows = false;
+                }
+                Record::Begin | Record::EndModel | Record::Other => (),
             }
         }
         if !atoms {
@@ -170,7 +187,16 @@ impl FrameReader for Pdb {
                     self.lines.back();
                     break;
                 }
-                Record::End if atoms => break,
+                Record::EndModel if atoms => {
+                    self.cell_follows |= self.cell.is_none();
+                    break;
+                }
+                Record::End => {
+                    self.cell_follows = false;
+                    if atoms {
+                        break;
+                    }
+                }
                 _ => (),
             }
         }
@@ -180,6 +206,15 @@ impl FrameReader for Pdb {
     fn more(&mut self) -> Result<bool, SceneError> {
         self.skip()
     }
+}
+
+/// The same columns, of which that of elements is not the type: types are atom names, and know their
+/// elements.
+fn of_atom_names(mut schema: Schema) -> Schema {
+    schema.slots.iter_mut().filter(|slot| **slot == Slot::Kind).for_each(|slot| *slot = Slot::Skip);
+    schema.roles.retain(|(role, _)| *role != Role::Kind);
+    schema.roles.push((Role::Kind, COLUMNS[1].0.to_owned()));
+    Schema { naming: Naming::Names, ..schema }
 }
 
 /// Adds the bonds of a `CONECT` record, by the serial numbers of both atoms as they stand: each is

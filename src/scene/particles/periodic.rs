@@ -148,9 +148,21 @@ impl Particles {
         if spheres > Spheres::MAX {
             return Err(PeriodicError::TooMany(count, spheres));
         }
-        memory::check(spheres * (Spheres::BYTES + 8 * self.numbers.len() as u64))
-            .map_err(|shortage| PeriodicError::Memory(count, spheres, shortage))?;
+        // A column is copied before it is dropped.
+        let there = self.spheres.len() as u64;
+        let bytes = (spheres - there) * self.row_bytes() + there * size_of::<f64>() as u64;
+        memory::check(bytes).map_err(|shortage| PeriodicError::Memory(count, spheres, shortage))?;
         Ok(count as usize)
+    }
+
+    /// Bytes of a row in all columns.
+    fn row_bytes(&self) -> u64 {
+        let spheres = &self.spheres;
+        let texts = self.texts.iter().map(|column| &column.codes);
+        let codes = texts.chain([&self.kinds.codes]).filter(|codes| !codes.is_empty());
+        let codes: usize = codes.map(Codes::width).sum();
+        let numbers = size_of::<f64>() * self.numbers.len();
+        spheres.row_bytes() + (numbers + codes) as u64
     }
 
     fn repeat_columns(&mut self, count: usize) {
@@ -259,6 +271,46 @@ mod tests {
         for [start, end] in cell.edges() {
             assert!(cell.vectors.iter().any(|edge| (end - start - *edge).length() < 1e-12));
         }
+    }
+
+    #[test]
+    fn bounds_hold_the_corners_and_no_more() {
+        let [low, high] = tilted().bounds();
+        assert_eq!(low, DVec3::new(-3.0, 2.0, 5.0));
+        assert_eq!(high, DVec3::new(4.0, 5.5, 11.0));
+    }
+
+    #[test]
+    fn copies_along_the_third_edge_are_shifted_too() {
+        let (before, mut after) = (particles(), particles());
+        after.cell = Some(Cell { periodic: [true; 3], ..tilted() });
+        after.replicate([1, 2, 2]).unwrap();
+        let [_, b, c] = tilted().vectors;
+        for (copy, shift) in [DVec3::ZERO, b, c, b + c].into_iter().enumerate() {
+            let row = copy * before.spheres.len() + 7;
+            let distance = after.spheres.center(row) - before.spheres.center(7) - shift;
+            assert!(distance.length() < 1e-12, "{copy}");
+        }
+    }
+
+    #[test]
+    fn rows_take_the_bytes_of_their_columns() {
+        let mut particles = particles();
+        let plain = particles.row_bytes();
+        let column = particles.numbers[0].clone();
+        particles.numbers.extend([column.clone(), column]);
+        assert_eq!(particles.row_bytes(), plain + 16);
+        particles.kinds.codes = Codes::Shorts(vec![0; 40]);
+        assert_eq!(particles.row_bytes(), plain + 18);
+        let bytes = |particles: &Particles| {
+            let numbers =
+                particles.numbers.iter().map(|column| column.values.len() * 8).sum::<usize>();
+            numbers + particles.kinds.codes.len() * 2
+        };
+        assert_eq!(
+            (particles.row_bytes() - particles.spheres.row_bytes()) * 40,
+            bytes(&particles) as u64
+        );
     }
 
     #[test]

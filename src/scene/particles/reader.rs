@@ -120,7 +120,9 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, S
         }
     };
     if options.frame == FrameChoice::default() && frames.reader.more()? {
-        frame.warnings.push("only the first frame is read; more follow".to_owned());
+        frame
+            .warnings
+            .push("only the first of several frames is read; --frame chooses others".to_owned());
     }
     Ok(frame)
 }

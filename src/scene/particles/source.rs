@@ -17,16 +17,16 @@ use std::io::{self, BufRead, BufReader, Chain, Cursor, Read, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// How many bytes of a file are looked at to tell its format.
+/// Number of bytes at the beginning of a file that its format is told by.
 pub(super) const HEAD: usize = 1 << 16;
 
-/// Longest preamble of comments that is looked through for what follows it.
+/// Maximum length of a preamble of comments that is read to find what follows it.
 const PREAMBLE: usize = 1 << 24;
 
-/// Memory that an xz file may ask for, in KiB: four times as much as `xz -9` takes.
+/// Maximum memory that an xz file may ask for, in KiB: four times as much as `xz -9` takes.
 const XZ_MEMORY: u32 = 1 << 18;
 
-/// How packed files begin.
+/// Magic numbers of packed files.
 const PACKINGS: [(&[u8], Packing); 4] = [
     (&[0x1F, 0x8B], Packing::Gzip),
     (b"BZh", Packing::Bzip2),
@@ -34,7 +34,7 @@ const PACKINGS: [(&[u8], Packing); 4] = [
     (&[0xFD, b'7', b'z', b'X', b'Z', 0], Packing::Xz),
 ];
 
-/// What may be around a file.
+/// A compression format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Packing {
     Gzip,
@@ -43,17 +43,17 @@ enum Packing {
     Zstd,
 }
 
-/// An open file: how it begins, and what follows.
+/// An open file: its beginning, and a reader of the rest.
 pub(super) struct Source {
     pub(super) path: Arc<Path>,
     /// The first [`HEAD`] bytes, or all if there are fewer; more after a long preamble.
     pub(super) head: Vec<u8>,
-    /// What follows.
+    /// Reader of what follows the head.
     pub(super) reader: Box<dyn Read + Send>,
     pub(super) progress: ReadProgress,
 }
 
-/// Whether this path stands for standard input.
+/// Returns whether this path stands for standard input.
 pub(super) fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
@@ -112,8 +112,8 @@ impl Source {
         Ok(())
     }
 
-    /// All of it again, for readers that go back and forth: the file itself, or a temporary copy
-    /// of what was packed or came through a pipe.
+    /// Returns all of it as a file, for readers that seek: the file itself, or a temporary copy of what was
+    /// packed or came through a pipe.
     pub(super) fn into_file(mut self) -> Result<CountedFile, SceneError> {
         let fault = |error: io::Error| {
             SceneError::whole_file(&self.path, format!("cannot be read: {error}"))
@@ -176,7 +176,7 @@ impl Packing {
     }
 }
 
-/// Says in its errors what could not be unpacked.
+/// A decoder whose errors name the compression format.
 struct Unpacked {
     reader: Box<dyn Read + Send>,
     packing: Packing,
@@ -198,7 +198,7 @@ impl Read for Unpacked {
 struct Zstd<R: BufRead> {
     packed: R,
     decoder: FrameDecoder,
-    /// Whether the decoder is within a frame.
+    /// True if the decoder is within a frame.
     inside: bool,
 }
 

@@ -6,6 +6,7 @@ use super::looks::{Column, ElementColors, ID, INDEX, TypeMaterial};
 use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
 use crate::color::category;
+use crate::memory;
 use crate::scene::error::clipped;
 use crate::scene::spheres::retain;
 use crate::scene::{NamedMaterial, Rgb, SceneError, Spheres};
@@ -102,6 +103,8 @@ pub(super) fn spheres(
     if frame.is_empty() && !options.allow_empty {
         return Err(SceneError::whole_file(path, "holds no particles"));
     }
+    memory::check(bytes_to_add(&frame))
+        .map_err(|shortage| SceneError::whole_file(path, format!("its spheres need {shortage}")))?;
     if options.scale != 1.0 {
         let columns = [&mut frame.x, &mut frame.y, &mut frame.z];
         columns.into_iter().flatten().for_each(|value| *value *= options.scale);
@@ -147,6 +150,16 @@ pub(super) fn spheres(
         unit: frame.unit,
         warnings: warnings.list,
     })
+}
+
+/// Bytes of the columns that a frame does not have, but spheres do.
+fn bytes_to_add(frame: &ParticleFrame) -> u64 {
+    let radius = if frame.radius.is_empty() { size_of::<f64>() } else { 0 };
+    let kinds = &frame.kinds.table;
+    let by_kind = kinds.len() > 1 || kinds.iter().any(|kind| kind.element.is_some());
+    let color = if frame.color.is_empty() && by_kind { size_of::<Rgb>() } else { 0 };
+    let material = if frame.materials.names.len() > 1 { size_of::<u32>() } else { 0 };
+    (frame.len() * (radius + color + material)) as u64
 }
 
 /// Sentences with the file's name before them.
@@ -256,4 +269,54 @@ fn material_rows(materials: &TextColumn) -> Vec<u32> {
 
 fn material_names(materials: TextColumn) -> Vec<String> {
     if materials.names.is_empty() { vec![String::new()] } else { materials.names }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::particles::categories::Kind;
+    use crate::scene::particles::element::Element;
+
+    #[test]
+    fn columns_that_spheres_have_beyond_a_frame_take_bytes() {
+        let plain = ParticleFrame { x: vec![0.0; 10], ..ParticleFrame::default() };
+        let kind =
+            |name: &str, element| Kind { name: name.to_owned(), element, virtual_site: false };
+        let with = |change: &dyn Fn(&mut ParticleFrame)| {
+            let mut frame = plain.clone();
+            change(&mut frame);
+            bytes_to_add(&frame)
+        };
+        let carbon = Element::from_symbol("C");
+        let color = size_of::<Rgb>() as u64 * 10;
+        // Ten radii; colors by type or element; rows of materials.
+        assert_eq!(with(&|_| ()), 80);
+        assert_eq!(with(&|frame| frame.radius = vec![1.0; 10]), 0);
+        assert_eq!(with(&|frame| frame.kinds.table = vec![kind("a", None)]), 80);
+        assert_eq!(with(&|frame| frame.kinds.table = vec![kind("C", carbon)]), 80 + color);
+        let two = vec![kind("a", None), kind("b", None)];
+        assert_eq!(with(&|frame| frame.kinds.table.clone_from(&two)), 80 + color);
+        let own = |frame: &mut ParticleFrame| {
+            frame.kinds.table.clone_from(&two);
+            frame.color = vec![Rgb::ONE; 10];
+        };
+        assert_eq!(with(&own), 80);
+        let names = |count: usize| vec![String::new(); count];
+        assert_eq!(with(&|frame| frame.materials.names = names(1)), 80);
+        assert_eq!(with(&|frame| frame.materials.names = names(2)), 120);
+        let all = |frame: &mut ParticleFrame| {
+            frame.kinds.table.clone_from(&two);
+            frame.materials.names = names(2);
+        };
+        assert_eq!(with(&all), 120 + color);
+    }
+
+    #[test]
+    fn long_lists_are_cut_short() {
+        let names: Vec<&str> = vec!["a"; LISTED + 1];
+        assert_eq!(listed("unused", &names[..2]), "unused: a, a");
+        assert!(!listed("unused", &names[..LISTED]).contains("..."));
+        let cut = listed("unused", &names);
+        assert!(cut.ends_with(", ...") && cut.matches('a').count() == LISTED, "{cut}");
+    }
 }

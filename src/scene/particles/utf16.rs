@@ -128,4 +128,21 @@ mod tests {
         assert!(mark(b"1 2 3").is_none() && unmarked(b"1 2 3 4 5 6").is_none());
         assert!(unmarked(&[0; 64]).is_none());
     }
+
+    #[test]
+    fn pairs_of_units_may_lie_across_blocks() {
+        for before in (BLOCK / 2 - 3..BLOCK / 2 + 2).chain(BLOCK - 3..BLOCK + 2) {
+            let text = format!("{}\u{1F600}\u{1F601}bc", "a".repeat(before));
+            let mut file: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+            let mut read = String::new();
+            Utf16::new(&file[..], u16::from_le_bytes).read_to_string(&mut read).expect("text");
+            assert!(read == text, "{before}");
+            // A byte too many is half a unit.
+            file.push(b'd');
+            read.clear();
+            Utf16::new(&file[..], u16::from_le_bytes).read_to_string(&mut read).expect("text");
+            assert!(read == format!("{text}?"), "{before}");
+        }
+        assert!(mark(&[0xFF, 0xFE, 0, 0, b'1', 0, 0, 0]).is_none());
+    }
 }

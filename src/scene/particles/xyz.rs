@@ -110,13 +110,7 @@ impl FrameReader for Xyz {
     }
 
     fn more(&mut self) -> Result<bool, SceneError> {
-        while let Some(line) = self.lines.next()? {
-            if !line.is_blank() {
-                self.lines.back();
-                return Ok(true);
-            }
-        }
-        Ok(false)
+        self.lines.more()
     }
 }
 

@@ -7,8 +7,8 @@ use self::sections::{
     camera, color_bar, environment, light, look, material, quoted, render, slice, vector,
 };
 use super::{
-    Camera, EnvironmentMap, Look, NamedMaterial, Rgb, Scene, SceneError, Settings, Spheres,
-    included_files,
+    Camera, Environment, EnvironmentMap, Look, NamedMaterial, Rgb, Scene, SceneError, Settings,
+    Spheres, included_files,
 };
 use crate::atomic::write_atomically;
 use crate::image::WriteOptions;
@@ -71,8 +71,9 @@ pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), Scene
         let written = image.write(&sky, &WriteOptions::default());
         written.map_err(|error| failed(&sky, &error))?;
     }
-    let text = document(scene, header, &columns, &sky);
+    let mut text = document(scene, header, &environment(&scene.environment, &name(&sky)));
     if !scene.spheres.is_empty() {
+        text += &file(&columns);
         write_atomically(&columns, |file| write_columns(scene, file))
             .map_err(|error| failed(&columns, &error))?;
     }
@@ -118,14 +119,27 @@ fn check(scene: &Scene) -> Result<(), String> {
     }
 }
 
-/// The whole TOML file.
-fn document(scene: &Scene, header: &Header, columns: &Path, sky: &Path) -> String {
+/// A scene file without its spheres and without the picture of its environment, for files that hold
+/// these by themselves.
+pub(crate) fn text_without_columns(scene: &Scene) -> Result<String, String> {
+    check(scene)?;
+    let Scene { title, camera, settings, look, .. } = scene;
+    let sky = match &scene.environment.map {
+        EnvironmentMap::Picture { .. } => EnvironmentMap::Constant(Rgb::ZERO),
+        other => other.clone(),
+    };
+    let sky = Environment { map: sky, illuminates: scene.environment.illuminates };
+    Ok(document(scene, &Header { title, camera, settings, look }, &environment(&sky, "")))
+}
+
+/// The TOML file but for its spheres; `sky` is the section of the environment.
+fn document(scene: &Scene, header: &Header, sky: &str) -> String {
     let mut text = format!("{MARK}title = {}\n\n", quoted(header.title));
     text += &render(header.settings);
     text += &camera(header.camera);
     text += &look(header.look);
     text += &scene.color_bar.as_ref().map_or_else(String::new, color_bar);
-    text += &environment(&scene.environment, &name(sky));
+    text += sky;
     for NamedMaterial { name, material: surface } in &scene.materials {
         let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
     }
@@ -140,11 +154,12 @@ fn document(scene: &Scene, header: &Header, columns: &Path, sky: &Path) -> Strin
     }
     scene.slices.iter().for_each(|row| text += &slice(row));
     scene.lights.iter().for_each(|row| text += &light(row));
-    if !scene.spheres.is_empty() {
-        let path = quoted(&name(columns));
-        let _ = write!(text, "[[file]]\npath = {path}\nformat = \"csv\"\n");
-    }
     text
+}
+
+/// The section that names the file of the spheres.
+fn file(columns: &Path) -> String {
+    format!("[[file]]\npath = {}\nformat = \"csv\"\n", quoted(&name(columns)))
 }
 
 fn name(path: &Path) -> Cow<'_, str> {

@@ -49,6 +49,9 @@ impl App {
                 self.viewer.content = self.loaded.clone();
                 self.viewer.loading = None;
                 self.complain(&failure);
+                if let Some(content) = self.fallback.take() {
+                    self.workers.load(&content);
+                }
             }
             News::Picture(Err(failure))
             | News::Picked(Err(failure), _)
@@ -58,7 +61,10 @@ impl App {
     }
 
     fn complain(&mut self, failure: &Failure) {
-        let message = failure.to_string();
+        let message = match failure {
+            Failure::Scene(error) => format!("{}: {}", error.path.display(), error.message),
+            other => other.to_string(),
+        };
         output::warn(&message);
         self.viewer.say(message);
     }
@@ -79,6 +85,7 @@ impl App {
         self.scene = Some(Arc::clone(&stage.scene));
         self.origin.clone_from(&stage.origin);
         self.loaded.clone_from(&stage.content);
+        self.fallback = None;
         self.workers.set(stage);
     }
 

@@ -37,12 +37,8 @@ struct Chunk {
     kind: u8,
 }
 
-/// The numbers of a chunk, row by row.
-pub(super) struct Numbers {
-    pub(super) rows: u64,
-    pub(super) width: u64,
-    pub(super) values: Vec<f64>,
-}
+/// Rows that are read at a time.
+const ROWS: u64 = 1 << 14;
 
 fn word(bytes: &[u8], at: usize) -> u64 {
     bytes.get(at..at + 8).and_then(|word| word.try_into().ok()).map_or(0, u64::from_le_bytes)
@@ -127,14 +123,70 @@ impl File {
         self.names.keys().map(String::as_str)
     }
 
-    /// The numbers of a chunk, if the frame has it.
+    /// The numbers of a chunk, row by row, if the frame has it.
     pub(super) fn numbers(
         &mut self,
         frame: u64,
         name: &str,
-    ) -> Result<Option<Numbers>, SceneError> {
+    ) -> Result<Option<Vec<f64>>, SceneError> {
         let Some(chunk) = self.chunk(frame, name) else { return Ok(None) };
-        let scalar = match chunk.kind {
+        let scalar = self.scalar(chunk, frame, name)?;
+        let mut values = Vec::new();
+        self.each_block(chunk, scalar.size(), |bytes| {
+            let numbers = bytes.chunks_exact(scalar.size());
+            values.extend(numbers.map(|bytes| scalar.read(bytes, Order::Little)));
+        })?;
+        Ok(Some(values))
+    }
+
+    /// Columns of a chunk, if the frame has it: the numbers at each of some places of its rows. No other
+    /// copy of them is made.
+    pub(super) fn columns(
+        &mut self,
+        frame: u64,
+        name: &str,
+        places: &[usize],
+    ) -> Result<Option<Vec<Vec<f64>>>, SceneError> {
+        let Some(chunk) = self.chunk(frame, name) else { return Ok(None) };
+        let scalar = self.scalar(chunk, frame, name)?;
+        let size = scalar.size();
+        let row = chunk.width.saturating_mul(size as u64);
+        self.check_range(chunk.location, chunk.rows.saturating_mul(row))?;
+        let rows = if row == 0 { 0 } else { chunk.rows };
+        let column = |_| Vec::with_capacity(rows as usize);
+        let mut columns: Vec<Vec<f64>> = places.iter().map(column).collect();
+        self.each_block(chunk, size, |bytes| {
+            for row in bytes.chunks_exact(size.saturating_mul(chunk.width as usize).max(1)) {
+                for (column, place) in columns.iter_mut().zip(places) {
+                    let number = row.get(place * size..(place + 1) * size);
+                    column.extend(number.map(|bytes| scalar.read(bytes, Order::Little)));
+                }
+            }
+        })?;
+        Ok(Some(columns))
+    }
+
+    /// Calls a function with the bytes of a chunk, some whole rows at a time.
+    fn each_block(
+        &mut self,
+        chunk: Chunk,
+        size: usize,
+        mut each: impl FnMut(&[u8]),
+    ) -> Result<(), SceneError> {
+        let row = chunk.width.saturating_mul(size as u64);
+        self.check_range(chunk.location, chunk.rows.saturating_mul(row))?;
+        // A row of nothing has no block.
+        let rows = if row == 0 { 0 } else { chunk.rows };
+        for first in (0..rows).step_by(ROWS as usize) {
+            let count = ROWS.min(rows - first);
+            each(&self.bytes(chunk.location + first * row, count * row)?);
+        }
+        Ok(())
+    }
+
+    /// The kind of a chunk's numbers.
+    fn scalar(&self, chunk: Chunk, frame: u64, name: &str) -> Result<Scalar, SceneError> {
+        Ok(match chunk.kind {
             1 => Scalar::U8,
             2 => Scalar::U16,
             3 => Scalar::U32,
@@ -149,11 +201,7 @@ impl File {
                 let message = format!("{name} of frame {frame} is of the unknown type {kind}");
                 return Err(SceneError::whole_file(&self.path, message));
             }
-        };
-        let bytes = self.content(chunk, scalar.size())?;
-        let numbers = bytes.chunks_exact(scalar.size());
-        let values = numbers.map(|bytes| scalar.read(bytes, Order::Little)).collect();
-        Ok(Some(Numbers { rows: chunk.rows, width: chunk.width, values }))
+        })
     }
 
     /// The texts of a chunk, one in each row, if the frame has it.
@@ -163,7 +211,7 @@ impl File {
         name: &str,
     ) -> Result<Option<Vec<String>>, SceneError> {
         let Some(chunk) = self.chunk(frame, name) else { return Ok(None) };
-        let bytes = self.content(chunk, 1)?;
+        let bytes = self.bytes(chunk.location, chunk.rows.saturating_mul(chunk.width))?;
         let rows = bytes.chunks((chunk.width as usize).max(1));
         let text = |row: &[u8]| {
             let end = row.iter().position(|&byte| byte == 0).unwrap_or(row.len());
@@ -172,7 +220,12 @@ impl File {
         Ok(Some(rows.map(text).collect()))
     }
 
-    /// Rows and numbers in a row of a chunk of numbers, if the frame has it.
+    /// Rows and numbers in a row of a chunk, if the frame has it.
+    pub(super) fn size(&self, frame: u64, name: &str) -> Option<(u64, u64)> {
+        self.chunk(frame, name).map(|chunk| (chunk.rows, chunk.width))
+    }
+
+    /// The same of a chunk of numbers, if the frame has it.
     pub(super) fn shape(&self, frame: u64, name: &str) -> Option<(u64, u64)> {
         let chunk = self.chunk(frame, name).filter(|chunk| (1..=10).contains(&chunk.kind))?;
         Some((chunk.rows, chunk.width))
@@ -183,18 +236,19 @@ impl File {
         self.chunks.get(&(frame, id)).copied()
     }
 
-    fn content(&mut self, chunk: Chunk, size: usize) -> Result<Vec<u8>, SceneError> {
-        let count = chunk.rows.saturating_mul(chunk.width);
-        self.bytes(chunk.location, count.saturating_mul(size as u64))
+    /// Refuses bytes that the file does not have.
+    fn check_range(&self, location: u64, length: u64) -> Result<(), SceneError> {
+        if location.checked_add(length).is_some_and(|end| end <= self.length) {
+            return Ok(());
+        }
+        let message = format!("is cut off: {length} bytes from {location} on are not there");
+        let error = SceneError::whole_file(&self.path, message);
+        Err(error.with_help("copy it anew, after the simulation has ended"))
     }
 
     /// Bytes of the file, which are looked for before memory is taken for them.
     fn bytes(&mut self, location: u64, length: u64) -> Result<Vec<u8>, SceneError> {
-        if location.checked_add(length).is_none_or(|end| end > self.length) {
-            let message = format!("is cut off: {length} bytes from {location} on are not there");
-            let error = SceneError::whole_file(&self.path, message);
-            return Err(error.with_help("copy it anew, after the simulation has ended"));
-        }
+        self.check_range(location, length)?;
         let mut bytes = vec![0; length as usize];
         let seek = self.content.seek(SeekFrom::Start(location));
         seek.and_then(|_| self.content.read_exact(&mut bytes)).map_err(|error| {

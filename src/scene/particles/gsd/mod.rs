@@ -54,39 +54,42 @@ impl Gsd {
         Ok(Self { path, file, options: options.clone(), next: 0 })
     }
 
-    /// Numbers of a chunk of particles in a frame: as many rows of `width` as there are particles;
-    /// `None` if neither the frame nor the first one has it.
+    /// Columns of a chunk of particles in a frame, the numbers at each of some places of its rows, of
+    /// which there are as many as particles, of `width` numbers each; `None` if neither the frame nor the
+    /// first one has it.
     fn particles(
         &mut self,
         name: &str,
         count: u64,
         width: u64,
-    ) -> Result<Option<Vec<f64>>, SceneError> {
-        let own = self.file.numbers(self.next, name)?;
-        let chunk = match own {
-            Some(chunk) => Some(chunk),
-            // What does not change stands in the first frame alone.
-            None => self.file.numbers(0, name)?.filter(|chunk| chunk.rows == count),
-        };
-        let Some(chunk) = chunk else { return Ok(None) };
-        if chunk.rows != count || chunk.width != width {
+        places: &[usize],
+    ) -> Result<Option<Vec<Vec<f64>>>, SceneError> {
+        let own = self.file.size(self.next, name).map(|size| (self.next, size));
+        // What does not change stands in the first frame alone.
+        let first = || self.file.size(0, name).filter(|size| size.0 == count).map(|size| (0, size));
+        let Some((frame, size)) = own.or_else(first) else { return Ok(None) };
+        if size != (count, width) {
             let message = format!(
                 "{name} of frame {} is {} x {}, but there are {count} particles",
-                self.next, chunk.rows, chunk.width
+                self.next, size.0, size.1
             );
             return Err(self.fault(message));
         }
-        Ok(Some(chunk.values))
+        self.file.columns(frame, name, places)
+    }
+
+    /// The same of a chunk with one number for each particle.
+    fn values(&mut self, name: &str, count: u64) -> Result<Option<Vec<f64>>, SceneError> {
+        Ok(self.particles(name, count, 1, &[0])?.and_then(|mut columns| columns.pop()))
     }
 
     /// Numbers that concern a whole frame, which may stand in the first frame alone.
     fn whole(&mut self, name: &str) -> Result<Option<Vec<f64>>, SceneError> {
         let own = self.file.numbers(self.next, name)?;
-        let chunk = match own {
-            Some(chunk) => Some(chunk),
-            None => self.file.numbers(0, name)?,
-        };
-        Ok(chunk.map(|chunk| chunk.values))
+        match own {
+            Some(values) => Ok(Some(values)),
+            None => self.file.numbers(0, name),
+        }
     }
 
     /// A column by its name: one of [`COLUMNS`], or a chunk with one number for each particle.
@@ -97,14 +100,13 @@ impl Gsd {
             _ => None,
         };
         if let Some(axis) = ["vx", "vy", "vz"].iter().position(|own| *own == name) {
-            let velocity = self.particles("particles/velocity", count, 3)?;
-            let zero = || vec![0.0; count as usize];
-            let axis = |rows: Vec<f64>| rows.chunks(3).map(|row| row[axis]).collect();
-            return Ok(velocity.map_or_else(zero, axis));
+            let velocity = self.particles("particles/velocity", count, 3, &[axis])?;
+            let velocity = velocity.and_then(|mut columns| columns.pop());
+            return Ok(velocity.unwrap_or_else(|| vec![0.0; count as usize]));
         }
         let known = self.file.names().any(|own| own == name);
         let chunk = if known { name.to_owned() } else { format!("particles/{name}") };
-        match (self.particles(&chunk, count, 1)?, usual) {
+        match (self.values(&chunk, count)?, usual) {
             (Some(values), _) => Ok(values),
             (None, Some(value)) => Ok(vec![value; count as usize]),
             (None, None) => {
@@ -169,8 +171,8 @@ impl Gsd {
         let mut column = |name: String| {
             let values = match part(&name).filter(|part| part.width > 1) {
                 Some(Part { chunk, at, width, .. }) => {
-                    let rows = self.particles(chunk, count, *width)?.unwrap_or_default();
-                    rows.chunks(*width as usize).map(|row| row[*at]).collect()
+                    let columns = self.particles(chunk, count, *width, &[*at])?;
+                    columns.and_then(|mut columns| columns.pop()).unwrap_or_default()
                 }
                 None => self.column(&name, count)?,
             };
@@ -191,7 +193,7 @@ impl Gsd {
         };
         let types = types.unwrap_or_else(|| vec!["A".to_owned()]);
         let count = frame.len() as u64;
-        let codes = self.particles("particles/typeid", count, 1)?;
+        let codes = self.values("particles/typeid", count)?;
         let unknown = types.len() as f64;
         // Names of types are no elements: `C` is the third.
         let kind = |name| Kind { name, element: None, virtual_site: false };
@@ -242,7 +244,8 @@ impl Gsd {
             .filter(|&row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default());
         let count = rows.count() as u64;
         frame.add_undrawn(Undrawn::Shapes, count);
-        if self.whole("particles/orientation")?.is_some() {
+        let turned = |frame| self.file.size(frame, "particles/orientation").is_some();
+        if turned(self.next) || turned(0) {
             frame.add_undrawn(Undrawn::Orientations, frame.len() as u64);
         }
         Ok(())
@@ -255,12 +258,11 @@ impl Gsd {
         if count == 0 {
             return Ok(frame);
         }
-        let Some(position) = self.particles("particles/position", count, 3)? else {
+        let position = self.particles("particles/position", count, 3, &[0, 1, 2])?;
+        let Some(Ok([x, y, z])) = position.map(<[Vec<f64>; 3]>::try_from) else {
             return Err(self.fault(format!("frame {} has no positions", self.next)));
         };
-        let axis = |axis: usize| position.chunks_exact(3).map(|row| row[axis]).collect();
-        (frame.x, frame.y, frame.z) = (axis(0), axis(1), axis(2));
-        drop(position);
+        (frame.x, frame.y, frame.z) = (x, y, z);
         self.kinds(&mut frame)?;
         frame.radius = self.radius(count)?;
         let parts = self.more_columns(count);

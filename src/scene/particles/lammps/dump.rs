@@ -203,9 +203,7 @@ impl FrameReader for Dump {
     }
 
     fn more(&mut self) -> Result<bool, SceneError> {
-        let more = self.lines.next()?.is_some();
-        self.lines.back();
-        Ok(more)
+        self.lines.more()
     }
 }
 

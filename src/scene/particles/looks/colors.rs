@@ -6,6 +6,7 @@ use crate::color::{Map, Range, RangeError, Rgb, Scale, Spacing, category};
 use crate::scene::SceneError;
 use crate::scene::particles::categories::Codes;
 use crate::scene::particles::{Element, LengthUnit, Particles};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// A scheme of colors for elements.
@@ -72,26 +73,26 @@ impl ColumnColors {
         &self,
         path: &Path,
         particles: &mut Particles,
+        allow_empty: bool,
     ) -> Result<Option<Legend>, SceneError> {
         let column = Column::find(particles, &self.column)
             .ok_or_else(|| columns::missing(path, particles, &self.column))?;
-        let (colors, legend) = match &column {
-            Column::Numbers(values) => {
-                let scale = self.scale(values).map_err(|error| {
-                    let message = format!("the column `{}` has no colors: {error}", self.column);
-                    SceneError::whole_file(path, message)
-                })?;
-                let label = self.label(particles.unit);
-                (scale.colors(values), Some((Legend { scale, label }, values)))
-            }
+        let (colors, legend, missing) = match &column {
+            Column::Numbers(values) => match self.scale(values) {
+                Ok(scale) => {
+                    let legend = Legend { scale, label: self.label(particles.unit) };
+                    (scale.colors(values), Some(legend), missing(values))
+                }
+                Err(RangeError::Empty | RangeError::NonePositive) if allow_empty => {
+                    (Vec::new(), None, missing(values))
+                }
+                Err(error) => return Err(self.no_colors(path, error)),
+            },
             Column::Texts { names, codes } => {
                 self.check_texts(path)?;
-                let table: Vec<Rgb> = (0..names.len()).map(category).collect();
-                (picked(codes, &table), None)
+                (picked(codes, &categories(names)), None, 0)
             }
         };
-        let missing = legend.as_ref().map_or(0, |(_, values)| missing(values));
-        let legend = legend.map(|(legend, _)| legend);
         particles.spheres.color = colors;
         if missing > 0 {
             let (path, name) = (path.display(), &self.column);
@@ -99,6 +100,25 @@ impl ColumnColors {
             particles.warnings.push(warning);
         }
         Ok(legend)
+    }
+
+    /// Returns whether the column is one of numbers.
+    pub fn is_numeric(&self, particles: &Particles) -> bool {
+        matches!(Column::find(particles, &self.column), Some(Column::Numbers(_)))
+    }
+
+    /// The error for a column of numbers that have no range.
+    pub fn no_range(&self, path: &Path) -> SceneError {
+        let error = match self.spacing {
+            Spacing::Linear => RangeError::Empty,
+            Spacing::Logarithmic => RangeError::NonePositive,
+        };
+        self.no_colors(path, error)
+    }
+
+    fn no_colors(&self, path: &Path, error: RangeError) -> SceneError {
+        let message = format!("the column `{}` has no colors: {error}", self.column);
+        SceneError::whole_file(path, message)
     }
 
     /// Returns the legend where there is no particle: known if the ends of the map are.
@@ -144,7 +164,27 @@ fn missing(values: &[f64]) -> usize {
     values.iter().filter(|value| value.is_nan()).count()
 }
 
+/// The colors of texts: those that are the same have the same color.
+fn categories(names: &[&str]) -> Vec<Rgb> {
+    let mut places = HashMap::new();
+    let mut place = |name| {
+        let next = places.len();
+        *places.entry(name).or_insert(next)
+    };
+    names.iter().map(|&name| category(place(name))).collect()
+}
+
 /// The color of each row.
 fn picked(codes: &Codes, table: &[Rgb]) -> Vec<Rgb> {
     (0..codes.len()).map(|row| table[codes.code(row) as usize]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_that_are_the_same_have_one_color() {
+        assert_eq!(categories(&["C", "N", "C", "O"]), [0, 1, 0, 2].map(category));
+    }
 }

@@ -10,7 +10,7 @@ pub use types::{TypeLook, TypeMaterial};
 
 use super::frame::NumberColumn;
 use super::select::Selection;
-use super::{Particles, aliases};
+use super::{Particles, SharedNames, aliases};
 use crate::scene::SceneError;
 use std::path::Path;
 
@@ -37,7 +37,8 @@ pub struct Looks {
     pub coloring: Coloring,
     /// Looks of single types, before all else; of two for one type the later one wins.
     pub types: Vec<TypeLook>,
-    /// True if a selection may leave nothing, as in some frames of a trajectory.
+    /// True if a selection may leave nothing, a column may have no number that has a color, and a type
+    /// may be missing, as in some frames of a trajectory.
     pub allow_empty: bool,
 }
 
@@ -90,11 +91,23 @@ impl Looks {
         let legend = match &self.coloring {
             Coloring::Usual => None,
             Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None)?,
-            Coloring::Column(colors) => colors.apply(path, particles)?,
+            Coloring::Column(colors) => colors.apply(path, particles, self.allow_empty)?,
         };
-        self.types.iter().try_for_each(|look| look.apply(path, particles))?;
-        self.types.iter().try_for_each(|look| look.apply_material(path, particles))?;
+        let table = &particles.kinds.table;
+        let known = |look: &&TypeLook| !self.allow_empty || look.check_known(path, table).is_ok();
+        let types: Vec<&TypeLook> = self.types.iter().filter(known).collect();
+        types.iter().try_for_each(|look| look.apply(path, particles))?;
+        types.iter().try_for_each(|look| look.apply_material(path, particles))?;
         Ok(legend)
+    }
+
+    /// Checks that every type with looks of its own is in one of the frames that share these names.
+    ///
+    /// # Errors
+    ///
+    /// There is no such type or element.
+    pub fn check_types(&self, path: &Path, names: &SharedNames) -> Result<(), SceneError> {
+        self.types.iter().try_for_each(|look| look.check_known(path, names.kinds()))
     }
 }
 

@@ -39,6 +39,10 @@ fn numbers_have_the_colors_of_a_map() {
     let logarithmic = ColumnColors { spacing: Spacing::Logarithmic, ..by("q") };
     let (particles, _) = look_at(DUMP, &colored(logarithmic)).expect("colors");
     assert!(particles.spheres.color[1].abs_diff_eq(at(0.5), 1e-6));
+    let reversed = ColumnColors { reversed: true, ..by("x") };
+    let (particles, legend) = look_at(DUMP, &colored(reversed)).expect("colors");
+    assert_eq!(particles.spheres.color, [at(1.0), at(0.5), at(0.0)]);
+    assert!(legend.expect("a legend").scale.reversed);
     let clipped = ColumnColors { ends: Some([50.0, 100.0]), map: Some(Map::Turbo), ..by("q") };
     let (particles, _) = look_at(DUMP, &colored(clipped)).expect("colors");
     let at = |position: f64| Map::Turbo.at(position);
@@ -208,4 +212,13 @@ fn ranges_are_those_of_what_is_drawn() {
     assert_eq!((range.low(), range.high()), (1.0, 2.0));
     let at = |position: f64| Map::Viridis.at(position);
     assert_eq!(particles.spheres.color, [at(0.0), at(1.0)]);
+}
+
+#[test]
+fn diameters_are_twice_the_radii() {
+    let ranged = ColumnColors { ends: Some([0.0, 2.0]), ..by("diameter") };
+    let (particles, _) =
+        look_at(&DUMP.replace("radius", "diameter"), &colored(ranged)).expect("colors");
+    let at = |position: f64| Map::Viridis.at(position);
+    assert_eq!(particles.spheres.color, [at(0.25), at(0.5), at(1.0)]);
 }

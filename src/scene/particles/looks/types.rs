@@ -194,15 +194,18 @@ impl TypeLook {
 
     /// Returns the spheres of this type.
     fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, SceneError> {
-        let chosen = self.kinds(&particles.kinds.table);
-        if !chosen.contains(&true) {
-            return Err(self.unknown(path, &particles.kinds.table));
-        }
-        let codes = &particles.kinds.codes;
+        let kinds = &particles.kinds;
+        self.check_known(path, &kinds.table)?;
+        let (chosen, codes) = (self.kinds(&kinds.table), &kinds.codes);
         Ok((0..codes.len()).filter(|&row| chosen[codes.code(row) as usize]).collect())
     }
 
-    /// Which types are meant.
+    /// Checks that there is such a type.
+    pub(super) fn check_known(&self, path: &Path, table: &[Kind]) -> Result<(), SceneError> {
+        if self.kinds(table).contains(&true) { Ok(()) } else { Err(self.unknown(path, table)) }
+    }
+
+    /// Returns, for each type of the table, whether it is meant.
     fn kinds(&self, table: &[Kind]) -> Vec<bool> {
         let named: Vec<bool> = table.iter().map(|kind| kind.name == self.name).collect();
         if named.contains(&true) {

@@ -17,21 +17,25 @@ use std::sync::Arc;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-/// Names of arrays of positions, those that go first in front; radii and diameters; colors.
+/// Names of arrays of positions; the first that is there is taken.
 const POSITIONS: [&str; 9] =
     ["position", "positions", "pos", "xyz", "points", "coordinates", "coords", "centers", "arr_0"];
-/// Names of arrays of coordinates along each axis.
+/// Names of arrays of one coordinate, by axis.
 const AXES: [(Role, [&str; 3]); 3] = [
     (Role::X, ["x", "pos_x", "position_x"]),
     (Role::Y, ["y", "pos_y", "position_y"]),
     (Role::Z, ["z", "pos_z", "position_z"]),
 ];
+/// Names of arrays of radii.
 const RADII: [&str; 3] = ["radius", "radii", "r"];
+/// Names of arrays of diameters.
 const DIAMETERS: [&str; 2] = ["diameter", "diameters"];
+/// Names of arrays of colors.
 const COLORS: [&str; 2] = ["color", "colors"];
+/// Names of arrays of types.
 const TYPES: [&str; 7] = ["typeid", "type", "types", "element", "elements", "species", "symbols"];
 
-/// Most columns of an array that are columns of particles.
+/// Maximum number of columns of an array whose columns are columns of particles.
 const WIDEST: usize = 64;
 
 /// A column of an array.
@@ -39,8 +43,9 @@ const WIDEST: usize = 64;
 struct Part {
     name: String,
     array: String,
-    /// Its place in a row, and how many columns rows have.
+    /// Its place in a row.
     at: usize,
+    /// Number of columns of the array.
     width: usize,
 }
 
@@ -179,7 +184,7 @@ impl Npz {
             let same = parts.iter().find(|part| part.name == *name);
             same.or_else(|| parts.iter().find(|part| part.name.eq_ignore_ascii_case(name))).cloned()
         };
-        // Of an array that does not fit, reading says why.
+        // Reading an array that does not fit says why.
         let whole = |name: &String| {
             let (name, array) = (name.clone(), name.clone());
             Part { name, array, at: 0, width: 1 }
@@ -241,7 +246,7 @@ impl Npz {
         Ok((builder, x))
     }
 
-    /// Hands on the numbers of an array with one in each row.
+    /// Calls `take` with each number of an array that has one in each row.
     fn coordinates(
         &mut self,
         name: &str,
@@ -259,7 +264,7 @@ impl Npz {
         array.rows(&path, |row| take(row.numbers[0]))
     }
 
-    /// An array with as many rows as there are particles, of so many numbers each.
+    /// Returns the numbers of an array that has a row of `columns` numbers for each particle.
     fn rows(&mut self, name: &str, columns: usize, count: usize) -> Result<Vec<f64>, SceneError> {
         let path = self.path.clone();
         let mut array = self.open(name, Turn::ToRows(count as u64))?;
@@ -289,7 +294,7 @@ impl Npz {
 }
 
 impl Npz {
-    /// A column of an array of texts, as many as there are particles; `None` if it holds numbers.
+    /// Returns a column of an array of texts, one for each particle; `None` if the array holds numbers.
     fn texts(
         &mut self,
         name: &str,
@@ -357,7 +362,7 @@ impl Npz {
     }
 }
 
-/// That an array has not as many rows as there are particles.
+/// The error for an array that does not have a row for each particle.
 fn number_of(path: &Path, name: &str, found: &str, count: usize) -> SceneError {
     let message = format!("the array `{name}` has {found}, but there are {count} particles");
     SceneError::whole_file(path, message)

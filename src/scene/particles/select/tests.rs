@@ -18,7 +18,7 @@ fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
     let mut particles = read(&path, &options).expect("particles");
     looks.apply(&path, &mut particles).map_err(|error| match error.place {
         Some(place) => format!("{}: {}", &place.source_text[place.span], error.message),
-        None => error.message,
+        None => format!("{} {}", error.message, error.help.unwrap_or_default()),
     })?;
     assert_eq!(particles.kinds.codes.len(), particles.spheres.len());
     Ok(particles.spheres.x.iter().map(|x| x + 1.0).collect())
@@ -116,4 +116,27 @@ fn faults_show_the_condition() {
     let fault = "ä > 5 und".parse::<Selection>().expect_err("a fault");
     let shown = "`and`, `or` or a sign is missing before this\n  ä > 5 und\n        ^^^";
     assert_eq!(fault.to_string(), shown);
+}
+
+#[test]
+fn texts_that_no_particle_has_are_named() {
+    for condition in [
+        "element == Xx",
+        "Xx == element",
+        "not (element != Xx)",
+        "z > 0 and element == Xx",
+        "element == Xx or element == Yy",
+    ] {
+        let fault = select(ATOMS, condition).expect_err(condition);
+        assert!(fault.contains("no particle has `Xx`"), "{condition}: {fault}");
+    }
+    let fault = select(ATOMS, "element == C and z > 100").expect_err("nothing");
+    assert!(fault.contains("none of its 4 particles") && !fault.contains('`'), "{fault}");
+}
+
+#[test]
+fn conditions_side_by_side_are_not_deep() {
+    for one in ["(id == 2)", "not (id != 2)", "-id == -2"] {
+        assert_eq!(ids(&vec![one; 200].join(" or ")), [2.0], "{one}");
+    }
 }

@@ -172,6 +172,12 @@ fn symmetry_comes_from_the_strongest_declaration() {
         assert_eq!(frame.len(), atoms, "{declared:?}");
         assert_eq!(frame.warnings.len(), warnings, "{declared:?}: {:?}", frame.warnings);
     }
+    let told = count(&[number, symbol, hall, operations]).warnings.concat();
+    for source in ["P m -3 m", "-P 1", "16"] {
+        assert!(told.contains(source), "{source}: {told}");
+    }
+    let misfit = count(&["_symmetry_space_group_name_H-M 'P 6'"]).warnings.concat();
+    assert!(misfit.contains("P 6"), "{misfit}");
     let unknown = count(&["_symmetry_space_group_name_H-M 'P 7 q'"]);
     assert!(unknown.warnings[0].contains("`P 7 q`"), "{:?}", unknown.warnings);
 }
@@ -236,6 +242,14 @@ fn disorder_is_drawn_by_its_main_groups() {
     assert_eq!(labels(&format!("{base}{pair}{second}")), ["C", "O", "F"]);
     let equal = "N .2 0 0 0.5 . 1\nO .3 0 0 0.5 . 2\n";
     assert_eq!(labels(&format!("{base}{equal}")), ["C", "N"]);
+    // The mean counts, not the number of atoms.
+    let pairs = "N .2 0 0 0.4 A 1\nN .3 0 0 0.4 A 1\nO .4 0 0 0.6 A 2\nO .5 0 0 0.6 A 2\n";
+    assert_eq!(labels(&format!("{base}{pairs}")), ["C", "O", "O"]);
+    let many = "N .2 0 0 0.5 A 1\nO .3 0 0 0.3 A 2\nO .4 0 0 0.3 A 2\nF .5 0 0 0.2 A 3\n";
+    assert_eq!(labels(&format!("{base}{many}")), ["C", "N"]);
+    let many = "N .2 0 0 0.5 A 1\nN .6 0 0 0.5 A 1\nO .3 0 0 0.3 A 2\nO .4 0 0 0.3 A 2\n\
+                O .7 0 0 0.3 A 2\nF .5 0 0 0.2 A 3\n";
+    assert_eq!(labels(&format!("{base}{many}")), ["C", "N", "N"]);
     let three = "N .2 0 0 0.2 A 1\nO .3 0 0 0.5 A 2\nF .4 0 0 0.3 A 3\n";
     assert_eq!(labels(&format!("{base}{three}")), ["C", "O"]);
 }
@@ -258,4 +272,19 @@ fn bonds_and_displacements_are_counted() {
     assert_eq!(frame.warnings.len(), 2, "{:?}", frame.warnings);
     assert!(frame.warnings[0].starts_with("2 bonds"), "{:?}", frame.warnings);
     assert!(frame.warnings[1].starts_with("1 displacement"), "{:?}", frame.warnings);
+}
+
+#[test]
+fn shared_sites_are_found_everywhere_in_the_cell() {
+    let site = |index: u32| {
+        let (x, y, away) = (index % 13, f64::from(index / 13) / 13.0, 0.002);
+        let x = f64::from(x) / 13.0;
+        let greater = format!("Fe {} {y} .5 0.6\n", x - away);
+        let lesser = format!("Co {} {y} .5 0.4\n", x + away);
+        if index.is_multiple_of(2) { greater + &lesser } else { lesser + &greater }
+    };
+    let sites = (0..169).map(site).collect::<Vec<_>>().concat();
+    let frame = frame(crystal("_space_group_IT_number 1", OCCUPIED, &sites));
+    assert_eq!(frame.len(), 169, "{:?}", frame.warnings);
+    assert!(kinds(&frame).iter().all(|(name, _)| *name == "Fe"));
 }

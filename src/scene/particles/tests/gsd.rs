@@ -63,6 +63,13 @@ pub(super) fn example() -> Vec<u8> {
     ])
 }
 
+pub(super) fn one_frame() -> Vec<u8> {
+    gsd(&[
+        (0, "particles/N", 3, 1, words(&[1])),
+        (0, "particles/position", 9, 3, floats(&[1.0, 2.0, 3.0])),
+    ])
+}
+
 #[test]
 fn frames_have_defaults_and_what_the_first_frame_says() {
     let options = columns("charge,mass,log/particles/pressure,vy");
@@ -124,4 +131,70 @@ fn columns_that_are_wanted_are_kept_where_they_are() {
     let frame = frame_with(example(), &options).expect("a frame");
     let names: Vec<&str> = frame.numbers.iter().map(|column| column.name.as_str()).collect();
     assert_eq!((names, &frame.numbers[0].values), (vec!["mass"], &vec![1.0; 2]));
+}
+
+#[test]
+fn radii_come_from_the_columns_that_the_user_names() {
+    let radius = |text: &str| frame_with(example(), &columns(text)).expect("a frame").radius;
+    assert_eq!(radius("radius=log/particles/pressure"), [1.5, 2.5]);
+    assert_eq!(radius("diameter=log/particles/pressure"), [0.75, 1.25]);
+}
+
+#[test]
+fn columns_are_chunks_with_a_row_for_each_particle() {
+    let more = [
+        (0, "particles/N", 3, 1, words(&[2])),
+        (0, "particles/position", 9, 3, floats(&[0.0; 6])),
+        (0, "particles/mine", 9, 1, floats(&[5.0, 6.0])),
+        (0, "log/particles/stress", 9, 2, floats(&[1.0, 2.0, 3.0, 4.0])),
+        (0, "log/energy", 9, 1, floats(&[7.0, 8.0])),
+        (0, "particles/short", 9, 1, floats(&[7.0])),
+    ];
+    let frame = frame_with(gsd(&more), &columns("mine")).expect("a frame");
+    assert_eq!(frame.numbers[0].values, [5.0, 6.0]);
+    for name in ["mine", "log/particles/stress"] {
+        assert!(frame.columns.iter().any(|own| own.starts_with(name)), "{:?}", frame.columns);
+    }
+    for name in ["energy", "short"] {
+        assert!(!frame.columns.iter().any(|own| own.contains(name)), "{:?}", frame.columns);
+    }
+}
+
+#[test]
+fn shapes_that_are_no_spheres_are_counted() {
+    let with = |shapes: &[u8]| {
+        let shapes = (0, "particles/type_shapes", 5, shapes.len() as u32 / 2, shapes.to_vec());
+        let content = gsd(&[
+            (0, "particles/N", 3, 1, words(&[3])),
+            (0, "particles/position", 9, 3, floats(&[0.0; 9])),
+            (0, "particles/types", 5, 2, b"A\0B\0".to_vec()),
+            (0, "particles/typeid", 3, 1, words(&[1, 0, 1])),
+            shapes,
+        ]);
+        particles(content).warnings.concat()
+    };
+    let shape = |kind: &str| format!("{:\0<24}", format!("{{\"type\": \"{kind}\"}}"));
+    let both = |a: &str, b: &str| with((shape(a) + &shape(b)).as_bytes());
+    assert!(both("Sphere", "Polygon").contains("2 "), "{}", both("Sphere", "Polygon"));
+    assert!(both("Ellipsoid", "Sphere").contains("1 "), "{}", both("Ellipsoid", "Sphere"));
+    assert!(!both("Sphere", "Sphere").contains("shape"), "{}", both("Sphere", "Sphere"));
+}
+
+#[test]
+fn other_columns_are_kept_as_long_as_there_is_room() {
+    let kept = |rest: usize| {
+        let columns = Columns { rest: Some(rest), ..columns("mass").columns };
+        let options = ReadOptions { columns, ..ReadOptions::default() };
+        let frame = frame_with(example(), &options).expect("a frame");
+        frame.numbers.into_iter().map(|column| column.name).collect::<Vec<_>>()
+    };
+    let all = kept(1000);
+    let mut once = all.clone();
+    once.sort();
+    once.dedup();
+    assert!(all.len() > 2 && once.len() == all.len() && !all.contains(&"x".to_owned()), "{all:?}");
+    // Of two particles each; `mass` was asked for by name.
+    let numbers = 2 * (all.len() - 1);
+    assert_eq!(kept(numbers), all);
+    assert_eq!(kept(numbers - 1), ["mass"]);
 }

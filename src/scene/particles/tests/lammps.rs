@@ -316,3 +316,28 @@ fn velocities_that_are_missing_or_broken_are_told() {
     let short = message(&MOVING.replace(" 2e1", ""));
     assert_eq!(short, (14, "a row of velocities has an id and vx, vy, vz".to_owned()));
 }
+
+#[test]
+fn data_files_may_have_general_boxes() {
+    let data = |origin: &str| {
+        frame(format!(
+            "LAMMPS data\n\n1 atoms\n1 atom types\n\n2 0 0 avec\n0.5 3 0 bvec\n0 0.25 4 cvec\n\
+             {origin}\n\nAtoms # atomic\n\n1 1 0.5 0.5 0.5\n"
+        ))
+    };
+    let frame = data("-1 -2 -3 abc origin");
+    let cell = frame.cell.expect("a cell");
+    assert_eq!(cell.origin, DVec3::new(-1.0, -2.0, -3.0));
+    let vectors = [DVec3::X * 2.0, DVec3::new(0.5, 3.0, 0.0), DVec3::new(0.0, 0.25, 4.0)];
+    assert_eq!((cell.vectors, &frame.title[..]), (vectors, "LAMMPS data"));
+    assert_eq!(data("").cell.map(|cell| cell.origin), Some(DVec3::ZERO));
+}
+
+#[test]
+fn sections_of_dumps_that_are_not_known_are_passed_over() {
+    let text = dump(BOX, "id element x y z", "7 C 2 4 7\n").replace("ITEM: UNITS\nmetal\n", "");
+    let frame = frame(format!("ITEM: NOTES\n1 2\n3 4\n{text}"));
+    assert_eq!((frame.x[0], kinds(&frame)[0]), (2.0, ("C", "C")));
+    // Elements are of styles in angstrom.
+    assert_eq!(frame.unit, LengthUnit::Angstrom);
+}

@@ -1,5 +1,6 @@
 mod columns;
 mod crystals;
+mod frames;
 mod gsd;
 mod lammps;
 mod molecules;

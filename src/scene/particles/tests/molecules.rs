@@ -183,7 +183,7 @@ fn mmcif_has_a_loop_of_atoms() {
     assert_eq!(kinds(&frame), [("N", "N"), ("C", "C"), ("O", "O")]);
     assert!(frame.numbers[0].values[0].is_nan());
     assert_eq!((frame.numbers[0].values[2], frame.texts[0].text(2)), (2.5, "O5'"));
-    assert_eq!(frame.title, "It''s a test");
+    assert_eq!((&frame.title[..], frame.unit), ("It''s a test", LengthUnit::Angstrom));
     assert_eq!(frame.cell.map(|cell| cell.vectors[2]), Some(DVec3::Z * 40.0));
     assert!(
         frame.warnings[0].starts_with("1 atoms at alternate locations"),
@@ -216,4 +216,21 @@ fn faulty_mmcif_is_refused() {
         assert_eq!((found, said.as_str()), (line, message));
     }
     assert!(fault(names).2.starts_with("no column is named `z`"));
+}
+
+#[test]
+fn conformers_are_chosen_by_their_mean_occupancy() {
+    let atom = |name: &str, location: char, x: u32, occupancy: &str| {
+        format!(
+            "ATOM      1  {name}{location}MET A   1    {x:>4}.000   2.000   3.000  {occupancy}  1.00           C\n"
+        )
+    };
+    let lone = atom("CA ", 'A', 1, "0.50");
+    let two = |occupancy: &str| atom("CA ", 'B', 2, occupancy) + &atom("CB ", 'B', 3, occupancy);
+    // One atom against two; what only the lesser conformer has is drawn, too.
+    assert_eq!(frame(lone.clone() + &two("0.40")).x, [1.0, 3.0]);
+    assert_eq!(frame(lone.clone() + &two("0.60")).x, [2.0, 3.0]);
+    // Of equals, the first.
+    assert_eq!(frame(lone.clone() + &two("0.50")).x, [1.0, 3.0]);
+    assert_eq!(frame(two("0.50") + &lone).x, [2.0, 3.0]);
 }

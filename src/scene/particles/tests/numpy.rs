@@ -31,6 +31,11 @@ fn npz(arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
     writer.finish().expect("memory").into_inner()
 }
 
+/// Frames of one row each.
+pub(super) fn frames_of_one(count: u8) -> Vec<u8> {
+    npy("|u1", &format!("({count}, 1, 3)"), false, &(0..3 * count).collect::<Vec<_>>())
+}
+
 #[test]
 fn rows_are_positions_with_radii_or_without() {
     let three = frame(npy("<f4", "(2, 3)", false, &floats(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])));
@@ -231,4 +236,32 @@ fn archives_may_have_an_array_for_each_axis() {
     assert_eq!(fault(short).2, "the array `z` has 1 numbers, but there are 2 particles");
     let empty = fault(npz(&[])).2;
     assert_eq!(empty, "is a ZIP archive without arrays of NumPy");
+}
+
+#[test]
+fn structures_may_come_in_frames() {
+    let kind = "[('x', '|u1'), ('y', '|u1'), ('z', '|u1')]";
+    let bytes: Vec<u8> = (0..12).collect();
+    assert_eq!(frames(npy(kind, "(2, 2)", false, &bytes)), [[0.0, 3.0], [6.0, 9.0]]);
+    for (kind, shape, fortran) in [
+        (kind, "(2, 2, 1)", false),
+        (kind, "(4,)", true),
+        ("|u1", "(2, 2, 3)", true),
+        ("<U1", "(1, 3)", true),
+        ("|u1", "(1, 2, 2, 3)", false),
+    ] {
+        let content = npy(kind, shape, fortran, &bytes);
+        assert!(frame_with(content, &ReadOptions::default()).is_err(), "{kind} {shape}");
+    }
+    for shape in ["(0, 3)", "(2, 0, 3)"] {
+        assert_eq!(fault(npy("|u1", shape, false, &[])).2, "holds no particles", "{shape}");
+    }
+}
+
+#[test]
+fn columns_of_diameters_are_halved() {
+    let content = npy("|u1", "(1, 4)", false, &[1, 2, 3, 8]);
+    let read = |text: &str| frame_with(&content, &columns(text)).expect("a frame").radius;
+    assert_eq!(read("x=1,y=2,z=3,diameter=4"), [4.0]);
+    assert_eq!(read("x=1,y=2,z=3,radius=4"), [8.0]);
 }

@@ -91,3 +91,30 @@ fn absurd_claims_end_soon() {
     let text = empty.replace("binary_little_endian", "ascii");
     assert_eq!(fault(text).2, "the file ends after 0 of 18446744073709551615 vertices");
 }
+
+#[test]
+fn numbers_of_all_types_have_their_size() {
+    let numbers: [([&str; 2], Vec<u8>, f64); 8] = [
+        (["char", "int8"], (-3_i8).to_le_bytes().into(), -3.0),
+        (["uchar", "uint8"], 200_u8.to_le_bytes().into(), 200.0),
+        (["short", "int16"], (-300_i16).to_le_bytes().into(), -300.0),
+        (["ushort", "uint16"], 60_000_u16.to_le_bytes().into(), 60_000.0),
+        (["int", "int32"], (-70_000_i32).to_le_bytes().into(), -70_000.0),
+        (["uint", "uint32"], 4_000_000_000_u32.to_le_bytes().into(), 4e9),
+        (["float", "float32"], 1.5_f32.to_le_bytes().into(), 1.5),
+        (["double", "float64"], 0.1_f64.to_le_bytes().into(), 0.1),
+    ];
+    for (names, bytes, value) in numbers {
+        for name in names {
+            let header = format!(
+                "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty {name} q\n\
+                 property uchar x\nproperty uchar y\nproperty uchar z\nend_header\n"
+            );
+            let rows = [&bytes[..], &[1, 2, 3], &bytes, &[4, 5, 6]].concat();
+            let frame = frame_with([header.into_bytes(), rows].concat(), &columns("q"));
+            let frame = frame.unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_eq!(frame.numbers[0].values, [value; 2], "{name}");
+            assert_eq!(frame.z, [3.0, 6.0], "{name}");
+        }
+    }
+}

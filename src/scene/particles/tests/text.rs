@@ -423,3 +423,54 @@ fn files_of_other_formats_come_with_a_command() {
     let pqr = "ATOM      1  N   NTR     0      63.889  69.990 133.214  0.1414 1.8240\n";
     assert_eq!(frame_with(pqr, &options).expect("a frame").x, [63.889]);
 }
+
+#[test]
+fn commas_are_decimal_points_where_they_part_no_columns() {
+    let quoted = frame("x;y;z;type\n1,5;2;3;\"a\nb\"\n");
+    assert_eq!((quoted.x[0], kinds(&quoted)[0].0), (1.5, "a\nb"));
+    assert!(quoted.warnings.iter().any(|warning| warning.contains("decimal points")));
+    // Names of types stay as they are.
+    assert_eq!(kinds(&frame("x;y;z;type\n1;2;3;1,5\n"))[0].0, "1,5");
+    let error = read_with("x,y,z\n\"1,5\",2,3\n", &ReadOptions::default());
+    let error = error.expect_err("a comma that may be either");
+    assert_eq!(error.line(), Some(2));
+    assert!(error.message.contains("1,5") && error.help.is_some(), "{error}");
+}
+
+#[test]
+fn faults_behind_quoted_separators_are_where_they_are() {
+    let error = read_with("type,x,y,z\n\"a,b\",1, 2x ,3\n", &ReadOptions::default());
+    let place = error.expect_err("no number").place.expect("a place");
+    assert_eq!((place.line, place.column), (2, 10));
+    assert_eq!(&place.source_text[place.span], "2x");
+}
+
+#[test]
+fn comments_name_columns_by_their_number_and_positions() {
+    for (comments, name) in [
+        ("# x y z q\n# some other words here\n", "q"),
+        ("# x y z a\n# x y z q\n", "q"),
+        ("# some other words here\n# x y z q\n", "q"),
+        ("# x y z q\n# one word more than columns\n", "q"),
+    ] {
+        let frame = frame(format!("{comments}1 2 3 4\n5 6 7 8\n"));
+        assert!(frame.columns.iter().any(|own| own == name), "{comments}: {:?}", frame.columns);
+        assert_eq!(frame.x, [1.0, 5.0]);
+    }
+    assert_eq!(fault("x y z\nu v w\n1 2 3\n").0, 2);
+}
+
+#[test]
+fn some_numbers_of_a_row_may_have_decimal_commas() {
+    assert_eq!(frame("1,5 2,5 3\n4 5 6\n").x, [1.5, 4.0]);
+}
+
+#[test]
+fn formats_that_the_content_tells_are_not_overruled() {
+    let asked = |format| ReadOptions { format: Some(format), ..ReadOptions::default() };
+    let error = frame_with(gsd::example(), &asked(Format::Xyz)).expect_err("GSD");
+    assert!(error.message.contains("is gsd, not xyz"), "{error}");
+    assert_eq!(frame_with(gsd::example(), &asked(Format::Gsd)).expect("a frame").len(), 2);
+    let error = frame_with("1 2 3\n", &asked(Format::Gsd)).expect_err("text");
+    assert!(error.message.contains("is not gsd"), "{error}");
+}

@@ -113,3 +113,14 @@ fn the_conformer_with_the_greatest_occupancy_is_drawn() {
     assert_eq!(frame.x, [1.0, 3.0, 4.0, 5.0, 7.0]);
     assert!(frame.warnings[0].starts_with("3 atoms at alternate"), "{:?}", frame.warnings);
 }
+
+#[test]
+fn edges_of_ply_and_connections_of_mmcif_are_counted() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n\
+                  property float z\nelement edge 2\nproperty int a\nproperty int b\nend_header\n";
+    check(&frame(format!("{header}1 2 3\n0 0\n0 0\n")), &["2 edges are"]);
+    let names = ["group_PDB", "type_symbol", "Cartn_x", "Cartn_y", "Cartn_z"];
+    let names = names.map(|name| format!("_atom_site.{name}\n")).concat();
+    let text = format!("data_a\n_struct_conn.id a\nloop_\n{names}ATOM C 1.0 2 3\n#\n");
+    check(&frame(text), &["1 bond is"]);
+}

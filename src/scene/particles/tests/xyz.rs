@@ -64,3 +64,29 @@ fn counts_of_columns_that_no_file_has_are_refused() {
     }
     assert!(fault("2\nProperties=pos:R:18446744073709551616\n").2.contains("no properties"));
 }
+
+#[test]
+fn scales_reach_positions_radii_and_the_cell() {
+    let options = ReadOptions { scale: 2.0, radius_scale: 3.0, ..ReadOptions::default() };
+    let lattice = "Lattice=\"2 0 0 0.5 3 0 0 0 4\" Origin=\"1 1 1\"";
+    let carbon = format!("1\n{lattice}\nC 1 2 3\n");
+    let row = |i: u32| format!("{} {} {}\n", i % 3, i / 3 % 3, i / 9);
+    let rows = (0..27).map(row).collect::<Vec<_>>().concat();
+    let unnamed = format!("27\n{lattice}\n{rows}");
+    // Radii of an element, and those that are guessed from the distances, in two digits.
+    for (text, tolerance) in [(&carbon, 1e-12), (&unnamed, 0.2)] {
+        let (plain, scaled) = (particles(text), read_with(text, &options).expect("particles"));
+        assert_eq!(scaled.spheres.center(0), plain.spheres.center(0) * 2.0);
+        assert!((scaled.spheres.radius[0] / plain.spheres.radius[0] - 6.0).abs() < tolerance);
+        let cell = scaled.cell.expect("a cell");
+        assert_eq!(cell.origin, DVec3::splat(2.0));
+        assert_eq!(cell.vectors[1], DVec3::new(1.0, 6.0, 0.0));
+    }
+}
+
+#[test]
+fn comments_are_titles_and_frames_may_be_empty() {
+    assert_eq!(frame("1\nwater at 300 K\nO 0 0 0\n").title, "water at 300 K");
+    assert_eq!(frames("0\nnone\n1\none\nC 1 0 0\n"), [vec![], vec![1.0]]);
+    assert_eq!(frames("1\none\nC 1 0 0\n0\nnone\n"), [vec![1.0], vec![]]);
+}

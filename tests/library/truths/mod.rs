@@ -1,8 +1,5 @@
 //! Pictures whose radiance is known in closed form, or by a quadrature that shares nothing with the renderer.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod camera;
 mod caustics;
 mod diffuse;

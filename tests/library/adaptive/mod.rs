@@ -1,10 +1,7 @@
 //! Renders that end when they are right: whether they are, whether they say so, and whether stopping spoils them.
 
 mod bias;
-#[path = "../common/mod.rs"]
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use spherule::film::Region;
 use spherule::render::{End, Options, Render, render};

@@ -1,7 +1,7 @@
 //! Whether stopping biases any pixel: its mean over many renders against that over plain renders.
 
+use super::{caustic, with_target};
 use crate::common::*;
-use crate::{caustic, with_target};
 use spherule::image::Image;
 use spherule::render::{End, Options, Render, render};
 use spherule::scene::{Scene, Settings};

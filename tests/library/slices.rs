@@ -1,8 +1,6 @@
 //! Slices: what is left of spheres is what arithmetic says, whichever way rays find it.
 
-mod common;
-
-use common::{
+use crate::common::{
     assert_every_pixel, assert_truth, dark, emitter, furnace, glass, ground, lambertian, look,
     look_parallel, material, mean, menagerie, noon, probe, shoot, shoot_with, sphere,
 };

@@ -1,8 +1,6 @@
 //! Renders that are shared out and merged: whether they come to the bytes of the whole.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use spherule::film::{Film, Region};
 use spherule::layers::{Layer, Layers, features, layers};

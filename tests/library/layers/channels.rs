@@ -1,6 +1,6 @@
 //! What layers are called in a file, and of which type they are.
 
-use crate::all_of;
+use super::all_of;
 use crate::common::*;
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
 use spherule::image::Values::{Floats, Integers};

@@ -1,20 +1,20 @@
-//! Warnings and notes of many pictures, each told once.
+//! Warnings and notes about the pictures of a run, each printed once.
 
 use crate::cli::output;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Most runs of numbers that a message lists.
+/// Maximum number of runs of numbers in a message.
 const LISTED: usize = 8;
 
 /// Messages about the pictures so far.
 #[derive(Debug, Default)]
-pub(super) struct Told {
-    /// The picture that is spoken of: its frame, or its number.
+pub(super) struct Notices {
+    /// Number of the current picture: its frame, or its place in a turn.
     picture: u64,
     pictures: u64,
-    /// Warnings by their words, without numbers: as they were told first, and the pictures that have
-    /// them.
+    /// Warnings by their words without numbers: the text that was printed, and the pictures that it is
+    /// about.
     warnings: BTreeMap<String, (String, Vec<u64>)>,
     notes: Vec<String>,
     /// Pictures that show no sphere.
@@ -25,14 +25,14 @@ pub(super) struct Told {
     kept: u64,
 }
 
-impl Told {
-    /// Speaks of another picture from here on.
-    pub(super) fn begin(&mut self, picture: u64) {
+impl Notices {
+    /// Begins the messages about a picture.
+    pub(super) fn start_picture(&mut self, picture: u64) {
         self.picture = picture;
         self.pictures += 1;
     }
 
-    /// Warns, unless an earlier picture had the same warning, whatever its numbers.
+    /// Prints a warning, unless an earlier picture had the same one but for its numbers.
     pub(super) fn warn(&mut self, text: &str) {
         let words = text.chars().filter(|c| !c.is_ascii_digit()).collect();
         let (_, pictures) = self.warnings.entry(words).or_insert_with(|| {
@@ -44,18 +44,18 @@ impl Told {
         }
     }
 
-    /// Notes something, once.
+    /// Prints a note, unless it was printed before.
     pub(super) fn note(&mut self, text: &str) {
-        if self.notes.iter().all(|told| told != text) {
+        if self.notes.iter().all(|printed| printed != text) {
             output::note(text);
             self.notes.push(text.to_owned());
         }
     }
 
-    /// Counts a picture that exists and is kept, and says so if it is asked to.
-    pub(super) fn keep(&mut self, output: &Path, tell: bool) {
+    /// Counts a picture that exists and is kept; prints a note about it if `print` is true.
+    pub(super) fn count_kept(&mut self, output: &Path, print: bool) {
         self.kept += 1;
-        if tell {
+        if print {
             output::note(format_args!("{}: exists and is kept", output.display()));
         }
     }
@@ -70,18 +70,18 @@ impl Told {
         self.kept
     }
 
-    /// Remembers that the picture shows no sphere.
-    pub(super) fn see_no_sphere(&mut self) {
+    /// Counts the current picture among those that show no sphere.
+    pub(super) fn count_empty(&mut self) {
         self.empty.push(self.picture);
     }
 
-    /// Remembers that spheres of the picture are beyond its edges.
-    pub(super) fn see_cropped(&mut self) {
+    /// Counts the current picture among those with spheres beyond their edges.
+    pub(super) fn count_cropped(&mut self) {
         self.cropped.push(self.picture);
     }
 
-    /// Tells what is known at the end of a sequence of pictures, which are called by a noun.
-    pub(super) fn finish(&self, noun: &str) {
+    /// Prints the warnings that count pictures, at the end of a sequence; `noun` names their numbers.
+    pub(super) fn summarize(&self, noun: &str) {
         let pictures = self.pictures;
         if !self.empty.is_empty() {
             let (count, list) = (self.empty.len(), runs(&self.empty));
@@ -92,11 +92,11 @@ impl Told {
         if !self.cropped.is_empty() {
             let (count, list) = (self.cropped.len(), runs(&self.cropped));
             output::warn(format_args!(
-                "spheres lie outside of {count} of {pictures} pictures, whose camera frames the first \
-                 one alone: {noun} {list}; write the input to a file to frame all of them"
+                "spheres lie outside of {count} of {pictures} pictures, whose camera frames only the \
+                 first one: {noun} {list}; write the input to a file to frame all of them"
             ));
         }
-        // What holds for all of them needs no list.
+        // A warning about all pictures needs no list.
         let some = |list: &[u64]| list.len() > 1 && (list.len() as u64) < pictures;
         for (text, list) in self.warnings.values().filter(|(_, list)| some(list)) {
             let (count, list) = (list.len(), runs(list));
@@ -137,14 +137,14 @@ mod tests {
 
     #[test]
     fn warnings_that_differ_in_numbers_are_one() {
-        let mut told = Told::default();
+        let mut notices = Notices::default();
         for (picture, text) in
             [(0, "1 of 9 rows"), (1, "2 of 9 rows"), (1, "other"), (2, "3 of 9 rows")]
         {
-            told.begin(picture);
-            told.warn(text);
+            notices.start_picture(picture);
+            notices.warn(text);
         }
-        let lists: Vec<_> = told.warnings.values().cloned().collect();
+        let lists: Vec<_> = notices.warnings.values().cloned().collect();
         assert_eq!(
             lists,
             [("1 of 9 rows".to_owned(), vec![0, 1, 2]), ("other".to_owned(), vec![1])]

@@ -1,8 +1,5 @@
 //! Scenes made to break a renderer: degenerate, gigantic, tiny, far away, nested, empty, endless.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod degenerate;
 mod equality;
 mod invalid;

@@ -1,11 +1,9 @@
 //! Layers beside the picture: closed forms, brute force, and the channels that they come to.
 
 mod channels;
-#[path = "../common/mod.rs"]
-mod common;
 mod mattes;
 
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use rayon::ThreadPoolBuilder;
 use spherule::World;

@@ -1,8 +1,6 @@
 //! Renders that are stopped and go on: whether they come to the same bytes as those that never stopped.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use spherule::film::Region;
 use spherule::render::{End, Options, Render, Unfinished, Unlike, render};

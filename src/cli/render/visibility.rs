@@ -1,4 +1,4 @@
-//! Pictures that show no sphere.
+//! Detection of pictures that show no sphere.
 
 use crate::cli::contents::spheres;
 use crate::cli::settings::region_text;
@@ -6,8 +6,9 @@ use spherule::World;
 use spherule::film::Region;
 use spherule::world::Visibility;
 
-/// Why a picture of so many samples per pixel shows no sphere, and the mend; `None` if it shows one.
-pub(super) fn why(world: &World, region: Region, samples: u32) -> Option<String> {
+/// Returns why a picture with so many samples per pixel shows no sphere, and what to do about it; `None` if
+/// it shows one.
+pub(super) fn explain_empty(world: &World, region: Region, samples: u32) -> Option<String> {
     let all = world.spheres.len() as u64;
     let visibility = world.visibility(region, samples);
     match visibility {

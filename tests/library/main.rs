@@ -1,0 +1,17 @@
+//! The library: pictures, walks, trees, queries and readers beside closed forms, oracles and one another.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod adaptive;
+mod layers;
+mod query;
+mod readers;
+mod resume;
+mod scenes;
+mod slices;
+mod split;
+mod stress;
+mod trees;
+mod truths;
+mod walks;
