@@ -63,10 +63,9 @@ pub(in super::super) fn of_atom_name(name: &str, residue: &str) -> Option<Elemen
 pub(in super::super) fn of_aligned_name(aligned: &str, residue: &str) -> Option<Element> {
     let name = aligned.trim();
     let symbol = aligned.get(..2).unwrap_or_default();
-    let long = symbol.bytes().all(|byte| byte.is_ascii_alphabetic()) && !symbol.is_empty();
     // `HG11` fills its columns, and is no mercury.
     let full = name.len() == 4 && name.starts_with('H');
-    if long && !full && !is_one_of(residue, &STANDARD) {
+    if !full && !is_one_of(residue, &STANDARD) {
         return Element::from_symbol(symbol).or_else(|| of_atom_name(name, residue));
     }
     of_atom_name(name, residue)
@@ -121,6 +120,9 @@ mod tests {
             ("HG11", "VAL", "H"),
             ("SD", "MET", "S"),
             ("SE", "MSE", "Se"),
+            ("SE", "MET", "Se"),
+            ("CL1", "ALA", "C"),
+            ("Cd1", "LIG", "Cd"),
             ("CL1", "LIG", "Cl"),
             ("NA", "NA", "Na"),
             ("NA", "HEM", "N"),
@@ -153,6 +155,8 @@ mod tests {
             ("FE  ", "HEM", "Fe"),
             (" PB ", "ATP", "P"),
             ("    ", "", "-"),
+            ("C", "LIG", "C"),
+            ("1HB ", "LIG", "H"),
         ] {
             assert_eq!(symbol(of_aligned_name(name, residue)), expected, "{name:?} of {residue}");
         }

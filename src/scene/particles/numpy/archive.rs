@@ -254,14 +254,16 @@ impl Npz {
     ) -> Result<(), SceneError> {
         let path = self.path.clone();
         let mut array = self.open(name, Turn::Never)?;
-        if array.is_text(0) || array.columns() != 1 {
-            let message = format!(
-                "the array `{name}` has {} columns, but x, y and z have one number in each row",
-                array.columns()
-            );
-            return Err(SceneError::whole_file(&path, message));
-        }
-        array.rows(&path, |row| take(row.numbers[0]))
+        let fault = if array.is_text(0) {
+            "holds texts".to_owned()
+        } else if array.columns() != 1 {
+            format!("has {} columns", array.columns())
+        } else {
+            return array.rows(&path, |row| take(row.numbers[0]));
+        };
+        let message =
+            format!("the array `{name}` {fault}, but x, y and z have one number in each row");
+        Err(SceneError::whole_file(&path, message))
     }
 
     /// Returns the numbers of an array that has a row of `columns` numbers for each particle.
