@@ -245,6 +245,11 @@ mod tests {
         let mut lines = lines(&"1".repeat(LONGEST + BLOCK), BLOCK);
         let error = lines.next().err().expect("a fault");
         assert!(error.message.contains("longer than"), "{error}");
+        for (length, fits) in [(LONGEST - 1, true), (LONGEST, false)] {
+            let mut lines = self::lines(&("1".repeat(length) + "\n"), BLOCK);
+            let read = lines.next().ok().flatten().map(|line| line.bytes.len());
+            assert_eq!(read, fits.then_some(length));
+        }
     }
 
     #[test]

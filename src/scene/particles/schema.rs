@@ -315,6 +315,7 @@ impl Choice<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::particles::options::Columns;
 
     fn schema(names: &str, columns: &str) -> Result<Schema, String> {
         let columns = columns.parse()?;
@@ -348,6 +349,26 @@ mod tests {
         assert!(schema("x,y,z", "q").is_err());
         assert!(schema("x,y,z", "type=q").is_err());
         assert_eq!(schema("x,y,z,id", "").map(|schema| schema.unused), Ok(vec!["id".to_owned()]));
+    }
+
+    #[test]
+    fn rows_may_end_before_what_was_not_asked_for() {
+        let needed = |names: &str, columns: &str, rest| {
+            let columns = columns.parse().expect("columns");
+            let options =
+                ReadOptions { columns: Columns { rest, ..columns }, ..ReadOptions::default() };
+            let names = names.split(',').map(str::to_owned).collect();
+            Schema::new(names, &options).expect("columns").needed_columns()
+        };
+        for (names, columns, rest, expected) in [
+            ("x,y,z,q,a,b", "q", Some(100), 4),
+            ("x,y,z,a,q,b", "q", Some(100), 5),
+            ("x,y,z,,a", "", Some(100), 3),
+            ("x,y,z,a,radius", "", None, 5),
+            ("x,y,z,a,b", "", None, 3),
+        ] {
+            assert_eq!(needed(names, columns, rest), expected, "{names}");
+        }
     }
 
     #[test]

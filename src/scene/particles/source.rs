@@ -241,3 +241,40 @@ impl<R: BufRead> Read for Zstd<R> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The length of the head of these bytes, once it shows what follows comments.
+    fn head_of(content: impl Read + Send + 'static) -> usize {
+        let mut reader: Box<dyn Read + Send> = Box::new(content);
+        let head = head(&mut reader).expect("memory");
+        let (path, progress) = (Path::new("p").into(), ReadProgress::default());
+        let mut source = Source { path, head, reader, progress };
+        source.read_preamble().expect("memory");
+        source.head.len()
+    }
+
+    #[test]
+    fn heads_go_on_until_half_of_what_was_read_last_is_no_comment() {
+        for (comments, rows, expected) in [
+            (100, 0, 100),
+            (50_000, 0, 50_000),
+            (0, 200_000, HEAD),
+            (HEAD / 2, 200_000, HEAD),
+            (HEAD / 2 + 1, 200_000, 2 * HEAD),
+            (HEAD * 3 / 2, 300_000, 2 * HEAD),
+            (HEAD * 3 / 2 + 1, 300_000, 4 * HEAD),
+            (100_000, 10_000, 110_000),
+        ] {
+            let mut text = vec![b'#'; comments];
+            if let Some(last) = text.last_mut() {
+                *last = b'\n';
+            }
+            text.extend(b"1 2 3\n".iter().cycle().take(rows));
+            assert_eq!(head_of(Cursor::new(text)), expected, "{comments} {rows}");
+        }
+        assert_eq!(head_of(io::repeat(b'#')), PREAMBLE);
+    }
+}

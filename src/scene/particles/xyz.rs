@@ -260,6 +260,17 @@ fn word(letters: &mut std::iter::Peekable<std::str::Chars>, ends: impl Fn(char) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn properties_may_make_ten_thousand_columns() {
+        let path = Path::new("p").into();
+        let line = Line::new(&path, 2, b"");
+        let count = |properties: &str| columns(&line, properties).ok().map(|names| names.len());
+        assert_eq!(count("q:R:10000"), Some(10_000));
+        assert_eq!(count("pos:R:3:q:R:9997"), Some(10_000));
+        assert_eq!(count("pos:R:3:q:R:9998"), None);
+    }
 
     #[test]
     fn comments_are_pairs_with_quotes() {

@@ -300,3 +300,244 @@ fn class(group: &[Operation]) -> Vec<i32> {
     traces.sort_unstable();
     traces
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell(lengths: [f64; 3], angles: [f64; 3]) -> Cell {
+        Cell::of_lengths(lengths, angles).expect("a cell")
+    }
+
+    fn cube(edge: f64) -> Cell {
+        cell([edge; 3], [90.0; 3])
+    }
+
+    fn group(hall: &str) -> Vec<Operation> {
+        hall::operations(hall).expect("a Hall symbol")
+    }
+
+    fn of_symbol(symbol: &str) -> Declared {
+        Declared { symbols: vec![symbol.to_owned()], ..Declared::default() }
+    }
+
+    fn of_number(number: u32) -> Declared {
+        Declared { number: Some(number), ..Declared::default() }
+    }
+
+    /// The number of operations to draw with, and what is said of them.
+    fn resolved(declared: &Declared, cell: &Cell, positions: &[DVec3]) -> (usize, String) {
+        let resolved = declared.resolve(Contents { cell, positions });
+        (resolved.operations.len(), resolved.warnings.join("; "))
+    }
+
+    #[test]
+    fn cells_are_as_far_from_a_symmetry_as_it_changes_them() {
+        let box_shaped = cell([4.0, 5.0, 6.0], [90.0; 3]);
+        let sheared = cell([4.0, 5.0, 6.0], [90.0, 90.0, 100.0]);
+        let hexagonal = cell([4.0, 4.0, 6.0], [90.0, 90.0, 120.0]);
+        for (hall, cell, expected) in [
+            ("P 2", &box_shaped, 0.0),
+            // Squares of the edges a and b are 9 apart.
+            ("P 4", &box_shaped, 9.0 / 16.0),
+            ("P 4x", &box_shaped, 11.0 / 25.0),
+            ("P 2", &sheared, 0.0),
+            ("P 2y", &sheared, 2.0 * 80_f64.to_radians().cos()),
+            ("P 6", &hexagonal, 0.0),
+        ] {
+            assert!((misfit(&group(hall), cell) - expected).abs() < 1e-12, "{hall}");
+        }
+    }
+
+    #[test]
+    fn packings_have_the_least_distance_and_the_number_of_atoms() {
+        let first = DVec3::new(0.1, 0.2, 0.3);
+        let near = DVec3::new(0.005, 0.0, 0.0);
+        for (hall, positions, spacing, atoms) in [
+            ("P 1", &[first][..], f64::INFINITY, 1),
+            ("-P 1", &[DVec3::ZERO], f64::INFINITY, 1),
+            // To the image at 0.9, 0.8 and 0.7.
+            ("-P 1", &[first], 8.0 * 0.6, 2),
+            ("P 1", &[DVec3::ZERO, DVec3::X * 0.5], 4.0, 2),
+            // Places that are the same but for rounding are one.
+            ("P 1", &[DVec3::ZERO, near], f64::INFINITY, 1),
+            // The image of one is beside the other.
+            ("-P 1", &[first, near - first], 0.04, 4),
+        ] {
+            let contents = Contents { cell: &cube(8.0), positions };
+            let packing = Packing::new(&group(hall), contents);
+            let same = packing.spacing == spacing || (packing.spacing - spacing).abs() < 1e-12;
+            assert!(same, "{hall} {positions:?}: {}", packing.spacing);
+            assert_eq!(packing.atoms, atoms, "{hall} {positions:?}");
+        }
+    }
+
+    #[test]
+    fn groups_are_alike_by_their_rotations_and_centering() {
+        for (one, other, expected) in [
+            ("P 1", "P 1", true),
+            ("P 2", "P 2ac", true),
+            ("P 2", "P -2", false),
+            ("P 2", "P 2x", false),
+            ("C 1", "P 1", false),
+            ("P 2", "P 1", false),
+            ("C 1", "P 2", false),
+        ] {
+            assert_eq!(are_alike(&group(one), &group(other)), expected, "{one} {other}");
+            assert_eq!(are_alike(&group(other), &group(one)), expected, "{other} {one}");
+        }
+    }
+
+    #[test]
+    fn classes_are_those_of_rotations() {
+        for (hall, expected) in [
+            ("C 1", &[13][..]),
+            ("-P 1", &[-13, 13]),
+            ("P 2x", &[9, 13]),
+            ("P -2y", &[-9, 13]),
+            ("I 4", &[9, 11, 11, 13]),
+            ("P 3", &[10, 10, 13]),
+            ("P 3*", &[10, 10, 13]),
+        ] {
+            assert_eq!(class(&group(hall)), expected, "{hall}");
+        }
+    }
+
+    #[test]
+    fn origins_that_are_open_keep_atoms_apart() {
+        let diamond = of_symbol("F d -3 m");
+        for (places, choice) in [
+            (&[DVec3::ZERO][..], "F d -3 m:1"),
+            (&[DVec3::splat(0.125)], "F d -3 m:2"),
+            // Of equals the last.
+            (&[], "F d -3 m:2"),
+        ] {
+            let (count, told) = resolved(&diamond, &cube(5.43), places);
+            let expected = format!(
+                "the space group's symbol `F d -3 m` leaves the origin open: {choice} is taken, by \
+                 the distances of atoms"
+            );
+            assert_eq!((count, told), (192, expected));
+        }
+        // An origin that is named is not open, wherever atoms are.
+        let named = resolved(&of_symbol("F d -3 m :1"), &cube(5.43), &[DVec3::splat(0.125)]);
+        assert_eq!(named, (192, String::new()));
+        let first =
+            of_symbol("F d -3 m :1").resolve(Contents { cell: &cube(5.43), positions: &[] });
+        assert_eq!(first.operations, group("F 4d 2 3 -1d"));
+    }
+
+    #[test]
+    fn axes_that_the_cell_does_not_have_are_not_taken() {
+        let hexagonal = cell([4.0, 4.0, 10.0], [90.0, 90.0, 120.0]);
+        let rhombohedral = cell([5.0; 3], [70.0; 3]);
+        // Somewhat hexagonal, and not at all rhombohedral.
+        let neither = cell([4.0, 4.5, 10.0], [90.0, 90.0, 120.0]);
+        let misfit = |symbol: &str| {
+            format!("the cell does not have the symmetry of the space group's symbol `{symbol}`")
+        };
+        for (symbol, cell, count, told) in [
+            ("R -3 m", &hexagonal, 36, String::new()),
+            ("R -3 m", &rhombohedral, 12, String::new()),
+            ("R -3 m :H", &hexagonal, 36, String::new()),
+            ("R -3 m :R", &hexagonal, 36, String::new()),
+            ("R -3 m :H", &rhombohedral, 12, String::new()),
+            ("R -3 m", &neither, 36, misfit("R -3 m")),
+            ("R -3 m :R", &neither, 12, misfit("R -3 m :R")),
+            ("P m -3 m :2", &cube(8.0), 48, String::new()),
+            // Edges are measured.
+            ("P m -3 m", &cell([8.0, 8.02, 8.0], [90.0; 3]), 48, String::new()),
+        ] {
+            assert_eq!(resolved(&of_symbol(symbol), cell, &[]), (count, told), "{symbol}");
+        }
+    }
+
+    #[test]
+    fn numbers_leave_axes_open_where_there_are_several() {
+        let monoclinic = cell([4.0, 5.0, 6.0], [90.0, 100.0, 90.0]);
+        let (count, told) = resolved(&of_number(14), &monoclinic, &[]);
+        let expected = "the space group's number 14 leaves the axes open: those of P 1 21/c 1 are \
+                        taken";
+        assert_eq!((count, told.as_str()), (4, expected));
+        assert_eq!(resolved(&of_number(2), &monoclinic, &[]), (2, String::new()));
+        let both = Declared { number: Some(2), ..of_symbol("P 7 q") };
+        let told = resolved(&both, &monoclinic, &[]).1;
+        let expected = "the space group `P 7 q` is not known, and its operations are not listed";
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn listed_operations_begin_with_the_identity_unless_it_is_listed() {
+        let parse = |texts: &[&str]| -> Vec<Operation> {
+            texts.iter().map(|text| Operation::parse(text).expect("an operation")).collect()
+        };
+        let (none, inversion): (&[&str], _) = (&[], "-x,-y,-z");
+        for (operations, centerings, expected) in [
+            (none, none, none),
+            (&[inversion], none, &["x,y,z", inversion]),
+            (&[inversion, "x,y,z"], none, &[inversion, "x,y,z"]),
+            (&["x,y,z", "x,y,z+1", "x,y,z"], none, &["x,y,z"]),
+            (none, &["x+1/2,y+1/2,z"], &["x,y,z", "x+1/2,y+1/2,z"]),
+            (
+                &[inversion],
+                &["x,y,z", "x+1/2,y,z"],
+                &["x,y,z", inversion, "x+1/2,y,z", "1/2-x,-y,-z"],
+            ),
+        ] {
+            let [operations, centerings] = [operations, centerings].map(parse);
+            let declared = Declared { operations, centerings, ..Declared::default() };
+            assert_eq!(declared.listed(), parse(expected));
+        }
+    }
+
+    #[test]
+    fn what_contradicts_and_what_is_unknown_is_told() {
+        let nothing = "only the listed atoms are drawn";
+        let listed = |others: Declared| Declared { operations: group("P 2"), ..others };
+        let hall = |hall: &str| Declared { hall: Some(hall.to_owned()), ..Declared::default() };
+        for (declared, count, told) in [
+            (
+                Declared::default(),
+                0,
+                format!("names no space group and lists no symmetry operations: {nothing}"),
+            ),
+            (of_number(231), 0, format!("there is no space group of the number 231: {nothing}")),
+            (
+                of_symbol("P 7 q"),
+                0,
+                format!("the space group `P 7 q` is not known, and its operations are not listed: {nothing}"),
+            ),
+            (
+                hall("P 9"),
+                0,
+                format!("the Hall symbol `P 9` is not understood; names no other symmetry: {nothing}"),
+            ),
+            (hall("P 2y"), 2, String::new()),
+            // Of one class is enough for a number, and what is not known contradicts nothing.
+            (listed(of_number(4)), 2, String::new()),
+            (listed(of_number(231)), 2, String::new()),
+            (listed(of_symbol("P 7 q")), 2, String::new()),
+            (listed(hall("P 9")), 2, String::new()),
+            (listed(hall("P 2c")), 2, String::new()),
+            (
+                listed(hall("P -2")),
+                2,
+                "the Hall symbol `P -2` contradicts the listed symmetry operations, which is used".to_owned(),
+            ),
+            (
+                listed(of_number(6)),
+                2,
+                "the space group's number 6 contradicts the listed symmetry operations, which is used"
+                    .to_owned(),
+            ),
+            (
+                listed(of_symbol("P 1 m 1")),
+                2,
+                "the space group's symbol `P 1 m 1` contradicts the listed symmetry operations, which is used"
+                    .to_owned(),
+            ),
+        ] {
+            assert_eq!(resolved(&declared, &cube(8.0), &[]), (count, told));
+        }
+    }
+}

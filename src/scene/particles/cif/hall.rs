@@ -230,6 +230,40 @@ mod tests {
     }
 
     #[test]
+    fn axes_across_an_edge_go_by_the_rotation_before() {
+        for (symbol, second) in [
+            ("P 2", "-x,-y,z"),
+            ("P 2'", "-y,-x,-z"),
+            ("P 2^", "-y,-x,-z"),
+            ("P 2\"", "y,x,-z"),
+            ("P 2=", "y,x,-z"),
+            ("P 1x 2'", "-x,-z,-y"),
+            ("P 1x 2\"", "-x,z,y"),
+            ("P 1y 2\"", "z,-y,x"),
+            ("P 1 2'", "-y,-x,-z"),
+            ("P 3*", "z,x,y"),
+            ("P 2a", "-x+1/2,-y,z"),
+            ("P 2uv", "-x+1/4,-y+1/4,z"),
+            ("P 2nw", "-x+1/2,-y+1/2,z+3/4"),
+            ("P -1d", "-x+1/4,-y+1/4,-z+1/4"),
+            ("P 42", "-y,x,z+1/2"),
+            ("P 41x", "x+1/4,-z,y"),
+            ("P -2x (0 0 1)", "-x,y,z"),
+            ("P -1 (1 -2 3)", "-x+1/6,-y-1/3,-z+1/2"),
+            ("P 2x (y,z,x)", "-x,-y,z"),
+            ("Q 1", "x,y,z+1/2"),
+        ] {
+            let group = operations(symbol).expect(symbol);
+            let second = Operation::parse(second).expect(second);
+            assert!(group[1].same(&second), "{symbol}: {:?}", group[1]);
+        }
+        // Screws turn by less than once.
+        for wrong in ["P 22", "P 33", "P 45", "P 31'", "P 4*", "P 2 (1 2)", "P 2 (1 2 3 4)", "PP"] {
+            assert_eq!(operations(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
     fn hall_symbols_are_read_in_their_spellings() {
         let order = |symbol: &str| operations(symbol).map(|group| group.len());
         assert_eq!(order("-p_2YBC"), Some(4));

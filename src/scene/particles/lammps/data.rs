@@ -373,3 +373,18 @@ impl Head {
         frame
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sections_begin_with_a_capital_and_have_letters_alone() {
+        for line in ["Atoms", " Atoms # full", "Atom Type Labels", "PairIJ Coeffs", "Types/kk"] {
+            assert!(is_section(line.as_bytes()), "{line}");
+        }
+        for line in ["", "# Atoms", "atoms", "xlo xhi", "C1 12.011", "O-2", "1 Atoms", "2 atoms"] {
+            assert!(!is_section(line.as_bytes()), "{line}");
+        }
+    }
+}

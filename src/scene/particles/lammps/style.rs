@@ -528,6 +528,183 @@ mod tests {
         assert!(columns("granite").is_empty() && columns("").is_empty());
     }
 
+    /// Why these rows do not fit a style that the file names; empty if they do.
+    fn misfit(facts: &Facts, style: &str, rows: &[&str]) -> String {
+        facts.named(style, &sample(rows)).expect("a style").misfit.unwrap_or_default()
+    }
+
+    fn summary(values: &str) -> Summary {
+        let values: Vec<String> = values.split(' ').map(str::to_owned).collect();
+        Summary::of(values.iter())
+    }
+
+    #[test]
+    fn named_styles_need_ids_types_and_positions_alone() {
+        let bonds = Facts { counts: [("bonds", 1)].into(), types: 1, ..Facts::default() };
+        for (style, rows, expected) in [
+            ("atomic", &["1 1 0.5 1.5 2.5"][..], ""),
+            ("atomic", &[], ""),
+            ("sphere", &["1 1 -1 -1 0.5 1.5 2.5"], ""),
+            ("spin", &["1 1 0.5 1.5 2.5 9 9 9 9"], ""),
+            ("atomic", &["1 1 0.5 1.5 2.5 0 0 0.5"], "it has 5 columns, and the rows have 8"),
+            ("atomic", &["1 1 0.5 1.5"], "it has 5 columns, and the rows have 4"),
+            ("tdpd", &["1 1 0.5 1.5"], "it has at least 5 columns, and the rows have 4"),
+            ("tdpd", &["1 1 0.5 1.5 2.5 0 0 0.5"], ""),
+            ("atomic", &["1 1 0.5 far 2.5"], "column 4 cannot be `y`"),
+            ("atomic", &["1.5 1 0.5 1.5 2.5"], "column 1 cannot be `id`"),
+            // Some rows may go on.
+            ("atomic", &["1 1 0.5 1.5 2.5 7", "2 1 3 4 5.5 7 8 9"], ""),
+            (
+                "atomic",
+                &["1 1 0.5 1.5", "2 1 3 4 5.5"],
+                "its rows have different numbers of columns",
+            ),
+        ] {
+            assert_eq!(misfit(&bonds, style, rows), expected, "{style} {rows:?}");
+        }
+        let uneven = ["1 1 0.5 1.5 2.5", "2 1 3 4 5.5 0 0 0"];
+        assert!(guess(&of_types(1), &uneven).is_empty());
+    }
+
+    #[test]
+    fn names_of_columns_tell_what_values_they_have() {
+        let things = ["ellipsoids", "lines", "triangles", "bodies"];
+        let facts = Facts { counts: things.map(|thing| (thing, 1)).into(), ..Facts::default() };
+        for (names, good, bad) in [
+            (
+                "id mol template_index template_atom etag status",
+                "0 7",
+                &["-1 7", "0 0.5", "0 x"][..],
+            ),
+            ("ellipsoidflag lineflag triangleflag bodyflag", "0 1", &["0 2", "-1 1", "0 0.5"]),
+            ("espin", "-1 3", &["-2 3", "-1 4", "0 0.5"]),
+            ("bond_nt bond_nt_1 bond_nt_2 buckling", "-1 9", &["-2 9", "0 0.5"]),
+            ("diameter radius kradius eradius mradius theta", "0 2.5", &["-0.5 2.5", "0 inf"]),
+            ("density mass volume mlength edpd_cv cv", "0.5 2.5", &["0 2.5", "-1 2.5", "1 inf"]),
+            ("x q mux", "-0.5 7", &["0 inf", "0 nan", "x 0"]),
+        ] {
+            for name in names.split(' ') {
+                assert!(facts.may_be(name, summary(good)), "{name}: {good}");
+                for bad in bad {
+                    assert!(!facts.may_be(name, summary(bad)), "{name}: {bad}");
+                }
+            }
+        }
+        // Nothing is an ellipsoid where the header counts none.
+        assert!(!Facts::default().may_be("ellipsoidflag", summary("0 1")));
+    }
+
+    #[test]
+    fn columns_are_summed_up() {
+        for (values, finite, integral, range) in [
+            ("1 2.5 -3", true, false, (-3.0, 2.5)),
+            ("2.5 1", true, false, (1.0, 2.5)),
+            ("1 -2 4", true, true, (-2.0, 4.0)),
+            ("1 2 inf", false, false, (1.0, f64::INFINITY)),
+            ("x 1 2", false, false, (1.0, 2.0)),
+        ] {
+            let found = summary(values);
+            assert_eq!((found.finite, found.integral), (finite, integral), "{values}");
+            assert_eq!((found.least, found.greatest), range, "{values}");
+        }
+    }
+
+    #[test]
+    fn types_are_numbers_or_labels_of_the_header() {
+        for (label, named, value, is_type) in [
+            ("", false, "2", true),
+            ("", true, "2", true),
+            ("", true, "3", false),
+            ("", true, "0", false),
+            ("O", false, "O", true),
+            ("O", true, "wax", false),
+            ("", true, "wax", true),
+            ("", false, "wax", false),
+            ("", true, "+x", false),
+        ] {
+            let labels = label.split_whitespace().collect();
+            let facts = Facts { types: 2, labels, ..Facts::default() };
+            let row = format!("1 {value}");
+            let fault = facts.type_fault(1, &sample(&[&row]), named);
+            assert_eq!(fault.is_none(), is_type, "{label} {named} {value}");
+        }
+        let known = |types: u64| [0, 1, 2, 3].map(|number| of_types(types).has_type(number));
+        assert_eq!(known(2), [false, true, true, false]);
+        assert_eq!(known(0), [false, true, true, true]);
+    }
+
+    #[test]
+    fn positions_are_in_the_box_and_mostly_no_whole_numbers() {
+        let vectors = [DVec3::X * 10.0, DVec3::Y * 20.0, DVec3::Z * 40.0];
+        let cell = Cell { origin: DVec3::new(1.0, 2.0, 3.0), vectors, periodic: [true; 3] };
+        let in_box = Facts { cell: Some(cell), ..Facts::default() };
+        let charge = Layout::of_style("charge").pop().expect("a style");
+        let likelihood = |facts: &Facts, places: &[&str]| {
+            let rows: Vec<String> = places.iter().map(|place| format!("1 1 0.5 {place}")).collect();
+            let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+            facts.likelihood(&charge, &sample(&rows))
+        };
+        // Two corners and a point inside; the last is outside along y.
+        let places = ["1 2 3", "11 22 43", "5.5 21 42", "1 23 4"];
+        assert_eq!(likelihood(&in_box, &places), (7, true));
+        assert_eq!(likelihood(&Facts::default(), &places), (0, true));
+        for (places, not_whole) in [
+            (&["2 3 4", "3 4 5"][..], true),
+            (&["2 3 4", "3 4 5", "4 5 6.5"], false),
+            (&["2 3 4", "3 4.5 5", "4 5 6"], true),
+            (&["2 3 4", "3 4 5", "4 5 6", "5 6 7"], false),
+        ] {
+            assert_eq!(likelihood(&in_box, places), (10, not_whole), "{places:?}");
+        }
+    }
+
+    #[test]
+    fn spins_are_unit_vectors_or_none() {
+        for (spins, expected) in [
+            (&["0 0.6 0.8"][..], true),
+            (&["0 0.6 0.8", "0 0 0"], true),
+            (&["0 0 0"], false),
+            (&["0 0.6 0.8", "0 3 4"], false),
+            (&["0 3 4"], false),
+        ] {
+            let rows: Vec<String> =
+                spins.iter().map(|spin| format!("1 1 1 2 3 {spin} 1")).collect();
+            let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+            assert_eq!(sample(&rows).has_spins(), expected, "{spins:?}");
+        }
+    }
+
+    #[test]
+    fn styles_that_are_drawn_alike_are_no_other_guesses() {
+        // The molecule of one is the type of the other, and they are the same.
+        assert_eq!(guess(&of_types(1), &["1 1 1 0.5 1.5 2.5"]), ["molecular"]);
+    }
+
+    #[test]
+    fn positions_alone_are_read_of_rows_that_fit_no_style() {
+        let vectors = [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::Z * 10.0];
+        let cell = Some(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] });
+        let in_box = Facts { types: 2, cell, counts: [("bonds", 1)].into(), ..Facts::default() };
+        let guess = |start: &str| {
+            let row = format!("{start} 7.5 0 0 0 0 0 0 0 0 0 0.5");
+            guess(&in_box, &[&row])
+        };
+        assert_eq!(guess("1 2 0.5 1.5 2.5"), ["hybrid"]);
+        for start in ["1 2 0.5 11.5 2.5", "1.5 2 0.5 1.5 2.5", "1 3 0.5 1.5 2.5"] {
+            assert!(guess(start).is_empty(), "{start}");
+        }
+    }
+
+    #[test]
+    fn hybrid_styles_are_open_where_a_word_is_not_known() {
+        let open = |style: &str| Layout::of_style(style).iter().all(|layout| layout.open);
+        for style in ["hybrid", "hybrid tdpd 2 charge", "hybrid tdpd", "hybrid body nparticle 2 5"]
+        {
+            assert!(open(style), "{style}");
+        }
+        assert!(!open("hybrid charge sphere") && !open("hybrid sphere ellipsoid"));
+    }
+
     #[test]
     fn styles_have_positions_and_types() {
         for (style, columns) in STYLES {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::color::elements::cpk;
-use crate::color::{Map, Spacing, category, srgb};
-use crate::scene::particles::{Columns, Radii, ReadOptions, read};
+use crate::color::{Map, RangeError, Spacing, category, srgb};
+use crate::scene::particles::{Columns, LengthUnit, Radii, ReadOptions, read};
 use crate::scene::{Material, Rgb, Scene};
 
 const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n\
@@ -88,6 +88,67 @@ fn what_is_missing_is_told() {
 fn typed(looks: &[&str]) -> Looks {
     let types = looks.iter().map(|look| look.parse().expect("looks of a type")).collect();
     Looks { types, ..Looks::default() }
+}
+
+#[test]
+fn maps_and_ranges_are_for_numbers() {
+    let (particles, _) = look_at(DUMP, &Looks::default()).expect("spheres");
+    assert!(by("x").is_numeric(&particles) && !by("type").is_numeric(&particles));
+    assert!(!by("speed").is_numeric(&particles));
+    for colors in [
+        ColumnColors { map: Some(Map::Turbo), ..by("mol") },
+        ColumnColors { spacing: Spacing::Logarithmic, ..by("mol") },
+    ] {
+        let error = look_at(DUMP, &colored(colors)).expect_err("texts");
+        assert!(error.message.contains("`mol` holds texts"), "{error}");
+    }
+    for (spacing, reason) in
+        [(Spacing::Linear, RangeError::Empty), (Spacing::Logarithmic, RangeError::NonePositive)]
+    {
+        let error = ColumnColors { spacing, ..by("q") }.no_range(Path::new("p"));
+        assert_eq!(error.message, format!("the column `q` has no colors: {reason}"));
+    }
+}
+
+#[test]
+fn lengths_have_their_unit_in_the_legend() {
+    let label = |content: &str, column: &str| {
+        let (_, legend) = look_at(content, &colored(by(column))).expect("colors");
+        legend.expect("a legend").label
+    };
+    let atoms = "2\nProperties=species:S:1:pos:R:3:q:R:1\nO 0 0 0 1\nH 1 2 0 2\n";
+    assert_eq!(label(atoms, "x"), "x (angstrom)");
+    assert_eq!(label(atoms, "RADIUS"), "RADIUS (angstrom)");
+    assert_eq!((label(atoms, "q"), label(DUMP, "x")), ("q".to_owned(), "x".to_owned()));
+}
+
+#[test]
+fn columns_without_a_number_have_no_colors_unless_that_is_allowed() {
+    let dust = "x,y,z,q\n0,0,0,-4\n1,1,1,\n";
+    let colors = ColumnColors { spacing: Spacing::Logarithmic, ..by("q") };
+    let (particles, _) = look_at(dust, &colored(by("x"))).expect("colors");
+    assert!(particles.warnings.iter().all(|text| !text.contains("for want of")));
+    assert!(look_at(dust, &colored(colors.clone())).is_err());
+    let looks = Looks { allow_empty: true, ..colored(colors.clone()) };
+    let (particles, legend) = look_at(dust, &looks).expect("no colors");
+    assert_eq!((particles.spheres.color.len(), legend), (0, None));
+    let backwards = ColumnColors { ends: Some([2.0, 1.0]), ..by("x") };
+    let looks = Looks { allow_empty: true, ..colored(backwards) };
+    assert!(look_at(dust, &looks).is_err(), "a range that ends before it begins");
+    // Ends are known without particles.
+    let unit = LengthUnit::Nanometer;
+    assert_eq!(by("x").legend_of_ends(unit), None);
+    let legend = ColumnColors { ends: Some([1.0, 2.0]), ..by("x") }.legend_of_ends(unit);
+    assert_eq!(legend.expect("a legend").label, "x (nanometer)");
+}
+
+#[test]
+fn looks_that_come_twice_share_their_material() {
+    let looks = typed(&["O:material=mirror", "H:material=glass", "H:material=glass"]);
+    let (particles, _) = look_at(WATER, &looks).expect("looks");
+    assert_eq!(particles.material_names, ["", "O: mirror", "H: glass"]);
+    assert_eq!(particles.spheres.material, [1, 2, 2]);
+    assert_eq!(particles.materials.len(), 2);
 }
 
 #[test]

@@ -221,3 +221,48 @@ impl<R: Read> Array<R> {
         Ok(column)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Cursor;
+
+    /// The columns of an array whose header has so many bytes, or what is wrong with it.
+    fn columns(kind: &str, shape: &str, length: usize) -> Result<usize, String> {
+        let header = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': {shape}, }}");
+        let header = header.clone() + &" ".repeat(length.saturating_sub(header.len()));
+        let size = (header.len() as u32).to_le_bytes();
+        let bytes = [MAGIC, &[2, 0], &size, header.as_bytes()].concat();
+        Array::open(Cursor::new(bytes), Turn::Never).map(|array| array.columns())
+    }
+
+    #[test]
+    fn headers_columns_and_rows_have_their_greatest_lengths() {
+        assert_eq!(columns("'<f4'", "(5, 3)", 1 << 16), Ok(3));
+        let long = columns("'<f4'", "(5, 3)", (1 << 16) + 1);
+        assert_eq!(long, Err("has a header of 65537 bytes".to_owned()));
+        assert_eq!(columns("'<f4'", "(5, 10000)", 0), Ok(10_000));
+        assert!(columns("'<f4'", "(5, 10001)", 0).is_err_and(|fault| fault.contains("10001")));
+        let texts =
+            |length: u32| columns(&format!("[('x', '<f4'), ('a', '|S{length}')]"), "(5,)", 0);
+        assert_eq!(texts((1 << 24) - 4), Ok(2));
+        assert_eq!(texts((1 << 24) - 3), Err("has rows of 16777217 bytes".to_owned()));
+    }
+
+    #[test]
+    fn arrays_are_turned_where_their_shape_says_so() {
+        for (turn, rows, columns, expected) in [
+            (Turn::Never, 3, 9, false),
+            (Turn::ToPositions, 3, 9, true),
+            (Turn::ToPositions, 4, 2, true),
+            (Turn::ToPositions, 4, 3, false),
+            (Turn::ToPositions, 5, 9, false),
+            (Turn::ToRows(9), 3, 9, true),
+            (Turn::ToRows(9), 9, 9, false),
+            (Turn::ToRows(9), 9, 3, false),
+            (Turn::ToRows(9), 3, 8, false),
+        ] {
+            assert_eq!(turn.applies(rows, columns), expected, "{turn:?} {rows} {columns}");
+        }
+    }
+}

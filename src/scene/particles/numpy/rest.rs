@@ -112,6 +112,9 @@ mod tests {
         assert_eq!(tilted.point([0.5; 3]), DVec3::ZERO);
         let angles = of([6, 1], &[4.0, 5.0, 6.0, 90.0, 90.0, 90.0], 1.0).expect("a cell");
         assert_eq!((angles.origin, angles.vectors[2]), (DVec3::ZERO, DVec3::Z * 6.0));
+        // Angles are greater than 15, tilts are not.
+        let skewed = of([6, 1], &[4.0, 5.0, 6.0, 15.0, 15.0, 15.0], 1.0).expect("a cell");
+        assert_eq!(skewed.vectors[1].x, 75.0);
         assert_eq!(corner(&[4.0; 3], [3, 1], 1.0), DVec3::ZERO);
         assert_eq!(corner(&[4.0; 3], [3, 1], -1.0), DVec3::splat(-2.0));
         let rows = [4.0, 0.0, 0.0, 1.0, 5.0, 0.0, 0.0, 0.0, 6.0];

@@ -140,3 +140,18 @@ fn conditions_side_by_side_are_not_deep() {
         assert_eq!(ids(&vec![one; 200].join(" or ")), [2.0], "{one}");
     }
 }
+
+#[test]
+fn only_what_is_inside_one_another_is_deep() {
+    for (open, close) in [("(", ")"), ("not ", ""), ("-", "")] {
+        let condition = format!("{}id == 2{}", open.repeat(65), close.repeat(65));
+        let fault = condition.parse::<Selection>().expect_err("too deep");
+        assert!(fault.message.starts_with("more than 64"), "{fault}");
+    }
+    for (part, joint, end) in
+        [("(id)", " + ", " > 0"), ("--id", " + ", " > 0"), ("not id < 0", " and ", "")]
+    {
+        let condition = vec![part; 70].join(joint) + end;
+        assert_eq!(ids(&condition), [1.0, 2.0, 3.0, 4.0], "{part}");
+    }
+}

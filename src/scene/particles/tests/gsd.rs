@@ -198,3 +198,17 @@ fn other_columns_are_kept_as_long_as_there_is_room() {
     assert_eq!(kept(numbers), all);
     assert_eq!(kept(numbers - 1), ["mass"]);
 }
+
+#[test]
+fn chunks_of_more_than_64_numbers_are_no_columns() {
+    let chunk = |name, width: u32| (0, name, 1, width, vec![7; width as usize]);
+    let content = gsd(&[
+        (0, "particles/N", 3, 1, words(&[1])),
+        (0, "particles/position", 9, 3, floats(&[1.0, 2.0, 3.0])),
+        chunk("log/particles/wide", 64),
+        chunk("log/particles/wider", 65),
+    ]);
+    let columns = frame(content).columns;
+    let begin = |start: &str| columns.iter().filter(|name| name.starts_with(start)).count();
+    assert_eq!((begin("log/particles/wide_"), begin("log/particles/wider")), (64, 0));
+}

@@ -341,3 +341,80 @@ fn sections_of_dumps_that_are_not_known_are_passed_over() {
     // Elements are of styles in angstrom.
     assert_eq!(frame.unit, LengthUnit::Angstrom);
 }
+
+#[test]
+fn styles_that_rows_do_not_fit_are_told() {
+    let at = |types: &str, comment: &str, row: &str| {
+        frame_with(data(types, comment, &[row]), &ReadOptions::default())
+    };
+    // Rows that fit no other style either are read as the style says.
+    for (row, reason) in [
+        ("1.5 1 0.5 1.5 2.5", "column 1 cannot be `id`"),
+        ("1 9 0.5 1.5 2.5", "a type would be 9"),
+        ("1.5 1 0.5 1.5 2.5 7", "it has 5 columns, and the rows have 6"),
+    ] {
+        let frame = at("2 atom types", " # atomic", row).expect("a frame");
+        let [warning] = &frame.warnings[..] else { panic!("{row}: {:?}", frame.warnings) };
+        let start = format!("its rows do not fit the atom style of `Atoms # atomic`: {reason}");
+        assert!(warning.starts_with(&start), "{warning}");
+        assert_eq!(frame.x, [0.5], "{row}");
+    }
+    let short = at("2 atom types", " # full", "1 1 9").expect_err("three columns of seven");
+    let message = "the atom style of the section `Atoms` is not known: it has 7 columns, and the \
+                   rows have 3";
+    assert_eq!(short.message, message);
+    let other = at("2 atom types", " # full", "1 1 0.5 1.5 2.5").expect("a frame");
+    assert!(other.warnings[0].contains("do not fit the atom style of `Atoms # full`"));
+    let unknown = at("1 atom types", "", "1 2 0.5 1.5 2.5").expect_err("no style");
+    assert!(unknown.message.ends_with("its rows of 5 columns fit no style"), "{unknown}");
+}
+
+#[test]
+fn titles_of_data_files_tell_units() {
+    let masses = "\nMasses\n\n1 15.9994\n";
+    for (title, more, unit) in [
+        ("units = si", "", LengthUnit::Meter),
+        ("a title, units = nano, of 2", "", LengthUnit::Nanometer),
+        ("a title", "", LengthUnit::Unknown),
+        ("units = lj", "", LengthUnit::Unknown),
+        // Elements are of styles in angstrom, unless the title names another.
+        ("a title", masses, LengthUnit::Angstrom),
+        ("units = electron", masses, LengthUnit::Bohr),
+        // These are masses of no element.
+        ("a title", "\nMasses\n\n1 72.0\n", LengthUnit::Unknown),
+        ("a title", "\nMasses\n\n1 1.0\n", LengthUnit::Unknown),
+    ] {
+        let text = data("1 atom types", " # atomic", &["1 1 0.5 1.5 2.5"]) + more;
+        let frame = frame(text.replacen("LAMMPS", title, 1));
+        assert_eq!((frame.unit, frame.title.as_str()), (unit, title), "{more}");
+    }
+}
+
+#[test]
+fn tilts_and_corners_of_boxes_are_those_of_the_header() {
+    let text = "t\n1 atoms\n1 3 xlo xhi\n2 6 ylo yhi\n3 11 zlo zhi\n0.5 -0.25 0.75 xy xz yz\n\n\
+                Atoms # atomic\n\n1 1 0 0 0\n";
+    let cell = frame(text).cell.expect("a cell");
+    let vectors = [DVec3::X * 2.0, DVec3::new(0.5, 4.0, 0.0), DVec3::new(-0.25, 0.75, 8.0)];
+    assert_eq!((cell.origin, cell.vectors), (DVec3::new(1.0, 2.0, 3.0), vectors));
+    assert_eq!(frame(text.replace("1 3 xlo xhi\n", "")).cell, None);
+}
+
+#[test]
+fn bodies_and_bonds_are_counted_by_their_rows() {
+    let text = |section: &str| data("1 atom types", " # atomic", &["1 1 0.5 1.5 2.5"]) + section;
+    let shapes = |section: &str| frame(text(section)).warnings;
+    // Two bodies: of one whole number and four others, and of none.
+    let bodies = shapes("\nBodies\n\n1 1 4\n2\n0.1 0.2\n0.3 0.4\n2 0 0\n");
+    assert!(bodies[0].starts_with("2 particles that may have other shapes"), "{bodies:?}");
+    for (section, start) in [
+        ("Lines", "3 particles that may"),
+        ("Triangles", "3 particles that may"),
+        ("Ellipsoids", "3 particles that may"),
+        ("Bonds", "3 bonds are"),
+    ] {
+        let told = shapes(&format!("\n{section}\n\n1 1 1 1\n2 1 1 1\n3 1 1 1\n"));
+        assert!(told[0].starts_with(start), "{told:?}");
+    }
+    assert!(shapes("\nAngles\n\n1 1 1 2 1\n").is_empty());
+}

@@ -265,3 +265,122 @@ fn columns_of_diameters_are_halved() {
     assert_eq!(read("x=1,y=2,z=3,diameter=4"), [4.0]);
     assert_eq!(read("x=1,y=2,z=3,radius=4"), [8.0]);
 }
+
+/// Positions of two particles, and arrays beside them.
+fn beside(arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let position = npy("|u1", "(2, 3)", false, &[1, 2, 3, 4, 5, 6]);
+    npz(&[&[("position", position)][..], arrays].concat())
+}
+
+/// An array of bytes that count up from 0.
+fn bytes(shape: &str, count: u8) -> Vec<u8> {
+    npy("|u1", shape, false, &(0..count).collect::<Vec<_>>())
+}
+
+#[test]
+fn arrays_with_a_row_for_each_particle_are_columns() {
+    let record = "[('a', '|u1'), ('b', '|u1')]";
+    let content = beside(&[
+        ("wide", bytes("(2, 64)", 128)),
+        ("wider", bytes("(2, 65)", 130)),
+        ("short", bytes("(1,)", 1)),
+        ("long", bytes("(3,)", 3)),
+        ("record", npy(record, "(2,)", false, &[1, 2, 3, 4])),
+        ("q", bytes("(2,)", 2)),
+    ]);
+    let listed = frame(&content).columns;
+    let wide = (1..=64).map(|column| format!("wide_{column}"));
+    let expected = ["x", "y", "z"].map(|axis| format!("position_{axis}")).into_iter().chain(wide);
+    assert_eq!(listed, expected.chain(["q".to_owned()]).collect::<Vec<_>>());
+    let kept = frame_with(&content, &columns("WIDE_64,position_y,q")).expect("a frame").numbers;
+    let kept: Vec<(&str, &[f64])> =
+        kept.iter().map(|column| (column.name.as_str(), &column.values[..])).collect();
+    let expected = [("wide_64", &[63.0, 127.0]), ("position_y", &[2.0, 5.0]), ("q", &[0.0, 1.0])];
+    assert_eq!(kept, expected.map(|(name, values)| (name, &values[..])));
+    for (name, message) in [
+        ("wide", "the array `wide` has 64 columns"),
+        ("short", "the array `short` has 1 numbers, but there are 2 particles"),
+        ("long", "the array `long` has more rows, but there are 2 particles"),
+    ] {
+        let error = frame_with(&content, &columns(name)).expect_err(name);
+        assert_eq!(error.message, message);
+    }
+    let wide = frame_with(&content, &columns("wide")).expect_err("many columns");
+    assert!(wide.help.is_some_and(|help| help.ends_with("wide_1")));
+}
+
+#[test]
+fn other_arrays_are_kept_once_as_long_as_there_is_room() {
+    let content =
+        beside(&[("radius", bytes("(2,)", 2)), ("m", bytes("(2,)", 2)), ("q", bytes("(2,)", 2))]);
+    for (rest, expected) in [(1000, &["m", "q"][..]), (2, &["m", "q"]), (1, &["q"])] {
+        let columns = Columns { rest: Some(rest), ..columns("q").columns };
+        let options = ReadOptions { columns, ..ReadOptions::default() };
+        let numbers = frame_with(&content, &options).expect("a frame").numbers;
+        let names: Vec<&str> = numbers.iter().map(|column| column.name.as_str()).collect();
+        assert_eq!(names, expected, "{rest}");
+    }
+}
+
+#[test]
+fn roles_of_arrays_are_told() {
+    let colors = npy("<f4", "(2, 3)", false, &floats(&[0.0, 0.5, 1.0, 1.0, 0.5, 0.0]));
+    let roles = |content: &[u8]| -> Vec<(Role, String)> { frame(content).roles };
+    let named = |roles: &[(Role, &str)]| -> Vec<(Role, String)> {
+        roles.iter().map(|(role, name)| (*role, (*name).to_owned())).collect()
+    };
+    let places = [(Role::X, "position_x"), (Role::Y, "position_y"), (Role::Z, "position_z")];
+    let content =
+        beside(&[("diameters", bytes("(2,)", 2)), ("typeid", bytes("(2,)", 2)), ("color", colors)]);
+    let more = [
+        (Role::Kind, "typeid"),
+        (Role::Diameter, "diameters"),
+        (Role::Red, "color_x"),
+        (Role::Green, "color_y"),
+        (Role::Blue, "color_z"),
+    ];
+    assert_eq!(roles(&content), named(&[&places[..], &more].concat()));
+    let both = beside(&[("diameter", bytes("(2,)", 2)), ("r", bytes("(2,)", 2))]);
+    assert_eq!(roles(&both), named(&[&places[..], &[(Role::Radius, "r")]].concat()));
+    // An array of radii goes before a fourth column of positions.
+    let four = |more: &[(&str, Vec<u8>)]| {
+        let position = ("xyz", bytes("(2, 4)", 8));
+        npz(&[&[position][..], more].concat())
+    };
+    assert_eq!(frame(four(&[])).radius, [3.0, 7.0]);
+    assert_eq!(roles(&four(&[]))[3], (Role::Radius, "xyz_4".to_owned()));
+    let own = frame(four(&[("radii", bytes("(2,)", 2))]));
+    assert_eq!((&own.radius[..], own.roles.len()), (&[0.0, 1.0][..], 4));
+    assert_eq!(own.roles[3], (Role::Radius, "radii".to_owned()));
+    let asked = ReadOptions { radii: "column:q".parse().expect("radii"), ..columns("") };
+    let content =
+        beside(&[("radius", bytes("(2,)", 2)), ("q", npy("|u1", "(2,)", false, &[8, 9]))]);
+    assert_eq!(frame_with(content, &asked).expect("a frame").radius, [8.0, 9.0]);
+}
+
+#[test]
+fn arrays_of_axes_have_one_number_in_each_row() {
+    let one = || bytes("(2,)", 2);
+    let texts = npy("|S1", "(2,)", false, b"ab");
+    for (x, found) in [(bytes("(2, 2)", 4), "has 2 columns"), (texts, "holds texts")] {
+        let message = fault(npz(&[("x", x), ("y", one()), ("z", one())])).2;
+        let expected = format!("the array `x` {found}, but x, y and z have one number in each row");
+        assert_eq!(message, expected);
+    }
+    // Numbers of a grid are as many, row by row.
+    let position = npy("|u1", "(4, 3)", false, &[0; 12]);
+    let grid = npz(&[("position", position), ("radius", bytes("(2, 2)", 4))]);
+    assert_eq!(frame(grid).radius, [0.0, 1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn the_first_array_of_a_cell_is_the_cell() {
+    let edges = |lengths: [f32; 3]| npy("<f4", "(3,)", false, &floats(&lengths));
+    let content = beside(&[("box", edges([8.0, 9.0, 10.0])), ("lattice", edges([1.0, 2.0, 3.0]))]);
+    let frame = frame(content);
+    assert_eq!(frame.cell.map(|cell| cell.vectors[2].z), Some(10.0));
+    assert!(frame.warnings.iter().any(|text| text.ends_with("not used: lattice")));
+    let large = super::frame(beside(&[("box", bytes("(10,)", 10))]));
+    assert_eq!(large.cell, None);
+    assert!(large.warnings.iter().any(|text| text.ends_with("not used: box")));
+}
