@@ -2,9 +2,9 @@
 //! `RAYON_NUM_THREADS` for fewer), fields of the paper's kind and volumes.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use spherule::bvh::build::{Builder, build};
 use spherule::scene::generate::{Field, Generator, Volume};
-use spherule::spheres::Spheres;
+use spherule_core::internals::bvh::builders::{Builder, build};
+use spherule_core::internals::spheres::Spheres;
 use std::hint::black_box;
 use std::time::Duration;
 

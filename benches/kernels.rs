@@ -3,13 +3,13 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DVec3, Vec3 as Point};
-use spherule::filter::{Chord, FilterRay};
-use spherule::intersect::confirm;
-use spherule::lanes::{F32x4, F32x8, F32x16, Lanes, Mask};
-use spherule::ray::{ExactRay, MISS, Rays};
 use spherule::sampling::{stream, uniform_sphere, unit_pair};
-use spherule::slabs::{Planes, Slabs};
-use spherule::vec3::Vec3;
+use spherule_core::internals::conservative::{Chord, ConservativeRay};
+use spherule_core::internals::intersect::confirm;
+use spherule_core::internals::lanes::{F32x4, F32x8, F32x16, Lanes, Mask};
+use spherule_core::internals::ray::{ExactRay, MISS, Rays};
+use spherule_core::internals::slabs::{Planes, Slabs};
+use spherule_core::internals::vec3::Vec3;
 use std::hint::black_box;
 
 /// Spheres and rays in, how many of their pairs pass out.
@@ -36,7 +36,7 @@ fn data() -> (Vec<(Point, f32)>, Rays) {
 fn hits_by_filter<L: Lanes>(spheres: &[(Point, f32)], rays: &Rays) -> u32 {
     let mut hits = 0;
     for row in (0..RAYS).step_by(L::WIDTH) {
-        let ray = FilterRay::new(rays.origin.load::<L>(row), rays.direction.load::<L>(row));
+        let ray = ConservativeRay::new(rays.origin.load::<L>(row), rays.direction.load::<L>(row));
         for &(c, radius) in spheres {
             let center = Vec3::splat(c.x, c.y, c.z);
             let chord = Chord::new(&ray, center, L::splat(radius));

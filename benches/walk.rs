@@ -5,14 +5,14 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
-use spherule::bvh::build::{Builder, build};
-use spherule::bvh::walk::{Any, Closest, Method, Query, Rough, trace};
-use spherule::bvh::{Bounds, Bvh};
-use spherule::lanes::{F32x4, F32x8, F32x16, Lanes};
-use spherule::ray::{Hits, MISS, Rays};
 use spherule::sampling::{Frame, cosine_hemisphere, stream, unit_pair};
 use spherule::scene::generate::{Field, Generator, Volume};
-use spherule::spheres::Spheres;
+use spherule_core::internals::bvh::builders::{Builder, build};
+use spherule_core::internals::bvh::{Any, Closest, Query, Traversal, Tree, Unverified, trace};
+use spherule_core::internals::bvh::{Bounds, Bvh};
+use spherule_core::internals::lanes::{F32x4, F32x8, F32x16, Lanes};
+use spherule_core::internals::ray::{Hits, MISS, Rays};
+use spherule_core::internals::spheres::Spheres;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use std::time::Duration;
 const SIDE: u32 = 256;
 
 /// One way to trace rays.
-type Walk = fn(&Case, Method, &Rays) -> Hits;
+type Walk = fn(&Case, Traversal, &Rays) -> Hits;
 
 struct Case {
     name: &'static str,
@@ -45,13 +45,13 @@ fn case(name: &'static str, generator: &Generator) -> Case {
     Case { name, spheres, bvh }
 }
 
-fn closest<L: Lanes>(case: &Case, method: Method, rays: &Rays) -> Hits {
-    run::<L, Closest>(case, method, rays)
+fn closest<L: Lanes>(case: &Case, traversal: Traversal, rays: &Rays) -> Hits {
+    run::<L, Closest>(case, traversal, rays)
 }
 
-fn run<L: Lanes, Q: Query>(case: &Case, method: Method, rays: &Rays) -> Hits {
+fn run<L: Lanes, Q: Query>(case: &Case, traversal: Traversal, rays: &Rays) -> Hits {
     let mut hits = Hits::with_capacity(rays.len());
-    trace::<L, Q>(method, &case.bvh, &case.spheres, rays, &mut hits);
+    trace::<L, Q>(traversal, Tree { bvh: &case.bvh, spheres: &case.spheres }, rays, &mut hits);
     hits
 }
 
@@ -78,7 +78,7 @@ fn camera(case: &Case) -> Rays {
 /// From what the camera sees: toward a light, or anywhere above the surface.
 fn secondary(case: &Case, toward: Option<Vec3>) -> Rays {
     let primary = camera(case);
-    let hits = closest::<f32>(case, Method::Single, &primary);
+    let hits = closest::<f32>(case, Traversal::Single, &primary);
     let mut rays = Rays::with_capacity(primary.len());
     for row in (0..primary.len()).filter(|&row| hits.sphere[row] != MISS) {
         let sphere = hits.sphere[row] as usize;
@@ -100,8 +100,8 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
     let mut group = criterion.benchmark_group(format!("{}/{class}", case.name));
     group.throughput(Throughput::Elements(rays.len() as u64)).sample_size(10);
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
-    let expected = run::<f32, Q>(case, Method::Single, rays);
-    let mut bench = |name: &str, walk: Walk, method| {
+    let expected = run::<f32, Q>(case, Traversal::Single, rays);
+    let mut bench = |name: &str, walk: Walk, traversal| {
         let missed = |hits: &Hits, row: usize| hits.sphere[row] == MISS;
         let same = |hits: &Hits| {
             if Q::ANY {
@@ -110,29 +110,29 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
                 hits.sphere == expected.sphere && hits.t == expected.t
             }
         };
-        assert!(same(&walk(case, method, rays)), "{name} differs from single rays");
+        assert!(same(&walk(case, traversal, rays)), "{name} differs from single rays");
         group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
-            bencher.iter(|| walk(black_box(case), method, black_box(rays)));
+            bencher.iter(|| walk(black_box(case), traversal, black_box(rays)));
         });
     };
     if case.spheres.len() <= 1000 {
-        bench("brute-16", run::<F32x16, Q>, Method::Brute);
+        bench("brute-16", run::<F32x16, Q>, Traversal::Brute);
     }
-    bench("single", run::<f32, Q>, Method::Single);
-    bench("stream", run::<f32, Q>, Method::Stream);
-    bench("packet-4", run::<F32x4, Q>, Method::Packet);
-    bench("packet-8", run::<F32x8, Q>, Method::Packet);
-    bench("packet-16", run::<F32x16, Q>, Method::Packet);
-    bench("auto", run::<F32x16, Q>, Method::Auto);
+    bench("single", run::<f32, Q>, Traversal::Single);
+    bench("stream", run::<f32, Q>, Traversal::Stream);
+    bench("packet-4", run::<F32x4, Q>, Traversal::Packet);
+    bench("packet-8", run::<F32x8, Q>, Traversal::Packet);
+    bench("packet-16", run::<F32x16, Q>, Traversal::Packet);
+    bench("auto", run::<F32x16, Q>, Traversal::Auto);
     // What exactness costs: the same walk without it. Few answers differ in scenes so tame.
-    let rough = run::<F32x16, Rough<Q>>;
-    let hits = rough(case, Method::Auto, rays);
+    let rough = run::<F32x16, Unverified<Q>>;
+    let hits = rough(case, Traversal::Auto, rays);
     let differ = (0..rays.len())
         .filter(|&row| (hits.sphere[row] == MISS) != (expected.sphere[row] == MISS))
         .count();
     assert!(differ * 1000 <= rays.len(), "without exactness, {differ} rays differ");
     group.bench_function(BenchmarkId::from_parameter("rough"), |bencher| {
-        bencher.iter(|| rough(black_box(case), Method::Auto, black_box(rays)));
+        bencher.iter(|| rough(black_box(case), Traversal::Auto, black_box(rays)));
     });
 }
 

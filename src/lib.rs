@@ -74,26 +74,21 @@
 
 #![forbid(unsafe_code)]
 
+// Exact ray queries on spheres.
+pub use spherule_core as query;
+#[doc(hidden)]
+pub use spherule_core::internals::{bvh, exact, intersect, lanes, ray, spheres, vec3};
+
 // Vocabulary: knows nothing of scenes.
 pub mod color;
-pub mod lanes;
 pub mod suggest;
-pub mod vec3;
 
-pub mod exact;
-pub mod filter;
-pub mod intersect;
-pub mod ray;
 pub mod sampling;
-pub mod spheres;
 
 // The pipeline, in order.
 pub mod scene;
-pub mod slabs;
 pub mod world;
 
-pub mod bvh;
-pub mod query;
 pub mod trace;
 
 pub mod integrator;
@@ -128,6 +123,6 @@ pub mod bench;
 pub mod report;
 
 pub use image::Image;
-pub use query::SphereTree;
 pub use scene::Scene;
+pub use spherule_core::SphereTree;
 pub use world::World;

@@ -3,7 +3,7 @@
 use super::rounds::{Times, clock};
 use super::{BenchError, Options, Tell};
 use crate::bvh::Bvh;
-use crate::bvh::build::{Builder, build};
+use crate::bvh::builders::{Builder, build};
 use crate::report::{Axis, Cell, Column, Plot, Point, Report, Series, Style, Table};
 use crate::spheres::Spheres;
 use crate::workload::SphereScene;

@@ -6,18 +6,20 @@ use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, LightChoice, SamplerKind, Tone};
 use spherule::split::Split;
 use spherule::stress::{REGIMES, Regime};
-use spherule::trace::Width;
+use spherule::trace::{PacketWidth, Traversal};
 use std::mem::discriminant;
 
-/// Names of values with their help, in the order in which they are listed. Of a value with
-/// parameters only the kind counts.
+/// Names of values with their help, in the order in which they are listed; names without help are not
+/// listed. Of a value with parameters only the kind counts.
 pub(super) struct Names<T: 'static>(pub(super) &'static [(&'static str, T, &'static str)]);
 
 impl<T: Clone + Send + Sync> Names<T> {
     /// Reads one of the names.
     pub(super) fn parser(&self) -> impl TypedValueParser<Value = T> + use<T> {
         let table = self.0;
-        let names = table.iter().map(|(name, _, help)| PossibleValue::new(*name).help(*help));
+        let names = table
+            .iter()
+            .map(|(name, _, help)| PossibleValue::new(*name).help(*help).hide(help.is_empty()));
         PossibleValuesParser::new(names).try_map(|name| {
             let row = table.iter().find(|row| row.0 == name);
             row.map(|row| row.1.clone()).ok_or("not one of the names")
@@ -112,11 +114,11 @@ pub(super) const LAYERS: Names<Option<Layer>> = Names(&[
 ]);
 
 /// Rays in a packet.
-pub(super) const LANES: Names<Width> = Names(&[
-    ("1", Width::One, "One ray at a time"),
-    ("4", Width::Four, "Packets of four"),
-    ("8", Width::Eight, "Packets of eight"),
-    ("16", Width::Sixteen, "Packets of sixteen"),
+pub(super) const LANES: Names<PacketWidth> = Names(&[
+    ("1", PacketWidth::One, "One ray at a time"),
+    ("4", PacketWidth::Four, "Packets of four"),
+    ("8", PacketWidth::Eight, "Packets of eight"),
+    ("16", PacketWidth::Sixteen, "Packets of sixteen"),
 ]);
 
 /// What parts of a render differ in.
@@ -132,21 +134,15 @@ pub(super) fn regime() -> impl TypedValueParser<Value = &'static Regime> {
         .try_map(|name| Regime::named(&name).ok_or("not one of the names"))
 }
 
-/// How rays find spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Traversal {
-    /// What is fastest: packets of rays that go alike, a stream of the others
-    Auto,
-    /// Test every sphere: slow, the reference
-    Brute,
-    /// The tree, one ray after another
-    Scalar,
-    /// The tree, many rays at a time but each on its own
-    Stream,
-    /// The tree, all rays of one octant in packets, others one after another
-    #[value(alias = "tree")]
-    Packet,
-}
+/// Traversals; the last name is an earlier one.
+pub(super) const TRAVERSALS: Names<Traversal> = Names(&[
+    ("auto", Traversal::Auto, "The fastest: packets of coherent rays, other rays interleaved"),
+    ("brute", Traversal::Brute, "Every ray against every sphere: slow, the reference"),
+    ("scalar", Traversal::Single, "One ray after another"),
+    ("stream", Traversal::Stream, "Single rays, many of them in flight"),
+    ("packet", Traversal::Packet, "Packets of rays with equal signs of directions"),
+    ("tree", Traversal::Packet, ""),
+]);
 
 /// How the tree over the spheres is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

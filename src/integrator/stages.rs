@@ -20,10 +20,10 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
         trace::stop_at(&ground, &work.rays, &mut work.hits);
     }
     match std::mem::replace(&mut work.view, View::Anything) {
-        View::Background => job.tracer.ground(job.world, &work.rays, &mut work.hits),
+        View::Background => trace::closest_ground(job.world, &work.rays, &mut work.hits),
         View::Anything => {
             work.counters.exact_decisions +=
-                job.tracer.closest(job.world, &work.rays, &mut work.hits);
+                trace::closest(job.tracer, job.world, &work.rays, &mut work.hits);
         }
     }
     work.clock.end(Stage::Trace);
@@ -88,9 +88,9 @@ pub(super) fn find_hidden(job: &Job, rays: &Rays, hits: &mut Hits) -> u64 {
         trace::hide_behind(&ground, rays, hits);
     }
     if job.skips.nearest_occluder {
-        job.tracer.occluded(job.world, rays, hits)
+        trace::occluded(job.tracer, job.world, rays, hits)
     } else {
-        job.tracer.closest(job.world, rays, hits)
+        trace::closest(job.tracer, job.world, rays, hits)
     }
 }
 

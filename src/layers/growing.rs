@@ -2,7 +2,6 @@
 
 use super::sums::Sums;
 use super::{Features, Layers, SAMPLES};
-use crate::bvh::walk::Method;
 use crate::film::{Film, Region, Tile, View};
 use crate::integrator::generate::{generate, generate_centers};
 use crate::integrator::workspace::Workspace;
@@ -10,6 +9,7 @@ use crate::integrator::{Job, stages};
 use crate::render::{self, Options, RenderError, passes, view};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{SamplerKind, Settings};
+use crate::trace::Traversal;
 use crate::world::World;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -113,7 +113,7 @@ impl Known {
         if self.has(samples) {
             return;
         }
-        if !self.centered && job.tracer.method != Method::Brute {
+        if !self.centered && job.tracer.traversal != Traversal::Brute {
             self.tile.view = view(job, &self.tile);
         }
         if self.tile.view == View::Anything || job.world.ground.is_some() {

@@ -27,7 +27,7 @@ mod write;
 pub use read::{PreparedError, is_prepared, read};
 pub use write::write;
 
-use crate::bvh::build::Builder;
+use crate::bvh::builders::Builder;
 use crate::scene::{Identity, Scene};
 use crate::world::{Frame, LeftOut, Parts, Placement, World, WorldError};
 use glam::DVec3;

@@ -6,7 +6,7 @@ use crate::image::Image;
 use crate::memory::{self, Shortage};
 use crate::scene::{Environment, EnvironmentMap, Rgb, Scene};
 use crate::sealed::{SEAL, Unsealing};
-use crate::spheres::{Block, LEAF, Spheres};
+use crate::spheres::{LEAF, SphereBlock, Spheres};
 use crate::world::{Appearance, Colors, Column, Materials, Parts, Seen};
 use bytemuck::{Pod, cast_slice_mut};
 use std::fs::File;
@@ -139,7 +139,7 @@ impl Lengths {
         let (seen, seen_nodes) = self.seen.unwrap_or_default();
         let sky = self.sky.as_ref().map_or(0, |sky| u64::from(sky.width) * u64::from(sky.height));
         let columns = [
-            column(self.spheres.div_ceil(LEAF as u64), size_of::<Block>()),
+            column(self.spheres.div_ceil(LEAF as u64), size_of::<SphereBlock>()),
             column(self.spheres, size_of::<u32>() + material + color),
             column(self.nodes, size_of::<NodeRow>()),
             column(seen, size_of::<u32>()),
@@ -152,7 +152,7 @@ impl Lengths {
 
 /// The columns as a file has them.
 struct Columns {
-    blocks: Vec<Block>,
+    blocks: Vec<SphereBlock>,
     id: Vec<u32>,
     nodes: Vec<NodeRow>,
     material: Vec<u32>,

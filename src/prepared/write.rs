@@ -2,7 +2,7 @@
 
 use super::{ColorLengths, FORMAT, Head, Lengths, MAGIC, ORDER, PROGRAM, PrepareError, Sky};
 use crate::atomic::write_atomically;
-use crate::bvh::build::Builder;
+use crate::bvh::builders::Builder;
 use crate::bvh::{Bvh, NodeRow};
 use crate::scene::write::text_without_columns;
 use crate::scene::{EnvironmentMap, Identity, Scene};

@@ -34,14 +34,13 @@ pub(crate) use unlike::difference;
 pub use watch::Totals;
 
 use self::pass::PASS;
-use crate::bvh::walk::Method;
 use crate::film::Region;
 use crate::image::Image;
 use crate::integrator::clock::Times;
 use crate::integrator::counters::Counters;
 use crate::noise::Noise;
 use crate::scene::Settings;
-use crate::trace::{Tracer, Width};
+use crate::trace::Tracer;
 use crate::world::World;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -63,12 +62,6 @@ pub struct Options<'a> {
     pub statistics: bool,
     /// What is left out where it changes nothing; the default is all.
     pub skips: Skips,
-}
-
-impl Default for Tracer {
-    fn default() -> Self {
-        Self { method: Method::Auto, width: Width::Sixteen }
-    }
 }
 
 /// How far a render is.

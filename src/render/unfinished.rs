@@ -7,12 +7,12 @@ use super::watch::{Totals, Watch};
 use super::{
     Options, Render, RenderError, Samples, Statistics, Unlike, adapt, error, pass, uniform, unlike,
 };
-use crate::bvh::walk::Method;
 use crate::film::{Film, Region};
 use crate::integrator::Job;
 use crate::noise;
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
+use crate::trace::Traversal;
 use crate::world::World;
 use rayon::prelude::*;
 
@@ -84,7 +84,7 @@ impl Unfinished {
         }
         let mut film = Film::with_tiles(region, share.tiles.clone(), statistics);
         let state = with_job(world, settings, options, |job| {
-            if options.tracer.method != Method::Brute && options.skips.empty_tiles {
+            if options.tracer.traversal != Traversal::Brute && options.skips.empty_tiles {
                 film.tiles.par_iter_mut().for_each(|tile| tile.view = pass::view(job, tile));
             }
             let measured = settings.has_target() || statistics;

@@ -21,7 +21,6 @@ mod bounds;
 pub mod forms;
 mod integers;
 mod interval;
-pub(crate) mod random;
 pub mod rays;
 pub mod reference;
 pub mod regimes;

@@ -1,9 +1,9 @@
 //! Random rays after a recipe.
 
-use super::random::Random;
 use super::scenes::{Aim, NORMALS, Origin, Recipe, above, axis, parts};
 use crate::query::RayColumns;
 use glam::{DVec3, Vec3};
+use spherule_core::internals::random::{Random, direction_past};
 
 /// A ray: single-precision numbers, taken exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,30 +86,23 @@ fn direction(
     let within = |random: &mut Random| 1.2 * random.unit().sqrt();
     let beside = |decades, random: &mut Random| 1.0 + random.sign() * random.decades(decades);
     match aim {
-        Aim::Tangent(decades) => pass(toward, radius * beside(decades, random), random),
-        Aim::SphereOrTangent if random.coin() => pass(toward, radius * within(random), random),
-        Aim::SphereOrTangent => pass(toward, radius * beside([-8.0, -1.0], random), random),
-        Aim::Away => -pass(toward, radius * within(random), random),
+        Aim::Tangent(decades) => direction_past(toward, radius * beside(decades, random), random),
+        Aim::SphereOrTangent if random.coin() => {
+            direction_past(toward, radius * within(random), random)
+        }
+        Aim::SphereOrTangent => {
+            direction_past(toward, radius * beside([-8.0, -1.0], random), random)
+        }
+        Aim::Away => -direction_past(toward, radius * within(random), random),
         Aim::Contact if spheres.len() > 1 && random.coin() => {
             let at = random.index(spheres.len() - 1);
             let ((first, near), (second, _)) = (parts(spheres[at]), parts(spheres[at + 1]));
             let contact = first + (second - first).normalize() * near;
-            pass(contact - origin, near * random.decades([-9.0, -2.0]), random)
+            direction_past(contact - origin, near * random.decades([-9.0, -2.0]), random)
         }
-        Aim::Sphere | Aim::Contact => pass(toward, radius * within(random), random),
+        Aim::Sphere | Aim::Contact => direction_past(toward, radius * within(random), random),
         Aim::AxisTangent | Aim::Hair(_) | Aim::Anywhere => random.direction(),
     }
-}
-
-/// The unit direction of a line that passes a point at a distance; any direction if none does.
-pub(crate) fn pass(toward: DVec3, distance: f64, random: &mut Random) -> DVec3 {
-    let length = toward.length();
-    let sine = distance / length;
-    if sine.is_nan() || sine >= 1.0 {
-        return random.direction();
-    }
-    let forward = toward / length;
-    forward * (1.0 - sine * sine).sqrt() + random.perpendicular(forward) * sine
 }
 
 /// A ray along an axis that is a tangent exactly, or misses by one unit in the last place, or is

@@ -163,13 +163,13 @@ fn length2(v: [Interval; 3]) -> Interval {
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Random;
     use super::super::rays;
     use super::super::regimes::REGIMES;
     use super::super::scenes;
     use super::*;
     use crate::exact::{self, Distance};
     use crate::ray::ExactRay;
+    use spherule_core::internals::random::Random;
 
     const UNIT: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 

@@ -136,11 +136,11 @@ pub static REGIMES: [Regime; 34] = [
 
 #[cfg(test)]
 mod tests {
-    use super::super::random::Random;
     use super::super::rays::ray;
     use super::super::scenes::{parts, scene};
     use super::*;
     use glam::Vec3;
+    use spherule_core::internals::random::Random;
 
     #[test]
     fn names_are_unique_and_found() {

@@ -2,7 +2,6 @@
 
 use super::bounds;
 use super::forms::{self, Answer, Form};
-use super::random::Random;
 use super::rays::{self, Columns, Ray};
 use super::reference::{self, Decision, Twofold};
 use super::regimes::Regime;
@@ -13,6 +12,7 @@ use crate::query::{Hits, NOTHING, QueryError, SphereTree, Surface};
 use crate::sampling::{mix, stream};
 use glam::DVec3;
 use rayon::prelude::*;
+use spherule_core::internals::random::Random;
 
 /// Rays of a scene.
 const RAYS: u64 = 256;

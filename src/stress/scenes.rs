@@ -3,8 +3,8 @@
 //! Everything is laid out in double precision and then rounded to single: what is decided about is
 //! the rounded numbers, which every form gets bit by bit.
 
-use super::random::Random;
 use glam::{DVec3, Vec3};
+use spherule_core::internals::random::Random;
 
 /// Most spheres of a scene.
 const MOST: usize = 8;

@@ -6,17 +6,16 @@
 //! its exit before it is traced.
 
 use super::forms::{self, Form, Intersect};
-use super::random::Random;
 use super::rays::Ray;
 use super::report::RegimeReport;
 use super::scenes::parts;
-use crate::bvh::walk::{Closest, Method, trace};
+use crate::bvh::{Tracer, Traversal, Tree};
 use crate::integrator::surface::chord;
-use crate::lanes::F32x16;
 use crate::ray::{Hits, MISS, Rays};
 use crate::scene::{Material, NamedMaterial, Rgb, Scene};
 use crate::world::World;
 use glam::{DVec3, Vec3};
+use spherule_core::internals::random::Random;
 
 /// Least cosine between normal and direction: where rounding does not decide which is the outside.
 const LEAST_COSINE: f64 = 0.05;
@@ -73,7 +72,8 @@ fn count_spherule(world: &World, starts: &[Start], report: &mut RegimeReport) {
         rays.push(point, start.direction, own as u32);
         traced.push((start, own, exit));
     }
-    trace::<F32x16, Closest>(Method::Packet, &world.bvh, &world.spheres, &rays, &mut hits);
+    let tracer = Tracer { traversal: Traversal::Packet, ..Tracer::default() };
+    tracer.closest(Tree { bvh: &world.bvh, spheres: &world.spheres }, &rays, &mut hits);
     for (row, (start, own, exit)) in traced.into_iter().enumerate() {
         let hit = hits.sphere[row];
         let is_own = hit != MISS && world.spheres.exact(hit as usize) == world.spheres.exact(own);

@@ -75,9 +75,9 @@ fn crossed(plane: &Plane<f64>, rays: &Rays, first: usize) -> (<F64x8 as Doubles>
 mod tests {
     use super::*;
     use crate::ray::ExactRay;
-    use crate::stress::random::Random;
     use crate::world::MaterialId;
     use glam::DVec3;
+    use spherule_core::internals::random::Random;
 
     /// One ray, one plane, by the definition.
     fn reached(ground: &Ground, ray: &ExactRay) -> Option<f64> {

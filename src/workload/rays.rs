@@ -2,8 +2,7 @@
 
 use super::{LIGHT, SphereScene, View, above};
 use crate::bvh::Bvh;
-use crate::bvh::walk::{Closest, Method, trace};
-use crate::lanes::F32x16;
+use crate::bvh::{Tracer, Tree};
 use crate::ray::{Hits, MISS, Rays};
 use crate::spheres::Spheres;
 use glam::{DVec3, Vec3};
@@ -52,7 +51,7 @@ impl Views {
     pub fn new(scene: SphereScene, (spheres, bvh): (&Spheres, &Bvh), side: u32) -> Self {
         let camera = camera(scene, spheres, side);
         let mut hits = Hits::with_capacity(camera.len());
-        trace::<F32x16, Closest>(Method::Auto, bvh, spheres, &camera, &mut hits);
+        Tracer::default().closest(Tree { bvh, spheres }, &camera, &mut hits);
         let light = LIGHT.normalize();
         let shadow = leaving(spheres, (&camera, &hits), |_, _| light);
         let scattered = |seed: u64| {
@@ -106,7 +105,7 @@ fn camera(scene: SphereScene, spheres: &Spheres, side: u32) -> Rays {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::build::{Builder, build};
+    use crate::bvh::builders::{Builder, build};
 
     #[test]
     fn rays_leave_what_the_camera_sees() {

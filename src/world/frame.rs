@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 const SAMPLES: usize = 1 << 16;
 
 /// How small spheres may be beside the way to the camera for a world to suit any other. Rays may start
-/// 2^20 times as far away as the largest coordinate (see [`crate::filter`]).
+/// 2^20 times as far away as the largest coordinate (see [`crate::conservative`]).
 const LEAST_EXTENT: f64 = 1.0 / (1 << 16) as f64;
 
 /// Maps the user's coordinates to the world's: `world = (user - shift) * scale`.

@@ -47,7 +47,7 @@ pub use seen::Seen;
 pub use visibility::Visibility;
 
 use crate::bvh::Bvh;
-use crate::bvh::build::Builder;
+use crate::bvh::builders::Builder;
 use crate::memory::Shortage;
 use crate::ray::GROUND;
 use crate::scene::{self, InvalidSetting, Rgb, Scene, Settings};

@@ -5,7 +5,7 @@ use super::fit::{self, Placement};
 use super::spheres::Placed;
 use super::{Cut, Frame, Materials, Seen, World, WorldError, check, cut};
 use crate::bvh::Bvh;
-use crate::bvh::build::{Builder, build};
+use crate::bvh::builders::{Builder, build};
 use crate::scene::{self, Pose, Projection, Scene};
 use crate::spheres::Spheres;
 use serde::{Deserialize, Serialize};

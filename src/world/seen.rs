@@ -1,6 +1,6 @@
 //! What the camera sees, where slices hide spheres from it: a tree of the other spheres.
 
-use crate::bvh::build::{Builder, build};
+use crate::bvh::builders::{Builder, build};
 use crate::bvh::{Bvh, NodeRow};
 use crate::spheres::Spheres;
 

@@ -94,7 +94,7 @@ pub(super) fn validate(scene: &Scene) -> Result<(), WorldError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::bvh::build::Builder;
+    use crate::bvh::builders::Builder;
     use crate::scene::generate::default_scene;
     use crate::world::{World, WorldError};
 

@@ -1,11 +1,10 @@
 //! What is done with an input, and what must be true of the outcome.
 
-use spherule::bvh::walk::Method;
 use spherule::image::{Image, compare, read_metadata};
 use spherule::render::{Options, render};
 use spherule::scene::particles::{Format, FrameChoice, Radii, ReadOptions, count_frames, read};
 use spherule::scene::{Integrator, Scene, Spheres};
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{PacketWidth, Tracer, Traversal};
 use spherule::world::World;
 use std::error::Error;
 use std::fs;
@@ -115,7 +114,7 @@ fn draw(scene: &Scene, world: &World) {
     let sound = |value: &f32| value.is_finite() && *value >= 0.0;
     assert!(picture.image.pixels.iter().flatten().all(sound), "a radiance that is none");
     if scene.spheres.len() <= COMPARED {
-        let tracer = Tracer { method: Method::Brute, width: Width::One };
+        let tracer = Tracer { traversal: Traversal::Brute, width: PacketWidth::One };
         let plain = render(world, &scene.settings, &Options { tracer, ..Options::default() })
             .expect("settings in range");
         assert!(plain.image == picture.image, "another picture without the tree");

@@ -5,13 +5,10 @@ mod common;
 
 mod adaptive;
 mod layers;
-mod query;
 mod readers;
 mod resume;
 mod scenes;
 mod slices;
 mod split;
 mod stress;
-mod trees;
 mod truths;
-mod walks;

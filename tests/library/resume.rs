@@ -5,7 +5,7 @@ use glam::DVec3;
 use spherule::film::Region;
 use spherule::render::{End, Options, Render, Unfinished, Unlike, render};
 use spherule::scene::{Filter, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{PacketWidth, Tracer};
 use spherule::world::World;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
@@ -31,7 +31,7 @@ fn run_for(unfinished: &mut Unfinished, world: &World, tasks: u64, threads: usiz
         cancel.fetch_or(last, Ordering::Relaxed);
     };
     // What never changes the picture.
-    let widths = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
+    let widths = [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen];
     let tracer = Tracer { width: widths[tasks as usize % 4], ..Tracer::default() };
     let options =
         Options { progress: Some(&count), cancel: Some(&cancel), tracer, ..Options::default() };

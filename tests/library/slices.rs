@@ -5,13 +5,12 @@ use crate::common::{
     look_parallel, material, mean, menagerie, noon, probe, shoot, shoot_with, sphere,
 };
 use glam::{DVec3, Vec3};
-use spherule::bvh::walk::Method;
 use spherule::layers::{Layer, layers};
 use spherule::ray::{GROUND, Hits, MISS, Rays};
 use spherule::render::Options;
 use spherule::sampling::{stream, uniform_sphere, unit};
 use spherule::scene::{Material, Rgb, Scene, Slice, SliceMode};
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{self, PacketWidth, Tracer, Traversal};
 use spherule::world::{World, WorldError};
 
 fn slice(normal: DVec3, distance: f64, mode: SliceMode) -> Slice {
@@ -148,7 +147,7 @@ fn cut_spheres_are_hit_where_arithmetic_says() {
         world.features.around_camera = true;
         let rays = rays(&world, 4000);
         let mut hits = Hits::with_capacity(rays.len());
-        Tracer::default().closest(&world, &rays, &mut hits);
+        trace::closest(Tracer::default(), &world, &rays, &mut hits);
         let (mut found, mut unclear) = (0, 0);
         for row in 0..rays.len() {
             let truth = |by| nearest(&world, &slices, &rays, row, by);
@@ -175,13 +174,13 @@ fn what_is_hit_before_a_distance_occludes() {
         let rays = rays(&world, 3000);
         let (mut hits, mut any) = (Hits::with_capacity(3000), Hits::with_capacity(3000));
         let tracer = Tracer::default();
-        tracer.closest(&world, &rays, &mut hits);
+        trace::closest(tracer, &world, &rays, &mut hits);
         for (row, factor) in (0..rays.len()).zip([0.5, 0.99999, 1.00001, 2.0].into_iter().cycle()) {
             let bound = if hits.sphere[row] == MISS { 9.0 } else { hits.t[row] * factor };
             any.set(row, bound, MISS);
         }
         let bounds = any.t.clone();
-        tracer.occluded(&world, &rays, &mut any);
+        trace::occluded(tracer, &world, &rays, &mut any);
         for (row, &bound) in bounds.iter().enumerate().take(rays.len()) {
             let nearer = hits.sphere[row] != MISS && hits.t[row] < bound;
             assert_eq!(any.sphere[row] != MISS, nearer, "{row}");
@@ -201,13 +200,16 @@ fn pictures_are_the_same_whatever_finds_spheres() {
     for mode in [SliceMode::Caps, SliceMode::Hide, SliceMode::Remove] {
         scene.slices = vec![slice(DVec3::new(0.5, -1.0, 0.2), 1.0, mode), caps(DVec3::Z, 4.5)];
         let usual = shoot(&scene).image;
-        for method in [Method::Brute, Method::Single, Method::Stream, Method::Packet] {
-            for width in [Width::One, Width::Four, Width::Eight, Width::Sixteen] {
-                let options = Options { tracer: Tracer { method, width }, ..Options::default() };
+        for traversal in [Traversal::Brute, Traversal::Single, Traversal::Stream, Traversal::Packet]
+        {
+            for width in
+                [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen]
+            {
+                let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
                 assert_eq!(
                     shoot_with(&scene, &options).image,
                     usual,
-                    "{mode:?} {method:?} {width:?}"
+                    "{mode:?} {traversal:?} {width:?}"
                 );
             }
         }

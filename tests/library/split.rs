@@ -26,8 +26,8 @@ fn still_life() -> Scene {
 
 const STATISTICS: Options = Options {
     tracer: spherule::trace::Tracer {
-        method: spherule::bvh::walk::Method::Auto,
-        width: spherule::trace::Width::Eight,
+        traversal: spherule::trace::Traversal::Auto,
+        width: spherule::trace::PacketWidth::Eight,
     },
     region: None,
     progress: None,

@@ -2,12 +2,11 @@
 
 use crate::bench::scenes::{FIELD, NamedScene};
 use crate::bench::{BenchError, Options};
-use crate::bvh::walk::Method;
 use crate::scene::{
     EnvironmentMap, Integrator, LightChoice, Material, NamedMaterial, Rgb, Roulette, SamplerKind,
     Scene, Settings,
 };
-use crate::trace::{Tracer, Width};
+use crate::trace::{PacketWidth, Tracer, Traversal};
 
 /// A set of settings: what differs from the scene's own.
 #[derive(Clone, Copy)]
@@ -40,7 +39,7 @@ const SETTINGS: [Variant; 7] = [
     variant("no roulette", |settings, _| settings.roulette = Roulette::None),
     variant("roulette 0.5", |settings, _| settings.roulette = Roulette::Fixed(0.5)),
     variant("single rays", |_, tracer| {
-        *tracer = Tracer { method: Method::Single, width: Width::One };
+        *tracer = Tracer { traversal: Traversal::Single, width: PacketWidth::One };
     }),
 ];
 

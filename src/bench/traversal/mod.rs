@@ -1,4 +1,4 @@
-//! Finding what rays hit: every walk there is, for four classes of rays.
+//! Rays per second of every traversal, for four classes of rays.
 
 mod tables;
 mod walks;
@@ -8,9 +8,8 @@ use self::walks::{AUTO, SINGLE, WALKS, Walk};
 use super::build::BUILDERS;
 use super::rounds::{Times, clock};
 use super::{BenchError, Options, Tell};
-use crate::bvh::Bvh;
-use crate::bvh::build::{Builder, build};
-use crate::bvh::walk::{Method, Visits};
+use crate::bvh::builders::{Builder, build};
+use crate::bvh::{Bvh, Traversal, Tree, Visits};
 use crate::ray::{Hits, MISS};
 use crate::report::Report;
 use crate::spheres::Spheres;
@@ -26,7 +25,7 @@ const EXPLANATION: &str = "One thread. Rays are made beforehand, only tracing is
 const TURN: f64 = 0.02;
 
 /// Spheres in the order of their tree.
-struct Tree {
+struct BuiltTree {
     spheres: Spheres,
     bvh: Bvh,
 }
@@ -43,11 +42,15 @@ struct Outcome {
     visits: Vec<Option<Visits>>,
 }
 
-impl Tree {
+impl BuiltTree {
     fn new(scene: SphereScene, builder: Builder) -> Result<Self, BenchError> {
         let mut spheres = scene.spheres()?;
         let bvh = build(&mut spheres, builder);
         Ok(Self { spheres, bvh })
+    }
+
+    fn view(&self) -> Tree<'_> {
+        Tree { bvh: &self.bvh, spheres: &self.spheres }
     }
 }
 
@@ -80,7 +83,7 @@ fn of_scene(scene: SphereScene, options: &Options, tell: Tell) -> Result<Vec<Out
     let side = options.pick([64, 256, 512]);
     let mut trees = Vec::new();
     for (builder, _) in BUILDERS {
-        let tree = Tree::new(scene, builder)?;
+        let tree = BuiltTree::new(scene, builder)?;
         let views = Views::new(scene, (&tree.spheres, &tree.bvh), side);
         trees.push((tree, views));
     }
@@ -96,33 +99,31 @@ const BEST: usize = 1;
 
 fn of_class(
     (scene, class): (SphereScene, Class),
-    trees: &[(Tree, Views)],
+    trees: &[(BuiltTree, Views)],
     rounds: u32,
 ) -> Result<Outcome, BenchError> {
-    let query = usize::from(class.is_any());
+    let any = class.is_any();
     let (best, views) = &trees[BEST];
     let rays = views.rays(class);
-    let expected = (WALKS[SINGLE].run[query])(Method::Single, best, rays);
+    let expected = WALKS[SINGLE].run(any, best.view(), rays);
     let times = Times::by_turns(rounds, WALKS.len() + trees.len(), |i| {
         let auto = &WALKS[AUTO];
         if let Some((tree, views)) = i.checked_sub(WALKS.len()).map(|tree| &trees[tree]) {
             let rays = views.rays(class);
-            return Ok::<_, BenchError>(
-                clock(TURN, || (auto.run[query])(auto.method, tree, rays)).0,
-            );
+            return Ok::<_, BenchError>(clock(TURN, || auto.run(any, tree.view(), rays)).0);
         }
         let walk = &WALKS[i];
-        if !walk.suits(best) {
+        if !walk.suits(best.spheres.len()) {
             return Ok(f64::NAN);
         }
-        let (seconds, hits) = clock(TURN, || (walk.run[query])(walk.method, best, rays));
+        let (seconds, hits) = clock(TURN, || walk.run(any, best.view(), rays));
         check(walk, (&hits, &expected), rays.len(), class)
             .map_err(|fault| BenchError::Differ(format!("{}: {fault}", scene.name)))?;
         Ok(seconds)
     })?;
     let visits = WALKS.iter().map(|walk| {
-        let counts = walk.exact && walk.method != Method::Brute;
-        counts.then(|| (walk.count[query])(walk.method, best, rays))
+        let counts = walk.exact && walk.tracer.traversal != Traversal::Brute;
+        counts.then(|| walk.count(any, best.view(), rays))
     });
     let count = (0..rays.len()).filter(|&row| expected.sphere[row] != MISS).count();
     let hits = count as f64 / rays.len().max(1) as f64;

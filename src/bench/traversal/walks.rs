@@ -1,21 +1,17 @@
-//! The walks that are compared.
+//! The traversals that are compared.
 
-use super::Tree;
-use crate::bvh::walk::{Any, Closest, Method, Query, Rough, Visits, trace, visits};
-use crate::lanes::{F32x4, F32x8, F32x16, Lanes};
+use crate::bvh::{
+    Any, Closest, PacketWidth, Query, Tracer, Traversal, Tree, Unverified, Visits, count_visits,
+    trace,
+};
+use crate::lanes::{F32x4, F32x8, F32x16};
 use crate::ray::{Hits, Rays};
 
-/// Traces rays.
-pub(super) type Run = fn(Method, &Tree, &Rays) -> Hits;
-/// Counts what rays visit.
-pub(super) type Count = fn(Method, &Tree, &Rays) -> Visits;
-
-/// A way to trace rays: its name, and what it takes for the first hit and for any hit.
+/// A traversal that is measured.
 pub(super) struct Walk {
     pub(super) name: &'static str,
-    pub(super) method: Method,
-    pub(super) run: [Run; 2],
-    pub(super) count: [Count; 2],
+    pub(super) tracer: Tracer,
+    /// Whether hits are decided exactly.
     pub(super) exact: bool,
 }
 
@@ -26,40 +22,55 @@ pub(super) const SINGLE: usize = 1;
 pub(super) const AUTO: usize = 6;
 
 pub(super) const WALKS: [Walk; 8] = [
-    Walk::of::<F32x16>("brute force", Method::Brute),
-    Walk::of::<f32>("single", Method::Single),
-    Walk::of::<f32>("stream", Method::Stream),
-    Walk::of::<F32x4>("packets of 4", Method::Packet),
-    Walk::of::<F32x8>("packets of 8", Method::Packet),
-    Walk::of::<F32x16>("packets of 16", Method::Packet),
-    Walk::of::<F32x16>("auto", Method::Auto),
-    Walk {
-        run: [run::<F32x16, Rough<Closest>>, run::<F32x16, Rough<Any>>],
-        exact: false,
-        ..Walk::of::<F32x16>("auto, rough", Method::Auto)
-    },
+    Walk::new("brute force", Traversal::Brute, PacketWidth::Sixteen),
+    Walk::new("single", Traversal::Single, PacketWidth::One),
+    Walk::new("stream", Traversal::Stream, PacketWidth::One),
+    Walk::new("packets of 4", Traversal::Packet, PacketWidth::Four),
+    Walk::new("packets of 8", Traversal::Packet, PacketWidth::Eight),
+    Walk::new("packets of 16", Traversal::Packet, PacketWidth::Sixteen),
+    Walk::new("auto", Traversal::Auto, PacketWidth::Sixteen),
+    Walk { exact: false, ..Walk::new("auto, rough", Traversal::Auto, PacketWidth::Sixteen) },
 ];
 
 impl Walk {
-    const fn of<L: Lanes>(name: &'static str, method: Method) -> Self {
-        let run: [Run; 2] = [run::<L, Closest>, run::<L, Any>];
-        let count: [Count; 2] = [count::<L, Closest>, count::<L, Any>];
-        Self { name, method, run, count, exact: true }
+    const fn new(name: &'static str, traversal: Traversal, width: PacketWidth) -> Self {
+        Self { name, tracer: Tracer { traversal, width }, exact: true }
     }
 
     /// Whether it is measured in a scene.
-    pub(super) fn suits(&self, tree: &Tree) -> bool {
-        self.method != Method::Brute || tree.spheres.len() <= FEW
+    pub(super) fn suits(&self, spheres: usize) -> bool {
+        self.tracer.traversal != Traversal::Brute || spheres <= FEW
     }
-}
 
-fn run<L: Lanes, Q: Query>(method: Method, tree: &Tree, rays: &Rays) -> Hits {
-    let mut hits = Hits::with_capacity(rays.len());
-    trace::<L, Q>(method, &tree.bvh, &tree.spheres, rays, &mut hits);
-    hits
-}
+    /// Traces rays: for any hit, or for the first.
+    pub(super) fn run(&self, any: bool, tree: Tree, rays: &Rays) -> Hits {
+        let mut hits = Hits::with_capacity(rays.len());
+        match (self.exact, any) {
+            (true, false) => self.tracer.closest(tree, rays, &mut hits),
+            (true, true) => self.tracer.occluded(tree, rays, &mut hits),
+            (false, false) => self.run_unverified::<Closest>(tree, rays, &mut hits),
+            (false, true) => self.run_unverified::<Any>(tree, rays, &mut hits),
+        };
+        hits
+    }
 
-fn count<L: Lanes, Q: Query>(method: Method, tree: &Tree, rays: &Rays) -> Visits {
-    let mut hits = Hits::with_capacity(rays.len());
-    visits::<L, Q>(method, &tree.bvh, &tree.spheres, rays, &mut hits)
+    fn run_unverified<Q: Query>(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
+        trace::<F32x16, Unverified<Q>>(self.tracer.traversal, tree, rays, hits)
+    }
+
+    /// Counts the visits of rays: for any hit, or for the first.
+    pub(super) fn count(&self, any: bool, tree: Tree, rays: &Rays) -> Visits {
+        if any { self.count_of::<Any>(tree, rays) } else { self.count_of::<Closest>(tree, rays) }
+    }
+
+    fn count_of<Q: Query>(&self, tree: Tree, rays: &Rays) -> Visits {
+        let mut hits = Hits::with_capacity(rays.len());
+        let Tracer { traversal, width } = self.tracer;
+        match width {
+            PacketWidth::One => count_visits::<f32, Q>(traversal, tree, rays, &mut hits),
+            PacketWidth::Four => count_visits::<F32x4, Q>(traversal, tree, rays, &mut hits),
+            PacketWidth::Eight => count_visits::<F32x8, Q>(traversal, tree, rays, &mut hits),
+            PacketWidth::Sixteen => count_visits::<F32x16, Q>(traversal, tree, rays, &mut hits),
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::names::{
     self, BITS, Builder, FILTERS, INTEGRATORS, LANES, LAYERS, LIGHT_CHOICES, PPM, SAMPLERS, TONES,
-    Traversal,
+    TRAVERSALS,
 };
 use crate::cli::values::{self, DepthLimit, SAMPLES, Size, THREADS, Target};
 use clap::value_parser;
@@ -10,7 +10,7 @@ use spherule::film::Region;
 use spherule::image::{Depth, Format, PpmEncoding};
 use spherule::layers::Layer;
 use spherule::scene::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Tone};
-use spherule::trace::Width;
+use spherule::trace::{PacketWidth, Traversal};
 use std::time::Duration;
 
 /// What replaces the scene's own settings.
@@ -99,15 +99,15 @@ pub(in crate::cli) struct SpeedArgs {
     /// Threads [default: what the affinity mask and the control group's quota allow]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(THREADS))]
     pub(in crate::cli) threads: Option<u16>,
-    /// How rays find spheres
-    #[arg(long, value_enum, default_value_t = Traversal::Auto)]
+    /// How rays are traced
+    #[arg(long, default_value = "auto", value_parser = TRAVERSALS.parser())]
     pub(in crate::cli) traversal: Traversal,
     /// How the tree is built
     #[arg(long, value_enum, default_value_t = Builder::Auto)]
     pub(in crate::cli) builder: Builder,
     /// Rays in a packet; [default: 16]
     #[arg(long, value_parser = LANES.parser())]
-    pub(in crate::cli) lanes: Option<Width>,
+    pub(in crate::cli) lanes: Option<PacketWidth>,
 }
 
 /// What is told.

@@ -8,7 +8,7 @@ use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedA
 use crate::cli::failure::Failure;
 use crate::cli::keep::KeepArgs;
 use crate::cli::looks::{BarPlace, LookArgs};
-use crate::cli::names::{self, Traversal};
+use crate::cli::names;
 use crate::cli::particles::ParticleArgs;
 use crate::cli::picture_file;
 use crate::cli::sequences::SequenceArgs;
@@ -18,14 +18,13 @@ use crate::cli::source::Source;
 use crate::cli::threads;
 use crate::cli::views::{StyleArgs, ViewArgs};
 use spherule::World;
-use spherule::bvh::build::Builder;
-use spherule::bvh::walk::Method;
+use spherule::bvh::builders::Builder;
 use spherule::film::Region;
 use spherule::image::Format;
 use spherule::scene::particles::Looks;
 use spherule::scene::{Look, Settings};
 use spherule::split::{Part, Split};
-use spherule::trace::{Tracer, Width};
+use spherule::trace::Tracer;
 use std::path::PathBuf;
 
 /// The place of a picture among many.
@@ -153,7 +152,10 @@ impl<'a> Job<'a> {
             part,
             split: args.part.split,
             speed: &args.speed,
-            tracer: tracer(args.speed.traversal, args.speed.lanes),
+            tracer: Tracer {
+                traversal: args.speed.traversal,
+                width: args.speed.lanes.unwrap_or(Tracer::default().width),
+            },
             threads: threads::count(args.speed.threads),
             report: args.report,
         })
@@ -241,31 +243,4 @@ pub(in crate::cli) fn check_alpha(look: &Look, format: Format) -> Result<(), Fai
          or give --background white"
     );
     Err(Failure::usage("render", message))
-}
-
-fn tracer(typed: Traversal, lanes: Option<Width>) -> Tracer {
-    let width = lanes.unwrap_or(Tracer::default().width);
-    let method = match typed {
-        Traversal::Auto => Method::Auto,
-        Traversal::Brute => Method::Brute,
-        Traversal::Scalar => Method::Single,
-        Traversal::Stream => Method::Stream,
-        Traversal::Packet => Method::Packet,
-    };
-    Tracer { method, width }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn traversals_are_what_they_are_called() {
-        assert_eq!(tracer(Traversal::Auto, None), Tracer::default());
-        assert_eq!(tracer(Traversal::Auto, Some(Width::Four)).width, Width::Four);
-        assert_eq!(tracer(Traversal::Scalar, Some(Width::Eight)).method, Method::Single);
-        let packet = tracer(Traversal::Packet, Some(Width::Eight));
-        assert_eq!(packet, Tracer { method: Method::Packet, width: Width::Eight });
-        assert_eq!(tracer(Traversal::Brute, None).method, Method::Brute);
-    }
 }

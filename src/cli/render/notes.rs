@@ -1,10 +1,10 @@
 //! Settings that have no effect, and why.
 
 use super::job::Job;
-use crate::cli::names::Traversal;
 use spherule::World;
 use spherule::image::{Depth, Format};
 use spherule::scene::{Integrator, Roulette, Settings, Tone};
+use spherule::trace::Traversal;
 
 /// The scattering from which roulette by throughput begins, from 1.
 const ROULETTE_BEGINS: u32 = 4;
@@ -40,7 +40,7 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);
     let late = !ao && short && picture.roulette == Some(Roulette::Throughput);
     note(late, true, "--roulette throughput", "it begins at the fourth scattering, past --depth");
-    let alone = matches!(job.speed.traversal, Traversal::Scalar | Traversal::Stream);
+    let alone = matches!(job.speed.traversal, Traversal::Single | Traversal::Stream);
     note(
         job.speed.lanes.is_some(),
         alone,

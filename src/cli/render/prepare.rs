@@ -12,7 +12,7 @@ use crate::cli::picture_file;
 use crate::cli::source::Source;
 use glam::DVec3;
 use spherule::World;
-use spherule::bvh::build::Builder;
+use spherule::bvh::builders::Builder;
 use spherule::film::Region;
 use spherule::prepared::{self, PreparedScene};
 use spherule::render::{Render, Share};

@@ -7,19 +7,19 @@ use super::notices::Notices;
 use super::prepare::Prepared;
 use crate::cli::args::ReportArgs;
 use crate::cli::contents::{found, plural, spheres};
+use crate::cli::names::TRAVERSALS;
 use crate::cli::output;
 use crate::cli::progress::rate;
 use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
-use spherule::bvh::build::Builder;
-use spherule::bvh::walk::Method;
+use spherule::bvh::builders::Builder;
 use spherule::image::WriteOptions;
 use spherule::integrator::clock::{Stage, Times};
 use spherule::integrator::counters::Counters;
 use spherule::render::{Render, Tasks};
 use spherule::scene::Settings;
-use spherule::trace::Width;
+use spherule::trace::PacketWidth;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -198,13 +198,7 @@ impl TracerSummary {
     fn new(job: &Job, builder: Builder) -> Self {
         Self {
             threads: job.threads,
-            traversal: match job.tracer.method {
-                Method::Auto => "auto",
-                Method::Packet => "packet",
-                Method::Stream => "stream",
-                Method::Single => "scalar",
-                Method::Brute => "brute",
-            },
+            traversal: TRAVERSALS.name(&job.tracer.traversal),
             builder: match builder {
                 Builder::Median => "median",
                 Builder::SurfaceArea => "surface-area",
@@ -248,12 +242,12 @@ impl Statistics {
     }
 }
 
-fn lanes(width: Width) -> u32 {
+fn lanes(width: PacketWidth) -> u32 {
     match width {
-        Width::One => 1,
-        Width::Four => 4,
-        Width::Eight => 8,
-        Width::Sixteen => 16,
+        PacketWidth::One => 1,
+        PacketWidth::Four => 4,
+        PacketWidth::Eight => 8,
+        PacketWidth::Sixteen => 16,
     }
 }
 

@@ -73,7 +73,7 @@ impl Session {
 }
 
 /// The tree for a window's pictures.
-pub(super) fn builder(job: &Job, viewer: &Viewer) -> spherule::bvh::build::Builder {
+pub(super) fn builder(job: &Job, viewer: &Viewer) -> spherule::bvh::builders::Builder {
     let Settings { width, height, spp, .. } = viewer.settings;
     let samples = u64::from(width) * u64::from(height) * u64::from(spp);
     job.builder(viewer.facts.spheres, samples)

@@ -12,7 +12,7 @@ use crate::cli::views::Canvas;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use spherule::World;
-use spherule::bvh::build::Builder;
+use spherule::bvh::builders::Builder;
 use spherule::film::Region;
 use spherule::layers::{Layer, layers};
 use spherule::render::{End, Options, RenderError, Unfinished};

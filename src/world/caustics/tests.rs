@@ -6,9 +6,9 @@ use super::ball::{Angle, Ball};
 use super::link::{Link, Way, Ways, link};
 use crate::lanes::{Doubles, F64x8, Mask};
 use crate::shade::dielectric::{Meeting, pass};
-use crate::stress::random::Random;
 use crate::vec3::Vec3;
 use glam::DVec3;
+use spherule_core::internals::random::Random;
 use std::f64::consts::PI;
 
 /// A way in every lane.

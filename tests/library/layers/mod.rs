@@ -7,12 +7,11 @@ use crate::common::*;
 use glam::DVec3;
 use rayon::ThreadPoolBuilder;
 use spherule::World;
-use spherule::bvh::walk::Method;
 use spherule::film::Region;
 use spherule::layers::{Features, GROUND_PLANE, Layer, Layers, NOTHING, layers};
 use spherule::render::Options;
 use spherule::scene::{ConductorFresnel, Material, Rgb, Scene};
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{PacketWidth, Tracer, Traversal};
 
 fn all_of(scene: &Scene) -> Layers {
     with(scene, &Options::default())
@@ -216,10 +215,10 @@ fn speed_changes_nothing() {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         assert_eq!(pool.install(|| all_of(&scene)), usual, "{threads} threads");
     }
-    for width in [Width::One, Width::Four, Width::Eight, Width::Sixteen] {
-        for method in [Method::Auto, Method::Brute, Method::Packet, Method::Stream] {
-            let options = Options { tracer: Tracer { method, width }, ..Options::default() };
-            assert_eq!(with(&scene, &options), usual, "{method:?} {width:?}");
+    for width in [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen] {
+        for traversal in [Traversal::Auto, Traversal::Brute, Traversal::Packet, Traversal::Stream] {
+            let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
+            assert_eq!(with(&scene, &options), usual, "{traversal:?} {width:?}");
         }
     }
 }

@@ -2,11 +2,10 @@
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::bvh::walk::Method;
 use spherule::image::Image;
 use spherule::render::Options;
 use spherule::scene::{Rgb, Scene};
-use spherule::trace::Tracer;
+use spherule::trace::{Tracer, Traversal};
 
 /// Spheres of one diffuse material in a white sky.
 fn of_spheres(spheres: impl Iterator<Item = (DVec3, f64)>) -> Scene {
@@ -22,7 +21,7 @@ fn of_spheres(spheres: impl Iterator<Item = (DVec3, f64)>) -> Scene {
 }
 
 fn by_brute_force(scene: &Scene) -> Image {
-    let tracer = Tracer { method: Method::Brute, ..Tracer::default() };
+    let tracer = Tracer { traversal: Traversal::Brute, ..Tracer::default() };
     shoot_with(scene, &Options { tracer, ..Options::default() }).image
 }
 

@@ -3,8 +3,7 @@
 use crate::common::*;
 use glam::DVec3;
 use spherule::World;
-use spherule::bvh::build::Builder;
-use spherule::bvh::walk::Method;
+use spherule::bvh::builders::Builder;
 use spherule::film::Region;
 use spherule::image::Image;
 use spherule::integrator::counters::Counters;
@@ -13,7 +12,7 @@ use spherule::sampling::{stream, unit};
 use spherule::scene::{
     EnvironmentMap, Integrator, Lens, Pose, Projection, Rgb, SamplerKind, Scene,
 };
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{PacketWidth, Tracer, Traversal};
 
 const INTEGRATORS: [Integrator; 3] =
     [Integrator::Path, Integrator::Whitted { shadow_samples: 3 }, Integrator::Ao { distance: 2.0 }];
@@ -28,15 +27,21 @@ fn everything(integrator: Integrator) -> Scene {
 
 #[test]
 fn every_tracer_makes_the_same_picture() {
-    const WIDTHS: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
-    const METHODS: [Method; 5] =
-        [Method::Brute, Method::Single, Method::Stream, Method::Packet, Method::Auto];
+    const WIDTHS: [PacketWidth; 4] =
+        [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen];
+    const TRAVERSALS: [Traversal; 5] = [
+        Traversal::Brute,
+        Traversal::Single,
+        Traversal::Stream,
+        Traversal::Packet,
+        Traversal::Auto,
+    ];
     for integrator in INTEGRATORS {
         let scene = everything(integrator);
         let picture = shoot(&scene);
-        for method in METHODS {
+        for traversal in TRAVERSALS {
             for width in WIDTHS {
-                let tracer = Tracer { method, width };
+                let tracer = Tracer { traversal, width };
                 let other = shoot_with(&scene, &Options { tracer, ..Options::default() });
                 assert!(other.image == picture.image, "{integrator:?} {tracer:?}");
                 let work = |counters: &Counters| (counters.rays(), counters.cut_paths);
@@ -69,7 +74,7 @@ fn what_is_skipped_is_background() {
         scene.environment.map = EnvironmentMap::Constant(Rgb::new(0.3, 0.7, 1.1));
         let picture = shoot_with(&scene, &Options::default());
         assert!(picture.counters.skipped_samples > 10_000, "{}", picture.counters.skipped_samples);
-        let tracer = Tracer { method: Method::Brute, ..Tracer::default() };
+        let tracer = Tracer { traversal: Traversal::Brute, ..Tracer::default() };
         let brute = shoot_with(&scene, &Options { tracer, ..Options::default() });
         assert_eq!(brute.counters.skipped_samples, 0);
         assert!(brute.image == picture.image, "{projection:?} {lens:?}");

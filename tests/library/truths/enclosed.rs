@@ -2,13 +2,12 @@
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::bvh::walk::Method;
 use spherule::render::Options;
 use spherule::scene::{
     Environment, EnvironmentMap, Integrator, Light, LightChoice, Material, Rgb, Scene, Slice,
     SliceMode,
 };
-use spherule::trace::{Tracer, Width};
+use spherule::trace::{PacketWidth, Tracer, Traversal};
 use std::f64::consts::PI;
 
 const WHITTED: Integrator = Integrator::Whitted { shadow_samples: 4 };
@@ -160,12 +159,19 @@ fn closed_spheres_are_black_whatever_finds_them() {
     let mut furnished = scene.clone();
     furnish(&mut furnished);
     for scene in [scene, furnished] {
-        for method in [Method::Brute, Method::Single, Method::Stream, Method::Packet, Method::Auto]
-        {
-            for width in [Width::One, Width::Four, Width::Eight, Width::Sixteen] {
-                let options = Options { tracer: Tracer { method, width }, ..Options::default() };
+        for traversal in [
+            Traversal::Brute,
+            Traversal::Single,
+            Traversal::Stream,
+            Traversal::Packet,
+            Traversal::Auto,
+        ] {
+            for width in
+                [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen]
+            {
+                let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
                 let image = shoot_with(&scene, &options).image;
-                assert_every_pixel(&image, 0.0, &format!("{method:?} {width:?}"));
+                assert_every_pixel(&image, 0.0, &format!("{traversal:?} {width:?}"));
             }
         }
     }

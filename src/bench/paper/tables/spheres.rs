@@ -6,7 +6,7 @@ use super::{Plan, ratio, time};
 use crate::bench::BenchError;
 use crate::bench::rounds::{Times, clock};
 use crate::bench::threads::pool;
-use crate::bvh::build::{Builder, build};
+use crate::bvh::builders::{Builder, build};
 use crate::paper::{Threading, Tracer};
 use crate::report::{Axis, Column, Plot, Point, Series, Spread, Table};
 use crate::scene::Scene;

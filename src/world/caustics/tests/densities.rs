@@ -2,11 +2,11 @@
 
 use crate::lanes::F32x16;
 use crate::scene::{ConductorFresnel, Material, NamedMaterial, Rgb, Scene};
-use crate::stress::random::Random;
 use crate::vec3::Vec3;
 use crate::world::caustics::{Casters, Found, Looking, Way};
 use crate::world::{ROW, World};
 use glam::DVec3;
+use spherule_core::internals::random::Random;
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Small spheres of every kind that casts light, and two lamps.

@@ -1,0 +1,205 @@
+//! Along Morton's curve, which fills space: one sort, and then there is next to nothing to decide.
+//!
+//! A part is cut where the highest bit changes in which its spheres' places on the curve differ
+//! (Lauterbach, Garland, Sengupta, Luebke, Manocha, "Fast BVH Construction on GPUs", Eurographics
+//! 2009), moved to the next multiple of a leaf. Where all are at one place it is halved.
+
+use super::item::{Extent, Item, along, spread};
+use super::median::Median;
+use super::{Cut, snapped};
+use glam::Vec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Bits of a place on the curve, of each axis.
+const BITS: u32 = 10;
+
+/// Stretches of the curve into which spheres are put before each is sorted for itself, in memory that
+/// is near. Cubes, eight along each axis.
+const STRETCHES: usize = 512;
+
+/// So many spheres are worth a task.
+const CHUNK: usize = 1 << 14;
+
+/// Bits of a place on a stretch that are ordered at a time.
+const DIGIT: u32 = 11;
+
+/// With fewer keys comparing them is faster, and with more on one stretch there may be no work for
+/// other threads but on them.
+const BY_DIGITS: Range<usize> = 1 << 10..1 << 18;
+
+/// Cuts along the curve.
+pub(super) struct Morton {
+    /// Each sphere's place on the curve.
+    codes: Vec<u32>,
+    median: Median,
+}
+
+impl Morton {
+    /// Puts spheres into the order on the curve; and memory that is not needed any more.
+    pub(super) fn sort(items: &mut [Item]) -> (Self, Vec<Item>) {
+        let cells = Cells::over(items);
+        let (mut spare, counts) = cells.spread_out(items);
+        let count = items.len();
+        let mut codes: Vec<_> = (0..count).into_par_iter().with_min_len(CHUNK).map(|_| 0).collect();
+        let (mut to, mut from, mut to_codes) = (items, &mut *spare, &mut *codes);
+        let mut stretches = Vec::with_capacity(STRETCHES);
+        for count in counts.into_iter().filter(|&count| count > 0) {
+            let stretch = (to.split_off_mut(..count), from.split_off_mut(..count));
+            stretches.extend(stretch.0.zip(stretch.1).zip(to_codes.split_off_mut(..count)));
+        }
+        let sort = |((to, from), codes): ((&mut _, &mut _), &mut _)| cells.sort(from, to, codes);
+        stretches.into_par_iter().for_each(sort);
+        (Self { codes, median: Median::default() }, spare)
+    }
+}
+
+impl Cut for Morton {
+    fn cut(&self, items: &mut [Item], first: usize) -> usize {
+        let codes = &self.codes[first..first + items.len()];
+        let differ = codes[0] ^ codes[codes.len() - 1];
+        if differ == 0 {
+            return self.median.cut(items, first);
+        }
+        let bit = 1 << differ.ilog2();
+        let place = codes.partition_point(|code| code & bit == 0);
+        snapped(place, items.len())
+    }
+
+    fn median(&self) -> &Median {
+        &self.median
+    }
+}
+
+/// Cubes that hold the centers.
+struct Cells {
+    low: Vec3,
+    /// One for all axes, so flat scenes are not cut flatter.
+    scale: f32,
+}
+
+impl Cells {
+    fn over(items: &[Item]) -> Self {
+        let all = items.par_chunks(CHUNK).map(spread).reduce(|| Extent::EMPTY, |a, b| a.union(&b));
+        let width = (all.high - all.low).truncate().max_element();
+        Self { low: all.low.truncate(), scale: ((1 << BITS) as f32 / width).min(f32::MAX) }
+    }
+
+    /// The place on the curve of a sphere's center.
+    #[inline(always)]
+    fn code(&self, item: &Item) -> u32 {
+        let place = (item.vector().truncate() - self.low) * self.scale;
+        let last = ((1 << BITS) - 1) as f32;
+        let [x, y, z] = place.to_array().map(|cell| spaced(cell.min(last) as u32));
+        x | y << 1 | z << 2
+    }
+
+    /// On which stretch of the curve it is.
+    #[inline(always)]
+    fn stretch(&self, item: &Item) -> usize {
+        self.code(item) as usize / ((1 << (3 * BITS)) / STRETCHES) % STRETCHES
+    }
+
+    /// The spheres stretch by stretch, and how many are on each.
+    fn spread_out(&self, items: &[Item]) -> (Vec<Item>, Vec<usize>) {
+        let count = |items: &[Item]| {
+            let mut counts = vec![0_u32; STRETCHES];
+            for item in items {
+                counts[self.stretch(item)] += 1;
+            }
+            counts
+        };
+        let counts: Vec<_> = items.par_chunks(CHUNK).map(count).collect();
+        // Any values will do, written by all threads, for the system to give the memory to all.
+        let mut spread: Vec<_> = items.par_iter().with_min_len(CHUNK).copied().collect();
+        let mut places: Vec<_> = counts.iter().map(|_| Vec::with_capacity(STRETCHES)).collect();
+        let (mut rest, mut sums) = (&mut *spread, vec![0; STRETCHES]);
+        for (stretch, sum) in sums.iter_mut().enumerate() {
+            for (places, counts) in places.iter_mut().zip(&counts) {
+                let count = counts[stretch] as usize;
+                places.push(rest.split_off_mut(..count).unwrap_or_default().iter_mut());
+                *sum += count;
+            }
+        }
+        items.par_chunks(CHUNK).zip(places).for_each(|(items, mut places)| {
+            for item in items {
+                if let Some(place) = places[self.stretch(item)].next() {
+                    *place = *item;
+                }
+            }
+        });
+        (spread, sums)
+    }
+
+    /// Puts the spheres of a stretch into the order on the curve.
+    fn sort(&self, from: &[Item], to: &mut [Item], codes: &mut [u32]) {
+        // The place on the curve in the upper half, and in the lower one the row.
+        let key = |(row, item): (usize, &Item)| u64::from(self.code(item)) << 32 | row as u64;
+        let keys = from.par_iter().with_min_len(CHUNK).enumerate().map(key);
+        let mut keys: Vec<u64> = keys.collect();
+        match keys.len() {
+            count if BY_DIGITS.contains(&count) => sort_by_digits(&mut keys),
+            _ => keys.par_sort_unstable(),
+        }
+        let item = |key: u64| &from[key as u32 as usize];
+        // What is at one place has been ordered by the row, which is to mean nothing.
+        let runs = keys.par_chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|run| run.len() > 1);
+        runs.for_each(|run| run.sort_unstable_by(|&a, &b| along(0, item(a), item(b))));
+        let to = to.par_iter_mut().zip(codes).zip(keys).with_min_len(CHUNK);
+        to.for_each(|((to, code), key)| (*to, *code) = (*item(key), (key >> 32) as u32));
+    }
+}
+
+/// Sorts keys by their places on one stretch of the curve; those at one place stay as they are.
+fn sort_by_digits(keys: &mut Vec<u64>) {
+    let mut sorted = vec![0; keys.len()];
+    for shift in [32, 32 + DIGIT] {
+        let digit = |key: u64| (key >> shift) as usize % (1 << DIGIT);
+        let mut places = [0_u32; 1 << DIGIT];
+        for &key in &*keys {
+            places[digit(key)] += 1;
+        }
+        let mut below = 0;
+        for place in &mut places {
+            below += std::mem::replace(place, below);
+        }
+        for &key in &*keys {
+            let place = &mut places[digit(key)];
+            sorted[*place as usize] = key;
+            *place += 1;
+        }
+        std::mem::swap(keys, &mut sorted);
+    }
+}
+
+/// The lowest ten bits with two zeros above each.
+#[inline(always)]
+fn spaced(x: u32) -> u32 {
+    let x = (x | x << 16) & 0x0300_00ff;
+    let x = (x | x << 8) & 0x0300_f00f;
+    let x = (x | x << 4) & 0x030c_30c3;
+    (x | x << 2) & 0x0924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::numbered;
+
+    #[test]
+    fn spheres_come_as_they_lie_on_the_curve() {
+        // All over the curve, most of them on one stretch, all at one place.
+        for power in [1, 9, 200] {
+            let number = |i, axis| numbered(i, axis).powi(power);
+            let sphere = |i| std::array::from_fn(|axis| number(i, axis as u64));
+            let mut items: Vec<_> =
+                (0..70_000).map(|id| Item { sphere: sphere(u64::from(id) / 2), id }).collect();
+            let cells = Cells::over(&items);
+            let mut sorted = items.clone();
+            sorted.sort_by(|a, b| cells.code(a).cmp(&cells.code(b)).then(along(0, a, b)));
+            let (morton, _) = Morton::sort(&mut items);
+            assert!(items == sorted, "{power}");
+            assert!(morton.codes.into_iter().eq(items.iter().map(|item| cells.code(item))));
+        }
+    }
+}

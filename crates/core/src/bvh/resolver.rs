@@ -1,0 +1,432 @@
+//! Decides which candidates of the conservative test are hits, and which hit is the nearest.
+//!
+//! Hits are decided by [`intersect::confirm`] alone, and of spheres at equal distances the one that
+//! comes first in the user's scene is hit. So traversals differ in time, never in their answers.
+//!
+//! Single rays that look for any hit decide candidate by candidate ([`HitResolver::test_sphere`]).
+//! Other rays keep their best candidate until they have passed the tree
+//! ([`NearestHit`](super::nearest::NearestHit)), and then up to eight of them are decided in lanes: a
+//! packet's at once ([`HitResolver::commit_packet`]), those of single rays as soon as eight are pending
+//! ([`HitResolver::push_pending`]). Rays that can't be decided so are traced again, with each candidate
+//! decided at once.
+
+use super::nearest::{NearestHit, RunnerUp};
+use super::ray_setup::RaySetup;
+use super::traversal::{Query, Visits};
+use crate::conservative::{Chord, ConservativeRay};
+use crate::exact::{self, Distance};
+use crate::intersect::{self, CLEAR, Pairs, Root};
+use crate::lanes::{
+    Doubles, F64x8, Lanes, Mask, bits, bits_of, load_doubles, set_bits, store_where,
+};
+use crate::ray::{CHUNK, ExactRay, Hits, MISS, Rays, rounding};
+use crate::spheres::{LEAF, Spheres};
+use crate::vec3::Vec3;
+use glam::DVec3;
+use std::cmp::Ordering;
+use std::marker::PhantomData;
+
+/// The bound of a ray that needs no more answers.
+pub(super) const DONE: f32 = f32::NEG_INFINITY;
+
+/// Rays that are decided together in lanes.
+const ROW: usize = 8;
+
+/// The state of a traversal's answers: rays, spheres, and the hits so far.
+pub(super) struct HitResolver<'a, Q> {
+    pub(super) spheres: &'a Spheres,
+    pub(super) rays: &'a Rays,
+    pub(super) hits: &'a mut Hits,
+    /// Number of decisions that were made on integers.
+    pub(super) exact: u64,
+    /// Rays that are to be traced again, for their hits may be wrong.
+    pub(super) unresolved: Vec<u32>,
+    /// Rays that wait until there are enough of them to be decided in lanes.
+    pending: PendingHits,
+    /// The rays that start next.
+    pub(super) setup: RaySetup,
+    /// Visits, if they are counted.
+    pub(super) visits: Visits,
+    query: PhantomData<Q>,
+}
+
+impl<'a, Q: Query> HitResolver<'a, Q> {
+    pub(super) fn new(spheres: &'a Spheres, rays: &'a Rays, hits: &'a mut Hits) -> Self {
+        Self {
+            spheres,
+            rays,
+            hits,
+            exact: 0,
+            unresolved: Vec::new(),
+            pending: PendingHits::default(),
+            setup: RaySetup::NONE,
+            visits: Visits::default(),
+            query: PhantomData,
+        }
+    }
+
+    /// Whether the single-precision columns hold rays and spheres exactly.
+    #[inline(always)]
+    pub(super) fn is_single_precision(&self) -> bool {
+        self.rays.precise.is_empty() && self.spheres.precise.is_empty()
+    }
+
+    /// Returns bounds of the distance at which a ray's search ends; [`DONE`] if it needs no answer.
+    #[inline(always)]
+    pub(super) fn bounds(&self, row: usize) -> (f32, f32) {
+        if Q::ANY && self.hits.sphere[row] != MISS {
+            return (DONE, DONE);
+        }
+        let (t, error) = (self.hits.t[row], self.hits.error[row % CHUNK]);
+        (rounded_out((t - error) as f32).0, rounded_out((t + error) as f32).1)
+    }
+
+    /// Returns what [`HitResolver::bounds`] does, for the rays from `row` on, which have no hits yet;
+    /// [`DONE`] in lanes that are not `active`.
+    #[inline(always)]
+    pub(super) fn search_bounds<L: Lanes>(&self, row: usize, active: L::Mask) -> (L, L) {
+        let (low, high) = rounded_out(L::load_rounded(&self.hits.t[row..]));
+        let searched = if Q::ANY {
+            active & bits_of::<L>(&self.hits.sphere[row..]).has_bits_of(bits(MISS))
+        } else {
+            active
+        };
+        let done = L::splat(DONE);
+        (L::select(searched, low, done), L::select(searched, high, done))
+    }
+}
+
+/// Returns bounds of a number that was rounded to `t`, at any magnitude.
+#[inline(always)]
+fn rounded_out<L: Lanes>(t: L) -> (L, L) {
+    let scaled = |factor, least| t.mul_add(L::splat(factor), L::splat(least));
+    (scaled(1.0 - f32::EPSILON, -f32::MIN_POSITIVE), scaled(1.0 + f32::EPSILON, f32::MIN_POSITIVE))
+}
+
+/// Candidate by candidate.
+impl<Q: Query> HitResolver<'_, Q> {
+    /// Tests a ray against a sphere, and stores the hit if there is one that is nearer than the ray's
+    /// hit so far. Returns whether it is.
+    #[inline(always)]
+    pub(super) fn test_sphere(&mut self, row: usize, sphere: usize) -> bool {
+        if !Q::EXACT {
+            return self.accept_unverified(row, sphere);
+        }
+        if self.is_same(sphere, self.rays.own[row]) || self.is_same(sphere, self.rays.target[row]) {
+            return false;
+        }
+        let (center, radius) = self.spheres.exact(sphere);
+        let ray = self.rays.exact(row);
+        let (plain, t) = intersect::confirm_plain(&Pairs::one(&ray, center, radius));
+        if !plain {
+            return self.test_sphere_closely(row, sphere, &ray);
+        }
+        self.update_if_nearer(row, sphere, &ray, (t, t * CLEAR))
+    }
+
+    /// Does what [`HitResolver::test_sphere`] does where the short test in double precision can't tell.
+    #[inline(never)]
+    fn test_sphere_closely(&mut self, row: usize, sphere: usize, ray: &ExactRay) -> bool {
+        let (center, radius) = self.spheres.exact(sphere);
+        let inside = || self.starts_within(ray, row, center, radius);
+        let Some(root) = intersect::confirm(ray, center, radius, inside) else { return false };
+        self.exact += u64::from(root.exact);
+        self.update_if_nearer(row, sphere, ray, (root.t, root.error))
+    }
+
+    /// Stores a hit at distance `t`, give or take `error`, if it is nearer than the ray's hit so far.
+    /// Returns whether it is.
+    #[inline(always)]
+    fn update_if_nearer(
+        &mut self,
+        row: usize,
+        sphere: usize,
+        ray: &ExactRay,
+        (t, error): (f64, f64),
+    ) -> bool {
+        let nearer = self.is_nearer(row, sphere, ray, (t, error));
+        if nearer {
+            self.hits.sphere[row] = sphere as u32;
+            if !Q::ANY {
+                (self.hits.t[row], self.hits.error[row % CHUNK]) = (t, error);
+            }
+        }
+        nearer
+    }
+
+    /// Accepts a candidate of the conservative test as a hit.
+    #[inline(always)]
+    fn accept_unverified(&mut self, row: usize, sphere: usize) -> bool {
+        let ray = ConservativeRay::new(self.rays.origin.load(row), self.rays.direction.load(row));
+        let center = self.spheres.center(sphere);
+        let near = Chord::<f32>::new(&ray, center.into(), self.spheres.radius(sphere)).near();
+        let nearer = near >= 0.0 && near < self.bounds(row).1;
+        if nearer {
+            self.hits.set(row, f64::from(near), sphere as u32);
+        }
+        nearer
+    }
+
+    /// Whether `sphere` is sphere `known` of the ray, or coincides with it. A sphere that coincides with
+    /// `known` comes later in the scene, or it would be known in its stead.
+    #[inline(always)]
+    fn is_same(&self, sphere: usize, known: u32) -> bool {
+        known == sphere as u32
+            || ((known as usize) < self.spheres.len()
+                && self.spheres.exact(known as usize) == self.spheres.exact(sphere))
+    }
+
+    /// Whether a ray whose origin is on the surface of a sphere, within rounding, starts on another
+    /// sphere that touches it from within.
+    fn starts_within(&self, ray: &ExactRay, row: usize, center: DVec3, radius: f64) -> bool {
+        let own = self.rays.own[row] as usize;
+        if own >= self.spheres.len() {
+            return false;
+        }
+        let (own_center, own_radius) = self.spheres.exact(own);
+        own_radius < radius && (ray.origin - own_center).dot(ray.origin - center) > 0.0
+    }
+
+    /// Whether a hit replaces the ray's hit so far.
+    #[inline(always)]
+    fn is_nearer(
+        &mut self,
+        row: usize,
+        sphere: usize,
+        ray: &ExactRay,
+        (t, error): (f64, f64),
+    ) -> bool {
+        let (nearest, nearest_error) = (self.hits.t[row], self.hits.error[row % CHUNK]);
+        if t + error < nearest - nearest_error {
+            return true;
+        }
+        if t - error > nearest + nearest_error {
+            return false;
+        }
+        match self.compare(row, sphere, ray, (t, error)) {
+            Ordering::Less => true,
+            Ordering::Equal => !Q::ANY && self.precedes(sphere, self.hits.sphere[row]),
+            Ordering::Greater => false,
+        }
+    }
+
+    /// Compares distances that are closer than their errors: by closer bounds, then on integers.
+    #[cold]
+    fn compare(
+        &mut self,
+        row: usize,
+        sphere: usize,
+        ray: &ExactRay,
+        (t, error): (f64, f64),
+    ) -> Ordering {
+        let (nearest, other) = (self.hits.t[row], self.hits.sphere[row] as usize);
+        let nearest_error = self.hits.error[row % CHUNK];
+        let coincide = || self.spheres.exact(sphere) == self.spheres.exact(other);
+        if nearest_error != 0.0 && coincide() {
+            return Ordering::Equal;
+        }
+        let first = self.root(ray, sphere, t, error);
+        let second = self.root(ray, other, nearest, nearest_error);
+        let gap = first.0.t - second.0.t;
+        if gap.abs() > first.0.error + second.0.error {
+            return gap.total_cmp(&0.0);
+        }
+        self.exact += 1;
+        exact::compare(ray, &first.1, &second.1)
+    }
+
+    /// Returns a distance with its closest bound, and its definition. An error of 0 says that the distance
+    /// is a given number.
+    fn root(&self, ray: &ExactRay, sphere: usize, t: f64, error: f64) -> (Root, Distance) {
+        let number = Root { t, error: 0.0, exact: false };
+        if error == 0.0 {
+            return (number, Distance::Number(t));
+        }
+        let (center, radius) = self.spheres.exact(sphere);
+        let root = intersect::confirm_closely(ray, center, radius, || false);
+        (root.unwrap_or(number), Distance::Hit(center, radius))
+    }
+
+    /// Whether `sphere` comes before `other` in the user's scene; the ground comes last, and a bound is
+    /// no hit.
+    fn precedes(&self, sphere: usize, other: u32) -> bool {
+        other != MISS
+            && self.spheres.id.get(other as usize).is_none_or(|&id| self.spheres.id[sphere] < id)
+    }
+}
+
+/// Packet by packet, at the end of their traversal.
+impl<Q: Query> HitResolver<'_, Q> {
+    /// Stores the hits of a packet whose first ray is row `first`.
+    #[inline(always)]
+    pub(super) fn commit_packet<L: Lanes>(
+        &mut self,
+        first: usize,
+        rays: &ConservativeRay<L>,
+        (nearest, runner_up): (&NearestHit<L>, &RunnerUp<L>),
+    ) {
+        let found = nearest.found();
+        if Q::ANY {
+            self.store_spheres(first, found, nearest.sphere);
+            let open = nearest.near.has_bits_of(L::splat(DONE))
+                & !nearest.t_max.has_bits_of(L::splat(DONE));
+            return self.mark_unresolved(first, open.bits());
+        }
+        let found = found.bits();
+        if found == 0 {
+            return;
+        }
+        if !Q::EXACT {
+            return self.accept_packet_unverified(first, nearest);
+        }
+        if !self.is_single_precision() {
+            return self.mark_unresolved(first, found);
+        }
+        let low = self.commit_half::<L, 0>(first, rays, (nearest, runner_up));
+        // Not a loop, so that lanes stay in registers and the halves do not wait for each other.
+        let high = if L::WIDTH > 8 {
+            self.commit_half::<L, 8>(first, rays, (nearest, runner_up))
+        } else {
+            0
+        };
+        let resolved = (low | high << 8) & found;
+        self.store_spheres(first, L::lanes(resolved), nearest.sphere);
+        self.mark_unresolved(first, found & !resolved);
+    }
+
+    /// Stores the distances of eight lanes, from `FROM` on, where double precision decides the hit.
+    /// Returns a bit for each of these lanes.
+    #[inline(always)]
+    fn commit_half<L: Lanes, const FROM: usize>(
+        &mut self,
+        first: usize,
+        rays: &ConservativeRay<L>,
+        (nearest, runner_up): (&NearestHit<L>, &RunnerUp<L>),
+    ) -> u32 {
+        let vector =
+            |v: Vec3<L>| Vec3::new(v.x.doubles(FROM), v.y.doubles(FROM), v.z.doubles(FROM));
+        let pairs = Pairs {
+            origin: vector(rays.origin()),
+            direction: vector(rays.direction()),
+            // As if all origins were on surfaces, which is no less.
+            origin_error: rays.origin_error().doubles(FROM),
+            center: vector(runner_up.sphere.center),
+            radius: runner_up.sphere.radius.doubles(FROM),
+        };
+        let (plain, t) = intersect::confirm_either(&pairs);
+        // Nothing beyond `t_max` was tested.
+        let other = runner_up.near.min(nearest.t_max).doubles(FROM);
+        let resolved = plain & (t * F64x8::splat(1.0 + CLEAR)).lt(other);
+        store_where(resolved, t, &mut self.hits.t[first + FROM..]);
+        resolved.bits()
+    }
+
+    #[inline(always)]
+    fn mark_unresolved(&mut self, first: usize, lanes: u32) {
+        for lane in set_bits(lanes) {
+            self.unresolved.push((first + lane) as u32);
+        }
+    }
+
+    #[inline(always)]
+    fn store_spheres<L: Lanes>(&mut self, first: usize, mask: L::Mask, sphere: L) {
+        let column = bytemuck::cast_slice_mut(&mut self.hits.sphere[first..]);
+        L::select(mask, sphere, L::load(column)).store(column);
+    }
+
+    /// Accepts the candidates of the conservative test as hits.
+    #[inline(always)]
+    fn accept_packet_unverified<L: Lanes>(&mut self, first: usize, nearest: &NearestHit<L>) {
+        self.store_spheres(first, nearest.found(), nearest.sphere);
+        for half in (0..L::WIDTH).step_by(8) {
+            let near = nearest.near.doubles(half);
+            let nearer = F64x8::splat(0.0).lt(near) & near.lt(F64x8::splat(f64::INFINITY));
+            store_where(nearer, near, &mut self.hits.t[first + half..]);
+        }
+    }
+}
+
+/// Single rays and their best candidates, which are decided when there are [`ROW`] of them.
+#[derive(Clone, Copy, Default)]
+struct PendingHits {
+    count: usize,
+    ray: [PendingHit; ROW],
+    /// Distances before which no other sphere is hit.
+    runner_up: [f32; ROW],
+}
+
+/// Rows of a ray and of its best candidate.
+#[derive(Clone, Copy, Default)]
+struct PendingHit {
+    row: u32,
+    sphere: u32,
+}
+
+/// Single rays, at the end of their traversal.
+impl<Q: Query> HitResolver<'_, Q> {
+    /// Adds a ray that has passed the tree, if it has a candidate. Nothing but the candidate is hit
+    /// before `runner_up`.
+    #[inline(always)]
+    pub(super) fn push_pending(&mut self, row: u32, nearest: &NearestHit<f32>, runner_up: f32) {
+        let sphere = nearest.sphere.to_bits();
+        if !Q::EXACT {
+            if sphere != MISS {
+                self.hits.set(row as usize, f64::from(nearest.near), sphere);
+            }
+            return;
+        }
+        let pending = &mut self.pending;
+        let place = pending.count % ROW;
+        pending.ray[place] = PendingHit { row, sphere };
+        // Nothing beyond `t_max` was tested.
+        pending.runner_up[place] = runner_up.min(nearest.t_max);
+        pending.count = place + usize::from(sphere != MISS);
+        if pending.count == ROW {
+            self.flush_pending();
+        }
+    }
+
+    /// Stores the hits of the pending rays.
+    #[inline(never)]
+    pub(super) fn flush_pending(&mut self) {
+        let count = std::mem::take(&mut self.pending.count);
+        if count == 0 {
+            return;
+        }
+        let PendingHits { mut ray, runner_up, .. } = self.pending;
+        // Unused lanes repeat the first ray.
+        let first = ray[0];
+        ray[count..].fill(first);
+        let (plain, t) = intersect::confirm_either(&self.pairs(&ray));
+        let resolved = plain & (t * F64x8::splat(1.0 + CLEAR)).lt(load_doubles(&runner_up));
+        let (resolved, t) = (resolved.bits(), t.to_array());
+        for (lane, (ray, t)) in ray.into_iter().zip(t).enumerate().take(count) {
+            if resolved >> lane & 1 == 1 {
+                self.hits.set(ray.row as usize, t, ray.sphere);
+            } else {
+                self.unresolved.push(ray.row);
+            }
+        }
+    }
+
+    /// Gathers pending rays and their candidates in lanes.
+    #[inline(always)]
+    fn pairs(&self, rays: &[PendingHit; ROW]) -> Pairs<F64x8> {
+        let mut columns = [[0.0; ROW]; 10];
+        for (lane, ray) in rays.iter().enumerate() {
+            let (row, sphere) = (ray.row as usize, ray.sphere as usize);
+            let (origin, direction) = (self.rays.origin.row(row), self.rays.direction.row(row));
+            let (block, place) = (&self.spheres.blocks()[sphere / LEAF], sphere % LEAF);
+            let sphere = [block.x[place], block.y[place], block.z[place], block.radius[place]];
+            let ray = origin.to_array().into_iter().chain(direction.to_array());
+            for (column, x) in columns.iter_mut().zip(ray.chain(sphere)) {
+                column[lane] = x;
+            }
+        }
+        let row = |i: usize| load_doubles(&columns[i]);
+        let vector = |i: usize| Vec3::new(row(i), row(i + 1), row(i + 2));
+        let (origin, direction, center, radius) = (vector(0), vector(3), vector(6), row(9));
+        // As if all origins were on surfaces, which is no less.
+        Pairs { origin, direction, origin_error: rounding(origin), center, radius }
+    }
+}

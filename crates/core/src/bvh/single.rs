@@ -1,0 +1,223 @@
+//! Single rays: eight spheres of a leaf are tested at once.
+//!
+//! A [`DeferredRay`] looks for the first hit, keeps its nearest candidate as packets do (see
+//! [`NearestHit`]), and is decided at the end, with seven others. A [`SingleRay`] decides each candidate
+//! at once: for any hit, for rays that could not be decided at the end, and for rays and spheres beyond
+//! single precision.
+
+use super::interleaved::RayGroup;
+use super::nearest::{Candidate, NearestHit, RunnerUp, SphereLanes, likely_distance};
+use super::ray_setup::RayStart;
+use super::resolver::{DONE, HitResolver};
+use super::traversal::Query;
+use crate::conservative::{Chord, ConservativeRay};
+use crate::lanes::{F32x8, Lanes, Mask, bits, set_bits};
+use crate::ray::MISS;
+use crate::slabs::Slabs;
+use crate::spheres::{LEAF, SphereBlock};
+use crate::vec3::Vec3;
+
+/// The sphere that a ray starts on, and never hits.
+#[derive(Clone, Copy)]
+struct OwnSphere {
+    /// Its block.
+    block: u32,
+    /// The lanes of all other spheres of the block.
+    others: u32,
+}
+
+impl OwnSphere {
+    const NONE: Self = Self { block: MISS, others: 0 };
+
+    #[inline(always)]
+    fn new(row: u32) -> Self {
+        Self { block: row / LEAF as u32, others: !(1 << (row % LEAF as u32)) }
+    }
+
+    /// Returns the lanes of a block that may be hit.
+    #[inline(always)]
+    fn allowed(self, block: usize) -> u32 {
+        if self.block == block as u32 { self.others } else { u32::MAX }
+    }
+}
+
+/// Returns the chords of a ray through the spheres of a block.
+#[inline(always)]
+fn chords(ray: &ConservativeRay<f32>, block: &SphereBlock) -> Chord<F32x8> {
+    let center = Vec3::new(F32x8::load(&block.x), F32x8::load(&block.y), F32x8::load(&block.z));
+    Chord::new(&ray.splat(), center, F32x8::load(&block.radius))
+}
+
+/// A ray whose candidates are decided at once.
+#[derive(Clone, Copy)]
+pub(super) struct SingleRay {
+    row: u32,
+    own: OwnSphere,
+    ray: ConservativeRay<f32>,
+}
+
+impl<Q: Query> RayGroup<Q> for SingleRay {
+    type Start = RayStart;
+
+    #[inline(always)]
+    fn idle() -> Self {
+        Self { row: 0, own: OwnSphere::NONE, ray: ConservativeRay::IDLE }
+    }
+
+    #[inline(always)]
+    fn start(&mut self, resolver: &mut HitResolver<Q>, start: RayStart, slabs: &mut Slabs) -> f32 {
+        let (ray, bounds) = resolver.start_ray(start, slabs);
+        let own = OwnSphere::new(resolver.rays.own[start.row]);
+        *self = Self { row: start.row as u32, own, ray };
+        bounds.1
+    }
+
+    #[inline(always)]
+    fn test_leaf(&mut self, _: &Slabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
+        let chord = chords(&self.ray, block);
+        chord.may_hit(F32x8::splat(t_far)).bits() & self.own.allowed(index)
+    }
+
+    #[inline(always)]
+    fn test_spheres(&mut self, resolver: &mut HitResolver<Q>, first: usize, spheres: u32) {
+        let row = self.row as usize;
+        for sphere in set_bits(spheres).map(|lane| first + lane) {
+            if Q::ANY && self.certainly_hits(resolver, sphere) {
+                resolver.hits.sphere[row] = sphere as u32;
+            } else {
+                resolver.test_sphere(row, sphere);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn t_far(&self, resolver: &HitResolver<Q>) -> f32 {
+        resolver.bounds(self.row as usize).1
+    }
+
+    #[inline(always)]
+    fn commit(&self, _: &mut HitResolver<Q>) {}
+}
+
+impl SingleRay {
+    /// Tests the ray of a row against every sphere.
+    pub(super) fn test_all_spheres<Q: Query>(resolver: &mut HitResolver<Q>, row: usize) {
+        let (spheres, mut ray) = (resolver.spheres, <Self as RayGroup<Q>>::idle());
+        let mut slabs = Slabs::IDLE;
+        let mut t_far = ray.start(resolver, RayStart { row, few: true }, &mut slabs);
+        for (index, block) in spheres.blocks().iter().enumerate() {
+            let hit = <Self as RayGroup<Q>>::test_leaf(&mut ray, &slabs, t_far, index, block);
+            ray.test_spheres(resolver, index * LEAF, hit);
+            t_far = ray.t_far(resolver);
+        }
+    }
+
+    /// Whether single precision can tell that the sphere is hit before the search ends.
+    #[inline(always)]
+    fn certainly_hits<Q: Query>(&self, resolver: &HitResolver<Q>, sphere: usize) -> bool {
+        let row = self.row as usize;
+        // A shadow ray that nothing stops comes to its light: so that is tested first.
+        if resolver.rays.target[row] == sphere as u32 {
+            return false;
+        }
+        let (center, radius) = (resolver.spheres.center(sphere), resolver.spheres.radius(sphere));
+        let chord = Chord::new(&self.ray, center.into(), radius);
+        let margin = self.ray.margin();
+        chord.enters(&self.ray, radius, &margin)
+            && chord.near_at_most(radius, &margin) < resolver.bounds(row).0
+    }
+}
+
+/// A ray whose first hit is decided at the end.
+#[derive(Clone, Copy)]
+pub(super) struct DeferredRay {
+    row: u32,
+    own: OwnSphere,
+    ray: ConservativeRay<f32>,
+    nearest: NearestHit<f32>,
+    /// A distance before which no other sphere is hit, and the search does not end.
+    runner_up: f32,
+    /// Distances before which the spheres of the last block are not hit.
+    near: [f32; LEAF],
+}
+
+impl<Q: Query> RayGroup<Q> for DeferredRay {
+    type Start = RayStart;
+
+    #[inline(always)]
+    fn idle() -> Self {
+        Self {
+            row: 0,
+            own: OwnSphere::NONE,
+            ray: ConservativeRay::IDLE,
+            nearest: NearestHit::new::<Q>((DONE, DONE)),
+            runner_up: DONE,
+            near: [0.0; LEAF],
+        }
+    }
+
+    #[inline(always)]
+    fn start(&mut self, resolver: &mut HitResolver<Q>, start: RayStart, slabs: &mut Slabs) -> f32 {
+        let (ray, bounds) = resolver.start_ray(start, slabs);
+        self.row = start.row as u32;
+        self.own = OwnSphere::new(resolver.rays.own[start.row]);
+        self.ray = ray;
+        self.nearest = NearestHit::new::<Q>(bounds);
+        self.runner_up = bounds.0;
+        bounds.1
+    }
+
+    #[inline(always)]
+    fn test_leaf(&mut self, _: &Slabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
+        let chord = chords(&self.ray, block);
+        chord.near().store(&mut self.near);
+        chord.may_hit(F32x8::splat(t_far)).bits() & self.own.allowed(index)
+    }
+
+    #[inline(always)]
+    fn test_spheres(&mut self, resolver: &mut HitResolver<Q>, first: usize, spheres: u32) {
+        let target = resolver.rays.target[self.row as usize];
+        for lane in set_bits(spheres) {
+            let (sphere, near) = (first + lane, self.near[lane]);
+            let (number, counts) = (bits(sphere as u32), near <= self.nearest.t_max);
+            if !Q::EXACT {
+                self.nearest.accept_unverified::<Q>(counts && near >= 0.0, near, number);
+            } else if near < 0.0 || target == sphere as u32 {
+                self.test_sphere_closely(resolver, sphere);
+            } else {
+                let far = likely_distance(near, resolver.spheres.radius(sphere));
+                self.nearest.update_nearest(&mut self.runner_up, counts, [near, far], number);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn t_far(&self, _: &HitResolver<Q>) -> f32 {
+        self.nearest.t_max
+    }
+
+    #[inline(always)]
+    fn commit(&self, resolver: &mut HitResolver<Q>) {
+        resolver.push_pending(self.row, &self.nearest, self.runner_up);
+    }
+
+    #[inline(always)]
+    fn flush(resolver: &mut HitResolver<Q>) {
+        resolver.flush_pending();
+    }
+}
+
+impl DeferredRay {
+    /// Tests a sphere that the ray may start in, or that it is aimed at.
+    #[inline(never)]
+    fn test_sphere_closely<Q: Query>(&mut self, resolver: &HitResolver<Q>, sphere: usize) {
+        let (center, radius) = (resolver.spheres.center(sphere), resolver.spheres.radius(sphere));
+        let lanes = SphereLanes::splat([center.x, center.y, center.z, radius]);
+        let chord = Chord::new(&self.ray, lanes.center, radius);
+        let allowed = resolver.rays.target[self.row as usize] != sphere as u32;
+        let candidate = Candidate { number: bits(sphere as u32), allowed, sphere: lanes, chord };
+        let mut runner_up = RunnerUp { sphere: lanes, near: self.runner_up };
+        self.nearest.update::<Q>(&mut runner_up, (&self.ray, &self.ray.margin()), &candidate);
+        self.runner_up = runner_up.near;
+    }
+}

@@ -1,0 +1,200 @@
+//! Exact queries for other programs: columns of spheres in, hits out.
+//!
+//! A [`SphereTree`] takes spheres and rays bit by bit as they are, of any scale, directions of any
+//! length, and answers which sphere a ray hits first, or whether it hits any, as arithmetic without
+//! rounding would. To keep the conservative test within its range it multiplies coordinates
+//! by a power of two, which is exact, and nothing else is done to them.
+
+mod alone;
+mod columns;
+mod plain;
+mod run;
+
+pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
+
+use crate::bvh::Bvh;
+use crate::bvh::builders::{Builder, build};
+use crate::bvh::{Any, Closest, Tree};
+use crate::spheres::Spheres;
+use columns::{one, same_length};
+use glam::{DVec3, Vec3};
+use std::cell::Cell;
+
+/// Spheres, ready for exact queries.
+#[derive(Clone, Debug)]
+pub struct SphereTree {
+    spheres: Spheres,
+    bvh: Bvh,
+    /// A power of two, which makes the largest coordinate about 1.
+    scale: f64,
+    invalid: usize,
+}
+
+/// Why a tree cannot be built, or columns cannot be traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum QueryError {
+    /// Columns differ in length.
+    #[error("the columns differ in length: one has {expected} rows and another {found}")]
+    Lengths {
+        /// Of the first column.
+        expected: usize,
+        /// Of another.
+        found: usize,
+    },
+    /// Rows are numbers of 32 bits.
+    #[error("{0} spheres are too many: at most {max} fit", max = Spheres::MAX)]
+    TooMany(usize),
+}
+
+impl SphereTree {
+    /// Builds the tree over spheres in columns.
+    ///
+    /// Spheres with a radius that is not more than 0, or with anything that is not finite, are
+    /// never hit; [`SphereTree::invalid_spheres`] counts them.
+    ///
+    /// # Errors
+    /// Columns of different lengths, or more than [`Spheres::MAX`] spheres.
+    pub fn from_columns(
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        radius: &[f32],
+    ) -> Result<Self, QueryError> {
+        same_length(radius.len(), &[x.len(), y.len(), z.len()])?;
+        Self::build(radius.len(), |i| [x[i], y[i], z[i], radius[i]])
+    }
+
+    /// Builds the tree over spheres in rows of x, y, z and radius; otherwise as
+    /// [`SphereTree::from_columns`].
+    ///
+    /// # Errors
+    /// More than [`Spheres::MAX`] spheres.
+    pub fn from_rows(rows: &[[f32; 4]]) -> Result<Self, QueryError> {
+        Self::build(rows.len(), |i| rows[i])
+    }
+
+    fn build(count: usize, row: impl Fn(usize) -> [f32; 4]) -> Result<Self, QueryError> {
+        if count > Spheres::MAX {
+            return Err(QueryError::TooMany(count));
+        }
+        let valid = |i: usize| {
+            let [x, y, z, radius] = row(i);
+            x.is_finite()
+                && y.is_finite()
+                && z.is_finite()
+                && radius > 0.0
+                && radius < f32::INFINITY
+        };
+        let wide = |i: usize| row(i).map(f64::from);
+        let largest = (0..count).filter(|&i| valid(i)).fold(0.0, |largest: f64, i| {
+            let [x, y, z, radius] = wide(i);
+            largest.max(DVec3::new(x, y, z).abs().max_element() + radius)
+        });
+        let scale = if largest > 0.0 { (-largest.log2().ceil()).exp2() } else { 1.0 };
+        let scaled = |i: usize| wide(i).map(|value| value * scale);
+        let mut spheres = Spheres::with_capacity(count);
+        let mut rounded = false;
+        for i in (0..count).filter(|&i| valid(i)) {
+            let single = scaled(i).map(|value| value as f32);
+            rounded |= single.map(f64::from) != scaled(i);
+            let [x, y, z, radius] = single;
+            spheres.push(Vec3::new(x, y, z), radius, i as u32);
+        }
+        if rounded {
+            // Scales so far apart that the smallest numbers leave single precision.
+            spheres.precise = spheres.id.iter().map(|&i| split(scaled(i as usize))).collect();
+        }
+        let invalid = count - spheres.len();
+        let bvh = build(&mut spheres, Builder::default());
+        Ok(Self { spheres, bvh, scale, invalid })
+    }
+
+    /// Number of spheres that can be hit.
+    pub fn len(&self) -> usize {
+        self.spheres.len()
+    }
+
+    /// Whether nothing can be hit.
+    pub fn is_empty(&self) -> bool {
+        self.spheres.is_empty()
+    }
+
+    /// Spheres that were left out because they are invalid.
+    pub fn invalid_spheres(&self) -> usize {
+        self.invalid
+    }
+
+    fn tree(&self) -> Tree<'_> {
+        Tree { bvh: &self.bvh, spheres: &self.spheres }
+    }
+
+    /// Bytes of tree and spheres.
+    pub fn bytes(&self) -> usize {
+        self.spheres.bytes() + self.bvh.bytes()
+    }
+
+    /// What a ray hits first: of spheres at equal distances, the one of the lowest row. `None` if
+    /// nothing, or if the ray is invalid.
+    pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
+        let mut hit = None;
+        self.run::<Closest>(
+            &one(&origin, &direction),
+            |_| f64::INFINITY,
+            |_, found| {
+                let Surface { point, normal } = self.surface((origin, direction), found);
+                hit = Some(Hit { sphere: found.id, t: found.t, point, normal });
+            },
+        );
+        hit
+    }
+
+    /// Whether a ray hits anything at a distance less than `t_max`, in units of the direction's
+    /// length.
+    pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> bool {
+        let mut hit = false;
+        self.run::<Any>(&one(&origin, &direction), |_| t_max, |_, _| hit = true);
+        hit
+    }
+
+    /// What each ray hits first: of spheres at equal distances, the one of the lowest row.
+    ///
+    /// # Errors
+    /// Columns of different lengths.
+    pub fn intersect_columns(&self, rays: &RayColumns, hits: Hits) -> Result<Tally, QueryError> {
+        let Hits { t, sphere, mut surface } = hits;
+        let surfaces = surface.as_ref().map_or(t.len(), |column| column.len());
+        rays.check(&[t.len(), sphere.len(), surfaces])?;
+        sphere.fill(NOTHING);
+        let t = Cell::from_mut(t).as_slice_of_cells();
+        Ok(self.run::<Closest>(
+            rays,
+            |i| t[i].get(),
+            |i, found| {
+                t[i].set(found.t);
+                sphere[i] = found.id;
+                if let Some(surface) = &mut surface {
+                    surface[i] = self.surface(rays.row(i), found);
+                }
+            },
+        ))
+    }
+
+    /// Whether each ray hits anything nearer than `t`.
+    ///
+    /// # Errors
+    /// Columns of different lengths.
+    pub fn occluded_columns(
+        &self,
+        rays: &RayColumns,
+        t: &[f64],
+        occluded: &mut [bool],
+    ) -> Result<Tally, QueryError> {
+        rays.check(&[t.len(), occluded.len()])?;
+        occluded.fill(false);
+        Ok(self.run::<Any>(rays, |i| t[i], |i, _| occluded[i] = true))
+    }
+}
+
+fn split([x, y, z, radius]: [f64; 4]) -> (DVec3, f64) {
+    (DVec3::new(x, y, z), radius)
+}

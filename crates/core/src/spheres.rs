@@ -1,0 +1,190 @@
+//! Spheres as rays meet them: columns of centers and radii, single precision, in blocks of
+//! [`LEAF`] rows.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+/// Spheres of a block, which is a leaf of the tree: one row of lanes for each column.
+pub const LEAF: usize = 8;
+
+/// So many rows are worth a task.
+const TASK: usize = 1 << 12;
+
+/// The columns of [`LEAF`] spheres side by side, so that a leaf is two lines of cache.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct SphereBlock {
+    /// Centers, x.
+    pub x: [f32; LEAF],
+    /// Centers, y.
+    pub y: [f32; LEAF],
+    /// Centers, z.
+    pub z: [f32; LEAF],
+    /// Radii, more than 0; NaN where there is no sphere, which no ray hits.
+    pub radius: [f32; LEAF],
+}
+
+impl SphereBlock {
+    const EMPTY: Self =
+        Self { x: [0.0; LEAF], y: [0.0; LEAF], z: [0.0; LEAF], radius: [f32::NAN; LEAF] };
+}
+
+/// The spheres: row `i` is lane `i % LEAF` of block `i / LEAF`, and row `i` of the other columns.
+#[derive(Clone, Debug, Default)]
+pub struct Spheres {
+    /// Centers and radii. The last block may have room left.
+    blocks: Vec<SphereBlock>,
+    /// Place in the user's order, which the rows leave when the tree is built; of two spheres at
+    /// the same distance the one with the lower id is hit.
+    pub id: Vec<u32>,
+    /// What centers and radii are exactly, if the columns could not hold it; empty otherwise.
+    pub precise: Vec<(DVec3, f64)>,
+}
+
+impl Spheres {
+    /// The most spheres there can be: the last few numbers of 32 bits mean something else.
+    pub const MAX: usize = (u32::MAX - 16) as usize;
+
+    /// Spheres in the order given, which becomes their id.
+    ///
+    /// # Panics
+    /// If the columns differ in length.
+    pub fn from_columns(x: &[f32], y: &[f32], z: &[f32], radius: &[f32]) -> Self {
+        let mut spheres = Self::with_capacity(radius.len());
+        for i in 0..radius.len() {
+            spheres.push(Vec3::new(x[i], y[i], z[i]), radius[i], i as u32);
+        }
+        spheres
+    }
+
+    /// No spheres, with room for as many.
+    pub fn with_capacity(count: usize) -> Self {
+        Self {
+            blocks: Vec::with_capacity(count.div_ceil(LEAF)),
+            id: Vec::with_capacity(count),
+            precise: Vec::new(),
+        }
+    }
+
+    /// Of `count` rows: center and radius, and the id. `precise` is left empty.
+    pub fn from_rows(count: usize, row: impl Fn(usize) -> ([f32; 4], u32) + Sync) -> Self {
+        let block = |first: usize| {
+            let mut block = SphereBlock::EMPTY;
+            for lane in 0..LEAF.min(count - first * LEAF) {
+                let [x, y, z, radius] = row(first * LEAF + lane).0;
+                (block.x[lane], block.y[lane], block.z[lane]) = (x, y, z);
+                block.radius[lane] = radius;
+            }
+            block
+        };
+        let rows = |count: usize| (0..count).into_par_iter().with_min_len(TASK);
+        Self {
+            blocks: rows(count.div_ceil(LEAF)).map(block).collect(),
+            id: rows(count).map(|i| row(i).1).collect(),
+            precise: Vec::new(),
+        }
+    }
+
+    /// Of blocks and the ids of their rows. `None` if a row has no sphere, or one that is not finite, or
+    /// if rows are left over.
+    pub fn from_blocks(blocks: Vec<SphereBlock>, id: Vec<u32>) -> Option<Self> {
+        if blocks.len() != id.len().div_ceil(LEAF) {
+            return None;
+        }
+        let spheres = Self { blocks, id, precise: Vec::new() };
+        let is_sphere = |row: usize| {
+            let radius = spheres.radius(row);
+            spheres.center(row).is_finite() && radius > 0.0 && radius < f32::INFINITY
+        };
+        let rows = spheres.len();
+        let unused = rows..spheres.blocks.len() * LEAF;
+        let right =
+            (0..rows).all(is_sphere) && unused.into_iter().all(|row| spheres.radius(row).is_nan());
+        right.then_some(spheres)
+    }
+
+    /// Appends a sphere.
+    #[inline]
+    pub fn push(&mut self, center: Vec3, radius: f32, id: u32) {
+        let lane = self.id.len() % LEAF;
+        if lane == 0 {
+            self.blocks.push(SphereBlock::EMPTY);
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            (block.x[lane], block.y[lane], block.z[lane]) = center.into();
+            block.radius[lane] = radius;
+        }
+        self.id.push(id);
+    }
+
+    /// Number of spheres.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+
+    /// The blocks.
+    #[inline(always)]
+    pub fn blocks(&self) -> &[SphereBlock] {
+        &self.blocks
+    }
+
+    /// The center of sphere `i`.
+    #[inline(always)]
+    pub fn center(&self, i: usize) -> Vec3 {
+        let (block, lane) = (&self.blocks[i / LEAF], i % LEAF);
+        Vec3::new(block.x[lane], block.y[lane], block.z[lane])
+    }
+
+    /// The radius of sphere `i`.
+    #[inline(always)]
+    pub fn radius(&self, i: usize) -> f32 {
+        self.blocks[i / LEAF].radius[i % LEAF]
+    }
+
+    /// Center and radius of sphere `i` for the exact test.
+    #[inline(always)]
+    pub fn exact(&self, i: usize) -> (DVec3, f64) {
+        match self.precise.get(i) {
+            Some(&sphere) => sphere,
+            None => (self.center(i).as_dvec3(), f64::from(self.radius(i))),
+        }
+    }
+
+    /// Center and radius of sphere `i` in bits: equal for spheres that coincide, and in an order that
+    /// does not depend on rows.
+    pub fn key(&self, i: usize) -> ([u32; 3], u32) {
+        (self.center(i).to_array().map(f32::to_bits), self.radius(i).to_bits())
+    }
+
+    /// For each of some spheres the one that is hit in its place: of those that coincide the first
+    /// of the user's. In the order of [`Spheres::key`], without repetition; not all are of the rows
+    /// given.
+    pub fn first_of_equals(&self, rows: impl Iterator<Item = u32>) -> Vec<u32> {
+        let mut firsts: Vec<_> = rows.map(|row| (self.key(row as usize), row)).collect();
+        if firsts.is_empty() {
+            return Vec::new();
+        }
+        firsts.sort_unstable();
+        firsts.dedup_by_key(|first| first.0);
+        for i in 0..self.len() {
+            if let Ok(place) = firsts.binary_search_by_key(&self.key(i), |first| first.0)
+                && self.id[i] < self.id[firsts[place].1 as usize]
+            {
+                firsts[place].1 = i as u32;
+            }
+        }
+        firsts.into_iter().map(|first| first.1).collect()
+    }
+
+    /// Bytes that the columns occupy.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.blocks.as_slice())
+            + size_of_val(self.id.as_slice())
+            + size_of_val(self.precise.as_slice())
+    }
+}

@@ -1,0 +1,5 @@
+//! Traversals, trees and queries beside their definitions.
+
+mod queries;
+mod traversals;
+mod trees;
