@@ -79,9 +79,12 @@ pub use spherule_core as query;
 #[doc(hidden)]
 pub use spherule_core::internals::{bvh, exact, intersect, lanes, ray, spheres, vec3};
 
+// Particle files, and what their readers share with scene files.
+#[doc(hidden)]
+pub use spherule_particles::internals::{memory, suggest};
+
 // Vocabulary: knows nothing of scenes.
 pub mod color;
-pub mod suggest;
 
 pub mod sampling;
 
@@ -108,7 +111,6 @@ pub mod drawing;
 
 pub mod atomic;
 pub mod image;
-pub mod memory;
 mod sealed;
 
 // Judge what is above, and give it work.

@@ -3,7 +3,7 @@
 use crate::image::ImageError;
 use crate::paper::Unsupported;
 use crate::render::RenderError;
-use crate::scene::SceneError;
+use crate::scene::FileError;
 use crate::scene::generate::GenerateError;
 use crate::suggest;
 use crate::workload::WorkloadError;
@@ -24,7 +24,7 @@ pub enum BenchError {
     },
     /// A scene file.
     #[error("{0}")]
-    Scene(Box<SceneError>),
+    Scene(Box<FileError>),
     /// A scene that cannot be rendered.
     #[error("{0}: {1}")]
     World(String, WorldError),
@@ -57,8 +57,8 @@ pub enum BenchError {
     Differ(String),
 }
 
-impl From<SceneError> for BenchError {
-    fn from(error: SceneError) -> Self {
+impl From<FileError> for BenchError {
+    fn from(error: FileError) -> Self {
         Self::Scene(Box::new(error))
     }
 }

@@ -18,7 +18,7 @@ use spherule::memory::Shortage;
 use spherule::prepared::{PrepareError, PreparedError};
 use spherule::render::RenderError;
 use spherule::scene::generate::GenerateError;
-use spherule::scene::{Place, SceneError};
+use spherule::scene::{FileError, Place};
 use spherule::split::MergeError;
 use spherule::world::WorldError;
 use std::fmt;
@@ -35,7 +35,7 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Usage(clap::Error),
     #[error("{}", .0.message)]
-    Scene(Box<SceneError>),
+    Scene(Box<FileError>),
     #[error("{0}: {1}")]
     World(String, WorldError),
     #[error("{0}")]
@@ -91,8 +91,8 @@ pub(crate) enum Failure {
     Processor(String),
 }
 
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Self {
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
         Self::Scene(Box::new(error))
     }
 }
@@ -120,7 +120,7 @@ impl Failure {
         match self {
             Self::Scene(error) => {
                 let message = format!("frame {number}: {}", error.message);
-                Self::Scene(Box::new(SceneError { message, ..*error }))
+                Self::Scene(Box::new(FileError { message, ..*error }))
             }
             other => Self::Frame(number, Box::new(other)),
         }
@@ -153,7 +153,7 @@ impl Failure {
     }
 }
 
-fn report_scene(mut error: SceneError) {
+fn report_scene(mut error: FileError) {
     let Some(place) = error.place.take_if(|place| is_short(place)) else {
         return output::error(error);
     };
@@ -175,7 +175,7 @@ fn is_short(place: &Place) -> bool {
 /// A fault in a scene, for drawing.
 #[derive(Debug)]
 struct Drawn {
-    error: SceneError,
+    error: FileError,
     place: Place,
 }
 

@@ -3,7 +3,7 @@
 use super::settings::List;
 use glam::DVec3;
 use serde_json::json;
-use spherule::scene::{Scene, SceneError, Slice, SliceMode, SlicePlane, bounds};
+use spherule::scene::{FileError, Scene, Slice, SliceMode, SlicePlane, bounds};
 use spherule::suggest;
 use std::path::Path;
 
@@ -39,7 +39,7 @@ impl SliceArgs {
         path: &Path,
         cell: Option<[DVec3; 2]>,
         allow_empty: bool,
-    ) -> Result<Vec<DVec3>, SceneError> {
+    ) -> Result<Vec<DVec3>, FileError> {
         if !self.planes.is_empty() {
             let whole = cell.or_else(|| bounds(&scene.spheres)).unwrap_or_default();
             let mode = self.slice_mode.unwrap_or_default();
@@ -58,7 +58,7 @@ impl SliceArgs {
         let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
         if dropped > 0 && scene.spheres.is_empty() && !allow_empty {
             let message = format!("the slices cut all of its {dropped} spheres away");
-            return Err(SceneError::whole_file(path, message)
+            return Err(FileError::whole_file(path, message)
                 .with_help("a slice names what is cut away: the other side is z<10, not z>10"));
         }
         Ok(normals)

@@ -4,7 +4,7 @@ use super::Failure;
 use super::particles::ParticleArgs;
 use spherule::prepared::is_prepared;
 use spherule::scene::particles::ReadOptions;
-use spherule::scene::{Scene, SceneError, generate};
+use spherule::scene::{FileError, Scene, generate};
 use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -49,12 +49,12 @@ impl Source {
     }
 
     /// The scene.
-    pub(super) fn load(&self) -> Result<Scene, SceneError> {
+    pub(super) fn load(&self) -> Result<Scene, FileError> {
         match self {
             Self::Toml(path) => Scene::load(path),
             Self::Prepared(path) => {
                 let error =
-                    SceneError::whole_file(path, "is a scene that was prepared for rendering");
+                    FileError::whole_file(path, "is a scene that was prepared for rendering");
                 Err(error
                     .with_help("render it with `spherule render`, or name the file it was made of"))
             }

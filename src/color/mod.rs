@@ -12,7 +12,6 @@ mod map;
 mod names;
 mod range;
 mod scale;
-mod srgb;
 mod tables;
 mod ticks;
 
@@ -21,7 +20,7 @@ pub use map::Map;
 pub use names::{names, parse};
 pub use range::{Range, RangeError, Spacing};
 pub use scale::Scale;
-pub use srgb::{linear_from_srgb, srgb};
+pub use spherule_particles::internals::{linear_from_srgb, srgb};
 pub use ticks::{Tick, ticks};
 
 use glam::Vec3;

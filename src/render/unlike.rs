@@ -42,7 +42,8 @@ pub enum Unlike {
     },
     /// A share of a render is a share of so many samples.
     #[error(
-        "spp is {now}, but this is a part of a render of {then}; leave it as it was, or render          all parts anew"
+        "spp is {now}, but this is a part of a render of {then}; leave it as it was, or render all \
+         parts anew"
     )]
     Share {
         /// Samples per pixel that were asked for.

@@ -7,7 +7,6 @@
 
 mod camera;
 mod color_bar;
-mod error;
 pub mod file;
 pub mod generate;
 mod identity;
@@ -24,7 +23,6 @@ pub(crate) mod write;
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use color_bar::{ColorBar, Corner};
-pub use error::{Place, SceneError};
 pub use file::included_files;
 pub use identity::Identity;
 pub(crate) use light::is_radiance;
@@ -37,6 +35,7 @@ pub use settings::{
 };
 pub use slice::{Slice, SliceMode, SlicePlane, bounds};
 pub use spheres::Spheres;
+pub use spherule_particles::{FileError, Place};
 pub use write::{Header, write, write_as};
 
 /// A whole scene: what there is, how it is lit, who looks at it and with which settings.

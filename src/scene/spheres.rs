@@ -2,6 +2,7 @@
 
 use super::Rgb;
 use glam::DVec3;
+use spherule_particles::internals::retain;
 use std::collections::TryReserveError;
 use std::mem::take;
 
@@ -107,12 +108,6 @@ impl Spheres {
             .into_iter()
             .try_for_each(|column| column.try_reserve_exact(additional))
     }
-}
-
-/// Keeps the rows of a column that `keep` is true for.
-pub(super) fn retain<T>(column: &mut Vec<T>, keep: &[bool]) {
-    let mut rows = keep.iter();
-    column.retain(|_| rows.next().copied().unwrap_or(true));
 }
 
 /// Appends `values` to a column that may be empty where all of its `before` values are `usual`.

@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod bench;
+mod documents;
 mod figures;
 mod folder;
 mod formats;

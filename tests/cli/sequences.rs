@@ -238,8 +238,12 @@ fn films_that_fail_leave_what_was_there() {
         assert!(told.contains("f.mp4") && told.contains(expected), "{script}: {told}");
         assert_eq!(folder.read("f.mp4"), b"an older film", "{script}");
     }
-    let told = said(&film(&folder, None, "--frame all -o f.mp4"), 1, "no ffmpeg");
-    for word in ["apt install ffmpeg", "-pattern_type glob -i 'f-*.png'", "-o f-%04d.png"] {
+    let told = said(&film(&folder, None, "--frame all --fps 12 -o f.mp4"), 1, "no ffmpeg");
+    for word in [
+        "apt install ffmpeg",
+        "-framerate 12 -pattern_type glob -i 'f-*.png' -vf 'pad=",
+        "-o f-%04d.png",
+    ] {
         assert!(told.contains(word), "{word}: {told}");
     }
     let names = fs::read_dir(folder.root()).expect("a folder");

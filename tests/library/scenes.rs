@@ -47,7 +47,7 @@ fn the_quartz_of_the_gallery_is_whole() {
     for silicon in 0..3 {
         let bond = |oxygen: usize, shift: usize| {
             let neighbor = [shift % 3, shift / 3 % 3, shift / 9].map(|share| share as f64 - 1.0);
-            let shift = cell.point(neighbor) - cell.origin;
+            let shift = cell.cartesian(neighbor) - cell.origin;
             (spheres.center(oxygen) + shift).distance(spheres.center(silicon))
         };
         let bonds = (3..9).flat_map(|oxygen| (0..27).map(move |shift| bond(oxygen, shift)));

@@ -59,8 +59,8 @@ pub struct Root {
 /// within that rounding; then `inside` says whether the ray is inside nevertheless, as on a sphere that
 /// touches this one from within, and if it is not, a ray that enters hits at once. Zero directions, and anything infinite or NaN, miss.
 ///
-/// The form is that of Haines et al. 2019 in double precision, with the bounds of the [module's
-/// documentation](self); where they cannot decide, [`exact::hit`] does.
+/// The form is that of Haines et al. 2019 in double precision, with the bounds of the module's
+/// documentation; where they cannot decide, [`exact::hit`] does.
 #[inline(always)]
 pub fn confirm(
     ray: &ExactRay,

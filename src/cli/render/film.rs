@@ -100,6 +100,7 @@ impl Film {
         fps: Option<f64>,
     ) -> Result<Self, Failure> {
         check_destination(path).map_err(|error| Failure::Write(path.to_owned(), error))?;
+        let fps = fps.unwrap_or(FPS);
         let found = Command::new(PROGRAM)
             .arg("-version")
             .stdin(Stdio::null())
@@ -107,11 +108,10 @@ impl Film {
             .stderr(Stdio::null())
             .status();
         if let Err(error) = found {
-            return Err(Failure::Film(path.to_owned(), missing(path, &error)));
+            return Err(Failure::Film(path.to_owned(), missing(path, fps, &error)));
         }
         // They cost some space, no more.
         let _ = remove_leftovers(path);
-        let fps = fps.unwrap_or(FPS);
         Ok(Self { path: path.to_owned(), container, fps, encoder: None, pictures: 0 })
     }
 
@@ -220,7 +220,7 @@ fn failed(status: ExitStatus, said: &str) -> String {
 }
 
 /// Why the program cannot be started, and what to do.
-fn missing(path: &Path, error: &io::Error) -> String {
+fn missing(path: &Path, fps: f64, error: &io::Error) -> String {
     let why = if error.kind() == ErrorKind::NotFound {
         format!("{PROGRAM} is not in PATH")
     } else {
@@ -232,7 +232,8 @@ fn missing(path: &Path, error: &io::Error) -> String {
         "films take {PROGRAM}, and {why}; install it (apt install ffmpeg, dnf install ffmpeg-free, brew \
          install ffmpeg, winget install ffmpeg, or from ffmpeg.org), or write numbered pictures with -o \
          {stem}-%04d.png and make the film elsewhere:\n  \
-         {PROGRAM} -framerate 30 -pattern_type glob -i '{stem}-*.png' -pix_fmt yuv420p {film}"
+         {PROGRAM} -framerate {fps} -pattern_type glob -i '{stem}-*.png' \
+         -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p {film}"
     )
 }
 

@@ -25,7 +25,7 @@ use crate::cli::looks::BarPlace;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
-use spherule::scene::SceneError;
+use spherule::scene::FileError;
 use spherule::scene::particles::{Coloring, Particles, ReadOptions};
 use spherule::split::Part;
 use std::path::Path;
@@ -319,5 +319,5 @@ fn inside(bar: Option<&BarPlace>) -> Option<&BarPlace> {
 
 /// An error of a whole file, of which nothing is rendered.
 fn refuse(path: &Path, message: String, help: String) -> Failure {
-    SceneError::whole_file(path, message).with_help(help).into()
+    FileError::whole_file(path, message).with_help(help).into()
 }

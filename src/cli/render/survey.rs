@@ -9,7 +9,7 @@ use crate::cli::views::corners;
 use spherule::scene::particles::{
     Coloring, Looks, ParticleFrame, Particles, Radii, ReadOptions, SharedNames, of_frame,
 };
-use spherule::scene::{Camera, SceneError};
+use spherule::scene::{Camera, FileError};
 use spherule::world::WorldError;
 use spherule::world::framing::SequenceBounds;
 use std::path::Path;
@@ -58,7 +58,7 @@ impl Survey {
         path: &Path,
         mut frame: ParticleFrame,
         options: &ReadOptions,
-    ) -> Result<Particles, SceneError> {
+    ) -> Result<Particles, FileError> {
         self.names.share(&mut frame);
         of_frame(path, frame, options)
     }
@@ -112,7 +112,7 @@ impl Survey {
     }
 
     /// Refuses frames that all show no sphere, or that all lack what looks are for.
-    pub(super) fn check(&self, path: &Path, looks: &Looks) -> Result<(), SceneError> {
+    pub(super) fn check(&self, path: &Path, looks: &Looks) -> Result<(), FileError> {
         if self.shown > 0 {
             looks.check_types(path, &self.names)?;
             return match &looks.coloring {
@@ -126,7 +126,7 @@ impl Survey {
         let message = format!("shows no sphere in the {frames} that the camera is to frame");
         let help = "the frames are empty, or --select and --slice leave nothing of them; of standard \
                     input, the first frame counts";
-        Err(SceneError::whole_file(path, message).with_help(help))
+        Err(FileError::whole_file(path, message).with_help(help))
     }
 
     /// Returns the properties that a picture shares with all others, in a turn by `angle`.

@@ -3,7 +3,7 @@
 use super::ViewArgs;
 use crate::cli::Failure;
 use spherule::scene::particles::{Cell, Particles, PeriodicError};
-use spherule::scene::{Scene, SceneError};
+use spherule::scene::{FileError, Scene};
 use std::path::Path;
 
 /// `NA,NB,NC`.
@@ -38,8 +38,8 @@ impl ViewArgs {
         &self,
         path: &Path,
         particles: &mut Particles,
-    ) -> Result<Option<Cell>, SceneError> {
-        let refused = |error: PeriodicError| SceneError::whole_file(path, error.to_string());
+    ) -> Result<Option<Cell>, FileError> {
+        let refused = |error: PeriodicError| FileError::whole_file(path, error.to_string());
         if self.wrap {
             particles.wrap().map_err(refused)?;
         }
@@ -47,7 +47,7 @@ impl ViewArgs {
             particles.replicate(copies).map_err(refused)?;
         }
         if self.cell && particles.cell.is_none() {
-            return Err(SceneError::whole_file(path, "has no cell whose edges can be drawn"));
+            return Err(FileError::whole_file(path, "has no cell whose edges can be drawn"));
         }
         Ok(particles.cell)
     }

@@ -2,7 +2,7 @@
 
 use super::schema::Schema;
 use super::value::Value;
-use crate::scene::SceneError;
+use crate::scene::FileError;
 use crate::suggest;
 use std::ops::Range;
 use std::path::Path;
@@ -20,8 +20,8 @@ pub(super) struct Source<'a> {
 
 impl Source<'_> {
     /// An error at these bytes.
-    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> SceneError {
-        SceneError::at(self.path, self.text, 1, span, message)
+    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> FileError {
+        FileError::at(self.path, self.text, 1, span, message)
     }
 }
 
@@ -40,7 +40,7 @@ impl<'a> Block<'a> {
         schema: &'static Schema,
         span: Range<usize>,
         table: &'a DeTable<'a>,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<Self, FileError> {
         let block = Self { source, schema, span, table };
         for key in table.keys() {
             let name = key.get_ref();
@@ -54,7 +54,7 @@ impl<'a> Block<'a> {
     }
 
     /// The section's kind, after a look at whether every key has a meaning for it.
-    pub(super) fn kind(&self) -> Result<&'static str, SceneError> {
+    pub(super) fn kind(&self) -> Result<&'static str, FileError> {
         let kind = match (self.value(self.schema.selector), self.schema.default_kind) {
             (Some(value), _) => value.choice(self.schema.kinds)?,
             (None, Some(kind)) => kind,
@@ -77,7 +77,7 @@ impl<'a> Block<'a> {
         name: &str,
         reason: &str,
         help: impl Fn() -> String,
-    ) -> Result<(), SceneError> {
+    ) -> Result<(), FileError> {
         let Some((key, _)) = self.entry(name) else { return Ok(()) };
         let message = format!("`{name}` has no meaning with {reason}");
         Err(self.source.error(key.span(), message).with_help(help()))
@@ -90,7 +90,7 @@ impl<'a> Block<'a> {
     }
 
     /// The value of a key that must be there; `help` says what to write.
-    pub(super) fn need(&self, name: &'static str, help: &str) -> Result<Value<'a>, SceneError> {
+    pub(super) fn need(&self, name: &'static str, help: &str) -> Result<Value<'a>, FileError> {
         self.value(name).ok_or_else(|| {
             let message = format!("{} lacks `{name}`", self.schema.section);
             self.error(message).with_help(format!("write {help}"))
@@ -98,7 +98,7 @@ impl<'a> Block<'a> {
     }
 
     /// An error that concerns the whole section.
-    pub(super) fn error(&self, message: impl Into<String>) -> SceneError {
+    pub(super) fn error(&self, message: impl Into<String>) -> FileError {
         self.source.error(self.span.clone(), message)
     }
 
@@ -112,7 +112,7 @@ impl<'a> Block<'a> {
         &self,
         name: &'static str,
         schema: &'static Schema,
-    ) -> Result<Vec<Self>, SceneError> {
+    ) -> Result<Vec<Self>, FileError> {
         let Some(value) = self.value(name) else { return Ok(Vec::new()) };
         let DeValue::Array(items) = value.item else {
             let error = value.error(format!("`{name}` must be a list of tables"));
@@ -126,7 +126,7 @@ impl<'a> Block<'a> {
         &self,
         name: &'static str,
         schema: &'static Schema,
-    ) -> Result<Option<Self>, SceneError> {
+    ) -> Result<Option<Self>, FileError> {
         let Some(value) = self.value(name) else { return Ok(None) };
         self.open_item(schema, value.span.clone(), value.item).map(Some)
     }
@@ -137,7 +137,7 @@ impl<'a> Block<'a> {
         &self,
         name: &'static str,
         schema: &'static Schema,
-    ) -> Result<Vec<(&'a str, Self)>, SceneError> {
+    ) -> Result<Vec<(&'a str, Self)>, FileError> {
         let Some(value) = self.value(name) else { return Ok(Vec::new()) };
         let mut entries: Vec<_> = value.table()?.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
@@ -153,7 +153,7 @@ impl<'a> Block<'a> {
         schema: &'static Schema,
         span: Range<usize>,
         item: &'a DeValue<'a>,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<Self, FileError> {
         let value = Value { source: self.source, name: schema.section, span, item };
         let table = value.table()?;
         Self::open(self.source, schema, value.span, table)
@@ -163,7 +163,7 @@ impl<'a> Block<'a> {
         self.table.get_key_value(name)
     }
 
-    fn without_kind(&self) -> SceneError {
+    fn without_kind(&self) -> FileError {
         let Schema { section, selector, kinds, .. } = self.schema;
         let kinds = join(kinds.iter().map(|kind| format!("\"{kind}\"")), ", ");
         self.error(format!("{section} lacks `{selector}`"))

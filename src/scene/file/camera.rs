@@ -2,10 +2,10 @@
 
 use super::block::Block;
 use super::value::Limits;
-use crate::scene::{Camera, Lens, Pose, Projection, SceneError};
+use crate::scene::{Camera, FileError, Lens, Pose, Projection};
 use glam::DVec3;
 
-pub(super) fn read(block: &Block) -> Result<Camera, SceneError> {
+pub(super) fn read(block: &Block) -> Result<Camera, FileError> {
     Ok(Camera {
         projection: projection(block)?,
         pose: pose(block)?,
@@ -15,7 +15,7 @@ pub(super) fn read(block: &Block) -> Result<Camera, SceneError> {
     })
 }
 
-fn projection(block: &Block) -> Result<Projection, SceneError> {
+fn projection(block: &Block) -> Result<Projection, FileError> {
     if block.kind()? == "orthographic" {
         let height = block.value("height").map(|value| value.number(Limits::Positive));
         return Ok(Projection::Orthographic { height: height.transpose()? });
@@ -25,13 +25,13 @@ fn projection(block: &Block) -> Result<Projection, SceneError> {
     Ok(Projection::Perspective { fov })
 }
 
-fn pose(block: &Block) -> Result<Pose, SceneError> {
+fn pose(block: &Block) -> Result<Pose, FileError> {
     let placed = block.has("eye") || block.has("target");
     let fit = block.value("fit").map_or(Ok(!placed), |value| value.flag())?;
     if fit { fitted(block) } else { looking(block) }
 }
 
-fn fitted(block: &Block) -> Result<Pose, SceneError> {
+fn fitted(block: &Block) -> Result<Pose, FileError> {
     for key in ["eye", "target"] {
         block.forbid(key, "fit = true", || {
             "write either fit = true with a direction, or eye and target".to_owned()
@@ -46,7 +46,7 @@ fn fitted(block: &Block) -> Result<Pose, SceneError> {
     })
 }
 
-fn looking(block: &Block) -> Result<Pose, SceneError> {
+fn looking(block: &Block) -> Result<Pose, FileError> {
     for key in ["direction", "margin"] {
         block.forbid(key, "eye and target", || {
             "remove it, or write fit = true instead of eye and target".to_owned()
@@ -63,7 +63,7 @@ fn looking(block: &Block) -> Result<Pose, SceneError> {
     Ok(Pose::LookAt { eye, target: point })
 }
 
-fn lens(block: &Block) -> Result<Option<Lens>, SceneError> {
+fn lens(block: &Block) -> Result<Option<Lens>, FileError> {
     let Some(aperture) = block.value("aperture") else {
         block.forbid("focus", "a pinhole", || {
             "write aperture = the diameter of the lens, or remove focus".to_owned()

@@ -3,9 +3,9 @@
 use super::block::Block;
 use super::value::{Limits, Value};
 use crate::color::{Map, Range, Scale, Spacing};
-use crate::scene::{ColorBar, Corner, SceneError};
+use crate::scene::{ColorBar, Corner, FileError};
 
-pub(super) fn read(block: &Block) -> Result<ColorBar, SceneError> {
+pub(super) fn read(block: &Block) -> Result<ColorBar, FileError> {
     let flag = |key| block.value(key).map_or(Ok(false), |value: Value| value.flag());
     let map = block.value("map").map(|value| value.choice(&Map::ALL.map(Map::name)));
     let map = map.transpose()?.and_then(Map::named).unwrap_or_default();

@@ -3,11 +3,11 @@
 use super::block::{Block, Source};
 use super::value::{Limits, Value};
 use crate::image::Image;
-use crate::scene::{BRIGHTEST, Environment, EnvironmentMap, Rgb, SceneError, is_radiance};
+use crate::scene::{BRIGHTEST, Environment, EnvironmentMap, FileError, Rgb, is_radiance};
 use glam::DVec3;
 use std::sync::Arc;
 
-pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, SceneError> {
+pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, FileError> {
     let color =
         |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(Limits::Light));
     let up = || block.value("up").map_or(Ok(DVec3::Y), |value| value.direction());
@@ -35,7 +35,7 @@ pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, SceneE
     Ok(Environment { map, illuminates })
 }
 
-fn picture(source: &Source, file: &Value, scale: f32) -> Result<Image, SceneError> {
+fn picture(source: &Source, file: &Value, scale: f32) -> Result<Image, FileError> {
     let path = source.folder.join(file.text()?);
     let image = Image::read(&path).map_err(|error| file.error(error.to_string()))?;
     let sound = |value: &f32| is_radiance(*value, scale);

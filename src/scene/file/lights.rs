@@ -3,20 +3,20 @@
 use super::block::Block;
 use super::schema;
 use super::value::Limits;
-use crate::scene::{Light, SceneError};
+use crate::scene::{FileError, Light};
 
 /// Degrees: the sun's radius seen from the earth.
 const SUN: f64 = 0.27;
 
-pub(super) fn read(root: &Block) -> Result<Vec<Light>, SceneError> {
+pub(super) fn read(root: &Block) -> Result<Vec<Light>, FileError> {
     root.blocks("light", &schema::LIGHT)?.iter().map(light).collect()
 }
 
-fn light(block: &Block) -> Result<Light, SceneError> {
+fn light(block: &Block) -> Result<Light, FileError> {
     if block.kind()? == "sun" { sun(block) } else { point(block) }
 }
 
-fn sun(block: &Block) -> Result<Light, SceneError> {
+fn sun(block: &Block) -> Result<Light, FileError> {
     let direction = block.need("direction", "direction = [x, y, z], toward the sun")?;
     let irradiance = block.need("irradiance", "irradiance = [r, g, b], or a number for white")?;
     let angular_radius = block.value("angular_radius");
@@ -28,7 +28,7 @@ fn sun(block: &Block) -> Result<Light, SceneError> {
     })
 }
 
-fn point(block: &Block) -> Result<Light, SceneError> {
+fn point(block: &Block) -> Result<Light, FileError> {
     let position = block.need("position", "position = [x, y, z]")?;
     let intensity = block.need("intensity", "intensity = [r, g, b], or a number for white")?;
     let falloff = block.value("falloff");

@@ -3,10 +3,10 @@
 use super::block::Block;
 use super::value::{Limits, Value};
 use crate::scene::particles::Cell;
-use crate::scene::{Background, Look, SceneError};
+use crate::scene::{Background, FileError, Look};
 use crate::{color, suggest};
 
-pub(super) fn read(block: &Block) -> Result<Look, SceneError> {
+pub(super) fn read(block: &Block) -> Result<Look, FileError> {
     let flag = |key| block.value(key).map_or(Ok(false), |value: Value| value.flag());
     let background = block.value("background");
     Ok(Look {
@@ -18,13 +18,13 @@ pub(super) fn read(block: &Block) -> Result<Look, SceneError> {
 }
 
 /// A corner, and the three edges from it.
-fn cell(value: &Value) -> Result<Cell, SceneError> {
+fn cell(value: &Value) -> Result<Cell, FileError> {
     let [origin, a, b, c] = value.list()?;
     let vectors = [a.point()?, b.point()?, c.point()?];
     Ok(Cell { origin: origin.point()?, vectors, periodic: [false; 3] })
 }
 
-fn read_background(value: &Value) -> Result<Background, SceneError> {
+fn read_background(value: &Value) -> Result<Background, FileError> {
     match value.item.as_str() {
         Some("sky") => Ok(Background::Sky),
         Some("transparent") => Ok(Background::Transparent),

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::schema;
 use super::value::{Limits, Value};
-use crate::scene::{ConductorFresnel, Ground, Material, NamedMaterial, Rgb, SceneError};
+use crate::scene::{ConductorFresnel, FileError, Ground, Material, NamedMaterial, Rgb};
 use crate::suggest;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -62,7 +62,7 @@ impl Materials {
     }
 }
 
-pub(super) fn read(root: &Block) -> Result<Materials, SceneError> {
+pub(super) fn read(root: &Block) -> Result<Materials, FileError> {
     let mut materials = Materials::default();
     for (name, block) in root.named_blocks("material", &schema::MATERIAL)? {
         // A CSV cell trims its text, and an empty one names none.
@@ -80,7 +80,7 @@ pub(super) fn read(root: &Block) -> Result<Materials, SceneError> {
 pub(super) fn read_ground(
     root: &Block,
     materials: &mut Materials,
-) -> Result<Option<Ground>, SceneError> {
+) -> Result<Option<Ground>, FileError> {
     let Some(block) = root.block("ground", &schema::GROUND)? else { return Ok(None) };
     let normal = block.value("normal").map_or(Ok(DVec3::Y), |value| value.direction())?;
     let height = block.value("height").map_or(Ok(0.0), |value| value.number(Limits::Any))?;
@@ -100,7 +100,7 @@ pub(super) fn read_ground(
 }
 
 /// The row of the material that the section names, or of the default one.
-pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, SceneError> {
+pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, FileError> {
     let Some(value) = block.value("material") else {
         let material = Material::Lambertian { color: GRAY };
         return Ok(materials.row_or_add(NamedMaterial { name: DEFAULT.to_owned(), material }));
@@ -111,7 +111,7 @@ pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, Scene
     })
 }
 
-fn material(block: &Block) -> Result<Material, SceneError> {
+fn material(block: &Block) -> Result<Material, FileError> {
     let kind = block.kind()?;
     let color =
         |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(Limits::Share));
@@ -141,11 +141,11 @@ fn material(block: &Block) -> Result<Material, SceneError> {
     })
 }
 
-fn ior(block: &Block, limits: Limits) -> Result<f64, SceneError> {
+fn ior(block: &Block, limits: Limits) -> Result<f64, FileError> {
     block.value("ior").map_or(Ok(1.5), |value| value.number(limits))
 }
 
-fn reflective(block: &Block, color: Rgb) -> Result<Material, SceneError> {
+fn reflective(block: &Block, color: Rgb) -> Result<Material, FileError> {
     let share = |key| block.value(key).map_or(Ok(0.5), |value: Value| value.number(Limits::Share));
     let (diffuse, mirror) = (share("diffuse")?, share("mirror")?);
     if diffuse + mirror > 1.0 {
@@ -157,7 +157,7 @@ fn reflective(block: &Block, color: Rgb) -> Result<Material, SceneError> {
     Ok(Material::Reflective { color, diffuse, mirror })
 }
 
-fn conductor(block: &Block) -> Result<ConductorFresnel, SceneError> {
+fn conductor(block: &Block) -> Result<ConductorFresnel, FileError> {
     if !block.has("eta") && !block.has("k") {
         let help = "color = what it reflects at normal incidence, or eta and k";
         let color = block.need("color", help)?.color(Limits::Share)?;

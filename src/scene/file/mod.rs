@@ -20,14 +20,14 @@ mod value;
 
 use self::block::{Block, Source};
 use self::materials::Materials;
-use super::error::clipped;
-use super::particles::{self, Particles, ReadOptions, TypeMaterial, listed};
+use super::particles::{self, Particles, ReadOptions, TypeMaterial};
 use super::{
-    Camera, Environment, EnvironmentMap, Light, Look, Material, NamedMaterial, Rgb, Scene,
-    SceneError, Settings, Spheres,
+    Camera, Environment, EnvironmentMap, FileError, Light, Look, Material, NamedMaterial, Rgb,
+    Scene, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
 use memchr::memchr_iter;
+use spherule_particles::internals::{clipped, listed};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -63,13 +63,13 @@ pub fn included_files(path: &Path) -> Vec<PathBuf> {
     names.filter_map(toml::Value::as_str).map(|name| folder.join(name)).collect()
 }
 
-fn read_text(path: &Path) -> Result<String, SceneError> {
+fn read_text(path: &Path) -> Result<String, FileError> {
     let bytes = File::open(path)
         .and_then(|file| read_at_most(file, LONGEST))
-        .map_err(|error| SceneError::whole_file(path, format!("cannot be read: {error}")))?;
+        .map_err(|error| FileError::whole_file(path, format!("cannot be read: {error}")))?;
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        SceneError::whole_file(path, format!("is not UTF-8 text (byte {at})"))
+        FileError::whole_file(path, format!("is not UTF-8 text (byte {at})"))
             .with_help("a scene is a TOML file; a file of particles must not be named .toml")
     })
 }
@@ -86,7 +86,7 @@ impl Scene {
     ///
     /// A file cannot be read, or holds something that is no scene: the error says where and what to
     /// write.
-    pub fn load(path: &Path) -> Result<Self, SceneError> {
+    pub fn load(path: &Path) -> Result<Self, FileError> {
         let text = read_text(path)?;
         Self::parse(&text, &path.to_string_lossy(), path.parent().unwrap_or(Path::new("")))
     }
@@ -97,10 +97,10 @@ impl Scene {
     /// # Errors
     ///
     /// As [`Scene::load`].
-    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
         let source = Source { path: Path::new(name), text, folder };
         check_memory(text)
-            .map_err(|shortage| SceneError::whole_file(source.path, format!("needs {shortage}")))?;
+            .map_err(|shortage| FileError::whole_file(source.path, format!("needs {shortage}")))?;
         let document = DeTable::parse(text).map_err(|error| {
             let end = text.len()..text.len();
             source.error(error.span().unwrap_or(end), error.message())
@@ -115,7 +115,7 @@ impl Scene {
     /// # Errors
     ///
     /// The file cannot be read, or is not in a format that [`particles::read`] knows.
-    pub fn from_particles(path: &Path, options: &ReadOptions) -> Result<Self, SceneError> {
+    pub fn from_particles(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
         let title = path.file_name().map(|name| name.to_string_lossy().into_owned());
         Ok(Self::of_particles(particles::read(path, options)?, &title.unwrap_or_default()))
     }
@@ -166,7 +166,7 @@ fn parse_bytes(text: &str) -> u64 {
 }
 
 /// Reads all sections, in an order in which each finds what it refers to.
-fn read(source: &Source, root: &Block) -> Result<Scene, SceneError> {
+fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     let title = root.value("title").map_or(Ok(""), |value| value.text())?;
     let settings = root.block("render", &schema::RENDER)?;
     let camera = root.block("camera", &schema::CAMERA)?;

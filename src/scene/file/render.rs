@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::value::{Limits, Value};
 use crate::scene::{
-    Filter, Integrator, LightChoice, Roulette, SamplerKind, SceneError, Settings, Tone,
+    FileError, Filter, Integrator, LightChoice, Roulette, SamplerKind, Settings, Tone,
 };
 use std::time::Duration;
 use toml::de::DeValue;
@@ -13,7 +13,7 @@ const MOST_PIXELS: u64 = *Settings::PIXELS.end() as u64;
 /// Most samples per pixel.
 const MOST_SAMPLES: u64 = *Settings::SAMPLES.end() as u64;
 
-pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
+pub(super) fn read(block: &Block) -> Result<Settings, FileError> {
     let usual = Settings::default();
     let [width, height] =
         block.value("size").map_or(Ok([usual.width, usual.height]), |value| size(&value))?;
@@ -51,20 +51,20 @@ pub(super) fn read(block: &Block) -> Result<Settings, SceneError> {
     })
 }
 
-fn size(value: &Value) -> Result<[u32; 2], SceneError> {
+fn size(value: &Value) -> Result<[u32; 2], FileError> {
     let [width, height] = value.list()?;
     let pixels = |value: Value| value.whole(1, MOST_PIXELS).map(|pixels| pixels as u32);
     Ok([pixels(width)?, pixels(height)?])
 }
 
-fn depth(value: &Value) -> Result<Option<u32>, SceneError> {
+fn depth(value: &Value) -> Result<Option<u32>, FileError> {
     match value.item {
         DeValue::String(_) => value.choice(&["unlimited"]).map(|_| None),
         _ => value.whole(0, u64::from(u32::MAX)).map(|depth| Some(depth as u32)),
     }
 }
 
-fn integrator(block: &Block) -> Result<Integrator, SceneError> {
+fn integrator(block: &Block) -> Result<Integrator, FileError> {
     Ok(match block.kind()? {
         "whitted" => {
             let samples = block.value("shadow_samples");
@@ -81,7 +81,7 @@ fn integrator(block: &Block) -> Result<Integrator, SceneError> {
     })
 }
 
-fn sampler(value: &Value) -> Result<SamplerKind, SceneError> {
+fn sampler(value: &Value) -> Result<SamplerKind, FileError> {
     Ok(match value.choice(&["sobol", "stratified", "independent"])? {
         "stratified" => SamplerKind::Stratified,
         "independent" => SamplerKind::Independent,
@@ -89,7 +89,7 @@ fn sampler(value: &Value) -> Result<SamplerKind, SceneError> {
     })
 }
 
-fn filter(value: &Value) -> Result<Filter, SceneError> {
+fn filter(value: &Value) -> Result<Filter, FileError> {
     Ok(match value.choice(&["box", "gaussian", "blackman-harris"])? {
         "box" => Filter::Box,
         "gaussian" => Filter::Gaussian,
@@ -97,7 +97,7 @@ fn filter(value: &Value) -> Result<Filter, SceneError> {
     })
 }
 
-fn roulette(value: &Value) -> Result<Roulette, SceneError> {
+fn roulette(value: &Value) -> Result<Roulette, FileError> {
     match value.item {
         DeValue::String(_) => Ok(match value.choice(&["none", "throughput"])? {
             "none" => Roulette::None,
@@ -107,7 +107,7 @@ fn roulette(value: &Value) -> Result<Roulette, SceneError> {
     }
 }
 
-fn light_choice(value: &Value) -> Result<LightChoice, SceneError> {
+fn light_choice(value: &Value) -> Result<LightChoice, FileError> {
     Ok(match value.choice(&["tree", "power", "uniform"])? {
         "power" => LightChoice::Power,
         "uniform" => LightChoice::Uniform,
@@ -115,7 +115,7 @@ fn light_choice(value: &Value) -> Result<LightChoice, SceneError> {
     })
 }
 
-fn tone(value: &Value) -> Result<Tone, SceneError> {
+fn tone(value: &Value) -> Result<Tone, FileError> {
     Ok(match value.choice(&["linear", "filmic"])? {
         "filmic" => Tone::Filmic,
         _ => Tone::Linear,

@@ -3,13 +3,13 @@
 use super::block::Block;
 use super::schema;
 use super::value::Limits;
-use crate::scene::{SceneError, Slice, SliceMode};
+use crate::scene::{FileError, Slice, SliceMode};
 
-pub(super) fn read(root: &Block) -> Result<Vec<Slice>, SceneError> {
+pub(super) fn read(root: &Block) -> Result<Vec<Slice>, FileError> {
     root.blocks("slice", &schema::SLICE)?.iter().map(slice).collect()
 }
 
-fn slice(block: &Block) -> Result<Slice, SceneError> {
+fn slice(block: &Block) -> Result<Slice, FileError> {
     let normal = block.need("normal", "normal = [x, y, z], toward what is cut away")?;
     let distance = block.value("distance");
     let name = block.value("mode").map(|value| value.choice(&SliceMode::ALL.map(|mode| mode.0)));

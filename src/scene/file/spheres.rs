@@ -6,14 +6,14 @@ use super::schema;
 use super::value::{Limits, Value};
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
 use crate::scene::particles::{self, Format, Radii, ReadOptions};
-use crate::scene::{Rgb, Scene, SceneError, Spheres};
+use crate::scene::{FileError, Rgb, Scene, Spheres};
 use crate::{memory, world::Footprint};
 
 pub(super) fn read(
     source: &Source,
     root: &Block,
     (scene, materials): (&mut Scene, &mut Materials),
-) -> Result<(), SceneError> {
+) -> Result<(), FileError> {
     for block in root.blocks("sphere", &schema::SPHERE)? {
         read_sphere(&block, &mut scene.spheres, materials)?;
     }
@@ -30,7 +30,7 @@ fn read_sphere(
     block: &Block,
     spheres: &mut Spheres,
     materials: &mut Materials,
-) -> Result<(), SceneError> {
+) -> Result<(), FileError> {
     let center = block.need("center", "center = [x, y, z]")?.point()?;
     let radius = block.need("radius", "radius = a number of more than 0")?;
     let radius = radius.number(Limits::Positive)?;
@@ -44,7 +44,7 @@ fn read_generate(
     block: &Block,
     spheres: &mut Spheres,
     materials: &mut Materials,
-) -> Result<(), SceneError> {
+) -> Result<(), FileError> {
     let generator = generator(block)?;
     let seed = block.value("seed").map_or(Ok(0), |value| value.whole(0, u64::MAX))?;
     let own = block.has("material").then(|| materials::row(block, materials));
@@ -77,7 +77,7 @@ fn read_generate(
     Ok(())
 }
 
-fn generator(block: &Block) -> Result<Generator, SceneError> {
+fn generator(block: &Block) -> Result<Generator, FileError> {
     let count = |usual| block.value("count").map_or(Ok(usual), |value| value.whole(1, u64::MAX));
     let number = |key, usual| {
         block.value(key).map_or(Ok(usual), |value: Value| value.number(Limits::Positive))
@@ -122,7 +122,7 @@ fn generator(block: &Block) -> Result<Generator, SceneError> {
     })
 }
 
-fn field(block: &Block) -> Result<Field, SceneError> {
+fn field(block: &Block) -> Result<Field, FileError> {
     let usual = Field::default();
     let mix =
         block.value("mix").map(|value| value.numbers::<3>(Limits::NotNegative)).transpose()?;
@@ -147,7 +147,7 @@ fn read_file(
     source: &Source,
     block: &Block,
     (scene, materials): (&mut Scene, &mut Materials),
-) -> Result<(), SceneError> {
+) -> Result<(), FileError> {
     let file = block.need("path", "path = \"particles.csv\"")?;
     let format = block.value("format").map(|value| format(&value)).transpose()?;
     let scale = block.value("scale");
@@ -183,7 +183,7 @@ fn read_file(
     Ok(())
 }
 
-fn format(value: &Value) -> Result<Format, SceneError> {
+fn format(value: &Value) -> Result<Format, FileError> {
     let chosen = value.choice(&Format::ALL.map(|(name, _)| name))?;
     let format = Format::ALL.into_iter().find(|(name, _)| *name == chosen);
     Ok(format.map_or(Format::Xyzr, |(_, format)| format))

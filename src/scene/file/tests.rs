@@ -5,7 +5,7 @@ use crate::scene::{ConductorFresnel, Integrator, Lens, Pose, Projection, Roulett
 use glam::DVec3;
 use proptest::prelude::*;
 
-fn parse(text: &str) -> Result<Scene, SceneError> {
+fn parse(text: &str) -> Result<Scene, FileError> {
     Scene::parse(text, "scene.toml", Path::new(""))
 }
 
@@ -15,7 +15,7 @@ fn scene(text: &str) -> Scene {
 }
 
 /// The error of a text that is no scene.
-fn fault(text: &str) -> SceneError {
+fn fault(text: &str) -> FileError {
     match parse(text) {
         Err(error) => error,
         Ok(_) => panic!("this is accepted:\n{text}"),

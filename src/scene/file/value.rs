@@ -1,7 +1,7 @@
 //! One value of a scene file: of the right type, finite, in its range; said once for every section.
 
 use super::block::Source;
-use crate::scene::{BRIGHTEST, Rgb, SceneError};
+use crate::scene::{BRIGHTEST, FileError, Rgb};
 use crate::{color, suggest};
 use glam::DVec3;
 use std::ops::Range;
@@ -73,12 +73,12 @@ pub(super) struct Value<'a> {
 
 impl<'a> Value<'a> {
     /// An error at this value.
-    pub(super) fn error(&self, message: impl Into<String>) -> SceneError {
+    pub(super) fn error(&self, message: impl Into<String>) -> FileError {
         self.source.error(self.span.clone(), message)
     }
 
     /// An error that says what the value must be.
-    pub(super) fn must_be(&self, what: impl AsRef<str>) -> SceneError {
+    pub(super) fn must_be(&self, what: impl AsRef<str>) -> FileError {
         let given = self.source.text.get(self.span.clone()).unwrap_or_default();
         let given = match self.item {
             DeValue::Table(_) => "a table".to_owned(),
@@ -89,13 +89,13 @@ impl<'a> Value<'a> {
     }
 
     /// A number within limits.
-    pub(super) fn number(&self, limits: Limits) -> Result<f64, SceneError> {
+    pub(super) fn number(&self, limits: Limits) -> Result<f64, FileError> {
         let number: f64 = self.parse().ok_or_else(|| self.must_be("a number"))?;
         if limits.contain(number) { Ok(number) } else { Err(self.must_be(limits.describe())) }
     }
 
     /// A whole number within a range.
-    pub(super) fn whole(&self, low: u64, high: u64) -> Result<u64, SceneError> {
+    pub(super) fn whole(&self, low: u64, high: u64) -> Result<u64, FileError> {
         let what = || format!("a whole number from {low} to {high}");
         let DeValue::Integer(integer) = self.item else { return Err(self.must_be(what())) };
         u64::from_str_radix(integer.as_str(), integer.radix())
@@ -105,17 +105,17 @@ impl<'a> Value<'a> {
     }
 
     /// True or false.
-    pub(super) fn flag(&self) -> Result<bool, SceneError> {
+    pub(super) fn flag(&self) -> Result<bool, FileError> {
         self.item.as_bool().ok_or_else(|| self.must_be("true or false"))
     }
 
     /// A text.
-    pub(super) fn text(&self) -> Result<&'a str, SceneError> {
+    pub(super) fn text(&self) -> Result<&'a str, FileError> {
         self.item.as_str().ok_or_else(|| self.must_be("a text in quotes"))
     }
 
     /// One of several words.
-    pub(super) fn choice(&self, words: &[&'static str]) -> Result<&'static str, SceneError> {
+    pub(super) fn choice(&self, words: &[&'static str]) -> Result<&'static str, FileError> {
         let text = self.text()?;
         words.iter().copied().find(|&word| word == text).ok_or_else(|| {
             let help = suggest::help(text, words.iter().copied(), "possible values");
@@ -124,7 +124,7 @@ impl<'a> Value<'a> {
     }
 
     /// As many values as `N`.
-    pub(super) fn list<const N: usize>(&self) -> Result<[Self; N], SceneError> {
+    pub(super) fn list<const N: usize>(&self) -> Result<[Self; N], FileError> {
         let items = self.item.as_array().filter(|items| items.len() == N);
         let items = items.ok_or_else(|| self.must_be(format!("a list of {N} numbers")))?;
         let entry = |index: usize| {
@@ -135,7 +135,7 @@ impl<'a> Value<'a> {
     }
 
     /// As many numbers as `N`, each within limits.
-    pub(super) fn numbers<const N: usize>(&self, limits: Limits) -> Result<[f64; N], SceneError> {
+    pub(super) fn numbers<const N: usize>(&self, limits: Limits) -> Result<[f64; N], FileError> {
         let mut numbers = [0.0; N];
         for (number, value) in numbers.iter_mut().zip(self.list::<N>()?) {
             *number = value.number(limits)?;
@@ -144,12 +144,12 @@ impl<'a> Value<'a> {
     }
 
     /// A point, or a vector of any length.
-    pub(super) fn point(&self) -> Result<DVec3, SceneError> {
+    pub(super) fn point(&self) -> Result<DVec3, FileError> {
         self.numbers(Limits::Any).map(DVec3::from_array)
     }
 
     /// A vector that is not zero, as it was written.
-    pub(super) fn vector(&self) -> Result<DVec3, SceneError> {
+    pub(super) fn vector(&self) -> Result<DVec3, FileError> {
         let vector = self.point()?;
         if vector == DVec3::ZERO {
             Err(self.must_be("a vector that is not zero"))
@@ -159,13 +159,13 @@ impl<'a> Value<'a> {
     }
 
     /// A direction: a vector that is not zero, made one of unit length.
-    pub(super) fn direction(&self) -> Result<DVec3, SceneError> {
+    pub(super) fn direction(&self) -> Result<DVec3, FileError> {
         self.vector().map(unit)
     }
 
     /// A color: three linear values, one for gray, or `"#rrggbb"` or a CSS name in sRGB; each value
     /// within limits.
-    pub(super) fn color(&self, limits: Limits) -> Result<Rgb, SceneError> {
+    pub(super) fn color(&self, limits: Limits) -> Result<Rgb, FileError> {
         match self.item {
             DeValue::Array(_) => {
                 let [red, green, blue] = self.list()?;
@@ -189,7 +189,7 @@ impl<'a> Value<'a> {
 
     /// A number in single precision: read as such, so that what was written from an `f32` is the
     /// same again.
-    pub(super) fn single(&self, limits: Limits) -> Result<f32, SceneError> {
+    pub(super) fn single(&self, limits: Limits) -> Result<f32, FileError> {
         self.number(limits)?;
         let number: f32 = self.parse().ok_or_else(|| self.must_be("a number"))?;
         if limits.contain(f64::from(number)) {
@@ -200,7 +200,7 @@ impl<'a> Value<'a> {
     }
 
     /// A table.
-    pub(super) fn table(&self) -> Result<&'a DeTable<'a>, SceneError> {
+    pub(super) fn table(&self) -> Result<&'a DeTable<'a>, FileError> {
         self.item.as_table().ok_or_else(|| self.must_be("a table"))
     }
 

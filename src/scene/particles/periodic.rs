@@ -1,33 +1,14 @@
-//! What repeats: particles put into their cell, and copies of the cell beside it.
-//!
-//! A cell is any parallelepiped. Places in it are shares of its edges: 0 at the corner that they
-//! begin at, 1 where they end.
+//! Periodic particles: wrapping into the cell, and copies of the cell beside it.
 
-use super::categories::Codes;
-use super::frame::Cell;
+use super::Cell;
+use super::Codes;
 use super::spheres::Particles;
 use crate::memory::{self, Shortage};
 use crate::scene::Spheres;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// What the edges of a cell are called.
 const EDGES: [&str; 3] = ["a", "b", "c"];
-
-/// Ends of the twelve edges of a parallelepiped, as numbers of corners.
-const OUTLINE: [[usize; 2]; 12] = [
-    [0, 1],
-    [2, 3],
-    [4, 5],
-    [6, 7],
-    [0, 2],
-    [1, 3],
-    [4, 6],
-    [5, 7],
-    [0, 4],
-    [1, 5],
-    [2, 6],
-    [3, 7],
-];
 
 /// Why particles cannot be wrapped or repeated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -50,36 +31,6 @@ pub enum PeriodicError {
     /// More spheres than memory holds.
     #[error("{0} copies make {1} spheres, which need {2}")]
     Memory(u64, u64, Shortage),
-}
-
-impl Cell {
-    /// Shares of the edges at which a point lies: the way back from [`Cell::point`].
-    pub fn shares(&self, point: DVec3) -> DVec3 {
-        self.matrix().inverse() * (point - self.origin)
-    }
-
-    /// The eight corners; bit `i` of a corner's number says whether it is at the end of edge `i`.
-    pub fn corners(&self) -> [DVec3; 8] {
-        let share = |corner: usize, edge: usize| f64::from(u8::from(corner >> edge & 1 == 1));
-        std::array::from_fn(|corner| self.point([0, 1, 2].map(|edge| share(corner, edge))))
-    }
-
-    /// The box of the corners: the lower and the upper one.
-    pub fn bounds(&self) -> [DVec3; 2] {
-        let [first, rest @ ..] = self.corners();
-        rest.iter().fold([first; 2], |[low, high], corner| [low.min(*corner), high.max(*corner)])
-    }
-
-    /// The twelve edges, each from one corner to another.
-    pub fn edges(&self) -> [[DVec3; 2]; 12] {
-        let corners = self.corners();
-        OUTLINE.map(|ends| ends.map(|corner| corners[corner]))
-    }
-
-    fn matrix(&self) -> DMat3 {
-        let [a, b, c] = self.vectors;
-        DMat3::from_cols(a, b, c)
-    }
 }
 
 impl Particles {
@@ -228,10 +179,10 @@ mod tests {
         let (before, mut after) = (particles(), particles());
         after.wrap().unwrap();
         for row in 0..before.spheres.len() {
-            let shares = tilted().shares(after.spheres.center(row));
-            assert!(shares.x > -1e-12 && shares.x < 1.0 + 1e-12, "{shares}");
-            assert!(shares.y > -1e-12 && shares.y < 1.0 + 1e-12, "{shares}");
-            let moved = tilted().shares(before.spheres.center(row)) - shares;
+            let fractional = tilted().fractional(after.spheres.center(row));
+            assert!(fractional.x > -1e-12 && fractional.x < 1.0 + 1e-12, "{fractional}");
+            assert!(fractional.y > -1e-12 && fractional.y < 1.0 + 1e-12, "{fractional}");
+            let moved = tilted().fractional(before.spheres.center(row)) - fractional;
             assert!((moved - moved.round()).length() < 1e-12 && moved.z.abs() < 1e-12, "{moved}");
         }
     }

@@ -1,11 +1,11 @@
 //! Radii of particles: the file's, those of elements, or a guess.
 
-use super::categories::{Kind, Kinds};
-use super::element::Element;
-use super::frame::ParticleFrame;
-use super::options::{Radii, ReadOptions};
+use super::Element;
+use super::ParticleFrame;
 use super::spheres::Warnings;
-use crate::scene::SceneError;
+use super::{Kind, Kinds};
+use super::{Radii, ReadOptions};
+use crate::scene::FileError;
 use std::path::Path;
 
 /// Radius of an atom whose element is unknown, or has none in the table, in angstrom.
@@ -24,7 +24,7 @@ pub(super) fn radii(
     frame: &mut ParticleFrame,
     options: &ReadOptions,
     warnings: &mut Warnings,
-) -> Result<Found, SceneError> {
+) -> Result<Found, FileError> {
     let count = frame.len();
     if count == 0 {
         return Ok(Found { radius: Vec::new(), guessed: false });
@@ -38,7 +38,7 @@ pub(super) fn radii(
     let demanded = matches!(options.radii, Radii::VanDerWaals | Radii::Covalent);
     if demanded && !has_elements {
         let message = "radii of elements are asked for, but none of its particles has an element";
-        return Err(SceneError::whole_file(path, message)
+        return Err(FileError::whole_file(path, message)
             .with_help("give a radius, or name the column of elements"));
     }
     let guessed = options.radii == Radii::Auto && own.is_empty() && !has_elements;

@@ -1,19 +1,16 @@
 //! From a frame of particles to spheres: radii and colors are found, and what is no sphere dropped.
 
-use super::categories::{Kinds, TextColumn};
-use super::frame::{Cell, LengthUnit, NumberColumn, ParticleFrame};
 use super::looks::{Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::options::{Format, ReadOptions, Role};
 use super::radii::{Found, half_spacing, radii};
+use super::{Cell, LengthUnit, NumberColumn, ParticleFrame};
+use super::{Format, ReadOptions, Role};
+use super::{Kinds, TextColumn};
 use crate::color::category;
 use crate::memory;
-use crate::scene::error::clipped;
-use crate::scene::spheres::retain;
-use crate::scene::{NamedMaterial, Rgb, SceneError, Spheres};
+use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
+use spherule_particles::internals::retain;
+use spherule_particles::internals::{clipped, listed};
 use std::path::Path;
-
-/// Most unknown names that a warning lists.
-const LISTED: usize = 5;
 
 /// What a file of particles holds.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,17 +91,17 @@ pub(super) fn spheres(
     path: &Path,
     mut frame: ParticleFrame,
     options: &ReadOptions,
-) -> Result<Particles, SceneError> {
-    options.check().map_err(|message| SceneError::whole_file(path, message))?;
+) -> Result<Particles, FileError> {
+    options.check().map_err(|message| FileError::whole_file(path, message))?;
     let mut warnings = Warnings { path, list: Vec::new() };
     for warning in std::mem::take(&mut frame.warnings) {
         warnings.add(&warning);
     }
     if frame.is_empty() && !options.allow_empty {
-        return Err(SceneError::whole_file(path, "holds no particles"));
+        return Err(FileError::whole_file(path, "holds no particles"));
     }
     memory::check(bytes_to_add(&frame))
-        .map_err(|shortage| SceneError::whole_file(path, format!("its spheres need {shortage}")))?;
+        .map_err(|shortage| FileError::whole_file(path, format!("its spheres need {shortage}")))?;
     if options.scale != 1.0 {
         let columns = [&mut frame.x, &mut frame.y, &mut frame.z];
         columns.into_iter().flatten().for_each(|value| *value *= options.scale);
@@ -181,19 +178,13 @@ impl Warnings<'_> {
     }
 }
 
-/// A sentence about a few of many names.
-pub(in crate::scene) fn listed(reason: &str, names: &[&str]) -> String {
-    let more = if names.len() > LISTED { ", ..." } else { "" };
-    format!("{reason}: {}{more}", names[..names.len().min(LISTED)].join(", "))
-}
-
 /// Drops rows that are no spheres, and tells how many.
 fn drop_rows(
     path: &Path,
     frame: &mut ParticleFrame,
     options: &ReadOptions,
     warnings: &mut Warnings,
-) -> Result<(), SceneError> {
+) -> Result<(), FileError> {
     let virtual_kinds: Vec<bool> = frame.kinds.table.iter().map(|kind| kind.virtual_site).collect();
     let any_virtual = virtual_kinds.contains(&true);
     let is_virtual =
@@ -222,7 +213,7 @@ fn drop_rows(
     let reasons = format!("{not_finite} not finite, {not_positive} with a radius of 0 or less");
     if !keep.contains(&true) && !options.allow_empty {
         let message = format!("none of its {count} rows is a sphere: {reasons}");
-        return Err(SceneError::whole_file(path, message));
+        return Err(FileError::whole_file(path, message));
     }
     if sites > 0 {
         warnings.add(&format!("{sites} sites of water models without an atom are not drawn"));
@@ -274,8 +265,8 @@ fn material_names(materials: TextColumn) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::particles::categories::Kind;
-    use crate::scene::particles::element::Element;
+    use crate::scene::particles::Element;
+    use crate::scene::particles::Kind;
 
     #[test]
     fn columns_that_spheres_have_beyond_a_frame_take_bytes() {
@@ -309,14 +300,5 @@ mod tests {
             frame.materials.names = names(2);
         };
         assert_eq!(with(&all), 120 + color);
-    }
-
-    #[test]
-    fn long_lists_are_cut_short() {
-        let names: Vec<&str> = vec!["a"; LISTED + 1];
-        assert_eq!(listed("unused", &names[..2]), "unused: a, a");
-        assert!(!listed("unused", &names[..LISTED]).contains("..."));
-        let cut = listed("unused", &names);
-        assert!(cut.ends_with(", ...") && cut.matches('a').count() == LISTED, "{cut}");
     }
 }

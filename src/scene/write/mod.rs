@@ -7,7 +7,7 @@ use self::sections::{
     camera, color_bar, environment, light, look, material, quoted, render, slice, vector,
 };
 use super::{
-    Camera, Environment, EnvironmentMap, Look, NamedMaterial, Rgb, Scene, SceneError, Settings,
+    Camera, Environment, EnvironmentMap, FileError, Look, NamedMaterial, Rgb, Scene, Settings,
     Spheres, included_files,
 };
 use crate::atomic::write_atomically;
@@ -45,7 +45,7 @@ pub struct Header<'a> {
 /// A file cannot be written, a file beside the scene is in the way that no scene at `path` was written
 /// with, or the scene has what a scene file cannot say: materials whose names are
 /// empty, framed by blanks or not unique, or rows of materials that are not there.
-pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+pub fn write(scene: &Scene, path: &Path) -> Result<(), FileError> {
     let Scene { title, camera, settings, look, .. } = scene;
     write_as(scene, &Header { title, camera, settings, look }, path)
 }
@@ -55,13 +55,13 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
 /// # Errors
 ///
 /// Those of [`write()`].
-pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), SceneError> {
+pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), FileError> {
     let columns = path.with_extension("csv");
     if columns == path {
-        let error = SceneError::whole_file(path, "a scene cannot be written to a .csv file");
+        let error = FileError::whole_file(path, "a scene cannot be written to a .csv file");
         return Err(error.with_help("name it .toml: the spheres go to a .csv file beside it"));
     }
-    check(scene).map_err(|message| SceneError::whole_file(path, message))?;
+    check(scene).map_err(|message| FileError::whole_file(path, message))?;
     let sky = path.with_extension("pfm");
     if !scene.spheres.is_empty() {
         check_beside(path, &columns)?;
@@ -82,7 +82,7 @@ pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), Scene
 }
 
 /// Refuses to replace a file beside a scene, unless it belongs to a scene that was written here before.
-fn check_beside(path: &Path, beside: &Path) -> Result<(), SceneError> {
+fn check_beside(path: &Path, beside: &Path) -> Result<(), FileError> {
     let free = fs::symlink_metadata(beside).is_err();
     let written = || fs::read(path).is_ok_and(|text| text.starts_with(MARK.as_bytes()));
     if free || (written() && included_files(path).iter().any(|file| file == beside)) {
@@ -90,12 +90,12 @@ fn check_beside(path: &Path, beside: &Path) -> Result<(), SceneError> {
     }
     let message =
         format!("already exists, and belongs to no scene that was written to {}", path.display());
-    let error = SceneError::whole_file(beside, message);
+    let error = FileError::whole_file(beside, message);
     Err(error.with_help("delete it, or give the scene another name"))
 }
 
-fn failed(path: &Path, error: &dyn std::error::Error) -> SceneError {
-    SceneError::whole_file(path, format!("cannot be written: {error}"))
+fn failed(path: &Path, error: &dyn std::error::Error) -> FileError {
+    FileError::whole_file(path, format!("cannot be written: {error}"))
 }
 
 /// What a scene from code may have, but not one from a file.

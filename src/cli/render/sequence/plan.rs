@@ -3,7 +3,7 @@
 use super::{refuse, stream_name};
 use crate::cli::failure::Failure;
 use crate::cli::frames::FrameRange;
-use spherule::scene::SceneError;
+use spherule::scene::FileError;
 use spherule::scene::particles::{FrameCount, ReadOptions};
 use std::path::Path;
 
@@ -21,7 +21,7 @@ pub(super) struct Frames {
     /// Frames of the file that are not cut off, if the range has no end.
     end: Option<u64>,
     /// The error that comes after them, if there is one.
-    rest: Option<SceneError>,
+    rest: Option<FileError>,
 }
 
 /// The pictures of a sequence.
@@ -160,7 +160,7 @@ impl Plan {
     }
 
     /// Returns the error that comes after the frames of a range without an end.
-    pub(super) fn rest(&self) -> Option<SceneError> {
+    pub(super) fn rest(&self) -> Option<FileError> {
         let frames = self.frames.as_ref().filter(|frames| frames.end.is_some())?;
         frames.rest.clone()
     }

@@ -1,7 +1,7 @@
 //! Frames of a file, forward and one at a time.
 
 use crate::cli::failure::Failure;
-use spherule::scene::SceneError;
+use spherule::scene::FileError;
 use spherule::scene::particles::{Frames, ParticleFrame, ReadOptions};
 use std::path::Path;
 
@@ -59,7 +59,7 @@ impl Reel {
     }
 
     /// Why nothing can be read after so many frames, if that is not simply because the file ends.
-    pub(super) fn rest(&mut self, count: u64) -> Option<SceneError> {
+    pub(super) fn rest(&mut self, count: u64) -> Option<FileError> {
         while self.passed < count {
             if !self.frames.skip_frame().ok()? {
                 return None;

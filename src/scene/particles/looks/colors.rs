@@ -3,8 +3,8 @@
 use super::columns::{self, Column};
 use crate::color::elements::{cpk, jmol};
 use crate::color::{Map, Range, RangeError, Rgb, Scale, Spacing, category};
-use crate::scene::SceneError;
-use crate::scene::particles::categories::Codes;
+use crate::scene::FileError;
+use crate::scene::particles::Codes;
 use crate::scene::particles::{Element, LengthUnit, Particles};
 use std::collections::HashMap;
 use std::path::Path;
@@ -29,12 +29,12 @@ impl ElementColors {
         color.unwrap_or(Rgb::splat(0.5))
     }
 
-    pub(super) fn apply(self, path: &Path, particles: &mut Particles) -> Result<(), SceneError> {
+    pub(super) fn apply(self, path: &Path, particles: &mut Particles) -> Result<(), FileError> {
         let kinds = &particles.kinds;
         if kinds.table.iter().all(|kind| kind.element.is_none()) {
             let message = "colors of elements are asked for, but no particle has an element";
             let help = "name the column of elements, as in type=NAME, or color by a column";
-            return Err(SceneError::whole_file(path, message).with_help(help));
+            return Err(FileError::whole_file(path, message).with_help(help));
         }
         let table: Vec<Rgb> = kinds.table.iter().map(|kind| self.of(kind.element)).collect();
         particles.spheres.color = picked(&kinds.codes, &table);
@@ -74,7 +74,7 @@ impl ColumnColors {
         path: &Path,
         particles: &mut Particles,
         allow_empty: bool,
-    ) -> Result<Option<Legend>, SceneError> {
+    ) -> Result<Option<Legend>, FileError> {
         let column = Column::find(particles, &self.column)
             .ok_or_else(|| columns::missing(path, particles, &self.column))?;
         let (colors, legend, missing) = match &column {
@@ -108,7 +108,7 @@ impl ColumnColors {
     }
 
     /// The error for a column of numbers that have no range.
-    pub fn no_range(&self, path: &Path) -> SceneError {
+    pub fn no_range(&self, path: &Path) -> FileError {
         let error = match self.spacing {
             Spacing::Linear => RangeError::Empty,
             Spacing::Logarithmic => RangeError::NonePositive,
@@ -116,9 +116,9 @@ impl ColumnColors {
         self.no_colors(path, error)
     }
 
-    fn no_colors(&self, path: &Path, error: RangeError) -> SceneError {
+    fn no_colors(&self, path: &Path, error: RangeError) -> FileError {
         let message = format!("the column `{}` has no colors: {error}", self.column);
-        SceneError::whole_file(path, message)
+        FileError::whole_file(path, message)
     }
 
     /// Returns the legend where there is no particle: known if the ends of the map are.
@@ -137,7 +137,7 @@ impl ColumnColors {
     }
 
     /// Maps and ranges are for numbers.
-    fn check_texts(&self, path: &Path) -> Result<(), SceneError> {
+    fn check_texts(&self, path: &Path) -> Result<(), FileError> {
         if self.map.is_none() && self.ends.is_none() && self.spacing == Spacing::Linear {
             return Ok(());
         }
@@ -145,7 +145,7 @@ impl ColumnColors {
             "the column `{}` holds texts, each with a color of its own: there is no map and no range",
             self.column
         );
-        Err(SceneError::whole_file(path, message).with_help("name a column of numbers"))
+        Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
     }
 
     /// The column, and the unit of lengths.

@@ -1,11 +1,11 @@
 //! Columns by their names: those of the file, and those that all particles have.
 
 use crate::scene::particles::Particles;
-use crate::scene::particles::aliases;
-use crate::scene::particles::categories::{Codes, Kind};
-use crate::scene::particles::options::Role;
-use crate::scene::particles::schema::unknown_column;
-use crate::scene::{Rgb, SceneError};
+use crate::scene::particles::Role;
+use crate::scene::particles::{Codes, Kind};
+use crate::scene::{FileError, Rgb};
+use spherule_particles::internals::aliases;
+use spherule_particles::internals::unknown_column;
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -136,6 +136,6 @@ pub(in super::super) fn unknown(particles: &Particles, name: &str) -> String {
 }
 
 /// That there is no such column, and which there are.
-pub(super) fn missing(path: &Path, particles: &Particles, name: &str) -> SceneError {
-    SceneError::whole_file(path, unknown(particles, name))
+pub(super) fn missing(path: &Path, particles: &Particles, name: &str) -> FileError {
+    FileError::whole_file(path, unknown(particles, name))
 }

@@ -8,10 +8,11 @@ pub use colors::{ColumnColors, ElementColors, Legend};
 pub(super) use columns::{Column, ID, INDEX, unknown};
 pub use types::{TypeLook, TypeMaterial};
 
-use super::frame::NumberColumn;
+use super::NumberColumn;
 use super::select::Selection;
-use super::{Particles, SharedNames, aliases};
-use crate::scene::SceneError;
+use super::{Particles, SharedNames};
+use crate::scene::FileError;
+use spherule_particles::internals::aliases;
 use std::path::Path;
 
 /// Where colors come from.
@@ -74,9 +75,9 @@ impl Looks {
         &self,
         path: &Path,
         particles: &mut Particles,
-    ) -> Result<Option<Legend>, SceneError> {
+    ) -> Result<Option<Legend>, FileError> {
         for look in &self.types {
-            look.check().map_err(|message| SceneError::whole_file(path, message))?;
+            look.check().map_err(|message| FileError::whole_file(path, message))?;
         }
         number(particles, &self.typed_columns());
         if let Some(selection) = self.select.as_ref().filter(|_| !particles.spheres.is_empty()) {
@@ -106,7 +107,7 @@ impl Looks {
     /// # Errors
     ///
     /// There is no such type or element.
-    pub fn check_types(&self, path: &Path, names: &SharedNames) -> Result<(), SceneError> {
+    pub fn check_types(&self, path: &Path, names: &SharedNames) -> Result<(), FileError> {
         self.types.iter().try_for_each(|look| look.check_known(path, names.kinds()))
     }
 }

@@ -10,7 +10,7 @@ const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUND
 const WATER: &str = "3\nwater\nO 0 0 0\nH 1 0 0\nH 0 1 0\n";
 
 /// What these looks make of a file with this content.
-fn look_at(content: &str, looks: &Looks) -> Result<(Particles, Option<Legend>), SceneError> {
+fn look_at(content: &str, looks: &Looks) -> Result<(Particles, Option<Legend>), FileError> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("particles");
     std::fs::write(&path, content).expect("a file");

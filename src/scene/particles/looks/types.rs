@@ -3,7 +3,7 @@
 use crate::color::{self, Rgb};
 use crate::scene::particles::spheres::common_color;
 use crate::scene::particles::{Element, Kind, Particles};
-use crate::scene::{ConductorFresnel, Material, NamedMaterial, SceneError};
+use crate::scene::{ConductorFresnel, FileError, Material, NamedMaterial};
 use crate::suggest;
 use std::path::Path;
 use std::str::FromStr;
@@ -147,7 +147,7 @@ impl TypeLook {
     }
 
     /// Sets radii and colors of the spheres of this type.
-    pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), SceneError> {
+    pub(super) fn apply(&self, path: &Path, particles: &mut Particles) -> Result<(), FileError> {
         let rows = self.rows(path, particles)?;
         let spheres = &mut particles.spheres;
         if let Some(radius) = self.radius {
@@ -170,7 +170,7 @@ impl TypeLook {
         &self,
         path: &Path,
         particles: &mut Particles,
-    ) -> Result<(), SceneError> {
+    ) -> Result<(), FileError> {
         let Some(material) = self.material else { return Ok(()) };
         let rows = self.rows(path, particles)?;
         let color = common_color(&particles.spheres, rows.iter().copied());
@@ -193,7 +193,7 @@ impl TypeLook {
     }
 
     /// Returns the spheres of this type.
-    fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, SceneError> {
+    fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, FileError> {
         let kinds = &particles.kinds;
         self.check_known(path, &kinds.table)?;
         let (chosen, codes) = (self.kinds(&kinds.table), &kinds.codes);
@@ -201,7 +201,7 @@ impl TypeLook {
     }
 
     /// Checks that there is such a type.
-    pub(super) fn check_known(&self, path: &Path, table: &[Kind]) -> Result<(), SceneError> {
+    pub(super) fn check_known(&self, path: &Path, table: &[Kind]) -> Result<(), FileError> {
         if self.kinds(table).contains(&true) { Ok(()) } else { Err(self.unknown(path, table)) }
     }
 
@@ -215,11 +215,11 @@ impl TypeLook {
         table.iter().map(symbol).collect()
     }
 
-    fn unknown(&self, path: &Path, table: &[Kind]) -> SceneError {
+    fn unknown(&self, path: &Path, table: &[Kind]) -> FileError {
         if table.is_empty() {
             let message = "looks of a type are given, but the file has no types";
             let help = "name the column of types, as in type=NAME";
-            return SceneError::whole_file(path, message).with_help(help);
+            return FileError::whole_file(path, message).with_help(help);
         }
         let mut names: Vec<&str> = Vec::new();
         for kind in table {
@@ -236,6 +236,6 @@ impl TypeLook {
             |near| format!("did you mean `{near}`?"),
         );
         let message = format!("no type is called `{}`; {help}", self.name);
-        SceneError::whole_file(path, message)
+        FileError::whole_file(path, message)
     }
 }

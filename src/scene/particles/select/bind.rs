@@ -2,8 +2,8 @@
 
 use super::grammar::{Node, Tree};
 use super::words::{Sign, Wrong};
+use crate::scene::particles::Codes;
 use crate::scene::particles::Particles;
-use crate::scene::particles::categories::Codes;
 use crate::scene::particles::looks::{Column, unknown};
 use crate::suggest;
 use rayon::prelude::*;

@@ -15,7 +15,7 @@ mod words;
 
 use self::grammar::{Node, Tree};
 use super::Particles;
-use crate::scene::SceneError;
+use crate::scene::FileError;
 use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
@@ -104,13 +104,13 @@ impl Selection {
         path: &Path,
         particles: &mut Particles,
         allow_empty: bool,
-    ) -> Result<(), SceneError> {
+    ) -> Result<(), FileError> {
         let keep = bind::rows(&self.tree, particles).map_err(|(span, message)| {
-            SceneError::at(Path::new(NAME), &self.text, 1, span, message)
+            FileError::at(Path::new(NAME), &self.text, 1, span, message)
         })?;
         if !keep.contains(&true) && !allow_empty {
             let message = format!("none of its {} particles is selected", keep.len());
-            let error = SceneError::whole_file(path, message);
+            let error = FileError::whole_file(path, message);
             return Err(match bind::absent(&self.tree, particles) {
                 Some(help) => error.with_help(help),
                 None => error,

@@ -69,8 +69,8 @@ fn symmetry_makes_all_atoms_of_the_cell() {
     // Every titanium has six neighbors at 1.95 to 1.98 angstrom, across the cell's faces too.
     let cell = frame.cell.expect("a cell");
     let bonds = (2..6).flat_map(|row| {
-        let shares = cell.shares(frame.position(row) - frame.position(1));
-        let nearest = cell.point((shares - shares.round()).to_array());
+        let shares = cell.fractional(frame.position(row) - frame.position(1));
+        let nearest = cell.cartesian((shares - shares.round()).to_array());
         [nearest.length()]
     });
     assert_eq!(bonds.filter(|length| (1.9..2.0).contains(length)).count(), 4);

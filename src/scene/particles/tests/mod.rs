@@ -15,7 +15,7 @@ use super::*;
 use glam::DVec3;
 
 /// Reads a file with this content.
-fn read_with(content: impl AsRef<[u8]>, options: &ReadOptions) -> Result<Particles, SceneError> {
+fn read_with(content: impl AsRef<[u8]>, options: &ReadOptions) -> Result<Particles, FileError> {
     in_file(content, |path| read(path, options))
 }
 
@@ -42,7 +42,7 @@ fn fault(content: impl AsRef<[u8]>) -> (usize, usize, String) {
 fn frame_with(
     content: impl AsRef<[u8]>,
     options: &ReadOptions,
-) -> Result<ParticleFrame, SceneError> {
+) -> Result<ParticleFrame, FileError> {
     in_file(content, |path| read_frame(path, options))
 }
 

@@ -1,0 +1,88 @@
+//! Names that programs of the field have for the same column.
+
+use super::schema;
+
+/// Names of one thing in PDB, GRO, mmCIF, LAMMPS and extended XYZ files, and in `MDAnalysis`, VMD,
+/// `PyMOL` and OVITO. Where a file has none of the name that is asked for, the first of the others
+/// in its group that it has is meant.
+pub const GROUPS: [&[&str]; 22] = [
+    &["id", "serial", "particle identifier", "number", "atom_id", "atomid"],
+    &["name", "atom_name", "atomname", "label_atom_id", "auth_atom_id"],
+    &["residue", "resname", "resn", "auth_comp_id", "label_comp_id", "residue_name"],
+    &["residue_number", "resid", "resi", "resnum", "resseq", "auth_seq_id", "label_seq_id"],
+    &["chain", "chainid", "chain_id", "auth_asym_id", "label_asym_id"],
+    &["segment", "segid", "segi", "segment_id"],
+    &["mol", "molecule", "molecule_id", "molid", "molecule identifier"],
+    &["mass", "masses"],
+    &["charge", "q", "charges", "partial_charge", "formal_charge", "pdbx_formal_charge"],
+    &["b_factor", "bfactor", "beta", "tempfactor", "temp_factor", "b_iso_or_equiv", "b"],
+    &["occupancy", "occ", "occupancies"],
+    &["altloc", "alt", "label_alt_id"],
+    &["insertion", "icode", "pdbx_pdb_ins_code"],
+    &["vx", "velocity.x", "velocity_x", "vel_x", "velo_x"],
+    &["vy", "velocity.y", "velocity_y", "vel_y", "velo_y"],
+    &["vz", "velocity.z", "velocity_z", "vel_z", "velo_z"],
+    &["fx", "force.x", "force_x", "forces_x"],
+    &["fy", "force.y", "force_y", "forces_y"],
+    &["fz", "force.z", "force_z", "forces_z"],
+    &["xu", "unwrapped position.x"],
+    &["yu", "unwrapped position.y"],
+    &["zu", "unwrapped position.z"],
+];
+
+/// Returns the other names of a column, in any case, the usual one first.
+pub fn of(name: &str) -> impl Iterator<Item = &'static str> {
+    let same = |other: &&&str| other.eq_ignore_ascii_case(name);
+    let group = GROUPS.iter().find(|group| group.iter().any(|own| same(&own)));
+    let names = group.copied().or_else(|| schema::names_of_role(name)).unwrap_or_default();
+    names.iter().copied().filter(move |other| !other.eq_ignore_ascii_case(name))
+}
+
+/// Returns every name that may be typed for a column of a file that has these.
+pub fn typed<'n>(columns: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
+    let mut names: Vec<&'n str> = Vec::new();
+    for name in columns {
+        names.push(name);
+        for other in of(name) {
+            names.push(other);
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_in_one_group() {
+        let all: Vec<&str> = GROUPS.iter().flat_map(|group| group.iter().copied()).collect();
+        for (place, name) in all.iter().enumerate() {
+            assert!(!all[..place].contains(name), "{name}");
+            assert_eq!(*name, name.to_lowercase());
+        }
+    }
+
+    #[test]
+    fn names_of_the_field_find_each_other() {
+        let finds = |name: &str, other: &str| of(name).any(|own| own == other);
+        for (name, other) in [
+            ("resname", "residue"),
+            ("residue", "auth_comp_id"),
+            ("resid", "residue_number"),
+            ("chainID", "chain"),
+            ("bfactor", "b_iso_or_equiv"),
+            ("beta", "b_factor"),
+            ("q", "charge"),
+            ("charge", "q"),
+            ("Molecule Identifier", "mol"),
+            ("Position.X", "x"),
+            ("x", "position.x"),
+            ("Particle Type", "type"),
+            ("species", "type"),
+        ] {
+            assert!(finds(name, other), "{name} {other}");
+        }
+        assert_eq!(of("speed").count(), 0);
+    }
+}

@@ -1,0 +1,338 @@
+//! Where readers put particles: columns that grow, and nothing that a file only claims.
+
+use super::Format;
+use super::categories::{Codebook, Kind};
+use super::extra::Extra;
+use super::frame::ParticleFrame;
+use super::lines::Line;
+use super::naming::{forget_elements, kind};
+use super::schema::{Schema, Slot};
+use crate::memory;
+use crate::{FileError, MAX_PARTICLES, Rgb};
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Rows that are read before anyone asks whether there is memory for more.
+const FIRST_ROOM: usize = 1 << 16;
+
+/// Bytes of columns that may be copied when they grow; allocators extend larger ones where they are.
+const COPIED: u64 = 1 << 27;
+
+/// A frame that is being read.
+pub(crate) struct Builder {
+    path: Arc<Path>,
+    pub(crate) frame: ParticleFrame,
+    schema: Arc<Schema>,
+    position: [f64; 3],
+    color: Rgb,
+    kinds: Codebook,
+    kind_rows: HashMap<Kind, u32>,
+    materials: Codebook,
+    extras: Vec<Extra>,
+    /// The number of rows at which to ask for memory again.
+    room: usize,
+    /// Number of rows beyond which only columns are kept that were asked for by name.
+    most_rows: usize,
+    needed_columns: usize,
+}
+
+impl Builder {
+    pub(crate) fn new(path: &Arc<Path>, format: Format, schema: &Arc<Schema>) -> Self {
+        let mut frame = ParticleFrame { format, ..ParticleFrame::default() };
+        frame.columns = schema.listed();
+        frame.roles.clone_from(&schema.roles);
+        frame.unit = schema.unit;
+        let rest = schema.extras.len() - schema.asked;
+        let most_rows = schema.rest.checked_div(rest).map_or(usize::MAX, |rows| rows.max(1));
+        Self {
+            path: path.clone(),
+            frame,
+            position: [0.0; 3],
+            color: Rgb::ONE,
+            kinds: Codebook::default(),
+            kind_rows: HashMap::new(),
+            materials: Codebook::default(),
+            extras: schema.extras.iter().map(|name| Extra::new(name)).collect(),
+            schema: schema.clone(),
+            room: FIRST_ROOM.min(most_rows),
+            most_rows,
+            needed_columns: schema.needed_columns(),
+        }
+    }
+
+    pub(crate) fn schema(&self) -> &Arc<Schema> {
+        &self.schema
+    }
+
+    /// Says of columns that may be kept whether they are texts or numbers.
+    pub(crate) fn declare(&mut self, texts: &[&str], numbers: &[&str]) {
+        self.extras.iter_mut().for_each(|extra| extra.declare(texts, numbers));
+    }
+
+    /// Reads a row by the schema; fields beyond it may follow.
+    #[inline]
+    pub(crate) fn row<'l>(
+        &mut self,
+        line: &Line,
+        mut fields: impl Iterator<Item = &'l [u8]>,
+    ) -> Result<(), FileError> {
+        for column in 0..self.schema.slots.len() {
+            let Some(field) = fields.next() else {
+                if column < self.needed_columns {
+                    return Err(self.too_short(line, column));
+                }
+                // What follows was not asked for: rows may end before it.
+                self.put(self.schema.slots[column], line, b"")?;
+                continue;
+            };
+            self.put(self.schema.slots[column], line, field)?;
+        }
+        self.end_row()
+    }
+
+    fn too_short(&self, line: &Line, columns: usize) -> FileError {
+        let names = &self.schema.names[..self.needed_columns];
+        let message = format!("{columns} columns, but a row has {}", names.join(", "));
+        line.whole(message)
+    }
+
+    /// Takes a field.
+    #[inline]
+    pub(crate) fn put(&mut self, slot: Slot, line: &Line, field: &[u8]) -> Result<(), FileError> {
+        match slot {
+            Slot::Skip => (),
+            Slot::Position(axis) => self.position[axis] = line.number(field)?,
+            Slot::Radius(factor) => self.frame.radius.push(line.number(field)? * factor),
+            Slot::Kind => self.kind(field),
+            Slot::Color(channel) => self.channel(channel, line, field)?,
+            Slot::Material => self.material(field),
+            Slot::Extra(extra) => {
+                let put = self.extras[extra].put(line, field);
+                if extra < self.schema.asked {
+                    put?;
+                } else if put.is_err() {
+                    self.extras[extra] = Extra::LeftOut;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a number that is no text; what is no share of a color becomes one.
+    pub(crate) fn put_number(&mut self, slot: Slot, value: f64) {
+        match slot {
+            Slot::Skip | Slot::Material => (),
+            Slot::Position(axis) => self.position[axis] = value,
+            Slot::Radius(factor) => self.frame.radius.push(value * factor),
+            Slot::Kind => self.kind(value.to_string().as_bytes()),
+            Slot::Color(channel) => self.color[channel] = share(value),
+            Slot::Extra(extra) => self.extras[extra].put_number(value),
+        }
+    }
+
+    /// Takes a text that is no number, where no number is needed.
+    pub(crate) fn put_text(&mut self, slot: Slot, text: &str) {
+        match slot {
+            Slot::Skip | Slot::Position(_) | Slot::Radius(_) | Slot::Color(_) => (),
+            Slot::Kind => self.kind(text.as_bytes()),
+            Slot::Material => self.material(text.as_bytes()),
+            Slot::Extra(extra) => self.extras[extra].put_text(text),
+        }
+    }
+
+    /// Takes the row that the last fields make up.
+    #[inline]
+    pub(crate) fn end_row(&mut self) -> Result<(), FileError> {
+        let [x, y, z] = self.position;
+        self.push([x, y, z])?;
+        if self.schema.has_color() {
+            self.frame.color.push(self.color);
+        }
+        Ok(())
+    }
+
+    /// Appends a position alone.
+    #[inline]
+    pub(crate) fn push(&mut self, [x, y, z]: [f64; 3]) -> Result<(), FileError> {
+        if self.frame.x.len() == self.room {
+            self.check_room()?;
+        }
+        self.frame.x.push(x);
+        self.frame.y.push(y);
+        self.frame.z.push(z);
+        Ok(())
+    }
+
+    /// Appends a type by its name.
+    #[inline]
+    pub(crate) fn kind(&mut self, name: &[u8]) {
+        let naming = self.schema.naming;
+        self.kind_of(name, |name| kind(name, naming));
+    }
+
+    /// Appends a type that `make` knows from a key, if it is a new one.
+    #[inline]
+    pub(crate) fn kind_of(&mut self, key: &[u8], make: impl FnOnce(&str) -> Kind) {
+        let (rows, table) = (&mut self.kind_rows, &mut self.frame.kinds.table);
+        let code = self.kinds.code(key, |key| {
+            let kind = make(key);
+            *rows.entry(kind).or_insert_with_key(|kind| {
+                table.push(kind.clone());
+                table.len() as u32 - 1
+            })
+        });
+        self.frame.kinds.codes.push(code);
+    }
+
+    fn channel(&mut self, channel: usize, line: &Line, field: &[u8]) -> Result<(), FileError> {
+        let value = line.number(field)? as f32;
+        if !(0.0..=1.0).contains(&value) {
+            let message = format!("a color of {value}, but colors are 0 to 1");
+            let help = "colors are linear; make values of 0 to 255 linear after a division by 255";
+            return Err(line.error_at(field, message).with_help(help));
+        }
+        self.color[channel] = value;
+        Ok(())
+    }
+
+    fn material(&mut self, name: &[u8]) {
+        let column = &mut self.frame.materials;
+        let code = self.materials.code(name, |name| add(&mut column.names, name));
+        column.codes.push(code);
+    }
+
+    /// Finds out whether there is memory for some more rows. Where the columns double, which their
+    /// lengths are powers of two for, address space for as many as there are is needed at once.
+    fn check_room(&mut self) -> Result<(), FileError> {
+        let rows = self.room;
+        if rows == self.most_rows {
+            self.extras[self.schema.asked..].fill_with(|| Extra::LeftOut);
+        }
+        let next = (rows + rows / 8).min((rows + 1).next_power_of_two()).max(FIRST_ROOM);
+        self.room = if rows < self.most_rows { next.min(self.most_rows) } else { next };
+        let (count, more) = (rows as u64, (self.room - rows) as u64);
+        if count >= MAX_PARTICLES {
+            let message = format!("holds more than {MAX_PARTICLES} particles");
+            return Err(FileError::whole_file(&self.path, message));
+        }
+        let bytes = self.row_bytes();
+        let grown = if rows.is_power_of_two() { count * bytes } else { 0 };
+        // The columns as they are stay reserved until their copies are there, where they are copied.
+        let reserve = grown + grown.min(COPIED);
+        memory::check_growth(more * bytes, reserve).map_err(|shortage| {
+            let message =
+                format!("holds more than {count} particles; more of them need {shortage}");
+            FileError::whole_file(&self.path, message)
+        })
+    }
+
+    /// Number of other columns that are kept.
+    fn kept_extras(&self) -> usize {
+        self.extras.iter().filter(|extra| !matches!(extra, Extra::LeftOut)).count()
+    }
+
+    /// Bytes of a row in all columns, by the rows that there are.
+    fn row_bytes(&self) -> u64 {
+        let frame = &self.frame;
+        let column = |bytes: usize, there: bool| if there { bytes } else { 0 };
+        let bytes = size_of::<[f64; 3]>()
+            + column(size_of::<f64>(), !frame.radius.is_empty())
+            + column(size_of::<Rgb>(), self.schema.has_color())
+            + column(frame.kinds.codes.width(), !frame.kinds.codes.is_empty())
+            + column(frame.materials.codes.width(), !frame.materials.codes.is_empty())
+            + size_of::<f64>() * self.kept_extras();
+        bytes as u64
+    }
+
+    /// What was read.
+    pub(crate) fn finish(mut self) -> ParticleFrame {
+        forget_elements(&mut self.frame.kinds, self.schema.naming);
+        for extra in self.extras {
+            extra.finish(&mut self.frame.numbers, &mut self.frame.texts);
+        }
+        self.frame.shrink();
+        self.frame
+    }
+}
+
+/// The nearest share of a color; 0 for NaN.
+pub(crate) fn share(value: f64) -> f32 {
+    if value > 0.0 { value.min(1.0) as f32 } else { 0.0 }
+}
+
+/// Appends a name; returns its place.
+pub(crate) fn add(names: &mut Vec<String>, name: &str) -> u32 {
+    names.push(name.to_owned());
+    names.len() as u32 - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ReadOptions;
+
+    fn builder(columns: &str) -> Builder {
+        let options =
+            ReadOptions { columns: columns.parse().expect("columns"), ..ReadOptions::default() };
+        let names = ["x", "y", "z", "radius", "type", "red", "green", "blue", "q", "t"];
+        let schema = Schema::new(names.map(str::to_owned).into(), &options).expect("a schema");
+        Builder::new(&Path::new("p").into(), Format::Csv, &Arc::new(schema))
+    }
+
+    fn push(builder: &mut Builder, rows: usize, kinds: usize) {
+        let path = Path::new("p").into();
+        for row in 0..rows {
+            let text = format!("1,2,3,4,{},0,0,1,5,6", row % kinds);
+            let line = Line::new(&path, 1, text.as_bytes());
+            builder.row(&line, line.bytes.split(|&byte| byte == b',')).expect("a row");
+        }
+    }
+
+    /// Bytes that the columns of a frame take.
+    fn bytes(frame: &ParticleFrame) -> u64 {
+        let numbers = frame.numbers.iter().map(|column| column.values.len()).sum::<usize>();
+        let codes = frame.kinds.codes.len() * frame.kinds.codes.width();
+        let doubles = 3 * frame.x.len() + frame.radius.len() + numbers;
+        (8 * doubles + size_of_val(&frame.color[..]) + codes) as u64
+    }
+
+    #[test]
+    fn rows_take_the_bytes_of_their_columns() {
+        for (columns, kinds) in [("", 1), ("q", 1), ("q,t", 3), ("q,t", 300)] {
+            let mut builder = builder(columns);
+            push(&mut builder, 300, kinds);
+            let expected = builder.row_bytes() * 300;
+            assert_eq!(bytes(&builder.finish()), expected, "{columns} {kinds}");
+        }
+    }
+
+    #[test]
+    fn memory_is_asked_for_in_steps_of_an_eighth_that_end_where_columns_double() {
+        let mut builder = builder("");
+        let mut rooms = Vec::new();
+        let mut before = builder.room;
+        assert_eq!(before, FIRST_ROOM);
+        while before < 1 << 20 {
+            builder.check_room().expect("memory");
+            rooms.push(builder.room);
+            assert!(builder.room > before && builder.room <= before + before / 8, "{before}");
+            assert!(builder.room <= (before + 1).next_power_of_two());
+            before = builder.room;
+        }
+        for power in 17..=20 {
+            assert!(rooms.contains(&(1 << power)), "{rooms:?}");
+        }
+    }
+
+    #[test]
+    fn more_particles_than_a_scene_holds_are_refused() {
+        let mut builder = builder("");
+        builder.room = MAX_PARTICLES as usize;
+        let error = builder.check_room().expect_err("too many");
+        assert!(error.message.contains("more than"), "{error}");
+        builder.room = MAX_PARTICLES as usize - 1;
+        let message = builder.check_room().err().map_or_else(String::new, |error| error.message);
+        assert!(!message.ends_with("particles"), "{message}");
+    }
+}

@@ -1,0 +1,261 @@
+//! Columns of names: few names, and for each row a code in as few bytes as tell them apart.
+
+use super::element::Element;
+use std::collections::HashMap;
+
+/// Row numbers of a table of names, in the narrowest type that holds them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Codes {
+    /// Up to 256 names.
+    Bytes(Vec<u8>),
+    /// Up to 65 536 names.
+    Shorts(Vec<u16>),
+    /// More.
+    Words(Vec<u32>),
+}
+
+impl Default for Codes {
+    fn default() -> Self {
+        Self::Bytes(Vec::new())
+    }
+}
+
+impl Codes {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Bytes(codes) => codes.len(),
+            Self::Shorts(codes) => codes.len(),
+            Self::Words(codes) => codes.len(),
+        }
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bytes of a code.
+    pub fn width(&self) -> usize {
+        match self {
+            Self::Bytes(_) => 1,
+            Self::Shorts(_) => 2,
+            Self::Words(_) => 4,
+        }
+    }
+
+    /// The code of row `row`, which is less than [`Codes::len`].
+    #[inline]
+    pub fn code(&self, row: usize) -> u32 {
+        match self {
+            Self::Bytes(codes) => u32::from(codes[row]),
+            Self::Shorts(codes) => u32::from(codes[row]),
+            Self::Words(codes) => codes[row],
+        }
+    }
+
+    /// Appends a row; the column widens when a code needs it.
+    #[inline]
+    pub(crate) fn push(&mut self, code: u32) {
+        match self {
+            Self::Bytes(codes) if code < 1 << 8 => codes.push(code as u8),
+            Self::Shorts(codes) if code < 1 << 16 => codes.push(code as u16),
+            Self::Words(codes) => codes.push(code),
+            Self::Bytes(_) | Self::Shorts(_) => {
+                self.widen(code);
+                self.push(code);
+            }
+        }
+    }
+
+    fn widen(&mut self, code: u32) {
+        let all = 0..self.len();
+        *self = if code < 1 << 16 {
+            Self::Shorts(all.map(|row| self.code(row) as u16).collect())
+        } else {
+            Self::Words(all.map(|row| self.code(row)).collect())
+        };
+    }
+
+    /// Replaces each code by its entry in `places`.
+    pub(crate) fn renumber(&mut self, places: &[u32]) {
+        let old = std::mem::take(self);
+        (0..old.len()).for_each(|row| self.push(places[old.code(row) as usize]));
+    }
+
+    /// Keeps the rows that `keep` is true for.
+    pub fn retain(&mut self, keep: &[bool]) {
+        match self {
+            Self::Bytes(codes) => retain(codes, keep),
+            Self::Shorts(codes) => retain(codes, keep),
+            Self::Words(codes) => retain(codes, keep),
+        }
+    }
+
+    /// Has row `rows[i]` in the place of row `i`, for each of `rows`.
+    pub(crate) fn pick(&mut self, rows: &[u32]) {
+        match self {
+            Self::Bytes(codes) => pick(codes, rows),
+            Self::Shorts(codes) => pick(codes, rows),
+            Self::Words(codes) => pick(codes, rows),
+        }
+    }
+}
+
+/// Has row `rows[i]` of a column in the place of row `i`; columns without rows stay so.
+pub(crate) fn pick<T: Copy>(column: &mut Vec<T>, rows: &[u32]) {
+    if !column.is_empty() {
+        *column = rows.iter().map(|&row| column[row as usize]).collect();
+    }
+}
+
+/// What particles of one type have in common.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Kind {
+    /// As the file calls it: a symbol, the name of an atom, a type's name or number.
+    pub name: String,
+    /// The element, where the file tells it or the name does.
+    pub element: Option<Element>,
+    /// Whether it is no atom but a site of a model of water that has a charge or a mass (`MW`, `M`,
+    /// `EP`, `LP`), which is not drawn.
+    pub virtual_site: bool,
+}
+
+/// Types of particles: row `i` of `codes` is the place of particle `i`'s type in `table`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Kinds {
+    /// The types, in the order in which they come first.
+    pub table: Vec<Kind>,
+    /// The type of each particle; empty if the file has no types.
+    pub codes: Codes,
+}
+
+impl Kinds {
+    /// Has other types in the place of those of the table; types that become equal are one.
+    pub(crate) fn rename(&mut self, kind: impl Fn(&str) -> Kind) {
+        let mut places = HashMap::new();
+        let old = std::mem::take(self);
+        let place = |old: &Kind| {
+            let new = kind(&old.name);
+            *places.entry(new).or_insert_with_key(|new| {
+                self.table.push(new.clone());
+                self.table.len() as u32 - 1
+            })
+        };
+        let codes: Vec<u32> = old.table.iter().map(place).collect();
+        (0..old.codes.len()).for_each(|row| self.codes.push(codes[old.codes.code(row) as usize]));
+    }
+
+    /// The type of a particle; `None` if the file has no types.
+    pub fn kind(&self, row: usize) -> Option<&Kind> {
+        if self.codes.is_empty() { None } else { self.table.get(self.codes.code(row) as usize) }
+    }
+}
+
+/// A column of texts: row `i` of `codes` is the place of particle `i`'s text in `names`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TextColumn {
+    /// What the column is called.
+    pub name: String,
+    /// The different texts, in the order in which they come first.
+    pub names: Vec<String>,
+    /// The text of each particle.
+    pub codes: Codes,
+}
+
+impl TextColumn {
+    /// The text of a particle, whose row is less than the number of codes.
+    pub fn text(&self, row: usize) -> &str {
+        &self.names[self.codes.code(row) as usize]
+    }
+}
+
+/// How many names that came lately are found without a hash of theirs.
+const RECENT: usize = 64;
+
+/// Finds the code of a name.
+pub(crate) struct Codebook {
+    /// Names of up to 15 bytes, with their codes.
+    recent: [(u128, u32); RECENT],
+    codes: HashMap<Vec<u8>, u32>,
+}
+
+impl Default for Codebook {
+    fn default() -> Self {
+        // No name has this length, and so this key.
+        Self { recent: [(u128::MAX, 0); RECENT], codes: HashMap::new() }
+    }
+}
+
+impl Codebook {
+    /// The code of a name; `add` gives one to a name that is new.
+    #[inline]
+    pub(crate) fn code(&mut self, name: &[u8], add: impl FnOnce(&str) -> u32) -> u32 {
+        if name.len() > 15 {
+            return self.find(name, add);
+        }
+        let mut key = [0; 16];
+        key[..name.len()].copy_from_slice(name);
+        key[15] = name.len() as u8;
+        let key = u128::from_le_bytes(key);
+        let mixed = (key as u64 ^ (key >> 61) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let place = (mixed >> 58) as usize;
+        if self.recent[place].0 != key {
+            self.recent[place] = (key, self.find(name, add));
+        }
+        self.recent[place].1
+    }
+
+    fn find(&mut self, name: &[u8], add: impl FnOnce(&str) -> u32) -> u32 {
+        if let Some(&code) = self.codes.get(name) {
+            return code;
+        }
+        let code = add(&String::from_utf8_lossy(name));
+        self.codes.insert(name.to_vec(), code);
+        code
+    }
+}
+
+/// Keeps the rows of a column for which `keep` is true.
+pub fn retain<T>(column: &mut Vec<T>, keep: &[bool]) {
+    let mut rows = keep.iter();
+    column.retain(|_| rows.next().copied().unwrap_or(true));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_take_as_few_bytes_as_they_need() {
+        let mut codes = Codes::default();
+        for code in [0, 255, 256, 3, 65_536, 7] {
+            codes.push(code);
+            let narrow = matches!(codes, Codes::Bytes(_));
+            assert_eq!(narrow, codes.len() <= 2);
+            let width = [1, 1, 2, 2, 4, 4][codes.len() - 1];
+            assert_eq!((codes.width(), codes.is_empty()), (width, false));
+        }
+        assert!(Codes::default().is_empty());
+        let all: Vec<u32> = (0..codes.len()).map(|row| codes.code(row)).collect();
+        assert_eq!(all, [0, 255, 256, 3, 65_536, 7]);
+        codes.retain(&[true, false, false, true, true, false]);
+        assert_eq!(codes, Codes::Words(vec![0, 3, 65_536]));
+    }
+
+    #[test]
+    fn names_keep_their_codes() {
+        let mut book = Codebook::default();
+        let mut count = 0;
+        let names: Vec<String> =
+            (0..1000).map(|name| format!("{name}{}", "x".repeat(name % 20))).collect();
+        for (expected, name) in names.iter().enumerate().chain(names.iter().enumerate().rev()) {
+            let code = book.code(name.as_bytes(), |_| {
+                count += 1;
+                count - 1
+            });
+            assert_eq!(code, expected as u32, "{name}");
+        }
+        assert_eq!(count, 1000);
+    }
+}

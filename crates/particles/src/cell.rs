@@ -1,0 +1,121 @@
+//! The periodic cell, its edges and corners, and fractional coordinates: 0 at the start of an edge, 1 at
+//! its end.
+
+use glam::{DMat3, DVec3};
+
+/// Ends of the twelve edges of a parallelepiped, as numbers of corners.
+const OUTLINE: [[usize; 2]; 12] = [
+    [0, 1],
+    [2, 3],
+    [4, 5],
+    [6, 7],
+    [0, 2],
+    [1, 3],
+    [4, 6],
+    [5, 7],
+    [0, 4],
+    [1, 5],
+    [2, 6],
+    [3, 7],
+];
+
+/// The periodic cell of a simulation: a parallelepiped, orthogonal or triclinic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// The corner that the vectors begin at.
+    pub origin: DVec3,
+    /// The edges a, b and c.
+    pub vectors: [DVec3; 3],
+    /// Whether the simulation repeats along each edge.
+    pub periodic: [bool; 3],
+}
+
+impl Cell {
+    /// Returns the Cartesian coordinates of a point in fractional coordinates.
+    pub fn cartesian(&self, fractional: [f64; 3]) -> DVec3 {
+        let [a, b, c] = self.vectors;
+        self.origin + a * fractional[0] + b * fractional[1] + c * fractional[2]
+    }
+
+    /// A cell of edges `a`, `b` and `c` long with angles in degrees between them, the first edge
+    /// along x and the second in the plane of x and y, as crystallography has it; `None` if there
+    /// is no such cell.
+    pub(crate) fn of_lengths(lengths: [f64; 3], angles: [f64; 3]) -> Option<Self> {
+        let [a, b, c] = lengths;
+        // Right angles exactly.
+        let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { angle.to_radians().cos() };
+        let [alpha, beta, gamma] = angles.map(cosine);
+        let sine = (1.0 - gamma * gamma).sqrt();
+        let tilt = (alpha - beta * gamma) / sine;
+        let height = (1.0 - beta * beta - tilt * tilt).sqrt();
+        let vectors = [
+            DVec3::new(a, 0.0, 0.0),
+            DVec3::new(b * gamma, b * sine, 0.0),
+            DVec3::new(c * beta, c * tilt, c * height),
+        ];
+        let cell = Self { origin: DVec3::ZERO, vectors, periodic: [true; 3] };
+        cell.checked()
+    }
+
+    /// The cell, if it is finite and has a volume.
+    pub(crate) fn checked(self) -> Option<Self> {
+        let [a, b, c] = self.vectors;
+        let finite = [a, b, c, self.origin].iter().all(|vector| vector.is_finite());
+        (finite && a.cross(b).dot(c) != 0.0).then_some(self)
+    }
+
+    /// Returns the fractional coordinates of a point: the inverse of [`Cell::cartesian`].
+    pub fn fractional(&self, point: DVec3) -> DVec3 {
+        self.matrix().inverse() * (point - self.origin)
+    }
+
+    /// Returns the eight corners; bit `i` of a corner's number says whether it is at the end of edge `i`.
+    pub fn corners(&self) -> [DVec3; 8] {
+        let coordinate = |corner: usize, edge: usize| f64::from(u8::from(corner >> edge & 1 == 1));
+        std::array::from_fn(|corner| self.cartesian([0, 1, 2].map(|edge| coordinate(corner, edge))))
+    }
+
+    /// Returns the box of the corners: the lower and the upper one.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let [first, rest @ ..] = self.corners();
+        rest.iter().fold([first; 2], |[low, high], corner| [low.min(*corner), high.max(*corner)])
+    }
+
+    /// Returns the twelve edges, each from one corner to another.
+    pub fn edges(&self) -> [[DVec3; 2]; 12] {
+        let corners = self.corners();
+        OUTLINE.map(|ends| ends.map(|corner| corners[corner]))
+    }
+
+    /// Returns the matrix from fractional to Cartesian coordinates, without the origin.
+    pub fn matrix(&self) -> DMat3 {
+        let [a, b, c] = self.vectors;
+        DMat3::from_cols(a, b, c)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_lengths_and_angles_have_them() {
+        let cell = Cell::of_lengths([2.0, 3.0, 4.0], [80.0, 95.0, 120.0]).expect("a cell");
+        let [a, b, c] = cell.vectors;
+        for (first, second, angle) in [(b, c, 80.0_f64), (a, c, 95.0), (a, b, 120.0)] {
+            assert!((first.angle_between(second).to_degrees() - angle).abs() < 1e-12, "{angle}");
+        }
+        assert!((b.length() - 3.0).abs() < 1e-14 && (c.length() - 4.0).abs() < 1e-14);
+        let box_shaped = Cell::of_lengths([2.0, 3.0, 4.0], [90.0; 3]).expect("a cell");
+        assert_eq!(box_shaped.vectors, [DVec3::X * 2.0, DVec3::Y * 3.0, DVec3::Z * 4.0]);
+        assert_eq!(box_shaped.cartesian([0.5, 1.0, 0.25]), DVec3::new(1.0, 3.0, 1.0));
+        for (lengths, angles) in [
+            ([0.0, 1.0, 1.0], [90.0; 3]),
+            ([1.0; 3], [0.0; 3]),
+            ([1.0; 3], [150.0, 150.0, 150.0]),
+            ([f64::NAN, 1.0, 1.0], [90.0; 3]),
+        ] {
+            assert_eq!(Cell::of_lengths(lengths, angles), None, "{lengths:?} {angles:?}");
+        }
+    }
+}

@@ -1,0 +1,383 @@
+//! CIF of crystals: a cell, the atoms of the asymmetric unit, and the symmetry that repeats them
+//! (CIF core dictionary, <https://www.iucr.org/resources/cif/dictionaries/cif_core>).
+
+use super::declared::{Contents, Declared, Resolved};
+use super::hall::MOST;
+use super::occupancy::{Occupancies, Positions};
+use super::rows::Rows;
+use super::symmetry::{Operation, images};
+use super::tokens::{Token, Tokens};
+use crate::FileError;
+use crate::builder::Builder;
+use crate::cell::Cell;
+use crate::element::Element;
+use crate::frame::{LengthUnit, ParticleFrame};
+use crate::lines::Lines;
+use crate::memory;
+use crate::number;
+use crate::options::{Format, ReadOptions, Role};
+use crate::reader::FrameReader;
+use crate::schema::Schema;
+use crate::source::Source;
+use crate::undrawn::Undrawn;
+use glam::DVec3;
+use memchr::memmem;
+use std::sync::Arc;
+
+/// Bytes of an atom as a sphere: four numbers in double precision, a material and a color.
+const ATOM_BYTES: u64 = 48;
+
+/// What the names of the columns of atoms begin with; newer files have a point at the end.
+const SITE: &str = "_atom_site_";
+
+/// Shares of the edges.
+const SHARES: [(Role, &str); 3] =
+    [(Role::X, "fract_x"), (Role::Y, "fract_y"), (Role::Z, "fract_z")];
+
+/// Columns of numbers, some of which may be unknown.
+const NUMBERS: [&str; 3] = ["occupancy", "U_iso_or_equiv", "B_iso_or_equiv"];
+
+/// Tags of symmetry operations: of now, of old files and of magnetic CIF.
+const OPERATIONS: [&str; 4] = [
+    "_space_group_symop_operation_xyz",
+    "_symmetry_equiv_pos_as_xyz",
+    "_space_group_symop_magn_operation_xyz",
+    "_space_group_symop_magn_centering_xyz",
+];
+
+/// Tags of Hermann-Mauguin symbols, of Hall symbols and of the numbers of space groups.
+const SYMBOLS: [&str; 4] = [
+    "_space_group_name_h-m_alt",
+    "_symmetry_space_group_name_h-m",
+    "_space_group_name_h-m_full",
+    "_space_group_name_h-m",
+];
+const HALL: [&str; 2] = ["_space_group_name_hall", "_symmetry_space_group_name_hall"];
+const NUMBERS_OF_GROUPS: [&str; 2] = ["_space_group_it_number", "_symmetry_int_tables_number"];
+
+/// What is taken for a title, the best last.
+const TITLES: [&str; 4] = [
+    "_chemical_formula_sum",
+    "_chemical_name_systematic",
+    "_chemical_name_common",
+    "_chemical_name_mineral",
+];
+
+/// Reads the blocks of a file, one frame each.
+pub(in super::super) struct Crystal {
+    tokens: Tokens,
+    options: ReadOptions,
+}
+
+/// What a block says, in whatever order.
+struct Block {
+    title: (usize, String),
+    lengths: [f64; 3],
+    angles: [f64; 3],
+    symmetry: Declared,
+    atoms: Option<Atoms>,
+    /// Rows of bonds and of anisotropic displacements.
+    bonds: u64,
+    displacements: u64,
+}
+
+/// The listed atoms.
+struct Atoms {
+    /// Positions are fractional coordinates.
+    frame: ParticleFrame,
+    occupancies: Occupancies,
+}
+
+impl Default for Block {
+    fn default() -> Self {
+        Self {
+            title: (0, String::new()),
+            lengths: [0.0; 3],
+            // What they are where a file does not say.
+            angles: [90.0; 3],
+            symmetry: Declared::default(),
+            atoms: None,
+            bonds: 0,
+            displacements: 0,
+        }
+    }
+}
+
+impl Crystal {
+    pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
+        Self { tokens: Tokens::new(Lines::new(source)), options: options.clone() }
+    }
+
+    /// A tag and its value.
+    fn item(&mut self, tag: &str, block: &mut Block) -> Result<(), FileError> {
+        let Some(Token::Value(value)) = self.tokens.next()? else {
+            self.tokens.back();
+            return Ok(());
+        };
+        let text = String::from_utf8_lossy(value).trim().to_owned();
+        let known = !matches!(&text[..], "" | "?" | ".");
+        let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag == *letter);
+        let number = || self.tokens.line().number(certain(text.as_bytes()));
+        if let Some(edge) = axis(["_cell_length_a", "_cell_length_b", "_cell_length_c"]) {
+            block.lengths[edge] = number()?;
+        } else if let Some(angle) =
+            axis(["_cell_angle_alpha", "_cell_angle_beta", "_cell_angle_gamma"])
+        {
+            block.angles[angle] = number()?;
+        } else if let Some(rank) = TITLES.iter().position(|title| *title == tag) {
+            if known && rank >= block.title.0 {
+                block.title = (rank, text);
+            }
+        } else if known {
+            self.symmetry(tag, text, &mut block.symmetry)?;
+        }
+        Ok(())
+    }
+
+    /// Takes what a tag says of the symmetry, if it is of that.
+    fn symmetry(&self, tag: &str, text: String, symmetry: &mut Declared) -> Result<(), FileError> {
+        if SYMBOLS.contains(&tag) {
+            symmetry.symbols.push(text);
+        } else if HALL.contains(&tag) {
+            symmetry.hall = Some(text);
+        } else if NUMBERS_OF_GROUPS.contains(&tag) {
+            symmetry.number = text.parse().ok();
+        } else if OPERATIONS.contains(&tag) {
+            let operation = self.operation(&text)?;
+            let centering = tag == OPERATIONS[3];
+            let list = if centering { &mut symmetry.centerings } else { &mut symmetry.operations };
+            list.push(operation);
+            if list.len() > MOST {
+                let message = format!("more than {MOST} symmetry operations");
+                let error = self.tokens.error(message);
+                return Err(error.with_help("no space group has so many"));
+            }
+        }
+        Ok(())
+    }
+
+    fn operation(&self, text: &str) -> Result<Operation, FileError> {
+        // Magnetic CIF has the reversal of time as a fourth part.
+        let place = text.strip_suffix(",+1").or_else(|| text.strip_suffix(",-1")).unwrap_or(text);
+        Operation::parse(place).ok_or_else(|| {
+            let error = self.tokens.error(format!("`{text}` is no symmetry operation"));
+            error.with_help("operations are written as in -x, y+1/2, z")
+        })
+    }
+
+    /// A loop: operations, atoms, or what is passed over.
+    fn list(&mut self, block: &mut Block) -> Result<(), FileError> {
+        let mut tags = Vec::new();
+        while let Some(Token::Tag(tag)) = self.tokens.next()? {
+            tags.push(tag.to_owned());
+        }
+        self.tokens.back();
+        let tags_now: Vec<String> = tags.iter().map(|tag| plain(tag)).collect();
+        let is_site = |tag: &String| *tag == format!("{SITE}{}", SHARES[0].1);
+        let is_symmetry = |tag: &&String| {
+            let tags = OPERATIONS.iter().chain(&SYMBOLS).chain(&HALL).chain(&NUMBERS_OF_GROUPS);
+            tags.into_iter().any(|own| own == *tag)
+        };
+        if tags_now.iter().any(is_site) {
+            block.atoms = Some(self.atoms(&tags)?);
+        } else if tags_now.iter().any(|tag| is_symmetry(&tag)) {
+            let mut rows = Rows::new(tags.len());
+            while rows.read(&mut self.tokens)? {
+                for (column, tag) in tags_now.iter().enumerate() {
+                    let text = String::from_utf8_lossy(rows.field(column)).trim().to_owned();
+                    if !matches!(&text[..], "" | "?" | ".") {
+                        self.symmetry(tag, text, &mut block.symmetry)?;
+                    }
+                }
+            }
+        } else if tags_now.iter().any(|tag| tag.starts_with("_geom_bond_atom_site_label")) {
+            block.bonds += self.count_rows(tags.len())?;
+        } else if tags_now.iter().any(|tag| tag.starts_with("_atom_site_aniso_")) {
+            block.displacements += self.count_rows(tags.len())?;
+        }
+        Ok(())
+    }
+
+    fn count_rows(&mut self, columns: usize) -> Result<u64, FileError> {
+        let (mut rows, mut count) = (Rows::new(columns), 0);
+        while rows.read(&mut self.tokens)? {
+            count += 1;
+        }
+        Ok(count)
+    }
+
+    /// Reads the atoms of a loop.
+    fn atoms(&mut self, tags: &[String]) -> Result<Atoms, FileError> {
+        let names = tags.iter().map(|tag| tag.get(SITE.len()..).unwrap_or(tag).to_owned());
+        let names: Vec<String> = names.collect();
+        let has_symbols = names.iter().any(|name| name == "type_symbol");
+        let label = (!has_symbols).then_some((Role::Kind, "label"));
+        let known: Vec<(Role, &str)> = SHARES.into_iter().chain(label).collect();
+        let places = SHARES.map(|(_, share)| names.iter().position(|name| name == share));
+        if let Some(axis) = places.iter().position(Option::is_none) {
+            let message = format!("no {SITE}{} in this loop of atoms", SHARES[axis].1);
+            return Err(self.tokens.error(message));
+        }
+        let mut occupancies = Occupancies::new(&names);
+        let schema = Schema::with_roles(names, &self.options, &known)
+            .map_err(|message| self.tokens.error(message))?;
+        let mut builder = Builder::new(self.tokens.path(), Format::Cif, &Arc::new(schema));
+        builder.declare(&["label"], &NUMBERS);
+        let (mut rows, mut nowhere) = (Rows::new(tags.len()), 0_u64);
+        while rows.read(&mut self.tokens)? {
+            let unknown = |column: &usize| matches!(rows.field(*column), b"." | b"?");
+            if places.iter().flatten().any(unknown) {
+                nowhere += 1;
+            } else {
+                builder.row(&self.tokens.line(), rows.fields().map(certain))?;
+                occupancies.read(&rows);
+            }
+        }
+        if nowhere > 0 {
+            let warning = format!("{nowhere} atoms without coordinates are left out");
+            builder.frame.warnings.push(warning);
+        }
+        let mut frame = builder.finish();
+        if !has_symbols {
+            for kind in &mut frame.kinds.table {
+                kind.element = kind.element.or_else(|| element(&kind.name));
+            }
+        }
+        Ok(Atoms { frame, occupancies })
+    }
+
+    /// The frame of a block; `None` if it has no atoms.
+    fn frame(&self, mut block: Block) -> Result<Option<ParticleFrame>, FileError> {
+        let Some(Atoms { frame: mut atoms, mut occupancies }) = block.atoms.take() else {
+            return Ok(None);
+        };
+        let fault = |message: String| FileError::whole_file(self.tokens.path(), message);
+        let (lengths, angles) = (block.lengths, block.angles);
+        let cell = Cell::of_lengths(lengths, angles).ok_or_else(|| {
+            let message = format!("there is no cell with edges {lengths:?} and angles {angles:?}");
+            fault(message).with_help("a crystal needs _cell_length_a, _b and _c, and its angles")
+        })?;
+        leave_out_lesser_groups(&mut atoms, &mut occupancies);
+        let positions: Vec<DVec3> = (0..atoms.len()).map(|row| atoms.position(row)).collect();
+        let contents = Contents { cell: &cell, positions: &positions };
+        let Resolved { operations, warnings } = block.symmetry.resolve(contents);
+        atoms.warnings.extend(warnings);
+        let images = operations.len().max(1) as u64 * atoms.len() as u64;
+        memory::check(images.saturating_mul(ATOM_BYTES))
+            .map_err(|shortage| fault(format!("its {images} atoms need {shortage}")))?;
+        place(&mut atoms, &repeat(&positions, &operations, &cell), &occupancies, &cell);
+        let (unit, title) = (LengthUnit::Angstrom, block.title.1);
+        atoms.add_undrawn(Undrawn::Bonds, block.bonds);
+        atoms.add_undrawn(Undrawn::Displacements, block.displacements);
+        Ok(Some(ParticleFrame { cell: Some(cell), unit, title, ..atoms }))
+    }
+}
+
+impl FrameReader for Crystal {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let mut block = Block::default();
+        while let Some(token) = self.tokens.next()? {
+            match token {
+                Token::Loop => self.list(&mut block)?,
+                Token::Tag(tag) => {
+                    let tag = plain(tag);
+                    self.item(&tag, &mut block)?;
+                }
+                Token::Block if block.atoms.is_some() => break,
+                Token::Block => block = Block::default(),
+                Token::Value(_) => (),
+            }
+        }
+        self.frame(block)
+    }
+}
+
+/// Leaves out the atoms of all disorder groups but the main ones.
+fn leave_out_lesser_groups(atoms: &mut ParticleFrame, occupancies: &mut Occupancies) {
+    let keep = occupancies.main_groups();
+    let lesser = keep.iter().filter(|keep| !**keep).count();
+    if lesser > 0 {
+        atoms.retain(&keep);
+        occupancies.retain(&keep);
+        atoms.warnings.push(format!(
+            "{} left out: of each disorder, the group with the greatest occupancy is drawn",
+            counted(lesser, "listed atom is", "listed atoms are"),
+        ));
+    }
+    let about = occupancies.about_symmetry();
+    if about > 0 {
+        atoms.warnings.push(format!(
+            "{} disordered about a symmetry element: all images are drawn, though they overlap",
+            counted(about, "listed atom is", "listed atoms are"),
+        ));
+    }
+}
+
+/// Positions in fractional coordinates, and the rows of the listed atoms that they are images of.
+struct Images {
+    rows: Vec<u32>,
+    places: Vec<DVec3>,
+}
+
+/// All images of the listed positions; where there is no symmetry, the positions as they are.
+fn repeat(positions: &[DVec3], operations: &[Operation], cell: &Cell) -> Images {
+    let (mut rows, mut places) = (Vec::new(), Vec::new());
+    for (row, position) in positions.iter().enumerate() {
+        let images = if let [] | [_] = operations {
+            vec![*position]
+        } else {
+            images(*position, operations, cell)
+        };
+        rows.extend(images.iter().map(|_| row as u32));
+        places.extend(images);
+    }
+    Images { rows, places }
+}
+
+/// Puts an atom at each image, and of those that share a site the one with the greatest occupancy.
+fn place(atoms: &mut ParticleFrame, images: &Images, occupancies: &Occupancies, cell: &Cell) {
+    let Images { rows, places } = images;
+    let shared = occupancies.share(Positions { rows, places, cell });
+    atoms.pick(rows);
+    for (row, place) in places.iter().enumerate() {
+        [atoms.x[row], atoms.y[row], atoms.z[row]] = cell.cartesian(place.to_array()).to_array();
+    }
+    if shared.sites > 0 {
+        let others = shared.keep.iter().filter(|keep| !**keep).count();
+        atoms.retain(&shared.keep);
+        atoms.warnings.push(format!(
+            "{} shared by several atoms: the one with the greatest occupancy is drawn, and {} left \
+             out",
+            counted(shared.sites, "site is", "sites are"),
+            counted(others, "other is", "others are"),
+        ));
+    }
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
+/// The element that a label begins with, as `O1A` with oxygen.
+fn element(label: &str) -> Option<Element> {
+    let end = label.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(label.len());
+    (1..=end.min(2)).rev().find_map(|letters| Element::from_symbol(&label[..letters]))
+}
+
+/// A tag in the spelling of old files.
+fn plain(tag: &str) -> String {
+    tag.replace('.', "_").to_ascii_lowercase()
+}
+
+/// A number without what says how certain it is: `0.123` of `0.123(4)`.
+pub(super) fn certain(field: &[u8]) -> &[u8] {
+    let open = field.strip_suffix(b")").and_then(|inner| memchr::memrchr(b'(', inner));
+    open.map(|end| &field[..end]).filter(|value| number::parse(value).is_some()).unwrap_or(field)
+}
+
+/// Whether a CIF file that begins so is that of a crystal.
+pub(in super::super) fn is_crystal(head: &[u8]) -> bool {
+    let has = |tag: &str| memmem::find(head, tag.as_bytes()).is_some();
+    let shares = has("_atom_site_fract_x") || has("_atom_site.fract_x");
+    !has("_atom_site.Cartn_x") && (shares || has("_cell_length_a"))
+}

@@ -1,0 +1,238 @@
+//! CSV with a header.
+
+use super::builder::Builder;
+use super::frame::ParticleFrame;
+use super::lines::{LONGEST, Line, Lines};
+use super::options::{Format, ReadOptions};
+use super::reader::FrameReader;
+use super::schema::{Schema, Slot};
+use super::source::Source;
+use super::{header, number};
+use crate::FileError;
+use crate::error::listed;
+use csv_core::{ReadRecordResult, ReaderBuilder};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// CSV with a header.
+pub(crate) struct Csv {
+    lines: Lines,
+    options: ReadOptions,
+    record: Record,
+    /// A row of several lines.
+    row: Vec<u8>,
+    done: bool,
+}
+
+/// The fields of a line with quotes.
+#[derive(Default)]
+struct Record {
+    bytes: Vec<u8>,
+    ends: Vec<usize>,
+}
+
+impl Csv {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        let lines = Lines::new(source);
+        let (record, row) = (Record::default(), Vec::new());
+        Self { lines, options: options.clone(), record, row, done: false }
+    }
+
+    /// The next line that is neither blank nor a comment.
+    fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, FileError> {
+        while let Some(line) = lines.next()? {
+            if !line.is_blank() && !header::is_comment(line.bytes) {
+                lines.back();
+                break;
+            }
+        }
+        lines.next()
+    }
+}
+
+impl Csv {
+    /// Takes the line that came last, and those that follow until its quotes are closed.
+    fn whole_row(&mut self) -> Result<(), FileError> {
+        self.lines.back();
+        self.row.clear();
+        let (mut first, mut open) = (0, false);
+        while let Some(line) = self.lines.next()? {
+            if first == 0 {
+                first = line.number_in_file();
+            }
+            self.row.extend_from_slice(line.bytes);
+            open ^= is_open(line.bytes);
+            if !open {
+                return Ok(());
+            }
+            if self.row.len() > LONGEST {
+                break;
+            }
+            self.row.extend_from_slice(self.lines.ending());
+        }
+        let end = memchr::memchr(b'\n', &self.row).unwrap_or(self.row.len());
+        let line = Line::new(self.lines.path(), first, &self.row[..end]);
+        let help = "a quoted field has two quotes for each quote within it";
+        Err(line.whole("a quote is not closed").with_help(help))
+    }
+}
+
+/// Whether a line opens a quote that it does not close, or closes one that it does not open.
+fn is_open(row: &[u8]) -> bool {
+    memchr::memchr_iter(b'"', row).count() % 2 == 1
+}
+
+impl FrameReader for Csv {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        if std::mem::replace(&mut self.done, true) {
+            return Ok(None);
+        }
+        // Excel's own first line, which says what stands between the columns.
+        if Self::line(&mut self.lines)?.is_some_and(|line| !line.bytes.starts_with(b"sep=")) {
+            self.lines.back();
+        }
+        let Some(line) = Self::line(&mut self.lines)? else { return Ok(None) };
+        let names = header_names(line.bytes);
+        let separator = separator(line.bytes);
+        for (column, name) in names.iter().enumerate() {
+            let same = |other: &String| other.eq_ignore_ascii_case(name);
+            if names.iter().position(same) != Some(column) {
+                let span = span(line.bytes, separator, column);
+                return Err(line.error(span, format!("two columns are named `{name}`")));
+            }
+        }
+        let help = header::columns_help(&names, &self.options);
+        let schema =
+            Schema::new(names, &self.options).map_err(|error| line.whole(error).with_help(help))?;
+        let schema = Arc::new(schema);
+        let mut builder = Builder::new(line.path(), Format::Csv, &schema);
+        let path = self.lines.path().clone();
+        let mut has_commas = false;
+        while let Some(line) = Self::line(&mut self.lines)? {
+            let number = line.number_in_file();
+            if !is_open(line.bytes) {
+                let row = Row { line, separator, schema: &schema };
+                has_commas |= row.read(&mut self.record, &mut builder)?;
+                continue;
+            }
+            self.whole_row()?;
+            let line = Line::new(&path, number, &self.row);
+            let row = Row { line, separator, schema: &schema };
+            has_commas |= row.read(&mut self.record, &mut builder)?;
+        }
+        if has_commas {
+            builder.frame.warnings.push("commas are read as decimal points".to_owned());
+        }
+        if !schema.unused.is_empty() {
+            let names: Vec<&str> = schema.unused.iter().map(String::as_str).collect();
+            builder.frame.warnings.push(listed("columns that are not used", &names));
+        }
+        Ok(Some(builder.finish()))
+    }
+}
+
+/// A row that is being read.
+struct Row<'r> {
+    line: Line<'r>,
+    separator: u8,
+    schema: &'r Schema,
+}
+
+impl Row<'_> {
+    /// Reads the row; whether it has decimal commas.
+    fn read(&self, record: &mut Record, builder: &mut Builder) -> Result<bool, FileError> {
+        let bytes = self.line.bytes;
+        if memchr::memchr(b'"', bytes).is_none() {
+            return self.put(bytes.split(|&byte| byte == self.separator), builder);
+        }
+        record.read(bytes, self.separator);
+        let starts = [0].into_iter().chain(record.ends.iter().copied());
+        let fields = starts.zip(&record.ends).map(|(start, &end)| &record.bytes[start..end]);
+        self.put(fields, builder)
+    }
+
+    fn put<'f>(
+        &self,
+        fields: impl Iterator<Item = &'f [u8]>,
+        builder: &mut Builder,
+    ) -> Result<bool, FileError> {
+        let (mut columns, mut has_commas) = (0, false);
+        for field in fields {
+            if let Some(&slot) = self.schema.slots.get(columns) {
+                let field = field.trim_ascii();
+                let decimal =
+                    if self.may_have_comma(slot) { number::with_point(field) } else { None };
+                has_commas |= decimal.is_some();
+                let field = decimal.as_deref().unwrap_or(field);
+                builder.put(slot, &self.line, field).map_err(|error| {
+                    let span = span(self.line.bytes, self.separator, columns);
+                    let here = self.line.error(span, error.message);
+                    FileError { help: error.help, ..here }
+                })?;
+            }
+            columns += 1;
+        }
+        let expected = self.schema.names.len();
+        if columns != expected {
+            let message = format!("{columns} columns, but the header has {expected}");
+            return Err(self.line.whole(message));
+        }
+        builder.end_row()?;
+        Ok(has_commas)
+    }
+
+    /// Returns whether a field may have a comma for its decimal point.
+    fn may_have_comma(&self, slot: Slot) -> bool {
+        self.separator != b',' && !matches!(slot, Slot::Skip | Slot::Kind | Slot::Material)
+    }
+}
+
+impl Record {
+    /// Takes a line apart; no field of it is longer than the line.
+    fn read(&mut self, line: &[u8], separator: u8) {
+        self.bytes.resize(line.len() + 1, 0);
+        self.ends.resize(line.len() + 2, 0);
+        let mut reader = ReaderBuilder::new().delimiter(separator).build();
+        let (mut input, mut written, mut ended) = (line, 0, 0);
+        loop {
+            let (result, used, bytes, ends) =
+                reader.read_record(input, &mut self.bytes[written..], &mut self.ends[ended..]);
+            (input, written, ended) = (&input[used..], written + bytes, ended + ends);
+            if result != ReadRecordResult::InputEmpty || used == 0 {
+                break;
+            }
+        }
+        self.ends.truncate(ended);
+    }
+}
+
+/// The names that a header has.
+pub(crate) fn header_names(line: &[u8]) -> Vec<String> {
+    let mut record = Record::default();
+    record.read(line, separator(line));
+    let starts = [0].into_iter().chain(record.ends.iter().copied());
+    let fields = starts.zip(&record.ends).map(|(start, &end)| &record.bytes[start..end]);
+    fields.map(|field| String::from_utf8_lossy(field.trim_ascii()).into_owned()).collect()
+}
+
+/// What stands between columns: the one that is there most often.
+fn separator(header: &[u8]) -> u8 {
+    let count = |separator: &u8| header.split(|byte| byte == separator).count();
+    // Of equals the last wins: a comma, where there is none of any.
+    [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
+}
+
+/// The bytes of a field in a line, without the blanks around it.
+fn span(line: &[u8], separator: u8, column: usize) -> Range<usize> {
+    let mut quoted = false;
+    let ends = line.iter().enumerate().filter(|&(_, &byte)| {
+        quoted ^= byte == b'"';
+        byte == separator && !quoted
+    });
+    let mut ends = ends.map(|(at, _)| at).chain([line.len()]);
+    let start = if column == 0 { 0 } else { ends.nth(column - 1).map_or(0, |end| end + 1) };
+    let end = ends.next().unwrap_or(line.len()).max(start);
+    let field = line.get(start..end).unwrap_or_default();
+    let start = end - field.trim_ascii_start().len();
+    start..start + field.trim_ascii().len()
+}

@@ -1,0 +1,161 @@
+//! Errors in files: the file, the place in it, and what to write instead.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Most characters of a message, and of a help.
+const LONGEST: usize = 600;
+
+/// An error in a file of particles, or in a scene file. Prints as `path:line:column: message` and, on a
+/// second line, the help.
+#[derive(Clone, Debug, Error)]
+#[error("{}: {message}{}", self.location(), self.advice())]
+pub struct FileError {
+    /// The faulty file.
+    pub path: PathBuf,
+    /// What is wrong, one sentence without a full stop.
+    pub message: String,
+    /// What to write instead, where that can be told.
+    pub help: Option<String>,
+    /// Where in the file; `None` if the whole file is meant.
+    pub place: Option<Box<Place>>,
+    /// True if the file ends before what it announces: it is cut off, or still being written.
+    pub cut_off: bool,
+}
+
+/// A place in a file, with the text around it so that it can be shown.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// The file's text or, from a file of particles, the faulty line alone.
+    pub source_text: String,
+    /// The line of the file that `source_text` begins with, from 1.
+    pub first_line: usize,
+    /// The faulty bytes of `source_text`.
+    pub span: Range<usize>,
+}
+
+impl FileError {
+    /// An error that concerns a whole file.
+    pub fn whole_file(path: &Path, message: impl Into<String>) -> Self {
+        let message = clipped(message);
+        Self { path: path.to_path_buf(), message, help: None, place: None, cut_off: false }
+    }
+
+    /// An error at the bytes `span` of `text`, which begins with line `first_line` of the file.
+    pub fn at(
+        path: &Path,
+        text: &str,
+        first_line: usize,
+        span: Range<usize>,
+        message: impl Into<String>,
+    ) -> Self {
+        let place = Place::new(text, first_line, span);
+        Self { place: Some(Box::new(place)), ..Self::whole_file(path, message) }
+    }
+
+    /// The same error with what to write instead.
+    #[must_use]
+    pub fn with_help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(clipped(help)), ..self }
+    }
+
+    /// Line of the fault, from 1; `None` if the whole file is meant.
+    pub fn line(&self) -> Option<usize> {
+        self.place.as_ref().map(|place| place.line)
+    }
+
+    /// Column of the fault in characters, from 1; `None` if the whole file is meant.
+    pub fn column(&self) -> Option<usize> {
+        self.place.as_ref().map(|place| place.column)
+    }
+
+    fn location(&self) -> String {
+        let path = self.path.display();
+        self.place
+            .as_ref()
+            .map_or_else(|| path.to_string(), |at| format!("{path}:{}:{}", at.line, at.column))
+    }
+
+    fn advice(&self) -> String {
+        self.help.as_ref().map_or_else(String::new, |help| format!("\nhelp: {help}"))
+    }
+}
+
+/// The text, or its beginning: what a damaged file calls a name can be all of it.
+pub fn clipped(text: impl Into<String>) -> String {
+    let mut text = text.into();
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        text.truncate(end);
+        text.push_str("...");
+    }
+    text
+}
+
+/// Most names that a warning lists.
+pub(crate) const LISTED: usize = 5;
+
+/// Returns a sentence with the first of many names.
+pub fn listed(reason: &str, names: &[&str]) -> String {
+    let more = if names.len() > LISTED { ", ..." } else { "" };
+    format!("{reason}: {}{more}", names[..names.len().min(LISTED)].join(", "))
+}
+
+impl Place {
+    fn new(text: &str, first_line: usize, span: Range<usize>) -> Self {
+        let start =
+            (0..=span.start.min(text.len())).rev().find(|&byte| text.is_char_boundary(byte));
+        let before = &text[..start.unwrap_or(0)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Self {
+            line: first_line + before.matches('\n').count(),
+            column: before[line_start..].chars().count() + 1,
+            source_text: text.to_owned(),
+            first_line,
+            span: before.len()..span.end.clamp(before.len(), text.len()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_count_characters_from_one() {
+        let error = FileError::at(Path::new("a.toml"), "x\nä = 1\ny", 1, 5..6, "bad");
+        assert_eq!((error.line(), error.column()), (Some(2), Some(3)));
+        assert_eq!(error.to_string(), "a.toml:2:3: bad");
+        let helped = FileError::whole_file(Path::new("b"), "bad").with_help("do");
+        assert_eq!(helped.to_string(), "b: bad\nhelp: do");
+    }
+
+    #[test]
+    fn messages_are_never_as_long_as_files() {
+        let error = FileError::whole_file(Path::new("a"), "\u{e4}".repeat(1_000_000));
+        let error = error.with_help("b".repeat(LONGEST));
+        assert_eq!(error.message.chars().count(), LONGEST + 3);
+        assert_eq!(error.help.map(|help| help.len()), Some(LONGEST));
+    }
+
+    #[test]
+    fn places_outside_the_text_are_its_end() {
+        let error = FileError::at(Path::new("a"), "ab\n", 7, 90..95, "bad");
+        assert_eq!((error.line(), error.column()), (Some(8), Some(1)));
+        let inside_a_character = FileError::at(Path::new("a"), "ä", 1, 1..2, "bad");
+        assert_eq!(inside_a_character.column(), Some(1));
+    }
+
+    #[test]
+    fn long_lists_are_cut_short() {
+        let names: Vec<&str> = vec!["a"; LISTED + 1];
+        assert_eq!(listed("unused", &names[..2]), "unused: a, a");
+        assert!(!listed("unused", &names[..LISTED]).contains("..."));
+        let cut = listed("unused", &names);
+        assert!(cut.ends_with(", ...") && cut.matches('a').count() == LISTED, "{cut}");
+    }
+}

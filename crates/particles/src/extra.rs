@@ -1,0 +1,116 @@
+//! Columns that are kept besides the usual ones: of numbers or of texts, as their first value tells.
+
+use super::builder::add;
+use super::categories::{Codebook, TextColumn};
+use super::frame::NumberColumn;
+use super::lines::Line;
+use super::number;
+use crate::FileError;
+
+/// Fields that stand for a value that is missing.
+const MISSING: [&[u8]; 3] = [b"", b".", b"?"];
+
+/// A column that is kept.
+pub(crate) enum Extra {
+    /// Before a value tells whether they are numbers: its name, and which of [`MISSING`] each field
+    /// was.
+    Unknown(String, Vec<u8>),
+    Number(NumberColumn),
+    Text(TextColumn, Box<Codebook>),
+    /// Not kept after all.
+    LeftOut,
+}
+
+impl Extra {
+    /// A column of which nothing is known yet.
+    pub(crate) fn new(name: &str) -> Self {
+        Self::Unknown(name.to_owned(), Vec::new())
+    }
+
+    /// Says that the columns of these names are texts or numbers, if nothing is known yet.
+    pub(crate) fn declare(&mut self, texts: &[&str], numbers: &[&str]) {
+        let Self::Unknown(name, _) = self else { return };
+        if texts.contains(&name.as_str()) {
+            self.become_text();
+        } else if numbers.contains(&name.as_str()) {
+            self.become_number();
+        }
+    }
+
+    /// Takes a field.
+    pub(crate) fn put(&mut self, line: &Line, field: &[u8]) -> Result<(), FileError> {
+        let missing = MISSING.iter().position(|token| *token == field);
+        if let Self::Unknown(_, tokens) = self {
+            match missing {
+                Some(token) => {
+                    tokens.push(token as u8);
+                    return Ok(());
+                }
+                None if number::parse(field).is_some() => self.become_number(),
+                None => self.become_text(),
+            }
+        }
+        match self {
+            Self::Unknown(..) | Self::LeftOut => (),
+            Self::Number(column) if missing.is_some() => column.values.push(f64::NAN),
+            Self::Number(column) => column.values.push(line.number(field)?),
+            Self::Text(column, book) => push_text(column, book, field),
+        }
+        Ok(())
+    }
+
+    /// Takes a number; nothing if it is a column of texts.
+    pub(crate) fn put_number(&mut self, value: f64) {
+        if matches!(self, Self::Unknown(..)) {
+            self.become_number();
+        }
+        if let Self::Number(column) = self {
+            column.values.push(value);
+        }
+    }
+
+    /// Takes a text; nothing if it is a column of numbers.
+    pub(crate) fn put_text(&mut self, text: &str) {
+        if matches!(self, Self::Unknown(..)) {
+            self.become_text();
+        }
+        if let Self::Text(column, book) = self {
+            push_text(column, book, text.as_bytes());
+        }
+    }
+
+    fn become_number(&mut self) {
+        let Self::Unknown(name, tokens) = self else { return };
+        let values = vec![f64::NAN; tokens.len()];
+        *self = Self::Number(NumberColumn { name: std::mem::take(name), values });
+    }
+
+    fn become_text(&mut self) {
+        let Self::Unknown(name, tokens) = self else { return };
+        let mut column = TextColumn { name: std::mem::take(name), ..TextColumn::default() };
+        let mut book = Box::default();
+        for &token in tokens.iter() {
+            push_text(&mut column, &mut book, MISSING[usize::from(token)]);
+        }
+        *self = Self::Text(column, book);
+    }
+
+    /// Puts the column where it belongs. One without a value is one of texts if it has rows.
+    pub(crate) fn finish(mut self, numbers: &mut Vec<NumberColumn>, texts: &mut Vec<TextColumn>) {
+        match &self {
+            Self::Unknown(_, tokens) if tokens.is_empty() => self.become_number(),
+            Self::Unknown(..) => self.become_text(),
+            _ => (),
+        }
+        match self {
+            Self::Unknown(..) | Self::LeftOut => (),
+            Self::Number(column) => numbers.push(column),
+            Self::Text(column, _) => texts.push(column),
+        }
+    }
+}
+
+fn push_text(column: &mut TextColumn, book: &mut Codebook, field: &[u8]) {
+    let TextColumn { names, codes, .. } = column;
+    codes.push(book.code(field, |name| add(names, name)));
+}

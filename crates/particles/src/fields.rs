@@ -1,0 +1,70 @@
+//! Lines cut into fields.
+
+/// Which bytes stand between fields.
+type Separators = [bool; 256];
+
+const BLANKS: Separators = set(b" \t\r\x0B\x0C");
+const MARKS: Separators = set(b" \t\r\x0B\x0C,;");
+
+const fn set(bytes: &[u8]) -> Separators {
+    let mut table = [false; 256];
+    let mut at = 0;
+    while at < bytes.len() {
+        table[bytes[at] as usize] = true;
+        at += 1;
+    }
+    table
+}
+
+/// The fields of a line, none of them empty.
+#[derive(Clone)]
+pub(crate) struct Fields<'l> {
+    rest: &'l [u8],
+    separators: &'static Separators,
+}
+
+impl<'l> Fields<'l> {
+    /// What stands between blanks.
+    #[inline]
+    pub(crate) fn blanks(line: &'l [u8]) -> Self {
+        Self { rest: line, separators: &BLANKS }
+    }
+
+    /// What stands between blanks, commas and semicolons, before a `#`.
+    #[inline]
+    pub(crate) fn marks(line: &'l [u8]) -> Self {
+        let end = memchr::memchr(b'#', line).unwrap_or(line.len());
+        Self { rest: &line[..end], separators: &MARKS }
+    }
+}
+
+impl<'l> Iterator for Fields<'l> {
+    type Item = &'l [u8];
+
+    #[inline]
+    fn next(&mut self) -> Option<&'l [u8]> {
+        let is_between = |byte: &u8| self.separators[*byte as usize];
+        let start = self.rest.iter().position(|byte| !is_between(byte))?;
+        let rest = &self.rest[start..];
+        let end = rest.iter().position(is_between).unwrap_or(rest.len());
+        self.rest = &rest[end..];
+        Some(&rest[..end])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(fields: Fields) -> Vec<String> {
+        fields.map(|field| String::from_utf8_lossy(field).into_owned()).collect()
+    }
+
+    #[test]
+    fn fields_are_never_empty() {
+        assert_eq!(texts(Fields::blanks(b" a\t b,c  ")), ["a", "b,c"]);
+        assert_eq!(texts(Fields::marks(b",1;;2 # 3")), ["1", "2"]);
+        assert!(texts(Fields::blanks(b" \t ")).is_empty());
+        assert!(texts(Fields::marks(b"")).is_empty());
+    }
+}

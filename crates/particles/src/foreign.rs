@@ -1,0 +1,660 @@
+//! Files of other formats, which are recognized and named but not read, with a command that makes
+//! something of them that is.
+
+use super::{fields::Fields, number};
+use std::path::Path;
+
+/// Kind of a file that is not read, and what to do with it.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Foreign {
+    /// A name after "is".
+    pub(crate) name: String,
+    /// Advice on what to type.
+    pub(crate) help: String,
+}
+
+/// Ways to something that is read; `{file}` stands for the file, `{stem}` for its name without a
+/// suffix.
+const WITH_TOPOLOGY: &str = "convert it together with the file that names its atoms: python3 -c \"import MDAnalysis; \
+     MDAnalysis.Universe('TOPOLOGY', '{file}').atoms.write('{stem}.xyz', frames='all')\"";
+const TRAJECTORY: &str = "convert it: gmx trjconv -f {file} -s topol.tpr -o {stem}.gro; or, without the file that names \
+     its atoms: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}', '{file}', \
+     topology_format='MINIMAL').atoms.write('{stem}.xyz', frames='all')\"";
+const ATOMS: &str = "convert it: python3 -c \"import MDAnalysis; MDAnalysis.Universe('{file}').atoms.write('{stem}.xyz')\"";
+const MOLECULES: &str = "convert it: obabel {file} -O {stem}.xyz";
+const TOPOLOGY: &str = "it has no positions: read those beside it, as in python3 -c \"import MDAnalysis; \
+     MDAnalysis.Universe('{file}', 'TRAJECTORY').atoms.write('{stem}.xyz', frames='all')\"";
+const HDF5: &str = "write one of its arrays: python3 -c \"import h5py, numpy; numpy.save('{stem}.npy', \
+     h5py.File('{file}')['NAME'][:])\"; h5ls -r {file} lists them";
+const MESH: &str = "write its points: python3 -c \"import meshio, numpy; numpy.save('{stem}.npy', \
+                    meshio.read('{file}').points)\"";
+const GADGET: &str = "write its positions: python3 -c \"import pynbody, numpy; numpy.save('{stem}.npy', \
+     pynbody.load('{file}')['pos'])\"";
+const SHEET: &str = "write its first sheet: libreoffice --headless --convert-to csv {file}";
+const MATLAB: &str = "write one of its arrays: python3 -c \"import scipy.io, numpy; numpy.save('{stem}.npy', \
+     scipy.io.loadmat('{file}')['NAME'])\"";
+const FRAME: &str = "write it as CSV: python3 -c \"import pandas; pandas.read_{kind}('{file}').to_csv('{stem}.csv', index=False)\"";
+const RESTART: &str = "have LAMMPS write it as text: lmp -restart2data {file} {stem}.data";
+const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}";
+const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
+
+/// Bytes by which binary files are known: place, bytes, name, way.
+const MAGICS: [(usize, &[u8], &str, &str); 26] = [
+    (0, b"# vtk DataFile", "a VTK file", MESH),
+    (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
+    (0, b"CDF\x01", "a NetCDF file", WITH_TOPOLOGY),
+    (0, b"CDF\x02", "a NetCDF file", WITH_TOPOLOGY),
+    (0, b"CDF\x05", "a NetCDF file", WITH_TOPOLOGY),
+    (12, b"GMX_trn_file", "a TRR trajectory of GROMACS", TRAJECTORY),
+    (0, b"LammpS RestartT", "a binary restart file of LAMMPS", RESTART),
+    (8, b"DUMPATOM", "a binary dump of LAMMPS", BINARY_DUMP),
+    (8, b"DUMPCUSTOM", "a binary dump of LAMMPS", BINARY_DUMP),
+    (0, b"#!TDV", "a binary Tecplot file", MESH),
+    (0, b"\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1", "a workbook of Excel (XLS)", SHEET),
+    (0, b"MATLAB 5.0 MAT-file", "a MATLAB file", MATLAB),
+    (0, b"PAR1", "a Parquet file", FRAME),
+    (0, b"ARROW1", "a Feather file", FRAME),
+    (0, b"LASF", "a LAS point cloud", CLOUD),
+    (0, b"ASTM-E57", "an E57 point cloud", CLOUD),
+    (0, b"# .PCD", "a PCD point cloud", CLOUD),
+    (
+        0,
+        b"spherule-prepared\n",
+        "a scene that was prepared for rendering",
+        "render it: spherule render {file} -o {stem}.png; or name the file that it was made of",
+    ),
+    (
+        0,
+        b"spherule-checkpoint\n",
+        "a render that Spherule keeps, not a scene",
+        "go on with it: spherule render --resume {file}; or put parts together with spherule merge",
+    ),
+    (
+        0,
+        b"\x89PNG\r\n",
+        "a picture (PNG)",
+        "a picture can light a scene, as in environment = {{ kind = \"picture\", file = \"{file}\" }}",
+    ),
+    (0, b"\xFF\xD8\xFF", "a picture (JPEG)", "name a file of particles or a scene"),
+    (
+        0,
+        b"\x76\x2F\x31\x01",
+        "a picture (EXR)",
+        "a picture can light a scene, as in environment = {{ kind = \"picture\", file = \"{file}\" }}",
+    ),
+    (0, b"%PDF", "a PDF document", "name a file of particles or a scene"),
+    (
+        0,
+        b"7z\xBC\xAF\x27\x1C",
+        "a 7-Zip archive",
+        "unpack one of its files: 7z x -so {file} NAME | spherule render - -o {stem}.png",
+    ),
+    (
+        0,
+        b"Rar!\x1A\x07",
+        "a RAR archive",
+        "unpack one of its files: unrar p -inul {file} NAME | spherule render - -o {stem}.png",
+    ),
+    (
+        257,
+        b"ustar",
+        "a tar archive",
+        "read one of its files: tar -xOf {file} NAME | spherule render - -o {stem}.png; tar -tf {file} lists them",
+    ),
+];
+
+/// Words that text files begin with, in any case: words, name, way.
+const WORDS: [(&str, &str, &str); 18] = [
+    ("%version", "a topology of Amber", TOPOLOGY),
+    ("title =", "a Tecplot file", MESH),
+    ("title=", "a Tecplot file", MESH),
+    ("variables =", "a Tecplot file", MESH),
+    ("variables=", "a Tecplot file", MESH),
+    (
+        "crystal",
+        "an XSF file of XCrySDen",
+        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
+    ),
+    (
+        "slab",
+        "an XSF file of XCrySDen",
+        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
+    ),
+    (
+        "polymer",
+        "an XSF file of XCrySDen",
+        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
+    ),
+    (
+        "molecule",
+        "an XSF file of XCrySDen",
+        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
+    ),
+    (
+        "primvec",
+        "an XSF file of XCrySDen",
+        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
+    ),
+    (
+        "animsteps",
+        "an XSF file of XCrySDen",
+        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
+    ),
+    (
+        "atoms",
+        "an XSF file of XCrySDen",
+        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
+    ),
+    (
+        "<!doctype html",
+        "a web page (HTML)",
+        "a download went wrong: fetch the file itself, as in curl -LO URL",
+    ),
+    (
+        "<html",
+        "a web page (HTML)",
+        "a download went wrong: fetch the file itself, as in curl -LO URL",
+    ),
+    (
+        "version https://git-lfs",
+        "a pointer to a file that Git LFS keeps",
+        "fetch the file: git lfs pull",
+    ),
+    (
+        "{",
+        "a JSON file",
+        "write its positions as CSV: python3 -c \"import pandas; pandas.read_json('{file}').to_csv('{stem}.csv')\"",
+    ),
+    (
+        "[",
+        "a JSON file",
+        "write its positions as CSV: python3 -c \"import pandas; pandas.read_json('{file}').to_csv('{stem}.csv')\"",
+    ),
+    (
+        "begin_scene",
+        "a scene of Tachyon",
+        "write its spheres: awk '$1==\"SPHERE\" {print $3, $4, $5, $7}' {file} | spherule render - -o {stem}.png",
+    ),
+];
+
+/// Lines that are looked at to tell text files.
+const LINES: usize = 64;
+
+/// A command with the names of a file in it.
+fn filled(way: &str, path: &Path) -> String {
+    let is_plain = |name: &str| {
+        name.chars().all(|letter| letter.is_ascii_alphanumeric() || "._/+-".contains(letter))
+    };
+    let file = path.to_str().filter(|name| is_plain(name) && *name != "-").unwrap_or("FILE");
+    let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or("FILE");
+    way.replace("{file}", file).replace("{stem}", stem)
+}
+
+fn foreign(name: &str, way: &str, path: &Path) -> Foreign {
+    let kind = if name.contains("Parquet") { "parquet" } else { "feather" };
+    let way = way.replace("{kind}", kind).replace("{{", "{").replace("}}", "}");
+    Foreign { name: name.to_owned(), help: filled(&way, path) }
+}
+
+/// Returns the kind of a binary file that begins so, if it is known.
+pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
+    let begins =
+        |place: usize, bytes: &[u8]| head.get(place..).is_some_and(|rest| rest.starts_with(bytes));
+    let known = MAGICS.iter().find(|(place, bytes, ..)| begins(*place, bytes));
+    if let Some((_, _, name, way)) = known {
+        return Some(foreign(name, way, path));
+    }
+    if begins(0, b"PK\x03\x04") {
+        return archive(head, path);
+    }
+    let word = |at: usize| head.get(at..at + 4)?.try_into().ok();
+    let big = |at: usize| word(at).map_or(0, u32::from_be_bytes);
+    let little = |at: usize| word(at).map_or(0, u32::from_le_bytes);
+    // The number of atoms comes twice.
+    if matches!(big(0), 1995 | 2023) && big(4) > 0 && big(4) == big(52) {
+        return Some(foreign("an XTC trajectory of GROMACS", TRAJECTORY, path));
+    }
+    if big(0) == 1993 && big(4) == 13 {
+        return Some(foreign("a TRR trajectory of GROMACS", TRAJECTORY, path));
+    }
+    // A record of Fortran between its lengths, of four or eight bytes in either order.
+    let is_dcd = |at: usize| begins(at, b"CORD") || begins(at, b"VELD");
+    let marks = [(big(0), 4), (little(0), 4), (big(4), 8), (little(0), 8)];
+    if marks.iter().any(|&(length, at)| length == 84 && is_dcd(at)) {
+        return Some(foreign("a DCD trajectory", WITH_TOPOLOGY, path));
+    }
+    let is_gadget = |word: &dyn Fn(usize) -> u32| {
+        word(0) == 256 && word(260) == 256 || word(0) == 8 && begins(4, b"HEAD") && word(12) == 8
+    };
+    if is_gadget(&big) || is_gadget(&little) {
+        return Some(foreign("a snapshot of Gadget", GADGET, path));
+    }
+    (head.get(..100)?.windows(6).any(|bytes| bytes == b"TRAJNG"))
+        .then(|| foreign("a TNG trajectory of GROMACS", TRAJECTORY, path))
+}
+
+/// Returns the kind of a ZIP archive that is a document.
+fn archive(head: &[u8], path: &Path) -> Option<Foreign> {
+    let has = |text: &[u8]| memchr::memmem::find(head, text).is_some();
+    let is_sheet = has(b"[Content_Types].xml") || has(b"opendocument.spreadsheet");
+    is_sheet.then(|| foreign("a workbook of a spreadsheet", SHEET, path))
+}
+
+/// Returns the kind of a text file that begins so, if it is known.
+pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
+    let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
+    let lines: Vec<&[u8]> =
+        head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end).take(LINES).collect();
+    let content = head.trim_ascii_start();
+    let first = content.split(|&byte| byte == b'\n').next()?.trim_ascii_end();
+    let begins = |words: &str| {
+        let start = content.get(..words.len()).unwrap_or_default();
+        start.eq_ignore_ascii_case(words.as_bytes())
+    };
+    // Words of one's own end; the others go on.
+    let is_whole = |words: &str| {
+        !words.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_')
+            || first.len() == words.len()
+    };
+    let known = WORDS
+        .iter()
+        .find(|(words, ..)| begins(words) && (is_whole(words) || is_steps(words, first)));
+    if let Some((_, name, way)) = known {
+        return Some(foreign(name, way, path));
+    }
+    if begins("<?xml") || begins("<") {
+        return Some(markup(head, path));
+    }
+    let structures: [(bool, &str, &str); 11] = [
+        (is_psf(first, head), "a topology of CHARMM or NAMD (PSF)", TOPOLOGY),
+        (has_line(head, b"@<TRIPOS>"), "a MOL2 file", ATOMS),
+        (is_molfile(&lines, head), "an MDL molfile (SDF)", MOLECULES),
+        (
+            is_poscar(&lines),
+            "a POSCAR of VASP",
+            "convert it: ase convert -i vasp -o extxyz {file} {stem}.xyz",
+        ),
+        (
+            is_cube(&lines),
+            "a cube file of Gaussian",
+            "convert it: ase convert -i cube -o extxyz {file} {stem}.xyz",
+        ),
+        (is_charmm(&lines), "a coordinate file of CHARMM (CRD)", ATOMS),
+        (is_amber(&lines), "a restart file of Amber", WITH_TOPOLOGY),
+        (
+            first == b"TITLE" && has_line(head, b"END"),
+            "a GROMOS file (G96)",
+            "convert it: gmx editconf -f {file} -o {stem}.gro",
+        ),
+        (first.starts_with(b"ZONE ") || first == b"ZONE", "a Tecplot file", MESH),
+        (first.starts_with(b"solid") && has_line(head, b"facet"), "an STL mesh", MESH),
+        (
+            is_mesh(first),
+            "a Wavefront OBJ mesh",
+            "write its points: awk '$1==\"v\" {print $2, $3, $4}' {file} | spherule render - -o {stem}.png",
+        ),
+    ];
+    let (_, name, way) = structures.into_iter().find(|(is_there, ..)| *is_there)?;
+    Some(foreign(name, way, path))
+}
+
+/// Returns whether a line is `ANIMSTEPS` or the like with a number.
+fn is_steps(words: &str, line: &[u8]) -> bool {
+    let mut fields = Fields::blanks(line).skip(1);
+    ["animsteps", "atoms"].contains(&words)
+        && fields.next().is_some_and(|count| number::whole(count).is_some())
+        && fields.next().is_none()
+}
+
+fn markup(head: &[u8], path: &Path) -> Foreign {
+    let has = |text: &[u8]| memchr::memmem::find(head, text).is_some();
+    if has(b"<VTKFile") {
+        return foreign("a VTK file (XML)", MESH, path);
+    }
+    if has(b"<cml") || has(b"xml-cml") {
+        return foreign("a CML file", MOLECULES, path);
+    }
+    let way = "write its positions as CSV: python3 -c \"import pandas; \
+               pandas.read_xml('{file}').to_csv('{stem}.csv', index=False)\"";
+    foreign("an XML file", way, path)
+}
+
+fn has_line(head: &[u8], start: &[u8]) -> bool {
+    head.starts_with(start)
+        || memchr::memmem::find_iter(head, start).any(|at| head[at - 1] == b'\n')
+}
+
+fn numbers(line: &[u8]) -> Option<Vec<f64>> {
+    Fields::blanks(line).map(number::parse).collect()
+}
+
+fn is_psf(first: &[u8], head: &[u8]) -> bool {
+    let is_flag = |field: &[u8]| field.iter().all(u8::is_ascii_uppercase);
+    first.starts_with(b"PSF")
+        && Fields::blanks(first).all(is_flag)
+        && memchr::memmem::find(head, b"!N").is_some()
+}
+
+/// The fourth line has the numbers of atoms and bonds, in three columns each, and the version.
+fn is_molfile(lines: &[&[u8]], head: &[u8]) -> bool {
+    let Some(counts) = lines.get(3) else { return false };
+    let is_count = |field: Option<&[u8]>| field.is_some_and(|field| number::whole(field).is_some());
+    let version = counts.ends_with(b"V2000") || counts.ends_with(b"V3000");
+    is_count(counts.get(..3))
+        && is_count(counts.get(3..6))
+        && (version || has_line(head, b"M  END"))
+}
+
+/// A comment, a scale, three edges, names or numbers of atoms, and what positions are.
+fn is_poscar(lines: &[&[u8]]) -> bool {
+    let has = |line: usize, count: usize| {
+        lines.get(line).and_then(|line| numbers(line)).is_some_and(|numbers| numbers.len() == count)
+    };
+    let counts = |line: usize| {
+        let mut fields = Fields::blanks(lines.get(line).copied().unwrap_or_default()).peekable();
+        fields.peek().is_some() && fields.all(|field| number::whole(field).is_some())
+    };
+    let positions = |line: usize| {
+        let line = lines.get(line).copied().unwrap_or_default().trim_ascii_start();
+        line.first().is_some_and(|letter| b"sSdDcCkK".contains(letter))
+    };
+    let scale = has(1, 1) || has(1, 3);
+    scale
+        && (2..5).all(|line| has(line, 3))
+        && (counts(5) && positions(6) || counts(6) && positions(7))
+}
+
+/// Two comments, then a number of atoms or of points and three numbers, four times, the first of which may
+/// be followed by another number. Rows of a table, five numbers each, are none.
+fn is_cube(lines: &[&[u8]]) -> bool {
+    let is_grid = |line: &[u8], most: usize| {
+        let fields: Vec<&[u8]> = Fields::blanks(line).collect();
+        let count = fields.first().map(|count| count.strip_prefix(b"-").unwrap_or(count));
+        (4..=most).contains(&fields.len())
+            && count.is_some_and(|count| number::whole(count).is_some())
+            && fields[1..].iter().all(|field| number::parse(field).is_some())
+    };
+    let is_atom = |line: &&[u8]| numbers(line).is_some_and(|numbers| numbers.len() == 5);
+    // The first line of an XYZ file is a number.
+    lines.len() > 6
+        && number::whole(lines[0]).is_none()
+        && is_grid(lines[2], 5)
+        && lines[3..6].iter().all(|line| is_grid(line, 4))
+        && is_atom(&lines[6])
+}
+
+/// A title of lines that begin with a star, a number of atoms, and rows of ten columns.
+fn is_charmm(lines: &[&[u8]]) -> bool {
+    let mut rest = lines.iter().skip_while(|line| line.starts_with(b"*"));
+    let count = rest.next().and_then(|line| Fields::blanks(line).next());
+    lines.first().is_some_and(|line| line.starts_with(b"*"))
+        && count.is_some_and(|count| number::whole(count).is_some())
+        && rest.next().is_some_and(|row| Fields::blanks(row).count() >= 9)
+}
+
+/// A title, a number of atoms, and rows of six numbers of twelve columns with seven decimals.
+fn is_amber(lines: &[&[u8]]) -> bool {
+    let count = lines.get(1).and_then(|line| Fields::blanks(line).next());
+    let is_row = |row: &&[u8]| {
+        let numbers = row.chunks(12).map(|field| field.len() == 12 && field[4] == b'.');
+        !row.is_empty()
+            && row.len() <= 72
+            && numbers.into_iter().all(|fits| fits)
+            && numbers_of(row)
+    };
+    count.is_some_and(|count| number::whole(count).is_some())
+        && number::whole(lines[0]).is_none()
+        && lines.get(2).is_some_and(is_row)
+        && lines.get(3).is_none_or(|row| row.is_empty() || is_row(row))
+}
+
+fn numbers_of(row: &[u8]) -> bool {
+    row.chunks(12).all(|field| number::parse(field.trim_ascii()).is_some())
+}
+
+fn is_mesh(first: &[u8]) -> bool {
+    let vertex = first.strip_prefix(b"v ").and_then(numbers);
+    vertex.is_some_and(|numbers| numbers.len() >= 3) || first.starts_with(b"mtllib ")
+}
+
+/// Recognizes a PQR file, which begins as PDB does but has charges and radii in columns that are
+/// not fixed.
+pub(crate) fn pqr(head: &[u8], path: &Path) -> Option<Foreign> {
+    let suffix = |wanted: &str| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        name.split('.').skip(1).any(|part| part == wanted)
+    };
+    if suffix("pdb") || suffix("ent") {
+        return None;
+    }
+    let is_atom = |line: &&[u8]| line.starts_with(b"ATOM") || line.starts_with(b"HETATM");
+    let complete = &head[..memchr::memrchr(b'\n', head).unwrap_or(head.len())];
+    let mut atoms = complete.split(|&byte| byte == b'\n').filter(is_atom).take(LINES).peekable();
+    atoms.peek()?;
+    let way = "draw its radii: awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' {file} | \
+               spherule render - -o {stem}.png; or read it as PDB, without them: --format pdb";
+    let is_pqr = suffix("pqr") || atoms.all(is_pqr_atom);
+    is_pqr.then(|| foreign("a PQR file, with charges and radii", way, path))
+}
+
+/// Returns whether a row ends in five numbers, and has other columns than PDB.
+fn is_pqr_atom(line: &[u8]) -> bool {
+    let fields: Vec<&[u8]> = Fields::blanks(line).collect();
+    let last = fields.len().checked_sub(5).map(|first| &fields[first..]).unwrap_or_default();
+    let is_decimal = |field: &&[u8]| field.contains(&b'.') && number::parse(field).is_some();
+    let numbers = last.len() == 5 && last.iter().all(is_decimal);
+    // Occupancy and temperature factor have two decimals at fixed places.
+    let two_decimals = |end: usize| line.get(end - 3) == Some(&b'.');
+    numbers && !(two_decimals(60) && two_decimals(66) && line.get(38 - 4) == Some(&b'.'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(content: &[u8], name: &str) -> String {
+        let path = Path::new(name);
+        let found =
+            binary(content, path).or_else(|| text(content, path)).or_else(|| pqr(content, path));
+        found.map_or_else(String::new, |found| format!("{}: {}", found.name, found.help))
+    }
+
+    #[test]
+    fn binary_files_are_named_with_a_command() {
+        let xtc =
+            [&1995_u32.to_be_bytes()[..], &7_u32.to_be_bytes(), &[0; 44], &7_u32.to_be_bytes()]
+                .concat();
+        let dcd = |length: &[u8], word: &[u8]| [length, word, &[0; 90]].concat();
+        let gadget = [&256_u32.to_le_bytes()[..], &[0; 256], &256_u32.to_le_bytes()].concat();
+        let zip = |name: &[u8]| [b"PK\x03\x04", &[0; 26][..], name, &[0; 9]].concat();
+        for (content, words) in [
+            (xtc, ["XTC", "gmx trjconv -f run.bin"]),
+            (dcd(&84_u32.to_le_bytes(), b"CORD"), ["DCD", "'run.bin').atoms"]),
+            (dcd(&84_u32.to_be_bytes(), b"VELD"), ["DCD", "frames='all'"]),
+            (dcd(&84_u64.to_le_bytes(), b"CORD"), ["DCD", "'run.xyz'"]),
+            (dcd(&84_u64.to_be_bytes(), b"CORD"), ["DCD", "MDAnalysis"]),
+            (
+                [&1993_u32.to_be_bytes()[..], &13_u32.to_be_bytes(), &[0; 4], b"GMX_trn_file"]
+                    .concat(),
+                ["TRR", "gmx"],
+            ),
+            (b"\x89HDF\r\n\x1A\n\0\0".to_vec(), ["HDF5", "h5py.File('run.bin')"]),
+            (b"CDF\x02\0\0\0\0".to_vec(), ["NetCDF", "MDAnalysis"]),
+            (gadget, ["Gadget", "pynbody.load('run.bin')"]),
+            (zip(b"[Content_Types].xml"), ["spreadsheet", "--convert-to csv run.bin"]),
+            (
+                zip(b"mimetypeapplication/vnd.oasis.opendocument.spreadsheet"),
+                ["spreadsheet", "csv"],
+            ),
+            (
+                b"# vtk DataFile Version 5.1\nx\nBINARY\n\0\0".to_vec(),
+                ["VTK", "meshio.read('run.bin')"],
+            ),
+            (b"PAR1\0\0".to_vec(), ["Parquet", "read_parquet('run.bin')"]),
+            (b"spherule-prepared\n\0".to_vec(), ["prepared", "render run.bin -o run.png"]),
+            (b"spherule-checkpoint\n\0".to_vec(), ["render that", "--resume run.bin"]),
+        ] {
+            let found = named(&content, "data/run.bin").replace("data/", "");
+            assert!(words.iter().all(|word| found.contains(word)), "{words:?}: {found}");
+        }
+        assert_eq!(binary(&zip(b"position.npy"), Path::new("a.npz")), None);
+        assert_eq!(binary(&[0; 300], Path::new("a")), None);
+        assert!(
+            named(b"CDF\x01", "-").contains("'FILE'")
+                && named(b"CDF\x01", "a b.nc").contains("'FILE'")
+        );
+    }
+
+    #[test]
+    fn text_files_are_named_with_a_command() {
+        let mol = "241\n  -OEChem-\n\n 12 12  0     0  0  0  0  0  0999 V2000\n    2.0    0.0    0.0 C\nM  END\n";
+        let poscar =
+            "Si2\n1.0\n0 2.7 2.7\n2.7 0 2.7\n2.7 2.7 0\nSi\n2\nDirect\n0 0 0\n0.25 0.25 0.25\n";
+        let old_poscar =
+            "8\n5.43\n1 0 0\n0 1 0\n0 0 1\n2 6\nSelective dynamics\nCartesian\n0 0 0 T T F\n";
+        let cube =
+            "title\ncomment\n 2 0.0 0.0 0.0\n 10 0.5 0 0\n 10 0 0.5 0\n 10 0 0 0.5\n 8 8.0 0 0 0\n";
+        let amber =
+            "\n    2\n   1.0000000   2.0000000   3.0000000   4.0000000   5.0000000   6.0000000\n";
+        let charmm = "* TITLE\n*\n    1\n    1    1 ALA  N     1.0 2.0 3.0 PEP  1  0.0\n";
+        for (content, words) in [
+            (mol, ["SDF", "obabel in.txt -O in.xyz"]),
+            ("@<TRIPOS>MOLECULE\nx\n", ["MOL2", "MDAnalysis"]),
+            ("# made by x\n@<TRIPOS>MOLECULE\n", ["MOL2", "in.txt"]),
+            (poscar, ["POSCAR", "ase convert -i vasp -o extxyz in.txt in.xyz"]),
+            (old_poscar, ["POSCAR", "-i vasp"]),
+            (cube, ["cube", "-i cube"]),
+            (amber, ["Amber", "TOPOLOGY"]),
+            (charmm, ["CRD", "MDAnalysis"]),
+            ("PSF CMAP\n\n  1 !NTITLE\n", ["PSF", "TRAJECTORY"]),
+            ("# vtk DataFile Version 3.0\nx\nASCII\n", ["VTK", "meshio.read('in.txt').points"]),
+            ("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
+            ("<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
+            ("CRYSTAL\nPRIMVEC\n", ["XSF", "-i xsf"]),
+            ("ATOMS\n8 0 0 0\n", ["XSF", "-i xsf"]),
+            ("TITLE = \"a\"\nVARIABLES = \"x\"\n", ["Tecplot", "meshio"]),
+            ("TITLE\nwater\nEND\nPOSITION\n", ["G96", "gmx editconf -f in.txt"]),
+            ("mtllib a\nv 1 2 3\n", ["OBJ", "awk"]),
+            ("<html>", ["web page", "curl"]),
+            (
+                "ATOM      1  N   NTR     0      63.889  69.990 133.214  0.1414 1.8240\n",
+                ["PQR", "print $(NF-4)"],
+            ),
+            ("ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\nTER\n", ["PQR", "--format pdb"]),
+        ] {
+            let found = named(content.as_bytes(), "in.txt");
+            assert!(words.iter().all(|word| found.contains(word)), "{words:?}: {found}");
+        }
+    }
+
+    #[test]
+    fn files_that_are_read_are_not_foreign() {
+        let pdb =
+            "ATOM      1  N   ALA A   1      11.104   6.134  -6.504  1.00  0.00           N\n";
+        let no_element = "ATOM      1  N   ALA     1      11.104   6.134  -6.504  1.00  0.00\n";
+        for content in [
+            pdb,
+            no_element,
+            "ATOM      1  N   ALA A   1      11.104   6.134  -6.504\n",
+            "TITLE     a protein\n",
+            "ITEM: TIMESTEP\n0\n",
+            "# LAMMPS\n\n2 atoms\n",
+            "8\n1.0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n2 2 2\n3 3 3\n",
+            "5\n1\n2 1.0 2.0 3.0\n3 1 1 1\n4 1 1 1\n5 1 1 1\n6 1 2 3 4\n",
+            "data_x\n_cell_length_a 4\n",
+            "x y z\n1 2 3\n",
+            "molecules,x,y,z\n1,2,3,4\n",
+            "atoms x y z\nC 0 0 0\n",
+        ] {
+            assert_eq!(named(content.as_bytes(), "a.txt"), "", "{content}");
+        }
+        assert_eq!(
+            named("ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\n".as_bytes(), "a.pdb.gz"),
+            ""
+        );
+    }
+
+    #[test]
+    fn tables_are_not_foreign() {
+        for columns in 3..=10 {
+            for (comments, first) in
+                (0..5).flat_map(|comments| (0..3).map(move |id| (comments, id)))
+            {
+                let numbers = " 1.0000000".repeat(columns - 1);
+                let rows = (first..first + 20).map(|id| format!("{id}{numbers}\n"));
+                let table = "# a comment\n".repeat(comments) + &rows.collect::<String>();
+                assert_eq!(named(table.as_bytes(), "a.txt"), "", "{table}");
+            }
+        }
+    }
+
+    #[test]
+    fn binary_files_that_only_begin_alike_are_not_named() {
+        let words = |words: &[u32], order: fn(u32) -> [u8; 4]| -> Vec<u8> {
+            words.iter().flat_map(|word| order(*word)).chain([0; 300]).collect()
+        };
+        let head = u32::from_le_bytes(*b"HEAD");
+        let other = u32::from_le_bytes(*b"POS ");
+        let gadget = words(&[8, head, 264, 8, 256], u32::to_le_bytes);
+        assert!(named(&gadget, "a").contains("Gadget"));
+        for content in [
+            words(&[1995, 0], u32::to_be_bytes),
+            words(&[1993, 12], u32::to_be_bytes),
+            words(&[7, 13], u32::to_be_bytes),
+            [&85_u32.to_le_bytes()[..], b"CORD", &[0; 90]].concat(),
+            words(&[84, 1], u32::to_le_bytes),
+            words(&[256], u32::to_le_bytes),
+            [&[0; 260][..], &256_u32.to_le_bytes(), &[0; 40]].concat(),
+            words(&[8, head, 264, 9], u32::to_le_bytes),
+            words(&[8, other, 264, 8], u32::to_le_bytes),
+            words(&[9, head, 264, 8], u32::to_le_bytes),
+        ] {
+            assert_eq!(binary(&content, Path::new("a")), None, "{:?}", &content[..20]);
+        }
+    }
+
+    #[test]
+    fn text_files_of_every_form_are_named() {
+        let mol = |counts: &str, end: &str| format!("a\n  b\n\n{counts}\n    2.0 0.0 0.0 C\n{end}");
+        for (content, word) in [
+            (mol("  0  0  0     0  0            999 V3000", ""), "SDF"),
+            (mol(" 12 12", "M  END\n"), "SDF"),
+            ("ZONE T=\"a\"\n1 2 3\n".to_owned(), "Tecplot"),
+            ("ZONE\n1 2 3\n".to_owned(), "Tecplot"),
+            ("solid part\n facet normal 0 0 1\nfacet normal 0 0 1\n".to_owned(), "STL"),
+            ("ANIMSTEPS 5\nCRYSTAL\n".to_owned(), "XSF"),
+            ("<?xml version=\"1.0\"?>\n<cml>\n".to_owned(), "CML"),
+            ("<molecule xmlns=\"http://www.xml-cml.org/schema\">\n".to_owned(), "CML"),
+            ("<?xml version=\"1.0\"?>\n<atoms>\n".to_owned(), "XML"),
+            ("v 1 2 3\nv 1 2 4\n".to_owned(), "OBJ"),
+        ] {
+            let found = named(content.as_bytes(), "in.txt");
+            assert!(found.contains(word), "{word}: {found}: {content}");
+        }
+    }
+
+    #[test]
+    fn text_files_that_only_begin_alike_are_not_named() {
+        let amber = "   1.0000000   2.0000000   3.0000000\n";
+        for content in [
+            "solid x y z\n1 2 3 4\n",
+            "x y z name\n1 2 3 facet\nfacet 1 2 3\n",
+            "PSF x y z\n1 2 3 4\n",
+            "PSF CMAP\n1 2 3\n",
+            "x y z name\n1 2 3 !N\n",
+            "a\nb\nc\nxx yy V2000\n",
+            "x y z r\n1 2 3 4\n5 6 7 8\n123 1 2 3\n",
+            "8\n1.0\n1 0 0\n0 1 0\n0 0 1\nO 1 1 2\nC 1 1 1\n",
+            "a\n1.0\nx\ny\nz\n1 2\nC 1 2 3\n",
+            "a\n1 2 3 4\n1 2 3\n1 2 3\n1 2 3\n2\nC 1 2 3\n",
+            "a\nb\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n0.5 1 2 3\n1 2 3 4 5\n",
+            "a\nb\n1 2 3 4\n1 2 3 4\n1 2 3 4\n1 2 3 4",
+            &format!("2\n2\n{amber}"),
+            &format!("a\n2\n{}", amber.replace("2.0000000", "2.000000x")),
+            "ANIMSTEPS x y\n1 2 3\n",
+            "v 1\nv 2\n",
+        ] {
+            assert_eq!(named(content.as_bytes(), "a.txt"), "", "{content}");
+        }
+    }
+}

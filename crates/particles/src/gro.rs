@@ -1,0 +1,226 @@
+//! GRO of GROMACS: fixed columns, lengths in nanometers
+//! (manual.gromacs.org/current/reference-manual/file-formats.html).
+
+use super::builder::Builder;
+use super::categories::Kind;
+use super::cell::Cell;
+use super::element::{is_virtual_site, of_atom_name};
+use super::frame::{LengthUnit, ParticleFrame};
+use super::lines::{Line, Lines};
+use super::options::{Format, ReadOptions};
+use super::reader::FrameReader;
+use super::schema::{Naming, Schema, Slot};
+use super::{number, source::Source};
+use crate::FileError;
+use glam::DVec3;
+use memchr::memchr_iter;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Names of the columns, in their order.
+const NAMES: [&str; 10] =
+    ["residue_number", "residue", "name", "number", "x", "y", "z", "vx", "vy", "vz"];
+
+/// Columns that a file may have after those of positions.
+const VELOCITIES: [&str; 3] = ["vx", "vy", "vz"];
+
+/// The first of them, among all columns.
+const VELOCITY: usize = 7;
+
+/// Where positions begin.
+const POSITION: usize = 20;
+
+/// Reads frames of a GRO file.
+pub(crate) struct Gro {
+    lines: Lines,
+    schema: Result<Arc<Schema>, String>,
+    /// A velocity that the file must have.
+    needed: Option<String>,
+}
+
+impl Gro {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
+        let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
+        let is_velocity =
+            |name: &&String| VELOCITIES.iter().any(|own| own.eq_ignore_ascii_case(name));
+        let needed = options.columns.kept.iter().find(is_velocity).cloned();
+        Self { lines: Lines::new(source), schema: schema.map(named), needed }
+    }
+
+    /// Title and number of atoms; `None` at the end.
+    fn head(&mut self) -> Result<Option<(String, u64)>, FileError> {
+        let Some(title) = self.lines.next()? else { return Ok(None) };
+        let title = title.text().trim().to_owned();
+        match self.lines.next()? {
+            Some(line) => Ok(Some((title, line.whole_number(line.bytes)?))),
+            None if title.is_empty() => Ok(None),
+            None => Err(self.lines.ended("the file ends before the number of atoms")),
+        }
+    }
+
+    /// Reads the atoms; returns whether any has a velocity.
+    fn atoms(&mut self, builder: &mut Builder, count: u64) -> Result<bool, FileError> {
+        let schema = builder.schema().clone();
+        let others: Vec<(usize, Slot)> = schema.others().collect();
+        let has_kind = schema.slots.contains(&Slot::Kind);
+        let (mut width, mut has_velocities) = (None, false);
+        for atom in 0..count {
+            let Some(line) = self.lines.next()? else {
+                let error =
+                    self.lines.ended(format!("the file ends after {atom} of {count} atoms"));
+                return Err(error.with_help("the file is cut off, or its second line wrong"));
+            };
+            let width = match width {
+                Some(width) => width,
+                None => *width.insert(self::width(&line)?),
+            };
+            let position = |axis: usize| line.number(field(&line, 4 + axis, width)?);
+            builder.push([position(0)?, position(1)?, position(2)?])?;
+            if !has_kind {
+                builder.kind_of(&line.bytes[5..15], kind);
+            }
+            has_velocities = has_velocities || !part(&line, columns(VELOCITY, width)).is_empty();
+            for &(column, slot) in &others {
+                let field = match slot {
+                    Slot::Extra(_) => part(&line, columns(column, width)),
+                    _ => field(&line, column, width)?,
+                };
+                builder.put(slot, &line, field)?;
+            }
+        }
+        Ok(has_velocities)
+    }
+
+    /// Takes velocities out of a frame that has none.
+    fn without_velocities(&self, mut frame: ParticleFrame) -> Result<ParticleFrame, FileError> {
+        frame.columns.retain(|name| !VELOCITIES.contains(&name.as_str()));
+        frame.numbers.retain(|column| !VELOCITIES.contains(&column.name.as_str()));
+        match &self.needed {
+            Some(name) => {
+                let names = frame.columns.join(", ");
+                let message = format!("no column is named `{name}`; there are {names}");
+                Err(self.lines.ended(message).with_help("the file has no velocities"))
+            }
+            None => Ok(frame),
+        }
+    }
+}
+
+/// Bytes that each number of a position takes: what is from one decimal point to the next.
+fn width(line: &Line) -> Result<usize, FileError> {
+    let positions = line.bytes.get(POSITION..).unwrap_or_default();
+    let mut points = memchr_iter(b'.', positions);
+    let width = points.next().zip(points.next()).map(|(first, second)| second - first);
+    width.filter(|&width| width > 1 && line.bytes.is_ascii()).ok_or_else(|| {
+        let help = "the columns of a GRO file are fixed: positions begin at column 21";
+        line.whole("no position in this row").with_help(help)
+    })
+}
+
+/// The bytes that a column takes.
+fn columns(column: usize, width: usize) -> Range<usize> {
+    match column {
+        0..4 => 5 * column..5 * column + 5,
+        _ => POSITION + (column - 4) * width..POSITION + (column - 3) * width,
+    }
+}
+
+/// As many of these bytes as a line has, without blanks around them.
+fn part<'l>(line: &Line<'l>, range: Range<usize>) -> &'l [u8] {
+    let end = range.end.min(line.bytes.len());
+    line.bytes.get(range.start..end).unwrap_or_default().trim_ascii()
+}
+
+/// The content of a column that every row must have.
+fn field<'l>(line: &Line<'l>, column: usize, width: usize) -> Result<&'l [u8], FileError> {
+    let range = columns(column, width);
+    let field = part(line, range.clone());
+    if field.is_empty() {
+        let message = format!("no {} in this row", NAMES[column]);
+        let help = format!("it is expected at columns {} to {}", range.start + 1, range.end);
+        return Err(line.whole(message).with_help(help));
+    }
+    Ok(field)
+}
+
+/// A type from the name of a residue and that of an atom, five letters each.
+fn kind(key: &str) -> Kind {
+    let (residue, name) = key.split_at_checked(5).unwrap_or((key, ""));
+    let (residue, name) = (residue.trim(), name.trim());
+    let virtual_site = is_virtual_site(name, residue);
+    let element = if virtual_site { None } else { of_atom_name(name, residue) };
+    Kind { name: name.to_owned(), element, virtual_site }
+}
+
+/// The box: its lengths, and then, if it is tilted, the other components of its edges.
+fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
+    let mut values = [0.0; 9];
+    let mut fields = line.fields();
+    for (at, value) in values.iter_mut().enumerate() {
+        match fields.next() {
+            Some(field) => *value = line.number(field)?,
+            None if at == 3 => break,
+            None => {
+                let help = "the last line of a frame is its box: 3 or 9 numbers";
+                return Err(line.whole("no box").with_help(help));
+            }
+        }
+    }
+    let [ax, by, cz, ay, az, bx, bz, cx, cy] = values;
+    let vectors = [DVec3::new(ax, ay, az), DVec3::new(bx, by, bz), DVec3::new(cx, cy, cz)];
+    Ok(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked())
+}
+
+impl FrameReader for Gro {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let Some((title, count)) = self.head()? else { return Ok(None) };
+        let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
+        let mut builder = Builder::new(self.lines.path(), Format::Gro, &schema);
+        builder.declare(&["residue", "name"], &VELOCITIES);
+        let has_velocities = self.atoms(&mut builder, count)?;
+        let cell = if let Some(line) = self.lines.next()? {
+            cell(&line)?
+        } else {
+            builder.frame.warnings.push("the file ends before the box".to_owned());
+            None
+        };
+        let after = |key: &str| {
+            let text = title.rsplit_once(key)?.1.trim_start();
+            text.split_whitespace().next()
+        };
+        let time = after("t=").and_then(|time| number::parse(time.as_bytes()));
+        let step = after("step=").and_then(|step| step.parse().ok());
+        let mut frame = builder.finish();
+        if !has_velocities {
+            frame = self.without_velocities(frame)?;
+        }
+        let unit = LengthUnit::Nanometer;
+        Ok(Some(ParticleFrame { cell, title, step, time, unit, ..frame }))
+    }
+
+    fn skip(&mut self) -> Result<bool, FileError> {
+        let Some((_, count)) = self.head()? else { return Ok(false) };
+        let lines = count.saturating_add(1);
+        Ok(self.lines.skip(lines)? == lines)
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        let more = self.lines.next()?.is_some_and(|line| !line.is_blank());
+        self.lines.back();
+        Ok(more)
+    }
+}
+
+/// Whether these are the second and third line of a GRO file.
+pub(crate) fn is_gro(second: &[u8], third: &[u8]) -> bool {
+    let count = number::whole(second).is_some();
+    let residue = third.get(..5).is_some_and(|field| number::whole(field).is_some());
+    let width = third.get(POSITION..).and_then(|positions| {
+        let mut points = memchr_iter(b'.', positions);
+        let first = points.next()?;
+        Some(points.next()? - first)
+    });
+    let x = |width| third.get(POSITION..POSITION + width);
+    count && residue && width.and_then(x).is_some_and(|x| number::parse(x.trim_ascii()).is_some())
+}

@@ -1,0 +1,328 @@
+//! GSD of HOOMD-blue, schema `hoomd` (gsd.readthedocs.io): lengths are reduced, and every particle
+//! has a diameter.
+//!
+//! The crate `hoomd-gsd` asks for a newer compiler than this one does, so this is our own.
+
+mod file;
+
+pub(super) use file::MAGIC;
+
+use self::file::File;
+use super::aliases;
+use super::categories::Kind;
+use super::cell::Cell;
+use super::frame::{NumberColumn, ParticleFrame};
+use super::options::{Format, Radii, ReadOptions, Role, component_names};
+use super::reader::FrameReader;
+use super::schema::unknown_column;
+use super::source::Source;
+use super::undrawn::Undrawn;
+use crate::FileError;
+use glam::DVec3;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Chunks of particles that are no columns of numbers, or are [`COLUMNS`] under other names.
+const KNOWN: [&str; 7] = ["N", "types", "typeid", "position", "velocity", "diameter", "mass"];
+
+/// Names of columns that are always there.
+const COLUMNS: [&str; 10] = ["x", "y", "z", "diameter", "type", "mass", "charge", "vx", "vy", "vz"];
+
+/// Most numbers that each particle has in a chunk whose numbers are columns.
+const WIDEST: u64 = 64;
+
+/// A column of a chunk.
+struct Part {
+    name: String,
+    chunk: String,
+    /// The place of its number in a row, and how many numbers rows have.
+    at: usize,
+    width: u64,
+}
+
+/// Reads frames of a GSD file.
+pub(super) struct Gsd {
+    path: Arc<Path>,
+    file: File,
+    options: ReadOptions,
+    next: u64,
+}
+
+impl Gsd {
+    pub(super) fn new(source: Source, options: &ReadOptions) -> Result<Self, FileError> {
+        let path = source.path.clone();
+        let file = File::open(&path, source.into_file()?)?;
+        Ok(Self { path, file, options: options.clone(), next: 0 })
+    }
+
+    /// Columns of a chunk of particles in a frame, the numbers at each of some places of its rows, of
+    /// which there are as many as particles, of `width` numbers each; `None` if neither the frame nor the
+    /// first one has it.
+    fn particles(
+        &mut self,
+        name: &str,
+        count: u64,
+        width: u64,
+        places: &[usize],
+    ) -> Result<Option<Vec<Vec<f64>>>, FileError> {
+        let own = self.file.size(self.next, name).map(|size| (self.next, size));
+        // What does not change stands in the first frame alone.
+        let first = || self.file.size(0, name).filter(|size| size.0 == count).map(|size| (0, size));
+        let Some((frame, size)) = own.or_else(first) else { return Ok(None) };
+        if size != (count, width) {
+            let message = format!(
+                "{name} of frame {} is {} x {}, but there are {count} particles",
+                self.next, size.0, size.1
+            );
+            return Err(self.fault(message));
+        }
+        self.file.columns(frame, name, places)
+    }
+
+    /// The same of a chunk with one number for each particle.
+    fn values(&mut self, name: &str, count: u64) -> Result<Option<Vec<f64>>, FileError> {
+        Ok(self.particles(name, count, 1, &[0])?.and_then(|mut columns| columns.pop()))
+    }
+
+    /// Numbers that concern a whole frame, which may stand in the first frame alone.
+    fn whole(&mut self, name: &str) -> Result<Option<Vec<f64>>, FileError> {
+        let own = self.file.numbers(self.next, name)?;
+        match own {
+            Some(values) => Ok(Some(values)),
+            None => self.file.numbers(0, name),
+        }
+    }
+
+    /// A column by its name: one of [`COLUMNS`], or a chunk with one number for each particle.
+    fn column(&mut self, name: &str, count: u64) -> Result<Vec<f64>, FileError> {
+        let usual = match name {
+            "diameter" | "mass" => Some(1.0),
+            "charge" => Some(0.0),
+            _ => None,
+        };
+        if let Some(axis) = ["vx", "vy", "vz"].iter().position(|own| *own == name) {
+            let velocity = self.particles("particles/velocity", count, 3, &[axis])?;
+            let velocity = velocity.and_then(|mut columns| columns.pop());
+            return Ok(velocity.unwrap_or_else(|| vec![0.0; count as usize]));
+        }
+        let known = self.file.names().any(|own| own == name);
+        let chunk = if known { name.to_owned() } else { format!("particles/{name}") };
+        match (self.values(&chunk, count)?, usual) {
+            (Some(values), _) => Ok(values),
+            (None, Some(value)) => Ok(vec![value; count as usize]),
+            (None, None) => {
+                let more = self.more_columns(count).into_iter().map(|part| part.name);
+                let names: Vec<String> =
+                    COLUMNS.map(str::to_owned).into_iter().chain(more).collect();
+                Err(self.fault(unknown_column(name, names.iter().map(String::as_str))))
+            }
+        }
+    }
+
+    /// The columns of chunks with a row for each particle, besides [`COLUMNS`], by name.
+    fn more_columns(&self, count: u64) -> Vec<Part> {
+        let mut parts = Vec::new();
+        for chunk in self.file.names() {
+            let known = |name: &str| KNOWN.contains(&name) || COLUMNS.contains(&name);
+            let name = match chunk.strip_prefix("particles/") {
+                Some(name) if known(name) => continue,
+                Some(name) => name,
+                None if chunk.starts_with("log/particles/") => chunk,
+                None => continue,
+            };
+            let shape = self.file.shape(self.next, chunk).or_else(|| self.file.shape(0, chunk));
+            let Some((_, width)) = shape.filter(|&(rows, width)| rows == count && width <= WIDEST)
+            else {
+                continue;
+            };
+            for (at, name) in component_names(name, width as usize).into_iter().enumerate() {
+                parts.push(Part { name, chunk: chunk.to_owned(), at, width });
+            }
+        }
+        parts.sort_by(|a, b| (&a.chunk, a.at).cmp(&(&b.chunk, b.at)));
+        parts
+    }
+
+    /// The columns that the options ask for.
+    fn kept(&mut self, count: u64, parts: &[Part]) -> Result<Vec<NumberColumn>, FileError> {
+        let part = |name: &String| parts.iter().find(|part| part.name == *name);
+        let of_role = |name: &String| ["x", "y", "z", "type"].contains(&name.as_str());
+        let is_there = |name: &&String| {
+            let chunk = format!("particles/{name}");
+            let own = |own: &str| own == name.as_str() || own == chunk;
+            let plain = COLUMNS.contains(&name.as_str()) || self.file.names().any(own);
+            !of_role(name) && (plain || part(name).is_some())
+        };
+        let columns = &self.options.columns;
+        // Positions and types are kept in their role.
+        let aliased = columns.kept.iter().map(|name| {
+            let others = || aliases::of(name).map(str::to_owned);
+            let other = || others().find(|other| is_there(&other)).unwrap_or_else(|| name.clone());
+            if is_there(&name) || of_role(name) { name.clone() } else { other() }
+        });
+        let kept = aliased.filter(|name| !of_role(name));
+        let names: Vec<String> =
+            kept.chain(columns.wanted.iter().filter(is_there).cloned()).collect();
+        let all = COLUMNS.map(str::to_owned).into_iter();
+        let mut rest: Vec<String> = all.chain(parts.iter().map(|part| part.name.clone())).collect();
+        rest.retain(|name| !of_role(name) && !names.contains(name));
+        if columns.rest.is_none_or(|most| rest.len() as u64 * count > most as u64) {
+            rest.clear();
+        }
+        let mut column = |name: String| {
+            let values = match part(&name).filter(|part| part.width > 1) {
+                Some(Part { chunk, at, width, .. }) => {
+                    let columns = self.particles(chunk, count, *width, &[*at])?;
+                    columns.and_then(|mut columns| columns.pop()).unwrap_or_default()
+                }
+                None => self.column(&name, count)?,
+            };
+            Ok(NumberColumn { name, values })
+        };
+        let mut kept = names.into_iter().map(&mut column).collect::<Result<Vec<_>, FileError>>()?;
+        // Not asked for by name, so that a damaged one is no error.
+        kept.extend(rest.into_iter().filter_map(|name| column(name).ok()));
+        Ok(kept)
+    }
+
+    fn kinds(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
+        let own = self.file.texts(self.next, "particles/types")?;
+        let types = match own {
+            Some(types) => Some(types),
+            None => self.file.texts(0, "particles/types")?,
+        };
+        let types = types.unwrap_or_else(|| vec!["A".to_owned()]);
+        let count = frame.len() as u64;
+        let codes = self.values("particles/typeid", count)?;
+        let unknown = types.len() as f64;
+        // Names of types are no elements: `C` is the third.
+        let kind = |name| Kind { name, element: None, virtual_site: false };
+        frame.kinds.table = types.into_iter().map(kind).collect();
+        for row in 0..frame.len() {
+            let code = codes.as_ref().map_or(0.0, |codes| codes[row]);
+            if code >= unknown {
+                let message = format!("particle {row} is of type {code}, but there are {unknown}");
+                return Err(self.fault(message));
+            }
+            frame.kinds.codes.push(code as u32);
+        }
+        Ok(())
+    }
+
+    fn radius(&mut self, count: u64) -> Result<Vec<f64>, FileError> {
+        let mut role = self.options.columns.roles.iter();
+        let role = role.find(|(role, _)| matches!(role, Role::Radius | Role::Diameter)).cloned();
+        let (name, factor) = match (&self.options.radii, role) {
+            (Radii::Column(name), _) => (name.clone(), 1.0),
+            (_, Some((Role::Radius, name))) => (name, 1.0),
+            (_, Some((_, name))) => (name, 0.5),
+            _ => ("diameter".to_owned(), 0.5),
+        };
+        let mut radius = self.column(&name, count)?;
+        for radius in &mut radius {
+            *radius *= factor;
+        }
+        Ok(radius)
+    }
+
+    fn fault(&self, message: impl Into<String>) -> FileError {
+        FileError::whole_file(&self.path, message)
+    }
+
+    /// Says what the frame has besides spheres.
+    fn add_undrawn(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
+        let bonds = self.whole("bonds/N")?.and_then(|count| count.first().copied());
+        frame.add_undrawn(Undrawn::Bonds, bonds.unwrap_or(0.0) as u64);
+        let shapes = match self.file.texts(self.next, "particles/type_shapes")? {
+            Some(shapes) => Some(shapes),
+            None => self.file.texts(0, "particles/type_shapes")?,
+        };
+        let shapes: Vec<bool> =
+            shapes.unwrap_or_default().iter().map(|shape| is_shape(shape)).collect();
+        let codes = &frame.kinds.codes;
+        let rows = (0..codes.len())
+            .filter(|&row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default());
+        let count = rows.count() as u64;
+        frame.add_undrawn(Undrawn::Shapes, count);
+        let turned = |frame| self.file.size(frame, "particles/orientation").is_some();
+        if turned(self.next) || turned(0) {
+            frame.add_undrawn(Undrawn::Orientations, frame.len() as u64);
+        }
+        Ok(())
+    }
+
+    fn frame(&mut self) -> Result<ParticleFrame, FileError> {
+        let mut frame = ParticleFrame { format: Format::Gsd, ..ParticleFrame::default() };
+        let count = self.whole("particles/N")?.and_then(|count| count.first().copied());
+        let count = count.unwrap_or(0.0) as u64;
+        if count == 0 {
+            return Ok(frame);
+        }
+        let position = self.particles("particles/position", count, 3, &[0, 1, 2])?;
+        let Some(Ok([x, y, z])) = position.map(<[Vec<f64>; 3]>::try_from) else {
+            return Err(self.fault(format!("frame {} has no positions", self.next)));
+        };
+        (frame.x, frame.y, frame.z) = (x, y, z);
+        self.kinds(&mut frame)?;
+        frame.radius = self.radius(count)?;
+        let parts = self.more_columns(count);
+        frame.numbers = self.kept(count, &parts)?;
+        let step = self.whole("configuration/step")?.and_then(|step| step.first().copied());
+        frame.step = Some(step.unwrap_or(0.0) as i64);
+        frame.cell = self.whole("configuration/box")?.and_then(|edges| cell(&edges));
+        self.add_undrawn(&mut frame)?;
+        frame.columns = COLUMNS.map(str::to_owned).into();
+        frame.columns.extend(parts.into_iter().map(|part| part.name));
+        Ok(frame)
+    }
+}
+
+/// Returns whether the description of a type's shape, in JSON, is of another shape than a sphere.
+fn is_shape(text: &str) -> bool {
+    let kind = text.split_once("\"type\"").map(|(_, kind)| kind.trim_start_matches([':', ' ']));
+    kind.is_some_and(|kind| !kind.starts_with("\"Sphere\""))
+}
+
+/// A box of HOOMD-blue, around the origin: lengths along the axes, and tilts as factors on them.
+pub(super) fn cell(edges: &[f64]) -> Option<Cell> {
+    let &[x, y, z, xy, xz, yz] = edges else { return None };
+    let a = DVec3::new(x, 0.0, 0.0);
+    let b = DVec3::new(xy * y, y, 0.0);
+    let c = DVec3::new(xz * z, yz * z, z);
+    Cell { origin: (a + b + c) * -0.5, vectors: [a, b, c], periodic: [true; 3] }.checked()
+}
+
+impl FrameReader for Gsd {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        if self.next >= self.file.frames() {
+            return Ok(None);
+        }
+        let frame = self.frame()?;
+        self.next += 1;
+        Ok(Some(frame))
+    }
+
+    fn skip(&mut self) -> Result<bool, FileError> {
+        let there = self.next < self.file.frames();
+        self.next += 1;
+        Ok(there)
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        Ok(self.next < self.file.frames())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_lie_around_the_origin() {
+        let cell = cell(&[2.0, 4.0, 8.0, 0.5, 0.25, -0.5]).expect("a box");
+        assert_eq!(cell.vectors[1], DVec3::new(2.0, 4.0, 0.0));
+        assert_eq!(cell.vectors[2], DVec3::new(2.0, -4.0, 8.0));
+        assert_eq!(cell.cartesian([0.5; 3]), DVec3::ZERO);
+        assert_eq!(super::cell(&[1.0; 5]), None);
+    }
+}

@@ -1,0 +1,391 @@
+//! LAMMPS data files: a header, and sections in any order (<https://docs.lammps.org/read_data.html>).
+
+use super::bounds::tilted;
+use super::style::{self, Chosen, Facts, Layout, Sample};
+use super::unit;
+use super::velocities::Velocities;
+use crate::FileError;
+use crate::builder::Builder;
+use crate::cell::Cell;
+use crate::element::Element;
+use crate::fields::Fields;
+use crate::frame::{LengthUnit, ParticleFrame};
+use crate::lines::{Line, Lines};
+use crate::naming::{forget_elements, kind};
+use crate::number;
+use crate::options::{Format, ReadOptions, Role};
+use crate::reader::FrameReader;
+use crate::schema::{Naming, Schema};
+use crate::source::Source;
+use glam::DVec3;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Reads the one frame of a data file.
+pub(in super::super) struct Data {
+    lines: Lines,
+    options: ReadOptions,
+    done: bool,
+}
+
+/// What the file says besides its atoms.
+#[derive(Default)]
+struct Head {
+    title: String,
+    atoms: u64,
+    /// Number of atom types; 0 if the header does not say.
+    types: u64,
+    /// Names of types, by their numbers.
+    labels: HashMap<String, String>,
+    /// Numbers of bonds, ellipsoids and the like.
+    counts: HashMap<&'static str, u64>,
+    low: [f64; 3],
+    high: [f64; 3],
+    tilt: [f64; 3],
+    /// Vectors and origin of a general triclinic box.
+    general: [Option<DVec3>; 4],
+    has_box: bool,
+    /// Masses of types, by the types' names.
+    masses: HashMap<String, f64>,
+}
+
+impl Data {
+    pub(in super::super) fn new(source: Source, options: &ReadOptions) -> Self {
+        Self { lines: Lines::new(source), options: options.clone(), done: false }
+    }
+
+    /// The next line that is no comment and not blank.
+    fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, FileError> {
+        while let Some(line) = lines.next()? {
+            if content(line.bytes).is_some() {
+                lines.back();
+                break;
+            }
+        }
+        lines.next()
+    }
+
+    /// Whether the next line begins a section, or the file ends.
+    fn at_section(&mut self) -> Result<bool, FileError> {
+        let section = Self::line(&mut self.lines)?.is_none_or(|line| is_section(line.bytes));
+        self.lines.back();
+        Ok(section)
+    }
+
+    /// Passes over the rows of a section, and counts them. A body takes several: its id and how many
+    /// whole and other numbers follow, and these numbers.
+    fn pass(&mut self, bodies: bool) -> Result<u64, FileError> {
+        let (mut count, mut numbers) = (0, 0);
+        while !self.at_section()? {
+            let Some(line) = Self::line(&mut self.lines)? else { break };
+            let fields = Fields::blanks(content(line.bytes).unwrap_or_default());
+            if !bodies || numbers == 0 {
+                count += 1;
+                let counts = fields.skip(1).take(2).filter_map(number::whole);
+                numbers = counts.fold(0, u64::saturating_add);
+            } else {
+                numbers = numbers.saturating_sub(fields.count() as u64);
+            }
+        }
+        Ok(count)
+    }
+
+    fn masses(&mut self, head: &mut Head) -> Result<(), FileError> {
+        self.pairs(|line, name, mass| {
+            head.masses.insert(name, line.number(mass)?);
+            Ok(())
+        })
+    }
+
+    fn labels(&mut self, head: &mut Head) -> Result<(), FileError> {
+        self.pairs(|_, number, label| {
+            head.labels.insert(number, String::from_utf8_lossy(label).into_owned());
+            Ok(())
+        })
+    }
+
+    /// Takes the first two fields of each row of a section.
+    fn pairs(
+        &mut self,
+        mut take: impl FnMut(&Line, String, &[u8]) -> Result<(), FileError>,
+    ) -> Result<(), FileError> {
+        while !self.at_section()? {
+            let Some(line) = Self::line(&mut self.lines)? else { break };
+            let mut fields = line.fields();
+            if let (Some(first), Some(second)) = (fields.next(), fields.next()) {
+                take(&line, String::from_utf8_lossy(first).into_owned(), second)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the section `Atoms`, after whose name there may be a `comment`.
+    fn atoms(&mut self, head: &Head, comment: &str) -> Result<ParticleFrame, FileError> {
+        let (layout, warning) = self.layout(head, comment)?;
+        let known = [(Role::Kind, "type")];
+        let schema = Schema::with_roles(layout.columns, &self.options, &known)
+            .map_err(|message| self.lines.ended(message))?;
+        let path = self.lines.path().clone();
+        let mut builder = Builder::new(&path, Format::LammpsData, &Arc::new(schema));
+        let is_doubtful = warning.is_some();
+        builder.frame.warnings.extend(warning);
+        for atom in 0..head.atoms {
+            let Some(line) = Self::line(&mut self.lines)? else {
+                let message = format!("the file ends after {atom} of {} atoms", head.atoms);
+                return Err(self.lines.ended(message).with_help("the file is cut off"));
+            };
+            if is_section(line.bytes) {
+                let message = format!("the section ends after {atom} of {} atoms", head.atoms);
+                return Err(line.whole(message).with_help("correct the number in the header"));
+            }
+            builder.row(&line, line.fields())?;
+        }
+        let mut frame = builder.finish();
+        if !is_doubtful {
+            frame.warnings.extend(head.unknown_type(&frame));
+        }
+        Ok(frame)
+    }
+
+    /// The columns of the rows that follow, and a warning if they may be others.
+    fn layout(
+        &mut self,
+        head: &Head,
+        comment: &str,
+    ) -> Result<(Layout, Option<String>), FileError> {
+        let sample = Sample::new(self.peek()?);
+        let facts = head.facts();
+        if let Some(style) = &self.options.atom_style {
+            let Some(Chosen { layout, misfit, .. }) = facts.named(style, &sample) else {
+                let error = self.lines.ended(format!("the atom style `{style}` is not known"));
+                return Err(error.with_help(format!("styles are {}", style::names().join(", "))));
+            };
+            let warning = misfit.map(|reason| {
+                format!("the atom style `{style}` does not fit the rows of `Atoms`: {reason}")
+            });
+            return Ok((layout, warning));
+        }
+        let named = facts.named(comment.trim(), &sample);
+        if let Some(Chosen { layout, misfit: None, .. }) = named {
+            return Ok((layout, None));
+        }
+        let guess = facts.guess(&sample);
+        match (named, guess) {
+            (Some(Chosen { misfit: Some(reason), .. }), Some(guess)) => {
+                let style = guess.layout.style.clone();
+                let warning = format!(
+                    "its rows do not fit the atom style of `Atoms #{comment}` ({reason}), and are \
+                     read as `{style}`; name another style with --atom-style"
+                );
+                Ok((guess.layout, Some(warning)))
+            }
+            (Some(Chosen { layout, misfit: Some(reason), .. }), None)
+                if sample.width() >= layout.columns.len() =>
+            {
+                let warning = format!(
+                    "its rows do not fit the atom style of `Atoms #{comment}`: {reason}; name \
+                     another style with --atom-style"
+                );
+                Ok((layout, Some(warning)))
+            }
+            (_, Some(guess)) => {
+                let warning = guess.warning();
+                Ok((guess.layout, Some(warning)))
+            }
+            (named, None) => {
+                let why = named.and_then(|named| named.misfit).unwrap_or_else(|| {
+                    format!("its rows of {} columns fit no style", sample.width())
+                });
+                let message = format!("the atom style of the section `Atoms` is not known: {why}");
+                let names = style::names().join(", ");
+                let help = format!("name it with --atom-style, which takes {names}");
+                Err(self.lines.ended(message).with_help(help))
+            }
+        }
+    }
+
+    /// The fields of rows that follow, as many as a block has; they come again.
+    fn peek(&mut self) -> Result<Vec<Vec<String>>, FileError> {
+        let text = self.lines.ahead()?;
+        let complete = memchr::memrchr(b'\n', text).map_or(text, |newline| &text[..newline]);
+        let rows = complete.split(|&byte| byte == b'\n').filter_map(content);
+        let rows = rows.take_while(|row| !is_section(row));
+        let fields = |row| Fields::blanks(row).map(|field| String::from_utf8_lossy(field).into());
+        Ok(rows.map(|row| fields(row).collect()).collect())
+    }
+}
+
+/// A line without its comment; `None` if there is nothing else.
+fn content(line: &[u8]) -> Option<&[u8]> {
+    let end = memchr::memchr(b'#', line).unwrap_or(line.len());
+    Some(line[..end].trim_ascii()).filter(|content| !content.is_empty())
+}
+
+/// Whether a line is the name of a section: a word, where others begin with a number or a label.
+fn is_section(line: &[u8]) -> bool {
+    let content = content(line).unwrap_or_default();
+    content.first().is_some_and(u8::is_ascii_uppercase)
+        && content.iter().all(|&byte| byte.is_ascii_alphabetic() || byte == b' ' || byte == b'/')
+}
+
+impl FrameReader for Data {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        if std::mem::replace(&mut self.done, true) {
+            return Ok(None);
+        }
+        let Some(title) = self.lines.next()? else { return Ok(None) };
+        let mut head = Head { title: title.text().trim().to_owned(), ..Head::default() };
+        let mut velocities = Velocities::take(&mut self.options);
+        let mut frame = None;
+        let mut undrawn = Vec::new();
+        while let Some(line) = Self::line(&mut self.lines)? {
+            if !is_section(line.bytes) {
+                head.read(&line)?;
+                continue;
+            }
+            let text = line.text().into_owned();
+            let (name, comment) = text.split_once('#').unwrap_or((&text, ""));
+            match name.trim() {
+                "Masses" => self.masses(&mut head)?,
+                "Atom Type Labels" => self.labels(&mut head)?,
+                "Atoms" => frame = Some(self.atoms(&head, comment)?),
+                "Velocities" if velocities.find(head.atoms) => {
+                    while !self.at_section()? {
+                        let line = Self::line(&mut self.lines)?;
+                        line.iter().try_for_each(|line| velocities.row(line))?;
+                    }
+                }
+                section => {
+                    let count = self.pass(section == "Bodies")?;
+                    undrawn.extend(super::undrawn(section).map(|kind| (kind, count)));
+                }
+            }
+        }
+        let mut frame = frame.ok_or_else(|| {
+            self.lines.ended("no section `Atoms`").with_help("the file is cut off, or no data file")
+        })?;
+        velocities.complete(&mut frame, &self.lines)?;
+        for (kind, count) in undrawn {
+            frame.add_undrawn(kind, count);
+        }
+        Ok(Some(head.complete(frame)))
+    }
+}
+
+impl Head {
+    /// A line of the header: numbers, and what they are.
+    fn read(&mut self, line: &Line) -> Result<(), FileError> {
+        let words: Vec<&[u8]> = line.fields().take_while(|word| !word.starts_with(b"#")).collect();
+        let first = words.iter().position(|word| number::parse(word).is_none());
+        let (numbers, names) = words.split_at(first.unwrap_or(words.len()));
+        let values = || numbers.iter().map(|field| number::parse(field).unwrap_or(0.0));
+        let vector = |at: usize| {
+            let value = |axis: usize| values().nth(at + axis).unwrap_or(f64::NAN);
+            DVec3::new(value(0), value(1), value(2))
+        };
+        let pair = |at: usize| [vector(0)[0], vector(0)[1]][at];
+        match names {
+            [b"atoms"] => self.atoms = line.whole_number(numbers.first().unwrap_or(&&b""[..]))?,
+            [b"atom", b"types"] => self.types = vector(0)[0] as u64,
+            [b"xlo", b"xhi"] => {
+                (self.low[0], self.high[0], self.has_box) = (pair(0), pair(1), true);
+            }
+            [b"ylo", b"yhi"] => (self.low[1], self.high[1]) = (pair(0), pair(1)),
+            [b"zlo", b"zhi"] => (self.low[2], self.high[2]) = (pair(0), pair(1)),
+            [b"xy", b"xz", b"yz"] => self.tilt = vector(0).to_array(),
+            [b"avec"] => self.general[0] = Some(vector(0)),
+            [b"bvec"] => self.general[1] = Some(vector(0)),
+            [b"cvec"] => self.general[2] = Some(vector(0)),
+            [b"abc", b"origin"] => self.general[3] = Some(vector(0)),
+            [thing] => {
+                let thing = style::counted().find(|counted| counted.as_bytes() == *thing);
+                let count = numbers.first().and_then(|count| number::whole(count));
+                self.counts.extend(thing.zip(count));
+            }
+            _ => (),
+        }
+        Ok(())
+    }
+
+    /// Returns the properties that rows of atoms must agree with.
+    fn facts(&self) -> Facts<'_> {
+        Facts {
+            types: self.types,
+            labels: self.labels.values().map(String::as_str).collect(),
+            counts: self.counts.clone(),
+            cell: self.cell(),
+        }
+    }
+
+    /// A warning of the first type that the header does not know.
+    fn unknown_type(&self, frame: &ParticleFrame) -> Option<String> {
+        let mut numbers =
+            frame.kinds.table.iter().filter_map(|kind| number::whole(kind.name.as_bytes()));
+        let facts = self.facts();
+        let unknown = numbers.find(|&number| !facts.has_type(number))?;
+        Some(format!(
+            "an atom is of type {unknown}, but the header has {} atom types; if the columns are \
+             those of another atom style, name it with --atom-style",
+            self.types
+        ))
+    }
+
+    /// The name of a type, by its number or name.
+    fn label<'h>(&'h self, kind: &'h str) -> &'h str {
+        self.labels.get(kind).map_or(kind, String::as_str)
+    }
+
+    fn cell(&self) -> Option<Cell> {
+        if let [Some(a), Some(b), Some(c), origin] = self.general {
+            let origin = origin.unwrap_or(DVec3::ZERO);
+            return Cell { origin, vectors: [a, b, c], periodic: [true; 3] }.checked();
+        }
+        self.has_box.then(|| tilted(self.low, self.high, self.tilt)).and_then(Cell::checked)
+    }
+
+    /// Whether the masses are those of elements: all of them, and not all that of hydrogen, which
+    /// is the usual mass of particles that are no atoms.
+    fn has_elements(&self) -> bool {
+        !self.masses.is_empty()
+            && self.masses.values().all(|&mass| Element::from_mass(mass).is_some())
+            && self.masses.values().any(|&mass| mass > 2.5)
+    }
+
+    fn complete(self, mut frame: ParticleFrame) -> ParticleFrame {
+        let units = self.title.split_once("units = ").map(|(_, units)| units);
+        frame.unit = unit(units.and_then(|units| units.split([',', ' ']).next()).unwrap_or(""));
+        if !self.labels.is_empty() {
+            frame.kinds.rename(|name| kind(self.label(name), Naming::Types));
+            forget_elements(&mut frame.kinds, Naming::Types);
+        }
+        if self.has_elements() {
+            let masses = self.masses.iter().map(|(name, mass)| (self.label(name), *mass));
+            let masses: HashMap<&str, f64> = masses.collect();
+            for kind in &mut frame.kinds.table {
+                let mass = masses.get(kind.name.as_str());
+                kind.element = mass.and_then(|&mass| Element::from_mass(mass));
+            }
+            if frame.unit == LengthUnit::Unknown {
+                frame.unit = LengthUnit::Angstrom;
+            }
+        }
+        frame.cell = self.cell();
+        frame.title = self.title;
+        frame
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sections_begin_with_a_capital_and_have_letters_alone() {
+        for line in ["Atoms", " Atoms # full", "Atom Type Labels", "PairIJ Coeffs", "Types/kk"] {
+            assert!(is_section(line.as_bytes()), "{line}");
+        }
+        for line in ["", "# Atoms", "atoms", "xlo xhi", "C1 12.011", "O-2", "1 Atoms", "2 atoms"] {
+            assert!(!is_section(line.as_bytes()), "{line}");
+        }
+    }
+}

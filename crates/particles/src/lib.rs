@@ -1,0 +1,108 @@
+//! Readers for files of particles: a file goes in, and columns, a periodic cell and frames come out.
+//!
+//! ```text
+//! file or standard input -> unpacked, by how it begins                  source
+//!    -> format, by how the content begins                               sniff
+//!    -> lines -> fields -> roles, by the names of columns               lines, fields, schema
+//!    -> ParticleFrame, frame by frame, in columns, in the file's units  one file per format
+//! ```
+//!
+//! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
+//! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, packed
+//! with gzip, bzip2, xz or zstd or not.
+//!
+//! Every reader streams: it keeps columns, never the file, and trusts no count in the file. Anything
+//! that should be a number and is not is an error with its line. To add a format, add it to [`Format`],
+//! a sign by which `sniff` recognizes it, and a `FrameReader`.
+//!
+//! ```
+//! use spherule_particles::{ReadOptions, read_frame};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("water.xyz");
+//! std::fs::write(&path, "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n")?;
+//! let frame = read_frame(&path, &ReadOptions::default())?;
+//! assert_eq!((frame.len(), frame.x[1]), (3, 0.96));
+//! assert_eq!(frame.kinds.kind(0).and_then(|kind| kind.element).map(|e| e.symbol()), Some("O"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#![forbid(unsafe_code)]
+
+mod aliases;
+mod alternates;
+mod builder;
+mod categories;
+mod cell;
+mod cif;
+mod csv;
+mod element;
+mod error;
+mod extra;
+mod fields;
+mod foreign;
+mod frame;
+mod gro;
+mod gsd;
+mod header;
+mod lammps;
+mod line;
+mod lines;
+mod memory;
+mod naming;
+mod number;
+mod numpy;
+mod options;
+mod pdb;
+mod ply;
+mod progress;
+mod reader;
+mod scalar;
+mod schema;
+mod shared_names;
+mod sniff;
+mod source;
+mod srgb;
+mod suggest;
+mod text;
+mod undrawn;
+mod units;
+mod utf16;
+mod xyz;
+
+pub use categories::{Codes, Kind, Kinds, TextColumn};
+pub use cell::Cell;
+pub use element::Element;
+pub use error::{FileError, Place};
+pub use frame::{LengthUnit, NumberColumn, ParticleFrame};
+pub use options::{Columns, Format, FrameChoice, Radii, ReadOptions, Role};
+pub use progress::ReadProgress;
+pub use reader::{FrameCount, Frames, count_frames, read_frame};
+pub use shared_names::SharedNames;
+
+/// A linear RGB triple with the primaries of sRGB.
+pub type Rgb = glam::Vec3;
+
+/// Maximum number of particles in a frame: the last few numbers of 32 bits have other meanings.
+pub const MAX_PARTICLES: u64 = (1 << 32) - 17;
+
+/// What the renderer needs beside the public interface. Anything here may change in any release.
+#[doc(hidden)]
+pub mod internals {
+    /// Names of columns that stand for each other.
+    pub mod aliases {
+        pub use crate::aliases::*;
+    }
+    pub use crate::categories::retain;
+    pub use crate::error::{clipped, listed};
+    /// The memory that is left.
+    pub mod memory {
+        pub use crate::memory::*;
+    }
+    pub use crate::schema::unknown_column;
+    pub use crate::srgb::{linear_from_srgb, srgb};
+    /// Words that misspelled ones may stand for.
+    pub mod suggest {
+        pub use crate::suggest::*;
+    }
+}

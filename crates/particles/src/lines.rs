@@ -1,0 +1,297 @@
+//! The lines of a text file, cut from large blocks.
+
+pub(crate) use super::line::Line;
+use super::source::Source;
+use crate::FileError;
+use memchr::{memchr, memchr_iter};
+use std::io::{self, Read};
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Longest line in bytes: a longer one is a sign that the file is not text.
+pub(crate) const LONGEST: usize = 1 << 20;
+
+/// How much is read at once; the rest of a line moves to the front before each read.
+const BLOCK: usize = 1 << 18;
+
+/// A file's lines, one at a time.
+pub(crate) struct Lines {
+    path: Arc<Path>,
+    reader: Box<dyn Read + Send>,
+    /// What is read and not yet passed is `start..end`.
+    buffer: Vec<u8>,
+    start: usize,
+    end: usize,
+    ended: bool,
+    number: usize,
+    /// Where the last line began, and whether it ended with a carriage return.
+    last: usize,
+    returned: bool,
+}
+
+impl Lines {
+    pub(crate) fn new(source: Source) -> Self {
+        let Source { path, mut head, reader, .. } = source;
+        if head.starts_with(b"\xEF\xBB\xBF") {
+            head.drain(..3);
+        }
+        let end = head.len();
+        Self {
+            path,
+            reader,
+            buffer: head,
+            start: 0,
+            end,
+            ended: false,
+            number: 0,
+            last: 0,
+            returned: false,
+        }
+    }
+
+    /// The next line, if there is one.
+    pub(crate) fn next(&mut self) -> Result<Option<Line<'_>>, FileError> {
+        self.number += 1;
+        let Some(mut range) = self.find()? else {
+            self.last = self.start;
+            return Ok(None);
+        };
+        self.last = range.start;
+        self.returned = self.buffer[range.clone()].last() == Some(&b'\r');
+        range.end -= usize::from(self.returned);
+        Ok(Some(Line::new(&self.path, self.number, &self.buffer[range])))
+    }
+
+    /// How the line that came last ended.
+    pub(crate) fn ending(&self) -> &'static [u8] {
+        if self.returned { b"\r\n" } else { b"\n" }
+    }
+
+    /// Gives the line that came last once more.
+    pub(crate) fn back(&mut self) {
+        self.start = self.last;
+        self.number -= 1;
+    }
+
+    /// Passes over blank lines; returns whether any other line follows, which is not passed.
+    pub(crate) fn more(&mut self) -> Result<bool, FileError> {
+        while let Some(line) = self.next()? {
+            if !line.is_blank() {
+                self.back();
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// What follows, a block or less, which is not passed.
+    pub(crate) fn ahead(&mut self) -> Result<&[u8], FileError> {
+        while self.end - self.start < BLOCK / 4 && self.fill()? {}
+        Ok(&self.buffer[self.start..self.end])
+    }
+
+    /// Passes over lines without a look at them; how many there were, of so many.
+    pub(crate) fn skip(&mut self, count: u64) -> Result<u64, FileError> {
+        let mut passed = 0;
+        while passed < count {
+            let rest = &self.buffer[self.start..self.end];
+            let wanted = usize::try_from(count - passed - 1).unwrap_or(usize::MAX);
+            if let Some(newline) = memchr_iter(b'\n', rest).nth(wanted) {
+                self.start += newline + 1;
+                passed = count;
+                break;
+            }
+            passed += memchr_iter(b'\n', rest).count() as u64;
+            let newline = memchr::memrchr(b'\n', rest).map_or(0, |newline| newline + 1);
+            self.start += newline;
+            if !self.fill()? {
+                passed += u64::from(self.start < self.end);
+                self.start = self.end;
+                break;
+            }
+        }
+        self.number += passed as usize;
+        Ok(passed)
+    }
+
+    /// The bytes of the next line, and past its end.
+    fn find(&mut self) -> Result<Option<Range<usize>>, FileError> {
+        let mut looked = 0;
+        loop {
+            let rest = &self.buffer[self.start..self.end];
+            if let Some(newline) = memchr(b'\n', &rest[looked..]) {
+                let line = self.start..self.start + looked + newline;
+                self.start = line.end + 1;
+                return Ok(Some(line));
+            }
+            looked = rest.len();
+            if !self.fill()? {
+                let line = self.start..self.end;
+                self.start = self.end;
+                return Ok(Some(line).filter(|line| !line.is_empty()));
+            }
+        }
+    }
+
+    /// Reads more behind what is left; whether there is more.
+    fn fill(&mut self) -> Result<bool, FileError> {
+        if self.ended {
+            return Ok(false);
+        }
+        if self.end - self.start >= LONGEST {
+            let message = format!("line {} is longer than {LONGEST} bytes", self.number.max(1));
+            return Err(FileError::whole_file(&self.path, message)
+                .with_help("a file of particles has one line for each particle"));
+        }
+        self.buffer.copy_within(self.start..self.end, 0);
+        (self.start, self.end) = (0, self.end - self.start);
+        if self.buffer.len() < self.end + BLOCK {
+            self.buffer.resize(self.end + BLOCK, 0);
+        }
+        let length = loop {
+            match self.reader.read(&mut self.buffer[self.end..]) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => (),
+                outcome => break outcome.map_err(|error| self.failed(&error))?,
+            }
+        };
+        self.end += length;
+        self.ended = length == 0;
+        Ok(!self.ended)
+    }
+
+    /// An error after the last line.
+    pub(crate) fn ended(&self, message: impl Into<String>) -> FileError {
+        let error = FileError::at(&self.path, "", self.number, 0..0, message);
+        FileError { cut_off: true, ..error }
+    }
+
+    fn failed(&self, error: &io::Error) -> FileError {
+        let message = format!("cannot be read at line {}: {error}", self.number.max(1));
+        let cut_off = error.kind() == io::ErrorKind::UnexpectedEof;
+        FileError { cut_off, ..FileError::whole_file(&self.path, message) }
+    }
+
+    pub(crate) fn path(&self) -> &Arc<Path> {
+        &self.path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ReadProgress;
+
+    /// Gives a few bytes at a time, as pipes do.
+    struct Drops(Vec<u8>, usize);
+
+    impl Read for Drops {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            let length = self.1.min(self.0.len()).min(buffer.len());
+            buffer[..length].copy_from_slice(&self.0[..length]);
+            self.0.drain(..length);
+            Ok(length)
+        }
+    }
+
+    fn lines(text: &str, drop: usize) -> Lines {
+        let reader = Box::new(Drops(text.as_bytes().to_vec(), drop));
+        let progress = ReadProgress::default();
+        Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader, progress })
+    }
+
+    #[test]
+    fn lines_are_the_same_however_blocks_fall() {
+        let text = "a\r\n\nbcd\n\u{e4}\nlast";
+        for drop in 1..12 {
+            let mut lines = lines(text, drop);
+            let mut all = Vec::new();
+            while let Some(line) = lines.next().expect("lines") {
+                all.push((line.number_in_file(), line.text().into_owned()));
+            }
+            let expected = ["a", "", "bcd", "\u{e4}", "last"].map(str::to_owned);
+            assert_eq!(all, (1..).zip(expected).collect::<Vec<_>>(), "{drop}");
+            assert!(lines.next().expect("no fault").is_none());
+        }
+    }
+
+    #[test]
+    fn skipping_is_reading_without_a_look() {
+        for drop in 1..8 {
+            for count in 0..7 {
+                let mut lines = lines("1\n22\n333\n4444\n5", drop);
+                assert_eq!(lines.skip(count).expect("lines"), count.min(5));
+                let next = lines.next().expect("a line");
+                let next = next.map(|line| (line.text().into_owned(), line.number_in_file()));
+                let expected = ["1", "22", "333", "4444", "5"].get(count as usize);
+                let expected = expected.map(|text| ((*text).to_owned(), count as usize + 1));
+                assert_eq!(next, expected, "{drop} {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_given_back_comes_again() {
+        let mut lines = lines("one\ntwo\n", 3);
+        for _ in 0..3 {
+            assert_eq!(lines.next().expect("a line").map(|line| line.number_in_file()), Some(1));
+            lines.back();
+        }
+        assert_eq!(lines.skip(9).expect("lines"), 2);
+    }
+
+    #[test]
+    fn lines_without_end_are_faults() {
+        let mut lines = lines(&"1".repeat(LONGEST + BLOCK), BLOCK);
+        let error = lines.next().err().expect("a fault");
+        assert!(error.message.contains("longer than"), "{error}");
+        for (length, fits) in [(LONGEST - 1, true), (LONGEST, false)] {
+            let mut lines = self::lines(&("1".repeat(length) + "\n"), BLOCK);
+            let read = lines.next().ok().flatten().map(|line| line.bytes.len());
+            assert_eq!(read, fits.then_some(length));
+        }
+    }
+
+    #[test]
+    fn a_part_of_what_follows_is_seen_ahead() {
+        let text = "1".repeat(60_000) + "\n" + &"2".repeat(200_000);
+        let mut long = lines(&text, 70_000);
+        assert!(long.ahead().expect("bytes").len() >= BLOCK / 4);
+        assert_eq!(long.next().expect("a line").map(|line| line.bytes.len()), Some(60_000));
+        let ahead = long.ahead().expect("bytes");
+        assert!(ahead.len() >= BLOCK / 4 && ahead.iter().all(|byte| *byte == b'2'));
+        assert_eq!(long.next().expect("a line").map(|line| line.bytes.len()), Some(200_000));
+        assert_eq!(lines("a\nb", 1).ahead().expect("bytes"), b"a\nb");
+    }
+
+    /// Gives these bytes, then errors of these kinds.
+    struct Fails(&'static [u8], Vec<io::ErrorKind>);
+
+    impl Read for Fails {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            if let Some(kind) = self.1.pop() {
+                return Err(kind.into());
+            }
+            self.0.read(buffer)
+        }
+    }
+
+    fn failing(kinds: &[io::ErrorKind]) -> Lines {
+        let reader = Box::new(Fails(b"one\ntwo\n", kinds.to_vec()));
+        let progress = ReadProgress::default();
+        Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader, progress })
+    }
+
+    #[test]
+    fn reads_go_on_after_a_signal_and_other_faults_are_told() {
+        let mut lines = failing(&[io::ErrorKind::Interrupted; 3]);
+        assert_eq!(lines.skip(9).expect("lines"), 2);
+        for (kind, cut_off) in
+            [(io::ErrorKind::UnexpectedEof, true), (io::ErrorKind::PermissionDenied, false)]
+        {
+            let error = failing(&[kind]).next().err().expect("a fault");
+            assert_eq!(error.cut_off, cut_off, "{error}");
+        }
+        assert!(failing(&[]).ended("too short").cut_off);
+    }
+}

@@ -1,0 +1,38 @@
+//! From names of types to elements.
+
+use super::categories::{Kind, Kinds};
+use super::element::{Element, is_virtual_site};
+use super::number;
+use super::schema::Naming;
+
+/// Share of particles without an element from which on names are not taken for elements.
+const NO_SYMBOLS: f64 = 0.5;
+const NO_NAMES: f64 = 0.1;
+
+/// The type that a name stands for.
+pub(crate) fn kind(name: &str, naming: Naming) -> Kind {
+    let virtual_site = is_virtual_site(name, "");
+    let is_number = number::whole(name.as_bytes()).is_some();
+    let is_type = is_number && naming == Naming::Types;
+    let element = if virtual_site || is_type { None } else { Element::from_label(name) };
+    Kind { name: name.to_owned(), element, virtual_site }
+}
+
+/// Takes the elements back where too many of the particles have none: then names that look like
+/// symbols are something else, such as beads of a coarse-grained model.
+pub(crate) fn forget_elements(kinds: &mut Kinds, naming: Naming) {
+    let limit = match naming {
+        Naming::Symbols => NO_SYMBOLS,
+        Naming::Types => 0.0,
+        Naming::Names => NO_NAMES,
+    };
+    let mut counts = vec![0_u64; kinds.table.len()];
+    (0..kinds.codes.len()).for_each(|row| counts[kinds.codes.code(row) as usize] += 1);
+    let none = |(kind, count): (&Kind, &u64)| {
+        if kind.element.is_none() && !kind.virtual_site { *count } else { 0 }
+    };
+    let unknown: u64 = kinds.table.iter().zip(&counts).map(none).sum();
+    if unknown as f64 > limit * kinds.codes.len() as f64 {
+        kinds.table.iter_mut().for_each(|kind| kind.element = None);
+    }
+}

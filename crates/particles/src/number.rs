@@ -1,0 +1,102 @@
+//! Numbers in text, however they are spelled.
+
+use std::str;
+
+/// The number that a field is, whether or not blanks stand around it; `None` if it is none. Besides
+/// what Rust reads, exponents may begin with `d`, as Fortran writes them.
+pub(crate) fn parse(field: &[u8]) -> Option<f64> {
+    fast_float2::parse(field).ok().or_else(|| rare(field))
+}
+
+fn rare(field: &[u8]) -> Option<f64> {
+    let text = str::from_utf8(field).ok()?.trim();
+    text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
+}
+
+/// A number with a comma for its decimal point, with a point; `None` if it is none.
+pub(crate) fn with_point(field: &[u8]) -> Option<Vec<u8>> {
+    let comma = memchr::memchr(b',', field)?;
+    let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-eEdD".contains(byte);
+    let (whole, rest) = (&field[..comma], &field[comma + 1..]);
+    if !whole.iter().chain(rest).all(is_part) || !rest.first()?.is_ascii_digit() {
+        return None;
+    }
+    let mut text = field.to_vec();
+    text[comma] = b'.';
+    parse(&text).map(|_| text)
+}
+
+/// The number that a field is, with a decimal point or a decimal comma.
+pub(crate) fn parse_any_point(field: &[u8]) -> Option<f64> {
+    parse(field).or_else(|| parse(&with_point(field.trim_ascii())?))
+}
+
+/// The whole number that a field is, if it is one without a sign.
+pub(crate) fn whole(field: &[u8]) -> Option<u64> {
+    str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn all_spellings_are_numbers() {
+        for (text, number) in [
+            ("1", 1.0),
+            ("+2", 2.0),
+            ("-3.", -3.0),
+            (".5", 0.5),
+            ("-.25", -0.25),
+            ("1e3", 1e3),
+            ("1E+03", 1e3),
+            ("1.5d-2", 0.015),
+            ("2.D+01", 20.0),
+            ("007", 7.0),
+            ("1e-400", 0.0),
+            ("1e400", f64::INFINITY),
+            ("-inf", f64::NEG_INFINITY),
+            ("Infinity", f64::INFINITY),
+            (" 4 ", 4.0),
+            ("0.1000000000000000055511151231257827", 0.1),
+        ] {
+            assert_eq!(parse(text.as_bytes()), Some(number), "{text}");
+        }
+        assert!(parse(b"NaN").is_some_and(f64::is_nan));
+        assert!(parse(b"-nan").is_some_and(f64::is_nan));
+    }
+
+    #[test]
+    fn what_is_no_number_is_none() {
+        for text in ["", " ", "x", "1x", "1 2", "--1", "1e", "e5", "0x10", "1,5", "1_000", "***"] {
+            assert_eq!(parse(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!(parse(&[0xFF]), None);
+        assert_eq!((whole(b" 12 "), whole(b"-1"), whole(b"1.5")), (Some(12), None, None));
+    }
+
+    #[test]
+    fn decimal_commas_become_points() {
+        for (text, expected) in [("1,5", 1.5), ("-0,25e3", -250.0), ("+,5", 0.5), ("1,234", 1.234)]
+        {
+            let text = with_point(text.as_bytes()).expect("a number");
+            assert_eq!(parse(&text), Some(expected));
+        }
+        for text in ["1", "1,", ",", "1,2,3", "1.234,5", "1,234.5", "a,5", "1,-5", "1, 5"] {
+            assert_eq!(with_point(text.as_bytes()), None, "{text}");
+        }
+        assert_eq!((parse_any_point(b" 1,5"), parse_any_point(b"1.5")), (Some(1.5), Some(1.5)));
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_come_back_as_they_were(bits in any::<u64>()) {
+            let number = f64::from_bits(bits);
+            prop_assume!(!number.is_nan());
+            for text in [format!("{number}"), format!("{number:e}"), format!("{number:E}")] {
+                prop_assert_eq!(parse(text.as_bytes()), Some(number));
+            }
+        }
+    }
+}

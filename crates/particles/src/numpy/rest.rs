@@ -1,0 +1,142 @@
+//! Arrays of an archive that are not columns of particles: the cell, and what is not drawn.
+
+use super::archive::Npz;
+use super::array::Turn;
+use crate::FileError;
+use crate::cell::Cell;
+use crate::frame::ParticleFrame;
+use crate::gsd;
+use crate::undrawn::Undrawn;
+use glam::DVec3;
+
+/// Names of arrays that hold the cell.
+const CELLS: [&str; 4] = ["box", "cell", "lattice", "unit_cell"];
+
+/// Angles of a cell in degrees are greater than this, and tilts of one are less.
+const LEAST_ANGLE: f64 = 15.0;
+
+impl Npz {
+    /// Takes the cell from the arrays besides those that are `used`, and says what is not drawn.
+    pub(super) fn read_rest(
+        &mut self,
+        frame: &mut ParticleFrame,
+        used: &[String],
+    ) -> Result<(), FileError> {
+        let count = frame.len() as u64;
+        let mut unused = Vec::new();
+        for name in self.names().into_iter().filter(|name| !used.contains(name)) {
+            let is = |names: &[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(&name));
+            let turn = if is(&CELLS) { Turn::Never } else { Turn::ToRows(count) };
+            let Some([rows, columns]) = self.shape(&name, turn) else {
+                unused.push(name);
+                continue;
+            };
+            if is(&CELLS) && frame.cell.is_none() && rows.saturating_mul(columns) <= 9 {
+                let values = self.numbers(&name)?;
+                frame.cell = cell([rows, columns], &values, frame);
+                if frame.cell.is_none() {
+                    unused.push(name);
+                }
+            } else if is(&["bonds", "bond"]) && columns == 2 {
+                frame.add_undrawn(Undrawn::Bonds, rows);
+            } else if rows != count {
+                // Others are columns.
+                unused.push(name);
+            }
+        }
+        let unused: Vec<&str> = unused.iter().map(String::as_str).collect();
+        frame.add_unused_arrays(&unused);
+        Ok(())
+    }
+}
+
+/// The cell of an array of this shape, in the layouts of HOOMD-blue (lengths and tilts, or a matrix of
+/// columns), of `MDAnalysis` (lengths and angles) and of ASE (a matrix of rows), or as least and greatest
+/// corners.
+fn cell(shape: [u64; 2], values: &[f64], frame: &ParticleFrame) -> Option<Cell> {
+    let vector = |at: usize| DVec3::from_slice(&values[at..at + 3]);
+    let diagonal =
+        |lengths: DVec3| [DVec3::X * lengths.x, DVec3::Y * lengths.y, DVec3::Z * lengths.z];
+    let at_corner = |vectors, origin| Cell { origin, vectors, periodic: [true; 3] }.checked();
+    match (shape, values.len()) {
+        ([6, 1] | [1, 6], 6) if values[3..].iter().all(|angle| *angle > LEAST_ANGLE) => {
+            let [a, b, c] = vector(0).to_array();
+            Cell::of_lengths([a, b, c], vector(3).to_array())
+        }
+        ([6, 1] | [1, 6], 6) => gsd::cell(values),
+        ([2, 3], 6) => at_corner(diagonal(vector(3) - vector(0)), vector(0)),
+        ([3, 2], 6) => {
+            let [low, high] =
+                [0, 1].map(|at| DVec3::new(values[at], values[at + 2], values[at + 4]));
+            at_corner(diagonal(high - low), low)
+        }
+        ([3, 1] | [1, 3], 3) => {
+            at_corner(diagonal(vector(0)), DVec3::ZERO).map(|cell| placed(cell, frame))
+        }
+        ([3, 3] | [9, 1], 9) => {
+            let rows = [vector(0), vector(3), vector(6)];
+            let upper = [values[3], values[6], values[7]] == [0.0; 3];
+            let column = |at: usize| DVec3::new(values[at], values[at + 3], values[at + 6]);
+            let vectors = if upper { [0, 1, 2].map(column) } else { rows };
+            at_corner(vectors, DVec3::ZERO).map(|cell| placed(cell, frame))
+        }
+        _ => None,
+    }
+}
+
+/// The cell around the origin, or with a corner there: where more particles are in it.
+fn placed(cell: Cell, frame: &ParticleFrame) -> Cell {
+    let center: DVec3 = cell.vectors.iter().sum::<DVec3>() * 0.5;
+    let around = Cell { origin: cell.origin - center, ..cell };
+    let inside = |cell: &Cell| {
+        let places = (0..frame.len()).map(|row| cell.fractional(frame.position(row)));
+        places.filter(|place| place.min_element() >= 0.0 && place.max_element() <= 1.0).count()
+    };
+    if inside(&around) > inside(&cell) { around } else { cell }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(shape: [u64; 2], values: &[f64], x: f64) -> Option<Cell> {
+        let frame =
+            ParticleFrame { x: vec![x], y: vec![x], z: vec![x], ..ParticleFrame::default() };
+        cell(shape, values, &frame)
+    }
+
+    #[test]
+    fn cells_are_read_in_the_usual_layouts() {
+        let corner = |values: &[f64], shape, x| of(shape, values, x).expect("a cell").origin;
+        let tilted = of([6, 1], &[4.0, 5.0, 6.0, 0.5, 0.0, 0.0], 1.0).expect("a cell");
+        assert_eq!(tilted.vectors[1], DVec3::new(2.5, 5.0, 0.0));
+        assert_eq!(tilted.cartesian([0.5; 3]), DVec3::ZERO);
+        let angles = of([6, 1], &[4.0, 5.0, 6.0, 90.0, 90.0, 90.0], 1.0).expect("a cell");
+        assert_eq!((angles.origin, angles.vectors[2]), (DVec3::ZERO, DVec3::Z * 6.0));
+        // Angles are greater than 15, tilts are not.
+        let skewed = of([6, 1], &[4.0, 5.0, 6.0, 15.0, 15.0, 15.0], 1.0).expect("a cell");
+        assert_eq!(skewed.vectors[1].x, 75.0);
+        assert_eq!(corner(&[4.0; 3], [3, 1], 1.0), DVec3::ZERO);
+        assert_eq!(corner(&[4.0; 3], [3, 1], -1.0), DVec3::splat(-2.0));
+        let rows = [4.0, 0.0, 0.0, 1.0, 5.0, 0.0, 0.0, 0.0, 6.0];
+        let columns = [4.0, 1.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 6.0];
+        for matrix in [rows, columns] {
+            let cell = of([3, 3], &matrix, 1.0).expect("a cell");
+            assert_eq!(cell.vectors[1], DVec3::new(1.0, 5.0, 0.0));
+        }
+        for (shape, bounds) in
+            [([2, 3], [1.0, 2.0, 3.0, 5.0, 7.0, 9.0]), ([3, 2], [1.0, 5.0, 2.0, 7.0, 3.0, 9.0])]
+        {
+            let cell = of(shape, &bounds, 1.0).expect("a cell");
+            assert_eq!(cell.origin, DVec3::new(1.0, 2.0, 3.0));
+            assert_eq!(cell.cartesian([1.0; 3]), DVec3::new(5.0, 7.0, 9.0));
+        }
+        for (shape, values) in [
+            ([6, 1], &[4.0, 5.0, 0.0, 0.0, 0.0, 0.0][..]),
+            ([4, 1], &[1.0; 4]),
+            ([3, 1], &[f64::NAN; 3]),
+        ] {
+            assert_eq!(of(shape, values, 1.0), None, "{values:?}");
+        }
+    }
+}

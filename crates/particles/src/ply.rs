@@ -1,0 +1,289 @@
+//! Points of PLY, in text and in binary (Turk, "The PLY Polygon File Format", 1994).
+//!
+//! The crates `ply-rs` and `ply-rs-bw` keep a map of values for each vertex, so this is our own:
+//! the vertices are read into columns, and what follows them is not read.
+
+use super::builder::Builder;
+use super::fields::Fields;
+use super::frame::ParticleFrame;
+use super::lines::{Line, Lines};
+use super::options::{Format, ReadOptions};
+use super::reader::FrameReader;
+use super::scalar::{Order, Scalar};
+use super::schema::{Schema, Slot};
+use super::source::Source;
+use super::undrawn::Undrawn;
+use crate::FileError;
+use crate::srgb::linear_from_srgb;
+use std::io::{self, BufRead, BufReader, Cursor, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads the vertices of a PLY file.
+pub(crate) struct Ply {
+    source: Option<Source>,
+    options: ReadOptions,
+}
+
+impl Ply {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        Self { source: Some(source), options: options.clone() }
+    }
+}
+
+/// What stands before the numbers.
+struct Header {
+    /// The order of bytes; `None` for text.
+    order: Option<Order>,
+    elements: Vec<Element>,
+    title: String,
+    lines: u64,
+    /// Where the numbers begin.
+    end: usize,
+}
+
+/// Things of one kind.
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+}
+
+struct Property {
+    name: String,
+    scalar: Scalar,
+    /// The type of the number of items, for lists.
+    list: Option<Scalar>,
+}
+
+fn scalar(name: &[u8]) -> Option<Scalar> {
+    Some(match name {
+        b"char" | b"int8" => Scalar::I8,
+        b"uchar" | b"uint8" => Scalar::U8,
+        b"short" | b"int16" => Scalar::I16,
+        b"ushort" | b"uint16" => Scalar::U16,
+        b"int" | b"int32" => Scalar::I32,
+        b"uint" | b"uint32" => Scalar::U32,
+        b"float" | b"float32" => Scalar::F32,
+        b"double" | b"float64" => Scalar::F64,
+        _ => return None,
+    })
+}
+
+impl Header {
+    fn read(path: &Arc<Path>, head: &[u8]) -> Result<Self, FileError> {
+        let (order, elements, title) = (None, Vec::new(), String::new());
+        let mut header = Self { order, elements, title, lines: 0, end: 0 };
+        loop {
+            let rest = &head[header.end..];
+            let Some(length) = memchr::memchr(b'\n', rest) else {
+                let message = "the header does not end: no line is `end_header`";
+                return Err(FileError::whole_file(path, message).with_help("the file is cut off"));
+            };
+            header.end += length + 1;
+            header.lines += 1;
+            let line = Line::new(path, header.lines as usize, rest[..length].trim_ascii_end());
+            let words: Vec<&[u8]> = line.fields().collect();
+            if words == [b"end_header"] {
+                return Ok(header);
+            }
+            header.line(&line, &words)?;
+        }
+    }
+
+    fn line(&mut self, line: &Line, words: &[&[u8]]) -> Result<(), FileError> {
+        let fault = |message: &str| line.whole(message.to_owned());
+        let text = |word: &[u8]| String::from_utf8_lossy(word).into_owned();
+        let typed = |word: &[u8]| scalar(word).ok_or_else(|| fault("an unknown type of numbers"));
+        match *words {
+            [b"ply"] | [b"obj_info", ..] | [] => (),
+            [b"comment", ..] => {
+                let comment = line.text();
+                let comment = comment.trim_start().strip_prefix("comment").unwrap_or_default();
+                comment.trim().clone_into(&mut self.title);
+            }
+            [b"format", format, b"1.0"] => {
+                self.order = match format {
+                    b"ascii" => None,
+                    b"binary_little_endian" => Some(Order::Little),
+                    b"binary_big_endian" => Some(Order::Big),
+                    _ => return Err(fault("an unknown format")),
+                }
+            }
+            [b"element", name, count] => {
+                let count = line.whole_number(count)?;
+                self.elements.push(Element { name: text(name), count, properties: Vec::new() });
+            }
+            [b"property", b"list", count, item, name] => {
+                self.property(line, text(name), typed(item)?, Some(typed(count)?))?;
+            }
+            [b"property", kind, name] => self.property(line, text(name), typed(kind)?, None)?,
+            _ => return Err(fault("not a line of a PLY header")),
+        }
+        Ok(())
+    }
+
+    fn property(
+        &mut self,
+        line: &Line,
+        name: String,
+        scalar: Scalar,
+        list: Option<Scalar>,
+    ) -> Result<(), FileError> {
+        let element = self.elements.last_mut();
+        let element = element.ok_or_else(|| line.whole("a property before any element"))?;
+        if list.is_some() && element.name == "vertex" {
+            let help = "write the vertices without it";
+            return Err(line.whole("a list in each vertex is not read").with_help(help));
+        }
+        element.properties.push(Property { name, scalar, list });
+        Ok(())
+    }
+}
+
+impl FrameReader for Ply {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let Some(mut source) = self.source.take() else { return Ok(None) };
+        let path = source.path.clone();
+        let header = Header::read(&path, &source.head)?;
+        let fault = |message: String| FileError::whole_file(&path, message);
+        let place = header.elements.iter().position(|element| element.name == "vertex");
+        let place = place.ok_or_else(|| fault("has no vertices".to_owned()))?;
+        let (before, vertex) = (&header.elements[..place], &header.elements[place]);
+        let names = vertex.properties.iter().map(|property| property.name.clone()).collect();
+        let schema = Arc::new(Schema::new(names, &self.options).map_err(fault)?);
+        let mut builder = Builder::new(&path, Format::Ply, &schema);
+        match header.order {
+            None => {
+                let mut lines = Lines::new(source);
+                let skipped = before.iter().map(|element| element.count);
+                lines.skip(skipped.fold(header.lines, u64::saturating_add))?;
+                text(&mut lines, vertex, &mut builder)?;
+            }
+            Some(order) => {
+                let head = source.head.split_off(header.end);
+                let reader =
+                    BufReader::with_capacity(1 << 16, Cursor::new(head).chain(source.reader));
+                let mut body = Binary { reader, order, path: &path };
+                before.iter().try_for_each(|element| body.skip(element))?;
+                body.vertices(vertex, &mut builder)?;
+            }
+        }
+        let mut frame = builder.finish();
+        for element in &header.elements {
+            match &element.name[..] {
+                "face" | "tristrips" => frame.add_undrawn(Undrawn::Faces, element.count),
+                "edge" => frame.add_undrawn(Undrawn::Edges, element.count),
+                _ => (),
+            }
+        }
+        Ok(Some(ParticleFrame { title: header.title, ..frame }))
+    }
+}
+
+/// The color that a number of this type stands for: bytes are sRGB, other numbers linear.
+fn channel(scalar: Scalar, value: f64) -> f64 {
+    if scalar == Scalar::U8 {
+        return f64::from(linear_from_srgb((value / 255.0).clamp(0.0, 1.0) as f32));
+    }
+    value
+}
+
+fn text(lines: &mut Lines, vertex: &Element, builder: &mut Builder) -> Result<(), FileError> {
+    let schema = builder.schema().clone();
+    for row in 0..vertex.count {
+        let Some(line) = lines.next()? else {
+            let message = format!("the file ends after {row} of {} vertices", vertex.count);
+            return Err(lines.ended(message).with_help("the file is cut off"));
+        };
+        let mut fields = Fields::blanks(line.bytes);
+        for (slot, property) in schema.slots.iter().zip(&vertex.properties) {
+            let Some(field) = fields.next() else {
+                let message = format!("a vertex has {} numbers", vertex.properties.len());
+                return Err(line.whole(message));
+            };
+            match slot {
+                Slot::Color(_) => {
+                    let value = line.number(field)?;
+                    builder.put_number(*slot, channel(property.scalar, value));
+                }
+                _ => builder.put(*slot, &line, field)?,
+            }
+        }
+        builder.end_row()?;
+    }
+    Ok(())
+}
+
+/// What follows the header of a binary file.
+struct Binary<'p, R> {
+    reader: R,
+    order: Order,
+    path: &'p Path,
+}
+
+impl<R: BufRead> Binary<'_, R> {
+    fn failed(&self, error: &io::Error) -> FileError {
+        if error.kind() == io::ErrorKind::UnexpectedEof {
+            let error = FileError::whole_file(self.path, "ends before its last vertex");
+            return error.with_help("the file is cut off, or its header wrong");
+        }
+        FileError::whole_file(self.path, format!("cannot be read: {error}"))
+    }
+
+    /// Passes over an element, whose lists may be of any length.
+    fn skip(&mut self, element: &Element) -> Result<(), FileError> {
+        // Without properties there is nothing in the file, however many there are.
+        let count = if element.properties.is_empty() { 0 } else { element.count };
+        for _ in 0..count {
+            for property in &element.properties {
+                let items = match property.list {
+                    Some(kind) => self.number(kind)?.max(0.0) as u64,
+                    None => 1,
+                };
+                self.pass(items.saturating_mul(property.scalar.size() as u64))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn number(&mut self, scalar: Scalar) -> Result<f64, FileError> {
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..scalar.size()];
+        self.reader.read_exact(bytes).map_err(|error| self.failed(&error))?;
+        Ok(scalar.read(bytes, self.order))
+    }
+
+    fn pass(&mut self, length: u64) -> Result<(), FileError> {
+        let passed = io::copy(&mut self.reader.by_ref().take(length), &mut io::sink());
+        match passed {
+            Ok(passed) if passed == length => Ok(()),
+            Ok(_) => Err(self.failed(&io::ErrorKind::UnexpectedEof.into())),
+            Err(error) => Err(self.failed(&error)),
+        }
+    }
+
+    fn vertices(&mut self, vertex: &Element, builder: &mut Builder) -> Result<(), FileError> {
+        let schema = builder.schema().clone();
+        let sizes = vertex.properties.iter().map(|property| property.scalar.size());
+        let mut row = vec![0; sizes.sum()];
+        for _ in 0..vertex.count {
+            self.reader.read_exact(&mut row).map_err(|error| self.failed(&error))?;
+            let mut at = 0;
+            for (slot, property) in schema.slots.iter().zip(&vertex.properties) {
+                let value = property.scalar.read(&row[at..], self.order);
+                at += property.scalar.size();
+                let is_color = matches!(slot, Slot::Color(_));
+                let value = if is_color { channel(property.scalar, value) } else { value };
+                builder.put_number(*slot, value);
+            }
+            builder.end_row()?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a file that begins so is PLY.
+pub(crate) fn is_ply(head: &[u8]) -> bool {
+    head.starts_with(b"ply\n") || head.starts_with(b"ply\r\n")
+}

@@ -1,0 +1,89 @@
+//! Numbers in binary files.
+
+/// A type of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// The least.
+    Little,
+    /// The greatest.
+    Big,
+}
+
+impl Scalar {
+    /// Bytes that a number takes.
+    pub(crate) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+
+    /// The number that bytes begin with; NaN if they are too few. Whole numbers beyond 2^53 are
+    /// rounded.
+    #[inline]
+    pub(crate) fn read(self, bytes: &[u8], order: Order) -> f64 {
+        let mut word = [0; 8];
+        let size = self.size();
+        let Some(bytes) = bytes.get(..size) else { return f64::NAN };
+        word[..size].copy_from_slice(bytes);
+        if order == Order::Big {
+            word[..size].reverse();
+        }
+        let word = u64::from_le_bytes(word);
+        match self {
+            Self::I8 => f64::from(word as i8),
+            Self::U8 => f64::from(word as u8),
+            Self::I16 => f64::from(word as i16),
+            Self::U16 => f64::from(word as u16),
+            Self::I32 => f64::from(word as i32),
+            Self::U32 => f64::from(word as u32),
+            Self::I64 => word as i64 as f64,
+            Self::U64 => word as f64,
+            Self::F32 => f64::from(f32::from_bits(word as u32)),
+            Self::F64 => f64::from_bits(word),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_in_both_orders() {
+        for (scalar, little, expected) in [
+            (Scalar::I8, &[0xFE][..], -2.0),
+            (Scalar::U8, &[0xFE], 254.0),
+            (Scalar::I16, &(-300_i16).to_le_bytes(), -300.0),
+            (Scalar::U16, &60_000_u16.to_le_bytes(), 60_000.0),
+            (Scalar::I32, &(-70_000_i32).to_le_bytes(), -70_000.0),
+            (Scalar::U32, &u32::MAX.to_le_bytes(), 4_294_967_295.0),
+            (Scalar::I64, &(-(1_i64 << 40)).to_le_bytes(), -1_099_511_627_776.0),
+            (Scalar::U64, &(1_u64 << 63).to_le_bytes(), 9_223_372_036_854_775_808.0),
+            (Scalar::F32, &0.1_f32.to_le_bytes(), f64::from(0.1_f32)),
+            (Scalar::F64, &0.1_f64.to_le_bytes(), 0.1),
+        ] {
+            let big: Vec<u8> = little.iter().rev().copied().collect();
+            assert_eq!(scalar.read(little, Order::Little), expected, "{scalar:?}");
+            assert_eq!(scalar.read(&big, Order::Big), expected, "{scalar:?}");
+            assert!(scalar.read(&little[1..], Order::Little).is_nan(), "{scalar:?}");
+        }
+    }
+}

@@ -1,0 +1,377 @@
+//! Which column of a file is what.
+
+use super::aliases;
+use super::frame::LengthUnit;
+use super::options::{Radii, ReadOptions, Role};
+use super::units;
+use crate::suggest;
+
+/// What a column is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Slot {
+    /// Nothing.
+    Skip,
+    /// x, y or z, by 0, 1 or 2.
+    Position(usize),
+    /// A length, and the factor that makes it a radius.
+    Radius(f64),
+    Kind,
+    /// Red, green or blue, by 0, 1 or 2.
+    Color(usize),
+    Material,
+    /// One of [`Schema::extras`].
+    Extra(usize),
+}
+
+/// How names of types become elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Naming {
+    /// Symbols, or atomic numbers.
+    Symbols,
+    /// Symbols if all of them are; numbers are none.
+    Types,
+    /// Names of atoms in molecules.
+    Names,
+}
+
+/// Names that are a role in any case, those that go first in front.
+const USUAL: [(Role, &[&str]); 10] = [
+    (Role::X, &["x", "pos_x", "position_x", "position.x", "cartn_x", "points:0"]),
+    (Role::Y, &["y", "pos_y", "position_y", "position.y", "cartn_y", "points:1"]),
+    (Role::Z, &["z", "pos_z", "position_z", "position.z", "cartn_z", "points:2"]),
+    (Role::Radius, &["radius"]),
+    (Role::Diameter, &["diameter"]),
+    (
+        Role::Kind,
+        &["element", "species", "symbol", "type_symbol", "type", "typeid", "particle type"],
+    ),
+    (Role::Red, &["red", "color.r"]),
+    (Role::Green, &["green", "color.g"]),
+    (Role::Blue, &["blue", "color.b"]),
+    (Role::Material, &["material"]),
+];
+
+/// What every column of a file is for.
+#[derive(Debug)]
+pub(crate) struct Schema {
+    /// One for each column, up to the last that is for something.
+    pub(crate) slots: Vec<Slot>,
+    pub(crate) names: Vec<String>,
+    /// Names of columns to be kept.
+    pub(crate) extras: Vec<String>,
+    /// Number of columns to be kept that were asked for by name, which come first; the others may
+    /// be left out.
+    pub(crate) asked: usize,
+    /// Number of values that columns may hold which were not asked for by name.
+    pub(crate) rest: usize,
+    pub(crate) naming: Naming,
+    pub(crate) has_color: bool,
+    /// Names of the columns that are for nothing.
+    pub(crate) unused: Vec<String>,
+    /// The column that each role is read from.
+    pub(crate) roles: Vec<(Role, String)>,
+    /// The unit of positions, if their names tell it.
+    pub(crate) unit: LengthUnit,
+}
+
+impl Schema {
+    /// Tells columns by their names, in any case, unless the options say more.
+    ///
+    /// # Errors
+    ///
+    /// What is missing.
+    pub(crate) fn new(names: Vec<String>, options: &ReadOptions) -> Result<Self, String> {
+        Self::with_roles(names, options, &[])
+    }
+
+    /// The same, where the format knows more about some columns than their names.
+    pub(crate) fn with_roles(
+        names: Vec<String>,
+        options: &ReadOptions,
+        known: &[(Role, &str)],
+    ) -> Result<Self, String> {
+        let choice = Choice { names: &names, options, known };
+        let mut slots = vec![Slot::Skip; names.len()];
+        let mut axes = [0; 3];
+        for (axis, role) in [Role::X, Role::Y, Role::Z].into_iter().enumerate() {
+            let column = choice.find(role)?.ok_or_else(|| choice.missing(USUAL[axis].1[0]))?;
+            slots[column] = Slot::Position(axis);
+            axes[axis] = column;
+        }
+        let [x, y, z] = axes.map(|column| names[column].as_str());
+        for axis in [y, z] {
+            if units::factor(axis, x)? != 1.0 {
+                return Err(format!("`{x}` and `{axis}` are in different units"));
+            }
+        }
+        let unit = units::length(x);
+        let mut take = |column: Option<usize>, slot| {
+            column.filter(|&at| slots[at] == Slot::Skip).map(|at| slots[at] = slot).is_some()
+        };
+        for (channel, column) in choice.colors()?.into_iter().flatten().enumerate() {
+            take(Some(column), Slot::Color(channel));
+        }
+        let length = |column: Option<usize>, factor: f64| match column {
+            Some(column) => Ok(Slot::Radius(factor * units::factor(&names[column], x)?)),
+            None => Ok::<_, String>(Slot::Radius(factor)),
+        };
+        let radius = choice.find(Role::Radius)?;
+        let has_radius = take(radius, length(radius, 1.0)?);
+        // `r` beside `g` and `b` is red.
+        let radius = choice.position("r");
+        let has_radius = has_radius || take(radius, length(radius, 1.0)?);
+        let diameter = choice.find(Role::Diameter)?.filter(|_| !has_radius);
+        take(diameter, length(diameter, 0.5)?);
+        let kind = choice.find(Role::Kind)?;
+        take(kind, Slot::Kind);
+        take(choice.find(Role::Material)?, Slot::Material);
+        let naming = Naming::of(kind.map_or("", |column| &names[column]));
+        let mut extras = choice.asked(&mut slots)?;
+        let asked = extras.len();
+        if options.columns.rest.is_some() {
+            choice.add_rest(&mut slots, &mut extras);
+        }
+        let rest = options.columns.rest.unwrap_or(0);
+        let unused = unused(&names, &slots);
+        let roles = roles(&names, &slots, if has_radius { Role::Radius } else { Role::Diameter });
+        while slots.last() == Some(&Slot::Skip) {
+            slots.pop();
+        }
+        let has_color = slots.contains(&Slot::Color(0));
+        Ok(Self { slots, names, extras, asked, rest, naming, has_color, unused, roles, unit })
+    }
+
+    /// The columns that are for something, except for those of positions.
+    pub(crate) fn others(&self) -> impl Iterator<Item = (usize, Slot)> {
+        let slots = self.slots.iter().copied().enumerate();
+        slots.filter(|(_, slot)| !matches!(slot, Slot::Skip | Slot::Position(_)))
+    }
+
+    /// Names by which columns can be asked for: each once, and none that is empty.
+    pub(crate) fn listed(&self) -> Vec<String> {
+        let mut listed: Vec<String> = Vec::new();
+        for name in self.names.iter().filter(|name| !name.is_empty()) {
+            if !listed.contains(name) {
+                listed.push(name.clone());
+            }
+        }
+        listed
+    }
+
+    /// Number of columns that every row must have.
+    pub(crate) fn needed_columns(&self) -> usize {
+        let needed = |slot: &Slot| match slot {
+            Slot::Skip => false,
+            Slot::Extra(extra) => *extra < self.asked,
+            _ => true,
+        };
+        self.slots.iter().rposition(needed).map_or(0, |last| last + 1)
+    }
+
+    /// Whether rows have colors.
+    pub(crate) fn has_color(&self) -> bool {
+        self.has_color
+    }
+}
+
+/// Returns the names of the role that a name tells, in any case; none for those of colors and
+/// materials, which are no columns of numbers or texts.
+pub(crate) fn names_of_role(name: &str) -> Option<&'static [&'static str]> {
+    let named = |names: &&[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(name));
+    let roles = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
+    let mut rows = USUAL.iter().filter(|(role, _)| roles.contains(role)).map(|(_, names)| *names);
+    rows.find(named)
+}
+
+/// Says that a file has no column of a name: the nearest one that there is, or all of them.
+pub fn unknown_column<'n>(name: &str, columns: impl Iterator<Item = &'n str> + Clone) -> String {
+    let mut typed = aliases::typed(columns.clone());
+    typed.retain(|other| !other.eq_ignore_ascii_case(name));
+    match suggest::nearest(name, typed) {
+        Some(near) => format!("no column is named `{name}`; did you mean `{near}`?"),
+        None => format!("no column is named `{name}`; there are {}", suggest::list(columns)),
+    }
+}
+
+impl Naming {
+    fn of(column: &str) -> Self {
+        let types = ["type", "typeid", "particle type"]
+            .iter()
+            .any(|name| name.eq_ignore_ascii_case(column));
+        if types { Self::Types } else { Self::Symbols }
+    }
+}
+
+fn unused(names: &[String], slots: &[Slot]) -> Vec<String> {
+    let columns = names.iter().zip(slots).filter(|(_, slot)| **slot == Slot::Skip);
+    columns.map(|(name, _)| name.clone()).collect()
+}
+
+/// The roles of columns; lengths that are no positions are those of `size`.
+fn roles(names: &[String], slots: &[Slot], size: Role) -> Vec<(Role, String)> {
+    let role = |slot: &Slot| match *slot {
+        Slot::Position(axis) => Some([Role::X, Role::Y, Role::Z][axis]),
+        Slot::Radius(_) => Some(size),
+        Slot::Kind => Some(Role::Kind),
+        Slot::Color(channel) => Some([Role::Red, Role::Green, Role::Blue][channel]),
+        Slot::Material => Some(Role::Material),
+        Slot::Skip | Slot::Extra(_) => None,
+    };
+    let columns = names.iter().zip(slots);
+    columns.filter_map(|(name, slot)| Some((role(slot)?, name.clone()))).collect()
+}
+
+/// What columns are chosen from.
+struct Choice<'c> {
+    names: &'c [String],
+    options: &'c ReadOptions,
+    known: &'c [(Role, &'c str)],
+}
+
+impl Choice<'_> {
+    /// The column with a name, the same letter by letter if there is one; or else the only one that
+    /// has it before a unit.
+    fn position(&self, wanted: &str) -> Option<usize> {
+        let same = self.names.iter().position(|name| name == wanted);
+        let any_case = || self.names.iter().position(|name| name.eq_ignore_ascii_case(wanted));
+        let with_unit = || {
+            let bare = |name: &String| units::split(name).0.eq_ignore_ascii_case(wanted);
+            let mut columns = self.names.iter().enumerate().filter(|(_, name)| bare(name));
+            columns.next().map(|(column, _)| column).filter(|_| columns.next().is_none())
+        };
+        same.or_else(any_case).or_else(with_unit)
+    }
+
+    /// The column with a name that a user typed, or with another name of the same thing.
+    fn need(&self, wanted: &str) -> Result<usize, String> {
+        let other = || aliases::of(wanted).find_map(|name| self.position(name));
+        self.position(wanted).or_else(other).ok_or_else(|| self.missing(wanted))
+    }
+
+    fn missing(&self, wanted: &str) -> String {
+        unknown_column(wanted, self.names.iter().map(String::as_str))
+    }
+
+    /// The column of a role: what the user says, what the format knows, or what names tell.
+    fn find(&self, role: Role) -> Result<Option<usize>, String> {
+        if let (Role::Radius, Radii::Column(name)) = (role, &self.options.radii) {
+            return self.need(name).map(Some);
+        }
+        if let Some((_, name)) = self.options.columns.roles.iter().find(|(own, _)| *own == role) {
+            return self.need(name).map(Some);
+        }
+        let known = self.known.iter().find(|(own, _)| *own == role);
+        if let Some(column) = known.and_then(|(_, name)| self.position(name)) {
+            return Ok(Some(column));
+        }
+        let usual = USUAL.iter().find(|(own, _)| *own == role).map_or(&[][..], |(_, names)| names);
+        Ok(usual.iter().find_map(|name| self.position(name)))
+    }
+
+    /// The columns of colors, if all three are there.
+    fn colors(&self) -> Result<Option<[usize; 3]>, String> {
+        let [red, green, blue] =
+            [self.find(Role::Red)?, self.find(Role::Green)?, self.find(Role::Blue)?];
+        let long = red.zip(green).zip(blue).map(|((red, green), blue)| [red, green, blue]);
+        let short = || {
+            let [red, green, blue] = ["r", "g", "b"].map(|name| self.position(name));
+            Some([red?, green?, blue?])
+        };
+        Ok(long.or_else(short))
+    }
+
+    /// Names of the columns that were asked for, whose slots become theirs; columns that have a role
+    /// are kept in it.
+    fn asked(&self, slots: &mut [Slot]) -> Result<Vec<String>, String> {
+        let mut extras = Vec::new();
+        let columns = &self.options.columns;
+        let kept =
+            columns.kept.iter().map(|name| self.need(name)).collect::<Result<Vec<_>, _>>()?;
+        let wanted = columns.wanted.iter().filter_map(|name| self.position(name));
+        for column in kept.into_iter().chain(wanted) {
+            if slots[column] == Slot::Skip {
+                slots[column] = Slot::Extra(extras.len());
+                extras.push(self.names[column].clone());
+            }
+        }
+        Ok(extras)
+    }
+
+    /// Adds all other columns that have a name of their own.
+    fn add_rest(&self, slots: &mut [Slot], extras: &mut Vec<String>) {
+        for (column, name) in self.names.iter().enumerate() {
+            let own = !name.is_empty() && self.position(name) == Some(column);
+            if own && slots[column] == Slot::Skip {
+                slots[column] = Slot::Extra(extras.len());
+                extras.push(name.clone());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Columns;
+
+    fn schema(names: &str, columns: &str) -> Result<Schema, String> {
+        let columns = columns.parse()?;
+        let options = ReadOptions { columns, ..ReadOptions::default() };
+        Schema::new(names.split(',').map(str::to_owned).collect(), &options)
+    }
+
+    fn slots(names: &str, columns: &str) -> Vec<Slot> {
+        schema(names, columns).expect("columns").slots
+    }
+
+    #[test]
+    fn names_tell_columns() {
+        use Slot::{Color, Extra, Kind, Material, Position, Radius, Skip};
+        let [x, y, z] = [0, 1, 2].map(Position);
+        let [red, green, blue] = [0, 1, 2].map(Color);
+        assert_eq!(slots("Z,y,X,R,id", ""), [z, y, x, Radius(1.0)]);
+        assert_eq!(slots("x,y,z,r,g,b,diameter", ""), [x, y, z, red, green, blue, Radius(0.5)]);
+        assert_eq!(slots("x,y,z,r,b,radius", ""), [x, y, z, Skip, Skip, Radius(1.0)]);
+        assert_eq!(slots("x,y,z,red,green,blue,r", "")[6], Radius(1.0));
+        assert_eq!(slots("x,y,z,diameter,radius", ""), [x, y, z, Skip, Radius(1.0)]);
+        assert_eq!(slots("id,type,element,x,y,z", ""), [Skip, Skip, Kind, x, y, z]);
+        assert_eq!(slots("x,y,z,material", "")[3], Material);
+        assert_eq!(slots("px,py,pz,q,w", "x=px,y=py,z=pz,w,q"), [x, y, z, Extra(1), Extra(0)]);
+    }
+
+    #[test]
+    fn what_is_missing_is_told() {
+        let missing = schema("x,y", "").expect_err("no z");
+        assert_eq!(missing, "no column is named `z`; there are x, y");
+        assert!(schema("x,y,z", "q").is_err());
+        assert!(schema("x,y,z", "type=q").is_err());
+        assert_eq!(schema("x,y,z,id", "").map(|schema| schema.unused), Ok(vec!["id".to_owned()]));
+    }
+
+    #[test]
+    fn rows_may_end_before_what_was_not_asked_for() {
+        let needed = |names: &str, columns: &str, rest| {
+            let columns = columns.parse().expect("columns");
+            let options =
+                ReadOptions { columns: Columns { rest, ..columns }, ..ReadOptions::default() };
+            let names = names.split(',').map(str::to_owned).collect();
+            Schema::new(names, &options).expect("columns").needed_columns()
+        };
+        for (names, columns, rest, expected) in [
+            ("x,y,z,q,a,b", "q", Some(100), 4),
+            ("x,y,z,a,q,b", "q", Some(100), 5),
+            ("x,y,z,,a", "", Some(100), 3),
+            ("x,y,z,a,radius", "", None, 5),
+            ("x,y,z,a,b", "", None, 3),
+        ] {
+            assert_eq!(needed(names, columns, rest), expected, "{names}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_types_are_no_elements() {
+        let naming = |names| schema(names, "").map(|schema| schema.naming);
+        assert_eq!(naming("x,y,z,type"), Ok(Naming::Types));
+        assert_eq!(naming("x,y,z,species"), Ok(Naming::Symbols));
+    }
+}

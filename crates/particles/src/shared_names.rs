@@ -1,0 +1,143 @@
+//! Names of types and texts that all frames of a file share.
+
+use super::categories::{Codes, Kind, Kinds};
+use super::frame::ParticleFrame;
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// The types and texts of several frames of a file, in the order in which they first come.
+///
+/// A frame lists its own in the order of its rows, which may change from frame to frame, and colors
+/// of categories follow that order. Frames that share their names have the same colors for them.
+#[derive(Clone, Debug, Default)]
+pub struct SharedNames {
+    kinds: Table<Kind>,
+    /// Types that have an element, by their names.
+    elements: HashMap<String, Kind>,
+    materials: Table<String>,
+    /// By the names of columns.
+    texts: HashMap<String, Table<String>>,
+}
+
+impl SharedNames {
+    /// Adds the names of a frame, and has the frame list all names so far, in their common order.
+    pub fn share(&mut self, frame: &mut ParticleFrame) {
+        self.share_elements(&mut frame.kinds);
+        self.kinds.share(&mut frame.kinds.table, &mut frame.kinds.codes);
+        self.materials.share(&mut frame.materials.names, &mut frame.materials.codes);
+        for column in &mut frame.texts {
+            let table = self.texts.entry(column.name.clone()).or_default();
+            table.share(&mut column.names, &mut column.codes);
+        }
+    }
+
+    /// Types of all frames so far.
+    pub fn kinds(&self) -> &[Kind] {
+        &self.kinds.names
+    }
+
+    /// Gives types the elements that they have in another frame: whether names are taken for elements
+    /// depends on all names of a frame.
+    fn share_elements(&mut self, kinds: &mut Kinds) {
+        for kind in &mut kinds.table {
+            if kind.element.is_some() {
+                self.elements.entry(kind.name.clone()).or_insert_with(|| kind.clone());
+            } else if let Some(known) = self.elements.get(&kind.name) {
+                *kind = known.clone();
+            }
+        }
+    }
+}
+
+/// Names by their places, and places by their names.
+#[derive(Clone, Debug)]
+struct Table<T> {
+    names: Vec<T>,
+    places: HashMap<T, u32>,
+}
+
+impl<T> Default for Table<T> {
+    fn default() -> Self {
+        Self { names: Vec::new(), places: HashMap::new() }
+    }
+}
+
+impl<T: Clone + Eq + Hash> Table<T> {
+    /// Replaces a frame's own names by those of the table.
+    fn share(&mut self, own: &mut Vec<T>, codes: &mut Codes) {
+        if codes.is_empty() {
+            return;
+        }
+        let places: Vec<u32> = own.iter().map(|name| self.place(name)).collect();
+        if !(0..).zip(&places).all(|(row, &place)| row == place) {
+            codes.renumber(&places);
+        }
+        own.clone_from(&self.names);
+    }
+
+    fn place(&mut self, name: &T) -> u32 {
+        if let Some(&place) = self.places.get(name) {
+            return place;
+        }
+        let place = self.names.len() as u32;
+        self.names.push(name.clone());
+        self.places.insert(name.clone(), place);
+        place
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::categories::TextColumn;
+    use crate::element::Element;
+
+    fn frame(kinds: &[(&str, Option<&str>)], texts: &[&str]) -> ParticleFrame {
+        let mut frame = ParticleFrame::default();
+        for (row, (name, element)) in kinds.iter().enumerate() {
+            let element = element.and_then(Element::from_label);
+            let name = (*name).to_owned();
+            frame.kinds.table.push(Kind { name, element, virtual_site: false });
+            frame.kinds.codes.push(row as u32);
+        }
+        let mut column = TextColumn { name: "chain".to_owned(), ..TextColumn::default() };
+        for (row, name) in texts.iter().enumerate() {
+            column.names.push((*name).to_owned());
+            column.codes.push(row as u32);
+        }
+        frame.texts.push(column);
+        frame
+    }
+
+    #[test]
+    fn names_keep_the_place_at_which_they_first_came() {
+        let mut names = SharedNames::default();
+        let mut first = frame(&[("A", None), ("B", None)], &["x"]);
+        let before = first.clone();
+        names.share(&mut first);
+        assert_eq!(first, before);
+        let mut second = frame(&[("C", None), ("B", None)], &["y", "x"]);
+        names.share(&mut second);
+        let listed: Vec<&str> = second.kinds.table.iter().map(|kind| kind.name.as_str()).collect();
+        assert_eq!(listed, ["A", "B", "C"]);
+        assert_eq!(second.kinds.codes, Codes::Bytes(vec![2, 1]));
+        assert_eq!(second.texts[0].names, ["x", "y"]);
+        assert_eq!(second.texts[0].codes, Codes::Bytes(vec![1, 0]));
+        // Frames without particles have no types.
+        let mut empty = frame(&[], &[]);
+        names.share(&mut empty);
+        assert!(empty.kinds.table.is_empty() && empty.texts[0].names.is_empty());
+    }
+
+    #[test]
+    fn elements_are_those_of_any_frame() {
+        let mut names = SharedNames::default();
+        names.share(&mut frame(&[("X", None), ("C", None)], &[]));
+        names.share(&mut frame(&[("C", Some("C"))], &[]));
+        let mut again = frame(&[("X", None), ("C", None)], &[]);
+        names.share(&mut again);
+        let kind = |row: usize| again.kinds.kind(row).expect("a type");
+        assert_eq!((kind(0).name.as_str(), kind(0).element), ("X", None));
+        assert_eq!((kind(1).name.as_str(), kind(1).element), ("C", Element::from_label("C")));
+    }
+}

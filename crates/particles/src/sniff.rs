@@ -1,0 +1,187 @@
+//! What kind of file this is, told from how it begins.
+
+use super::fields::Fields;
+use super::foreign::{self, Foreign};
+use super::options::{Format, ReadOptions, Role};
+use super::source::Source;
+use super::{cif, gro, gsd, header, number, numpy, pdb, ply, units, utf16};
+use crate::FileError;
+
+/// What the formats are that can be told.
+const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
+                     names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
+                     of crystals, GSD, PLY and arrays of NumPy; of others, name the format, as in --format xyz, \
+                     or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
+
+/// Lines within which a data file of LAMMPS tells its number of atoms.
+const DATA_HEADER: usize = 40;
+
+/// The format that was asked for, or else the one the file seems to have.
+pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, FileError> {
+    let fault = |message: String| FileError::whole_file(&source.path, message);
+    let refuse = |Foreign { name, help }: Foreign| {
+        fault(format!("is {name}, which is not read here")).with_help(help)
+    };
+    let head = &source.head[..];
+    if let Some(foreign) = foreign::binary(head, &source.path) {
+        return Err(refuse(foreign));
+    }
+    if let Some(format) = binary(head) {
+        return match options.format {
+            Some(asked) if asked != format => {
+                let message = format!("is {}, not {}", format.name(), asked.name());
+                Err(fault(message)
+                    .with_help(format!("leave --format out, or give {}", format.name())))
+            }
+            _ => Ok(format),
+        };
+    }
+    if let Some(asked @ (Format::Gsd | Format::Npy | Format::Npz | Format::Ply)) = options.format {
+        let help = "leave --format out: the content tells the format";
+        return Err(fault(format!("is not {}", asked.name())).with_help(help));
+    }
+    if head.contains(&0) {
+        return Err(match utf16::unmarked(head) {
+            Some(encoding) => {
+                let help = format!(
+                    "make it UTF-8: iconv -f {encoding} -t UTF-8 FILE | spherule render - -o picture.png"
+                );
+                fault(format!("is text in {encoding}")).with_help(help)
+            }
+            None => fault("is not a text file: it holds zero bytes".to_owned()).with_help(KNOWN),
+        });
+    }
+    if let Some(format) = options.format {
+        return Ok(format);
+    }
+    let told = told(head, options);
+    // Titles of these files may say anything.
+    let is_titled = |format: &Format| matches!(format, Format::Gro | Format::LammpsData);
+    if let Some(&format) = told.as_ref().ok().filter(|format| is_titled(format)) {
+        return Ok(format);
+    }
+    let pqr =
+        || foreign::pqr(head, &source.path).filter(|_| matches!(told, Err(_) | Ok(Format::Pdb)));
+    match foreign::text(head, &source.path).or_else(pqr) {
+        Some(foreign) => Err(refuse(foreign)),
+        None => told.map_err(|message| fault(message).with_help(KNOWN)),
+    }
+}
+
+fn binary(head: &[u8]) -> Option<Format> {
+    if head.starts_with(&gsd::MAGIC) {
+        return Some(Format::Gsd);
+    }
+    if head.starts_with(numpy::MAGIC) {
+        return Some(Format::Npy);
+    }
+    if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
+        return Some(Format::Npz);
+    }
+    ply::is_ply(head).then_some(Format::Ply)
+}
+
+fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
+    let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
+    let mut raw = head.split(|&byte| byte == b'\n').skip(1);
+    if let (Some(second), Some(third)) = (raw.next(), raw.next())
+        && gro::is_gro(second, third)
+    {
+        return Ok(Format::Gro);
+    }
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let mut lines = lines.filter(|line| !line.is_empty() && !header::is_comment(line));
+    let Some(first) = lines.next() else { return Err("holds no particles".to_owned()) };
+    // The first line that Excel writes into some CSV files.
+    let is_excel = first.starts_with(b"sep=");
+    let first = if is_excel { lines.next().unwrap_or_default() } else { first };
+    let second = lines.clone().next();
+    if let Some(format) = told_by_words(first, lines) {
+        let crystal = format == Format::MmCif && cif::is_crystal(head);
+        return Ok(if crystal { Format::Cif } else { format });
+    }
+    if number::whole(first).is_some() {
+        return Ok(Format::Xyz);
+    }
+    // Two, because a title may begin with a number.
+    if Fields::marks(first).take(2).all(|field| number::parse(field).is_some()) {
+        return Ok(Format::Xyzr);
+    }
+    let x = options.columns.roles.iter().find(|(role, _)| *role == Role::X);
+    let usual = ["x", "pos_x", "position_x", "points:0"];
+    let usual: Vec<&str> = usual.into_iter().chain(x.map(|(_, name)| name.as_str())).collect();
+    let names = header::names(first);
+    let separated = header::is_separated(first);
+    let is_x = |name: &String| {
+        let bare = units::split(name).0;
+        usual.iter().any(|own| own.eq_ignore_ascii_case(name) || own.eq_ignore_ascii_case(bare))
+    };
+    let is_above = |row: &[u8]| header::is_header(&names) && header::is_row(&names, separated, row);
+    let is_even = |row: &[u8]| separated || Fields::blanks(row).count() == names.len();
+    let has_x = names.len() > 1 && names.iter().any(is_x) && second.is_none_or(is_even);
+    if has_x || second.is_some_and(is_above) {
+        return Ok(if separated { Format::Csv } else { Format::Xyzr });
+    }
+    let shown: String = String::from_utf8_lossy(first).chars().take(40).collect();
+    Err(format!("is in no format known here: it begins with `{}`", shown.escape_debug()))
+}
+
+/// Formats that have words of their own.
+fn told_by_words<'l>(first: &[u8], lines: impl Iterator<Item = &'l [u8]>) -> Option<Format> {
+    if first.starts_with(b"ITEM:") {
+        return Some(Format::LammpsDump);
+    }
+    if first.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"data_")) {
+        return Some(Format::MmCif);
+    }
+    if pdb::is_pdb(first) {
+        return Some(Format::Pdb);
+    }
+    let is_count = |line: &[u8]| {
+        let mut words = Fields::blanks(line);
+        words.next().is_some_and(|count| number::whole(count).is_some())
+            && words.next() == Some(b"atoms")
+    };
+    // The first line of a data file may say anything.
+    let data = is_count(first) || { lines }.take(DATA_HEADER).any(is_count);
+    data.then_some(Format::LammpsData)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(head: &str) -> Result<Format, String> {
+        super::told(head.as_bytes(), &ReadOptions::default())
+    }
+
+    #[test]
+    fn content_tells_the_format() {
+        assert_eq!(told("60\nfullerene\nC 0 0 0\n"), Ok(Format::Xyz));
+        assert_eq!(told("# rows\n\n1 2 3 .5\n"), Ok(Format::Xyzr));
+        assert_eq!(told("\u{FEFF}-1,2e5;nan\r\n"), Ok(Format::Xyzr));
+        assert_eq!(told("id,X,Y,Z\n1,2,3,4\n"), Ok(Format::Csv));
+        assert_eq!(told("\"x\";\"y\";\"z\"\n"), Ok(Format::Csv));
+        assert_eq!(told("x\ty\tz\n"), Ok(Format::Csv));
+        assert_eq!(told("sep=;\nx;y;z\n1;2;3\n"), Ok(Format::Csv));
+        assert_eq!(told("X (m), Y (m), Z (m)\n"), Ok(Format::Csv));
+        assert_eq!(told("x y z radius\n1 2 3 4\n"), Ok(Format::Xyzr));
+        assert_eq!(told("px py pz\n1 2,5 3\n"), Ok(Format::Xyzr));
+        assert_eq!(told("px;py;pz;name\n1;2,5;3;a\n"), Ok(Format::Csv));
+        assert!(told("four words of text\n1 2 3\n").is_err());
+        assert!(told(" \n# nothing\n").is_err_and(|message| message == "holds no particles"));
+        assert_eq!(told("ITEM: TIMESTEP\n0\n"), Ok(Format::LammpsDump));
+        assert_eq!(told("# LAMMPS\n\n 17 atoms\n"), Ok(Format::LammpsData));
+        assert_eq!(told("LAMMPS data file\n\n17 atoms\n\n1 atom types\n"), Ok(Format::LammpsData));
+        let atom = "    1MET      N    1   5.202   4.356   3.155\n";
+        assert_eq!(told(&format!("12\n1\n{atom}")), Ok(Format::Gro));
+        assert_eq!(told(&format!("\n 1\n{atom}")), Ok(Format::Gro));
+        assert_eq!(told("12\n1\nC 1.0 2.0 3.0\n"), Ok(Format::Xyz));
+        assert_eq!(told("REMARK  made by hand\n"), Ok(Format::Pdb));
+        assert_eq!(told("ATOM      1  N   MET"), Ok(Format::Pdb));
+        assert_eq!(told("# comment\ndata_3KPR\n"), Ok(Format::MmCif));
+        assert_eq!(told("data_x\n_cell_length_a 4\n"), Ok(Format::Cif));
+        assert!(told("BEGIN_SCENE\n").is_err());
+        assert!(told("50 pct water\n").is_err());
+    }
+}

@@ -1,0 +1,280 @@
+//! Source of bytes: a file or standard input, unpacked if it is packed, and in UTF-8 if it is in
+//! UTF-16.
+//!
+//! What a file is packed with is told by how it begins, whatever its name says. All decoders are
+//! Rust, so that the program needs no library of the system.
+
+use super::header;
+use super::progress::{CountedFile, ReadProgress};
+use super::utf16::{self, Utf16};
+use crate::FileError;
+use flate2::read::MultiGzDecoder;
+use lzma_rust2::XzReader;
+use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
+use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Chain, Cursor, Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Number of bytes at the beginning of a file that its format is told by.
+pub(crate) const HEAD: usize = 1 << 16;
+
+/// Maximum length of a preamble of comments that is read to find what follows it.
+const PREAMBLE: usize = 1 << 24;
+
+/// Maximum memory that an xz file may ask for, in KiB: four times as much as `xz -9` takes.
+const XZ_MEMORY: u32 = 1 << 18;
+
+/// Magic numbers of packed files.
+const PACKINGS: [(&[u8], Packing); 4] = [
+    (&[0x1F, 0x8B], Packing::Gzip),
+    (b"BZh", Packing::Bzip2),
+    (&[0x28, 0xB5, 0x2F, 0xFD], Packing::Zstd),
+    (&[0xFD, b'7', b'z', b'X', b'Z', 0], Packing::Xz),
+];
+
+/// A compression format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Packing {
+    Gzip,
+    Bzip2,
+    Xz,
+    Zstd,
+}
+
+/// An open file: its beginning, and a reader of the rest.
+pub(crate) struct Source {
+    pub(crate) path: Arc<Path>,
+    /// The first [`HEAD`] bytes, or all if there are fewer; more after a long preamble.
+    pub(crate) head: Vec<u8>,
+    /// Reader of what follows the head.
+    pub(crate) reader: Box<dyn Read + Send>,
+    pub(crate) progress: ReadProgress,
+}
+
+/// Returns whether this path stands for standard input.
+pub(crate) fn is_standard_input(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+impl Source {
+    /// Opens a file, or standard input for `-`.
+    pub(crate) fn open(path: &Path, progress: &ReadProgress) -> Result<Self, FileError> {
+        let path: Arc<Path> = path.into();
+        let fault =
+            |error: &io::Error| FileError::whole_file(&path, format!("cannot be read: {error}"));
+        let mut raw: Box<dyn Read + Send> = if is_standard_input(&path) {
+            Box::new(io::stdin())
+        } else {
+            let file = File::open(&path).map_err(|error| fault(&error))?;
+            Box::new(CountedFile::new(file, progress))
+        };
+        let head = head(&mut raw).map_err(|error| fault(&error))?;
+        let mut source = Self { path: path.clone(), head, reader: raw, progress: progress.clone() };
+        if let Some(packing) = Packing::of(&source.head) {
+            source =
+                source.through(|packed| packing.unpack(packed)).map_err(|error| fault(&error))?;
+            if let Some(inner) = Packing::of(&source.head) {
+                let message =
+                    format!("is packed twice ({}, then {})", inner.name(), packing.name());
+                return Err(FileError::whole_file(&path, message).with_help("unpack it once"));
+            }
+        }
+        if let Some(unit) = utf16::mark(&source.head) {
+            let decode = |units| -> Box<dyn Read + Send> { Box::new(Utf16::new(units, unit)) };
+            source = source.through(decode).map_err(|error| fault(&error))?;
+        }
+        source.read_preamble().map_err(|error| fault(&error))?;
+        Ok(source)
+    }
+
+    /// Returns the source of the bytes that a decoder makes of these.
+    fn through(
+        self,
+        decode: impl FnOnce(Chain<Cursor<Vec<u8>>, Box<dyn Read + Send>>) -> Box<dyn Read + Send>,
+    ) -> io::Result<Self> {
+        let mut reader = decode(Cursor::new(self.head).chain(self.reader));
+        Ok(Self { path: self.path, head: head(&mut reader)?, reader, progress: self.progress })
+    }
+
+    /// Lengthens the head where there is little else in it than comments, so that it shows what
+    /// follows them.
+    fn read_preamble(&mut self) -> io::Result<()> {
+        let mut length = HEAD;
+        while self.head.len() >= length
+            && length < PREAMBLE
+            && length - comments(&self.head) < HEAD / 2
+        {
+            self.reader.by_ref().take(length as u64).read_to_end(&mut self.head)?;
+            length *= 2;
+        }
+        Ok(())
+    }
+
+    /// Returns all of it as a file, for readers that seek: the file itself, or a temporary copy of what was
+    /// packed or came through a pipe.
+    pub(crate) fn into_file(mut self) -> Result<CountedFile, FileError> {
+        let fault = |error: io::Error| {
+            FileError::whole_file(&self.path, format!("cannot be read: {error}"))
+        };
+        let plain = File::open(&self.path).ok().filter(|_| !is_standard_input(&self.path));
+        if let Some(mut file) = plain {
+            let mut again = vec![0; self.head.len()];
+            let regular = file.metadata().is_ok_and(|metadata| metadata.is_file());
+            if regular && file.read_exact(&mut again).is_ok() && again == self.head {
+                return Ok(CountedFile::new(file, &self.progress));
+            }
+        }
+        let mut file = tempfile::tempfile().map_err(fault)?;
+        file.write_all(&self.head).map_err(fault)?;
+        io::copy(&mut self.reader, &mut file).map_err(fault)?;
+        Ok(CountedFile::new(file, &self.progress))
+    }
+}
+
+/// Bytes of the comments and blank lines that a text begins with.
+fn comments(text: &[u8]) -> usize {
+    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+    let lines = text.split_inclusive(|&byte| byte == b'\n');
+    let is_comment = |line: &&[u8]| {
+        let line = line.trim_ascii_start();
+        line.is_empty() || header::is_comment(line)
+    };
+    lines.take_while(is_comment).map(<[u8]>::len).sum()
+}
+
+fn head(reader: &mut impl Read) -> io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    reader.take(HEAD as u64).read_to_end(&mut head)?;
+    Ok(head)
+}
+
+impl Packing {
+    fn of(head: &[u8]) -> Option<Self> {
+        PACKINGS.iter().find(|(magic, _)| head.starts_with(magic)).map(|&(_, packing)| packing)
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Gzip => "gzip",
+            Self::Bzip2 => "bzip2",
+            Self::Xz => "xz",
+            Self::Zstd => "zstd",
+        }
+    }
+
+    fn unpack(self, packed: impl Read + Send + 'static) -> Box<dyn Read + Send> {
+        let packed = BufReader::with_capacity(HEAD, packed);
+        let reader: Box<dyn Read + Send> = match self {
+            Self::Gzip => Box::new(MultiGzDecoder::new(packed)),
+            Self::Bzip2 => Box::new(bzip2::read::MultiBzDecoder::new(packed)),
+            Self::Xz => Box::new(XzReader::new_mem_limit(packed, true, XZ_MEMORY)),
+            Self::Zstd => Box::new(Zstd { packed, decoder: FrameDecoder::new(), inside: false }),
+        };
+        Box::new(Unpacked { reader, packing: self })
+    }
+}
+
+/// A decoder whose errors name the compression format.
+struct Unpacked {
+    reader: Box<dyn Read + Send>,
+    packing: Packing,
+}
+
+impl Read for Unpacked {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.reader.read(buffer).map_err(|error| match error.kind() {
+            io::ErrorKind::Interrupted => error,
+            kind => {
+                let name = self.packing.name();
+                io::Error::new(kind, format!("the {name} data is damaged or cut off ({error})"))
+            }
+        })
+    }
+}
+
+/// All frames of a zstd file, one after another: the decoder reads one.
+struct Zstd<R: BufRead> {
+    packed: R,
+    decoder: FrameDecoder,
+    /// True if the decoder is within a frame.
+    inside: bool,
+}
+
+impl<R: BufRead> Zstd<R> {
+    /// Begins the next frame, if there is one.
+    fn begin(&mut self) -> io::Result<bool> {
+        while !self.packed.fill_buf()?.is_empty() {
+            match self.decoder.init(&mut self.packed) {
+                Ok(()) => {
+                    self.inside = true;
+                    return Ok(true);
+                }
+                Err(FrameDecoderError::ReadFrameHeaderError(ReadFrameHeaderError::SkipFrame {
+                    length,
+                    ..
+                })) => {
+                    let mut skipped = self.packed.by_ref().take(u64::from(length));
+                    io::copy(&mut skipped, &mut io::sink())?;
+                }
+                Err(error) => return Err(io::Error::new(io::ErrorKind::InvalidData, error)),
+            }
+        }
+        Ok(false)
+    }
+}
+
+impl<R: BufRead> Read for Zstd<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            while self.inside && self.decoder.can_collect() == 0 && !self.decoder.is_finished() {
+                let one = BlockDecodingStrategy::UptoBlocks(1);
+                self.decoder.decode_blocks(&mut self.packed, one).map_err(io::Error::other)?;
+            }
+            if self.inside && self.decoder.can_collect() > 0 {
+                return self.decoder.read(buffer);
+            }
+            if !self.begin()? {
+                return Ok(0);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The length of the head of these bytes, once it shows what follows comments.
+    fn head_of(content: impl Read + Send + 'static) -> usize {
+        let mut reader: Box<dyn Read + Send> = Box::new(content);
+        let head = head(&mut reader).expect("memory");
+        let (path, progress) = (Path::new("p").into(), ReadProgress::default());
+        let mut source = Source { path, head, reader, progress };
+        source.read_preamble().expect("memory");
+        source.head.len()
+    }
+
+    #[test]
+    fn heads_go_on_until_half_of_what_was_read_last_is_no_comment() {
+        for (comments, rows, expected) in [
+            (100, 0, 100),
+            (50_000, 0, 50_000),
+            (0, 200_000, HEAD),
+            (HEAD / 2, 200_000, HEAD),
+            (HEAD / 2 + 1, 200_000, 2 * HEAD),
+            (HEAD * 3 / 2, 300_000, 2 * HEAD),
+            (HEAD * 3 / 2 + 1, 300_000, 4 * HEAD),
+            (100_000, 10_000, 110_000),
+        ] {
+            let mut text = vec![b'#'; comments];
+            if let Some(last) = text.last_mut() {
+                *last = b'\n';
+            }
+            text.extend(b"1 2 3\n".iter().cycle().take(rows));
+            assert_eq!(head_of(Cursor::new(text)), expected, "{comments} {rows}");
+        }
+        assert_eq!(head_of(io::repeat(b'#')), PREAMBLE);
+    }
+}

@@ -1,0 +1,252 @@
+//! Rows of numbers, without a header or below one whose names have blanks between them.
+
+use super::builder::Builder;
+use super::fields::Fields;
+use super::frame::ParticleFrame;
+use super::lines::{Line, Lines};
+use super::options::{Format, ReadOptions, Role};
+use super::reader::FrameReader;
+use super::schema::Schema;
+use super::{header, number, source::Source, units};
+use crate::FileError;
+use crate::error::listed;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Rows by which columns of ids and decimal commas are told.
+const ROWS: usize = 200;
+
+/// Roles of the columns that have no names.
+const ROLES: [Role; 4] = [Role::X, Role::Y, Role::Z, Role::Radius];
+
+/// Rows of `x y z` or `x y z radius`, or either with an id before it; or columns that a header
+/// names, which may be in a comment, as `numpy.savetxt` writes it.
+pub(crate) struct Rows {
+    lines: Lines,
+    options: ReadOptions,
+    layout: Layout,
+    /// A row with points instead of decimal commas.
+    row: Vec<u8>,
+    done: bool,
+}
+
+/// Comments that may be headers: of as many names as there are columns, the last that names
+/// positions, or else the last.
+#[derive(Default)]
+struct Comments(HashMap<usize, Vec<String>>);
+
+impl Comments {
+    fn add(&mut self, names: Vec<String>) {
+        let old = self.0.get(&names.len());
+        if old.is_none_or(|old| axes(&names) > 0 || axes(old) == 0) {
+            self.0.insert(names.len(), names);
+        }
+    }
+
+    fn of(&self, columns: usize) -> Option<&[String]> {
+        self.0.get(&columns).map(Vec::as_slice)
+    }
+}
+
+/// What the columns are of rows without a header.
+#[derive(Debug, PartialEq)]
+struct Layout {
+    columns: usize,
+    has_ids: bool,
+    /// True if a header names the columns.
+    has_names: bool,
+    /// True if commas are decimal points.
+    decimal_commas: bool,
+}
+
+impl Rows {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        let layout = Layout::of(&source.head);
+        let (options, row) = (options.clone(), Vec::new());
+        Self { lines: Lines::new(source), options, layout, row, done: false }
+    }
+}
+
+impl Layout {
+    /// The columns that a header names.
+    fn named(
+        &mut self,
+        line: &Line,
+        names: &[String],
+        options: &ReadOptions,
+    ) -> Result<Schema, FileError> {
+        if names.len() != self.columns {
+            let message = format!("{} columns, but the header has {}", self.columns, names.len());
+            let help = "give all rows the columns of the header";
+            return Err(line.whole(message).with_help(help));
+        }
+        let schema = Schema::new(names.to_vec(), options).map_err(|message| {
+            line.whole(message).with_help(header::columns_help(names, options))
+        })?;
+        (self.has_ids, self.has_names) = (false, true);
+        Ok(schema)
+    }
+
+    /// The columns of a first row, by a `comment` above it that may name them.
+    fn schema(
+        &mut self,
+        line: &Line,
+        comment: Option<&[String]>,
+        options: &ReadOptions,
+    ) -> Result<Schema, FileError> {
+        if let Some(names) = comment {
+            // A comment without x, y or z is just that, and roles may go by numbers.
+            let may_be_other = (axes(names) == 0 || !options.columns.roles.is_empty())
+                && self.has_usual_columns(options);
+            match self.named(line, names, options) {
+                Err(_) if may_be_other => (),
+                named => return named,
+            }
+        }
+        let names: Vec<String> = (1..=self.columns).map(|column| column.to_string()).collect();
+        if !options.columns.roles.is_empty() {
+            self.has_ids = false;
+            return Schema::new(names, options).map_err(|error| line.whole(error));
+        }
+        if !self.has_usual_columns(options) {
+            let message =
+                format!("{} columns, but a row is `x y z` or `x y z radius`", self.columns);
+            let help = "say which columns are what, as in --columns x=1,y=2,z=3,radius=4, or put a \
+                        line that names the columns before the rows; write decimal points, not commas";
+            return Err(line.whole(message).with_help(help));
+        }
+        let named = names[usize::from(self.has_ids)..].iter().map(String::as_str);
+        let known: Vec<_> = ROLES.into_iter().zip(named).collect();
+        Schema::with_roles(names.clone(), options, &known).map_err(|error| line.whole(error))
+    }
+
+    /// Returns whether columns can be told without names, or the options say what they are.
+    fn has_usual_columns(&self, options: &ReadOptions) -> bool {
+        let columns = self.columns.saturating_sub(usize::from(self.has_ids));
+        (3..=4).contains(&columns) || !options.columns.roles.is_empty()
+    }
+
+    /// The columns of the first row, and whether what they begin with are ids: whole numbers, all
+    /// different, beside positions that are not all whole.
+    fn of(head: &[u8]) -> Self {
+        let lines = || {
+            let lines = head.split(|&byte| byte == b'\n');
+            lines.filter(|line| !header::is_comment(line.trim_ascii_start()))
+        };
+        let decimal_commas = has_decimal_commas(lines());
+        let rows: Vec<Vec<Vec<u8>>> = lines()
+            .map(|line| with_points(line, decimal_commas))
+            .map(|line| Fields::marks(&line).map(<[u8]>::to_vec).collect::<Vec<_>>())
+            .filter(|row| !row.is_empty())
+            .take(ROWS)
+            .collect();
+        let columns = rows.first().map_or(0, Vec::len);
+        let mut ids: Vec<u64> = rows.iter().filter_map(|row| number::whole(row.first()?)).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let different = rows.len() > 1 && ids.len() == rows.len();
+        let whole =
+            |row: &Vec<Vec<u8>>| row.iter().skip(1).all(|field| number::whole(field).is_some());
+        let has_ids = (4..=5).contains(&columns) && different && !rows.iter().any(whole);
+        Self { columns, has_ids, has_names: false, decimal_commas }
+    }
+}
+
+/// Returns the number of x, y and z that are among names, be it with units.
+fn axes(names: &[String]) -> usize {
+    let has =
+        |axis: &&str| names.iter().any(|name| units::split(name).0.eq_ignore_ascii_case(axis));
+    ["x", "y", "z"].iter().filter(|axis| has(axis)).count()
+}
+
+/// Returns whether the commas of rows are decimal points: something else stands between their
+/// fields, of which three or more are numbers, and those with a comma have digits around it.
+fn has_decimal_commas<'l>(lines: impl Iterator<Item = &'l [u8]>) -> bool {
+    let mut any = false;
+    let content = lines.map(|line| &line[..memchr::memchr(b'#', line).unwrap_or(line.len())]);
+    let rows = content.filter(|line| !line.trim_ascii().is_empty());
+    for row in rows.take(ROWS).filter(|row| row.contains(&b',')) {
+        let fields = row.split(|byte| b" \t\r\x0B\x0C;".contains(byte));
+        let mut fields = fields.filter(|field| !field.is_empty());
+        let is_decimal =
+            |field: &[u8]| !field.starts_with(b",") && number::with_point(field).is_some();
+        if fields.clone().count() < 3
+            || !fields.all(|field| !field.contains(&b',') || is_decimal(field))
+        {
+            return false;
+        }
+        any = true;
+    }
+    any
+}
+
+/// A row with points instead of decimal commas, if it has any.
+fn with_points(row: &[u8], decimal_commas: bool) -> Vec<u8> {
+    let point = |&byte: &u8| if decimal_commas && byte == b',' { b'.' } else { byte };
+    row.iter().map(point).collect()
+}
+
+impl FrameReader for Rows {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let mut builder = None;
+        let mut names: Option<Vec<String>> = None;
+        let mut comments = Comments::default();
+        let path = self.lines.path().clone();
+        while let Some(mut line) = self.lines.next()? {
+            let text = line.bytes.trim_ascii();
+            let is_comment = header::is_comment(text);
+            if builder.is_none() && names.is_none() {
+                let found = header::names(if is_comment { text[1..].trim_ascii() } else { text });
+                if header::is_header(&found) {
+                    if is_comment {
+                        comments.add(found);
+                    } else {
+                        names = Some(found);
+                        continue;
+                    }
+                }
+            }
+            if is_comment || Fields::marks(text).next().is_none() {
+                continue;
+            }
+            if self.layout.decimal_commas {
+                self.row = with_points(line.bytes, true);
+                line = Line::new(&path, line.number_in_file(), &self.row);
+            }
+            let fields = Fields::marks(line.bytes);
+            let columns = fields.clone().count();
+            let builder = match &mut builder {
+                Some(builder) => builder,
+                none => {
+                    self.layout.columns = columns;
+                    let schema = match &names {
+                        Some(names) => self.layout.named(&line, names, &self.options)?,
+                        None => self.layout.schema(&line, comments.of(columns), &self.options)?,
+                    };
+                    none.insert(Builder::new(&path, Format::Xyzr, &Arc::new(schema)))
+                }
+            };
+            if columns != self.layout.columns {
+                let above = self.layout.columns;
+                let message = format!("{columns} columns, but the rows above have {above}");
+                return Err(line.whole(message).with_help("give all rows the same columns"));
+            }
+            builder.row(&line, fields)?;
+        }
+        let once = !std::mem::replace(&mut self.done, true);
+        Ok(builder.filter(|_| once).map(|mut builder| {
+            if self.layout.has_ids {
+                builder.frame.warnings.push("the first column is taken for ids".to_owned());
+            }
+            if self.layout.decimal_commas {
+                builder.frame.warnings.push("commas are read as decimal points".to_owned());
+            }
+            let schema = builder.schema().clone();
+            if self.layout.has_names && !schema.unused.is_empty() {
+                let names: Vec<&str> = schema.unused.iter().map(String::as_str).collect();
+                builder.frame.warnings.push(listed("columns that are not used", &names));
+            }
+            builder.finish()
+        }))
+    }
+}
