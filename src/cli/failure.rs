@@ -4,12 +4,10 @@
 use super::args::Args;
 use super::output;
 use super::render::Estimate;
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use clap::CommandFactory;
 use clap::error::ErrorKind;
-use miette::{
-    LabeledSpan, MietteError, MietteHandlerOpts, MietteSpanContents, SourceCode, SourceSpan,
-    SpanContents,
-};
+use memchr::{memchr, memrchr};
 use spherule::bench::BenchError;
 use spherule::checkpoint::{CheckpointError, LockError};
 use spherule::drawing::DrawingError;
@@ -21,8 +19,9 @@ use spherule::scene::generate::GenerateError;
 use spherule::scene::{FileError, Place};
 use spherule::split::MergeError;
 use spherule::world::WorldError;
-use std::fmt;
+use std::fmt::Display;
 use std::io;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -108,7 +107,7 @@ impl From<BenchError> for Failure {
 
 impl Failure {
     /// A command line that only turns out to be wrong once it is read as a whole.
-    pub(super) fn usage(command: &str, message: impl fmt::Display) -> Self {
+    pub(super) fn usage(command: &str, message: impl Display) -> Self {
         let mut program = Args::command();
         program.build();
         let command = program.find_subcommand_mut(command).cloned().unwrap_or(program);
@@ -154,72 +153,31 @@ impl Failure {
 }
 
 fn report_scene(mut error: FileError) {
-    let Some(place) = error.place.take_if(|place| is_short(place)) else {
+    let Some(place) = error.place.take_if(|place| excerpt(place).len() <= DRAWN) else {
         return output::error(error);
     };
-    // Long lines are left to the terminal, so that messages can be searched for. That the hook is
-    // set already is the only way to fail.
-    let _ = miette::set_hook(Box::new(|_| {
-        Box::new(MietteHandlerOpts::new().terminal_links(false).wrap_lines(false).build())
-    }));
-    let report = miette::Report::new(Drawn { error, place: *place });
-    output::tell_plain(format_args!("{report:?}"));
+    let lines = excerpt(&place);
+    let first_line = place.first_line + place.source_text[..lines.start].matches('\n').count();
+    let span = place.span.start - lines.start..place.span.end - lines.start;
+    let path = error.path.display().to_string();
+    let snippet = Snippet::source(&place.source_text[lines])
+        .line_start(first_line)
+        .path(&path)
+        .fold(false)
+        .annotation(AnnotationKind::Primary.span(span));
+    let mut report = vec![Level::ERROR.primary_title(&error.message).element(snippet)];
+    if let Some(help) = &error.help {
+        report.push(Group::with_title(Level::HELP.secondary_title(help)));
+    }
+    output::tell_plain(Renderer::styled().render(&report));
 }
 
-/// Whether the faulty lines, with one above and one below, help more than they hide.
-fn is_short(place: &Place) -> bool {
-    let drawn = place.source_text.as_str().read_span(&place.span.clone().into(), 1, 1);
-    drawn.is_ok_and(|lines| lines.data().len() <= DRAWN)
-}
-
-/// A fault in a scene, for drawing.
-#[derive(Debug)]
-struct Drawn {
-    error: FileError,
-    place: Place,
-}
-
-impl fmt::Display for Drawn {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.error.message)
-    }
-}
-
-impl std::error::Error for Drawn {}
-
-impl miette::Diagnostic for Drawn {
-    fn help(&self) -> Option<Box<dyn fmt::Display + '_>> {
-        self.error.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = LabeledSpan::underline(self.place.span.clone());
-        Some(Box::new(std::iter::once(label)))
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(self)
-    }
-}
-
-impl SourceCode for Drawn {
-    fn read_span<'a>(
-        &'a self,
-        span: &SourceSpan,
-        lines_before: usize,
-        lines_after: usize,
-    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let text = self.place.source_text.as_str();
-        let contents = text.read_span(span, lines_before, lines_after)?;
-        // The text may begin in the middle of its file.
-        let line = contents.line() + self.place.first_line - 1;
-        Ok(Box::new(MietteSpanContents::new_named(
-            self.error.path.display().to_string(),
-            contents.data(),
-            *contents.span(),
-            line,
-            contents.column(),
-            contents.line_count(),
-        )))
-    }
+/// Returns the faulty lines of a text, with one above and one below.
+fn excerpt(place: &Place) -> Range<usize> {
+    let text = place.source_text.as_bytes();
+    let above = |end: usize| memrchr(b'\n', &text[..end]);
+    let below = |start: usize| memchr(b'\n', &text[start..]).map(|newline| start + newline);
+    let start = above(place.span.start).and_then(above).map_or(0, |newline| newline + 1);
+    let end = below(place.span.end).and_then(|newline| below(newline + 1));
+    start..end.unwrap_or(text.len())
 }

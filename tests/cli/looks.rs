@@ -124,7 +124,7 @@ fn looks_that_cannot_be_are_refused() {
         (&["dust.csv", "--color-by", "note", "--color-bar", "bar.png"], 2, "a column of numbers"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "no/bar.png"], 1, "cannot be written"),
         (&["dust.csv", "--select", "z > "], 2, "missing here z > ^"),
-        (&["dust.csv", "--select", "mass > 1"], 1, "[selection:1:1] 1 │ mass > 1 · ────"),
+        (&["dust.csv", "--select", "mass > 1"], 1, "--> selection:1:1 | 1 | mass > 1 | ^^^^"),
         (&["dust.csv", "--select", "x > 9"], 1, "none of its 3 particles"),
         (&["dust.csv", "--type", "C:material=wood"], 2, "materials are: lambertian"),
         (&["dust.csv", "--type", "Fe:radius=1"], 1, "`Fe`; there are C, O, H"),

@@ -110,13 +110,15 @@ impl Place {
         let start =
             (0..=span.start.min(text.len())).rev().find(|&byte| text.is_char_boundary(byte));
         let before = &text[..start.unwrap_or(0)];
+        let end =
+            (span.end.max(before.len())..text.len()).find(|&byte| text.is_char_boundary(byte));
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         Self {
             line: first_line + before.matches('\n').count(),
             column: before[line_start..].chars().count() + 1,
             source_text: text.to_owned(),
             first_line,
-            span: before.len()..span.end.clamp(before.len(), text.len()),
+            span: before.len()..end.unwrap_or(text.len()),
         }
     }
 }
