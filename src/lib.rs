@@ -74,6 +74,10 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+struct LibraryGuide;
+
 // Exact ray queries on spheres.
 pub use spherule_core as query;
 #[doc(hidden)]

@@ -1,10 +1,9 @@
-//! Traces rays in a world: the ground first, if there is one, then the tree, or the part of it that
-//! slices leave.
+//! Ray tracing in a world: tests the ground, and then the tree of the spheres that slices leave.
 
 mod clipped;
 mod ground;
 
-pub(crate) use self::ground::{hide_behind, stop_at};
+pub(crate) use self::ground::{intersect_ground, occlude_by_ground};
 pub use crate::bvh::{PacketWidth, Tracer, Traversal};
 
 use self::clipped::ClippedRays;
@@ -12,7 +11,7 @@ use crate::bvh::Tree;
 use crate::ray::{Hits, MISS, Rays};
 use crate::world::World;
 
-/// The answer that is looked for.
+/// A kind of ray query.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Query {
     /// The first hit of each ray.
@@ -21,55 +20,55 @@ enum Query {
     Any,
 }
 
-/// Finds the first hit of each ray. On entry `hits.t` bounds the search, and `hits.sphere` is what is
-/// at that bound, if anything; on return both describe the hit.
+/// Finds the first hit of each ray. On entry `hits.t` bounds the search, and `hits.sphere` is the hit
+/// at that bound, if any; on return both describe the hit.
 ///
-/// Returns how many decisions were made on integers.
+/// Returns the number of decisions made by exact integer arithmetic.
 pub fn closest(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
     closest_ground(world, rays, hits);
     trace(tracer, Query::Closest, world, rays, hits)
 }
 
-/// Does what [`closest`] does, for rays that hit no sphere.
+/// Finds the first hit of rays that hit no sphere.
 pub fn closest_ground(world: &World, rays: &Rays, hits: &mut Hits) {
     if let Some(ground) = &world.ground {
-        stop_at(ground, rays, hits);
+        intersect_ground(ground, rays, hits);
     }
 }
 
 /// Finds whether each ray hits anything nearer than `hits.t`. On entry `hits.sphere` is [`MISS`] for
-/// each ray that is to be traced; on return it is `MISS` where nothing is hit.
+/// each ray to trace; on return it is `MISS` where nothing is hit.
 ///
-/// Returns how many decisions were made on integers.
+/// Returns the number of decisions made by exact integer arithmetic.
 pub fn occluded(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
     if let Some(ground) = &world.ground {
-        hide_behind(ground, rays, hits);
+        occlude_by_ground(ground, rays, hits);
     }
     trace(tracer, Query::Any, world, rays, hits)
 }
 
 /// Traces rays among the spheres that exist for them.
 fn trace(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
-    if world.seen.is_none() && world.cut.is_empty() {
+    if world.camera_visible.is_none() && world.cut.is_empty() {
         let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
         return query.trace(tracer, tree, rays, hits);
     }
     trace_sliced(tracer, query, world, rays, hits)
 }
 
-/// Does what [`trace`] does where slices hide spheres from the camera, or cut them.
+/// Traces rays where slices hide spheres from the camera, or cut them.
 #[cold]
 fn trace_sliced(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
-    // Rays that start on nothing are the camera's, and never mixed with others.
+    // Only camera rays start on no sphere, and they are never mixed with other rays.
     let from_camera = rays.own.first() == Some(&MISS);
-    let Some(seen) = world.seen.as_ref().filter(|_| from_camera) else {
+    let Some(visible) = world.camera_visible.as_ref().filter(|_| from_camera) else {
         let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
         return trace_clipped(tracer, query, world, tree, rays, hits);
     };
-    let tree = Tree { bvh: &seen.bvh, spheres: &seen.spheres };
+    let tree = Tree { bvh: &visible.bvh, spheres: &visible.spheres };
     let exact = trace_clipped(tracer, query, world, tree, rays, hits);
     for hit in &mut hits.sphere[..rays.len()] {
-        *hit = seen.row.get(*hit as usize).copied().unwrap_or(*hit);
+        *hit = visible.row.get(*hit as usize).copied().unwrap_or(*hit);
     }
     exact
 }

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use spherule::checkpoint::{self, Caption, Origin};
 use spherule::film::Region;
-use spherule::render::{Options, Share, Unfinished};
+use spherule::render::{ImagePart, Options, ResumableRender};
 use spherule::scene::{Identity, Scene};
 use spherule::split::{Merge, Part, Split};
 use spherule::world::World;
@@ -47,8 +47,8 @@ fn files() -> &'static [Vec<u8>] {
     static FILES: OnceLock<Vec<Vec<u8>>> = OnceLock::new();
     FILES.get_or_init(|| {
         let region = Region { x: 0, y: 0, width: 40, height: 33 };
-        let whole = Share::whole(region, 64);
-        let part = |split| Part::new(2, 3).expect("it is one").share(&whole, Some(split));
+        let whole = ImagePart::whole(region, 64);
+        let part = |split| Part::new(2, 3).expect("it is one").of_image(&whole, Some(split));
         let shares = [Split::Samples, Split::Tiles].map(|split| part(split).expect("enough"));
         let stopped = [None, Some(1e-6)].map(|error| (scene(error), whole.clone(), 7));
         let parts = shares.map(|share| (scene(None), share, u32::MAX));
@@ -61,7 +61,7 @@ fn files() -> &'static [Vec<u8>] {
 }
 
 /// The file of a share of a render that was stopped after so many tasks.
-fn kept(scene: &Scene, share: Share, tasks: u32) -> Vec<u8> {
+fn kept(scene: &Scene, share: ImagePart, tasks: u32) -> Vec<u8> {
     let world = World::build(scene).expect("a world");
     let (count, cancel) = (AtomicU32::new(0), AtomicBool::new(false));
     let stop = |_| {
@@ -74,7 +74,7 @@ fn kept(scene: &Scene, share: Share, tasks: u32) -> Vec<u8> {
         statistics: true,
         ..Options::default()
     };
-    let mut render = Unfinished::begin_share(&world, &scene.settings, &options, share)
+    let mut render = ResumableRender::begin_part(&world, &scene.settings, &options, share)
         .expect("settings in range");
     render.run(&world, &options);
     written(&origin(scene), &render)
@@ -86,14 +86,14 @@ fn origin(scene: &Scene) -> Origin {
     Origin { scene: Identity::of(scene), folder: "somewhere".into(), arguments, caption }
 }
 
-fn written(origin: &Origin, render: &Unfinished) -> Vec<u8> {
+fn written(origin: &Origin, render: &ResumableRender) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("render");
     checkpoint::write(&path, origin, render).expect("a file");
     fs::read(path).expect("the file")
 }
 
-fn read(bytes: &[u8]) -> Result<(Origin, Unfinished), String> {
+fn read(bytes: &[u8]) -> Result<(Origin, ResumableRender), String> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("render");
     fs::write(&path, bytes).expect("a file");
@@ -171,7 +171,7 @@ fn sealed(file: &[u8], [head, blocks]: &[Vec<u8>; 2]) -> Vec<u8> {
 }
 
 /// Does with what was read whatever is done with such files.
-fn use_up(origin: &Origin, mut render: Unfinished, scene: &Scene) {
+fn use_up(origin: &Origin, mut render: ResumableRender, scene: &Scene) {
     drop(render.render());
     assert!(read(&written(origin, &render)).is_ok(), "it can be kept");
     let mut merge = Merge::new(true);
@@ -189,7 +189,7 @@ fn use_up(origin: &Origin, mut render: Unfinished, scene: &Scene) {
 }
 
 /// For a moment: who knows how many samples were asked for.
-fn go_on(render: &mut Unfinished, scene: &Scene) {
+fn go_on(render: &mut ResumableRender, scene: &Scene) {
     static WORLD: OnceLock<World> = OnceLock::new();
     let world = WORLD.get_or_init(|| World::build(scene).expect("a world"));
     let cancel = AtomicBool::new(false);

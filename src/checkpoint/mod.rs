@@ -35,7 +35,7 @@ use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::ops::Range;
 
-/// What such files begin with.
+/// The first bytes of checkpoints.
 const MAGIC: [u8; 20] = *b"spherule-checkpoint\n";
 
 /// Version of the format.
@@ -44,16 +44,16 @@ const FORMAT: u32 = 3;
 /// The program that writes: another may make other bytes of the same samples.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
-/// Where a render comes from: what it takes to begin it again.
+/// Origin of a render: the scene and the command that started it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Origin {
-    /// What is rendered.
+    /// The scene.
     pub scene: Identity,
     /// The folder in which the command was given; empty if there was none.
     pub folder: OsString,
-    /// What the command says, in its own words; empty if a render comes from code.
+    /// The arguments of the command; empty if the render was started from code.
     pub arguments: Vec<OsString>,
-    /// What it takes to write the picture when the scene is gone.
+    /// Metadata and layers of the picture, to write it without the scene.
     pub caption: Caption,
 }
 
@@ -62,7 +62,7 @@ pub struct Origin {
 pub struct Caption {
     /// The scene's title; empty if there is none.
     pub title: String,
-    /// How the scene is looked at: names and values.
+    /// Looks of the scene: names and values.
     pub looks: Vec<(String, String)>,
     /// Whether something is drawn over the picture that takes the scene: a cell, a background.
     pub drawn_over: bool,

@@ -3,7 +3,7 @@
 use super::blocks::{PACKED, TILES, unpack};
 use super::{FORMAT, MAGIC, Origin, PROGRAM};
 use crate::memory::{self, Shortage};
-use crate::render::{Outline, Status, Unfinished};
+use crate::render::{Outline, ResumableRender, Status};
 use crate::sealed::SEAL;
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek};
@@ -45,7 +45,7 @@ pub enum CheckpointError {
 /// # Errors
 /// It cannot be read, is no checkpoint, or not one of this version of the program; a byte of it is
 /// missing or not what was written; or there is not enough memory.
-pub fn read(path: &Path) -> Result<(Origin, Unfinished), CheckpointError> {
+pub fn read(path: &Path) -> Result<(Origin, ResumableRender), CheckpointError> {
     let failed = |error| CheckpointError::Read(path.to_owned(), error);
     let file = File::open(path).map_err(failed)?;
     let length = file.metadata().map_err(failed)?;
@@ -109,7 +109,7 @@ impl From<io::Error> for Fault {
 pub(super) fn read_from(
     mut reader: impl Read + Seek,
     length: u64,
-) -> Result<(Origin, Unfinished), Fault> {
+) -> Result<(Origin, ResumableRender), Fault> {
     let sealed = check_seal(&mut reader, length)?;
     unpack_all(&mut reader.take(sealed), sealed)
 }
@@ -144,7 +144,7 @@ fn check_hash(reader: &mut impl Read, sealed: u64) -> Result<(), Fault> {
 }
 
 /// Head and blocks; of what they say, only that has been checked that someone made a hash of it.
-fn unpack_all(reader: &mut impl Read, length: u64) -> Result<(Origin, Unfinished), Fault> {
+fn unpack_all(reader: &mut impl Read, length: u64) -> Result<(Origin, ResumableRender), Fault> {
     let (origin, outline) = head(reader, length)?;
     check_size(&outline, length)?;
     let mut render = outline.begin();

@@ -1,6 +1,6 @@
 use super::read::{Fault, read_from};
 use super::*;
-use crate::render::{End, Options, Unfinished};
+use crate::render::{End, Options, ResumableRender};
 use crate::scene::{Scene, Settings, generate};
 use crate::sealed::SEAL;
 use crate::world::World;
@@ -19,7 +19,7 @@ fn scene() -> Scene {
     scene
 }
 
-fn stopped(world: &World, settings: &Settings, tasks: u64) -> Unfinished {
+fn stopped(world: &World, settings: &Settings, tasks: u64) -> ResumableRender {
     let (count, cancel) = (AtomicU64::new(0), AtomicBool::new(false));
     let stop = |_| {
         let last = count.fetch_add(1, Ordering::Relaxed) + 1 >= tasks;
@@ -31,7 +31,7 @@ fn stopped(world: &World, settings: &Settings, tasks: u64) -> Unfinished {
         statistics: true,
         ..Options::default()
     };
-    let mut render = Unfinished::begin(world, settings, &options).unwrap();
+    let mut render = ResumableRender::begin(world, settings, &options).unwrap();
     assert_eq!(render.run(world, &options), End::Cancelled);
     render
 }
@@ -52,7 +52,7 @@ fn origin(scene: &Scene) -> Origin {
 struct Kept {
     world: World,
     origin: Origin,
-    render: Unfinished,
+    render: ResumableRender,
     bytes: Vec<u8>,
 }
 
@@ -69,7 +69,7 @@ fn kept(tasks: u64) -> Kept {
     Kept { world, origin, render, bytes: fs::read(path).unwrap() }
 }
 
-fn parse(bytes: &[u8]) -> Result<(Origin, Unfinished), Fault> {
+fn parse(bytes: &[u8]) -> Result<(Origin, ResumableRender), Fault> {
     read_from(Cursor::new(bytes), bytes.len() as u64)
 }
 

@@ -3,7 +3,7 @@
 use super::blocks::{TILES, pack};
 use super::{FORMAT, MAGIC, Origin, PROGRAM};
 use crate::atomic::write_atomically;
-use crate::render::{Outline, Unfinished};
+use crate::render::{Outline, ResumableRender};
 use crate::sealed::Sealing;
 use rayon::prelude::*;
 use std::io::{self, Write};
@@ -17,7 +17,7 @@ const AHEAD: usize = 4;
 ///
 /// # Errors
 /// What [`write_atomically`] says; the old file is then untouched.
-pub fn write(path: &Path, origin: &Origin, render: &Unfinished) -> io::Result<()> {
+pub fn write(path: &Path, origin: &Origin, render: &ResumableRender) -> io::Result<()> {
     let head = postcard::to_stdvec(&(PROGRAM, origin, Outline::of(render)));
     let head = head.map_err(io::Error::other)?;
     write_atomically(path, |writer| {

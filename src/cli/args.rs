@@ -1,4 +1,4 @@
-//! The command line as typed.
+//! Arguments of all commands.
 
 mod field;
 mod picture;
@@ -6,9 +6,9 @@ mod picture;
 pub(super) use field::{FieldArgs, Kind, ParameterArgs};
 pub(super) use picture::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
 
+use super::appearance::AppearanceArgs;
+use super::checkpoint::CheckpointArgs;
 use super::command_line::command_line;
-use super::keep::KeepArgs;
-use super::looks::LookArgs;
 use super::memory::MemoryArgs;
 use super::part::PartArgs;
 use super::particles::ParticleArgs;
@@ -20,7 +20,7 @@ use clap::{Parser, Subcommand};
 use spherule::image::Format;
 use std::path::PathBuf;
 
-/// Renders scenes made of spheres: exact visibility, and the same picture at every speed setting
+/// Renders scenes of spheres with exact visibility; the image never depends on the performance settings
 #[derive(Debug, Parser)]
 #[command(
     name = "spherule",
@@ -35,31 +35,31 @@ pub(super) struct Args {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Render a scene or a particle file to a picture (the default command)
+    /// Render a scene or a particle file to an image (the default command)
     #[command(allow_negative_numbers = true, after_help = examples::RENDER)]
     Render(Box<RenderArgs>),
-    /// Look at a scene or a particle file while it refines: turn it, color it, name its spheres
+    /// Open an interactive viewer for a scene or a particle file
     #[command(allow_negative_numbers = true, after_help = view::examples())]
     View(Box<view::ViewerArgs>),
-    /// Put the parts of a render together that several machines have made
+    /// Merge the parts of a render made on several machines
     #[command(allow_negative_numbers = true, after_help = examples::MERGE)]
     Merge(merge::Args),
-    /// Tell what parts of a render have been done, what is missing, and how long it will take
+    /// Show the progress of parts and checkpoints: what is done, what is missing, and the time left
     #[command(after_help = examples::STATUS)]
     Status(status::Args),
-    /// Write a generated scene: a TOML file, and its spheres in a CSV file beside it
+    /// Generate a scene: a TOML file, with its spheres in a CSV file next to it
     #[command(allow_negative_numbers = true, after_help = examples::FIELD)]
     Field(FieldArgs),
-    /// Say what is in a scene, and what a render of it will do without
+    /// Show the contents of a scene, and the work that a render of it skips
     #[command(after_help = examples::INFO)]
     Info(InfoArgs),
-    /// Measure how far a picture is from a reference
+    /// Measure the difference between an image and a reference
     #[command(after_help = examples::COMPARE)]
     Compare(compare::Args),
-    /// Count wrong decisions of this program, and of usual forms, where rounding is at its worst
+    /// Compare intersection tests with exact arithmetic in numerically hard cases
     #[command(after_help = stress::EXAMPLES)]
     Stress(stress::Args),
-    /// Measure how fast this program is on this machine: tables, plots, and a report
+    /// Run benchmarks on this machine, and write tables, plots and a report
     #[command(after_help = bench::EXAMPLES)]
     Bench(bench::Args),
     /// Print a completion script for a shell
@@ -69,8 +69,8 @@ pub(super) enum Command {
 
 #[derive(Debug, Parser)]
 pub(super) struct RenderArgs {
-    /// A scene (.toml), a file of particles (any other name) or - for particles on standard input;
-    /// without it, a random field of spheres
+    /// Scene (.toml), particle file (any other name), or - to read particles from standard input [default: a
+    /// random field of spheres]
     pub(super) scene: Option<PathBuf>,
     #[arg(
         short,
@@ -83,7 +83,7 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) particles: ParticleArgs,
     #[command(flatten)]
-    pub(super) looks: LookArgs,
+    pub(super) looks: AppearanceArgs,
     #[command(flatten)]
     pub(super) slices: SliceArgs,
     #[command(flatten)]
@@ -95,7 +95,7 @@ pub(super) struct RenderArgs {
     #[command(flatten)]
     pub(super) encoding: EncodingArgs,
     #[command(flatten)]
-    pub(super) keep: KeepArgs,
+    pub(super) checkpoints: CheckpointArgs,
     #[command(flatten)]
     pub(super) speed: SpeedArgs,
     #[command(flatten)]
@@ -104,8 +104,8 @@ pub(super) struct RenderArgs {
     pub(super) sequence: SequenceArgs,
     #[command(flatten)]
     pub(super) part: PartArgs,
-    /// Write the scene with its tree to FILE, and render nothing. Parts, and other renders, of FILE begin
-    /// at once; settings may be others then, but not spheres, looks and camera
+    /// Write the scene and its acceleration structure to FILE instead of rendering. Rendering FILE, or parts
+    /// of it, starts at once; settings may differ then, but not spheres, materials and camera
     #[arg(
         long,
         value_name = "FILE",
@@ -118,7 +118,7 @@ pub(super) struct RenderArgs {
 }
 
 impl RenderArgs {
-    /// Returns whether it makes many pictures.
+    /// Returns whether the command renders a sequence of images.
     pub(super) fn is_sequence(&self) -> bool {
         self.views.turntable().is_some() || self.particles.frames().is_some()
     }
@@ -126,44 +126,44 @@ impl RenderArgs {
 
 #[derive(Debug, clap::Args)]
 pub(super) struct InfoArgs {
-    /// A scene (.toml), a file of particles (any other name) or - for particles on standard input
+    /// Scene (.toml), particle file (any other name), or - to read particles from standard input
     pub(super) scene: PathBuf,
     #[command(flatten)]
     pub(super) particles: ParticleArgs,
     /// List the first and last N particles of a particle file
     #[arg(long, value_name = "N")]
     pub(super) rows: Option<usize>,
-    /// One JSON object on standard output
+    /// Print one JSON object to standard output
     #[arg(long)]
     pub(super) json: bool,
 }
 
 #[derive(Debug, clap::Args)]
 pub(super) struct CompletionsArgs {
-    /// The shell
+    /// Shell to print the script for
     #[arg(value_enum)]
     pub(super) shell: clap_complete::Shell,
 }
 
-/// Help of the option that names the picture.
+/// Help of the option that names the output image.
 pub(super) fn picture_help() -> String {
     format!(
-        "The picture: a name that ends in {}, or - for standard output",
+        "Output image: a name that ends in {}, or - for standard output",
         Format::written_suffixes()
     )
 }
 
-/// Help of a picture that is read.
+/// Help of an argument that names an input image.
 pub(super) fn read_help() -> String {
-    format!("The picture: {}", Format::read_names())
+    format!("Image: {}", Format::read_names())
 }
 
 impl Args {
-    /// Returns the command of this process, or what there is to print instead: help, the version, or what
-    /// is wrong.
+    /// Parses the command line of this process. The error holds the text to print instead: help, the version,
+    /// or a usage error.
     pub(super) fn of_process() -> Result<Command, Failure> {
-        let usual = || Command::Render(Box::new(RenderArgs::parse_from(["spherule"])));
+        let default = || Command::Render(Box::new(RenderArgs::parse_from(["spherule"])));
         let args = Self::try_parse_from(command_line()?).map_err(Failure::Usage)?;
-        Ok(args.command.unwrap_or_else(usual))
+        Ok(args.command.unwrap_or_else(default))
     }
 }

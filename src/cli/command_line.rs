@@ -1,4 +1,4 @@
-//! The arguments of the process, with `render` put in where the user left it out.
+//! The arguments of the process, with the default command `render` inserted.
 
 use super::Failure;
 use super::args::Args;
@@ -9,16 +9,16 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// The command that a file's name alone stands for.
+/// The default command.
 const USUAL: &str = "render";
 
-/// Options of the program itself.
+/// Options of the program, not of a command.
 const OWN: [&str; 4] = ["-h", "--help", "-V", "--version"];
 
-/// Least likeness of a word to a suggestion, 0..=1.
+/// Minimum similarity of a word to a suggestion, 0..=1.
 const LIKENESS: f64 = 0.6;
 
-/// Files of a folder that are compared with a name that is not there.
+/// Maximum number of files of a folder that are compared with an unknown name.
 const COMPARED: usize = 10_000;
 
 /// Returns the arguments of this process, its own name first. A file or an option of `render` that comes
@@ -48,7 +48,7 @@ fn commands() -> Vec<String> {
     commands.flat_map(|command| command.get_name_and_visible_aliases()).map(str::to_owned).collect()
 }
 
-/// Returns whether there is a file, or something that keeps the system from telling.
+/// Returns whether a file exists, or cannot be accessed to find out.
 fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).map_or_else(|error| error.kind() != ErrorKind::NotFound, |_| true)
 }

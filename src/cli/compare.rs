@@ -1,4 +1,4 @@
-//! `spherule compare`: how far a picture is from a reference.
+//! `spherule compare`: measures the difference between an image and a reference.
 
 use super::Failure;
 use super::args::read_help;
@@ -11,20 +11,20 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Two pictures.
+/// Arguments of `spherule compare`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     #[arg(value_name = "A", help = read_help())]
     picture: PathBuf,
-    /// The reference
+    /// Reference image
     #[arg(value_name = "B")]
     reference: PathBuf,
-    /// One JSON object on standard output; what is infinite is null
+    /// Print one JSON object to standard output; infinite values are null
     #[arg(long)]
     json: bool,
 }
 
-/// A comparison and what was compared.
+/// A comparison, with the names and size of the images.
 #[derive(Serialize)]
 struct Report<'a> {
     picture: Cow<'a, str>,
@@ -35,10 +35,10 @@ struct Report<'a> {
     comparison: Comparison,
 }
 
-/// Measures and tells.
+/// Compares the images and prints the result.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let mut files = Files::new("compare");
-    files.reads("the picture", &args.picture);
+    files.reads("the image", &args.picture);
     files.reads("the reference", &args.reference);
     files.check()?;
     let picture = Image::read(&args.picture)?;
@@ -82,7 +82,7 @@ fn print(report: &Report) {
     ));
     if comparison.non_finite > 0 {
         output::warn(format_args!(
-            "{} values are NaN or infinite in one of the pictures at least; no number counts them",
+            "{} values are NaN or infinite in at least one image; they are left out of all statistics",
             HumanCount(comparison.non_finite)
         ));
     }

@@ -1,4 +1,4 @@
-//! `spherule completions`: scripts for shells.
+//! `spherule completions`: shell completion scripts.
 
 use super::args::{Args, CompletionsArgs};
 use super::output;

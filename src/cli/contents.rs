@@ -1,10 +1,10 @@
-//! What a world contains, in words.
+//! Descriptions of a world's contents and of skipped work.
 
 use indicatif::HumanCount;
 use spherule::World;
 use spherule::world::Kind;
 
-/// What there is of each sort, one phrase each.
+/// Returns a phrase for each kind of content.
 pub(super) fn found(world: &World) -> Vec<String> {
     let features = &world.features;
     let mut found = Vec::new();
@@ -24,7 +24,7 @@ pub(super) fn found(world: &World) -> Vec<String> {
     };
     find(features.colors, "colors of single spheres");
     find(features.lights, &format!("{} to sample", plural(world.lights.len() as u64, "light")));
-    find(features.environment, "an environment that can be seen");
+    find(features.environment, "a visible environment");
     find(features.lens, "a lens");
     find(features.cuts > 0, &format!("{} at which spheres end", plural(features.cuts, "plane")));
     find(features.unseen > 0, &format!("{} hidden from the camera", spheres(features.unseen)));
@@ -46,11 +46,11 @@ pub(super) fn plural(count: u64, noun: &str) -> String {
     format!("{} {noun}{ending}", HumanCount(count))
 }
 
-/// Which spheres are left out, and why.
+/// Returns the reasons why spheres are left out, with their numbers.
 pub(super) fn dropped(world: &World) -> Vec<String> {
     let left_out =
         |count: u64, why: &str| (count > 0).then(|| format!("{} left out: {why}", spheres(count)));
-    let vanished = "too small for single precision beside the scene's extent";
+    let vanished = "too small for single precision relative to the scene's extent";
     let hidden = "each coincides with an earlier one, which hides it";
     let features = &world.features;
     [left_out(features.vanished, vanished), left_out(features.hidden, hidden)]

@@ -1,5 +1,4 @@
-//! Why a command failed, and how that is told: scene files with the faulty line drawn, all else in
-//! a line.
+//! Errors of commands, and their printing: with an excerpt for scene files, in one line for all else.
 
 use super::args::Args;
 use super::output;
@@ -25,10 +24,10 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Most bytes of a file that are drawn: a damaged one may be a single line.
+/// Maximum number of bytes of an excerpt. A damaged file may be a single line.
 const DRAWN: usize = 600;
 
-/// Why a command failed.
+/// Error of a command.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     #[error("{0}")]
@@ -45,15 +44,15 @@ pub(crate) enum Failure {
     Compare(#[from] CompareError),
     #[error("--{} {}", .0.parameter, .0.message)]
     Generate(#[from] GenerateError),
-    #[error("cannot start {0} threads: {1}; give --threads a smaller number")]
+    #[error("cannot start {0} threads: {1}; use a smaller number with --threads")]
     Threads(usize, rayon::ThreadPoolBuildError),
     #[error("{}: cannot be written: {}", .0.display(), .1)]
     Write(PathBuf, io::Error),
     /// With the exit code of the signal.
-    #[error("{}: interrupted, and nobody reads the pipe: nothing is written to it", .0.display())]
+    #[error("{}: interrupted while waiting for a reader of the pipe; nothing is written", .0.display())]
     NoReader(PathBuf, u8),
     #[error("{}: {}", .0.display(), .1)]
-    Film(PathBuf, String),
+    Video(PathBuf, String),
     #[error("frame {0}: {1}")]
     Frame(u64, Box<Self>),
     #[error("{0}")]
@@ -72,7 +71,7 @@ pub(crate) enum Failure {
         "{}: already exists; resume it with --resume, delete it, or choose another name",
         .0.display()
     )]
-    Kept(PathBuf),
+    CheckpointExists(PathBuf),
     #[error("{}: cannot resume: {}", .0.display(), .1)]
     Resume(PathBuf, String),
     #[error("{0}")]
@@ -84,8 +83,8 @@ pub(crate) enum Failure {
     #[error("{0}")]
     Window(String),
     #[error(
-        "this program was compiled for a processor with {0}, which this one does not have; build \
-         it on this machine: cargo build --release"
+        "this program was compiled for a processor with {0}, which this processor does not have; build it on \
+         this machine: cargo build --release"
     )]
     Processor(String),
 }
@@ -106,7 +105,7 @@ impl From<BenchError> for Failure {
 }
 
 impl Failure {
-    /// A command line that only turns out to be wrong once it is read as a whole.
+    /// Creates an error for options that contradict each other.
     pub(super) fn usage(command: &str, message: impl Display) -> Self {
         let mut program = Args::command();
         program.build();
@@ -114,7 +113,7 @@ impl Failure {
         Self::Usage(command.clone().error(ErrorKind::ValueValidation, message))
     }
 
-    /// The same, of a frame among many.
+    /// Adds the number of a trajectory frame to the error.
     pub(super) fn of_frame(self, number: u64) -> Self {
         match self {
             Self::Scene(error) => {
@@ -125,7 +124,7 @@ impl Failure {
         }
     }
 
-    /// Tells the user, and returns the exit code: 2 for a wrong command line, 1 for all else, 0 if the
+    /// Prints the error, and returns the exit code: 2 for an invalid command line, 1 for all else, 0 if the
     /// user asked for help or the version.
     pub(crate) fn report(self) -> ExitCode {
         match self {
@@ -134,7 +133,7 @@ impl Failure {
                 return ExitCode::SUCCESS;
             }
             Self::Usage(error) => {
-                // Nobody is left to tell if standard error is closed.
+                // There is nowhere to report that standard error is closed.
                 let _ = error.print();
                 return ExitCode::from(2);
             }
@@ -169,7 +168,7 @@ fn report_scene(mut error: FileError) {
     if let Some(help) = &error.help {
         report.push(Group::with_title(Level::HELP.secondary_title(help)));
     }
-    output::tell_plain(Renderer::styled().render(&report));
+    output::print_error_line(Renderer::styled().render(&report));
 }
 
 /// Returns the faulty lines of a text, with one above and one below.

@@ -1,4 +1,4 @@
-//! `spherule field`: a generated scene becomes a scene file.
+//! `spherule field`: writes a generated scene.
 
 use super::args::{FieldArgs, Kind, ParameterArgs};
 use super::contents::spheres;
@@ -32,17 +32,17 @@ pub(super) fn run(args: &FieldArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Only what ends in `.toml` is read as a scene.
+/// Rejects names that do not end in `.toml`, which are not read as scenes.
 fn check_name(path: &Path) -> Result<(), Failure> {
     if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
         return Ok(());
     }
     let name = path.display();
-    Err(Failure::usage("field", format!("--output {name}: give a name that ends in .toml")))
+    Err(Failure::usage("field", format!("--output {name}: use a name that ends in .toml")))
 }
 
 impl ParameterArgs {
-    /// The generator, after a look at whether every parameter is one of its own.
+    /// Returns the generator; an error if a parameter is not one of its own.
     fn generator(&self, kind: Kind) -> Result<Generator, Failure> {
         self.check_kind(kind)?;
         Ok(match kind {
@@ -56,56 +56,56 @@ impl ParameterArgs {
     }
 
     fn grid(&self) -> Result<Grid, Failure> {
-        let usual = Grid::default();
+        let default = Grid::default();
         Ok(Grid {
-            count: self.count.unwrap_or(usual.count),
-            spacing: self.spacing.unwrap_or(usual.spacing),
-            radius: self.one_radius()?.unwrap_or(usual.radius),
+            count: self.count.unwrap_or(default.count),
+            spacing: self.spacing.unwrap_or(default.spacing),
+            radius: self.one_radius()?.unwrap_or(default.radius),
         })
     }
 
     fn field(&self) -> Field {
-        let usual = Field::default();
+        let default = Field::default();
         Field {
-            count: self.count.unwrap_or(usual.count),
-            radius: self.radius.map_or(usual.radius, Radii::range),
-            colors: self.colors.unwrap_or(usual.colors),
+            count: self.count.unwrap_or(default.count),
+            radius: self.radius.map_or(default.radius, Radii::range),
+            colors: self.colors.unwrap_or(default.colors),
             mix: Some(self.mix.unwrap_or(DEFAULT_MIX)),
         }
     }
 
     fn volume(&self) -> Volume {
-        let usual = Volume::default();
+        let default = Volume::default();
         Volume {
-            count: self.count.unwrap_or(usual.count),
+            count: self.count.unwrap_or(default.count),
             size: self.size,
             radius: self.radius.map(Radii::range),
-            colors: self.colors.unwrap_or(usual.colors),
+            colors: self.colors.unwrap_or(default.colors),
         }
     }
 
     fn lattice(&self) -> Result<Lattice, Failure> {
-        let usual = Lattice::default();
+        let default = Lattice::default();
         Ok(Lattice {
-            count: self.count.unwrap_or(usual.count),
-            radius: self.one_radius()?.unwrap_or(usual.radius),
-            jitter: self.jitter.unwrap_or(usual.jitter),
+            count: self.count.unwrap_or(default.count),
+            radius: self.one_radius()?.unwrap_or(default.radius),
+            jitter: self.jitter.unwrap_or(default.jitter),
         })
     }
 
     fn sphereflake(&self) -> Result<Sphereflake, Failure> {
-        let usual = Sphereflake::default();
+        let default = Sphereflake::default();
         Ok(Sphereflake {
-            level: self.level.unwrap_or(usual.level),
-            radius: self.one_radius()?.unwrap_or(usual.radius),
+            level: self.level.unwrap_or(default.level),
+            radius: self.one_radius()?.unwrap_or(default.radius),
         })
     }
 
-    /// The radius of generators whose spheres are all equal.
+    /// Returns the radius for generators whose spheres are all equal.
     fn one_radius(&self) -> Result<Option<f64>, Failure> {
         match self.radius {
             Some(radii) if radii.least != radii.greatest => {
-                Err(Failure::usage("field", "--radius takes one radius here, as in 0.4"))
+                Err(Failure::usage("field", "--radius takes a single radius here, as in 0.4"))
             }
             radii => Ok(radii.map(|radii| radii.least)),
         }
@@ -127,7 +127,10 @@ impl ParameterArgs {
         let Some((option, _, kinds)) = stray else { return Ok(()) };
         let owners: Vec<String> = kinds.iter().map(|kind| name(*kind)).collect();
         let (kind, owners) = (name(kind), owners.join(", "));
-        Err(Failure::usage("field", format!("--{option} is not for {kind}; it is for: {owners}")))
+        Err(Failure::usage(
+            "field",
+            format!("--{option} does not apply to {kind}, only to {owners}"),
+        ))
     }
 }
 

@@ -1,4 +1,4 @@
-//! What surrounds generated spheres: light, ground and a camera.
+//! Light, ground and cameras for generated spheres.
 
 use glam::DVec3;
 use spherule::scene::generate::{Field, GenerateError, Generator, Group, default_scene};
@@ -7,8 +7,7 @@ use spherule::scene::{
     Scene,
 };
 
-/// The generator's spheres in the light of the scene that is rendered when nobody says what to
-/// render.
+/// Returns the generator's spheres with the lights of the default scene.
 pub(super) fn scene(generator: &Generator, seed: u64) -> Result<Scene, GenerateError> {
     let group = generator.generate(seed)?;
     Ok(match generator {
@@ -21,7 +20,7 @@ pub(super) fn scene(generator: &Generator, seed: u64) -> Result<Scene, GenerateE
     })
 }
 
-/// The field keeps the camera for the size that it was made for.
+/// A field of the default size has the camera of the default scene.
 fn field_scene(field: &Field, group: Group, seed: u64) -> Scene {
     let scene = default_scene(seed);
     let own_camera = field.count == Field::default().count;
@@ -35,7 +34,7 @@ fn on_ground(group: Group, seed: u64) -> Scene {
     Scene { title: "A grid of spheres".to_owned(), spheres: group.spheres, ..default_scene(seed) }
 }
 
-/// Spheres of plastic in the sky.
+/// Plastic spheres without a ground.
 fn floating(group: Group, seed: u64) -> Scene {
     let plastic = Material::Plastic { color: Rgb::splat(0.8), ior: 1.5 };
     Scene {

@@ -1,4 +1,4 @@
-//! Files that a command reads and writes, checked against each other before the work begins.
+//! Files that a command reads and writes, checked for conflicts before the work begins.
 //!
 //! An output never replaces an input or another output: files are told apart by their identity, not by
 //! their names ([`FileIdentity`]). Files that are in the way only because of an earlier run are replaced, as
@@ -21,10 +21,10 @@ pub(super) struct Files {
     uses: Vec<FileUse>,
 }
 
-/// One file of a command.
+/// A file of a command.
 #[derive(Clone, Debug)]
 struct FileUse {
-    /// An option for an output, as in `--output`; for an input what it is, as in `the scene`.
+    /// The option of an output, as in `--output`, or a description of an input, as in `the scene`.
     name: String,
     path: PathBuf,
     access: Access,
@@ -39,14 +39,14 @@ enum Access {
 }
 
 impl Files {
-    /// No files yet, but for standard output where it goes to a file.
+    /// Creates the list, with standard output if it goes to a file.
     pub(super) fn new(command: &'static str) -> Self {
         let mut files = Self { command, uses: Vec::new() };
         files.add("standard output", Path::new(STREAM), Access::Write, streams::output());
         files
     }
 
-    /// Adds an input; `-` is standard input. `name` says what it is, as in `the particle file`.
+    /// Adds an input; `-` is standard input. `name` describes it, as in `the particle file`.
     pub(super) fn reads(&mut self, name: &str, path: &Path) {
         let identity = if path == Path::new(STREAM) { streams::input() } else { identity(path) };
         self.add(name, path, Access::Read, identity);
@@ -72,7 +72,7 @@ impl Files {
         }
     }
 
-    /// Refuses a command in which an output leads to the same file as an input or another output.
+    /// Rejects an output that is the same file as an input or another output.
     pub(super) fn check(&self) -> Result<(), Failure> {
         let mut known: HashMap<&FileIdentity, &FileUse> = HashMap::new();
         let outputs = self.uses.iter().filter(|file| file.access == Access::Write);
@@ -86,14 +86,14 @@ impl Files {
                 Entry::Occupied(place) if place.get().access == Access::Write => {
                     return Err(self.refuse(&output_over_input(place.get(), file)));
                 }
-                // Files may be read twice.
+                // Files may be read more than once.
                 Entry::Occupied(_) => (),
             }
         }
         Ok(())
     }
 
-    /// Refuses one more output that leads to the same file as one of these.
+    /// Rejects an additional output that is the same file as one of the list.
     pub(super) fn check_output(&self, option: &str, path: &Path) -> Result<(), Failure> {
         let mut files = self.clone();
         files.writes(option, path);
@@ -144,8 +144,7 @@ fn output_over_input(output: &FileUse, input: &FileUse) -> String {
     format!("{name} {path} would replace {input_path}, {input_name}; give {name} another name")
 }
 
-/// Identity of a file; `None` also where a missing folder or the like is going to be reported by whoever
-/// opens the file.
+/// Identity of a file; `None` also on errors, which are reported when the file is opened.
 fn identity(path: &Path) -> Option<FileIdentity> {
     FileIdentity::of(path).ok().flatten()
 }

@@ -1,21 +1,21 @@
-//! Which frames of a file are drawn, as typed.
+//! Values of `--frame`.
 
 use spherule::scene::particles::FrameChoice;
 use std::fmt;
 use std::str::FromStr;
 
-/// One frame, or many.
+/// One frame or a range of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FrameArg {
     One(FrameChoice),
     Many(FrameRange),
 }
 
-/// Every so many frames from a first to a last one, which may be whatever is the last.
+/// A range of frames with a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FrameRange {
     pub(super) first: u64,
-    /// Included; `None` for all that there are.
+    /// Inclusive; `None` for the last frame of the file.
     pub(super) last: Option<u64>,
     pub(super) step: u64,
 }
@@ -23,13 +23,13 @@ pub(super) struct FrameRange {
 impl FrameRange {
     const ALL: Self = Self { first: 0, last: None, step: 1 };
 
-    /// Number of its frames up to `last`, which is included.
+    /// Number of frames up to `last`, inclusive.
     pub(super) fn count_to(self, last: u64) -> u64 {
         last.checked_sub(self.first).map_or(0, |span| (span / self.step).saturating_add(1))
     }
 }
 
-/// As it is typed.
+/// Formats the range as the command line takes it.
 impl fmt::Display for FrameRange {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { first, last, step } = *self;
@@ -72,8 +72,8 @@ impl FromStr for FrameArg {
             Some(range) => Ok(Self::Many(range)),
             None => text.parse().map(Self::One).map_err(|_| {
                 format!(
-                    "`{text}` are no frames: write first, last, a number from 0, or all, A-B or \
-                     A..B..STEP, with A no more than B and STEP 1 or more"
+                    "`{text}` is not a frame or a range of frames: give first, last, a number from 0, or \
+                     all, A-B or A..B..STEP, with A no more than B and STEP 1 or more"
                 )
             }),
         }

@@ -1,4 +1,4 @@
-//! `spherule info`: what is in a scene, what it takes, and what a render will do without.
+//! `spherule info`: prints the contents of a scene, its memory, and the work that a render skips.
 
 use super::args::InfoArgs;
 use super::contents::{dropped, found, plural, spheres};
@@ -15,7 +15,7 @@ use spherule::scene::{EnvironmentMap, Projection, Scene, bounds};
 use spherule::world::Kind;
 use std::process::ExitCode;
 
-/// What is in a scene, lengths in its own unit.
+/// Contents of a scene, with lengths in its own unit.
 #[derive(Serialize)]
 struct Info {
     file: String,
@@ -26,9 +26,9 @@ struct Info {
     dropped_spheres: u64,
     /// Lower and upper corner; null without spheres.
     bounds: Option<[[f64; 3]; 2]>,
-    /// Least and greatest; null without spheres.
+    /// Minimum and maximum; null without spheres.
     radius: Option<[f64; 2]>,
-    /// What is cut away.
+    /// Slices.
     slices: Vec<String>,
     materials: Vec<MaterialInfo>,
     ground: bool,
@@ -72,10 +72,10 @@ struct MemoryInfo {
     bytes_per_sphere: f64,
 }
 
-/// How many materials are listed one by one.
+/// Maximum number of materials that are listed.
 const SHOWN: usize = 12;
 
-/// Looks and tells.
+/// Loads the scene and prints its contents.
 pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     args.particles.refuse_frames("info")?;
     let mut files = Files::new("info");
@@ -94,11 +94,11 @@ pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The scene, and what its file says if it is one of particles.
+/// Loads the scene, and the summary of a particle file.
 fn load(source: &Source, rows: Option<usize>) -> Result<(Scene, Option<ParticleInfo>), Failure> {
     let Source::Particles(path, options) = source else {
         if rows.is_some() {
-            let message = "--rows lists the particles of a particle file, not of a scene";
+            let message = "--rows is only for particle files";
             return Err(Failure::usage("info", message));
         }
         return Ok((source.load()?, None));

@@ -1,20 +1,20 @@
-//! `--memory-limit`: less memory than there is.
+//! `--memory-limit`: an upper bound on memory.
 
 use bytesize::ByteSize;
 use spherule::memory;
 
-/// How much memory may be taken.
+/// Option that limits memory.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub(super) struct MemoryArgs {
-    /// Take no more memory than this, as in 500MB, 4GB or 4GiB: what would take more is refused before
-    /// it is begun [default: what is free, and what the control group allows]
+    /// Maximum memory, as in 500MB, 4GB or 4GiB; commands that would need more stop before they start
+    /// [default: free memory, within the cgroup's limit]
     #[arg(long, value_name = "SIZE", allow_hyphen_values = true, value_parser = size)]
     memory_limit: Option<u64>,
 }
 
 impl MemoryArgs {
-    /// From here on, whatever asks for memory is held to it.
-    pub(super) fn obey(self) {
+    /// Applies the limit to all later checks of memory.
+    pub(super) fn apply(self) {
         if let Some(bytes) = self.memory_limit {
             memory::limit_to(bytes);
         }
@@ -26,7 +26,7 @@ fn size(text: &str) -> Result<u64, String> {
     let unit = text.ends_with(|last: char| last.is_ascii_alphabetic());
     let size = text.parse().ok().filter(|_| unit).map(|ByteSize(bytes)| bytes);
     size.filter(|&bytes| bytes > 0).ok_or_else(|| {
-        "give a size of more than 0 with its unit, as in 500MB, 4GB (10^9 bytes) or 4GiB (2^30)"
+        "give a size greater than 0 with a unit, as in 500MB, 4GB (10^9 bytes) or 4GiB (2^30 bytes)"
             .to_owned()
     })
 }

@@ -1,4 +1,4 @@
-//! `spherule merge`: parts of a render become the picture of the whole.
+//! `spherule merge`: combines the parts of a render into one image.
 
 use super::args::{EncodingArgs, picture_help};
 use super::contents::plural;
@@ -15,47 +15,47 @@ use spherule::checkpoint::{self, Caption};
 use spherule::film::Region;
 use spherule::image::{Channel, Format};
 use spherule::layers::{Features, Layer, Layers};
-use spherule::render::{Render, Share, Unfinished};
+use spherule::render::{ImagePart, Render, ResumableRender};
 use spherule::split::{Merge, MergeError};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Parts, and what becomes of them.
+/// Arguments of `spherule merge`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
-    /// What `spherule render --part` wrote, in any order
+    /// Files that `spherule render --part` wrote, in any order
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
     #[arg(short, long, value_name = "FILE", help = picture_help())]
     output: PathBuf,
-    /// Merge what there is, though parts are missing or were interrupted: every pixel is the mean of the
-    /// samples that it has, and black if it has none
+    /// Merge even if parts are missing or were interrupted: each pixel is the mean of its available samples,
+    /// or black if it has none
     #[arg(long)]
     partial: bool,
     #[command(flatten)]
     encoding: EncodingArgs,
     #[command(flatten)]
     memory: MemoryArgs,
-    /// Nothing but warnings and errors
+    /// Print only warnings and errors
     #[arg(short, long)]
     quiet: bool,
-    /// Statistics and settings as one JSON object on standard output
+    /// Print statistics and settings as one JSON object to standard output
     #[arg(long)]
     json: bool,
 }
 
-/// What parts come to.
+/// The merged parts.
 struct Merged {
-    whole: Unfinished,
-    /// What the first of them says of the picture.
+    whole: ResumableRender,
+    /// Settings and layers, from the first part.
     caption: Caption,
-    /// What is known of tiles, from all of them.
+    /// Features of tiles, from all parts.
     pieces: Vec<(Range<u32>, Vec<Features>)>,
-    missing: Vec<Share>,
+    missing: Vec<ImagePart>,
 }
 
-/// How it went.
+/// Statistics of the merge.
 #[derive(Serialize)]
 struct Summary {
     program: &'static str,
@@ -63,23 +63,23 @@ struct Summary {
     output: String,
     parts: usize,
     complete: bool,
-    /// What no part has.
+    /// Samples and tiles that no part has.
     missing: Vec<String>,
     settings: List,
     samples: u64,
     rays: u64,
-    /// Time that the parts took, one after the other.
+    /// Sum of the parts' render times.
     render_seconds: f64,
 }
 
-/// Merges, writes and tells.
+/// Merges the parts, writes the image and prints statistics.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
-    args.memory.obey();
+    args.memory.apply();
     let format = picture_file::format(&args.output, args.encoding.output_format)?;
     picture_file::check_stream("merge", &args.output, args.json)?;
     if !args.encoding.layers.is_empty() && format != Format::Exr {
         let message = format!(
-            "{format} has no room for --layers; end the name of --output in .exr, or give --output-format exr"
+            "{format} files cannot store --layers; use an --output that ends in .exr, or --output-format exr"
         );
         return Err(Failure::usage("merge", message));
     }
@@ -100,11 +100,11 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     write_file(&args.output, &file)?;
     let mut listed = settings::list(settings, region);
     listed.extend(settings::list_encoding(format, &options));
-    tell(args, &merged, &render, listed);
+    report(args, &merged, &render, listed);
     Ok(ExitCode::SUCCESS)
 }
 
-/// Reads one part after the other: no more than one is in memory beside the sums.
+/// Reads the parts one by one, so that only one is in memory besides the sums.
 fn merge(args: &Args) -> Result<Merged, Failure> {
     let mut merge = Merge::new(args.partial);
     let mut caption: Option<Caption> = None;
@@ -127,7 +127,7 @@ fn merge(args: &Args) -> Result<Merged, Failure> {
 }
 
 impl Merged {
-    /// Channels of the layers that were typed, or else of those of the parts, if the file has room.
+    /// Channels of the layers of `--layers`, or else of the parts' layers, if the format supports them.
     fn channels(
         &self,
         args: &Args,
@@ -157,12 +157,12 @@ impl Merged {
         let mut layers = Layers::gather(self.whole.region(), &self.pieces);
         layers.statistics.clone_from(&render.statistics);
         if !self.knows_everything() && wanted.iter().any(|layer| !layer.is_statistic()) {
-            output::warn("layers are empty where the parts that know them are missing");
+            output::warn("layers are empty in tiles of missing parts");
         }
         Ok(layers.channels(&wanted))
     }
 
-    /// Whether the features of all pixels are there.
+    /// Returns whether the features of all pixels are known.
     fn knows_everything(&self) -> bool {
         let Region { width, height, .. } = self.whole.region();
         let known: usize = self.pieces.iter().map(|(_, features)| features.len()).sum();
@@ -170,14 +170,14 @@ impl Merged {
     }
 }
 
-fn tell(args: &Args, merged: &Merged, render: &Render, settings: List) {
+fn report(args: &Args, merged: &Merged, render: &Render, settings: List) {
     let summary = Summary {
         program: "spherule",
         version: env!("CARGO_PKG_VERSION"),
         output: args.output.display().to_string(),
         parts: args.parts.len(),
         complete: render.complete,
-        missing: merged.missing.iter().map(Share::to_string).collect(),
+        missing: merged.missing.iter().map(ImagePart::to_string).collect(),
         settings,
         samples: render.samples.total,
         rays: render.counters.rays(),
@@ -198,16 +198,16 @@ fn tell(args: &Args, merged: &Merged, render: &Render, settings: List) {
     warnings(&render.counters, merged.whole.settings()).iter().for_each(output::warn);
     if merged.caption.drawn_over {
         output::warn(
-            "--cell, --background and --color-bar inside take the scene: they are left out",
+            "--cell, --background and --color-bar inside need the scene, and are left out",
         );
     }
     for missing in &summary.missing {
-        output::warn(format_args!("no part has {missing}"));
+        output::warn(format_args!("missing: no part has {missing}"));
     }
     if !render.complete {
         let (least, most) = (render.samples.least, render.samples.most);
         output::warn(format_args!(
-            "{} holds what there was: {least} to {most} samples of each pixel, of {}",
+            "{} is incomplete: {least} to {most} of {} samples per pixel",
             summary.output,
             merged.whole.settings().spp
         ));

@@ -1,9 +1,9 @@
-//! The command line: `Args` as typed, a job without strings, a run that reads as the program's
-//! outline.
+//! The command line: arguments, commands, messages and exit codes.
 
+mod appearance;
 mod args;
 mod bench;
-mod command;
+mod checkpoint;
 mod command_line;
 mod compare;
 mod completions;
@@ -15,8 +15,7 @@ mod field_scene;
 mod files;
 mod frames;
 mod info;
-mod keep;
-mod looks;
+mod invocation;
 mod memory;
 mod merge;
 mod names;
@@ -36,10 +35,10 @@ mod source;
 mod status;
 mod stress;
 mod threads;
-mod typed;
 mod values;
 mod view;
 mod views;
+mod with_text;
 mod write_file;
 
 use self::args::{Args, Command};
@@ -47,7 +46,7 @@ pub(crate) use self::failure::Failure;
 pub(crate) use self::output::finish;
 use std::process::ExitCode;
 
-/// Runs the command that the command line names.
+/// Runs the command of this process.
 pub(crate) fn run() -> Result<ExitCode, Failure> {
     processor::check()?;
     signals::survive_large_files();

@@ -1,4 +1,4 @@
-//! The words of the command line, and what each of them means.
+//! Names of option values, and the values that they stand for.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule::image::{Depth, Format, PpmEncoding};
@@ -14,7 +14,7 @@ use std::mem::discriminant;
 pub(super) struct Names<T: 'static>(pub(super) &'static [(&'static str, T, &'static str)]);
 
 impl<T: Clone + Send + Sync> Names<T> {
-    /// Reads one of the names.
+    /// Returns a parser of the names.
     pub(super) fn parser(&self) -> impl TypedValueParser<Value = T> + use<T> {
         let table = self.0;
         let names = table
@@ -26,25 +26,30 @@ impl<T: Clone + Send + Sync> Names<T> {
         })
     }
 
-    /// The name of a value.
+    /// Returns the name of a value.
     pub(super) fn name(&self, value: &T) -> &'static str {
         let row = self.0.iter().find(|row| discriminant(&row.1) == discriminant(value));
         row.map_or("", |row| row.0)
     }
 }
 
-/// Samples toward each light where neither scene nor command says how many.
+/// Default number of shadow rays to each light.
 const SHADOW_SAMPLES: u32 = 16;
 
-/// Integrators, with their usual parameters.
+/// Integrators, with their default parameters.
 pub(super) const INTEGRATORS: Names<Integrator> = Names(&[
-    ("path", Integrator::Path, "Path tracing with light samples: everything there is"),
+    ("path", Integrator::Path, "Path tracing with direct light sampling: full global illumination"),
     (
         "whitted",
         Integrator::Whitted { shadow_samples: SHADOW_SAMPLES },
-        "Direct light, mirrors and glass only",
+        "Whitted ray tracing: direct light, mirrors and glass only",
     ),
-    ("ao", Integrator::Ao { distance: f64::INFINITY }, "Ambient occlusion: shape without light"),
+    (
+        "ao",
+        Integrator::Ao { distance: f64::INFINITY },
+        "Ambient occlusion: shows shape, ignores lights and \
+                                                        materials",
+    ),
 ]);
 
 /// Samplers.
@@ -54,27 +59,31 @@ pub(super) const SAMPLERS: Names<SamplerKind> = Names(&[
     ("independent", SamplerKind::Independent, "Independent random numbers"),
 ]);
 
-/// Choices of the light that a path looks for.
+/// Strategies that select the light of a direct lighting sample.
 pub(super) const LIGHT_CHOICES: Names<LightChoice> = Names(&[
-    ("tree", LightChoice::Tree, "By what each would give where it is looked for: least noise"),
+    (
+        "tree",
+        LightChoice::Tree,
+        "Light tree: by the estimated contribution at the shading point; least noise",
+    ),
     ("power", LightChoice::Power, "By power, the same everywhere"),
-    ("uniform", LightChoice::Uniform, "All alike"),
+    ("uniform", LightChoice::Uniform, "All lights with equal probability"),
 ]);
 
 /// Pixel filters.
 pub(super) const FILTERS: Names<Filter> = Names(&[
-    ("box", Filter::Box, "The pixel's own square"),
-    ("gaussian", Filter::Gaussian, "Standard deviation of half a pixel"),
-    ("blackman-harris", Filter::BlackmanHarris, "4 pixels wide"),
+    ("box", Filter::Box, "The square of the pixel"),
+    ("gaussian", Filter::Gaussian, "Gaussian with a standard deviation of half a pixel"),
+    ("blackman-harris", Filter::BlackmanHarris, "Blackman-Harris window, 4 pixels wide"),
 ]);
 
 /// Tone curves.
 pub(super) const TONES: Names<Tone> = Names(&[
     ("linear", Tone::Linear, "Clip at 1"),
-    ("filmic", Tone::Filmic, "Roll highlights off"),
+    ("filmic", Tone::Filmic, "Filmic curve that compresses highlights"),
 ]);
 
-/// Reads the name of a format that is written.
+/// Returns a parser of the formats that can be written.
 pub(super) fn formats() -> impl TypedValueParser<Value = Format> {
     let named =
         |name: &str| Format::WRITTEN.into_iter().find(|format| format.option_name() == name);
@@ -86,73 +95,78 @@ pub(super) fn formats() -> impl TypedValueParser<Value = Format> {
 pub(super) const BITS: Names<Depth> =
     Names(&[("8", Depth::Eight, "0 to 255"), ("16", Depth::Sixteen, "0 to 65535")]);
 
-/// Dialects of PPM.
+/// Encodings of PPM.
 pub(super) const PPM: Names<PpmEncoding> = Names(&[
     ("plain", PpmEncoding::Plain, "P3: numbers as text"),
     ("binary", PpmEncoding::Binary, "P6: bytes"),
 ]);
 
-/// Layers of the picture's file; none is all of them.
+/// Layers of the image file; `None` stands for all.
 pub(super) const LAYERS: Names<Option<Layer>> = Names(&[
-    ("albedo", Some(Layer::Albedo), "albedo.R G B: the surface's color, black beside it"),
+    ("albedo", Some(Layer::Albedo), "albedo.R G B: surface color; black for the background"),
     ("normal", Some(Layer::Normal), "normal.X Y Z: toward the viewer, in the scene's axes"),
-    ("depth", Some(Layer::Depth), "depth.Z: distance from the camera; inf where nothing is"),
-    ("coverage", Some(Layer::Coverage), "coverage.Y: share of the pixel that is not sky"),
+    ("depth", Some(Layer::Depth), "depth.Z: distance from the camera; inf for the background"),
+    ("coverage", Some(Layer::Coverage), "coverage.Y: fraction of the pixel that is not background"),
     (
         "id",
         Some(Layer::Id),
-        "id.Y, integers: which sphere the pixel's center sees, from 0; 4294967295 for none, \
-         4294967294 for the ground",
+        "id.Y, integers: index of the sphere at the pixel's center, from 0; 4294967295 for none, 4294967294 \
+         for the ground",
     ),
     (
         "variance",
         Some(Layer::Variance),
-        "variance.R G B: of the pixel's mean, an estimate that takes some more samples",
+        "variance.R G B: estimated variance of the pixel's mean; takes some more samples",
     ),
-    ("samples", Some(Layer::Samples), "samples.Y, integers: how many the pixel has"),
+    ("samples", Some(Layer::Samples), "samples.Y, integers: number of samples of the pixel"),
     ("all", None, "All of these"),
 ]);
 
 /// Rays in a packet.
 pub(super) const LANES: Names<PacketWidth> = Names(&[
     ("1", PacketWidth::One, "One ray at a time"),
-    ("4", PacketWidth::Four, "Packets of four"),
-    ("8", PacketWidth::Eight, "Packets of eight"),
-    ("16", PacketWidth::Sixteen, "Packets of sixteen"),
+    ("4", PacketWidth::Four, "Packets of 4 rays"),
+    ("8", PacketWidth::Eight, "Packets of 8 rays"),
+    ("16", PacketWidth::Sixteen, "Packets of 16 rays"),
 ]);
 
-/// What parts of a render differ in.
+/// Ways to split a render into parts.
 pub(super) const SPLITS: Names<Split> = Names(&[
-    ("samples", Split::Samples, "Each part has some samples of every pixel"),
-    ("tiles", Split::Tiles, "Each part has some of the tiles, and takes less memory"),
+    ("samples", Split::Samples, "Each part takes some of the samples of every pixel"),
+    ("tiles", Split::Tiles, "Each part renders some of the tiles, and uses less memory"),
 ]);
 
-/// Reads the name of a regime.
+/// Returns a parser of the names of regimes.
 pub(super) fn regime() -> impl TypedValueParser<Value = &'static Regime> {
     let names = REGIMES.iter().map(|regime| PossibleValue::new(regime.name).help(regime.about));
     PossibleValuesParser::new(names)
         .try_map(|name| Regime::named(&name).ok_or("not one of the names"))
 }
 
-/// Traversals; the last name is an earlier one.
+/// Traversals. The last name is a former one, kept for compatibility.
 pub(super) const TRAVERSALS: Names<Traversal> = Names(&[
-    ("auto", Traversal::Auto, "The fastest: packets of coherent rays, other rays interleaved"),
-    ("brute", Traversal::Brute, "Every ray against every sphere: slow, the reference"),
-    ("scalar", Traversal::Single, "One ray after another"),
-    ("stream", Traversal::Stream, "Single rays, many of them in flight"),
-    ("packet", Traversal::Packet, "Packets of rays with equal signs of directions"),
+    (
+        "auto",
+        Traversal::Auto,
+        "Packets for coherent rays, interleaved single rays for incoherent rays: the \
+                               fastest",
+    ),
+    ("brute", Traversal::Brute, "Test every ray against every sphere: slow, the reference"),
+    ("scalar", Traversal::Single, "Single rays, one after another"),
+    ("stream", Traversal::Stream, "Single rays, many in flight"),
+    ("packet", Traversal::Packet, "Packets of rays whose directions have equal signs"),
     ("tree", Traversal::Packet, ""),
 ]);
 
-/// How the tree over the spheres is built.
+/// Builders of the bounding volume hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Builder {
-    /// What is fastest in all, by the number of spheres and samples
+    /// The fastest in total, by the number of spheres and samples
     Auto,
-    /// Halves on the longest axis
+    /// Median split on the longest axis
     Median,
-    /// The surface-area heuristic: fastest to trace
+    /// Surface area heuristic: fastest to trace
     SurfaceArea,
-    /// Along a curve that fills space: fastest to build
+    /// Along a Morton curve: fastest to build
     Morton,
 }

@@ -1,7 +1,7 @@
 //! Results on standard output, messages on standard error.
 //!
-//! A reader that has gone away (a broken pipe) is no error. Any other failure to write is kept until the
-//! command has done its work, and then decides the exit code: see [`finish`].
+//! A closed reader (a broken pipe) is no error. Any other failure to write is stored until the command is
+//! done, and then determines the exit code: see [`finish`].
 
 use serde::Serialize;
 use std::fmt::{Arguments, Display};
@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Bold and colored where the terminal takes it; `anstream` strips it elsewhere.
+/// Bold and colored on terminals; `anstream` strips the codes elsewhere.
 const ERROR: &str = "\x1b[1;31m";
 const WARNING: &str = "\x1b[1;33m";
 const NOTE: &str = "\x1b[1;36m";
@@ -23,18 +23,18 @@ static OUTPUT_FAILURE: OnceLock<io::Error> = OnceLock::new();
 /// True once a message could not be written to standard error.
 static MESSAGE_LOST: AtomicBool = AtomicBool::new(false);
 
-/// True once standard output takes a picture.
+/// True once standard output is reserved for an image.
 static RESERVED: AtomicBool = AtomicBool::new(false);
 
-/// Prints a line on standard output: what was asked for.
+/// Prints a line of results to standard output.
 pub(super) fn print(text: impl Display) {
     write(format_args!("{text}\n"));
 }
 
-/// Prints text on standard output as it is, without an end of line.
+/// Prints text to standard output, without adding an end of line.
 pub(super) fn write(text: Arguments) {
     if RESERVED.load(Ordering::Relaxed) {
-        return tell_text(text);
+        return write_error(text);
     }
     if OUTPUT_FAILURE.get().is_some() {
         return;
@@ -43,7 +43,7 @@ pub(super) fn write(text: Arguments) {
     record(output.write_fmt(text).and_then(|()| output.flush()));
 }
 
-/// Leaves standard output to a picture: from now on results are printed on standard error.
+/// Reserves standard output for an image: from now on results are printed to standard error.
 pub(super) fn reserve_for_picture() {
     RESERVED.store(true, Ordering::Relaxed);
 }
@@ -54,7 +54,7 @@ pub(super) fn write_bytes(content: &[u8]) {
     record(output.write_all(content).and_then(|()| output.flush()));
 }
 
-/// Prints one JSON object on standard output.
+/// Prints one JSON object to standard output.
 pub(super) fn print_json(object: &impl Serialize) {
     match serde_json::to_string_pretty(object) {
         Ok(text) => print(text),
@@ -62,34 +62,34 @@ pub(super) fn print_json(object: &impl Serialize) {
     }
 }
 
-/// Tells the user what may be worth knowing.
+/// Prints a note.
 pub(super) fn note(text: impl Display) {
-    tell(NOTE, "note", text);
+    print_message(NOTE, "note", text);
 }
 
-/// Tells the user that the result is not what it seems.
+/// Prints a warning.
 pub(super) fn warn(text: impl Display) {
-    tell(WARNING, "warning", text);
+    print_message(WARNING, "warning", text);
 }
 
-/// Tells the user why there is no result.
+/// Prints an error.
 pub(super) fn error(text: impl Display) {
-    tell(ERROR, "error", text);
+    print_message(ERROR, "error", text);
 }
 
-/// Prints a line on standard error as it is.
-pub(super) fn tell_plain(text: impl Display) {
-    tell_text(format_args!("{text}\n"));
+/// Prints a line to standard error.
+pub(super) fn print_error_line(text: impl Display) {
+    write_error(format_args!("{text}\n"));
 }
 
-fn tell_text(text: Arguments) {
+fn write_error(text: Arguments) {
     if is_lost(&anstream::stderr().lock().write_fmt(text)) {
         MESSAGE_LOST.store(true, Ordering::Relaxed);
     }
 }
 
-/// Reports standard output that could not be written, and returns the exit code of the program: `code`, or
-/// that of a failure if a result or a message was lost.
+/// Reports failures to write standard output, and returns the exit code of the program: `code`, or that of a
+/// failure if a result or a message was lost.
 pub(crate) fn finish(code: ExitCode) -> ExitCode {
     if let Some(failure) = OUTPUT_FAILURE.get() {
         error(format_args!("standard output cannot be written: {failure}"));
@@ -99,8 +99,8 @@ pub(crate) fn finish(code: ExitCode) -> ExitCode {
     if code == ExitCode::SUCCESS { ExitCode::FAILURE } else { code }
 }
 
-fn tell(style: &str, kind: &str, text: impl Display) {
-    tell_plain(format_args!("{style}{kind}:{RESET} {text}"));
+fn print_message(style: &str, kind: &str, text: impl Display) {
+    print_error_line(format_args!("{style}{kind}:{RESET} {text}"));
 }
 
 /// Keeps the first failure to write standard output.
@@ -108,7 +108,7 @@ fn record(written: io::Result<()>) {
     if is_lost(&written)
         && let Err(error) = written
     {
-        // Of two failures at once the first one counts.
+        // Of two simultaneous failures the first one counts.
         let _ = OUTPUT_FAILURE.set(error);
     }
 }

@@ -1,9 +1,9 @@
-//! How the command line has files of particles read, and what it says of them.
+//! Options for reading particle files, and a summary of their contents.
 
 use super::frames::{FrameArg, FrameRange};
 use super::rows::RowInfo;
 use super::settings::List;
-use super::typed::{self, Typed};
+use super::with_text::{self, WithText};
 use super::{Failure, output};
 use indicatif::HumanCount;
 use serde::Serialize;
@@ -14,28 +14,28 @@ use spherule::scene::particles::{
 use spherule::suggest;
 use std::path::Path;
 
-/// How a file of particles is read.
+/// Options for reading a particle file.
 #[derive(Clone, Debug, Default, clap::Args)]
-#[command(next_help_heading = "Files of particles")]
+#[command(next_help_heading = "Particle files")]
 pub(super) struct ParticleArgs {
-    /// The format, where the content does not tell it: xyzr, csv, xyz, lammps-dump, lammps-data,
-    /// gro, pdb, mmcif, cif, gsd, ply, npy or npz
+    /// File format [default: detected]: xyzr, csv, xyz, lammps-dump, lammps-data, gro, pdb, mmcif, cif, gsd,
+    /// ply, npy or npz
     #[arg(long, value_parser = format)]
     format: Option<Format>,
-    /// What columns are, as in x=px,radius=size,type=species
-    #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<Typed<Columns>>())]
-    columns: Option<Typed<Columns>>,
-    /// The frame: first, last or a number from 0; or a numbered picture of each of many: all, A-B or
-    /// A..B..STEP, from one camera that frames all of them
-    #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<Typed<FrameArg>>())]
-    frame: Option<Typed<FrameArg>>,
-    /// Radii: vdw or covalent by element, a column's, or one for all
-    #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<Typed<Radii>>())]
-    radii: Option<Typed<Radii>>,
-    /// Factor on all radii
+    /// Meaning of columns, as in x=px,radius=size,type=species
+    #[arg(long, value_name = "ROLE=NAME,...", value_parser = |text: &str| text.parse::<WithText<Columns>>())]
+    columns: Option<WithText<Columns>>,
+    /// Trajectory frame: first, last or a number from 0; or a range, all, A-B or A..B..STEP, which renders a
+    /// numbered image of each frame, with one camera that frames all of them
+    #[arg(long, value_name = "N|first|last|all|A-B", value_parser = |text: &str| text.parse::<WithText<FrameArg>>())]
+    frame: Option<WithText<FrameArg>>,
+    /// Radii: vdw or covalent by element, a column of the file, or one radius for all
+    #[arg(long, value_name = "vdw|covalent|column:NAME|R", value_parser = |text: &str| text.parse::<WithText<Radii>>())]
+    radii: Option<WithText<Radii>>,
+    /// Scale factor for all radii
     #[arg(long, value_name = "FACTOR", value_parser = positive)]
     radius_scale: Option<f64>,
-    /// Atom style of a LAMMPS data file that does not name it, such as full, or "hybrid sphere dipole"
+    /// Atom style of a LAMMPS data file that does not name it, as in full or "hybrid sphere dipole"
     #[arg(long, value_name = "STYLE")]
     atom_style: Option<String>,
 }
@@ -48,11 +48,11 @@ fn format(name: &str) -> Result<Format, String> {
 
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| *number > 0.0 && *number < f64::INFINITY);
-    number.ok_or_else(|| "write a number of more than 0".to_owned())
+    number.ok_or_else(|| "give a number greater than 0".to_owned())
 }
 
 impl ParticleArgs {
-    /// The same for the library.
+    /// Converts the options for the reader.
     pub(super) fn options(&self) -> ReadOptions {
         ReadOptions {
             format: self.format,
@@ -69,28 +69,28 @@ impl ParticleArgs {
         }
     }
 
-    /// Whether anything was typed.
+    /// Returns whether any option was given.
     pub(super) fn any(&self) -> bool {
         self.frames().is_some() || self.options() != ReadOptions::default()
     }
 
-    /// Which frames, if they are many.
+    /// The range of frames, if several are rendered.
     pub(super) fn frames(&self) -> Option<FrameRange> {
         self.frame.as_deref().copied().and_then(FrameArg::range)
     }
 
-    /// What makes the picture, for its file; `frame` is the one of many that it shows.
+    /// Settings for the image's metadata; `frame` is the frame of a sequence that the image shows.
     pub(super) fn list(&self, frame: Option<u64>) -> List {
         let mut list = List::new();
         if let Some(format) = self.format {
             list.insert("format".to_owned(), json!(format.name()));
         }
-        typed::insert(&mut list, "columns", &self.columns);
+        with_text::insert(&mut list, "columns", &self.columns);
         match frame {
             Some(number) => _ = list.insert("frame".to_owned(), json!(number)),
-            None => typed::insert(&mut list, "frame", &self.frame),
+            None => with_text::insert(&mut list, "frame", &self.frame),
         }
-        typed::insert(&mut list, "radii", &self.radii);
+        with_text::insert(&mut list, "radii", &self.radii);
         if let Some(scale) = self.radius_scale {
             list.insert("radius_scale".to_owned(), json!(scale));
         }
@@ -100,22 +100,22 @@ impl ParticleArgs {
         list
     }
 
-    /// Refuses many frames where one is meant.
+    /// Rejects a range of frames.
     pub(super) fn refuse_frames(&self, command: &str) -> Result<(), Failure> {
         if self.frames().is_some() {
-            let message = "--frame names one frame here: first, last or a number from 0";
+            let message = "--frame takes one frame here: first, last or a number from 0";
             return Err(Failure::usage(command, message));
         }
         Ok(())
     }
 }
 
-/// What a file of particles says of itself, lengths in its own unit.
+/// Contents of a particle file, with lengths in its own unit.
 #[derive(Serialize)]
 pub(super) struct ParticleInfo {
     format: &'static str,
     title: String,
-    /// Null where they cannot be counted.
+    /// Null if they cannot be counted.
     frames: Option<u64>,
     step: Option<i64>,
     time: Option<f64>,
@@ -142,7 +142,7 @@ struct CellInfo {
     periodic: [bool; 3],
 }
 
-/// How many types are listed one by one.
+/// Maximum number of types that are listed.
 const SHOWN: usize = 12;
 
 impl ParticleInfo {
@@ -154,7 +154,7 @@ impl ParticleInfo {
         Self {
             format: particles.format.name(),
             title: particles.title.clone(),
-            // What can be read but once has been read.
+            // Input that is not a file can be read only once.
             frames: path.is_file().then(|| count_frames(path, options).ok()).flatten(),
             step: particles.step,
             time: particles.time,
@@ -188,7 +188,7 @@ impl ParticleInfo {
         if let Some(time) = self.time {
             output::print(format_args!("time         {time}"));
         }
-        output::print(format_args!("unit         {}", self.unit.unwrap_or("not told")));
+        output::print(format_args!("unit         {}", self.unit.unwrap_or("unknown")));
         output::print(format_args!("columns      {}", self.columns.join(", ")));
         for kind in self.types.iter().take(SHOWN) {
             let element = kind.element.map_or(String::new(), |element| format!(" ({element})"));

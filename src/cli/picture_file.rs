@@ -1,4 +1,4 @@
-//! Destination of a picture: a file, whose suffix is its format, or standard output.
+//! The image file: its format, and checks of its destination.
 
 use super::files::STREAM;
 use super::{Failure, output};
@@ -8,12 +8,12 @@ use spherule::image::Format;
 use std::io::{IsTerminal, stdout};
 use std::path::Path;
 
-/// Returns whether a picture goes to standard output.
+/// Returns whether the image goes to standard output.
 pub(super) fn is_stream(path: &Path) -> bool {
     path == Path::new(STREAM)
 }
 
-/// Returns the format that was typed, or else that of the suffix; PNG for standard output.
+/// Returns the format of `--output-format`, or else that of the suffix; PNG for standard output.
 pub(super) fn format(path: &Path, typed: Option<Format>) -> Result<Format, Failure> {
     match typed {
         Some(format) => Ok(format),
@@ -22,7 +22,7 @@ pub(super) fn format(path: &Path, typed: Option<Format>) -> Result<Format, Failu
     }
 }
 
-/// Finds out whether a picture could be written, and changes nothing.
+/// Checks that the image can be written, without changing anything.
 pub(super) fn check(path: &Path) -> Result<(), Failure> {
     if is_stream(path) {
         return Ok(());
@@ -30,31 +30,35 @@ pub(super) fn check(path: &Path) -> Result<(), Failure> {
     check_destination(path).map_err(|error| Failure::Write(path.to_owned(), error))
 }
 
-/// Leaves standard output to the picture if it goes there; refuses a terminal, and JSON beside the picture.
+/// Reserves standard output for the image if it goes there; rejects a terminal, and `--json` at the same
+/// time.
 pub(super) fn check_stream(command: &str, path: &Path, json: bool) -> Result<(), Failure> {
     if !is_stream(path) {
         return Ok(());
     }
     let refuse = |message| Err(Failure::usage(command, message));
     if json {
-        return refuse("--output - and --json both take standard output: give --output a name");
+        return refuse(
+            "--output - and --json both write to standard output; give --output a file name",
+        );
     }
     if stdout().is_terminal() {
-        return refuse("--output - is for files and pipes, not for a terminal");
+        return refuse(
+            "--output - cannot write to a terminal; redirect standard output to a file or a pipe",
+        );
     }
     output::reserve_for_picture();
     Ok(())
 }
 
-/// Refuses pictures that are larger than files of the format can be.
+/// Rejects images that are larger than the format allows.
 pub(super) fn check_size(command: &str, region: Region, format: Format) -> Result<(), Failure> {
     let most = format.largest_side();
     if region.width.max(region.height) <= most {
         return Ok(());
     }
     let message = format!(
-        "{format} files have at most {most} pixels on a side; choose another format, or a smaller \
-         --size"
+        "{format} files have at most {most} pixels per side; use another format or a smaller --size"
     );
     Err(Failure::usage(command, message))
 }

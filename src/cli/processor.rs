@@ -1,11 +1,11 @@
-//! Whether this processor has the instructions that the program was compiled for.
+//! Check that this processor has the instructions that the program was compiled for.
 //!
-//! The standard library's `is_x86_feature_detected!` cannot tell: it answers with what the program
-//! was compiled for where that says yes. So the processor itself is asked.
+//! The standard library's `is_x86_feature_detected!` does not help: it returns true for features that the
+//! program was compiled with. So the check queries the processor itself.
 
 use super::Failure;
 
-/// An error if the program would die of an illegal instruction.
+/// Returns an error if the program would stop at an illegal instruction.
 #[inline(never)]
 pub(super) fn check() -> Result<(), Failure> {
     let missing = missing(&required());

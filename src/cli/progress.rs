@@ -1,4 +1,4 @@
-//! How far the work is: a bar on a terminal, a line now and then elsewhere.
+//! Progress reports: a bar on a terminal, occasional lines elsewhere.
 
 use super::output;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
@@ -11,27 +11,27 @@ use std::time::{Duration, Instant};
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;
 
-/// Share of the work between two lines.
+/// Fraction of the work between two lines.
 const SHARE: f64 = 0.1;
 
 /// Time between two lines.
 const PAUSE: Duration = Duration::from_secs(3);
 
-/// Where progress is shown.
+/// Destinations of progress reports.
 pub(super) enum Meter {
     /// On a terminal.
     Bar {
         bar: ProgressBar,
-        /// The farthest that was shown: reports of different threads may come out of order.
+        /// The most advanced step that was shown; reports of different threads may be out of order.
         step: AtomicU64,
     },
-    /// In a file or a pipe.
+    /// To a file or a pipe.
     Lines(Mutex<Line>),
-    /// Nowhere.
+    /// Off.
     Silent,
 }
 
-/// When a line was written last.
+/// Progress at the last line.
 #[derive(Default)]
 pub(super) struct Line {
     done: f64,
@@ -49,7 +49,7 @@ impl Meter {
         }
     }
 
-    /// Shows how far the work is; from any thread.
+    /// Shows the progress; may be called from any thread.
     pub(super) fn show(&self, progress: Progress) {
         match self {
             Self::Bar { bar, step } => {
@@ -60,19 +60,19 @@ impl Meter {
                 }
             }
             Self::Lines(line) => {
-                // Whoever finds it taken has nothing newer to say.
+                // If another thread holds the lock, its report is as recent.
                 if let Ok(mut line) = line.try_lock()
                     && line.is_due(&progress)
                 {
                     *line = Line { done: progress.done, elapsed: progress.elapsed };
-                    output::tell_plain(text(&progress));
+                    output::print_error_line(text(&progress));
                 }
             }
             Self::Silent => {}
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(super) fn finish(&self) {
         if let Self::Bar { bar, .. } = self {
             bar.finish_and_clear();
@@ -80,13 +80,13 @@ impl Meter {
     }
 }
 
-/// Progress of loading, where it takes a while.
+/// Progress of loading, shown if it takes long.
 pub(super) enum LoadMeter {
     /// On a terminal; `None` until there is something to show.
     Bar(Option<ProgressBar>),
-    /// In a file or a pipe: when the last line was written, or loading began, and the line.
+    /// To a file or a pipe: the time of the last line, or of the start, and the line.
     Lines(Instant, String),
-    /// Nowhere.
+    /// Off.
     Silent,
 }
 
@@ -101,7 +101,7 @@ impl LoadMeter {
         }
     }
 
-    /// Shows a step, and the share of it that is done, if that is known.
+    /// Shows a step, and its fraction that is done, if known.
     pub(super) fn show(&mut self, text: &str, done: Option<f64>) {
         match self {
             Self::Bar(bar) => {
@@ -113,13 +113,13 @@ impl LoadMeter {
             Self::Lines(last, line) if last.elapsed() >= PAUSE && line != text => {
                 *last = Instant::now();
                 text.clone_into(line);
-                output::tell_plain(text);
+                output::print_error_line(text);
             }
             Self::Lines(..) | Self::Silent => (),
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(super) fn finish(&self) {
         if let Self::Bar(Some(bar)) = self {
             bar.finish_and_clear();
@@ -142,13 +142,13 @@ impl Line {
     }
 }
 
-/// Million rays per second, in words.
+/// Formats rays per second.
 pub(super) fn rate(rays: u64, elapsed: Duration) -> String {
     let mega = rays as f64 / elapsed.as_secs_f64().max(1e-9) / 1e6;
     format!("{mega:.1} Mrays/s")
 }
 
-/// Speed, and how far the picture is from its limit if that is known.
+/// Formats the speed, and the error of the image if known.
 fn message(progress: &Progress) -> String {
     let rate = rate(progress.rays, progress.elapsed);
     match progress.noise {

@@ -4,14 +4,14 @@ use super::output;
 use serde::Serialize;
 use spherule::scene::particles::Particles;
 
-/// The first and last particles that are drawn, none of them twice.
+/// The first and last particles, without repetition.
 #[derive(Serialize)]
 pub(super) struct RowInfo {
     first: Vec<ListedParticle>,
     last: Vec<ListedParticle>,
 }
 
-/// A particle, lengths in the file's unit.
+/// A particle, with lengths in the file's unit.
 #[derive(Serialize)]
 struct ListedParticle {
     row: usize,

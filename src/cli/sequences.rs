@@ -1,25 +1,26 @@
-//! Options for sequences of pictures.
+//! Options for image sequences.
 
-/// Options for the pictures of a sequence.
+/// Options for image sequences.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
-#[command(next_help_heading = "Sequences, of --frame all or --turntable")]
+#[command(next_help_heading = "Sequences (--frame all or --turntable)")]
 pub(super) struct SequenceArgs {
-    /// Keep pictures that exist if their files say that they show the same scene with the same
-    /// settings and samples, and render only the others; for PNG, PPM and EXR
+    /// Skip images that already exist, if their metadata has the same scene, settings and samples; for PNG,
+    /// PPM and EXR
     #[arg(long)]
     pub(super) skip_existing: bool,
-    /// Pictures per second of a film: -o film.mp4, .mov, .webm or .gif, which takes ffmpeg
-    /// [default: 30]
+    /// Frame rate of a video: -o video.mp4, .mov, .webm or .gif, which needs ffmpeg [default: 30]
     #[arg(long, value_name = "N", value_parser = fps)]
     pub(super) fps: Option<f64>,
-    /// The picture to begin with, from 0; checkpoints say it
+    /// Number of the first image, from 0; set by checkpoints
     #[arg(long, value_name = "N", hide = true)]
     pub(super) first_picture: Option<u64>,
 }
 
 fn fps(text: &str) -> Result<f64, String> {
     let rate = text.parse().ok().filter(|rate| (0.01..=1000.0).contains(rate));
-    rate.ok_or_else(|| "give pictures per second, 0.01 to 1000, as in 30 or 29.97".to_owned())
+    rate.ok_or_else(|| {
+        "give a frame rate from 0.01 to 1000 images per second, as in 30 or 29.97".to_owned()
+    })
 }
 
 #[cfg(test)]

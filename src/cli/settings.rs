@@ -1,9 +1,8 @@
-//! A picture's settings: what the command line replaces, and how they are listed in files and
-//! reports.
+//! Render settings: options that override the scene's, and lists of settings for metadata and reports.
 
 use super::args::{EncodingArgs, PictureArgs};
 use super::names::{FILTERS, INTEGRATORS, LIGHT_CHOICES, PPM, SAMPLERS, TONES};
-use super::values::Target;
+use super::values::OrNone;
 use serde_json::{Map, Value, json};
 use spherule::film::Region;
 use spherule::image::{Depth, Format, WriteOptions};
@@ -13,7 +12,7 @@ use spherule::scene::{Integrator, Roulette, Settings};
 pub(super) type List = Map<String, Value>;
 
 impl PictureArgs {
-    /// Puts what was typed in the place of what the scene says.
+    /// Overrides the scene's settings with those of the command line.
     pub(super) fn replace(&self, settings: &mut Settings) {
         if let Some(size) = self.size {
             (settings.width, settings.height) = (size.width, size.height);
@@ -31,25 +30,26 @@ impl PictureArgs {
         settings.integrator = self.integrator(settings.integrator);
     }
 
-    /// Samples, and what decides on them: where nobody has set a target before, the scene's samples
-    /// are no limit.
+    /// Sets samples and targets. If the command line sets the first target, the scene's number of samples is
+    /// no limit.
     fn set_target(&self, settings: &mut Settings) {
         let had_target = settings.has_target();
-        if let Some(Target(error)) = self.until_error {
+        if let Some(OrNone(error)) = self.until_error {
             settings.until_error = error;
         }
-        if let Some(Target(time)) = self.time {
+        if let Some(OrNone(time)) = self.time {
             settings.time = time;
         }
-        let usual = match (had_target, settings.has_target()) {
+        let default = match (had_target, settings.has_target()) {
             (false, true) => Settings::HARD_SAMPLES,
             (true, false) => Settings::default().spp,
             _ => settings.spp,
         };
-        settings.spp = self.spp.unwrap_or(usual);
+        settings.spp = self.spp.unwrap_or(default);
     }
 
-    /// The integrator; one that was typed keeps the scene's parameters if it is the scene's own.
+    /// Returns the integrator. The scene's parameters are kept if the command line names the scene's
+    /// integrator.
     fn integrator(&self, scene: Integrator) -> Integrator {
         let same = |typed: &Integrator| INTEGRATORS.name(typed) == INTEGRATORS.name(&scene);
         match self.integrator.filter(|typed| !same(typed)).unwrap_or(scene) {
@@ -65,15 +65,15 @@ impl PictureArgs {
 }
 
 impl EncodingArgs {
-    /// Puts what was typed in the place of what the scene says.
+    /// Overrides the scene's settings with those of the command line.
     pub(super) fn replace(&self, settings: &mut Settings) {
         settings.exposure = self.exposure.unwrap_or(settings.exposure);
         settings.tone = self.tone.unwrap_or(settings.tone);
     }
 }
 
-/// All settings that make the picture, by the names that scene files use, and nothing else: of two
-/// pictures that are equal, the lists are equal.
+/// Lists all settings that determine the image, by the names of scene files, and nothing else: equal images
+/// have equal lists.
 pub(super) fn list(settings: &Settings, region: Region) -> List {
     let mut list = List::new();
     let mut put = |name: &str, value: Value| list.insert(name.to_owned(), value);
@@ -108,7 +108,7 @@ pub(super) fn list(settings: &Settings, region: Region) -> List {
     list
 }
 
-/// How the format shows the picture; nothing for formats that hold it as it is.
+/// Lists exposure and tone curve; nothing for formats that store linear radiance.
 pub(super) fn list_encoding(format: Format, options: &WriteOptions) -> List {
     let mut list = List::new();
     if !format.is_linear() {
@@ -125,7 +125,7 @@ pub(super) fn list_encoding(format: Format, options: &WriteOptions) -> List {
     list
 }
 
-/// A region as it is typed.
+/// Formats a region as the command line takes it.
 pub(super) fn region_text(region: Region) -> String {
     format!("{},{},{}x{}", region.x, region.y, region.width, region.height)
 }

@@ -1,4 +1,4 @@
-//! Slices on the command line.
+//! Options for slices: planes that cut spheres away.
 
 use super::settings::List;
 use glam::DVec3;
@@ -7,18 +7,18 @@ use spherule::scene::{FileError, Scene, Slice, SliceMode, SlicePlane, bounds};
 use spherule::suggest;
 use std::path::Path;
 
-/// What is cut away.
+/// Options for slices.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Slices")]
 pub(super) struct SliceArgs {
-    /// Cut away what a condition is true of, as in 'z>10', 'x+y<3' or 'z>50%', a share of the cell
-    /// or else of the box of all spheres; also z=50% and NX,NY,NZ,D, a normal and a distance along
-    /// it, which cut away the side that the normal points to; again for further planes
+    /// Cut away the side of a plane where a condition is true, as in 'z>10', 'x+y<3' or 'z>50%', percent of
+    /// the cell or else of the bounding box of all spheres; also z=50%, or a normal and a distance
+    /// NX,NY,NZ,D, which cut away the side that the normal points to; may be repeated
     #[arg(long = "slice", value_name = "PLANE", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<SlicePlane>())]
     planes: Vec<SlicePlane>,
-    /// What becomes of spheres: remove drops those whose centers are cut away, caps cuts spheres
-    /// with flat caps of their own color, hide hides those whose centers are cut away from the
-    /// camera, but not their shadows [default: remove]
+    /// Treatment of spheres: remove drops spheres whose centers are cut away, caps cuts spheres and closes
+    /// them with flat caps of their own color, hide makes spheres whose centers are cut away invisible to the
+    /// camera but keeps their shadows [default: remove]
     #[arg(long, value_name = "MODE", requires = "planes", value_parser = mode)]
     slice_mode: Option<SliceMode>,
 }
@@ -30,9 +30,9 @@ fn mode(name: &str) -> Result<SliceMode, String> {
 }
 
 impl SliceArgs {
-    /// Cuts a scene from `path`: by its own slices and by those that were typed, whose shares are of
-    /// `cell` if there is one. They may cut all spheres away only if that is allowed. Returns the
-    /// normals of the planes that cut anything.
+    /// Applies the scene's own slices and those of the command line to a scene from `path`. Percentages are
+    /// of `cell` if there is one. The slices may remove all spheres only if `allow_empty` is true. Returns
+    /// the normals of the planes that cut anything.
     pub(super) fn cut(
         &self,
         scene: &mut Scene,
@@ -57,14 +57,16 @@ impl SliceArgs {
         let normals = scene.slices.iter().filter(cuts).map(|slice| slice.normal).collect();
         let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
         if dropped > 0 && scene.spheres.is_empty() && !allow_empty {
-            let message = format!("the slices cut all of its {dropped} spheres away");
-            return Err(FileError::whole_file(path, message)
-                .with_help("a slice names what is cut away: the other side is z<10, not z>10"));
+            let message = format!("the slices cut away all of its {dropped} spheres");
+            return Err(FileError::whole_file(path, message).with_help(
+                "a slice describes the side that is cut away; for the other side write z<10 \
+                            instead of z>10",
+            ));
         }
         Ok(normals)
     }
 
-    /// What makes the picture, for its file.
+    /// Settings for the image's metadata.
     pub(super) fn list(&self) -> List {
         let mut list = List::new();
         if !self.planes.is_empty() {
@@ -77,7 +79,7 @@ impl SliceArgs {
     }
 }
 
-/// A slice in words: `normal [0.0, 0.0, 1.0] from 10: caps`.
+/// Text of a slice: `beyond 10 along [0.0, 0.0, 1.0]: caps`.
 pub(super) fn text(slice: &Slice) -> String {
     let Slice { normal, distance, mode } = slice;
     format!("beyond {distance} along {:?}: {}", normal.to_array(), mode.name())

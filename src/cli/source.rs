@@ -1,4 +1,4 @@
-//! Where a scene comes from.
+//! Sources of scenes.
 
 use super::Failure;
 use super::particles::ParticleArgs;
@@ -9,24 +9,24 @@ use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-/// Where a scene comes from.
+/// Sources of scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Source {
     /// A scene file.
     Toml(PathBuf),
-    /// A scene with its tree, as `render --prepare` writes it.
+    /// A prepared scene with its acceleration structure, as `render --prepare` writes it.
     Prepared(PathBuf),
-    /// A file of particles, and how to read it.
+    /// A particle file, and options for reading it.
     Particles(PathBuf, Box<ReadOptions>),
-    /// The random field that shows what the program does.
+    /// The default scene, a random field of spheres.
     Field {
-        /// Of the field's random numbers.
+        /// Seed of the random numbers.
         seed: u64,
     },
 }
 
 impl Source {
-    /// The source that a path speaks of; `args`, those of a `command`, are for particles alone.
+    /// Returns the source for a path. `args` of `command` apply only to particle files.
     pub(super) fn of_path(
         command: &str,
         path: &Path,
@@ -37,8 +37,8 @@ impl Source {
             return Ok(Self::Prepared(path.to_owned()));
         }
         if toml && args.any() {
-            let message = "how to read particles is what a scene says of each of its files: write \
-                           format, radius and scale in its [[file]]";
+            let message = "options for particle files do not apply to a scene; set format, radius and scale \
+                           in its [[file]] tables";
             return Err(Failure::usage(command, message));
         }
         Ok(if toml {
@@ -48,22 +48,22 @@ impl Source {
         })
     }
 
-    /// The scene.
+    /// Loads the scene.
     pub(super) fn load(&self) -> Result<Scene, FileError> {
         match self {
             Self::Toml(path) => Scene::load(path),
             Self::Prepared(path) => {
-                let error =
-                    FileError::whole_file(path, "is a scene that was prepared for rendering");
-                Err(error
-                    .with_help("render it with `spherule render`, or name the file it was made of"))
+                let error = FileError::whole_file(path, "is a prepared scene");
+                Err(error.with_help(
+                    "render it with `spherule render`, or use the file it was made from",
+                ))
             }
             Self::Particles(path, options) => Scene::from_particles(path, options),
             Self::Field { seed } => Ok(generate::default_scene(*seed)),
         }
     }
 
-    /// As the user knows it.
+    /// Returns the name of the source for messages.
     pub(super) fn name(&self) -> Cow<'_, str> {
         match self {
             Self::Toml(path) | Self::Prepared(path) | Self::Particles(path, _) => {
@@ -73,8 +73,7 @@ impl Source {
         }
     }
 
-    /// The scene's own title, or else the file's name without its folders, which are the user's own
-    /// business.
+    /// Returns the scene's title, or else the file's name, without folders, which are private.
     pub(super) fn title<'a>(&'a self, scene: &'a Scene) -> Cow<'a, str> {
         match self {
             Self::Toml(path) | Self::Particles(path, _) if scene.title.is_empty() => {

@@ -1,26 +1,26 @@
-//! `spherule status`: how far the parts of a render, or other checkpoints, are.
+//! `spherule status`: progress of parts and checkpoints.
 
 use super::output;
 use indicatif::HumanDuration;
 use serde::Serialize;
 use spherule::checkpoint::{CheckpointError, Origin, inspect, is_locked};
-use spherule::render::{Share, Status};
+use spherule::render::{ImagePart, Status};
 use spherule::split::holes;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// The code to exit with where something is still to be rendered.
+/// Exit code if something is not rendered yet.
 const INCOMPLETE: u8 = 3;
 
-/// Files whose progress is told.
+/// Arguments of `spherule status`.
 #[derive(Debug, clap::Args)]
 pub(super) struct Args {
     /// Files that `spherule render --part` or --checkpoint write, in any order
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// One JSON object on standard output
+    /// Print one JSON object to standard output
     #[arg(long)]
     json: bool,
 }
@@ -29,57 +29,57 @@ pub(super) struct Args {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum State {
-    /// All of its samples are there.
+    /// All samples are taken.
     Complete,
-    /// Another process renders it.
+    /// Another process is rendering it.
     Rendering,
-    /// Some of its samples are there, and nobody renders it.
+    /// Some samples are taken, and no process is rendering it.
     Interrupted,
     /// There is no such file.
     Missing,
-    /// It cannot be used with the others; `problem` says why.
+    /// The file cannot be used with the others; `problem` is the reason.
     Unusable,
 }
 
-/// One file, as users see it.
+/// Report on one file.
 #[derive(Debug, Serialize)]
 struct FileReport {
     file: String,
     state: State,
-    /// Samples of all pixels that are there, and that there are to be.
+    /// Samples of all pixels: taken so far, and wanted in total.
     samples: u64,
     wanted: u64,
-    /// The samples and tiles that it is to have.
+    /// The samples and tiles of the part.
     share: Option<String>,
     render_seconds: f64,
-    /// Why it is of no use.
+    /// Reason why the file cannot be used.
     problem: Option<String>,
     #[serde(skip)]
     status: Option<Status>,
 }
 
-/// All files, as users see them.
+/// Report on all files.
 #[derive(Debug, Serialize)]
 struct Report {
     complete: bool,
-    /// Samples of all pixels of the whole picture that are there, and that there are to be.
+    /// Samples of all pixels of the whole image: taken so far, and wanted in total.
     samples: u64,
     wanted: u64,
-    /// Samples and tiles that no file is to have.
+    /// Samples and tiles that belong to no file.
     missing: Vec<String>,
-    /// Parts of which there is no file, by the names of the others.
+    /// Parts without a file, by the names of the others.
     missing_parts: Vec<u32>,
-    /// Estimated render time of what is left, one part after the other; null where nothing tells.
+    /// Estimated remaining render time, summed over parts; null if unknown.
     remaining_seconds: Option<f64>,
-    /// The same of the file that needs most.
+    /// Estimated remaining render time of the file that needs most.
     longest_remaining_seconds: Option<f64>,
     files: Vec<FileReport>,
 }
 
-/// Reads all files and tells how far they are.
+/// Reads the files and prints their progress.
 pub(super) fn run(args: &Args) -> ExitCode {
     let mut files = args.files.clone();
-    files.extend(begun(&args.files));
+    files.extend(started_parts(&args.files));
     let report = Report::of(&files);
     if args.json {
         output::print_json(&report);
@@ -102,7 +102,7 @@ impl Report {
             let (mut file, origin) = FileReport::of(path);
             if let (Some(origin), Some(status)) = (origin, file.status.clone()) {
                 let problem = match &first {
-                    Some(first) => foreign(first, &origin, &status),
+                    Some(first) => mismatch(first, &origin, &status),
                     None => None,
                 };
                 let problem = problem.or_else(|| overlap(&files, &status));
@@ -121,9 +121,9 @@ impl Report {
     fn sum(files: Vec<FileReport>, whole: Option<&Status>, paths: &[PathBuf]) -> Self {
         let usable: Vec<&Status> = files.iter().filter_map(|file| file.status.as_ref()).collect();
         let samples = usable.iter().map(|status| status.samples).sum();
-        let shares: Vec<Share> = usable.iter().map(|status| status.share.clone()).collect();
+        let shares: Vec<ImagePart> = usable.iter().map(|status| status.part.clone()).collect();
         let missing = whole.map_or_else(Vec::new, |status| {
-            holes(&Share::whole(status.region, status.settings.spp), &shares)
+            holes(&ImagePart::whole(status.region, status.settings.spp), &shares)
         });
         let wanted = whole.map_or(0, |status| {
             let pixels = u64::from(status.region.width) * u64::from(status.region.height);
@@ -131,14 +131,14 @@ impl Report {
         });
         let done = |file: &FileReport| file.state == State::Complete;
         let complete = whole.is_some() && files.iter().all(done) && missing.is_empty();
-        // A target ends a render before it has all samples that it may have.
+        // A target may end a render before it has taken the maximum number of samples.
         let targeted = whole.is_some_and(|status| status.settings.has_target());
         let remaining = Remaining::of(&usable, if targeted { 0 } else { wanted });
         Self {
             complete,
             samples,
             wanted: if targeted && complete { samples } else { wanted },
-            missing: missing.iter().map(Share::to_string).collect(),
+            missing: missing.iter().map(ImagePart::to_string).collect(),
             missing_parts: missing_parts(paths),
             remaining_seconds: remaining.as_ref().map(|remaining| remaining.all.as_secs_f64()),
             longest_remaining_seconds: remaining.map(|remaining| remaining.longest.as_secs_f64()),
@@ -150,7 +150,7 @@ impl Report {
         let width = self.files.iter().map(|file| file.file.chars().count()).max().unwrap_or(0);
         self.files.iter().for_each(|file| file.print(width));
         if !self.missing_parts.is_empty() {
-            output::print(format_args!("no file: parts {}", ranges(&self.missing_parts)));
+            output::print(format_args!("no file for parts {}", ranges(&self.missing_parts)));
         }
         for missing in &self.missing {
             output::print(format_args!("no file has {missing}"));
@@ -162,11 +162,11 @@ impl Report {
         let left = match (self.remaining_seconds, self.longest_remaining_seconds) {
             _ if self.complete => "complete".to_owned(),
             (Some(all), Some(longest)) => format!(
-                "about {:#} of render time left, {:#} for the file that needs most",
+                "about {:#} of render time left, at most {:#} for one file",
                 HumanDuration(seconds(all)),
                 HumanDuration(seconds(longest))
             ),
-            _ => "the time left is not known".to_owned(),
+            _ => "time left unknown".to_owned(),
         };
         output::print(format_args!("{percent:.1} % of all samples; {left}"));
     }
@@ -192,7 +192,7 @@ impl FileReport {
         }
         let (origin, status) = match inspect(path) {
             Ok(read) => read,
-            // It was there a moment ago.
+            // The file was removed in the meantime.
             Err(CheckpointError::Read(..)) if !path.exists() => return (blank, None),
             Err(error) => {
                 let message = error.to_string();
@@ -210,7 +210,7 @@ impl FileReport {
             state,
             samples: status.samples,
             wanted: status.wanted,
-            share: Some(status.share.to_string()),
+            share: Some(status.part.to_string()),
             render_seconds: status.elapsed.as_secs_f64(),
             status: Some(status),
             ..blank
@@ -218,7 +218,7 @@ impl FileReport {
         (report, Some(origin))
     }
 
-    /// The same file, if it cannot be used.
+    /// Marks the file as unusable.
     fn unusable(self, problem: String) -> Self {
         Self { state: State::Unusable, problem: Some(problem), status: None, ..self }
     }
@@ -246,15 +246,15 @@ impl FileReport {
     }
 }
 
-/// Time that is left, by what the files took.
+/// Estimated remaining time, from the time that the files took.
 struct Remaining {
     all: Duration,
-    /// Of the file that needs most.
+    /// Time of the file that needs most.
     longest: Duration,
 }
 
 impl Remaining {
-    /// For `wanted` samples in all; `None` if nothing is known.
+    /// Estimates the time for `wanted` samples in total; `None` if nothing is known.
     fn of(files: &[&Status], wanted: u64) -> Option<Self> {
         let samples: u64 = files.iter().map(|status| status.samples).sum();
         let elapsed: f64 = files.iter().map(|status| status.elapsed.as_secs_f64()).sum();
@@ -265,7 +265,7 @@ impl Remaining {
         let left = |status: &&Status| status.wanted.saturating_sub(status.samples);
         let most = files.iter().map(left).max().unwrap_or(0);
         let given: u64 = files.iter().map(|status| status.wanted).sum();
-        // A part that is missing is taken to be as large as the largest that is there.
+        // A missing part is assumed to be as large as the largest existing one.
         let largest = files.iter().map(|status| status.wanted).max().unwrap_or(0);
         let missing = wanted.saturating_sub(given).min(largest);
         let time = |samples: u64| seconds(samples as f64 * each);
@@ -277,28 +277,28 @@ fn seconds(seconds: f64) -> Duration {
     Duration::try_from_secs_f64(seconds).unwrap_or_default()
 }
 
-/// Why a file is no part of the picture of the first one.
-fn foreign(first: &(String, Origin, Status), origin: &Origin, status: &Status) -> Option<String> {
+/// Returns the reason why a file belongs to another image than the first file.
+fn mismatch(first: &(String, Origin, Status), origin: &Origin, status: &Status) -> Option<String> {
     let (name, first_origin, first_status) = first;
     if let Some(what) = first_origin.scene.difference(&origin.scene) {
-        return Some(format!("is of another scene than {name}: it has other {what}"));
+        return Some(format!("belongs to another scene than {name}, with different {what}"));
     }
     if first_origin.caption.layers != origin.caption.layers {
-        return Some(format!("has other layers than {name}"));
+        return Some(format!("has different layers than {name}"));
     }
     let (what, theirs, ours) = status.difference(first_status)?;
-    Some(format!("is of another render than {name}: {what} is {theirs}, and {ours} there"))
+    Some(format!("belongs to another render than {name}: {what} is {theirs} instead of {ours}"))
 }
 
-/// Why a file cannot be merged with those before it.
+/// Returns the reason why a file cannot be merged with those before it.
 fn overlap(files: &[FileReport], status: &Status) -> Option<String> {
     files.iter().find_map(|file| {
-        let common = file.status.as_ref()?.share.common(&status.share)?;
-        Some(format!("has {common}, which {} has too", file.file))
+        let common = file.status.as_ref()?.part.common(&status.part)?;
+        Some(format!("overlaps {}: both have {common}", file.file))
     })
 }
 
-/// Numbers of parts that no name stands for, where all names end in `K-of-N.part` with the same N.
+/// Returns the numbers of missing parts, if all names end in `K-of-N.part` with the same N.
 fn missing_parts(paths: &[PathBuf]) -> Vec<u32> {
     let Some(numbers) = paths.iter().map(|path| number(path)).collect::<Option<Vec<_>>>() else {
         return Vec::new();
@@ -306,14 +306,14 @@ fn missing_parts(paths: &[PathBuf]) -> Vec<u32> {
     let counts: BTreeSet<u32> = numbers.iter().map(|number| number.1).collect();
     let there: BTreeSet<u32> = numbers.iter().map(|number| number.0).collect();
     match counts.iter().collect::<Vec<_>>()[..] {
-        // Names may claim any number.
+        // Names may contain any number.
         [&count] if count <= 1 << 20 => (1..=count).filter(|k| !there.contains(k)).collect(),
         _ => Vec::new(),
     }
 }
 
-/// Files of missing parts that another process renders and has not written yet.
-fn begun(paths: &[PathBuf]) -> Vec<PathBuf> {
+/// Returns the files of parts that another process is rendering and has not written yet.
+fn started_parts(paths: &[PathBuf]) -> Vec<PathBuf> {
     let part = |path: &Path| {
         let name = path.file_name()?.to_str()?.strip_suffix(".part")?;
         Some((name.rsplit_once('.')?.0.to_owned(), number(path)?.1))
@@ -327,7 +327,7 @@ fn begun(paths: &[PathBuf]) -> Vec<PathBuf> {
     missing_parts(paths).into_iter().map(file).filter(|path| is_locked(path)).collect()
 }
 
-/// K and N of a name that ends in `K-of-N.part`.
+/// Parses K and N of a name that ends in `K-of-N.part`.
 fn number(path: &Path) -> Option<(u32, u32)> {
     let name = path.file_name()?.to_str()?.strip_suffix(".part")?;
     let (_, part) = name.rsplit_once('.')?;
@@ -335,7 +335,7 @@ fn number(path: &Path) -> Option<(u32, u32)> {
     Some((number.parse().ok()?, count.parse().ok()?))
 }
 
-/// Numbers in order, as in `3, 17-20`.
+/// Formats ascending numbers, as in `3, 17-20`.
 fn ranges(numbers: &[u32]) -> String {
     let runs = numbers.chunk_by(|a, b| a + 1 == *b);
     let text = |run: &[u32]| match run {

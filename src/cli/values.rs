@@ -1,5 +1,4 @@
-//! Readers of option values. Errors say the valid range; clap adds the option's name and what was
-//! typed.
+//! Parsers of option values. Errors state the valid range; clap adds the option's name and value.
 
 use spherule::film::Region;
 use spherule::scene::{Roulette, Settings};
@@ -8,27 +7,27 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Pixels each way.
+/// Range of widths and heights in pixels.
 const PIXELS: RangeInclusive<u32> = Settings::PIXELS;
 
-/// Samples per pixel.
+/// Range of samples per pixel.
 pub(super) const SAMPLES: RangeInclusive<i64> =
     *Settings::SAMPLES.start() as i64..=*Settings::SAMPLES.end() as i64;
 
-/// Time limits.
+/// Range of time limits.
 const TIMES: RangeInclusive<Duration> = Settings::TIMES;
 
-/// Threads: far more than any processor has gains nothing and costs memory.
+/// Range of numbers of threads, bounded to limit memory.
 pub(super) const THREADS: RangeInclusive<i64> = 1..=4096;
 
-/// Rays of a stress run: a thousand years of them at most.
+/// Range of rays of a stress run.
 pub(super) const RAYS: RangeInclusive<u64> = 1..=1 << 52;
 
-/// A target, or none.
+/// A stop condition that `none` turns off.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Target<T>(pub(super) Option<T>);
+pub(super) struct OrNone<T>(pub(super) Option<T>);
 
-/// Most scatterings on a path; `None` for no limit.
+/// Maximum number of bounces of a path; `None` for no limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DepthLimit(pub(super) Option<u32>);
 
@@ -39,7 +38,7 @@ pub(super) struct Size {
     pub(super) height: u32,
 }
 
-/// One radius, or a least and a greatest.
+/// One radius, or a minimum and a maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Radii {
     pub(super) least: f64,
@@ -51,7 +50,7 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     let valid = |size: &Size| PIXELS.contains(&size.width) && PIXELS.contains(&size.height);
     pair(text).map(|(width, height)| Size { width, height }).filter(valid).ok_or_else(|| {
         let (least, most) = (PIXELS.start(), PIXELS.end());
-        format!("width and height are {least} to {most} pixels each, as in 1280x720")
+        format!("give width and height, {least} to {most} pixels each, as in 1280x720")
     })
 }
 
@@ -65,8 +64,8 @@ pub(super) fn region(text: &str) -> Result<Region, String> {
     };
     let valid = |region: &Region| region.width > 0 && region.height > 0;
     read().filter(valid).ok_or_else(|| {
-        "give column and row of the top left corner, and a width and a height of 1 or more, \
-         as in 100,50,320x240"
+        "give column and row of the top left corner, and width and height of at least 1, as in \
+         100,50,320x240"
             .to_owned()
     })
 }
@@ -93,40 +92,39 @@ pub(super) fn roulette(text: &str) -> Result<Roulette, String> {
             .ok_or_else(|| {
                 let near = suggest::question(text, ["none", "throughput"]);
                 format!(
-                    "give none, throughput, or a probability of more than 0 and at most 1{near}"
+                    "give none, throughput, or a probability greater than 0 and at most 1{near}"
                 )
             }),
     }
 }
 
 /// `1%`, `0.01` or `none`.
-pub(super) fn error(text: &str) -> Result<Target<f64>, String> {
+pub(super) fn error(text: &str) -> Result<OrNone<f64>, String> {
     if text == "none" {
-        return Ok(Target(None));
+        return Ok(OrNone(None));
     }
     let (digits, unit) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 100.0));
     number(digits)
         .map(|value: f64| value / unit)
         .filter(|share| *share > 0.0 && *share <= 1.0)
-        .map(|share| Target(Some(share)))
+        .map(|share| OrNone(Some(share)))
         .ok_or_else(|| {
-            "give a part of the mean radiance, more than 0 and at most 100%, as in 1% or 0.01; or \
-             none"
+            "give a relative error greater than 0 and at most 100%, as in 1% or 0.01, or none"
                 .to_owned()
         })
 }
 
 /// `90s`, `5m`, `1h 30m` or `none`.
-pub(super) fn time(text: &str) -> Result<Target<Duration>, String> {
+pub(super) fn time(text: &str) -> Result<OrNone<Duration>, String> {
     if text == "none" {
-        return Ok(Target(None));
+        return Ok(OrNone(None));
     }
     humantime::parse_duration(text)
         .ok()
         .filter(|time| TIMES.contains(time))
-        .map(|time| Target(Some(time)))
+        .map(|time| OrNone(Some(time)))
         .ok_or_else(|| {
-            "give a time of 1ms or more with its unit, as in 60s, 500ms, 5m or 1h 30m; or none"
+            "give a time of at least 1ms with a unit, as in 60s, 500ms, 5m or 1h 30m, or none"
                 .to_owned()
         })
 }
@@ -142,10 +140,10 @@ pub(super) fn exposure(text: &str) -> Result<f64, String> {
 pub(super) fn distance(text: &str) -> Result<f64, String> {
     number(text)
         .filter(|distance| *distance > 0.0)
-        .ok_or_else(|| "give a distance of more than 0, or inf for no limit".to_owned())
+        .ok_or_else(|| "give a distance greater than 0, or inf for no limit".to_owned())
 }
 
-/// Any finite number: the generators say what range each parameter has.
+/// Any finite number; the generators check the range of each parameter.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     number(text).filter(|value: &f64| value.is_finite()).ok_or_else(|| "give a number".to_owned())
 }
@@ -155,7 +153,7 @@ pub(super) fn radii(text: &str) -> Result<Radii, String> {
     let (least, greatest) = text.split_once(',').unwrap_or((text, text));
     match (finite(least), finite(greatest)) {
         (Ok(least), Ok(greatest)) => Ok(Radii { least, greatest }),
-        _ => Err("give a radius, or the least and the greatest one, as in 0.1,0.45".to_owned()),
+        _ => Err("give a radius, or a minimum and a maximum, as in 0.1,0.45".to_owned()),
     }
 }
 
@@ -163,7 +161,7 @@ pub(super) fn radii(text: &str) -> Result<Radii, String> {
 pub(super) fn mix(text: &str) -> Result<[f64; 3], String> {
     let shares: Option<Vec<f64>> = text.split(',').map(|share| finite(share).ok()).collect();
     shares.and_then(|shares| shares.try_into().ok()).ok_or_else(|| {
-        "give the shares of diffuse, metal and glass spheres, as in 0.6,0.3,0.1".to_owned()
+        "give the fractions of diffuse, metal and glass spheres, as in 0.6,0.3,0.1".to_owned()
     })
 }
 
@@ -220,11 +218,11 @@ mod tests {
     #[test]
     fn the_ends_of_ranges_belong_to_them() {
         assert_eq!(roulette("1"), Ok(Roulette::Fixed(1.0)));
-        assert_eq!(error("100%"), Ok(Target(Some(1.0))));
-        assert_eq!(error("2.5 %"), Ok(Target(Some(0.025))));
-        assert_eq!(error("0.01"), Ok(Target(Some(0.01))));
-        assert_eq!(time("1h 30m"), Ok(Target(Some(Duration::from_secs(5400)))));
-        assert_eq!((error("none"), time("none")), (Ok(Target(None)), Ok(Target(None))));
+        assert_eq!(error("100%"), Ok(OrNone(Some(1.0))));
+        assert_eq!(error("2.5 %"), Ok(OrNone(Some(0.025))));
+        assert_eq!(error("0.01"), Ok(OrNone(Some(0.01))));
+        assert_eq!(time("1h 30m"), Ok(OrNone(Some(Duration::from_secs(5400)))));
+        assert_eq!((error("none"), time("none")), (Ok(OrNone(None)), Ok(OrNone(None))));
         assert_eq!(exposure("-100"), Ok(-100.0));
         assert_eq!(distance("inf"), Ok(f64::INFINITY));
         assert_eq!(depth("0"), Ok(DepthLimit(Some(0))));

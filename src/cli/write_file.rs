@@ -1,4 +1,4 @@
-//! Writing whole output files, pipes among them.
+//! Atomic writing of output files, and writing to pipes.
 
 use super::files::STREAM;
 use super::{Failure, output, signals};
@@ -9,13 +9,13 @@ use std::path::Path;
 #[cfg(target_os = "linux")]
 use std::{thread, time::Duration};
 
-/// Time between two looks for a pipe's reader.
+/// Time between two checks for a reader of a pipe.
 #[cfg(target_os = "linux")]
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Writes a file as a whole, or content to a device, a pipe or standard output, which is called `-`.
+/// Writes a file atomically, or writes to a device, a pipe or standard output, whose name is `-`.
 ///
-/// A pipe's reader may never come, or stop reading: a signal ends the wait.
+/// A pipe may never get a reader, or the reader may stop; a signal ends the wait.
 pub(super) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     if path == Path::new(STREAM) {
         signals::release();
@@ -33,8 +33,8 @@ pub(super) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Opens a pipe once it has a reader; `None` for a path that leads to no pipe. A signal that came, or comes
-/// before the reader, is an error.
+/// Opens a pipe once it has a reader; `None` if the path is not a pipe. A signal before there is a reader is
+/// an error.
 #[cfg(target_os = "linux")]
 fn open_pipe(path: &Path) -> Option<Result<fs::File, Failure>> {
     use rustix::fs::{Mode, OFlags, fcntl_getfl, fcntl_setfl, open};
@@ -45,7 +45,7 @@ fn open_pipe(path: &Path) -> Option<Result<fs::File, Failure>> {
     }
     let flags = OFlags::WRONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let opened = loop {
-        // Without this flag, opening waits for a reader whatever signals come.
+        // Without this flag, opening waits for a reader and ignores signals.
         match open(path, flags, Mode::empty()) {
             Err(Errno::NXIO) => match signals::received() {
                 Some(code) => return Some(Err(Failure::NoReader(path.to_owned(), code))),
@@ -61,7 +61,7 @@ fn open_pipe(path: &Path) -> Option<Result<fs::File, Failure>> {
     Some(waiting.map_err(|error| Failure::Write(path.to_owned(), error.into())))
 }
 
-/// Leaves pipes to [`write_atomically`], where there is no way to ask for a reader.
+/// Leaves pipes to [`write_atomically`] on systems that cannot check for a reader.
 #[cfg(not(target_os = "linux"))]
 fn open_pipe(_: &Path) -> Option<Result<fs::File, Failure>> {
     signals::release();

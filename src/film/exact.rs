@@ -49,7 +49,7 @@ impl ExactSums {
         &mut self.levels
     }
 
-    /// How many places there are.
+    /// Number of places.
     pub fn len(&self) -> usize {
         self.levels.first().map_or(0, Vec::len)
     }

@@ -1,10 +1,10 @@
-//! What is kept of a film outside the program, and a film made of it.
+//! Films in files: what is saved of each tile, and a film made from it.
 
 use super::exact::LEVELS;
 use super::{Density, ExactSums, Film, Pilot, Probes, Tile, View};
 use serde::{Deserialize, Serialize};
 
-/// What is kept of a tile besides its sums.
+/// Saved state of a tile besides its sums.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct KeptTile {
     pub(crate) samples: u32,
@@ -30,7 +30,7 @@ impl KeptTile {
 }
 
 impl Film {
-    /// What is kept of each tile besides its sums.
+    /// Saved state of each tile besides its sums.
     pub(crate) fn kept_tiles(&self) -> Vec<KeptTile> {
         let kept = |tile: &Tile| KeptTile {
             samples: tile.samples,
@@ -68,7 +68,7 @@ impl Tile {
         self.kept().into_iter().flat_map(ExactSums::levels).map(|level| level.as_flattened())
     }
 
-    /// The same, to be filled.
+    /// The film, to be filled.
     pub(crate) fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
         let levels = self.kept_mut().into_iter().flat_map(ExactSums::levels_mut);
         levels.map(|level| level.as_flattened_mut())

@@ -1,4 +1,4 @@
-//! Where samples become pixels: tiles of exact sums.
+//! The film: tiles of exact sums, in which samples become pixels.
 //!
 //! Each pixel's samples are added up without rounding, so the sum does not depend on threads, on tile
 //! order, or on how the samples are divided into passes and over machines. A filter that is sampled
@@ -89,7 +89,7 @@ impl Region {
 /// The sums of all pixels of a region.
 #[derive(Clone, Debug)]
 pub struct Film {
-    /// What part of the picture it is.
+    /// The region of the picture, in pixels.
     pub region: Region,
     /// Its tiles, row by row.
     pub tiles: Vec<Tile>,
@@ -123,7 +123,7 @@ impl Film {
         Self { region, tiles }
     }
 
-    /// Where the tiles of a region are, row by row.
+    /// Returns the regions of the tiles, row by row.
     pub(crate) fn tile_regions(region: Region) -> impl Iterator<Item = Region> {
         let steps = |first: u32, count: u32| {
             (first..first + count)
@@ -173,7 +173,7 @@ impl Film {
         self.region.width.div_ceil(TILE) as usize
     }
 
-    /// How many pixels it has.
+    /// Number of pixels.
     pub fn pixels(&self) -> u64 {
         u64::from(self.region.width) * u64::from(self.region.height)
     }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// Sets the hashes that place probes apart from those that make samples.
 const PLACES: u64 = 0x6a09_e667_f3bc_c909;
 
-/// The same for the pilot.
+/// Sets the hashes that place the pilot's samples apart from all others.
 const PILOT_PLACES: u64 = 0x3c6e_f372_fe94_f82b;
 
 /// Sampler replica of the pilot's samples; those of probes come after it, the picture's is none.
@@ -56,7 +56,7 @@ pub struct Probes {
     pub pilot: Option<Pilot>,
 }
 
-/// Where a probe is.
+/// Place of a probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
     x: u32,
@@ -74,7 +74,7 @@ pub struct Pilot {
     pub variance: f64,
 }
 
-/// What one probe says.
+/// The reading of one probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
     /// Pixels for which it stands.

@@ -87,7 +87,7 @@ impl Sums {
         [&self.totals, &self.squares]
     }
 
-    /// The same, to be filled.
+    /// The sums, to be filled.
     pub(super) fn kept_mut(&mut self) -> [&mut ExactSums; 2] {
         [&mut self.totals, &mut self.squares]
     }

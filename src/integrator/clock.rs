@@ -1,31 +1,31 @@
-//! Where a task's time goes: by stage, and by looking at the clock once per stage and batch.
+//! Times of the stages of a task, from one reading of the clock per stage and batch.
 
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
-/// What a task is doing.
+/// A stage of the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Making camera rays.
+    /// Generate camera rays.
     Generate,
-    /// Finding what camera rays and paths hit.
+    /// Trace camera rays and next rays.
     Trace,
-    /// Solving for points and normals, and sorting by material.
+    /// Compute points and normals, and fill the material queues.
     Surface,
-    /// Evaluating and sampling materials and lights.
+    /// Evaluate and sample materials and lights.
     Shade,
-    /// Finding what shadow rays hit.
+    /// Trace shadow rays.
     Shadow,
-    /// Adding samples to the picture.
+    /// Add samples to the film.
     Film,
 }
 
 impl Stage {
-    /// In the order of a path's life.
+    /// All stages, in the order of a path's life.
     pub const ALL: [Self; 6] =
         [Self::Generate, Self::Trace, Self::Surface, Self::Shade, Self::Shadow, Self::Film];
 
-    /// What it is called in reports.
+    /// Returns the name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Generate => "generate",
@@ -38,27 +38,27 @@ impl Stage {
     }
 }
 
-/// Time spent in each stage, by [`Stage`]; of several tasks, the sum.
+/// Time spent in each stage; the sum over tasks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Times([Duration; Stage::ALL.len()]);
 
 impl Times {
-    /// Of one stage.
+    /// Returns the time of one stage.
     pub fn of(&self, stage: Stage) -> Duration {
         self.0[stage as usize]
     }
 
-    /// Of all stages.
+    /// Returns the time of all stages.
     pub fn total(&self) -> Duration {
         self.0.iter().sum()
     }
 
-    /// Of the stage that took longest.
+    /// Returns the time of the longest stage.
     pub(crate) fn longest(&self) -> Duration {
         self.0.into_iter().max().unwrap_or_default()
     }
 
-    /// Adds what another task took.
+    /// Adds the times of another task.
     pub fn add(&mut self, other: &Self) {
         for (time, more) in self.0.iter_mut().zip(other.0) {
             *time += more;
@@ -66,7 +66,7 @@ impl Times {
     }
 }
 
-/// A clock that tells how long ago it was looked at.
+/// A stopwatch for stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
     last: Instant,
@@ -74,24 +74,24 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Begins now.
+    /// Starts now.
     pub fn new() -> Self {
         Self { last: Instant::now(), times: Times::default() }
     }
 
-    /// Forgets the time since it was looked at last.
+    /// Discards the time since the last reading.
     pub fn restart(&mut self) {
         self.last = Instant::now();
     }
 
-    /// Gives the time since it was looked at last to the stage that ends.
+    /// Adds the time since the last reading to the stage that ends.
     pub fn end(&mut self, stage: Stage) {
         let now = Instant::now();
         self.times.0[stage as usize] += now - self.last;
         self.last = now;
     }
 
-    /// What has been measured, which it forgets.
+    /// Returns the times measured so far, and resets them.
     pub fn take(&mut self) -> Times {
         std::mem::take(&mut self.times)
     }
@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_moment_belongs_to_one_stage() {
+    fn stage_times_sum_to_the_total() {
         let mut clock = Clock::new();
         let begin = clock.last;
         std::thread::sleep(Duration::from_millis(2));

@@ -1,35 +1,35 @@
-//! What a task has done, in numbers.
+//! Counters of a task's work.
 
 use serde::{Deserialize, Serialize};
 
-/// What was done, for statistics.
+/// Counts of work, for statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counters {
-    /// Samples that need no ray, for nothing but an even background can be seen there.
+    /// Samples that need no ray, because the pixel can only see a constant background.
     pub skipped_samples: u64,
-    /// Rays from the camera.
+    /// Camera rays.
     pub camera_rays: u64,
-    /// Rays from surfaces, looking for what comes next.
+    /// Next rays of paths.
     pub bounce_rays: u64,
-    /// Rays from surfaces toward light.
+    /// Shadow rays.
     pub shadow_rays: u64,
-    /// Decisions about hits that took arithmetic without rounding.
+    /// Hit decisions that needed exact arithmetic.
     pub exact_decisions: u64,
     /// Paths that the depth limit ended.
     pub cut_paths: u64,
     /// Samples that were negative or not finite, and count as black.
     pub bad_samples: u64,
-    /// Times that a path was in more glass spheres than it can remember.
+    /// Overflows of the interior list: a path was in more glass spheres than the list can hold.
     pub nesting_overflows: u64,
 }
 
 impl Counters {
-    /// All rays.
+    /// Returns the number of all rays.
     pub fn rays(&self) -> u64 {
         self.camera_rays.saturating_add(self.bounce_rays).saturating_add(self.shadow_rays)
     }
 
-    /// Adds what another task did. Files of parts may claim any counts, so sums saturate.
+    /// Adds the counts of another task. Files of parts may claim any counts, so sums saturate.
     pub fn add(&mut self, other: &Self) {
         self.skipped_samples = self.skipped_samples.saturating_add(other.skipped_samples);
         self.camera_rays = self.camera_rays.saturating_add(other.camera_rays);
@@ -41,7 +41,7 @@ impl Counters {
         self.nesting_overflows = self.nesting_overflows.saturating_add(other.nesting_overflows);
     }
 
-    /// All of them.
+    /// Returns all counts.
     pub(crate) fn all(&self) -> [u64; 8] {
         [
             self.skipped_samples,

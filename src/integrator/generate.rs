@@ -1,4 +1,4 @@
-//! Where paths begin: rays from the camera.
+//! Camera rays: the start of paths.
 
 use super::Job;
 use super::clock::Stage;
@@ -10,13 +10,13 @@ use crate::shade::dielectric;
 use crate::world::World;
 use std::ops::Range;
 
-/// Begins a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
-/// neighbors in the picture: packets are square.
+/// Starts a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
+/// neighbors in the image: packets are square.
 pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspace) {
     generate_streams(job, tile.pixels().map(|(x, y)| (x, y, *job.sampler)), samples, work);
 }
 
-/// The same for streams of samples: column and row of a pixel, and the sampler of its numbers.
+/// Starts paths for streams of samples: column and row of a pixel, and the sampler of its numbers.
 pub fn generate_streams(
     job: &Job,
     streams: impl Iterator<Item = (u32, u32, Sampler)>,
@@ -25,41 +25,41 @@ pub fn generate_streams(
 ) {
     let mut count = 0;
     for (x, y, sampler) in streams {
-        work.start(&sampler, (x, y, samples.start), count..count + samples.len());
+        work.start_samples(&sampler, (x, y, samples.start), count..count + samples.len());
         count += samples.len();
     }
-    work.begin(count);
+    work.start_paths(count);
     for first in (0..count).step_by(MAX_LANES) {
-        let carried = work.carried.leave_camera(first);
-        let numbers = work.paths.numbers(&carried);
+        let state = work.states.init_camera(first);
+        let numbers = work.paths.sampler_row(&state);
         let offset = job.filter.offset_row(job.sampler.pixel_row(&numbers));
         let lens =
             job.has_lens().then(|| sampling::concentric_disk(job.sampler.lens_row(&numbers)));
-        aim(job, work, first, (offset, lens));
+        generate_rays(job, work, first, (offset, lens));
     }
-    leave_camera(job, work);
+    finish_camera_rays(job, work);
 }
 
-/// Begins a path through the center of each of the tile's pixels, and through that of the lens.
+/// Starts a path through the center of each of the tile's pixels and of the lens.
 pub fn generate_centers(job: &Job, tile: &Tile, work: &mut Workspace) {
     let mut count = 0;
     for (x, y) in tile.pixels() {
-        work.start(job.sampler, (x, y, 0), count..count + 1);
+        work.start_samples(job.sampler, (x, y, 0), count..count + 1);
         count += 1;
     }
-    work.begin(count);
+    work.start_paths(count);
     let middle = [F32x16::splat(0.0); 2];
     for first in (0..count).step_by(MAX_LANES) {
-        work.carried.leave_camera(first);
-        aim(job, work, first, (middle, Some(middle)));
+        work.states.init_camera(first);
+        generate_rays(job, work, first, (middle, Some(middle)));
     }
-    leave_camera(job, work);
+    finish_camera_rays(job, work);
 }
 
-/// Turns sixteen pixels, where rays start, into rays, by offsets from the pixels' middles and
-/// places on the lens.
+/// Replaces sixteen pixel coordinates, stored as ray origins, by rays, with offsets from the pixels'
+/// centers and points on the lens.
 #[inline(always)]
-fn aim(
+fn generate_rays(
     job: &Job,
     work: &mut Workspace,
     first: usize,
@@ -79,27 +79,28 @@ fn aim(
     }
 }
 
-/// Notes that paths have left the camera, and where.
-fn leave_camera(job: &Job, work: &mut Workspace) {
+/// Counts the camera rays, and initializes the interior lists.
+fn finish_camera_rays(job: &Job, work: &mut Workspace) {
     let count = work.len();
-    if work.paths.keeps_inside() {
-        (0..count).for_each(|path| enter_glass(job.world, work, path));
+    if work.paths.tracks_interiors() {
+        (0..count).for_each(|path| init_interior_list(job.world, work, path));
     }
     work.counters.camera_rays += count as u64;
     work.clock.end(Stage::Generate);
 }
 
-/// Notes the glass spheres in which a camera ray starts. On a surface, its direction decides.
-fn enter_glass(world: &World, work: &mut Workspace, row: usize) {
+/// Adds the glass spheres that contain the origin of a camera ray to its interior list. For an origin
+/// on a surface, the direction decides.
+fn init_interior_list(world: &World, work: &mut Workspace, row: usize) {
     let ray = work.rays.exact(row);
-    let path = work.carried.place(row);
+    let path = work.states.path(row);
     for &sphere in &world.features.glass_at_camera {
         let offset = ray.origin - world.spheres.center(sphere as usize).as_dvec3();
         let radius = f64::from(world.spheres.radius(sphere as usize));
         let outside = offset.length_squared() - radius * radius;
         let inward = offset.dot(ray.direction) < 0.0;
         if (outside < 0.0 || (outside == 0.0 && inward))
-            && !dielectric::insert(world, work.paths.inside(path), sphere)
+            && !dielectric::insert(world, work.paths.interior_list(path), sphere)
         {
             work.counters.nesting_overflows += 1;
         }

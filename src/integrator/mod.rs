@@ -1,29 +1,29 @@
-//! From rays to radiance: loops over columns, no recursion.
+//! Integrators: estimate radiance along camera rays by wavefront path tracing.
 //!
-//! All three integrators begin with [`generate`], alternate [`stages::intersect`] with
-//! shading, one system for each kind of material that was hit, and leave the radiance of each path
-//! in [`workspace::Paths`]. A stage whose column is empty does nothing.
+//! A batch of paths passes one stage after the other, in loops over columns. All three integrators
+//! start with [`generate`], alternate [`stages::intersect`] with shading, one kernel per kind of
+//! material, and leave the radiance of each path in [`workspace::Paths`]. A stage whose queue is empty
+//! does nothing.
 
 pub mod ao;
-pub mod arrival;
-pub mod bins;
-pub mod block;
-pub mod carried;
 mod caustics;
 pub mod clock;
+pub mod columns;
 pub mod counters;
-mod found;
-pub mod gather;
+mod direct_light;
+pub mod elisions;
+mod emission;
 pub mod generate;
 mod glass;
-pub mod looks;
-mod onward;
+pub mod material_queues;
+pub mod material_table;
+mod next_rays;
 pub mod path;
-mod scatter;
-pub mod shadows;
-pub mod skips;
+pub mod path_state;
+mod roulette;
+pub mod shading_row;
+pub mod shadow_queue;
 pub mod stages;
-mod struck;
 pub mod surface;
 pub mod whitted;
 pub mod workspace;
@@ -32,51 +32,52 @@ use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::trace::Tracer;
 use crate::world::{Ground, MaterialId, World};
+use elisions::Elisions;
 use glam::DVec3;
-use skips::Skips;
 use workspace::Workspace;
 
-/// What an integrator reads.
+/// Everything that an integrator reads.
 #[derive(Clone, Copy)]
 pub struct Job<'a> {
-    /// What there is.
+    /// The scene.
     pub world: &'a World,
-    /// How the picture is made.
+    /// Settings of the render.
     pub settings: &'a Settings,
-    /// Where samples lie.
+    /// Sample points.
     pub sampler: &'a Sampler,
-    /// How samples become pixels.
+    /// Pixel filter.
     pub filter: &'a PixelFilter,
-    /// How rays find spheres.
+    /// Ray traversal.
     pub tracer: Tracer,
-    /// What is left out where it changes nothing.
-    pub skips: Skips,
+    /// Work that may be omitted without changing the image.
+    pub elisions: Elisions,
 }
 
 impl Job<'_> {
-    /// The most scatterings of a path.
+    /// Returns the maximum number of bounces.
     pub fn depth(&self) -> u32 {
         self.settings.depth.unwrap_or(Settings::HARD_DEPTH)
     }
 
-    /// Whether the place on the lens is sampled.
+    /// Whether points on the lens are sampled.
     pub fn has_lens(&self) -> bool {
-        self.world.features.lens || !self.skips.lens
+        self.world.features.lens || !self.elisions.lens
     }
 
     /// Whether lights are sampled.
     pub fn has_lights(&self) -> bool {
-        self.world.features.lights || !self.skips.lights
+        self.world.features.lights || !self.elisions.lights
     }
 
-    /// A ground that no ray reaches, where there is none and tests against it are not left out.
-    pub fn unseen_ground(&self) -> Option<Ground> {
+    /// Returns a ground that no ray reaches, if the world has none and tests against it are not
+    /// omitted.
+    pub fn unreachable_ground(&self) -> Option<Ground> {
         let (normal, material) = (DVec3::Z, MaterialId::default());
         let far = Ground { normal, height: f64::NEG_INFINITY, material };
-        (self.world.ground.is_none() && !self.skips.plane).then_some(far)
+        (self.world.ground.is_none() && !self.elisions.plane).then_some(far)
     }
 
-    /// Follows the paths that were generated to their ends.
+    /// Follows the generated paths to their ends.
     pub fn integrate(&self, work: &mut Workspace) {
         match self.settings.integrator {
             Integrator::Path => path::integrate(self, work),

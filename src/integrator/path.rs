@@ -1,42 +1,50 @@
 //! Path tracing with next-event estimation and multiple importance sampling.
 //!
-//! At each surface a path looks for light at one light, chosen by what each would give there, and
-//! goes on in a direction sampled from the material. Light that both ways can find is weighted by the power heuristic
-//! (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH
-//! 1995), but from a diffuse surface a light that is not close, a sun or a point is left to the
-//! light samples alone: adding the other way would only add variance. A constant or gradient
-//! environment is left to the material's samples alone. Lamps that are seen by way of one mirror or one
-//! ball of glass are looked for from diffuse surfaces too.
+//! At each surface a path samples one light, chosen by its estimated contribution there, and continues
+//! in a direction sampled from the BSDF. Light that both techniques can find is weighted by the power
+//! heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
+//! SIGGRAPH 1995), except that from a diffuse surface an emitter that is not close, a sun or a point
+//! light is left to light samples alone: BSDF samples would only add variance. A constant or gradient
+//! environment is left to BSDF samples alone. Diffuse surfaces also sample caustics: emitters seen by
+//! one mirror or one glass sphere.
 
 use super::Job;
 use super::caustics;
 use super::clock::Stage;
-use super::found;
+use super::direct_light::sample_direct_light;
+use super::emission;
 use super::glass;
-use super::scatter::{self, Event};
-use super::stages::{self, ByKind};
+use super::material_queues::MaterialQueue;
+use super::material_table::gather_bsdfs;
+use super::path_state::PathStateRow;
+use super::roulette::{roulette_active, roulette_threshold, survival_probability};
+use super::shading_row::{ShadingRow, SurfaceRow};
+use super::shadow_queue;
+use super::stages::{self, KindVisitor};
 use super::workspace::Workspace;
-use crate::lanes::Lanes;
-use crate::scene::Roulette;
-use crate::shade::Material;
-use crate::world::{Kind, MaterialId, World};
+use crate::lanes::{F32x16, Lanes, Mask};
+use crate::shade::{Bsdf, Material};
+use crate::world::{Kind, MaterialId};
 
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace) {
-    let faint = faint(job.world);
+    let threshold = roulette_threshold(job.world);
     for bounce in 0.. {
         stages::intersect(job, work);
-        found::in_the_sky(job, work);
-        found::at_lamps(job, work);
+        emission::add_environment(job, work);
+        emission::add_emitted(job, work);
         if bounce == job.depth() {
-            work.counters.cut_paths += work.bins.scattered();
+            work.counters.cut_paths += work.queues.hit_count();
             return;
         }
-        caustics::follow(job, work);
-        glass::pass(job, work, bounce);
-        stages::by_kind(job.world, &mut Shade { job, work, event: Event { bounce, faint } });
+        caustics::track_chains(job, work);
+        glass::scatter(job, work, bounce);
+        stages::for_each_kind(
+            job.world,
+            &mut Shade { job, work, bounce: Bounce { index: bounce, threshold } },
+        );
         caustics::flush(job, work, bounce);
-        stages::occlude(job, work);
+        shadow_queue::trace_shadow_rays(job, work);
         work.advance();
         work.clock.end(Stage::Shade);
         if work.is_empty() {
@@ -46,65 +54,73 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
     }
 }
 
-/// Weights of what was found with densities `found`, more than 0, and might have been found with
-/// densities `other`.
-#[inline(always)]
-pub fn heuristics<L: Lanes>(found: L, other: L) -> L {
-    // By the ratio, whose square may overflow to the right limit.
-    let ratio = other / found;
-    L::splat(1.0) / ratio.mul_add(ratio, L::splat(1.0))
+/// A bounce: its index from 0, and the throughput below which roulette may end paths.
+#[derive(Clone, Copy)]
+struct Bounce {
+    index: u32,
+    threshold: f32,
 }
 
-/// One bounce's shading.
+/// A visitor that shades the queues of one bounce.
 struct Shade<'a> {
     job: &'a Job<'a>,
     work: &'a mut Workspace,
-    event: Event,
+    bounce: Bounce,
 }
 
-impl ByKind for Shade<'_> {
+impl KindVisitor for Shade<'_> {
     fn visit<M: Material>(&mut self, kind: Kind, table: impl Fn(MaterialId) -> M) {
-        let Some(bin) = self.work.bins.take(kind) else { return };
-        for rows in bin.rows() {
-            scatter::shade(self.job, self.work, self.event, (&bin, rows), (kind, &table));
+        let Some(queue) = self.work.queues.take(kind) else { return };
+        for rows in queue.rows() {
+            shade(self.job, self.work, self.bounce, (&queue, rows), (kind, &table));
         }
-        self.work.bins.put(kind, bin);
+        self.work.queues.put(kind, queue);
     }
 }
 
-/// The probability with which Russian roulette lets a path go on after scattering number `bounce`,
-/// from 0, by the greatest channel of its throughput: it ends only paths of less than `faint`.
-///
-/// Paths of a white furnace then never end by chance: that picture has no noise at all.
+/// Samples a light for each of at most sixteen hits of a queue, and spawns the next rays.
+fn shade<M: Material>(
+    job: &Job,
+    work: &mut Workspace,
+    bounce: Bounce,
+    (queue, rows): (&MaterialQueue, (usize, u32)),
+    material: (Kind, &impl Fn(MaterialId) -> M),
+) {
+    let surface_row = SurfaceRow::load(queue, rows.0);
+    let shading = ShadingRow::new(queue, rows, &surface_row);
+    let materials = (job.world, work.material_table.as_ref());
+    let bsdf = gather_bsdfs(materials, material, &shading.surface_row.at.own);
+    if job.has_lights() {
+        let lanes = shading.lanes & !bsdf.is_delta().bits();
+        sample_direct_light::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
+        caustics::enqueue_queries::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
+    }
+    spawn_rays::<M>(job, work, bounce, (&shading, &bsdf));
+}
+
+/// Samples the BSDFs, applies Russian roulette, and spawns the next rays of the paths that survive.
 #[inline(always)]
-pub fn survival<L: Lanes>(roulette: Roulette, throughput: L, bounce: u32, faint: f32) -> L {
-    match roulette {
-        Roulette::None => L::splat(1.0),
-        Roulette::Fixed(p) => L::splat(p as f32),
-        Roulette::Throughput if !may_end(roulette, bounce) => L::splat(1.0),
-        Roulette::Throughput => {
-            (throughput / L::splat(faint)).max(L::splat(0.05)).min(L::splat(1.0))
-        }
-    }
-}
-
-/// Whether there is a chance to end after scattering number `bounce`.
-pub fn may_end(roulette: Roulette, bounce: u32) -> bool {
-    match roulette {
-        Roulette::None => false,
-        Roulette::Fixed(_) => true,
-        Roulette::Throughput => bounce >= 3,
-    }
-}
-
-/// Throughput from which on paths are worth their time whatever they find.
-///
-/// Under a sky nearly every path finds light, and its variance is little: there a quarter is best,
-/// by 1.1 to 2.5 in variance times time against roulette by throughput itself, over fields, volumes,
-/// mirrors and glass, a sun and the last scene of "Ray Tracing in One Weekend". With lamps alone it is
-/// a half, by 1.02 to 1.1, over fields with 1 to 1000 lamps and smallpt's box. No roulette at all
-/// takes up to 2.8 times the time.
-pub fn faint(world: &World) -> f32 {
-    let sky = world.environment.illuminates && !world.environment.is_black();
-    if sky { 0.25 } else { 0.5 }
+fn spawn_rays<M: Material>(
+    job: &Job,
+    work: &mut Workspace,
+    Bounce { index, threshold }: Bounce,
+    (shading, bsdf): (&ShadingRow, &M::Bsdf<F32x16>),
+) {
+    let (roulette, state) = (job.settings.roulette, &shading.surface_row.state);
+    // Without a choice between lobes and without roulette, no random numbers are needed for them.
+    let choose = !M::DIFFUSE || roulette_active(roulette, index);
+    let draw = job.sampler.scatter_row(&work.paths.sampler_row(state), index, choose);
+    let scatter = bsdf.sample(shading.outgoing, draw.direction, draw.lobe);
+    let throughput = state.throughput.times(scatter.weight);
+    let greatest = throughput.max_element();
+    let survival = survival_probability(roulette, greatest, index, threshold);
+    let survives = Lanes::lt(draw.roulette, survival) & Lanes::lt(F32x16::splat(0.0), greatest);
+    let next = PathStateRow {
+        throughput: throughput.map(|channel| channel / survival),
+        previous: state.previous.next(scatter.pdf, M::DIFFUSE),
+        normal: shading.surface_row.at.normal,
+        ..*state
+    };
+    let (lanes, direction) = (shading.lanes & survives.bits(), shading.to_world(scatter.incoming));
+    work.spawn_rays(job.world, (shading.surface_row, lanes), direction, &next);
 }

@@ -1,28 +1,28 @@
-//! Where rays hit: points and normals, and how far it is through spheres from there.
+//! Surface interactions: points and normals of hits, and chords through spheres.
 
-use super::struck::{Few, struck};
 use super::workspace::{BATCH, Workspace};
-use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, load_doubles};
+use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, U32x16, load_doubles, look_up, widen};
 use crate::ray::{Columns3, GROUND, MISS};
+use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
 use crate::world::{Ground, World};
 use glam::DVec3;
 
-/// Rows that are solved for together.
+/// Rows that are computed at once.
 pub(super) const ROW: usize = 8;
 
-/// All lanes of a row.
+/// A mask of all lanes of a row.
 const ALL: u32 = (1 << ROW) - 1;
 
-/// Where rays hit.
+/// Points and normals of hits, in columns.
 pub struct Surface {
-    /// The point, rounded to single precision.
+    /// Points, rounded to single precision.
     pub point: Columns3,
-    /// The outward unit normal.
+    /// Outward unit normals.
     pub normal: Normals,
-    /// The normal on the side that is looked at, rounded.
+    /// Normals on the sides that the rays come from, rounded.
     pub facing: Columns3,
-    /// Eight rows to a byte: whether the surface is seen from inside.
+    /// Whether surfaces are hit from inside, a bit per row.
     inside: Vec<u8>,
 }
 
@@ -43,23 +43,24 @@ impl Surface {
         }
     }
 
-    /// Which of rows `first..first + 16`, `first` being a multiple of that, are seen from inside.
+    /// Returns a mask of the rows `first..first + 16` that are hit from inside; `first` is a multiple
+    /// of 16.
     #[inline(always)]
     pub(super) fn inside(&self, first: usize) -> u32 {
         let halves = &self.inside[first / ROW..][..MAX_LANES / ROW];
         u32::from(halves[0]) | u32::from(halves[1]) << ROW
     }
 
-    /// Lets a row be seen from the other side.
+    /// Flips the side from which a row is hit.
     #[cfg(test)]
-    pub(super) fn turn(&mut self, row: usize) {
+    pub(super) fn flip_inside(&mut self, row: usize) {
         self.inside[row / ROW] ^= 1 << (row % ROW);
     }
 
-    /// Turns the normals of rows `first..first + 8`, of rays of these directions, to where they are
-    /// looked at from.
+    /// Sets the normals of rows `first..first + 8` on the sides that their rays, of these directions,
+    /// come from.
     #[inline(always)]
-    fn face(&mut self, first: usize, normal: Vec3<F64x8>, direction: Vec3<F64x8>) {
+    fn set_facing(&mut self, first: usize, normal: Vec3<F64x8>, direction: Vec3<F64x8>) {
         let inside = F64x8::splat(0.0).lt(normal.dot_unfused(direction));
         self.facing.set_row(first, Vec3::select(inside, -normal, normal));
         self.inside[first / ROW] = inside.bits() as u8;
@@ -72,7 +73,7 @@ impl Normals {
         Self { x: column(), y: column(), z: column() }
     }
 
-    /// Row `i`.
+    /// Returns row `i`.
     #[inline(always)]
     pub fn row(&self, i: usize) -> DVec3 {
         DVec3::new(self.x[i], self.y[i], self.z[i])
@@ -84,7 +85,7 @@ impl Normals {
         (self.x[i], self.y[i], self.z[i]) = normal.into();
     }
 
-    /// Some rows, wherever they are.
+    /// Gathers sixteen rows.
     #[inline(always)]
     pub(super) fn pick(&self, rows: &[u32; MAX_LANES]) -> [[f64; MAX_LANES]; 3] {
         [pick(&self.x, rows), pick(&self.y, rows), pick(&self.z, rows)]
@@ -98,7 +99,7 @@ impl Normals {
         self.z[i..i + MAX_LANES].copy_from_slice(z);
     }
 
-    /// Rows `i..i + 8`.
+    /// Returns rows `i..i + 8`.
     #[inline(always)]
     fn load(&self, i: usize) -> Vec3<F64x8> {
         Vec3::new(row(&self.x[i..]), row(&self.y[i..]), row(&self.z[i..]))
@@ -113,13 +114,13 @@ impl Normals {
     }
 }
 
-/// What a column has in some rows.
+/// Gathers rows of a column.
 #[inline(always)]
 fn pick(column: &[f64], rows: &[u32; MAX_LANES]) -> [f64; MAX_LANES] {
     let column: &[f64; BATCH] = column.first_chunk().expect("columns hold a batch");
     let mut lanes = [0.0; MAX_LANES];
     for (lane, &row) in lanes.iter_mut().zip(rows) {
-        // Rows are less than that, which saves a check of each.
+        // Rows are always less than `BATCH`; the remainder makes the bounds check unnecessary.
         *lane = column[row as usize % BATCH];
     }
     lanes
@@ -130,63 +131,63 @@ fn row(column: &[f64]) -> F64x8 {
     F64x8::new(*column.first_chunk().expect("columns hold whole rows"))
 }
 
-/// Rows `i..i + 8` of columns of single precision.
+/// Returns rows `i..i + 8` of columns of single precision.
 #[inline(always)]
 fn load(columns: &Columns3, i: usize) -> Vec3<F64x8> {
     let column = |column: &[f32]| load_doubles(&column[i..]);
     Vec3::new(column(&columns.x), column(&columns.y), column(&columns.z))
 }
 
-/// Numbers of 32 bits, which double precision holds exactly.
+/// Converts 32-bit integers, which double precision holds exactly.
 #[inline(always)]
 fn numbers(column: &[u32]) -> F64x8 {
     let row: &[u32; ROW] = column.first_chunk().expect("columns hold whole rows");
     F64x8::new(row.map(f64::from))
 }
 
-/// Where whole numbers are equal.
+/// Returns the lanes in which two whole numbers are equal.
 #[inline(always)]
 fn equal(a: F64x8, b: F64x8) -> <F64x8 as Doubles>::Mask {
     (a - b).abs().lt(F64x8::splat(0.5))
 }
 
-/// Finds points and outward normals of what all rows hit, in double precision from the surfaces
-/// themselves: points are no farther off them than rounding takes them.
-pub(super) fn solve(world: &World, work: &mut Workspace) {
+/// Computes the points and outward normals of all hits in double precision, from the surfaces
+/// themselves: points are no farther off the surfaces than rounding moves them.
+pub(super) fn compute_surfaces(world: &World, work: &mut Workspace) {
     let spheres = &world.spheres;
-    match Few::of(spheres) {
-        Some(few) => solve_rows(world, work, |hits| few.struck(hits)),
-        None => solve_rows(world, work, |hits| struck(spheres, hits)),
+    match SmallSphereTable::new(spheres) {
+        Some(table) => compute_rows(world, work, |hits| table.gather(hits)),
+        None => compute_rows(world, work, |hits| gather_spheres(spheres, hits)),
     }
     if !world.cut.is_empty() {
-        (0..work.len()).for_each(|row| solve_cut(world, work, row));
+        (0..work.len()).for_each(|row| compute_cut_sphere(world, work, row));
         for first in (0..work.len()).step_by(ROW) {
             let normal = work.surface.normal.load(first);
-            work.surface.face(first, normal, load(&work.rays.direction, first));
+            work.surface.set_facing(first, normal, load(&work.rays.direction, first));
         }
     }
 }
 
-/// The same where no sphere is cut; `struck` finds centers and radii.
+/// Computes points and normals where no sphere is cut; `gather` returns centers and radii.
 #[inline(always)]
-fn solve_rows(
+fn compute_rows(
     world: &World,
     work: &mut Workspace,
-    struck: impl Fn(&[u32; ROW]) -> (Vec3<F64x8>, F64x8),
+    gather: impl Fn(&[u32; ROW]) -> (Vec3<F64x8>, F64x8),
 ) {
     for first in (0..work.len()).step_by(ROW) {
         let hits = work.hits.sphere[first..].first_chunk().expect("columns hold whole rows");
-        // As often beside the spheres: samples of a pixel are neighbors.
+        // Rays of a row often all miss: samples of a pixel are neighbors.
         if *hits != [MISS; ROW] {
-            let struck = struck(hits);
-            solve_row(world, work, first, struck);
+            let spheres = gather(hits);
+            compute_row(world, work, first, spheres);
         }
     }
 }
 
-/// The same for eight rows; of those that hit nothing, anything.
+/// Computes points and normals of eight rows; lanes without a hit get arbitrary values.
 #[inline(always)]
-fn solve_row(
+fn compute_row(
     world: &World,
     work: &mut Workspace,
     first: usize,
@@ -200,12 +201,12 @@ fn solve_row(
     let mut toward = (origin - center) + direction * t;
     let through = equal(hit, numbers(&work.rays.own[first..])) & !missed;
     if through.bits() != 0 {
-        let exit = exit(work.surface.normal.load(first), direction);
+        let exit = chord_exit(work.surface.normal.load(first), direction);
         toward = Vec3::select(through, exit, toward);
     }
     let scale = toward.inverse_length();
     let mut normal = toward * scale;
-    // Of a sphere that is smaller than rounding, the ray is all that is known.
+    // The normal of a sphere that is smaller than rounding is against the ray: nothing else is known.
     let known = scale.lt(F64x8::splat(f64::INFINITY)) & F64x8::splat(0.0).lt(scale);
     if (known | missed | grounded).bits() != ALL {
         normal = Vec3::select(known, normal, -(direction * direction.inverse_length()));
@@ -214,34 +215,34 @@ fn solve_row(
     if let Some(ground) = &world.ground
         && grounded.bits() != 0
     {
-        let (foot, up) = foot(ground, origin + direction * t);
-        point = Vec3::select(grounded, foot, point);
+        let (projected, up) = project_to_ground(ground, origin + direction * t);
+        point = Vec3::select(grounded, projected, point);
         normal = Vec3::select(grounded, up, normal);
     }
     work.surface.point.set_row(first, point);
     work.surface.normal.set_row(first, normal);
-    work.surface.face(first, normal, direction);
+    work.surface.set_facing(first, normal, direction);
 }
 
-/// What is below or above a point on the ground, and the ground's normal.
+/// Projects a point to the ground; returns the projection and the ground's normal.
 #[inline(always)]
-fn foot(ground: &Ground, point: Vec3<F64x8>) -> (Vec3<F64x8>, Vec3<F64x8>) {
+fn project_to_ground(ground: &Ground, point: Vec3<F64x8>) -> (Vec3<F64x8>, Vec3<F64x8>) {
     let up = Vec3::from(ground.normal).map(F64x8::splat);
     let off = up.dot_unfused(point) - F64x8::splat(ground.height);
     (point - up * off, up)
 }
 
-/// Where chords leave spheres, from where they entered: mirrored at the plane across the chord's
-/// middle. It does not use the origin, which was rounded.
+/// Returns where chords leave spheres, from the points of entry: their mirror images in the plane
+/// across the middle of the chord. It does not use the origin, which was rounded.
 #[inline(always)]
-fn exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
+fn chord_exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
     let length2 = direction.dot_unfused(direction);
     entry - direction * (F64x8::splat(2.0) * entry.dot_unfused(direction) / length2)
 }
 
-/// Mends what spheres that are cut show instead: points of caps, and of spheres from their caps.
+/// Corrects the hits on spheres that are cut: points of caps, and exits from spheres entered by a cap.
 #[cold]
-fn solve_cut(world: &World, work: &mut Workspace, row: usize) {
+fn compute_cut_sphere(world: &World, work: &mut Workspace, row: usize) {
     let hit = work.hits.sphere[row];
     if hit == GROUND || hit == MISS {
         return;
@@ -254,33 +255,83 @@ fn solve_cut(world: &World, work: &mut Workspace, row: usize) {
     }
     let (center, radius) = world.spheres.exact(hit as usize);
     if own == hit && world.cut.divides(center, radius) {
-        let normal = leaving(ray.at_from(center, t), ray.direction.normalize());
+        let normal = exit_normal(ray.at_from(center, t), ray.direction.normalize());
         work.surface.point.set(row, (center + normal * radius).as_vec3());
         work.surface.normal.set(row, normal);
     }
 }
 
-/// The outward unit normal where a ray leaves a sphere, from the point seen from the center and the unit
-/// direction. Rounding may move the origin of a ray that grazes the sphere out of it: it leaves all the
-/// same.
-fn leaving(toward: DVec3, direction: DVec3) -> DVec3 {
+/// Returns the outward unit normal where a ray leaves a sphere, from the point relative to the center
+/// and the unit direction. Rounding may move the origin of a grazing ray out of the sphere: the ray
+/// leaves the sphere all the same.
+fn exit_normal(toward: DVec3, direction: DVec3) -> DVec3 {
     let least = toward.length() * f64::from(f32::EPSILON);
     let outward = (least - toward.dot(direction)).max(0.0);
     (toward + direction * outward).normalize_or(direction)
 }
 
-/// Distance from a point of a sphere, with outward unit `normal`, through the inside to where
-/// `direction` leaves.
+/// Returns the length of a chord: the distance from a point of a sphere, with outward unit `normal`,
+/// through the inside to where `direction` leaves.
 #[inline(always)]
-pub fn chord<D: Doubles>(normal: Vec3<D>, radius: D, direction: Vec3<D>) -> D {
+pub fn chord_length<D: Doubles>(normal: Vec3<D>, radius: D, direction: Vec3<D>) -> D {
     let length2 = direction.dot_unfused(direction);
     let t = D::splat(-2.0) * radius * normal.dot_unfused(direction) / length2;
     D::select(D::splat(0.0).lt(t), t, D::splat(0.0))
 }
 
-/// The same from a point of the inside, `offset` from the center.
-pub(super) fn far_end(offset: DVec3, radius: f64, direction: DVec3) -> f64 {
+/// Returns the distance from a point inside a sphere, `offset` from the center, to where `direction`
+/// leaves.
+pub(super) fn exit_distance(offset: DVec3, radius: f64, direction: DVec3) -> f64 {
     let (a, b) = (direction.length_squared(), -offset.dot(direction));
     let outside = offset.length_squared() - radius * radius;
     ((b + (b * b - a * outside).max(0.0).sqrt()) / a).max(0.0)
+}
+
+/// Gathers centers and radii of the spheres of a row of hits; lanes without a sphere get those of any.
+#[inline(always)]
+fn gather_spheres(spheres: &Spheres, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
+    let blocks = spheres.blocks();
+    let mut columns = [[0.0; ROW]; 4];
+    for (lane, &hit) in hits.iter().enumerate() {
+        let (block, slot) = (hit as usize / LEAF, hit as usize % LEAF);
+        let block = &blocks[block.min(blocks.len() - 1)];
+        columns[0][lane] = block.x[slot];
+        columns[1][lane] = block.y[slot];
+        columns[2][lane] = block.z[slot];
+        columns[3][lane] = block.radius[slot];
+    }
+    let [x, y, z, radius] = columns.each_ref().map(|column| load_doubles(column));
+    (Vec3::new(x, y, z), radius)
+}
+
+/// The spheres of a world that has at most 16 of them, in registers.
+struct SmallSphereTable([U32x16; 4]);
+
+impl SmallSphereTable {
+    /// Creates a table; `None` if there are too many spheres. The world may have no sphere at all.
+    fn new(spheres: &Spheres) -> Option<Self> {
+        let mut columns = [[0.0_f32; 2 * LEAF]; 4];
+        let blocks = spheres.blocks();
+        if blocks.len() > 2 {
+            return None;
+        }
+        for (i, block) in blocks.iter().enumerate() {
+            let rows = [&block.x, &block.y, &block.z, &block.radius];
+            for (column, row) in columns.iter_mut().zip(rows) {
+                column[i * LEAF..][..LEAF].copy_from_slice(row);
+            }
+        }
+        Some(Self(columns.map(bytemuck::cast)))
+    }
+
+    /// Returns what [`gather_spheres`] does, by table lookup.
+    #[inline(always)]
+    fn gather(&self, hits: &[u32; ROW]) -> (Vec3<F64x8>, F64x8) {
+        let mut places = [0; 2 * ROW];
+        places[..ROW].copy_from_slice(hits);
+        let places = U32x16::new(places);
+        let pick = |column: U32x16| widen(bytemuck::cast(look_up(column, places)))[0];
+        let [x, y, z, radius] = &self.0;
+        (Vec3::new(pick(*x), pick(*y), pick(*z)), pick(*radius))
+    }
 }

@@ -1,51 +1,49 @@
-//! The paper's integrator: direct light with stratified shadow samples, and mirror and glass
-//! bounces.
+//! Whitted ray tracing: direct light with stratified shadow samples, and bounces at mirrors and glass.
 //!
-//! After Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, and Cook, Porter
-//! and Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984. Diffuse surfaces take light from the
-//! lights and the environment, by N samples each, and do not light one another. A path does not
-//! branch: a mirror share goes on with its weight while the diffuse share is done with; glass and
-//! rough metal choose one direction by chance.
+//! After Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, and Cook, Porter and
+//! Carpenter, "Distributed Ray Tracing", SIGGRAPH 1984. Diffuse surfaces receive light from the lights
+//! and the environment, by N samples each, and do not illuminate one another. A path does not branch:
+//! its diffuse component ends, its mirror component continues with its weight; glass and rough metal
+//! choose one direction at random.
 
 use super::Job;
-use super::bins::Bin;
-use super::carried::CarriedRow;
 use super::clock::Stage;
-use super::gather::Starts;
 use super::glass;
-use super::path::{faint, survival};
-use super::shadows;
-use super::stages::{self, ByKind, Local};
+use super::material_queues::MaterialQueue;
+use super::path_state::PathStateRow;
+use super::roulette::{roulette_threshold, survival_probability};
+use super::shading_row::{LocalSurface, SurfaceRow};
+use super::shadow_queue;
+use super::stages::{self, KindVisitor};
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask, first_lanes};
 use crate::ray::MISS;
 use crate::sampling::{Frames, cosine_hemispheres};
 use crate::scene::Rgb;
-use crate::shade::{Bsdf, Material, One, mirror};
+use crate::shade::{BroadcastParams, Bsdf, Material, mirror};
 use crate::vec3::Vec3 as Row3;
 use crate::world::{Kind, LightRow, MaterialId, ROW};
 use std::f32::consts::PI;
 
 /// Follows all paths to their ends, with `samples` shadow samples per light and hit.
 pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
-    // The environment is one more light where it is seen by diffuse surfaces and has no light of
-    // its own.
+    // A constant or gradient environment that illuminates surfaces is one more light.
     let sky = job.world.environment.illuminates
         && !job.world.environment.is_black()
         && !job.world.lights.sky;
-    let faint = faint(job.world);
+    let threshold = roulette_threshold(job.world);
     for bounce in 0.. {
         stages::intersect(job, work);
-        escape(job, work);
-        emit(job, work);
+        add_environment(job, work);
+        add_emitted(job, work);
         if bounce == job.depth() {
-            work.counters.cut_paths += work.bins.scattered();
+            work.counters.cut_paths += work.queues.hit_count();
             return;
         }
-        glass::pass(job, work, bounce);
-        let shade = Shade { job, bounce, samples, sky, faint };
-        stages::by_kind(job.world, &mut ShadeAll { shade, work });
-        stages::occlude(job, work);
+        glass::scatter(job, work, bounce);
+        let shade = Shade { job, bounce, samples, sky, threshold };
+        stages::for_each_kind(job.world, &mut ShadeKinds { shade, work });
+        shadow_queue::trace_shadow_rays(job, work);
         work.advance();
         work.clock.end(Stage::Shade);
         if work.is_empty() {
@@ -55,118 +53,124 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
     }
 }
 
-/// What leaves the scene has come from the camera by mirrors and glass alone, and sees the
-/// environment and the suns.
-fn escape(job: &Job, work: &mut Workspace) {
+/// Adds environment and suns to paths that leave the scene. They have come from the camera by mirrors
+/// and glass alone, so there is no MIS weight.
+fn add_environment(job: &Job, work: &mut Workspace) {
     for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
         let direction = work.rays.direction.row(row);
         let suns: Rgb = job.world.lights.suns_toward(direction).map(|(_, radiance)| radiance).sum();
         let light = job.world.environment.radiance(direction) + suns;
-        work.paths.radiance[work.carried.place(row)] += work.carried.throughput(row) * light;
+        work.paths.radiance[work.states.path(row)] += work.states.throughput(row) * light;
     }
 }
 
-/// Likewise for emitters.
-fn emit(job: &Job, work: &mut Workspace) {
-    for row in work.bins.of(Kind::Emitter).into_iter().flat_map(Bin::each) {
+/// Adds the light of emitters to paths that hit them.
+fn add_emitted(job: &Job, work: &mut Workspace) {
+    for row in work.queues.of(Kind::Emitter).into_iter().flat_map(MaterialQueue::ray_rows) {
         let material = job.world.material(work.hits.sphere[row]);
         let radiance = job.world.materials.emitter[material.row()].radiance;
-        work.paths.radiance[work.carried.place(row)] += work.carried.throughput(row) * radiance;
+        work.paths.radiance[work.states.path(row)] += work.states.throughput(row) * radiance;
     }
 }
 
-/// One bounce's shading.
+/// A kernel that shades the hits of one bounce.
 #[derive(Clone, Copy)]
 struct Shade<'a> {
     job: &'a Job<'a>,
     bounce: u32,
     samples: u32,
     sky: bool,
-    faint: f32,
+    threshold: f32,
 }
 
-/// The same of the rows of a workspace.
-struct ShadeAll<'a> {
+/// A visitor that shades all queues of a workspace.
+struct ShadeKinds<'a> {
     shade: Shade<'a>,
     work: &'a mut Workspace,
 }
 
-impl ByKind for ShadeAll<'_> {
+impl KindVisitor for ShadeKinds<'_> {
     fn visit<M: Material>(&mut self, kind: Kind, table: impl Fn(MaterialId) -> M) {
-        let Some(bin) = self.work.bins.take(kind) else { return };
+        let Some(queue) = self.work.queues.take(kind) else { return };
         let world = self.shade.job.world;
-        for row in bin.each() {
+        for row in queue.ray_rows() {
             let hit = self.work.hits.sphere[row];
             debug_assert_ne!(hit, MISS);
             let surface = table(world.material(hit)).tinted(world.color(hit));
             self.shade.shade(self.work, row, &surface);
         }
-        self.work.bins.put(kind, bin);
+        self.work.queues.put(kind, queue);
     }
 }
 
-/// A surface that all of a row of shadow rays start from.
-struct Base<M: Material> {
+/// A surface from which all of a row of shadow rays start, in every lane.
+struct BroadcastSurface<M: Material> {
     row: usize,
     bsdf: M::Bsdf<F32x16>,
     frames: Frames<F32x16>,
     outgoing: Row3<F32x16>,
-    starts: Starts,
+    surface_row: SurfaceRow,
 }
 
-impl<M: Material> Base<M> {
-    fn new(work: &Workspace, row: usize, (surface, local): (&M, &Local)) -> Self {
-        let starts = Starts::one(work, row, local);
+impl<M: Material> BroadcastSurface<M> {
+    fn new(work: &Workspace, row: usize, (surface, local): (&M, &LocalSurface)) -> Self {
+        let surface_row = SurfaceRow::broadcast(work, row, local);
         Self {
             row,
-            bsdf: M::row(&One(surface)),
-            frames: Frames::about(starts.at.normal),
+            bsdf: M::row(&BroadcastParams(surface)),
+            frames: Frames::about(surface_row.at.normal),
             outgoing: Row3::from(local.outgoing).map(F32x16::splat),
-            starts,
+            surface_row,
         }
     }
 }
 
 impl Shade<'_> {
-    /// Number of the event in which light `light` is sampled: each has its own strata.
+    /// Returns the event number for samples of light `light`: each light has its own strata.
     fn event(&self, light: usize) -> u32 {
         self.bounce.wrapping_mul(0x9e37_79b9).wrapping_add(light as u32)
     }
 
-    /// Shades what the path in a row has hit.
+    /// Shades the hit in a row.
     fn shade<M: Material>(&self, work: &mut Workspace, row: usize, surface: &M) {
-        let local = Local::new(work, row);
-        let base = Base::<M>::new(work, row, (surface, &local));
-        if M::BASE && base.bsdf.is_delta().bits() == 0 {
+        let local = LocalSurface::new(work, row);
+        let base = BroadcastSurface::<M>::new(work, row, (surface, &local));
+        if M::HAS_DIFFUSE_BASE && base.bsdf.is_delta().bits() == 0 {
             for light in 0..self.job.world.lights.len() {
-                self.direct(work, light, &base);
+                self.sample_light(work, light, &base);
             }
             if self.sky {
-                self.skylight(work, &base);
+                self.sample_environment(work, &base);
             }
         }
-        self.go_on(work, (surface, &local), &base.starts);
+        self.spawn_rays(work, (surface, &local), &base.surface_row);
     }
 
-    /// Light from one light, by stratified samples; one is enough for a light without extent.
-    fn direct<M: Material>(&self, work: &mut Workspace, light: usize, base: &Base<M>) {
+    /// Samples one light by stratified samples; one sample is enough for a light without extent.
+    fn sample_light<M: Material>(
+        &self,
+        work: &mut Workspace,
+        light: usize,
+        base: &BroadcastSurface<M>,
+    ) {
         let world = self.job.world;
         let count = if world.lights.is_delta(light) { 1 } else { self.samples };
-        let share = work.carried.throughput(base.row) / count as f32;
+        let share = work.states.throughput(base.row) / count as f32;
         let origin = (work.surface.point.row(base.row), work.hits.sphere[base.row]);
-        let Some(aim) = world.lights.aim(world, light, origin) else { return };
-        let points = self.job.sampler.split(&work.state(base.row), self.event(light), count);
+        let Some(view) = world.lights.view(world, light, origin) else { return };
+        let points =
+            self.job.sampler.split(&work.sampler_state(base.row), self.event(light), count);
         for (first, count) in rows(count) {
-            let samples = aim.sample_row(points.row(first, count), count);
-            self.cast(work, base, (share, &samples));
+            let samples = view.sample_row(points.row(first, count), count);
+            self.enqueue_shadow_rays(work, base, (share, &samples));
         }
     }
 
-    /// Light from a constant or gradient environment, by stratified cosine-distributed samples.
-    fn skylight<M: Material>(&self, work: &mut Workspace, base: &Base<M>) {
-        let share = work.carried.throughput(base.row) / self.samples as f32;
+    /// Samples a constant or gradient environment by stratified cosine-distributed samples.
+    fn sample_environment<M: Material>(&self, work: &mut Workspace, base: &BroadcastSurface<M>) {
+        let share = work.states.throughput(base.row) / self.samples as f32;
         let event = self.event(self.job.world.lights.len());
-        let points = self.job.sampler.split(&work.state(base.row), event, self.samples);
+        let points = self.job.sampler.split(&work.sampler_state(base.row), event, self.samples);
         for (first, count) in rows(self.samples) {
             let incoming = cosine_hemispheres(points.row(first, count));
             let direction = base.frames.to_world(incoming).normalize();
@@ -179,16 +183,16 @@ impl Shade<'_> {
             }
             let [r, g, b] = weight.map(F32x16::new);
             samples.weight = Row3::new(r, g, b);
-            self.cast(work, base, (share, &samples));
+            self.enqueue_shadow_rays(work, base, (share, &samples));
         }
     }
 
-    /// Queues the shadow rays of a row of light samples.
+    /// Enqueues the shadow rays of a row of light samples.
     #[inline(always)]
-    fn cast<M: Material>(
+    fn enqueue_shadow_rays<M: Material>(
         &self,
         work: &mut Workspace,
-        base: &Base<M>,
+        base: &BroadcastSurface<M>,
         (share, samples): (Rgb, &LightRow),
     ) {
         let incoming = base.frames.to_local(samples.direction);
@@ -196,40 +200,48 @@ impl Shade<'_> {
         let share = Row3::from(share).map(F32x16::splat);
         let light = share.times(response).times(samples.weight);
         let above = Lanes::lt(F32x16::splat(0.0), incoming.z).bits();
-        shadows::cast(self.job, work, &base.starts, (samples, samples.lanes & above), light);
+        shadow_queue::enqueue_shadow_rays(
+            self.job,
+            work,
+            &base.surface_row,
+            (samples, samples.lanes & above),
+            light,
+        );
     }
 
-    /// Sends the mirrored share on, or what has no other share.
-    fn go_on<M: Material>(
+    /// Spawns the next ray: the mirror component, or a BSDF sample of a material without a diffuse
+    /// base.
+    fn spawn_rays<M: Material>(
         &self,
         work: &mut Workspace,
-        (surface, local): (&M, &Local),
-        starts: &Starts,
+        (surface, local): (&M, &LocalSurface),
+        surface_row: &SurfaceRow,
     ) {
-        let bsdf: M::Bsdf<f32> = M::row(&One(surface));
+        let bsdf: M::Bsdf<f32> = M::row(&BroadcastParams(surface));
         let outgoing = local.outgoing.into();
-        let row = starts.rows.to_array()[0] as usize;
-        let draw = self.job.sampler.scatter(&work.state(row), self.bounce);
-        let (incoming, weight) = if M::BASE {
+        let row = surface_row.rows.to_array()[0] as usize;
+        let draw = self.job.sampler.scatter(&work.sampler_state(row), self.bounce);
+        let (incoming, weight) = if M::HAS_DIFFUSE_BASE {
             (mirror(outgoing), bsdf.mirrored(outgoing))
         } else {
             let scatter = bsdf.sample(outgoing, draw.direction, draw.lobe);
             (scatter.incoming, scatter.weight)
         };
-        let throughput = work.carried.throughput(row) * Rgb::from(weight);
+        let throughput = work.states.throughput(row) * Rgb::from(weight);
         let greatest = throughput.max_element();
-        let survival = survival(self.job.settings.roulette, greatest, self.bounce, self.faint);
+        let survival =
+            survival_probability(self.job.settings.roulette, greatest, self.bounce, self.threshold);
         if throughput == Rgb::ZERO || draw.roulette >= survival {
             return;
         }
         let splat = |v: glam::Vec3| Row3::from(v).map(F32x16::splat);
         let direction = splat(local.to_world(incoming.into()));
-        let carried = CarriedRow { throughput: splat(throughput / survival), ..starts.carried };
-        work.go_on(self.job.world, (starts, 1), direction, &carried);
+        let state = PathStateRow { throughput: splat(throughput / survival), ..surface_row.state };
+        work.spawn_rays(self.job.world, (surface_row, 1), direction, &state);
     }
 }
 
-/// Divides so many samples into rows: the first of each, and how many it has.
+/// Splits `count` samples into rows: the first of each row, and its length.
 fn rows(count: u32) -> impl Iterator<Item = (u32, usize)> {
     (0..count).step_by(ROW).map(move |first| (first, ROW.min((count - first) as usize)))
 }

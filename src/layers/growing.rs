@@ -24,7 +24,7 @@ pub struct Growing {
     tiles: Vec<Known>,
 }
 
-/// What is known of a tile.
+/// Layers of a tile, as far as they are known.
 #[derive(Debug)]
 pub(super) struct Known {
     tile: Tile,
@@ -62,12 +62,12 @@ impl Growing {
         let cancelled = || options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
         let filter = PixelFilter::new(settings.filter);
-        let (tracer, skips) = (options.tracer, options.skips);
-        let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, skips };
+        let (tracer, elisions) = (options.tracer, options.elisions);
+        let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions };
         let next = AtomicUsize::new(0);
         let waiting: Vec<Mutex<&mut Known>> = self.tiles.iter_mut().map(Mutex::new).collect();
         rayon::broadcast(|_| {
-            let mut work = Workspace::new(world, skips);
+            let mut work = Workspace::new(world, elisions);
             while !cancelled() {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 let Some(Ok(mut known)) = waiting.get(number).map(Mutex::lock) else { return };
@@ -77,7 +77,7 @@ impl Growing {
         next.into_inner() >= tiles && self.tiles.iter().all(|known| known.has(samples))
     }
 
-    /// What is known.
+    /// The layers so far.
     pub fn layers(&self) -> Layers {
         let features: Vec<Vec<Features>> =
             self.tiles.par_iter().with_min_len(16).map(Known::features).collect();

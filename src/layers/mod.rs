@@ -31,7 +31,7 @@ pub const NOTHING: u32 = MISS;
 /// The id of a pixel whose center sees the ground plane.
 pub const GROUND_PLANE: u32 = GROUND;
 
-/// What can be known of a pixel besides its color.
+/// A layer: an auxiliary channel of the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Layer {
     /// [`Features::albedo`]: channels `albedo.R`, `albedo.G`, `albedo.B`.
@@ -226,8 +226,8 @@ pub fn features(
     let region = render::check(world, settings, options)?;
     let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
     let filter = PixelFilter::new(settings.filter);
-    let (tracer, skips) = (options.tracer, options.skips);
-    let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, skips };
+    let (tracer, elisions) = (options.tracer, options.elisions);
+    let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions };
     let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
     let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
@@ -235,7 +235,7 @@ pub fn features(
     let features: Vec<Vec<Features>> = tiles
         .into_par_iter()
         .map_init(
-            || Workspace::new(world, skips),
+            || Workspace::new(world, elisions),
             |work, tile| {
                 let mut known = Known::new(tile);
                 known.grow(&job, samples, work);

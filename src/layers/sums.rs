@@ -1,4 +1,4 @@
-//! What the samples of a pixel have added up to.
+//! Sums of the layers' samples of a pixel.
 
 use super::{Features, NOTHING};
 use crate::integrator::workspace::Workspace;
@@ -6,7 +6,7 @@ use crate::ray::{GROUND, MISS};
 use crate::world::World;
 use glam::DVec3;
 
-/// What the samples of a pixel have added up to.
+/// Sums of the layers' samples of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sums {
     albedo: DVec3,
@@ -39,7 +39,7 @@ impl Sums {
         self.ground += u32::from(hit == GROUND);
     }
 
-    /// What they come to, of so many samples.
+    /// Returns the means over `samples` samples.
     pub(super) fn mean(&self, samples: u32) -> Features {
         let share = 1.0 / f64::from(samples.max(1));
         let depth = if self.hits > 0 { self.depth / f64::from(self.hits) } else { f64::INFINITY };

@@ -1,4 +1,4 @@
-//! How far a picture is from its limit, and where more samples help most.
+//! Estimates the error of an image, and where more samples reduce it most.
 //!
 //! # Why probes
 //!

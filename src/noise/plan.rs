@@ -1,4 +1,4 @@
-//! Which tiles get more samples: a function of what the film holds.
+//! Adaptive sampling: chooses the tiles that get more samples, as a function of the film.
 
 use super::estimate::neighbors;
 use crate::film::{Film, Role, Tile};
@@ -19,7 +19,7 @@ const WORK: (f64, f64) = (1.0 / 16.0, 0.5);
 const FEW_TILES: usize = 64;
 const SMALL_STEP: u32 = 16;
 
-/// What a render is to reach.
+/// Limits of adaptive sampling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
     /// Samples from which on probes are believed.
@@ -30,7 +30,7 @@ pub struct Goal {
     pub timed: bool,
 }
 
-/// How steeply variance falls with samples, from tiles whose samples were doubled.
+/// The rate at which variance falls with samples, learned from tiles whose samples were doubled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slope {
     /// Sum of their variances before, and after.
@@ -126,14 +126,14 @@ fn per_sample(tile: &Tile) -> f64 {
     f64::from(tile.len()) * tile.probes.rays_per_sample()
 }
 
-/// What a step of a tile is worth.
+/// Gain and cost of a step of a tile.
 #[derive(Clone, Copy, Debug)]
 struct Worth {
     /// Sum of the variances of its pixels.
     variance: f64,
     /// By how much that will fall.
     gained: f64,
-    /// What it takes.
+    /// Cost of the step.
     work: f64,
 }
 

@@ -13,7 +13,7 @@ const JUMP: f64 = 0.02;
 /// Between which values of 1 - cosine of the angle between normals a crease grows to a line.
 const CREASE: [f32; 2] = [0.1, 0.8];
 
-/// How dark a crease is beside a silhouette.
+/// Darkness of a crease relative to a silhouette.
 const CREASE_SHARE: f32 = 0.7;
 
 /// What makes up for how a line of one pixel spreads when it is made smooth.
@@ -45,12 +45,12 @@ impl Overlay<'_> {
     }
 }
 
-/// Which of two pixels a line is drawn in.
+/// The one of two pixels in which a line is drawn.
 fn nearer(a: &Features, b: &Features) -> bool {
     a.depth <= b.depth
 }
 
-/// How much of a line there is between two pixels, 0..=1.
+/// Returns the strength of the line between two pixels, 0..=1.
 fn strength(a: &Features, b: &Features, jump: f64) -> f32 {
     if a.id == b.id {
         return 0.0;

@@ -13,7 +13,7 @@ const NEAREST: f64 = 1e-4;
 /// A straight line from one point of the scene to another.
 pub type Line = [DVec3; 2];
 
-/// How lines are drawn.
+/// Style of lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
     /// Linear RGB.

@@ -4,7 +4,7 @@ use super::{Ground, Matte, Overlay, Pen, draw_over};
 use crate::image::Image;
 use crate::scene::{Background, Look};
 
-/// How much the farthest sphere fades.
+/// Fading of the farthest sphere.
 const FADED: f32 = 0.85;
 
 /// Rows of a picture in which a line of 1.5 pixels looks right.

@@ -4,7 +4,7 @@
 use super::{Ground, Overlay};
 use crate::image::{Image, tone};
 
-/// How much of each pixel is no background, row by row.
+/// Coverage of each pixel by what is not background, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matte {
     /// The share that spheres cover, 0..=1.

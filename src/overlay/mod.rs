@@ -27,7 +27,7 @@ use rayon::prelude::*;
 /// A rendered picture, or a region of one, that is drawn over.
 #[derive(Clone, Copy, Debug)]
 pub struct Overlay<'a> {
-    /// What was rendered.
+    /// The world that was rendered.
     pub world: &'a World,
     /// The part of the picture that there is.
     pub region: Region,

@@ -1,4 +1,4 @@
-//! How far from the camera the spheres of a scene begin and end.
+//! Depth range of the spheres of a scene.
 
 use crate::world::World;
 use glam::DVec3;

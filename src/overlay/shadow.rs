@@ -1,9 +1,9 @@
 //! The shadow on the ground, by itself: how much of its light spheres take.
 
 use crate::image::Image;
-use crate::render::{self, End, Options, RenderError, Unfinished};
+use crate::render::{self, End, Options, RenderError, ResumableRender};
 use crate::scene::Settings;
-use crate::world::{Seen, World};
+use crate::world::{CameraVisible, World};
 
 /// The ground without the spheres that are before it.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +22,8 @@ pub struct Ground {
 /// The light of spheres that glow counts as what they keep, with its sign: more light is no shadow.
 #[derive(Debug)]
 pub struct GroundRender {
-    lit: Unfinished,
-    bare: Unfinished,
+    lit: ResumableRender,
+    bare: ResumableRender,
     without: World,
 }
 
@@ -44,8 +44,8 @@ impl GroundRender {
         }
         let (settings, options) = plain(settings, options);
         let without = world.without_spheres();
-        let lit = Unfinished::begin(world, &settings, &options)?;
-        let bare = Unfinished::begin(&without, &settings, &options)?;
+        let lit = ResumableRender::begin(world, &settings, &options)?;
+        let bare = ResumableRender::begin(&without, &settings, &options)?;
         Ok(Some(Self { lit, bare, without }))
     }
 
@@ -62,13 +62,13 @@ impl GroundRender {
     ) -> Result<bool, RenderError> {
         let (settings, options) = plain(settings, options);
         for (picture, world) in [(&mut self.lit, &*world), (&mut self.bare, &self.without)] {
-            if picture.raise(&settings).is_err() {
-                *picture = Unfinished::begin(world, &settings, &options)?;
+            if picture.extend(&settings).is_err() {
+                *picture = ResumableRender::begin(world, &settings, &options)?;
             }
         }
-        let seen = world.seen.replace(Seen::default());
+        let camera_visible = world.camera_visible.replace(CameraVisible::default());
         let lit = self.lit.run(world, &options);
-        world.seen = seen;
+        world.camera_visible = camera_visible;
         Ok(lit != End::Cancelled && self.bare.run(&self.without, &options) != End::Cancelled)
     }
 

@@ -1,4 +1,4 @@
-//! What is behind the scene: a color in the sky's place, and a fog of that color.
+//! Backgrounds: a color in place of the sky, and a depth cue of that color.
 
 use super::{Overlay, PIXELS};
 use crate::image::Image;
@@ -24,7 +24,7 @@ impl Overlay<'_> {
         });
     }
 
-    /// What the middle of a pixel would see of the sky.
+    /// Returns the sky's radiance at the center of a pixel.
     pub(super) fn sky(&self, x: usize, y: usize) -> [f32; 3] {
         let at = |first: u32, offset: usize| f64::from(first) + offset as f64 + 0.5;
         let place = [at(self.region.x, x), at(self.region.y, y)];

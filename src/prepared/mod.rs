@@ -54,7 +54,7 @@ pub struct PreparedScene {
     pub identity: Identity,
     /// Names and values that the files of pictures are to list, besides settings.
     pub looks: Vec<(String, String)>,
-    /// How the tree was built.
+    /// The builder of the tree.
     pub builder: Builder,
     /// Size of the picture for which the camera was placed, in pixels.
     size: [u32; 2],

@@ -7,7 +7,7 @@ use crate::memory::{self, Shortage};
 use crate::scene::{Environment, EnvironmentMap, Rgb, Scene};
 use crate::sealed::{SEAL, Unsealing};
 use crate::spheres::{LEAF, SphereBlock, Spheres};
-use crate::world::{Appearance, Colors, Column, Materials, Parts, Seen};
+use crate::world::{Appearance, CameraVisible, Colors, Column, Materials, Parts};
 use bytemuck::{Pod, cast_slice_mut};
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -202,14 +202,15 @@ impl Columns {
         let spheres = Spheres::from_blocks(self.blocks, self.id).ok_or_else(wrong)?;
         let no_tree = || Fault::Damaged("its nodes are no tree");
         let bvh = Bvh::from_rows(&self.nodes, spheres.blocks().len()).ok_or_else(no_tree)?;
-        let seen = match lengths.seen {
-            Some(_) => {
-                Some(Seen::of_rows(self.seen, &self.seen_nodes, &spheres).ok_or_else(no_tree)?)
-            }
+        let camera_visible = match lengths.seen {
+            Some(_) => Some(
+                CameraVisible::of_rows(self.seen, &self.seen_nodes, &spheres)
+                    .ok_or_else(no_tree)?,
+            ),
             None => None,
         };
         let size = [scene.settings.width, scene.settings.height];
-        let parts = Parts { frame, placement, spheres, bvh, appearance, seen, left_out };
+        let parts = Parts { frame, placement, spheres, bvh, appearance, camera_visible, left_out };
         if !parts.is_finite() {
             return Err(Fault::Damaged("its camera is nowhere"));
         }

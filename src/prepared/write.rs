@@ -80,7 +80,10 @@ impl Lengths {
                     ColorLengths::Coded(table.iter().map(glam::Vec3::to_array).collect())
                 }
             },
-            seen: world.seen.as_ref().map(|seen| (seen.row.len() as u64, seen.bvh.len() as u64)),
+            seen: world
+                .camera_visible
+                .as_ref()
+                .map(|seen| (seen.row.len() as u64, seen.bvh.len() as u64)),
             sky,
         }
     }
@@ -100,7 +103,7 @@ fn write_columns(file: &mut impl Write, scene: &Scene, world: &World) -> io::Res
         Some(Colors::Rows(rows)) => column(file, rows)?,
         Some(Colors::Coded { codes, .. }) => column(file, codes)?,
     }
-    if let Some(seen) = &world.seen {
+    if let Some(seen) = &world.camera_visible {
         column(file, &seen.row)?;
         nodes(file, &seen.bvh)?;
     }

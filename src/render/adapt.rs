@@ -121,7 +121,7 @@ fn over<T: Send>(
     each: impl Fn(T, &mut Workspace) + Sync,
 ) {
     tiles.into_par_iter().for_each_init(
-        || Workspace::new(job.world, job.skips),
+        || Workspace::new(job.world, job.elisions),
         |work, tile| {
             if !watch.cancelled() {
                 each(tile, work);

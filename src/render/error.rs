@@ -1,6 +1,6 @@
 //! Reasons why a render cannot begin.
 
-use super::{Options, Share};
+use super::{ImagePart, Options};
 use crate::film::{Region, RegionError};
 use crate::scene::{InvalidSetting, Settings};
 use crate::world::World;
@@ -16,7 +16,7 @@ pub enum RenderError {
     Region(#[from] RegionError),
     /// A share of samples or tiles that the render has not.
     #[error("{0} are no part of the render")]
-    Share(Share),
+    Part(ImagePart),
     /// The settings are those of a picture of another size than the world's camera has.
     #[error(
         "the settings are for a picture of {} x {}, but the world's camera makes one of {} x {}; \
@@ -54,7 +54,7 @@ mod tests {
     use crate::film::RegionError;
     use crate::layers::{Growing, Layer, layers};
     use crate::overlay;
-    use crate::render::{Unfinished, render};
+    use crate::render::{ResumableRender, render};
     use crate::scene::generate::default_scene;
 
     #[test]
@@ -85,7 +85,7 @@ mod tests {
             let error = render(&world, &settings, &options).expect_err(name);
             assert!(error.to_string().contains(name), "{error}");
             let same = |other: Option<RenderError>| assert_eq!(other.as_ref(), Some(&error));
-            same(Unfinished::begin(&world, &settings, &options).err());
+            same(ResumableRender::begin(&world, &settings, &options).err());
             same(layers(&world, &settings, &options, &[Layer::Depth]).err());
             same(Growing::begin(&world, &settings, &options).err());
             same(overlay::ground(&mut world, &settings, &options).err());
@@ -100,9 +100,10 @@ mod tests {
         let mut scene = default_scene(0);
         (scene.settings.width, scene.settings.height, scene.settings.spp) = (8, 6, 1);
         let world = World::build(&scene).unwrap();
-        let mut begun = Unfinished::begin(&world, &scene.settings, &Options::default()).unwrap();
+        let mut begun =
+            ResumableRender::begin(&world, &scene.settings, &Options::default()).unwrap();
         let dark = Settings { exposure: f64::INFINITY, ..scene.settings.clone() };
-        let error = begun.raise(&dark).expect_err("no exposure");
+        let error = begun.extend(&dark).expect_err("no exposure");
         assert!(error.to_string().contains("exposure"), "{error}");
     }
 }

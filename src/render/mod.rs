@@ -2,35 +2,35 @@
 //!
 //! A plain render takes the same samples of every pixel. One that is to reach an error, or to end
 //! at a time, goes by rounds over the tiles that need more: see [`crate::noise`]. Either can be
-//! stopped and go on as if nothing had been: see [`Unfinished`].
+//! stopped and go on as if nothing had been: see [`ResumableRender`].
 
 mod adapt;
 mod error;
+mod incompatible;
 mod outline;
+mod part;
 mod pass;
+mod resumable;
 mod schedule;
-mod share;
 mod state;
 mod status;
 mod target;
 mod tasks;
-mod unfinished;
 mod uniform;
-mod unlike;
 mod watch;
 
-pub use crate::integrator::skips::Skips;
+pub use crate::integrator::elisions::Elisions;
 pub use error::RenderError;
 pub(crate) use error::check;
+pub use incompatible::IncompatibleSettings;
+pub(crate) use incompatible::difference;
 pub(crate) use outline::Outline;
+pub use part::ImagePart;
 pub(crate) use pass::view;
-pub use share::Share;
+pub use resumable::ResumableRender;
 pub use status::Status;
 pub use target::{End, Stage};
 pub use tasks::Tasks;
-pub use unfinished::Unfinished;
-pub use unlike::Unlike;
-pub(crate) use unlike::difference;
 pub use watch::Totals;
 
 use self::pass::PASS;
@@ -46,25 +46,25 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// What decides how a picture is made, but not what is in it.
+/// Options of a render that do not change the image.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
-    /// How rays find spheres; the default is the fastest.
+    /// How rays are traced; the default is the fastest.
     pub tracer: Tracer,
     /// Only this part of the picture; `None` for all of it. Its pixels are the same as in the
     /// whole, unless a target decides on samples: that looks at the part alone.
     pub region: Option<Region>,
-    /// Where it is told how far the render is, from any thread, after each tile.
+    /// Called with the progress after each tile, from any thread.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Set this to end the render early, with the samples that there are.
     pub cancel: Option<&'a AtomicBool>,
     /// Whether [`Render::statistics`] are wanted: they take probes, which take time.
     pub statistics: bool,
-    /// What is left out where it changes nothing; the default is all.
-    pub skips: Skips,
+    /// Work that may be omitted without changing the image; the default is all.
+    pub elisions: Elisions,
 }
 
-/// How far a render is.
+/// Progress of a render.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// Share of the work that is done, 0..=1; estimated where a target decides on samples, and then
@@ -74,22 +74,22 @@ pub struct Progress {
     pub rays: u64,
     /// Since the render began, but for pauses.
     pub elapsed: Duration,
-    /// How far the picture is from its limit, if that is measured.
+    /// Estimated error of the image, if that is measured.
     pub noise: Option<Noise>,
 }
 
-/// What a render has come to: all that was asked for, or what there is so far.
+/// The result of a render: the finished image, or the image so far.
 #[derive(Clone, Debug)]
 pub struct Render {
     /// Mean radiance of each pixel.
     pub image: Image,
     /// Samples of the picture.
     pub samples: Samples,
-    /// How far the picture is from its limit, if that was measured.
+    /// Estimated error of the image, if that was measured.
     pub noise: Option<Noise>,
     /// Variance and samples of each pixel, if they are wanted.
     pub statistics: Option<Statistics>,
-    /// What was done, for probes too.
+    /// Counters of rays and decisions, probes included.
     pub counters: Counters,
     /// Time in each stage, of all threads together.
     pub times: Times,
@@ -106,20 +106,20 @@ pub struct Render {
     pub complete: bool,
 }
 
-/// How many samples a picture has.
+/// Numbers of samples of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Samples {
-    /// Of all pixels together.
+    /// Samples of all pixels together.
     pub total: u64,
-    /// Of the pixel that has fewest.
+    /// Samples of the pixel with the fewest.
     pub least: u32,
-    /// Of the pixel that has most.
+    /// Samples of the pixel with the most.
     pub most: u32,
     /// Rounds in which they were taken: with the settings, this says which picture it is.
     pub rounds: u32,
 }
 
-/// What is known of each pixel besides its radiance, row by row.
+/// Statistics of each pixel, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
     /// Variance of the pixel's mean, by channel, in the square of the unit of radiance.
@@ -129,7 +129,7 @@ pub struct Statistics {
     /// is an estimate for one pixel at a time, and a noisy one: from a pixel that has seen nothing
     /// it says 0.
     pub variance: Image,
-    /// How many samples it has.
+    /// Number of samples.
     pub samples: Vec<u32>,
 }
 
@@ -146,7 +146,7 @@ pub fn render(
     settings: &Settings,
     options: &Options,
 ) -> Result<Render, RenderError> {
-    let mut unfinished = Unfinished::begin(world, settings, options)?;
+    let mut unfinished = ResumableRender::begin(world, settings, options)?;
     unfinished.run(world, options);
     Ok(unfinished.render())
 }

@@ -1,10 +1,10 @@
 //! All of an unfinished render but the sums of its film, as it is kept outside the program.
 
-use super::share::Share;
+use super::part::ImagePart;
 use super::state::{State, Step};
 use super::status::Status;
 use super::target::Stage;
-use super::{End, Totals, Unfinished};
+use super::{End, ResumableRender, Totals};
 use crate::film::{Film, KeptTile, Region, TILE};
 use crate::noise::Slope;
 use crate::scene::Settings;
@@ -27,7 +27,7 @@ pub(crate) struct Outline {
     totals: Totals,
     end: End,
     pub(crate) region: Region,
-    share: Share,
+    part: ImagePart,
     round: u32,
     plan: Vec<Step>,
     begun: usize,
@@ -39,7 +39,7 @@ pub(crate) struct Outline {
 
 impl Outline {
     /// Of a render that goes on.
-    pub(crate) fn of(render: &Unfinished) -> Self {
+    pub(crate) fn of(render: &ResumableRender) -> Self {
         let state = &render.state;
         Self {
             settings: render.settings.clone(),
@@ -49,7 +49,7 @@ impl Outline {
             totals: render.totals,
             end: render.end,
             region: state.film.region,
-            share: render.share.clone(),
+            part: render.part.clone(),
             round: state.round,
             plan: state.plan.clone(),
             begun: state.begun,
@@ -66,13 +66,13 @@ impl Outline {
         demand(self.settings.check().is_ok(), "settings that no render has")?;
         let inside = self.region.check_in(self.settings.width, self.settings.height);
         demand(inside.is_ok(), "a region that is not in the picture")?;
-        let whole = Share::whole(self.region, self.settings.spp);
-        let share = self.share.common(&whole).filter(|common| *common == self.share);
-        let share = share.filter(|share| !self.settings.has_target() || *share == whole);
-        let tiles = share.map(|share| share.tiles.len());
-        demand(tiles == Some(self.tiles.len()), "other tiles than its share has")?;
+        let whole = ImagePart::whole(self.region, self.settings.spp);
+        let part = self.part.common(&whole).filter(|common| *common == self.part);
+        let part = part.filter(|part| !self.settings.has_target() || *part == whole);
+        let tiles = part.map(|part| part.tiles.len());
+        demand(tiles == Some(self.tiles.len()), "other tiles than its part has")?;
         let stages = self.stages.iter().map(|stage| stage.spp);
-        let most = stages.chain([self.share.samples.len() as u32]).max().unwrap_or(0);
+        let most = stages.chain([self.part.samples.len() as u32]).max().unwrap_or(0);
         let sound = |tile: &KeptTile| {
             tile.samples.max(tile.probe_samples) <= most && tile.probe_rays <= MOST
         };
@@ -94,9 +94,9 @@ impl Outline {
 
     /// Progress of the render. It has passed [`Outline::check`].
     pub(crate) fn status(&self) -> Status {
-        let tiles = Film::tile_regions(self.region).skip(self.share.tiles.start as usize);
+        let tiles = Film::tile_regions(self.region).skip(self.part.tiles.start as usize);
         let pixels = tiles.map(|tile| u64::from(tile.width) * u64::from(tile.height));
-        let wanted = self.share.samples.len() as u64;
+        let wanted = self.part.samples.len() as u64;
         let counts = pixels.zip(&self.tiles).map(|(pixels, tile)| {
             (pixels.saturating_mul(tile.samples.into()), pixels.saturating_mul(wanted))
         });
@@ -106,7 +106,7 @@ impl Outline {
         Status {
             settings: self.settings.clone(),
             region: self.region,
-            share: self.share.clone(),
+            part: self.part.clone(),
             statistics: self.statistics,
             samples,
             wanted,
@@ -122,8 +122,8 @@ impl Outline {
     }
 
     /// The render, with a film whose sums are still to be filled. It has passed [`Outline::check`].
-    pub(crate) fn begin(self) -> Unfinished {
-        let mut film = Film::with_tiles(self.region, self.share.tiles.clone(), self.statistics);
+    pub(crate) fn begin(self) -> ResumableRender {
+        let mut film = Film::with_tiles(self.region, self.part.tiles.clone(), self.statistics);
         film.restore_tiles(&self.tiles, self.settings.seed);
         let state = State {
             film,
@@ -134,12 +134,12 @@ impl Outline {
             variance: self.variance,
             slope: self.slope,
         };
-        Unfinished {
+        ResumableRender {
             settings: self.settings,
             stages: self.stages,
             met: self.met,
             statistics: self.statistics,
-            share: self.share,
+            part: self.part,
             state,
             totals: self.totals,
             end: self.end,

@@ -14,7 +14,7 @@ use std::ops::Range;
 /// Samples per pixel and pass: a tile of them is one batch of paths.
 pub(super) const PASS: u32 = 16;
 
-/// What camera rays of a tile may hit.
+/// Returns what camera rays of a tile may hit.
 pub(crate) fn view(job: &Job, tile: &Tile) -> View {
     let world = job.world;
     let reach = f64::from(job.filter.radius()) - 0.5;
@@ -58,7 +58,7 @@ impl Place {
     /// Takes samples of the pixels.
     pub(super) fn take(self, job: &Job, samples: Range<u32>, work: &mut Workspace) -> Taken {
         work.clock.restart();
-        let even = even_view(job.world, self.view).filter(|_| job.skips.even_background);
+        let even = even_view(job.world, self.view).filter(|_| job.elisions.even_background);
         if let Some(radiance) = even {
             let pixels = u64::from(self.region.width) * u64::from(self.region.height);
             work.counters.skipped_samples += pixels * samples.len() as u64;

@@ -1,4 +1,4 @@
-//! How the samples of a picture are divided into tasks.
+//! Division of an image's samples into tasks.
 
 use super::pass::PASS;
 use std::ops::Range;
@@ -35,10 +35,10 @@ pub(super) struct Schedule {
     threads: usize,
 }
 
-/// What one thread does at a time.
+/// The work of one thread at a time.
 #[derive(Clone, Debug)]
 pub(super) struct Task {
-    /// Which tile it is for.
+    /// Index of the tile.
     pub(super) tile: usize,
     /// The samples that it is to get, maybe none.
     pub(super) samples: Range<u32>,

@@ -1,4 +1,4 @@
-//! What an unfinished render knows of its picture.
+//! State of a render: film, queue of passes, noise.
 
 use super::pass;
 use super::target::Target;
@@ -15,7 +15,7 @@ pub(super) struct State {
     pub(super) film: Film,
     /// Rounds that were begun.
     pub(super) round: u32,
-    /// What is left of this round, in order.
+    /// Remaining passes of this round, in order.
     pub(super) plan: Vec<Step>,
     /// Steps at the plan's head that were in hand when the render was cancelled: they come first,
     /// all of them, so that whatever ends later is a part of the one sequence of steps.
@@ -27,7 +27,7 @@ pub(super) struct State {
     pub(super) slope: Slope,
 }
 
-/// What a tile is to get.
+/// The samples that a tile is to get.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Step {
     /// Its place in the film.
@@ -46,7 +46,7 @@ impl State {
         Self::unmeasured(film)
     }
 
-    /// The same of a render that measures nothing.
+    /// Returns the state of a render that measures nothing.
     pub(super) fn unmeasured(film: Film) -> Self {
         Self {
             film,

@@ -1,6 +1,6 @@
 //! Progress of a render that is kept in a file, without its sums.
 
-use super::share::Share;
+use super::part::ImagePart;
 use crate::film::Region;
 use crate::scene::Settings;
 use std::time::Duration;
@@ -13,7 +13,7 @@ pub struct Status {
     /// The part of the picture that the whole render renders.
     pub region: Region,
     /// The samples and tiles that this file is to have.
-    pub share: Share,
+    pub part: ImagePart,
     /// Whether sums of squares are kept.
     pub statistics: bool,
     /// Samples that there are, of all pixels.

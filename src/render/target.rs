@@ -1,4 +1,4 @@
-//! What ends a render.
+//! Stop conditions of a render: samples, error, time.
 
 use crate::noise::{Goal, Noise};
 use crate::scene::Settings;
@@ -30,7 +30,7 @@ pub struct Stage {
     pub spp: u32,
 }
 
-/// What ends a stage of a render.
+/// The stop condition of a stage of a render.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
     pub(super) error: Option<f64>,

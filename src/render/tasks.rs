@@ -1,4 +1,4 @@
-//! How long the tasks of a render take, and what more threads would make of that.
+//! Durations of a render's tasks, and the speedup that more threads would give.
 
 use super::schedule::{Pass, parts};
 use serde::{Deserialize, Serialize};
@@ -14,11 +14,11 @@ use std::time::Duration;
 /// many come after them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tasks {
-    /// How many.
+    /// Number of tasks.
     pub count: u64,
-    /// How long the longest took.
+    /// Duration of the longest.
     pub longest: Duration,
-    /// How long all took together.
+    /// Sum of all durations.
     pub total: Duration,
     /// The longest of those that are not divided, however many threads there are.
     whole: Duration,

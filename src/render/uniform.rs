@@ -26,7 +26,7 @@ pub(super) fn run(job: &Job, share: Range<u32>, state: &mut State, watch: &Watch
     let next = AtomicUsize::new(0);
     let tiles: Vec<_> = state.film.tiles.iter_mut().map(shared).collect();
     rayon::broadcast(|_| {
-        let mut work = Workspace::new(job.world, job.skips);
+        let mut work = Workspace::new(job.world, job.elisions);
         while !watch.cancelled() {
             let next = next.fetch_add(1, Ordering::Relaxed);
             let Some(Task { tile, samples, of }) = schedule.task(next) else { return };

@@ -1,4 +1,4 @@
-//! What all threads of a render share: whether to go on, and what was done.
+//! State that all threads of a render share: cancellation, counters, times.
 
 use super::schedule::Pass;
 use super::tasks::Tasks;
@@ -12,10 +12,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// What was done, and how long it took.
+/// Counters and times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Totals {
-    /// What was done, for probes too.
+    /// Counters of rays and decisions, probes included.
     pub counters: Counters,
     /// Time in each stage, of all threads together.
     pub times: Times,
@@ -35,7 +35,7 @@ impl Totals {
     }
 }
 
-/// What all threads of a render share.
+/// State that all threads of a render share.
 pub(super) struct Watch<'a> {
     options: &'a Options<'a>,
     start: Instant,

@@ -43,8 +43,8 @@ pub use filter::PixelFilter;
 pub use frame::{Frame, Frames};
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
 pub use plan::{LightDraw, ScatterDraw};
-pub use rows::{PathRow, PathStates, Places, ScatterRow, StartRow};
-pub use sampler::{PathState, Sampler, Split};
+pub use rows::{Places, SamplerRow, SamplerStates, ScatterRow, StartRow};
+pub use sampler::{Sampler, SamplerState, Split};
 pub use warp::{
     UNIFORM_SPHERE_PDF, cap, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,
     cosine_hemispheres, uniform_sphere,

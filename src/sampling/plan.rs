@@ -2,7 +2,7 @@
 //!
 //! The table is in the [module's](super) documentation.
 
-use super::sampler::{PathState, Sampler};
+use super::sampler::{Sampler, SamplerState};
 use crate::lanes::{Doubles, F32x16, F64x8, widen};
 
 /// The step of the numbers of a set, from one to the next.
@@ -51,21 +51,21 @@ impl Sampler {
     /// The camera ray's place in the picture, for
     /// [`PixelFilter::offset`](super::PixelFilter::offset); in [0, 1).
     #[inline]
-    pub fn pixel(&self, path: &PathState) -> [f32; 2] {
+    pub fn pixel(&self, path: &SamplerState) -> [f32; 2] {
         let [_, _, x, y] = self.draw4(path, 0);
         [x, y]
     }
 
     /// The camera ray's place on the lens; in [0, 1).
     #[inline]
-    pub fn lens(&self, path: &PathState) -> [f32; 2] {
+    pub fn lens(&self, path: &SamplerState) -> [f32; 2] {
         let [u, v, _, _] = self.draw4(path, 1);
         [u, v]
     }
 
     /// The numbers of scattering number `bounce`, from 0 at the first hit.
     #[inline]
-    pub fn scatter(&self, path: &PathState, bounce: u32) -> ScatterDraw {
+    pub fn scatter(&self, path: &SamplerState, bounce: u32) -> ScatterDraw {
         let first = self.draw4(path, directions(bounce));
         let second = if choices(bounce) == directions(bounce) {
             first
@@ -78,7 +78,7 @@ impl Sampler {
 
     /// The numbers of the light that is sampled at scattering number `bounce`.
     #[inline]
-    pub fn light(&self, path: &PathState, bounce: u32) -> LightDraw {
+    pub fn light(&self, path: &SamplerState, bounce: u32) -> LightDraw {
         LightDraw::new(self.draw4(path, lights(bounce)))
     }
 }
@@ -108,7 +108,7 @@ fn which<D: Doubles>(coarse: D, fine: D) -> D {
 mod tests {
     use super::*;
     use crate::lanes::U32x16;
-    use crate::sampling::{PathRow, PathStates};
+    use crate::sampling::{SamplerRow, SamplerStates};
     use crate::scene::SamplerKind;
 
     #[test]
@@ -116,9 +116,9 @@ mod tests {
         for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
             let sampler = Sampler::new(kind, 4, 16);
             let path = sampler.start(1, 2, 3);
-            let (start, mut states) = (sampler.start_row(1, 2, 3), PathStates::with_paths(1));
+            let (start, mut states) = (sampler.start_row(1, 2, 3), SamplerStates::with_paths(1));
             states.set_row(0, &start);
-            let row = PathRow::new(start.places, U32x16::splat(0), &states);
+            let row = SamplerRow::new(start.places, U32x16::splat(0), &states);
             let mut numbers = [sampler.pixel(&path), sampler.lens(&path)].concat();
             for bounce in 0..100 {
                 let ScatterDraw { direction, lobe, roulette } = sampler.scatter(&path, bounce);

@@ -1,22 +1,22 @@
 //! The numbers of sixteen paths at once.
 
 use super::plan::{ScatterDraw, choices, directions, lights};
-use super::sampler::{OTHER, PathState, Points, Sampler};
+use super::sampler::{OTHER, Points, Sampler, SamplerState};
 use super::sobol::{Shuffled, block, shuffle_from};
 use crate::lanes::{F32x16, MAX_LANES, U32x16};
 
 /// Where sixteen paths are in the Sobol sequences that they draw from.
 #[derive(Clone, Copy, Debug)]
 pub struct Places {
-    /// [`PathState`]'s place in the sequence of its seed.
+    /// [`SamplerState`]'s place in the sequence of its seed.
     pub places: U32x16,
     /// The seeds.
     pub seeds: U32x16,
 }
 
-/// What else there is of many paths' states, of which few draws ask for more than [`Places`].
+/// Sampler states of many paths, without the [`Places`]: few draws need more than those.
 #[derive(Clone, Debug)]
-pub struct PathStates {
+pub struct SamplerStates {
     key: Vec<u64>,
     index: Vec<u32>,
 }
@@ -29,17 +29,17 @@ pub struct StartRow {
     pub places: Places,
 }
 
-/// Paths that draw together.
+/// Sampler states of sixteen paths.
 #[derive(Clone, Copy, Debug)]
-pub struct PathRow<'a> {
+pub struct SamplerRow<'a> {
     places: Places,
-    /// Which of the states are the paths'.
+    /// Indices of the paths among the states.
     paths: U32x16,
-    states: &'a PathStates,
+    states: &'a SamplerStates,
 }
 
 impl StartRow {
-    fn of(each: &[PathState; MAX_LANES]) -> Self {
+    fn of(each: &[SamplerState; MAX_LANES]) -> Self {
         Self {
             key: each.map(|state| state.key),
             index: each.map(|state| state.index),
@@ -51,7 +51,7 @@ impl StartRow {
     }
 }
 
-impl PathState {
+impl SamplerState {
     /// The place in the Sobol sequence, and its seed.
     #[inline]
     pub fn sobol(&self) -> [u32; 2] {
@@ -59,7 +59,7 @@ impl PathState {
     }
 }
 
-impl PathStates {
+impl SamplerStates {
     /// Room for so many paths, and for a whole row after the last.
     pub fn with_paths(count: usize) -> Self {
         Self { key: vec![0; count + MAX_LANES], index: vec![0; count + MAX_LANES] }
@@ -74,21 +74,21 @@ impl PathStates {
 
     /// Writes the state of a path.
     #[inline]
-    pub fn set(&mut self, path: usize, state: &PathState) {
+    pub fn set(&mut self, path: usize, state: &SamplerState) {
         (self.key[path], self.index[path]) = (state.key, state.index);
     }
 
     /// The state of a path, of which the place in the Sobol sequence is known.
     #[inline]
-    pub fn state(&self, path: usize, place: u32) -> PathState {
-        PathState { key: self.key[path], index: self.index[path], shuffled: Shuffled(place) }
+    pub fn state(&self, path: usize, place: u32) -> SamplerState {
+        SamplerState { key: self.key[path], index: self.index[path], shuffled: Shuffled(place) }
     }
 }
 
-impl<'a> PathRow<'a> {
+impl<'a> SamplerRow<'a> {
     /// Of the paths whose numbers are given, with all states, that are where `places` tells.
     #[inline(always)]
-    pub fn new(places: Places, paths: U32x16, states: &'a PathStates) -> Self {
+    pub fn new(places: Places, paths: U32x16, states: &'a SamplerStates) -> Self {
         Self { places, paths, states }
     }
 }
@@ -147,14 +147,14 @@ impl Sampler {
 
     /// The camera rays' places in the picture: [`Sampler::pixel`] for each.
     #[inline(always)]
-    pub fn pixel_row(&self, paths: &PathRow) -> [F32x16; 2] {
+    pub fn pixel_row(&self, paths: &SamplerRow) -> [F32x16; 2] {
         let [_, _, x, y] = self.draw4_row(paths, 0);
         [x, y]
     }
 
     /// The camera rays' places on the lens: [`Sampler::lens`] for each.
     #[inline(always)]
-    pub fn lens_row(&self, paths: &PathRow) -> [F32x16; 2] {
+    pub fn lens_row(&self, paths: &SamplerRow) -> [F32x16; 2] {
         let [u, v, ..] = self.draw4_row(paths, 1);
         [u, v]
     }
@@ -162,7 +162,7 @@ impl Sampler {
     /// [`Sampler::scatter`] for each. Numbers for lobes and Russian roulette are 0 unless they are
     /// asked for.
     #[inline(always)]
-    pub fn scatter_row(&self, paths: &PathRow, bounce: u32, choose: bool) -> ScatterRow {
+    pub fn scatter_row(&self, paths: &SamplerRow, bounce: u32, choose: bool) -> ScatterRow {
         let first = self.draw4_row(paths, directions(bounce));
         let second = match (choose, choices(bounce)) {
             (false, _) => [F32x16::splat(0.0); 4],
@@ -175,27 +175,27 @@ impl Sampler {
 
     /// What glass asks for: the lobes of [`Sampler::scatter`] for each.
     #[inline(always)]
-    pub fn lobe_row(&self, paths: &PathRow, bounce: u32) -> F32x16 {
+    pub fn lobe_row(&self, paths: &SamplerRow, bounce: u32) -> F32x16 {
         self.draw4_row(paths, choices(bounce))[2]
     }
 
     /// The numbers from which [`LightDraw`](super::LightDraw)s are made, for each: those of
     /// [`Sampler::light`].
     #[inline(always)]
-    pub fn light_row(&self, paths: &PathRow, bounce: u32) -> [F32x16; 4] {
+    pub fn light_row(&self, paths: &SamplerRow, bounce: u32) -> [F32x16; 4] {
         self.draw4_row(paths, lights(bounce))
     }
 
     /// Which caustic is looked for at scattering number `bounce`, and a place on its lamp, for each.
     #[inline(always)]
-    pub fn caustic_row(&self, paths: &PathRow, bounce: u32) -> (F32x16, [F32x16; 2]) {
+    pub fn caustic_row(&self, paths: &SamplerRow, bounce: u32) -> (F32x16, [F32x16; 2]) {
         let [u, v, which, _] = self.other_row(paths, lights(bounce));
         (which, [u, v])
     }
 
-    /// [`Sampler::draw4`] for each, with [other](PathState::other) numbers.
+    /// [`Sampler::draw4`] for each, with [other](SamplerState::other) numbers.
     #[inline(always)]
-    fn other_row(&self, paths: &PathRow, set: u32) -> [F32x16; 4] {
+    fn other_row(&self, paths: &SamplerRow, set: u32) -> [F32x16; 4] {
         if let Points::Sobol(sobol) = self.points {
             let Places { places, seeds } = paths.places;
             let seeds = seeds ^ U32x16::splat(OTHER as u32);
@@ -203,12 +203,12 @@ impl Sampler {
                 return row;
             }
         }
-        self.draw4_each(paths, set, PathState::other)
+        self.draw4_each(paths, set, SamplerState::other)
     }
 
     /// [`Sampler::draw4`] for each.
     #[inline(always)]
-    pub fn draw4_row(&self, paths: &PathRow, set: u32) -> [F32x16; 4] {
+    pub fn draw4_row(&self, paths: &SamplerRow, set: u32) -> [F32x16; 4] {
         if let Points::Sobol(sobol) = self.points {
             let Places { places, seeds } = paths.places;
             if let Some(row) = sobol.draw4_row(places, set, seeds) {
@@ -222,9 +222,9 @@ impl Sampler {
     #[inline(never)]
     fn draw4_each(
         &self,
-        paths: &PathRow,
+        paths: &SamplerRow,
         set: u32,
-        of: impl Fn(PathState) -> PathState,
+        of: impl Fn(SamplerState) -> SamplerState,
     ) -> [F32x16; 4] {
         let mut columns = [[0.0; MAX_LANES]; 4];
         let each = paths.paths.to_array().into_iter().zip(paths.places.places.to_array());
@@ -247,17 +247,17 @@ mod tests {
         for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
             let sampler = Sampler::new(kind, 4, 16);
             for first in [0, 3, 65_520, 65_530, u32::MAX - 40] {
-                let row: [PathState; 16] =
+                let row: [SamplerState; 16] =
                     std::array::from_fn(|lane| sampler.start(5, 6, first + lane as u32));
                 let start = sampler.start_row(5, 6, first);
-                let mut states = PathStates::with_paths(20);
+                let mut states = SamplerStates::with_paths(20);
                 states.set_row(3, &start);
                 for (lane, place) in start.places.places.to_array().into_iter().enumerate() {
                     assert_eq!(states.state(3 + lane, place), row[lane], "{kind:?} {first}");
                     assert_eq!(start.places.seeds.to_array()[lane], row[lane].key as u32);
                 }
                 let paths = U32x16::new(std::array::from_fn(|lane| 3 + lane as u32));
-                let together = &PathRow::new(start.places, paths, &states);
+                let together = &SamplerRow::new(start.places, paths, &states);
                 let row = &row;
                 for set in [0, 1, 5, 200] {
                     let rows = sampler.draw4_row(together, set).map(wide::f32x16::to_array);
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn states_are_kept_by_path() {
         let sampler = Sampler::new(SamplerKind::Sobol, 4, 16);
-        let mut states = PathStates::with_paths(3);
+        let mut states = SamplerStates::with_paths(3);
         let paths = [0, 1, 2].map(|path| sampler.start(path, 7, 70_000 + path));
         for (path, state) in paths.iter().enumerate() {
             states.set(path, state);
@@ -301,7 +301,7 @@ mod tests {
             assert_eq!(states.state(path, place), *state);
             // What a row of paths draws from is this place, in the sequence of this seed.
             let places = Places { places: U32x16::splat(place), seeds: U32x16::splat(seed) };
-            let row = PathRow::new(places, U32x16::splat(path as u32), &states);
+            let row = SamplerRow::new(places, U32x16::splat(path as u32), &states);
             let drawn = sampler.draw4_row(&row, 1).map(|x| x.to_array()[0]);
             assert_eq!(drawn, sampler.draw4(state, 1));
         }

@@ -48,7 +48,7 @@ pub(super) enum Points {
 
 /// What a path carries to draw its numbers: 16 bytes that never change on the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PathState {
+pub struct SamplerState {
     /// Hash of seed, pixel and, by the kind, the samples that share one set of points.
     pub(super) key: u64,
     /// The path's place among the samples that share `key`.
@@ -57,7 +57,7 @@ pub struct PathState {
     pub(super) shuffled: Shuffled,
 }
 
-impl PathState {
+impl SamplerState {
     /// The same path with other numbers at the same decisions.
     #[inline(always)]
     pub(super) fn other(self) -> Self {
@@ -85,7 +85,7 @@ impl Sampler {
 
     /// The state of the path of sample `index`, from 0, of the pixel in column `x` and row `y`.
     #[inline]
-    pub fn start(&self, x: u32, y: u32, index: u32) -> PathState {
+    pub fn start(&self, x: u32, y: u32, index: u32) -> SamplerState {
         let pixel = stream(self.seed, u64::from(y) << 32 | u64::from(x));
         let (block, index) = match &self.points {
             Points::Sobol(_) => block(u64::from(index)),
@@ -95,7 +95,7 @@ impl Sampler {
             Points::Independent => (u64::from(index), 0),
         };
         let key = stream(pixel, block);
-        PathState { key, index, shuffled: shuffle(index, key as u32) }
+        SamplerState { key, index, shuffled: shuffle(index, key as u32) }
     }
 
     /// Four numbers in [0, 1): set number `set` of the path's dimensions, in any order of calls.
@@ -103,7 +103,7 @@ impl Sampler {
     /// The first two are well distributed together, as are the last two. Integrators draw through
     /// [`Sampler::pixel`] and its like, which know which set is whose.
     #[inline]
-    pub fn draw4(&self, path: &PathState, set: u32) -> [f32; 4] {
+    pub fn draw4(&self, path: &SamplerState, set: u32) -> [f32; 4] {
         match &self.points {
             Points::Sobol(sobol) => {
                 sobol.draw4(path.shuffled, set, path.key as u32).unwrap_or_else(|| {
@@ -125,7 +125,7 @@ impl Sampler {
     /// Sobol points of one event go on from sample to sample, so that all samples of a pixel together
     /// are well distributed as well if they give an event the same `count`; best is a power of two.
     #[inline]
-    pub fn split(&self, path: &PathState, event: u32, count: u32) -> Split {
+    pub fn split(&self, path: &SamplerState, event: u32, count: u32) -> Split {
         let key = stream(path.key ^ SPLIT, u64::from(event));
         match &self.points {
             Points::Sobol(sobol) => {

@@ -1,41 +1,41 @@
-//! Metals: smooth mirrors, or rough by GGX.
+//! Conductors: metals that are smooth mirrors, or rough by GGX.
 
-use super::{Bsdf, Material, Numbers, One, Scatter, fresnel, ggx, in_doubles};
+use super::{BroadcastParams, Bsdf, Material, Params, Scatter, fresnel, ggx, in_doubles};
 use crate::lanes::{Lanes, Mask};
 use crate::scene::{ConductorFresnel, Rgb};
 use crate::vec3::Vec3;
 use crate::world::Conductor;
 
 /// A row of metals.
-pub struct Metal<L: Lanes> {
-    /// What is reflected of light along the normal.
+pub struct ConductorBsdf<L: Lanes> {
+    /// Reflectance at normal incidence.
     normal_incidence: Vec3<L>,
-    /// 1 where Schlick's curve takes that to white at grazing angles, 0 where it stays.
-    rises: L,
-    /// Those that have an index of refraction, if there are any.
-    exact: Option<Exact<L>>,
+    /// 1 if Schlick's approximation raises the reflectance to 1 at grazing angles, 0 if it is constant.
+    schlick_weight: L,
+    /// Complex indices of refraction, if any lane has one.
+    exact: Option<ComplexIor<L>>,
     alpha: L,
 }
 
-/// Complex indices of refraction; black is the tint of lanes that have none.
-struct Exact<L> {
+/// Complex indices of refraction; the tint of other lanes is black.
+struct ComplexIor<L> {
     eta: Vec3<L>,
     k: Vec3<L>,
     tint: Vec3<L>,
 }
 
 impl Conductor {
-    /// The color in which it reflects what is seen from above.
+    /// Returns the reflectance at normal incidence.
     pub fn color(&self) -> Rgb {
-        Self::row::<f32>(&One(self)).reflectance(1.0).into()
+        Self::row::<f32>(&BroadcastParams(self)).reflectance(1.0).into()
     }
 
-    /// Whether it has an index of refraction.
+    /// Whether the metal has an index of refraction.
     fn is_exact(&self) -> bool {
         matches!(self.fresnel, ConductorFresnel::Exact { .. })
     }
 
-    /// Real and imaginary part of the index of refraction; anything if the color is told.
+    /// Returns real and imaginary part of the index of refraction; arbitrary if the color is given.
     fn index(&self) -> [Rgb; 2] {
         match self.fresnel {
             ConductorFresnel::Exact { eta, k } => [eta, k],
@@ -45,7 +45,8 @@ impl Conductor {
         }
     }
 
-    /// The tint is part of the color that Schlick's curve takes to white at grazing angles.
+    /// Returns the color at normal incidence. The tint is part of it, so that Schlick's approximation
+    /// raises it to white.
     fn normal_incidence(&self) -> Rgb {
         match self.fresnel {
             ConductorFresnel::Schlick(color) | ConductorFresnel::Constant(color) => {
@@ -56,19 +57,19 @@ impl Conductor {
     }
 }
 
-impl<L: Lanes> Exact<L> {
-    /// Of these metals; `None` if none has an index of refraction.
+impl<L: Lanes> ComplexIor<L> {
+    /// Returns the indices of refraction of these metals; `None` if none has one.
     #[inline(always)]
-    fn of(numbers: &impl Numbers<L>) -> Option<Self> {
-        let exact = L::splat(0.0).lt(numbers.row(5));
+    fn of(params: &impl Params<L>) -> Option<Self> {
+        let exact = L::splat(0.0).lt(params.row(5));
         (exact.bits() != 0).then(|| Self {
-            eta: numbers.color(6),
-            k: numbers.color(9),
-            tint: numbers.color(12),
+            eta: params.color(6),
+            k: params.color(9),
+            tint: params.color(12),
         })
     }
 
-    /// Share that is reflected at this cosine between direction and facet.
+    /// Returns the reflectance at this cosine between direction and facet.
     #[inline(always)]
     fn reflectance(&self, cosine: L) -> Vec3<L> {
         let channel = |eta, k| {
@@ -83,16 +84,16 @@ impl<L: Lanes> Exact<L> {
     }
 }
 
-impl<L: Lanes> Metal<L> {
-    /// Share that is reflected at this cosine between direction and facet.
+impl<L: Lanes> ConductorBsdf<L> {
+    /// Returns the reflectance at this cosine between direction and facet.
     #[inline(always)]
     fn reflectance(&self, cosine: L) -> Vec3<L> {
         let one = L::splat(1.0);
-        let rise = fresnel::schlick_rise(cosine) * self.rises;
-        let told = self.normal_incidence.map(|color| color + (one - color) * rise);
+        let rise = fresnel::schlick_rise(cosine) * self.schlick_weight;
+        let schlick = self.normal_incidence.map(|color| color + (one - color) * rise);
         let all = match &self.exact {
-            Some(exact) => told + exact.reflectance(cosine),
-            None => told,
+            Some(exact) => schlick + exact.reflectance(cosine),
+            None => schlick,
         };
         all.map(|channel| channel.min(one))
     }
@@ -105,16 +106,16 @@ impl<L: Lanes> Metal<L> {
 
 impl Material for Conductor {
     const DIFFUSE: bool = false;
-    const BASE: bool = false;
-    const NUMBERS: usize = 15;
-    type Bsdf<L: Lanes> = Metal<L>;
+    const HAS_DIFFUSE_BASE: bool = false;
+    const PARAMS: usize = 15;
+    type Bsdf<L: Lanes> = ConductorBsdf<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { tint: self.tint * color, ..self }
     }
 
     #[inline(always)]
-    fn number(&self, i: usize) -> f32 {
+    fn param(&self, i: usize) -> f32 {
         let number = |yes: bool| f32::from(u8::from(yes));
         match i {
             0..3 => self.normal_incidence()[i],
@@ -129,17 +130,17 @@ impl Material for Conductor {
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Metal<L> {
-        Metal {
-            normal_incidence: numbers.color(0),
-            rises: numbers.row(3),
-            exact: Exact::of(numbers),
-            alpha: numbers.row(4),
+    fn row<L: Lanes>(params: &impl Params<L>) -> ConductorBsdf<L> {
+        ConductorBsdf {
+            normal_incidence: params.color(0),
+            schlick_weight: params.row(3),
+            exact: ComplexIor::of(params),
+            alpha: params.row(4),
         }
     }
 }
 
-impl<L: Lanes> Bsdf<L> for Metal<L> {
+impl<L: Lanes> Bsdf<L> for ConductorBsdf<L> {
     #[inline(always)]
     fn is_delta(&self) -> L::Mask {
         self.smooth()
@@ -175,7 +176,7 @@ impl<L: Lanes> Bsdf<L> for Metal<L> {
         let normal = ggx::sample_visible_normal(self.alpha, outgoing, direction);
         let cosine = outgoing.dot(normal);
         let incoming = (normal * (cosine + cosine) - outgoing).normalize();
-        // Masking of both directions given that of one: all that is left of response over density.
+        // The weight is the masking-shadowing of both directions over the masking of one.
         let seen = one + ggx::lambda(self.alpha, outgoing);
         let both = seen + ggx::lambda(self.alpha, incoming);
         let kept = zero.lt(incoming.z) & zero.lt(cosine);
@@ -202,7 +203,7 @@ mod tests {
     use crate::shade::mirror;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
     use crate::shade::tests::{
-        rows_are_what_their_lanes_are, sample, samples_follow_density, samples_match_density,
+        rows_equal_their_lanes, sample, samples_follow_density, samples_match_density,
     };
     use glam::Vec3;
 
@@ -220,7 +221,7 @@ mod tests {
             ConductorFresnel::Exact { eta, k },
         ];
         for kinds in 1..=3 {
-            rows_are_what_their_lanes_are(&std::array::from_fn(|i| Conductor {
+            rows_equal_their_lanes(&std::array::from_fn(|i| Conductor {
                 fresnel: fresnel[i % kinds],
                 roughness: 0.1 * (i % 7) as f32,
                 tint: Rgb::splat(0.06 * i as f32),

@@ -1,10 +1,10 @@
 //! Smooth glass, nested and overlapping.
 //!
-//! A point inside several glass spheres is in the smallest of them (of equals, the one that comes
-//! first in the scene): the rule of priorities of Schmidt and Budge, "Simple Nested Dielectrics in
-//! Ray Traced Images", Journal of Graphics Tools 2002, with the radius as the priority, since what
-//! is nested is smaller. It depends on the point alone, not on the path that led there. An
-//! interface that lies inside a smaller sphere is not there.
+//! A point inside several glass spheres is in the smallest of them (of equals, the first in the scene):
+//! the rule of priorities of Schmidt and Budge, "Simple Nested Dielectrics in Ray Traced Images",
+//! Journal of Graphics Tools 2002, with the radius as the priority, since nested spheres are smaller.
+//! The medium depends on the point alone, not on the path that led there. An interface inside a smaller
+//! sphere does not exist.
 
 use super::fresnel;
 use crate::lanes::Doubles;
@@ -12,56 +12,57 @@ use crate::ray::MISS;
 use crate::vec3::Vec3;
 use crate::world::World;
 
-/// The glass spheres that a path is in, as rows, in any order; [`MISS`] marks a free place.
-pub type Inside<'a> = &'a mut [u32];
+/// An interior list: the glass spheres that contain a path, as rows in any order; [`MISS`] marks a free
+/// slot.
+pub type InteriorList<'a> = &'a mut [u32];
 
-/// A ray that meets the surface of a glass sphere, or a row of them.
+/// A ray at the surface of a glass sphere, or a row of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting<D> {
-    /// Where the ray goes, of any length.
+pub struct Interface<D> {
+    /// Direction of the ray, of any length.
     pub direction: Vec3<D>,
-    /// The outward unit normal.
+    /// Outward unit normal.
     pub normal: Vec3<D>,
     /// Index of refraction of the sphere.
-    pub here: D,
-    /// Index of refraction of what is around the sphere there; 0 where that decides the medium on
-    /// both sides, so that the surface is not there.
-    pub around: D,
-    /// A number in [0, 1) that chooses whether the ray is reflected.
+    pub ior_inside: D,
+    /// Index of refraction outside of the sphere; 0 if another sphere decides the medium on both sides,
+    /// so that the interface does not exist.
+    pub ior_outside: D,
+    /// A random number in [0, 1) that decides whether the ray is reflected.
     pub choice: D,
 }
 
-/// What glass does to a ray.
+/// A reflected or refracted ray.
 #[derive(Clone, Copy, Debug)]
-pub struct Passage<D: Doubles> {
-    /// Where the ray goes on: a unit vector.
+pub struct RefractedRay<D: Doubles> {
+    /// Direction of the ray, a unit vector.
     pub direction: Vec3<D>,
-    /// Whether it goes on inside the sphere.
+    /// Whether the ray is inside the sphere.
     pub inward: D::Mask,
 }
 
-/// Takes a ray through or back from the surface of a glass sphere.
+/// Reflects or refracts a ray at the surface of a glass sphere.
 ///
-/// It is reflected with the probability of the share that is, so its weight does not change.
+/// The probability of reflection is the reflectance, so the weight of the ray does not change.
 #[inline(always)]
-pub fn pass<D: Doubles>(meeting: &Meeting<D>) -> Passage<D> {
-    let Meeting { direction, normal, here, around, choice } = *meeting;
+pub fn scatter<D: Doubles>(interface: &Interface<D>) -> RefractedRay<D> {
+    let Interface { direction, normal, ior_inside, ior_outside, choice } = *interface;
     let direction = direction * direction.inverse_length();
     let entering = direction.dot_unfused(normal).lt(D::splat(0.0));
-    let from = D::select(entering, around, here);
-    let eta = from / D::select(entering, here, around);
+    let from = D::select(entering, ior_outside, ior_inside);
+    let eta = from / D::select(entering, ior_inside, ior_outside);
     let facing = Vec3::select(entering, normal, -normal);
     let (sent, through) = refract(direction, facing, eta, choice);
-    let real = D::splat(0.0).lt(around);
+    let real = D::splat(0.0).lt(ior_outside);
     let across = through | !real;
-    Passage {
+    RefractedRay {
         direction: Vec3::select(real, sent, direction),
         inward: (entering & across) | (!entering & !across),
     }
 }
 
-/// Reflects or refracts at an interface with unit normal `facing`, against the ray. Returns whether
-/// it went through.
+/// Reflects or refracts at an interface with unit normal `facing`, against the ray. Returns the
+/// direction, and whether the ray is refracted.
 #[inline(always)]
 fn refract<D: Doubles>(
     direction: Vec3<D>,
@@ -78,7 +79,7 @@ fn refract<D: Doubles>(
     (sent * sent.inverse_length(), !back)
 }
 
-/// The nearest number in 0..=1.
+/// Clamps to 0..=1.
 #[inline(always)]
 fn clamp<D: Doubles>(x: D) -> D {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
@@ -86,20 +87,20 @@ fn clamp<D: Doubles>(x: D) -> D {
     D::select(one.lt(x), one, x)
 }
 
-/// The index of refraction of glass sphere `row`.
+/// Returns the index of refraction of glass sphere `row`.
 #[inline(always)]
-pub fn index(world: &World, row: u32) -> f32 {
+pub fn ior(world: &World, row: u32) -> f32 {
     let material = world.appearance.material.row(row as usize);
     world.materials.dielectric[material.row()].ior
 }
 
-/// The index of refraction around glass sphere `row` where a ray meets it, as [`Meeting::around`];
-/// `inside` is what the ray is in, and loses the sphere.
-pub fn around(world: &World, row: u32, inside: Inside<'_>) -> f32 {
+/// Returns the index of refraction outside of glass sphere `row` where a ray meets it, as
+/// [`Interface::ior_outside`]; removes the sphere from the ray's interior list `inside`.
+pub fn outside_ior(world: &World, row: u32, inside: InteriorList<'_>) -> f32 {
     remove(inside, row);
     match innermost(world, inside) {
         None => 1.0,
-        Some(other) if precedes(world, row, other) => index(world, other),
+        Some(other) if precedes(world, row, other) => ior(world, other),
         Some(_) => 0.0,
     }
 }
@@ -110,21 +111,21 @@ fn precedes(world: &World, a: u32, b: u32) -> bool {
     key(a) < key(b)
 }
 
-/// The sphere whose glass a path is in.
+/// Returns the sphere of the list that decides the medium.
 fn innermost(world: &World, inside: &[u32]) -> Option<u32> {
     let filled = inside.iter().copied().filter(|&row| row != MISS);
     filled.reduce(|a, b| if precedes(world, a, b) { a } else { b })
 }
 
-fn remove(inside: Inside<'_>, row: u32) {
+fn remove(inside: InteriorList<'_>, row: u32) {
     if let Some(place) = inside.iter_mut().find(|place| **place == row) {
         *place = MISS;
     }
 }
 
-/// Adds a sphere. If there is no room, the one that matters least is forgotten, and the answer is
-/// false.
-pub fn insert(world: &World, inside: Inside<'_>, row: u32) -> bool {
+/// Adds a sphere to an interior list. If the list is full, drops the sphere of lowest priority and
+/// returns false.
+pub fn insert(world: &World, inside: InteriorList<'_>, row: u32) -> bool {
     if let Some(free) = inside.iter_mut().find(|place| **place == MISS) {
         *free = row;
         return true;
@@ -156,7 +157,7 @@ mod tests {
         for degrees in [1.0, 30.0, 60.0, 89.0] {
             let (sin, cos) = f64::to_radians(degrees).sin_cos();
             let direction = DVec3::new(sin, 0.0, -cos);
-            // A choice of 1 never reflects, but for total reflection.
+            // A choice of 1 reflects only by total internal reflection.
             let (refracted, through) = meet(direction, normal, 1.0 / 1.5, 1.0);
             assert!(through && refracted.y == 0.0 && refracted.z < 0.0);
             assert!((refracted.x * 1.5 - sin).abs() < 1e-14);
@@ -168,44 +169,44 @@ mod tests {
     }
 
     #[test]
-    fn rays_in_a_row_pass_as_each_does() {
+    fn rows_equal_their_lanes() {
         let draws: Vec<[f64; 3]> =
             numbers(5, 24).map(|u| u.map(|x| 2.0 * f64::from(x) - 1.0)).collect();
-        let meeting = |lane: usize| {
+        let interface = |lane: usize| {
             let [a, b, c] = [draws[lane], draws[lane + 8], draws[lane + 16]];
             let around = [1.0, 0.0, 1.33, 2.4][lane % 4];
             let normal = DVec3::from(b).normalize();
-            Meeting {
+            Interface {
                 direction: DVec3::from(a).into(),
                 normal: normal.into(),
-                here: 1.5,
-                around,
+                ior_inside: 1.5,
+                ior_outside: around,
                 choice: c[0].abs(),
             }
         };
-        let one: [Meeting<f64>; 8] = std::array::from_fn(meeting);
-        let row = |of: fn(&Meeting<f64>) -> f64| F64x8::new(one.each_ref().map(of));
-        let together = pass(&Meeting {
+        let one: [Interface<f64>; 8] = std::array::from_fn(interface);
+        let row = |of: fn(&Interface<f64>) -> f64| F64x8::new(one.each_ref().map(of));
+        let together = scatter(&Interface {
             direction: Vec3::new(
                 row(|m| m.direction.x),
                 row(|m| m.direction.y),
                 row(|m| m.direction.z),
             ),
             normal: Vec3::new(row(|m| m.normal.x), row(|m| m.normal.y), row(|m| m.normal.z)),
-            here: row(|m| m.here),
-            around: row(|m| m.around),
+            ior_inside: row(|m| m.ior_inside),
+            ior_outside: row(|m| m.ior_outside),
             choice: row(|m| m.choice),
         });
         let direction = together.direction.map(F64x8::to_array);
-        for (lane, meeting) in one.iter().enumerate() {
-            let alone = pass(meeting);
+        for (lane, interface) in one.iter().enumerate() {
+            let alone = scatter(interface);
             let sent = Vec3::new(direction.x[lane], direction.y[lane], direction.z[lane]);
             assert_eq!(sent, alone.direction, "{lane}");
             assert_eq!(together.inward.bits() >> lane & 1 == 1, alone.inward, "{lane}");
-            if meeting.around == 0.0 {
-                let scale = meeting.direction.inverse_length();
-                assert_eq!(alone.direction, meeting.direction * scale, "what is not there");
-                assert_eq!(alone.inward, meeting.direction.dot_unfused(meeting.normal) < 0.0);
+            if interface.ior_outside == 0.0 {
+                let scale = interface.direction.inverse_length();
+                assert_eq!(alone.direction, interface.direction * scale, "what is not there");
+                assert_eq!(alone.inward, interface.direction.dot_unfused(interface.normal) < 0.0);
             }
         }
     }

@@ -1,8 +1,8 @@
-//! Fresnel's equations.
+//! The Fresnel equations.
 
 use crate::lanes::{Doubles, Lanes};
 
-/// Share of unpolarised light that a smooth interface reflects, and the cosine of the refracted
+/// Returns the reflectance of a smooth interface for unpolarised light, and the cosine of the refracted
 /// direction.
 ///
 /// `cosine` of the incident direction is in 0..=1; `eta` is the index of refraction on the incident
@@ -19,8 +19,8 @@ pub fn dielectric<D: Doubles>(cosine: D, eta: D) -> (D, D) {
     (D::select(passes, reflected, one), D::select(passes, refracted, D::splat(0.0)))
 }
 
-/// How far Schlick's curve has risen from the reflectance at normal incidence to 1 (Schlick, "An
-/// Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 1994).
+/// Returns Schlick's interpolation from the reflectance at normal incidence, 0, to 1 at grazing angles
+/// (Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", Computer Graphics Forum 1994).
 #[inline(always)]
 pub fn schlick_rise<L: Lanes>(cosine: L) -> L {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -29,8 +29,8 @@ pub fn schlick_rise<L: Lanes>(cosine: L) -> L {
     x2 * x2 * x
 }
 
-/// Share of unpolarised light that a metal of complex index `eta + i k`, relative to the outside,
-/// reflects.
+/// Returns the reflectance of a metal of complex index `eta + i k`, relative to the outside, for
+/// unpolarised light.
 #[inline(always)]
 pub fn conductor<D: Doubles>(c: D, eta: D, k: D) -> D {
     let (zero, half, two) = (D::splat(0.0), D::splat(0.5), D::splat(2.0));
@@ -46,11 +46,11 @@ pub fn conductor<D: Doubles>(c: D, eta: D, k: D) -> D {
     half * (s + p)
 }
 
-/// Share of diffuse light from outside that an interface to index `ior` reflects: the
+/// Returns the reflectance of an interface to index `ior` for diffuse light from outside: the
 /// cosine-weighted mean of [`dielectric`].
 pub fn external_diffuse_reflectance(ior: f64) -> f64 {
-    // Midpoints in the squared sine, by which the cosine weight is uniform. The integrand has the
-    // shape of a square root at grazing angles; this many points leave an error of about 1e-6.
+    // Midpoints in the squared sine, in which the cosine weight is uniform. The integrand behaves like
+    // a square root at grazing angles; with this many points the error is about 1e-6.
     const STEPS: u32 = 4096;
     let reflected = |i: u32| {
         let sine2 = (f64::from(i) + 0.5) / f64::from(STEPS);
@@ -59,8 +59,8 @@ pub fn external_diffuse_reflectance(ior: f64) -> f64 {
     (0..STEPS).map(reflected).sum::<f64>() / f64::from(STEPS)
 }
 
-/// Share of diffuse light from inside that an interface reflects back: what enters is `1 -
-/// external`, and by reciprocity what leaves is that over `ior^2`.
+/// Returns the reflectance of an interface for diffuse light from inside: `1 - external` enters, and by
+/// reciprocity that over `ior^2` leaves.
 pub fn internal_diffuse_reflectance(ior: f64) -> f64 {
     1.0 - (1.0 - external_diffuse_reflectance(ior)) / (ior * ior)
 }
@@ -87,7 +87,7 @@ mod tests {
             let cosine = f64::to_radians(degrees).cos();
             let (reflected, refracted) = dielectric(cosine, 1.0 / 1.5);
             assert!((reflected - expected).abs() < 1e-10, "{degrees}: {reflected}");
-            // The way back reflects the same share.
+            // The reverse path has the same reflectance.
             let (back, incident) = dielectric(refracted, 1.5);
             assert!((back - reflected).abs() < 1e-12 && (incident - cosine).abs() < 1e-12);
         }

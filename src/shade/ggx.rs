@@ -9,17 +9,18 @@ use crate::sampling::cap;
 use crate::vec3::Vec3;
 use std::f32::consts::PI;
 
-/// Density of microfacet normals by solid angle, projected: integrates to 1 with the cosine.
+/// Returns the density of microfacet normals by solid angle, projected: integrates to 1 with the
+/// cosine.
 #[inline(always)]
 pub fn distribution<L: Lanes>(alpha: L, normal: Vec3<L>) -> L {
     let a2 = alpha * alpha;
-    // x^2 + y^2 instead of 1 - z^2, which would cancel for small alpha.
+    // Not 1 - z^2, which would cancel for small alpha.
     let slope2 = normal.x * normal.x + normal.y * normal.y;
     let t = normal.z * normal.z + slope2 / a2;
     L::splat(1.0) / (L::splat(PI) * a2 * t * t)
 }
 
-/// Smith's auxiliary function.
+/// Returns Smith's auxiliary function Lambda.
 #[inline(always)]
 pub fn lambda<L: Lanes>(alpha: L, direction: Vec3<L>) -> L {
     let one = L::splat(1.0);
@@ -28,7 +29,7 @@ pub fn lambda<L: Lanes>(alpha: L, direction: Vec3<L>) -> L {
     ((one + alpha * alpha * tangent2).sqrt() - one) * L::splat(0.5)
 }
 
-/// Density of the normals that are visible from `outgoing`, by solid angle.
+/// Returns the density by solid angle of the normals that are visible from `outgoing`.
 #[inline(always)]
 pub fn visible_normal_pdf<L: Lanes>(alpha: L, outgoing: Vec3<L>, normal: Vec3<L>) -> L {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
@@ -36,18 +37,18 @@ pub fn visible_normal_pdf<L: Lanes>(alpha: L, outgoing: Vec3<L>, normal: Vec3<L>
     outgoing.dot(normal).max(zero) / seen * distribution(alpha, normal)
 }
 
-/// Normals in proportion to how much they are visible from `outgoing`.
+/// Samples normals in proportion to their visible area from `outgoing`.
 #[inline(always)]
 pub fn sample_visible_normal<L: Lanes>(alpha: L, outgoing: Vec3<L>, u: [L; 2]) -> Vec3<L> {
-    // As if the surface were the unit hemisphere.
+    // Stretching transforms the surface to the unit hemisphere.
     let stretched = Vec3::new(alpha * outgoing.x, alpha * outgoing.y, outgoing.z).normalize();
-    // Mirroring a point of the cap that `stretched` is the axis' mirror image of gives the normal.
+    // The normal mirrors `stretched` to a point of the cap, which is the mirror image of the axis.
     let halfway = cap(u, L::splat(1.0) + stretched.z) + stretched;
     let up = halfway.z.max(L::splat(0.0));
     upward(Vec3::new(alpha * halfway.x, alpha * halfway.y, up))
 }
 
-/// Unit vectors; along z where there is no direction.
+/// Normalizes vectors; a zero vector becomes z.
 #[inline(always)]
 pub fn upward<L: Lanes>(direction: Vec3<L>) -> Vec3<L> {
     let long = L::splat(0.0).lt(direction.dot(direction));
@@ -63,7 +64,8 @@ mod tests {
     use glam::Vec3;
     use std::f32::consts::TAU;
 
-    /// The projected area of the facets is that of the surface; visible ones have density 1.
+    /// Checks that the projected area of the facets is that of the surface, and that the density of
+    /// visible ones integrates to 1.
     #[test]
     fn densities_integrate_to_one() {
         let n = 400_000;

@@ -1,6 +1,6 @@
-//! Ideally diffuse surfaces: the lambertian material, and what emitters reflect.
+//! Ideally diffuse surfaces: the lambertian material, and the reflection of emitters.
 
-use super::{Bsdf, Material, Numbers, Scatter, is_black};
+use super::{Bsdf, Material, Params, Scatter, is_black};
 use crate::lanes::Lanes;
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
@@ -9,32 +9,32 @@ use crate::world::{Emitter, Lambertian};
 use std::f32::consts::FRAC_1_PI;
 
 /// A row of diffuse surfaces.
-pub struct Diffuse<L> {
+pub struct LambertianBsdf<L> {
     albedo: Vec3<L>,
 }
 
 impl Material for Lambertian {
     const DIFFUSE: bool = true;
-    const BASE: bool = true;
-    const NUMBERS: usize = 3;
-    type Bsdf<L: Lanes> = Diffuse<L>;
+    const HAS_DIFFUSE_BASE: bool = true;
+    const PARAMS: usize = 3;
+    type Bsdf<L: Lanes> = LambertianBsdf<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color }
     }
 
     #[inline(always)]
-    fn number(&self, i: usize) -> f32 {
+    fn param(&self, i: usize) -> f32 {
         self.color[i]
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Diffuse<L> {
-        Diffuse { albedo: numbers.color(0) }
+    fn row<L: Lanes>(params: &impl Params<L>) -> LambertianBsdf<L> {
+        LambertianBsdf { albedo: params.color(0) }
     }
 }
 
-impl<L: Lanes> Bsdf<L> for Diffuse<L> {
+impl<L: Lanes> Bsdf<L> for LambertianBsdf<L> {
     #[inline(always)]
     fn is_delta(&self) -> L::Mask {
         is_black(self.albedo)
@@ -50,7 +50,7 @@ impl<L: Lanes> Bsdf<L> for Diffuse<L> {
         L::splat(FRAC_1_PI) * incoming.z.max(L::splat(0.0))
     }
 
-    /// Cosine-weighted, so the weight is the albedo exactly.
+    /// Samples the cosine-weighted hemisphere: the weight is exactly the albedo.
     #[inline(always)]
     fn sample(&self, _outgoing: Vec3<L>, direction: [L; 2], _choice: L) -> Scatter<L> {
         let incoming = cosine_hemispheres(direction);
@@ -64,7 +64,7 @@ impl<L: Lanes> Bsdf<L> for Diffuse<L> {
 }
 
 impl Emitter {
-    /// What it does with the light that falls on it.
+    /// Returns the material of the emitter's surface.
     pub fn surface(&self) -> Lambertian {
         Lambertian { color: self.albedo }
     }
@@ -75,14 +75,13 @@ mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
     use crate::shade::tests::{
-        albedo_by_quadrature, rows_are_what_their_lanes_are, samples_follow_density,
-        samples_match_density,
+        albedo_by_quadrature, rows_equal_their_lanes, samples_follow_density, samples_match_density,
     };
     use glam::Vec3;
 
     #[test]
     fn rows() {
-        rows_are_what_their_lanes_are(&std::array::from_fn(|i| Lambertian {
+        rows_equal_their_lanes(&std::array::from_fn(|i| Lambertian {
             color: Rgb::new(0.05 * i as f32, 0.3, 0.9),
         }));
     }

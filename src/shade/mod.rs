@@ -1,86 +1,87 @@
-//! What surfaces do with light: one file for each kind of material.
+//! BSDFs: scattering of light at surfaces, one file per kind of material.
 //!
 //! A row of a material's table, tinted by the sphere's color, is a [`Material`]; sixteen of them, or
 //! one, are a [`Bsdf`]. Directions are local: unit vectors that point away from the surface, with z
-//! along the normal on the side that is looked at. Glass is not a `Bsdf`: what it does depends on
-//! what surrounds it ([`dielectric`]).
+//! along the normal on the side that the ray comes from. Glass is not a `Bsdf`: its scattering depends
+//! on the medium around it ([`dielectric`]).
 
 pub mod conductor;
 pub mod dielectric;
 pub mod fresnel;
 pub mod ggx;
 pub mod lambertian;
-mod numbers;
+mod params;
 pub mod plastic;
 pub mod reflective;
 
-pub use numbers::{Each, Numbers, One};
+pub use params::{BroadcastParams, GatheredParams, Params};
 
 use crate::lanes::{F64x8, Lanes, MAX_LANES, store_rounded};
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
 
-/// A surface that lets nothing through.
+/// An opaque material.
 pub trait Material: Copy {
-    /// Whether it is so even that light is best looked for at the lights alone.
+    /// Whether the material is so diffuse that light samples alone are best for lights that are not
+    /// close.
     const DIFFUSE: bool;
 
-    /// Whether light samples take care of all but what is mirrored; otherwise its own directions
-    /// must be sampled.
-    const BASE: bool;
+    /// Whether the material is a diffuse base with a mirror component, so that light samples find all
+    /// but mirrored light; otherwise the BSDF must be sampled.
+    const HAS_DIFFUSE_BASE: bool;
 
-    /// How many numbers tell all of it.
-    const NUMBERS: usize;
+    /// Number of parameters.
+    const PARAMS: usize;
 
-    /// A row of such surfaces.
+    /// The BSDFs of a row of materials.
     type Bsdf<L: Lanes>: Bsdf<L>;
 
-    /// The same, with the sphere's color as a factor.
+    /// Returns the material with the sphere's color as a factor.
     #[must_use]
     fn tinted(self, color: Rgb) -> Self;
 
-    /// Number `i` of those that tell all of it.
-    fn number(&self, i: usize) -> f32;
+    /// Returns parameter `i`.
+    fn param(&self, i: usize) -> f32;
 
-    /// Surfaces of which these are the numbers.
-    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Self::Bsdf<L>;
+    /// Creates BSDFs from a row of parameters.
+    fn row<L: Lanes>(params: &impl Params<L>) -> Self::Bsdf<L>;
 }
 
-/// How each of a row of surfaces scatters light.
+/// The BSDFs of a row of surfaces.
 pub trait Bsdf<L: Lanes> {
-    /// Where it only mirrors, so that no light sample can contribute.
+    /// Returns the lanes that are purely specular, so that no light sample can contribute.
     fn is_delta(&self) -> L::Mask;
 
-    /// Scattered radiance per irradiance, times the cosine of `incoming`, by channel; without any
-    /// mirrored part, and 0 from below.
+    /// Evaluates the BSDF times the cosine of `incoming`, by channel; without mirrored light, and 0
+    /// from below.
     fn eval(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> Vec3<L>;
 
-    /// Density by solid angle with which [`Bsdf::sample`] finds `incoming`; without any mirrored
-    /// part.
+    /// Returns the density by solid angle with which [`Bsdf::sample`] finds `incoming`; without
+    /// mirrored directions.
     fn pdf(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> L;
 
-    /// Directions that light may come from, from two numbers in [0, 1) for the direction and one
-    /// for the choice between parts.
+    /// Samples incoming directions, from two random numbers in [0, 1) for the direction and one for the
+    /// choice of a lobe.
     fn sample(&self, outgoing: Vec3<L>, direction: [L; 2], choice: L) -> Scatter<L>;
 
-    /// Share of the light that is mirrored, by channel, of a material with a
-    /// [base](Material::BASE).
+    /// Returns the fraction of light that is mirrored, by channel, of a material with a [diffuse
+    /// base](Material::HAS_DIFFUSE_BASE).
     fn mirrored(&self, outgoing: Vec3<L>) -> Vec3<L>;
 }
 
 /// Sampled directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter<L> {
-    /// Toward where the light comes from.
+    /// Directions toward the incoming light.
     pub incoming: Vec3<L>,
-    /// Response times cosine over density, by channel; black where the light is lost.
+    /// BSDF times cosine over density, by channel; black where the light is absorbed.
     pub weight: Vec3<L>,
     /// Density by solid angle; 0 for a mirrored direction.
     pub pdf: L,
 }
 
 impl<L: Lanes> Scatter<L> {
-    /// One or the other, lane by lane.
+    /// Selects one of two samples, lane by lane.
     #[inline(always)]
     fn select(mask: L::Mask, yes: &Self, no: &Self) -> Self {
         Self {
@@ -90,26 +91,26 @@ impl<L: Lanes> Scatter<L> {
         }
     }
 
-    /// What is mirrored.
+    /// Returns the mirrored direction with this weight.
     #[inline(always)]
     fn mirrored(outgoing: Vec3<L>, weight: Vec3<L>) -> Self {
         Self { incoming: mirror(outgoing), weight, pdf: L::splat(0.0) }
     }
 }
 
-/// Directions mirrored at the normal, z.
+/// Returns directions mirrored at the normal, z.
 #[inline(always)]
 pub fn mirror<L: Lanes>(outgoing: Vec3<L>) -> Vec3<L> {
     Vec3::new(-outgoing.x, -outgoing.y, outgoing.z)
 }
 
-/// Where all channels are 0.
+/// Returns the lanes in which all channels are 0.
 #[inline(always)]
 fn is_black<L: Lanes>(color: Vec3<L>) -> L::Mask {
     color.max_element().le(L::splat(0.0))
 }
 
-/// What a formula gives in double precision, rounded.
+/// Evaluates a formula in double precision, and rounds the result.
 #[inline(always)]
 fn in_doubles<L: Lanes, const N: usize>(row: [L; N], of: impl Fn([F64x8; N]) -> F64x8) -> L {
     let mut rounded = [0.0; MAX_LANES];
@@ -127,7 +128,7 @@ pub(crate) mod tests {
     use crate::sampling::{stream, uniform_sphere, unit};
     use std::f32::consts::PI;
 
-    /// Uniform random numbers for tests.
+    /// Returns uniform random numbers for tests.
     pub(crate) fn numbers(seed: u64, count: usize) -> impl Iterator<Item = [f32; 3]> {
         (0..count as u64).map(move |i| {
             let draw = |k| unit(stream(seed, 3 * i + k) as u32);
@@ -135,7 +136,7 @@ pub(crate) mod tests {
         })
     }
 
-    /// A direction at an angle to the normal.
+    /// Returns a direction at an angle to the normal.
     pub(crate) fn at(cosine: f32) -> glam::Vec3 {
         glam::Vec3::new(0.6, 0.8, 0.0) * (1.0 - cosine * cosine).sqrt() + glam::Vec3::Z * cosine
     }
@@ -144,17 +145,17 @@ pub(crate) mod tests {
     pub(crate) struct Sampled {
         pub(crate) incoming: glam::Vec3,
         pub(crate) weight: Rgb,
-        /// `None` for a mirrored direction.
+        /// Density; `None` for a mirrored direction.
         pub(crate) pdf: Option<f32>,
     }
 
-    /// What one surface does.
+    /// Samples the BSDF of one material.
     pub(crate) fn sample(
         material: &impl Material,
         outgoing: glam::Vec3,
         [u, v, choice]: [f32; 3],
     ) -> Option<Sampled> {
-        let bsdf = lone(material);
+        let bsdf = bsdf_of(material);
         let Scatter { incoming, weight, pdf } = bsdf.sample(outgoing.into(), [u, v], choice);
         let weight = Rgb::from(weight);
         let pdf = (pdf > 0.0).then_some(pdf);
@@ -162,20 +163,20 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn eval(m: &impl Material, outgoing: glam::Vec3, incoming: glam::Vec3) -> Rgb {
-        lone(m).eval(outgoing.into(), incoming.into()).into()
+        bsdf_of(m).eval(outgoing.into(), incoming.into()).into()
     }
 
     pub(crate) fn pdf(m: &impl Material, outgoing: glam::Vec3, incoming: glam::Vec3) -> f32 {
-        lone(m).pdf(outgoing.into(), incoming.into())
+        bsdf_of(m).pdf(outgoing.into(), incoming.into())
     }
 
-    fn lone<M: Material>(material: &M) -> M::Bsdf<f32> {
-        M::row(&One(material))
+    fn bsdf_of<M: Material>(material: &M) -> M::Bsdf<f32> {
+        M::row(&BroadcastParams(material))
     }
 
-    /// Sixteen surfaces at once do what each does alone, to the bit.
-    pub(crate) fn rows_are_what_their_lanes_are<M: Material>(each: &[M; MAX_LANES]) {
-        let row: M::Bsdf<F32x16> = M::row(&Each(each));
+    /// Checks that sixteen surfaces at once equal each one alone, to the bit.
+    pub(crate) fn rows_equal_their_lanes<M: Material>(each: &[M; MAX_LANES]) {
+        let row: M::Bsdf<F32x16> = M::row(&GatheredParams(each));
         let u: Vec<[f32; 3]> = numbers(5, MAX_LANES).collect();
         let direction = |seed| {
             let directions: Vec<glam::Vec3> = numbers(seed, MAX_LANES)
@@ -193,7 +194,7 @@ pub(crate) mod tests {
         let all = (row.eval(wo, wi), row.pdf(wo, wi), row.mirrored(wo));
         let scatter = row.sample(wo, [column(0), column(1)], column(2));
         for lane in 0..MAX_LANES {
-            let one = lone(&each[lane]);
+            let one = bsdf_of(&each[lane]);
             assert_eq!(row.is_delta().bits() >> lane & 1 == 1, one.is_delta());
             let (wo, wi) = (outgoing[lane].into(), incoming[lane].into());
             let at = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]);
@@ -207,8 +208,9 @@ pub(crate) mod tests {
         }
     }
 
-    /// Sampled directions follow the density, and what is mirrored comes as often as it should: none if
-    /// that is not known. Around the mirrored direction where the lobe is narrow.
+    /// Checks that sampled directions follow the density, and that mirrored directions have their
+    /// probability, `None` if that is not known. The grid is around the mirrored direction if the lobe
+    /// is narrow.
     pub(crate) fn samples_follow_density<M: Material>(
         material: &M,
         outgoing: glam::Vec3,
@@ -222,8 +224,7 @@ pub(crate) mod tests {
         grid.check(samples, |incoming| pdf(material, outgoing, incoming), none);
     }
 
-    /// The share of light that is scattered: by the surface's own sampling, and with a standard
-    /// error.
+    /// Estimates the albedo by BSDF sampling; returns it with its standard error.
     pub(crate) fn albedo_by_sampling<M: Material>(
         material: &M,
         outgoing: glam::Vec3,
@@ -239,8 +240,8 @@ pub(crate) mod tests {
         (mean, ((sum2 / n as f64 - mean * mean).max(0.0) / n as f64).sqrt())
     }
 
-    /// What is left after the mirrored part: by uniform directions on the hemisphere, and with a
-    /// standard error.
+    /// Estimates the albedo without mirrored light by uniform directions on the hemisphere; returns it
+    /// with its standard error.
     pub(crate) fn albedo_by_quadrature<M: Material>(
         material: &M,
         outgoing: glam::Vec3,
@@ -258,8 +259,7 @@ pub(crate) mod tests {
         (mean, ((sum2 / n as f64 - mean * mean) / n as f64).sqrt())
     }
 
-    /// Sampled weights are response over density, and densities of what is not mirrored add up to
-    /// at most 1.
+    /// Checks that sampled weights are BSDF times cosine over density.
     pub(crate) fn samples_match_density<M: Material>(material: &M, outgoing: glam::Vec3) {
         for u in numbers(3, 20_000) {
             let Some(scatter) = sample(material, outgoing, u) else { continue };

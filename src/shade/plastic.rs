@@ -1,11 +1,11 @@
-//! A diffuse base under a smooth dielectric coat, conserving energy.
+//! Plastic: a diffuse base under a smooth dielectric coat, conserving energy.
 //!
-//! Light is mirrored by the coat or enters it, is scattered by the base, is partly thrown back by
-//! the coat from inside any number of times, and leaves: the geometric series over the internal
-//! reflections (Weidlich and Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", GRAPHITE 2007,
-//! with the series summed). A white base gives back exactly what it gets.
+//! The coat reflects light or lets it enter; the base scatters it, the coat partly reflects it back to
+//! the base any number of times, and it leaves: the geometric series over the internal reflections
+//! (Weidlich and Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", GRAPHITE 2007, with the series
+//! summed). A white base reflects exactly all light.
 
-use super::{Bsdf, Material, Numbers, Scatter, fresnel, in_doubles, is_black};
+use super::{Bsdf, Material, Params, Scatter, fresnel, in_doubles, is_black};
 use crate::lanes::{F64x8, Lanes};
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
@@ -14,14 +14,14 @@ use crate::world::Plastic;
 use std::f32::consts::FRAC_1_PI;
 
 /// A row of coated surfaces.
-pub struct Coated<L> {
+pub struct PlasticBsdf<L> {
     ior: L,
-    /// Response of the base, times pi, without the coat's share for either direction.
+    /// BSDF of the base, times pi, without the coat's transmittance for either direction.
     base: Vec3<L>,
 }
 
-impl<L: Lanes> Coated<L> {
-    /// Share that the coat mirrors at this cosine.
+impl<L: Lanes> PlasticBsdf<L> {
+    /// Returns the reflectance of the coat at this cosine.
     #[inline(always)]
     fn coat(&self, cosine: L) -> L {
         in_doubles([cosine, self.ior], |[cosine, ior]| {
@@ -32,16 +32,16 @@ impl<L: Lanes> Coated<L> {
 
 impl Material for Plastic {
     const DIFFUSE: bool = false;
-    const BASE: bool = true;
-    const NUMBERS: usize = 4;
-    type Bsdf<L: Lanes> = Coated<L>;
+    const HAS_DIFFUSE_BASE: bool = true;
+    const PARAMS: usize = 4;
+    type Bsdf<L: Lanes> = PlasticBsdf<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color, ..self }
     }
 
     #[inline(always)]
-    fn number(&self, i: usize) -> f32 {
+    fn param(&self, i: usize) -> f32 {
         match self.color.to_array().get(i) {
             Some(albedo) => {
                 let kept = 1.0 - albedo * self.internal_reflectance;
@@ -52,12 +52,12 @@ impl Material for Plastic {
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Coated<L> {
-        Coated { base: numbers.color(0), ior: numbers.row(3) }
+    fn row<L: Lanes>(params: &impl Params<L>) -> PlasticBsdf<L> {
+        PlasticBsdf { base: params.color(0), ior: params.row(3) }
     }
 }
 
-impl<L: Lanes> Bsdf<L> for Coated<L> {
+impl<L: Lanes> Bsdf<L> for PlasticBsdf<L> {
     #[inline(always)]
     fn is_delta(&self) -> L::Mask {
         is_black(self.base)
@@ -87,7 +87,7 @@ impl<L: Lanes> Bsdf<L> for Coated<L> {
             weight: self.base * (one - self.coat(incoming.z)),
             pdf: (one - coat) * L::splat(FRAC_1_PI) * incoming.z,
         };
-        // Chosen as often as light is mirrored: the weight is 1.
+        // The probability equals the reflectance: the weight is 1.
         let mirrored = Scatter::mirrored(outgoing, Vec3::splat(1.0, 1.0, 1.0));
         Scatter::select(choice.lt(coat), &mirrored, &base)
     }
@@ -103,10 +103,10 @@ impl<L: Lanes> Bsdf<L> for Coated<L> {
 mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
-    use crate::shade::One;
+    use crate::shade::BroadcastParams;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
     use crate::shade::tests::{
-        rows_are_what_their_lanes_are, samples_follow_density, samples_match_density,
+        rows_equal_their_lanes, samples_follow_density, samples_match_density,
     };
     use glam::Vec3;
 
@@ -116,12 +116,12 @@ mod tests {
     }
 
     fn coat(plastic: Plastic, cosine: f32) -> f64 {
-        f64::from(Plastic::row::<f32>(&One(&plastic)).coat(cosine))
+        f64::from(Plastic::row::<f32>(&BroadcastParams(&plastic)).coat(cosine))
     }
 
     #[test]
     fn rows() {
-        rows_are_what_their_lanes_are(&std::array::from_fn(|i| plastic(0.06 * i as f32)));
+        rows_equal_their_lanes(&std::array::from_fn(|i| plastic(0.06 * i as f32)));
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! The paper's material: a diffuse and a mirror share of one color, weights given.
+//! The paper's material: a diffuse and a mirror component of one color, with given weights.
 
-use super::{Bsdf, Material, Numbers, Scatter};
+use super::{Bsdf, Material, Params, Scatter};
 use crate::lanes::Lanes;
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
@@ -9,16 +9,16 @@ use crate::world::Reflective;
 use std::f32::consts::FRAC_1_PI;
 
 /// A row of the paper's surfaces.
-pub struct Shares<L> {
+pub struct ReflectiveBsdf<L> {
     color: Vec3<L>,
     diffuse: L,
     mirror: L,
-    /// How often the mirror is chosen.
-    mirrors: L,
+    /// Probability of the mirror component.
+    mirror_probability: L,
 }
 
 impl Reflective {
-    /// How often the mirror is chosen: by its part of what is reflected at all.
+    /// Returns the probability of the mirror component: its fraction of the reflected light.
     fn mirror_probability(&self) -> f32 {
         let all = self.diffuse + self.mirror;
         if all > 0.0 { self.mirror / all } else { 0.0 }
@@ -27,16 +27,16 @@ impl Reflective {
 
 impl Material for Reflective {
     const DIFFUSE: bool = false;
-    const BASE: bool = true;
-    const NUMBERS: usize = 6;
-    type Bsdf<L: Lanes> = Shares<L>;
+    const HAS_DIFFUSE_BASE: bool = true;
+    const PARAMS: usize = 6;
+    type Bsdf<L: Lanes> = ReflectiveBsdf<L>;
 
     fn tinted(self, color: Rgb) -> Self {
         Self { color: self.color * color, ..self }
     }
 
     #[inline(always)]
-    fn number(&self, i: usize) -> f32 {
+    fn param(&self, i: usize) -> f32 {
         match i {
             0..3 => self.color[i],
             3 => self.diffuse,
@@ -46,25 +46,25 @@ impl Material for Reflective {
     }
 
     #[inline(always)]
-    fn row<L: Lanes>(numbers: &impl Numbers<L>) -> Shares<L> {
-        Shares {
-            color: numbers.color(0),
-            diffuse: numbers.row(3),
-            mirror: numbers.row(4),
-            mirrors: numbers.row(5),
+    fn row<L: Lanes>(params: &impl Params<L>) -> ReflectiveBsdf<L> {
+        ReflectiveBsdf {
+            color: params.color(0),
+            diffuse: params.row(3),
+            mirror: params.row(4),
+            mirror_probability: params.row(5),
         }
     }
 }
 
-impl<L: Lanes> Shares<L> {
-    /// Density of a cosine, and of choosing the diffuse share.
+impl<L: Lanes> ReflectiveBsdf<L> {
+    /// Returns the density of a cosine, times the probability of the diffuse component.
     #[inline(always)]
     fn density(&self, cosine: L) -> L {
-        (L::splat(1.0) - self.mirrors) * L::splat(FRAC_1_PI) * cosine
+        (L::splat(1.0) - self.mirror_probability) * L::splat(FRAC_1_PI) * cosine
     }
 }
 
-impl<L: Lanes> Bsdf<L> for Shares<L> {
+impl<L: Lanes> Bsdf<L> for ReflectiveBsdf<L> {
     #[inline(always)]
     fn is_delta(&self) -> L::Mask {
         self.diffuse.le(L::splat(0.0))
@@ -86,7 +86,7 @@ impl<L: Lanes> Bsdf<L> for Shares<L> {
         let incoming = cosine_hemispheres(direction);
         let diffuse = Scatter { incoming, weight, pdf: self.density(incoming.z) };
         let mirrored = Scatter::mirrored(outgoing, weight);
-        Scatter::select(choice.lt(self.mirrors), &mirrored, &diffuse)
+        Scatter::select(choice.lt(self.mirror_probability), &mirrored, &diffuse)
     }
 
     #[inline(always)]
@@ -101,13 +101,13 @@ mod tests {
     use crate::sampling::statistics::Grid;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling};
     use crate::shade::tests::{
-        rows_are_what_their_lanes_are, samples_follow_density, samples_match_density,
+        rows_equal_their_lanes, samples_follow_density, samples_match_density,
     };
     use glam::Vec3;
 
     #[test]
     fn rows() {
-        rows_are_what_their_lanes_are(&std::array::from_fn(|i| Reflective {
+        rows_equal_their_lanes(&std::array::from_fn(|i| Reflective {
             color: Rgb::new(0.9, 0.5, 0.05 * i as f32),
             diffuse: 0.04 * (i % 7) as f32,
             mirror: 0.1 * (i % 5) as f32,

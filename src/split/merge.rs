@@ -1,7 +1,7 @@
 //! Parts of a render, put together.
 
 use super::holes;
-use crate::render::{Share, Unfinished, difference};
+use crate::render::{ImagePart, ResumableRender, difference};
 use crate::scene::Identity;
 use std::fmt;
 
@@ -15,8 +15,8 @@ pub struct Merge {
     partial: bool,
     scene: Option<Identity>,
     names: Vec<String>,
-    shares: Vec<Share>,
-    whole: Option<Unfinished>,
+    parts: Vec<ImagePart>,
+    whole: Option<ResumableRender>,
 }
 
 /// Why parts do not make a whole.
@@ -37,9 +37,9 @@ pub enum MergeError {
         first: String,
         /// In what they differ.
         what: &'static str,
-        /// What it is in the part.
+        /// Its value in the part.
         theirs: String,
-        /// What it is in the first.
+        /// Its value in the first part.
         ours: String,
     },
     /// Pictures of different scenes.
@@ -51,7 +51,7 @@ pub enum MergeError {
         name: String,
         /// The part that was there first.
         first: String,
-        /// What the scene has others of.
+        /// What differs in the scene.
         what: &'static str,
     },
     /// Samples would count twice.
@@ -61,15 +61,15 @@ pub enum MergeError {
         first: String,
         /// The later one.
         second: String,
-        /// What both have.
-        common: Share,
+        /// Samples and tiles that both have.
+        common: ImagePart,
     },
     /// A part was interrupted.
     #[error(
         "{name}: was interrupted, with {taken} of its {wanted} samples; render it to its end, or \
          merge what there is with --partial"
     )]
-    Unfinished {
+    ResumableRender {
         /// The part.
         name: String,
         /// Samples that it has, of all pixels.
@@ -79,14 +79,14 @@ pub enum MergeError {
     },
     /// Parts are missing.
     #[error("{}; render what is missing, or merge what there is with --partial", Missing(.0))]
-    Holes(Vec<Share>),
+    Holes(Vec<ImagePart>),
 }
 
-struct Missing<'a>(&'a [Share]);
+struct Missing<'a>(&'a [ImagePart]);
 
 impl fmt::Display for Missing<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let told: Vec<String> = self.0.iter().take(TOLD).map(Share::to_string).collect();
+        let told: Vec<String> = self.0.iter().take(TOLD).map(ImagePart::to_string).collect();
         write!(formatter, "no part has {}", told.join("; nor "))?;
         match self.0.len() - told.len() {
             0 => Ok(()),
@@ -111,7 +111,7 @@ impl Merge {
         &mut self,
         name: &str,
         scene: &Identity,
-        part: Unfinished,
+        part: ResumableRender,
     ) -> Result<(), MergeError> {
         let first = self.scene.get_or_insert_with(|| scene.clone());
         if let Some(what) = first.difference(scene) {
@@ -120,7 +120,7 @@ impl Merge {
         }
         self.check(name, &part)?;
         self.names.push(name.to_owned());
-        self.shares.push(part.share().clone());
+        self.parts.push(part.part().clone());
         let Some(whole) = &mut self.whole else {
             self.whole = Some(part);
             return Ok(());
@@ -129,23 +129,23 @@ impl Merge {
         if whole.merge(part) { Ok(()) } else { Err(self.foreign(name, "film", "other", "another")) }
     }
 
-    fn check(&self, name: &str, part: &Unfinished) -> Result<(), MergeError> {
+    fn check(&self, name: &str, part: &ResumableRender) -> Result<(), MergeError> {
         if let Some((what, theirs, ours)) =
             self.whole.as_ref().and_then(|whole| difference(part, whole))
         {
             return Err(self.foreign(name, what, &theirs, &ours));
         }
-        for (first, share) in self.names.iter().zip(&self.shares) {
-            if let Some(common) = share.common(part.share()) {
+        for (first, other) in self.names.iter().zip(&self.parts) {
+            if let Some(common) = other.common(part.part()) {
                 let (first, second) = (first.clone(), name.to_owned());
                 return Err(MergeError::Overlap { first, second, common });
             }
         }
         if !part.is_complete() && !self.partial {
             let pixels: u64 = part.film().tiles.iter().map(|tile| u64::from(tile.len())).sum();
-            let wanted = pixels * part.share().samples.len() as u64;
+            let wanted = pixels * part.part().samples.len() as u64;
             let (name, taken) = (name.to_owned(), part.samples().total);
-            return Err(MergeError::Unfinished { name, taken, wanted });
+            return Err(MergeError::ResumableRender { name, taken, wanted });
         }
         Ok(())
     }
@@ -160,16 +160,16 @@ impl Merge {
     ///
     /// # Errors
     /// There is no part, or something is missing and nobody said that it may.
-    pub fn finish(self) -> Result<(Unfinished, Vec<Share>), MergeError> {
+    pub fn finish(self) -> Result<(ResumableRender, Vec<ImagePart>), MergeError> {
         let mut whole = self.whole.ok_or(MergeError::Nothing)?;
-        let all = Share::whole(whole.region(), whole.settings().spp);
-        let holes = holes(&all, &self.shares);
+        let all = ImagePart::whole(whole.region(), whole.settings().spp);
+        let holes = holes(&all, &self.parts);
         if !holes.is_empty() && !self.partial {
             return Err(MergeError::Holes(holes));
         }
         // What is one file is as it was, whatever ended it.
-        if self.shares.len() > 1 || !whole.is_whole() {
-            whole.become_whole();
+        if self.parts.len() > 1 || !whole.is_whole() {
+            whole.fill_missing();
         }
         Ok((whole, holes))
     }

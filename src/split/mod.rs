@@ -1,8 +1,8 @@
-//! Renders that are shared out over machines, and put together again.
+//! Renders that are split over several machines, and merged.
 //!
 //! Samples of a pixel are added up without rounding (see [`crate::film`]), and which samples they are
 //! is a function of the settings and of their index. So it does not matter who takes them: each
-//! machine renders a [`Share`], keeps its sums in a file, and all of them merged come to the same
+//! machine renders a [`ImagePart`], keeps its sums in a file, and all of them merged come to the same
 //! bytes as one render of the whole, in any order.
 
 mod cover;
@@ -11,13 +11,13 @@ mod merge;
 pub use cover::holes;
 pub use merge::{Merge, MergeError};
 
-use crate::render::Share;
+use crate::render::ImagePart;
 use std::fmt;
 use std::num::NonZeroU32;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// What parts of a render differ in.
+/// The way in which an image is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Split {
     /// Each has some of the samples of every pixel: all parts take about as long.
@@ -34,7 +34,7 @@ pub struct Part {
     count: NonZeroU32,
 }
 
-/// Why a render cannot be shared out so.
+/// The reason why a render cannot be split as asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SplitError {
     /// Parts without a sample would be of no use.
@@ -63,7 +63,7 @@ pub enum SplitError {
 /// add them up and to write the sums of all pixels.
 const ENOUGH: u32 = 16;
 
-/// What would do instead.
+/// An alternative that would work.
 fn mend(samples: u32, tiles: u32, count: u32) -> String {
     if samples >= count {
         return "split it by samples".to_owned();
@@ -81,31 +81,35 @@ impl Part {
         (1..=count.get()).contains(&number).then_some(Self { number, count })
     }
 
-    /// Which it is, 1..=[`Part::count`].
+    /// The number of this part, 1..=[`Part::count`].
     pub fn number(self) -> u32 {
         self.number
     }
 
-    /// How many there are.
+    /// The number of parts.
     pub fn count(self) -> u32 {
         self.count.get()
     }
 
-    /// Its share of the whole: no two parts have anything in common, and all together have everything.
+    /// Returns its part of the image: no two parts overlap, and all together cover the image.
     /// Without a `split`, it is by samples if every part has at least 16 of each pixel or there
     /// are fewer tiles than parts, and by tiles otherwise.
     ///
     /// # Errors
     /// There are fewer samples, or tiles, than parts.
-    pub fn share(self, whole: &Share, split: Option<Split>) -> Result<Share, SplitError> {
+    pub fn of_image(
+        self,
+        whole: &ImagePart,
+        split: Option<Split>,
+    ) -> Result<ImagePart, SplitError> {
         let (count, samples, tiles) = (self.count(), whole.samples.end, whole.tiles.end);
         let few = samples < count.saturating_mul(ENOUGH);
         let usual = if few && tiles >= count { Split::Tiles } else { Split::Samples };
         match split.unwrap_or(usual) {
             Split::Samples if samples < count => Err(SplitError::Samples { count, samples, tiles }),
             Split::Tiles if tiles < count => Err(SplitError::Tiles { count, samples, tiles }),
-            Split::Samples => Ok(Share { samples: self.of(samples), ..whole.clone() }),
-            Split::Tiles => Ok(Share { tiles: self.of(tiles), ..whole.clone() }),
+            Split::Samples => Ok(ImagePart { samples: self.of(samples), ..whole.clone() }),
+            Split::Tiles => Ok(ImagePart { tiles: self.of(tiles), ..whole.clone() }),
         }
     }
 
@@ -145,30 +149,30 @@ mod tests {
 
     #[test]
     fn short_renders_are_split_by_tiles() {
-        let share = |samples, tiles, count| {
+        let image_part = |samples, tiles, count| {
             let part = Part::new(1, count).expect("it is one of them");
-            part.share(&Share { samples: 0..samples, tiles: 0..tiles }, None)
+            part.of_image(&ImagePart { samples: 0..samples, tiles: 0..tiles }, None)
         };
         let by_tiles = |samples, tiles, count| {
-            let share = share(samples, tiles, count).expect("there are enough");
-            share.samples == (0..samples)
+            let part = image_part(samples, tiles, count).expect("there are enough");
+            part.samples == (0..samples)
         };
         assert!(by_tiles(64, 300, 64) && by_tiles(63, 64, 4));
         assert!(!by_tiles(64, 300, 4) && !by_tiles(1024, 300, 64) && !by_tiles(64, 63, 64));
-        assert!(matches!(share(3, 3, 4), Err(SplitError::Samples { .. })));
+        assert!(matches!(image_part(3, 3, 4), Err(SplitError::Samples { .. })));
     }
 
     #[test]
     fn parts_have_everything_once() {
-        let whole = Share { samples: 0..70, tiles: 0..129 };
+        let whole = ImagePart { samples: 0..70, tiles: 0..129 };
         for count in [1, 2, 3, 7, 64, 70] {
             for split in [None, Some(Split::Samples), Some(Split::Tiles)] {
                 let part = |number| Part::new(number, count).expect("it is one of them");
-                let shares: Vec<Share> = (1..=count)
-                    .map(|number| part(number).share(&whole, split).expect("there are enough"))
+                let shares: Vec<ImagePart> = (1..=count)
+                    .map(|number| part(number).of_image(&whole, split).expect("there are enough"))
                     .collect();
                 assert!(shares.iter().all(|share| share.size() > 0));
-                assert_eq!(shares.iter().map(Share::size).sum::<u64>(), whole.size());
+                assert_eq!(shares.iter().map(ImagePart::size).sum::<u64>(), whole.size());
                 assert_eq!(holes(&whole, &shares), []);
             }
         }
@@ -176,17 +180,18 @@ mod tests {
 
     #[test]
     fn what_cannot_be_split_is_refused_with_the_mend() {
-        let whole = Share { samples: 0..16, tiles: 0..40 };
+        let whole = ImagePart { samples: 0..16, tiles: 0..40 };
         let part = |count| Part::new(count, count).expect("the last one");
-        let by = |count, split| part(count).share(&whole, split).map_err(|error| error.to_string());
+        let by =
+            |count, split| part(count).of_image(&whole, split).map_err(|error| error.to_string());
         assert_eq!(by(40, None).map(|share| share.tiles), Ok(39..40));
         assert_eq!(by(16, Some(Split::Samples)).map(|share| share.samples), Ok(15..16));
         let samples = "40 parts are more than the 16 samples of a pixel; split it by tiles";
         assert_eq!(by(40, Some(Split::Samples)), Err(samples.to_owned()));
         let both = "41 parts are more than the 16 samples of a pixel; ask for 40 parts or fewer";
         assert_eq!(by(41, None), Err(both.to_owned()));
-        let flat = Share { samples: 0..16, tiles: 0..1 };
-        let tiles = part(2).share(&flat, Some(Split::Tiles)).map_err(|error| error.to_string());
+        let flat = ImagePart { samples: 0..16, tiles: 0..1 };
+        let tiles = part(2).of_image(&flat, Some(Split::Tiles)).map_err(|error| error.to_string());
         let expected = "2 parts are more than the 1 tiles of 16 x 16 pixels; split it by samples";
         assert_eq!(tiles, Err(expected.to_owned()));
     }

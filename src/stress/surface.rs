@@ -10,7 +10,7 @@ use super::rays::Ray;
 use super::report::RegimeReport;
 use super::scenes::parts;
 use crate::bvh::{Tracer, Traversal, Tree};
-use crate::integrator::surface::chord;
+use crate::integrator::surface::chord_length;
 use crate::ray::{Hits, MISS, Rays};
 use crate::scene::{Material, NamedMaterial, Rgb, Scene};
 use crate::world::World;
@@ -66,7 +66,7 @@ fn count_spherule(world: &World, starts: &[Start], report: &mut RegimeReport) {
         let Some(own) = ids.iter().position(|&id| id as usize == start.sphere) else { continue };
         let (center, radius) = world.spheres.exact(own);
         let point = (center + start.normal * radius).as_vec3();
-        let exit = chord(start.normal.into(), radius, start.direction.as_dvec3().into());
+        let exit = chord_length(start.normal.into(), radius, start.direction.as_dvec3().into());
         let (t, hit) = if start.inward { (exit, own as u32) } else { (f64::INFINITY, MISS) };
         hits.set(rays.len(), t, hit);
         rays.push(point, start.direction, own as u32);

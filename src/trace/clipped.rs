@@ -1,4 +1,4 @@
-//! The parts of rays that slices leave: see [`Cut`](crate::world::Cut).
+//! Rays clipped to what slices leave: see [`Cut`](crate::world::Cut).
 
 use crate::bvh::Tree;
 use crate::ray::{GROUND, Hits, MISS, Rays};
@@ -74,15 +74,15 @@ impl ClippedRays {
         if span.to >= bound {
             return self.hits.set(row, bound, known);
         }
-        // It goes on inside the sphere that it starts on, or the camera may be inside a sphere, and
-        // then so may the ground and other spheres.
+        // The ray is inside the sphere that it starts on; or the camera is inside a sphere, and then so
+        // may be points of the ground and of other spheres.
         let around = || {
             let enclosing = |point| tree.bvh.enclosing_sphere(tree.spheres, point);
             let inside = world.features.around_camera
                 && span.to > 0.0
                 && enclosing(rays.origin.row(row)).is_some();
             let cap = inside.then(|| enclosing(rays.exact(row).at(span.to).as_vec3())).flatten();
-            // Rounding may put the exit of a ray that grazes its own sphere inside of that.
+            // Rounding may put the exit of a grazing ray inside of the ray's own sphere.
             cap.filter(|&sphere| sphere != rays.own[row])
         };
         let sphere = if known < GROUND { Some(known) } else { around() };

@@ -1,4 +1,4 @@
-//! The ground, a plane: eight rays at a time are held against it, in double precision.
+//! Intersections with the ground plane, eight rays at a time, in double precision.
 
 use crate::intersect::Plane;
 use crate::lanes::{
@@ -8,11 +8,11 @@ use crate::ray::{Columns3, GROUND, Hits, MISS, Rays};
 use crate::vec3::Vec3;
 use crate::world::Ground;
 
-/// Rays that are held against the ground at once.
+/// Rays that are tested at once.
 const ROW: usize = 8;
 
-/// Ends rays at the ground, where they reach it.
-pub(crate) fn stop_at(ground: &Ground, rays: &Rays, hits: &mut Hits) {
+/// Intersects rays with the ground, and updates the hits that are farther.
+pub(crate) fn intersect_ground(ground: &Ground, rays: &Rays, hits: &mut Hits) {
     let plane = plane(ground);
     for first in (0..rays.len()).step_by(ROW) {
         let (crossed, t) = crossed(&plane, rays, first);
@@ -28,8 +28,8 @@ pub(crate) fn stop_at(ground: &Ground, rays: &Rays, hits: &mut Hits) {
     }
 }
 
-/// The same where it only counts whether they do.
-pub(crate) fn hide_behind(ground: &Ground, rays: &Rays, hits: &mut Hits) {
+/// Tests whether the ground occludes rays that have no hit yet.
+pub(crate) fn occlude_by_ground(ground: &Ground, rays: &Rays, hits: &mut Hits) {
     let plane = plane(ground);
     for first in (0..rays.len()).step_by(ROW) {
         let (crossed, t) = crossed(&plane, rays, first);
@@ -48,14 +48,14 @@ fn bounds(hits: &Hits, first: usize) -> F64x8 {
     F64x8::new(*hits.t[first..].first_chunk().expect("columns hold whole rows"))
 }
 
-/// The lanes in which there is a ray that does not start on the ground.
+/// Returns the lanes with a ray that does not start on the ground.
 #[inline(always)]
 fn lanes_of(rays: &Rays, first: usize) -> u32 {
     let there = u32::MAX >> (u32::BITS as usize - ROW.min(rays.len() - first));
     there & !bits_of::<F32x8>(&rays.own[first..]).has_bits_of(bits(GROUND)).bits()
 }
 
-/// Which rays of a row cross the plane, and where.
+/// Intersects a row of rays with the plane; returns a mask and the distances.
 #[inline(always)]
 fn crossed(plane: &Plane<f64>, rays: &Rays, first: usize) -> (<F64x8 as Doubles>::Mask, F64x8) {
     debug_assert!(rays.precise.is_empty(), "rays of scenes are what their columns hold");
@@ -79,7 +79,7 @@ mod tests {
     use glam::DVec3;
     use spherule_core::internals::random::Random;
 
-    /// One ray, one plane, by the definition.
+    /// Intersects one ray with one plane, by the definition.
     fn reached(ground: &Ground, ray: &ExactRay) -> Option<f64> {
         let above = ground.normal.dot(ray.origin) - ground.height;
         let descent = -ground.normal.dot(ray.direction);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_end_where_their_rays_do_one_by_one() {
+    fn rows_equal_their_rays() {
         let mut random = Random::new(3);
         let (mut ended, mut hidden) = (0, 0);
         for round in 0..4000 {
@@ -116,8 +116,8 @@ mod tests {
             }
             let mut shadows = hits.clone();
             let before = hits.clone();
-            stop_at(&ground, &rays, &mut hits);
-            hide_behind(&ground, &rays, &mut shadows);
+            intersect_ground(&ground, &rays, &mut hits);
+            occlude_by_ground(&ground, &rays, &mut shadows);
             for row in 0..count {
                 let (t, sphere) = (before.t[row], before.sphere[row]);
                 let found = reached(&ground, &rays.exact(row))

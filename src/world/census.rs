@@ -59,7 +59,10 @@ impl Features {
             cut_away: left_out.cut_away,
             cuts: world.cut.len() as u64,
             around_camera: false,
-            unseen: world.seen.as_ref().map_or(0, |seen| world.spheres.len() - seen.spheres.len())
+            unseen: world
+                .camera_visible
+                .as_ref()
+                .map_or(0, |visible| world.spheres.len() - visible.spheres.len())
                 as u64,
             hidden: left_out.hidden,
             ground_kind: world.ground.map(|ground| ground.material.kind()),

@@ -8,6 +8,7 @@
 
 mod appearance;
 mod camera;
+mod camera_visible;
 mod caustics;
 mod census;
 mod check;
@@ -21,14 +22,14 @@ mod ground;
 mod lights;
 mod materials;
 mod parts;
-mod seen;
 mod spheres;
 mod visibility;
 
 pub use appearance::{Appearance, Colors, Column};
 pub use camera::Camera;
-pub use caustics::Casters;
-pub(crate) use caustics::{Found, Looking, Sent, Way};
+pub use camera_visible::CameraVisible;
+pub use caustics::CausticCasters;
+pub(crate) use caustics::{CausticHit, CausticPath, CausticQuery, CausticSample};
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use environment::{Environment, Picture, Radiance, SkySample};
@@ -37,13 +38,12 @@ pub use footprint::{ColorColumn, Footprint};
 pub use frame::Frame;
 pub use ground::Ground;
 pub use lights::{
-    Aim, Disc, LightRow, LightSample, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
+    Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
 };
 pub use materials::{
     Conductor, Dielectric, Emitter, Kind, Lambertian, MaterialId, Materials, Plastic, Reflective,
 };
 pub(crate) use parts::{LeftOut, Parts};
-pub use seen::Seen;
 pub use visibility::Visibility;
 
 use crate::bvh::Bvh;
@@ -54,7 +54,7 @@ use crate::scene::{self, InvalidSetting, Rgb, Scene, Settings};
 use crate::spheres::Spheres;
 use std::borrow::Cow;
 
-/// Rays that a sample takes, with its bounces and its looks for light; about, for choosing the tree.
+/// Approximate number of rays per sample, with bounces and shadow rays, for choosing the tree builder.
 const RAYS_PER_SAMPLE: u64 = 4;
 
 /// Everything that a render reads, immutable.
@@ -72,16 +72,16 @@ pub struct World {
     pub bvh: Bvh,
     /// Where spheres are cut off.
     pub cut: Cut,
-    /// What the camera sees, if it does not see all spheres.
-    pub seen: Option<Seen>,
+    /// The spheres that the camera sees, if slices hide some from it.
+    pub camera_visible: Option<CameraVisible>,
     /// The ground plane, if there is one.
     pub ground: Option<Ground>,
     /// One table for each kind of material.
     pub materials: Materials,
-    /// What can be sampled to find light.
+    /// Lights that can be sampled.
     pub lights: Lights,
-    /// What casts the light of lamps.
-    pub casters: Casters,
+    /// Pairs of specular sphere and emitter whose caustics are sampled.
+    pub caustic_casters: CausticCasters,
     /// What rays see that hit nothing.
     pub environment: Environment,
     /// Who looks.
@@ -181,7 +181,7 @@ impl World {
 
     /// Adds to the spheres and their tree all that follows from them and from the rest of the scene.
     pub(crate) fn complete(scene: &Scene, parts: Parts) -> Self {
-        let Parts { frame, placement, spheres, bvh, appearance, seen, left_out } = parts;
+        let Parts { frame, placement, spheres, bvh, appearance, camera_visible, left_out } = parts;
         let materials = Materials::build(&scene.materials);
         let cut = Cut::build(&scene.slices, &frame);
         let camera = Camera::build(scene, &placement, &frame);
@@ -196,17 +196,17 @@ impl World {
             appearance,
             bvh,
             cut,
-            seen,
+            camera_visible,
             ground,
             materials,
             lights,
-            casters: Casters::default(),
+            caustic_casters: CausticCasters::default(),
             environment,
             camera,
             features: Features::default(),
         };
         world.features = Features::census(&world, left_out);
-        world.casters = Casters::find(&world);
+        world.caustic_casters = CausticCasters::find(&world);
         world
     }
 
@@ -221,11 +221,11 @@ impl World {
             appearance: Appearance::NONE,
             bvh: Bvh::default(),
             cut: Cut::default(),
-            seen: None,
+            camera_visible: None,
             ground: self.ground,
             materials: self.materials.clone(),
             lights: self.lights.without_spheres(&self.environment),
-            casters: Casters::default(),
+            caustic_casters: CausticCasters::default(),
             environment: self.environment.clone(),
             camera: self.camera,
             features,

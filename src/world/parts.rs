@@ -2,8 +2,8 @@
 
 use super::appearance::Appearance;
 use super::fit::{self, Placement};
-use super::spheres::Placed;
-use super::{Cut, Frame, Materials, Seen, World, WorldError, check, cut};
+use super::spheres::WorldSpheres;
+use super::{CameraVisible, Cut, Frame, Materials, World, WorldError, check, cut};
 use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, build};
 use crate::scene::{self, Pose, Projection, Scene};
@@ -19,7 +19,7 @@ pub(crate) struct Parts {
     pub(crate) spheres: Spheres,
     pub(crate) bvh: Bvh,
     pub(crate) appearance: Appearance,
-    pub(crate) seen: Option<Seen>,
+    pub(crate) camera_visible: Option<CameraVisible>,
     pub(crate) left_out: LeftOut,
 }
 
@@ -44,20 +44,20 @@ impl Parts {
     ) -> Result<Self, WorldError> {
         let given = from.len();
         let materials = Materials::build(&scene.materials);
-        let Placed { mut spheres, looks, shown, hidden } =
-            Placed::build(from, &scene.slices, frame);
+        let WorldSpheres { mut spheres, looks, shown, hidden } =
+            WorldSpheres::build(from, &scene.slices, frame);
         let placed = spheres.len();
         let bvh = build(&mut spheres, builder);
         let appearance = Appearance::build(looks, &spheres.id, &materials);
         cut::refuse_glass(&Cut::build(&scene.slices, frame), &spheres, &appearance)?;
-        let seen = Seen::build(&hidden, &spheres, builder);
+        let camera_visible = CameraVisible::build(&hidden, &spheres, builder);
         let left_out = LeftOut {
             cut_away: (given - shown) as u64,
             vanished: (shown - placed) as u64,
             hidden: (placed - spheres.len()) as u64,
         };
         let (frame, placement) = (*frame, *placement);
-        Ok(Self { frame, placement, spheres, bvh, appearance, seen, left_out })
+        Ok(Self { frame, placement, spheres, bvh, appearance, camera_visible, left_out })
     }
 
     /// Checks the scene, and places the camera for its picture, if that has another size than `from`, in

@@ -1,4 +1,4 @@
-//! From the user's spheres to columns in world space.
+//! Transforms the user's spheres to columns in world space.
 
 use super::appearance::Looks;
 use super::{Frame, WorldError};
@@ -7,20 +7,20 @@ use crate::spheres::Spheres;
 use std::borrow::Cow;
 use std::mem::take;
 
-/// The user's spheres, placed in the world.
-pub(super) struct Placed<'s> {
-    /// In the user's order, without those that are cut away or vanish in single precision.
+/// The scene's spheres in world space.
+pub(super) struct WorldSpheres<'s> {
+    /// Spheres in the user's order, without those that are cut away or vanish in single precision.
     pub(super) spheres: Spheres,
-    /// What all of the user's look like.
+    /// Materials and colors of all of the user's spheres.
     pub(super) looks: Looks<'s>,
-    /// How many of the user's slices leave there.
+    /// Number of spheres that slices leave.
     pub(super) shown: usize,
-    /// Which of the user's the camera does not see; empty if it sees all.
+    /// Whether the camera sees each of the user's spheres; empty if it sees all.
     pub(super) hidden: Vec<bool>,
 }
 
-impl<'s> Placed<'s> {
-    /// Places spheres; of those that are given away the memory is given back on the way.
+impl<'s> WorldSpheres<'s> {
+    /// Transforms spheres; frees the memory of owned columns as early as possible.
     pub(super) fn build(from: Cow<'s, scene::Spheres>, slices: &[Slice], frame: &Frame) -> Self {
         match from {
             Cow::Borrowed(from) => {
@@ -54,7 +54,7 @@ impl<'s> Placed<'s> {
     }
 }
 
-/// Checks what only code can get wrong: files are checked when they are read, with their lines.
+/// Checks columns that code may have filled; files are checked when they are read, with line numbers.
 pub(super) fn validate(scene: &Scene) -> Result<(), WorldError> {
     let spheres = &scene.spheres;
     let n = spheres.len();

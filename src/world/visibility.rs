@@ -26,7 +26,8 @@ impl World {
     /// Returns the visibility of the spheres in a region of the picture with so many samples per
     /// pixel. Spheres hide only each other; the ground may hide all of them.
     pub fn visibility(&self, region: Region, samples: u32) -> Visibility {
-        let spheres = self.seen.as_ref().map_or(&self.spheres, |seen| &seen.spheres);
+        let spheres =
+            self.camera_visible.as_ref().map_or(&self.spheres, |visible| &visible.spheres);
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
         let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
         let rows = || (0..spheres.len()).into_par_iter();

@@ -159,7 +159,7 @@ fn wrong_commands_harm_nothing() {
         ("bench build --rounds 0", 2, &["--rounds", "1..=1000"]),
         ("bench build --threads 0", 2, &["--threads"]),
         ("bench build --quick -o out --scenes nowhere", 1, &["\"nowhere\"", "paper400"]),
-        ("bench all --quick --scenes field", 2, &["--scenes", "single"]),
+        ("bench all --quick --scenes field", 2, &["--scenes", "`all`"]),
         ("bench threads --quick -o out --threads-up-to 0", 2, &["--threads-up-to"]),
         ("bench error --quick -o out --scenes nowhere", 1, &["\"nowhere\"", "smallpt", ".toml"]),
         ("bench skips --quick -o out --scenes missing.toml", 1, &["missing.toml"]),

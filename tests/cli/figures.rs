@@ -120,11 +120,11 @@ fn files_say_what_particles_look_like() {
 fn figures_that_cannot_be_are_refused() {
     let folder = folder();
     for (args, message) in [
-        (&["--background", "transparent", "-o", "a.ppm"][..], "end the name of --output in .png"),
+        (&["--background", "transparent", "-o", "a.ppm"][..], "an --output that ends in .png"),
         (&["--background", "clear"], "transparent or sky"),
         (&["--color-by", "q", "--color-bar", "inside:left"], "top-left"),
-        (&["--color-by", "q", "--color-bar", "inside", "--region", "0,0,8x8"], "whole picture"),
-        (&["--color-by", "species", "--color-bar", "inside"], "a column of numbers"),
+        (&["--color-by", "q", "--color-bar", "inside", "--region", "0,0,8x8"], "whole image"),
+        (&["--color-by", "species", "--color-bar", "inside"], "a numeric column"),
     ] {
         let output = folder.run(&[&SMALL[..], &["a.xyz"], args].concat());
         let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");

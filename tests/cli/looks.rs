@@ -111,8 +111,8 @@ fn color_bars_are_written_beside_the_picture() {
 fn looks_that_cannot_be_are_refused() {
     let folder = folder();
     for (args, code, message) in [
-        (&["a.toml", "--colors", "cpk"][..], 2, "a scene says itself"),
-        (&["--color-by", "q"], 2, "for a file of particles"),
+        (&["a.toml", "--colors", "cpk"][..], 2, "a scene"),
+        (&["--color-by", "q"], 2, "particle file"),
         (&["dust.csv", "--color-map", "magma"], 2, "--color-by"),
         (&["dust.csv", "--color-by", "q", "--color-map", "jet"], 2, "viridis"),
         (&["dust.csv", "--color-by", "q", "--color-map", "virdis_r"], 2, "viridis"),
@@ -121,7 +121,7 @@ fn looks_that_cannot_be_are_refused() {
         (&["dust.csv", "--color-by", "q", "--color-range", "1"], 2, "the lower one first"),
         (&["dust.csv", "--color-by", "q", "--colors", "cpk"], 2, "cannot be used with"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "bar.pdf"], 2, ".png or .svg"),
-        (&["dust.csv", "--color-by", "note", "--color-bar", "bar.png"], 2, "a column of numbers"),
+        (&["dust.csv", "--color-by", "note", "--color-bar", "bar.png"], 2, "a numeric column"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "no/bar.png"], 1, "cannot be written"),
         (&["dust.csv", "--select", "z > "], 2, "missing here z > ^"),
         (&["dust.csv", "--select", "mass > 1"], 1, "--> selection:1:1 | 1 | mass > 1 | ^^^^"),

@@ -87,12 +87,12 @@ fn settings_without_effect_are_refused() {
     folder.write("a.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
     for (args, code, message) in [
         (&["info", "a.toml", "--frame", "1"][..], 2, "[[file]]"),
-        (&["render", "--radii", "vdw"], 2, "a file of particles"),
+        (&["render", "--radii", "vdw"], 2, "particle file"),
         (&["info", "run.dump", "--radii", "thick"], 2, "write vdw, covalent"),
-        (&["info", "run.dump", "--frame", "second"], 2, "write first, last"),
+        (&["info", "run.dump", "--frame", "second"], 2, "give first, last"),
         (&["info", "run.dump", "--columns", "width=size"], 2, "no role of a column"),
         (&["info", "run.dump", "--format", "png"], 2, "formats are: xyzr"),
-        (&["info", "run.dump", "--frame", "2"], 1, "has no frame 2, but 2"),
+        (&["info", "run.dump", "--frame", "2"], 1, "has no frame 2"),
         (&["info", "run.dump", "--radii", "vdw"], 1, "none of its particles has an element"),
         (&["info", "run.dump", "--radii", "column:q"], 1, "no column is named `q`"),
     ] {

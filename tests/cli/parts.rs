@@ -111,7 +111,7 @@ fn what_does_not_belong_together_is_named() {
     assert!(!folder.path("x.png").exists());
     let some = merge(&["a.1-of-2.part", "--partial"]);
     assert!(some.status.success(), "{}", text(&some.stderr));
-    refused(&some, 0, &["warning", "no part has sample 3 of tiles 1 to 6", "3 to 3 samples"]);
+    refused(&some, 0, &["warning", "no part has sample 3 of tiles 1 to 6", "3 to 3 of 4 samples"]);
     assert!(folder.path("x.png").exists());
 }
 

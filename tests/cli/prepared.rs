@@ -120,7 +120,7 @@ fn other_commands_name_prepared_scenes() {
         let output = folder.run(args);
         assert_eq!(output.status.code(), Some(1), "{args:?}");
         let message = text(&output.stderr);
-        assert!(message.contains("prepared for rendering"), "{args:?}: {message}");
+        assert!(message.contains("prepared scene"), "{args:?}: {message}");
     }
 }
 

@@ -35,7 +35,7 @@ fn a_render_says_how_right_it_is() {
     assert_eq!(report["settings"]["spp"], 65_536);
     let limited = folder.run(&[&small[..3], &["--until-error", "0.01%", "--spp", "16"]].concat());
     assert!(limited.status.success());
-    assert!(text(&limited.stderr).contains("larger number"), "{}", text(&limited.stderr));
+    assert!(text(&limited.stderr).contains("increase --spp"), "{}", text(&limited.stderr));
     assert!(text(&limited.stdout).contains("16.0 samples per pixel (16 to 16)"));
     let timed = folder.json(&[&small[..], &["--time", "10ms"]].concat());
     assert_eq!((&timed["noise"]["ended_by"], &timed["complete"]), (&json!("time"), &json!(true)));
@@ -52,7 +52,10 @@ fn settings_without_effect_are_said_so() {
         ("--integrator ao --depth 4", "--depth has no effect"),
         ("--integrator ao --roulette none", "--roulette has no effect"),
         ("--integrator ao --light-choice power", "--light-choice has no effect"),
-        ("--light-choice power", "--light-choice has no effect: the scene has no two lights"),
+        (
+            "--light-choice power",
+            "--light-choice has no effect: the scene has fewer than two lights",
+        ),
         ("--no-caustics", "--no-caustics has no effect"),
         ("--depth 2 --roulette throughput", "--roulette throughput has no effect"),
         ("--traversal scalar --lanes 8", "--lanes has no effect"),

@@ -66,7 +66,7 @@ fn frames_are_spread_over_the_pictures_of_a_turn() {
         .current_dir(folder.root())
         .output()
         .expect("a program that runs");
-    assert!(said(&input, 2, "standard input").contains("cannot be counted"));
+    assert!(said(&input, 2, "standard input").contains("--turntable"));
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn parts_of_a_sequence_are_its_pictures() {
     }
     let folder = folder(2);
     let none = render(&folder, 0, "--frame all -q --part 3/4");
-    assert!(none.contains("no picture of part 3/4"), "{none}");
+    assert!(none.contains("no image of part 3/4"), "{none}");
     let split = render(&folder, 2, "--frame all -q --part 1/2 --split tiles");
     assert!(split.contains("--split"), "{split}");
     assert_eq!(files(&folder, ".png").len(), 0);
@@ -108,7 +108,7 @@ fn pictures_that_exist_are_kept_if_they_are_the_same() {
     };
     let before = numbers(&folder);
     let kept = render(&folder, 0, &again);
-    assert!(kept.contains("6 of 6 pictures existed"), "{kept}");
+    assert!(kept.contains("6 of 6 images already existed"), "{kept}");
     assert_eq!(numbers(&folder), before);
     // One is missing, one cut off, one of other samples, one of another frame, one says nothing.
     fs::remove_file(folder.path("p-0000.png")).expect("it is there");
@@ -127,14 +127,14 @@ fn pictures_that_exist_are_kept_if_they_are_the_same() {
     assert!(files(&folder, ".png") == whole, "{mended}");
     for (name, why) in [
         ("p-0001.png", "cannot be read"),
-        ("p-0002.png", "spp is 3, not 2"),
-        ("p-0003.png", "frame is 2, not 3"),
-        ("p-0004.png", "of which scene"),
+        ("p-0002.png", "spp is 3 instead of 2"),
+        ("p-0003.png", "frame is 2 instead of 3"),
+        ("p-0004.png", "does not identify the scene"),
     ] {
-        assert!(mended.contains(&format!("{name}: exists, but")), "{name}: {mended}");
+        assert!(mended.contains(&format!("{name}: already exists, but")), "{name}: {mended}");
         assert!(mended.contains(why), "{why}: {mended}");
     }
-    assert!(mended.contains("1 of 6 pictures existed"));
+    assert!(mended.contains("1 of 6 images already existed"));
 }
 
 #[test]
@@ -150,23 +150,26 @@ fn other_scenes_and_settings_are_rendered_anew() {
         ("--background black", "background"),
     ] {
         let told = render(&folder, 0, &format!("{again} {args}"));
-        assert!(told.contains(why) && !told.contains("pictures existed"), "{args}: {told}");
+        assert!(told.contains(why) && !told.contains("already existed"), "{args}: {told}");
         // Back to what it was.
         let back = render(&folder, 0, again);
-        assert!(!back.contains("pictures existed"), "{args}: {back}");
+        assert!(!back.contains("already existed"), "{args}: {back}");
     }
     // Between the others, so that the camera stays where it stands.
     let moved = trajectory(4).replace("O 3.5", "O 3.25");
     folder.write("a.xyz", &moved);
     let told = render(&folder, 0, again);
-    assert!(told.contains("p-0002.exr: exists, but") && told.contains("other spheres"), "{told}");
-    assert!(told.contains("3 of 4 pictures existed"), "{told}");
+    assert!(
+        told.contains("p-0002.exr: already exists, but") && told.contains("different spheres"),
+        "{told}"
+    );
+    assert!(told.contains("3 of 4 images already existed"), "{told}");
     assert!(render(&folder, 2, "--frame all -o p.pfm --skip-existing").contains(".exr"));
     // Single pictures too.
     render(&folder, 0, "-q -o one.png --skip-existing");
     let number = || fs::metadata(folder.path("one.png")).expect("a file").ino();
     let first = number();
-    assert!(render(&folder, 0, "-o one.png --skip-existing").contains("and is kept"));
+    assert!(render(&folder, 0, "-o one.png --skip-existing").contains("skipped"));
     assert_eq!(number(), first);
     render(&folder, 0, "-q -o one.png --skip-existing --seed 5");
     assert_ne!(number(), first);

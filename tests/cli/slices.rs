@@ -126,7 +126,7 @@ fn scene_files_hold_slices() {
 fn planes_that_make_no_sense_are_refused() {
     let folder = folder();
     for (args, code, message) in [
-        (&["--slice", "x>-1"][..], 1, "cut all of its 5 spheres away"),
+        (&["--slice", "x>-1"][..], 1, "cut away all of its 5 spheres"),
         (&["--slice", "w>1"], 2, "true of what is cut away"),
         (&["--slice", "x=200%"], 2, "true of what is cut away"),
         (&["--slice", "x>1", "--slice-mode", "cap"], 2, "did you mean `caps`"),

@@ -11,7 +11,7 @@ fn the_table_ends_with_the_verdict() {
     assert_eq!(output.status.code(), Some(0), "{table}{messages}");
     assert!(table.starts_with("decisions") && table.contains("\nfar_1e6 "), "{table}");
     let last = table.lines().last().unwrap_or_default();
-    assert!(last.starts_with("0 wrong decisions in 4,"), "{last}");
+    assert!(last.starts_with("0 wrong results in 4,"), "{last}");
     assert!(messages.contains("3,300 rays in"), "{messages}");
     let quiet = folder.run(&["stress", "--rays", "3300", "--seed", "3", "--quiet"]);
     assert_eq!(text(&quiet.stdout).trim_end(), last);

@@ -211,7 +211,7 @@ fn pictures_in_the_terminal_need_one() {
     let folder = Folder::new();
     let output = folder.run(&["render", "--terminal", "--size", "8x8"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("--terminal is for a terminal"));
+    assert!(text(&output.stderr).contains("--terminal needs a terminal"));
 }
 
 #[test]

@@ -111,7 +111,7 @@ fn what_would_make_pictures_differ_is_refused() {
     refused(&["--frame", "2"], "a sequence");
     folder.succeed(&["render", "a.xyz", "--size", "8x8", "--spp", "2", "-q", "--checkpoint", "d"]);
     let output = folder.run(&["render", "--resume", "d", "--turntable", "3"]);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("a single picture"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("a single image"));
 }
 
 #[test]

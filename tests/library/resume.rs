@@ -3,7 +3,7 @@
 use crate::common::*;
 use glam::DVec3;
 use spherule::film::Region;
-use spherule::render::{End, Options, Render, Unfinished, Unlike, render};
+use spherule::render::{End, IncompatibleSettings, Options, Render, ResumableRender, render};
 use spherule::scene::{Filter, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
 use spherule::trace::{PacketWidth, Tracer};
 use spherule::world::World;
@@ -24,7 +24,7 @@ fn still_life() -> Scene {
 }
 
 /// Renders until something was done so many times, or to the end.
-fn run_for(unfinished: &mut Unfinished, world: &World, tasks: u64, threads: usize) -> End {
+fn run_for(unfinished: &mut ResumableRender, world: &World, tasks: u64, threads: usize) -> End {
     let (done, cancel) = (AtomicU64::new(0), AtomicBool::new(false));
     let count = |_| {
         let last = done.fetch_add(1, Ordering::Relaxed) + 1 >= tasks;
@@ -40,7 +40,7 @@ fn run_for(unfinished: &mut Unfinished, world: &World, tasks: u64, threads: usiz
 }
 
 /// Renders with a pause after every few tasks, on one thread and on several by turns.
-fn run_in_pieces(unfinished: &mut Unfinished, world: &World, tasks: u64) -> u32 {
+fn run_in_pieces(unfinished: &mut ResumableRender, world: &World, tasks: u64) -> u32 {
     let mut pauses = 0;
     while run_for(unfinished, world, tasks + u64::from(pauses % 3), 1 + pauses as usize % 3)
         == End::Cancelled
@@ -55,7 +55,7 @@ fn run_in_pieces(unfinished: &mut Unfinished, world: &World, tasks: u64) -> u32 
 fn in_pieces(scene: &Scene, options: &Options, tasks: u64) -> Render {
     let world = World::build(scene).expect("the scene is sound");
     let mut unfinished =
-        Unfinished::begin(&world, &scene.settings, options).expect("settings in range");
+        ResumableRender::begin(&world, &scene.settings, options).expect("settings in range");
     assert!(run_in_pieces(&mut unfinished, &world, tasks) > 1);
     unfinished.render()
 }
@@ -116,12 +116,15 @@ fn more_samples_make_the_picture_of_so_many_from_the_start() {
         let scene = with(&still_life(), |settings| settings.sampler = sampler);
         let options = Options { statistics: true, ..Options::default() };
         let world = World::build(&scene).expect("the scene is sound");
-        let mut unfinished =
-            Unfinished::begin(&world, &Settings { spp: 5, ..scene.settings.clone() }, &options)
-                .expect("settings in range");
+        let mut unfinished = ResumableRender::begin(
+            &world,
+            &Settings { spp: 5, ..scene.settings.clone() },
+            &options,
+        )
+        .expect("settings in range");
         for spp in [5, 5, 21, 32, 70] {
             let settings = Settings { spp, ..scene.settings.clone() };
-            unfinished.raise(&settings).expect("it is more");
+            unfinished.extend(&settings).expect("it is more");
             // The last few passes of what was asked for before may be missing still.
             run_for(&mut unfinished, &world, 60, 2);
         }
@@ -133,9 +136,9 @@ fn more_samples_make_the_picture_of_so_many_from_the_start() {
 /// A first target and a second one, which is asked for after so many tasks.
 fn two_targets(world: &World, settings: [&Settings; 2], after: u64) -> Render {
     let mut unfinished =
-        Unfinished::begin(world, settings[0], &Options::default()).expect("settings in range");
+        ResumableRender::begin(world, settings[0], &Options::default()).expect("settings in range");
     run_for(&mut unfinished, world, after, 2);
-    unfinished.raise(settings[1]).expect("it is more");
+    unfinished.extend(settings[1]).expect("it is more");
     run_in_pieces(&mut unfinished, world, 50);
     assert_eq!(unfinished.stages().len(), 2);
     unfinished.render()
@@ -163,12 +166,12 @@ fn what_is_over_stays_as_it_is() {
     let scene = with(&still_life(), |settings| settings.until_error = Some(0.05));
     for scene in [scene, still_life()] {
         let world = World::build(&scene).expect("the scene is sound");
-        let mut unfinished = Unfinished::begin(&world, &scene.settings, &Options::default())
+        let mut unfinished = ResumableRender::begin(&world, &scene.settings, &Options::default())
             .expect("settings in range");
         assert!(!unfinished.render().complete);
         let end = unfinished.run(&world, &Options::default());
         let first = unfinished.render();
-        unfinished.raise(&scene.settings).expect("nothing changes");
+        unfinished.extend(&scene.settings).expect("nothing changes");
         assert_eq!(unfinished.run(&world, &Options::default()), end);
         assert_same(&unfinished.render(), &first, "again");
     }
@@ -180,14 +183,14 @@ fn time_that_was_taken_counts() {
         (settings.time, settings.spp) = (Some(Duration::from_millis(150)), 1 << 16);
     });
     let world = World::build(&scene).expect("the scene is sound");
-    let mut unfinished =
-        Unfinished::begin(&world, &scene.settings, &Options::default()).expect("settings in range");
+    let mut unfinished = ResumableRender::begin(&world, &scene.settings, &Options::default())
+        .expect("settings in range");
     assert_eq!(unfinished.run(&world, &Options::default()), End::Time);
     let first = unfinished.render();
     assert_eq!(unfinished.run(&world, &Options::default()), End::Time);
     assert!(first.image == unfinished.render().image);
     let more = Settings { time: Some(Duration::from_millis(400)), ..scene.settings.clone() };
-    unfinished.raise(&more).expect("it is more");
+    unfinished.extend(&more).expect("it is more");
     assert_eq!(unfinished.run(&world, &Options::default()), End::Time);
     assert!(unfinished.samples().total > first.samples.total);
 }
@@ -201,24 +204,33 @@ fn other_settings_and_less_are_refused() {
         then(&mut first);
         now(&mut second);
         let mut unfinished =
-            Unfinished::begin(&world, &first, &Options::default()).expect("settings in range");
-        let error = unfinished.raise(&second).expect_err("it is refused");
+            ResumableRender::begin(&world, &first, &Options::default()).expect("settings in range");
+        let error = unfinished.extend(&second).expect_err("it is refused");
         assert_eq!(unfinished.settings(), &first);
         error
     };
     let same = |_: &mut Settings| ();
     let seed = refused(&same, &|settings| settings.seed = 3);
     assert_eq!(seed.to_string(), "seed is 3, but was 0 when the render began; leave it as it was");
-    assert!(matches!(refused(&same, &|s| s.spp = 69), Unlike::Less { name: "spp", .. }));
+    assert!(matches!(
+        refused(&same, &|s| s.spp = 69),
+        IncompatibleSettings::Less { name: "spp", .. }
+    ));
     let error = |error| move |settings: &mut Settings| settings.until_error = Some(error);
     let more = refused(&error(0.1), &error(0.2));
-    assert!(matches!(more, Unlike::Less { name: "until_error", .. }), "{more}");
+    assert!(matches!(more, IncompatibleSettings::Less { name: "until_error", .. }), "{more}");
     let new = refused(&same, &error(0.1));
-    assert!(matches!(new, Unlike::Target { name: "until_error", then: false }), "{new}");
+    assert!(
+        matches!(new, IncompatibleSettings::Target { name: "until_error", then: false }),
+        "{new}"
+    );
     let strata = |spp| {
         move |settings: &mut Settings| {
             (settings.sampler, settings.spp) = (SamplerKind::Stratified, spp);
         }
     };
-    assert_eq!(refused(&strata(70), &strata(71)), Unlike::Strata { then: 70, now: 71 });
+    assert_eq!(
+        refused(&strata(70), &strata(71)),
+        IncompatibleSettings::Strata { then: 70, now: 71 }
+    );
 }

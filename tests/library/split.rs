@@ -4,7 +4,7 @@ use crate::common::*;
 use glam::DVec3;
 use spherule::film::{Film, Region};
 use spherule::layers::{Layer, Layers, features, layers};
-use spherule::render::{End, Options, Render, Share, Unfinished, render};
+use spherule::render::{End, ImagePart, Options, Render, ResumableRender, render};
 use spherule::sampling::mix;
 use spherule::scene::{Identity, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
 use spherule::split::{Merge, MergeError, Part, Split};
@@ -33,20 +33,25 @@ const STATISTICS: Options = Options {
     progress: None,
     cancel: None,
     statistics: true,
-    skips: spherule::render::Skips::ALL,
+    elisions: spherule::render::Elisions::ALL,
 };
 
 /// A share of a render, complete.
-fn take(world: &World, settings: &Settings, options: &Options, share: Share) -> Unfinished {
+fn take(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    share: ImagePart,
+) -> ResumableRender {
     let mut render =
-        Unfinished::begin_share(world, settings, options, share).expect("settings in range");
+        ResumableRender::begin_part(world, settings, options, share).expect("settings in range");
     assert_eq!(render.run(world, options), End::Samples);
     render
 }
 
-fn whole(settings: &Settings) -> Share {
+fn whole(settings: &Settings) -> ImagePart {
     let Settings { width, height, spp, .. } = *settings;
-    Share::whole(Region { x: 0, y: 0, width, height }, spp)
+    ImagePart::whole(Region { x: 0, y: 0, width, height }, spp)
 }
 
 /// All parts of a render, in any order.
@@ -56,7 +61,7 @@ fn parts(
     options: &Options,
     split: Split,
     count: u32,
-) -> Vec<Unfinished> {
+) -> Vec<ResumableRender> {
     let mut numbers: Vec<u32> = (1..=count).collect();
     numbers.sort_by_key(|&number| mix(u64::from(number)));
     let region = options.region.unwrap_or(Region {
@@ -67,14 +72,14 @@ fn parts(
     });
     let of = |number| {
         let part = Part::new(number, count).expect("it is one of them");
-        let whole = Share::whole(region, settings.spp);
-        let share = part.share(&whole, Some(split)).expect("there are enough");
+        let whole = ImagePart::whole(region, settings.spp);
+        let share = part.of_image(&whole, Some(split)).expect("there are enough");
         take(world, settings, options, share)
     };
     numbers.into_iter().map(of).collect()
 }
 
-fn merge(partial: bool, parts: Vec<Unfinished>) -> Result<Unfinished, MergeError> {
+fn merge(partial: bool, parts: Vec<ResumableRender>) -> Result<ResumableRender, MergeError> {
     let (scene, mut merge) = (Identity::of(&still_life()), Merge::new(partial));
     for (part, number) in parts.into_iter().zip(1..) {
         merge.add(&format!("file {number}"), &scene, part)?;
@@ -136,10 +141,10 @@ fn regions_and_every_sampler_can_be_shared_out() {
 fn parts_may_be_split_in_different_ways() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
-    let Share { tiles, samples } = whole(&scene.settings);
+    let ImagePart { tiles, samples } = whole(&scene.settings);
     let shares = [(0..20, tiles.clone()), (20..samples.end, 0..9), (20..samples.end, 9..tiles.end)];
     let take = |(samples, tiles)| {
-        take(&world, &scene.settings, &Options::default(), Share { samples, tiles })
+        take(&world, &scene.settings, &Options::default(), ImagePart { samples, tiles })
     };
     let merged = merge(false, shares.map(take).into()).expect("they are all there").render();
     assert_same(&merged, &shoot(&scene), "three pieces");
@@ -170,7 +175,7 @@ fn one_file_is_as_it_was() {
     (scene.settings.until_error, scene.settings.spp) = (Some(0.2), 4096);
     let world = World::build(&scene).expect("the scene is sound");
     let mut alone =
-        Unfinished::begin(&world, &scene.settings, &STATISTICS).expect("settings in range");
+        ResumableRender::begin(&world, &scene.settings, &STATISTICS).expect("settings in range");
     assert_eq!(alone.run(&world, &STATISTICS), End::Error);
     let merged = merge(false, vec![alone.clone()]).expect("it is the whole");
     assert_same(&merged.render(), &alone.render(), "alone");
@@ -183,7 +188,7 @@ fn what_is_there_twice_is_refused() {
     let mut parts = parts(&world, &scene.settings, &Options::default(), Split::Samples, 7);
     parts.truncate(3);
     parts.push(parts[1].clone());
-    let common = parts[1].share().clone();
+    let common = parts[1].part().clone();
     let (first, second) = ("file 2".to_owned(), "file 4".to_owned());
     let error = merge(true, parts).expect_err("one is there twice");
     assert_eq!(error, MergeError::Overlap { first, second, common });
@@ -193,8 +198,8 @@ fn what_is_there_twice_is_refused() {
 fn what_is_missing_is_named() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
-    let first = Share { samples: 0..35, tiles: 0..24 };
-    let second = Share { samples: 35..70, tiles: 3..24 };
+    let first = ImagePart { samples: 0..35, tiles: 0..24 };
+    let second = ImagePart { samples: 35..70, tiles: 3..24 };
     let take = |share| take(&world, &scene.settings, &Options::default(), share);
     let message = merge(false, vec![take(second), take(first)]).map(drop);
     let message = message.map_err(|error| error.to_string());
@@ -209,7 +214,7 @@ fn what_there_is_has_the_right_weights() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     let take =
-        |samples, tiles| take(&world, &scene.settings, &STATISTICS, Share { samples, tiles });
+        |samples, tiles| take(&world, &scene.settings, &STATISTICS, ImagePart { samples, tiles });
     let parts = vec![take(0..16, 0..12), take(30..35, 0..6)];
     let merged = merge(true, parts).expect("that may be").render();
     assert!(!merged.complete);
@@ -242,8 +247,9 @@ fn parts_of_other_renders_are_refused() {
         let mut other = scene.settings.clone();
         change(&mut other);
         let begin = |settings, options, samples| {
-            let share = Share { samples, tiles: 0..1 };
-            Unfinished::begin_share(&world, settings, options, share).expect("settings in range")
+            let share = ImagePart { samples, tiles: 0..1 };
+            ResumableRender::begin_part(&world, settings, options, share)
+                .expect("settings in range")
         };
         let (usual, mut merge) = (Options::default(), Merge::new(true));
         let first = begin(&scene.settings, &usual, 0..3);
@@ -264,8 +270,9 @@ fn parts_of_other_renders_are_refused() {
     assert!(refused(&Options { region, ..usual }, &|_| ()).contains("region"));
     let mut merge = Merge::new(true);
     let part = |samples| {
-        let share = Share { samples, tiles: 0..1 };
-        Unfinished::begin_share(&world, &scene.settings, &usual, share).expect("settings in range")
+        let share = ImagePart { samples, tiles: 0..1 };
+        ResumableRender::begin_part(&world, &scene.settings, &usual, share)
+            .expect("settings in range")
     };
     merge.add("a", &identity, part(0..3)).expect("it is the first");
     let other = Identity::of(&furnace());
@@ -281,12 +288,12 @@ fn parts_that_were_interrupted_are_refused_unless_that_may_be() {
     let cancel = AtomicBool::new(true);
     let options = Options { cancel: Some(&cancel), ..Options::default() };
     let share = whole(&scene.settings);
-    let mut part = Unfinished::begin_share(&world, &scene.settings, &options, share)
+    let mut part = ResumableRender::begin_part(&world, &scene.settings, &options, share)
         .expect("settings in range");
     assert_eq!(part.run(&world, &options), End::Cancelled);
     let wanted = 83 * 61 * 70;
     let (name, error) = ("file 1".to_owned(), merge(false, vec![part.clone()]));
-    let expected = MergeError::Unfinished { name, taken: 0, wanted };
+    let expected = MergeError::ResumableRender { name, taken: 0, wanted };
     assert_eq!(error.map(drop), Err(expected));
     assert!(!merge(true, vec![part]).expect("that may be").is_complete());
 }

@@ -58,7 +58,7 @@ const UNDERFLOW: f32 = 1.0 / (1_u128 << 120) as f32;
 /// The square root of [`UNDERFLOW`].
 const ROOT_OF_UNDERFLOW: f32 = 1.0 / (1_u64 << 60) as f32;
 
-/// Rays as the filter wants them.
+/// Rays prepared for the conservative test.
 #[derive(Clone, Copy, Debug)]
 pub struct ConservativeRay<L> {
     origin: Vec3<L>,
@@ -69,14 +69,14 @@ pub struct ConservativeRay<L> {
     band: L,
 }
 
-/// What it takes to be certain.
+/// Margins beyond which the test is certain of a hit.
 #[derive(Clone, Copy, Debug)]
 pub struct Margin<L> {
     /// `K / |direction|`.
     inverse_band: L,
-    /// How much the product of the distances to near and far hit has to exceed, for a radius of 0.
+    /// The bound that the product of the distances to near and far hit must exceed, for a radius of 0.
     least: L,
-    /// By how much more that is for each unit of the radius.
+    /// The increase of that bound with the radius.
     per_radius: L,
 }
 
@@ -93,13 +93,13 @@ impl<L: Lanes> ConservativeRay<L> {
         }
     }
 
-    /// Where they start.
+    /// Origins.
     #[inline(always)]
     pub fn origin(&self) -> Vec3<L> {
         self.origin
     }
 
-    /// Where they go.
+    /// Directions.
     #[inline(always)]
     pub fn direction(&self) -> Vec3<L> {
         self.direction
@@ -172,7 +172,7 @@ impl ConservativeRay<f32> {
         band: K,
     };
 
-    /// The same ray in every lane.
+    /// Returns the ray in every lane.
     #[inline(always)]
     pub fn splat<L: Lanes>(&self) -> ConservativeRay<L> {
         ConservativeRay {
@@ -184,7 +184,7 @@ impl ConservativeRay<f32> {
     }
 }
 
-/// What a ray's line cuts out of a sphere, if anything.
+/// The chord that a ray's line cuts out of a sphere, if it does.
 #[derive(Clone, Copy, Debug)]
 pub struct Chord<L> {
     /// Distance to the chord's middle.

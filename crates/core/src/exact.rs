@@ -86,7 +86,7 @@ pub fn normal(ray: &ExactRay, center: DVec3, radius: f64) -> DVec3 {
 /// A distance along a ray.
 #[derive(Clone, Copy, Debug)]
 pub enum Distance {
-    /// Where the ray hits this sphere, which it does.
+    /// The distance at which the ray hits this sphere; it must hit it.
     Hit(DVec3, f64),
     /// This number.
     Number(f64),

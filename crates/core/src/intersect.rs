@@ -40,7 +40,7 @@ use glam::DVec3;
 /// Unit roundoff of `f64`.
 const E: f64 = f64::EPSILON / 2.0;
 
-/// Where a ray hits a sphere.
+/// The distance at which a ray hits a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
     /// Distance in units of the direction's length, more than 0.
@@ -80,15 +80,15 @@ pub fn confirm(
 /// Rays and spheres in a row: ray `i` and sphere `i` belong together.
 #[derive(Clone, Copy, Debug)]
 pub struct Pairs<D> {
-    /// Where rays start.
+    /// Origins of the rays.
     pub origin: Vec3<D>,
-    /// Where they go.
+    /// Directions of the rays.
     pub direction: Vec3<D>,
     /// As [`ExactRay::origin_error`].
     pub origin_error: D,
-    /// Of the spheres.
+    /// Centers of the spheres.
     pub center: Vec3<D>,
-    /// Of the spheres.
+    /// Radii of the spheres.
     pub radius: D,
 }
 
@@ -107,7 +107,7 @@ impl Pairs<f64> {
 }
 
 impl<D: Doubles> Pairs<D> {
-    /// What decides about them, and by how much origins may be off, as `outside` is counted.
+    /// Returns the terms of the decision, and the error of origins in the measure of `outside`.
     #[inline(always)]
     fn terms(&self) -> (Terms<D>, D) {
         let terms = Terms::new(self.origin, self.direction, self.center, self.radius);
@@ -177,8 +177,8 @@ pub fn confirm_closely(
     Some(Root { t, error: t * error, exact: false })
 }
 
-/// What double precision cannot, but for rays that start outside and head away, which need not be
-/// looked at twice.
+/// Decides exactly where double precision cannot; rays that start outside and head away miss without
+/// a further test.
 fn decide(ray: &ExactRay, center: DVec3, radius: f64, away: bool) -> Option<Root> {
     let finite = ray.origin.is_finite() && center.is_finite() && radius.is_finite();
     if away || !finite {
@@ -200,8 +200,8 @@ pub struct Plane<D> {
 impl<D: Doubles> Plane<D> {
     /// The rays that cross it, of origins, directions and [`ExactRay::origin_error`]; and the distances.
     ///
-    /// Where the origin is on the plane, within its own rounding, a ray against the normal hits it at
-    /// once and any other misses.
+    /// If the origin is on the plane, within its own rounding, a ray against the normal hits it at once
+    /// and any other misses.
     #[inline(always)]
     pub fn crossed(
         &self,

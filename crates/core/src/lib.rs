@@ -50,8 +50,7 @@ struct Readme;
 
 pub use query::{Hit, Hits, NOTHING, QueryError, RayColumns, SphereTree, Surface, Tally};
 
-/// What the renderer and the measuring programs need beside the public interface. Anything here may
-/// change in any release.
+/// Items for the renderer and for measurements. Anything here may change in any release.
 #[doc(hidden)]
 pub mod internals {
     /// The bounding volume hierarchy, its builders and its traversal.

@@ -17,13 +17,13 @@ pub struct Rays {
     pub origin: Columns3,
     /// Directions.
     pub direction: Columns3,
-    /// What the ray starts on: a sphere's row, [`GROUND`], or [`MISS`] for the camera. It is never
-    /// hit: a convex body cannot hit itself from outside, and what a ray that goes inside leaves
-    /// through is known before it is traced.
+    /// The surface that the ray starts on: a sphere's row, [`GROUND`], or [`MISS`] for the camera. It is
+    /// never hit: a convex body does not hide itself from outside, and the exit of a ray that goes inside
+    /// is known before the ray is traced.
     pub own: Vec<u32>,
-    /// What the ray is aimed at: a light, which does not occlude itself; else [`MISS`].
+    /// The light that a shadow ray is aimed at, which does not occlude itself; else [`MISS`].
     pub target: Vec<u32>,
-    /// What the rays are exactly, if the columns could not hold it; empty otherwise.
+    /// Exact rays, if the single-precision columns cannot hold them; empty otherwise.
     pub precise: Vec<ExactRay>,
     len: usize,
 }
@@ -39,23 +39,23 @@ pub struct Columns3 {
     pub z: Vec<f32>,
 }
 
-/// Rays that are looked at together before they are traced.
+/// Number of rays that are sorted into packets together.
 pub const CHUNK: usize = 4096;
 
-/// What each ray hits: on entry a bound, on return the answer.
+/// Hits of rays: on entry the bounds of the search, on return the answers.
 #[derive(Clone, Debug, Default)]
 pub struct Hits {
     /// Distance in units of the direction's length. On entry, hits beyond it do not count.
     pub t: Vec<f64>,
     /// The sphere's row, [`GROUND`] or [`MISS`].
     pub sphere: Vec<u32>,
-    /// By how much a distance may be off, 0 where it is so by definition: of the chunk of rays that
-    /// is being traced.
+    /// Bounds of the distances' errors, 0 for a given number; only of the chunk of rays that is being
+    /// traced.
     pub error: Vec<f64>,
 }
 
 impl Columns3 {
-    /// Of so many rows, all 0.
+    /// Returns columns of `rows` zeros.
     pub fn with_rows(rows: usize) -> Self {
         let column = || vec![0.0; rows];
         Self { x: column(), y: column(), z: column() }
@@ -97,7 +97,7 @@ impl Columns3 {
 }
 
 impl Rays {
-    /// No ray, room for `capacity`.
+    /// Returns no rays, with capacity for `capacity`.
     pub fn with_capacity(capacity: usize) -> Self {
         let rows = capacity.next_multiple_of(MAX_LANES) + MAX_LANES;
         Self {
@@ -110,8 +110,8 @@ impl Rays {
         }
     }
 
-    /// Forgets all rays and begins as many, from empty space; where they start and go, the caller
-    /// writes. The caller keeps to the capacity.
+    /// Replaces all rays by `count` rays that start in empty space; the caller writes their origins and
+    /// directions, and keeps to the capacity.
     pub fn begin(&mut self, count: usize) {
         self.len = count;
         self.own[..count].fill(MISS);
@@ -128,7 +128,7 @@ impl Rays {
         self.len == 0
     }
 
-    /// Forgets rays from `len` on.
+    /// Removes the rays from `len` on.
     pub fn truncate(&mut self, len: usize) {
         self.len = self.len.min(len);
     }
@@ -188,7 +188,7 @@ impl Rays {
         self.set(to, self.origin.row(from), self.direction.row(from), self.own[from]);
     }
 
-    /// Ray `i` for the exact test.
+    /// Returns ray `i` for the exact test.
     #[inline(always)]
     pub fn exact(&self, i: usize) -> ExactRay {
         match self.precise.get(i) {
@@ -199,7 +199,7 @@ impl Rays {
 }
 
 impl Hits {
-    /// Misses, room for `capacity`.
+    /// Returns misses, with capacity for `capacity`.
     pub fn with_capacity(capacity: usize) -> Self {
         let rows = capacity.next_multiple_of(MAX_LANES) + MAX_LANES;
         Self {
@@ -216,19 +216,19 @@ impl Hits {
     }
 }
 
-/// A ray as the exact test sees it: the stored single-precision numbers, held in double precision.
+/// A ray for the exact test: the stored single-precision numbers, in double precision.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactRay {
-    /// Where it starts.
+    /// The origin.
     pub origin: DVec3,
-    /// Where it goes; any length.
+    /// The direction, of any length.
     pub direction: DVec3,
-    /// How far the origin may be from where it was before it was rounded to single precision: 0 for
-    /// an origin that is exact.
+    /// A bound of the distance between the origin and the point that was rounded to it, in single
+    /// precision; 0 for an exact origin.
     pub origin_error: f64,
 }
 
-/// How far points may be from where they were before they were rounded to single precision.
+/// Returns a bound of the distance by which rounding to single precision moved points.
 #[inline(always)]
 pub fn rounding<D: Doubles>(point: Vec3<D>) -> D {
     // Rounding moves a coordinate by at most 2^-24 of itself; twice that is the band.

@@ -1,4 +1,4 @@
-//! A ray, or rays that go alike, against eight boxes at once.
+//! The slab test: a ray, or a packet of coherent rays, against eight boxes at once.
 
 use crate::lanes::{F32x4, F32x8, F32x16, Lanes, Mask, U32x16, transpose};
 use glam::Vec3;
@@ -14,10 +14,10 @@ pub const MARGIN: f32 = 1.0 / (1_u64 << 56) as f32;
 /// Unit roundoff of `f32`.
 const U: f32 = f32::EPSILON / 2.0;
 
-/// How much products of origins are moved, relative to themselves.
+/// Relative amount by which products of origins are moved to the safe side.
 const SLACK: f32 = 4.0 * U;
 
-/// How much nearer near planes are taken to be.
+/// Factor by which near planes are moved toward the origin.
 const SOONER: f32 = 1.0 - 8.0 * U;
 
 /// Directions are kept this far from 0, so that their reciprocals are finite: what moves a ray by
@@ -48,15 +48,15 @@ const NEGATIVE: [[bool; 4]; 8] = {
 /// sides, which `SOONER` on the near one outweighs (after Ize, "Robust BVH Ray Traversal", JCGT
 /// 2013). The slack is relative to the ray's own origin: large spheres elsewhere do not widen it.
 ///
-/// Of a packet, a near plane is met first by the steepest ray if it starts farthest ahead, a far one
-/// last by the flattest if it starts farthest behind: bounds that no ray goes beyond, though none may
+/// For a packet, a near plane is met first by the steepest ray if it starts farthest ahead, a far one
+/// last by the flattest if it starts farthest behind: bounds that no ray exceeds, though none may
 /// reach them. Distances below 0 count as 0, so their bounds need not hold.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Slabs {
     /// By axis, factors and terms of near distances.
     near: [[f32; 4]; 2],
-    /// The same of far distances.
+    /// By axis, factors and terms of far distances.
     far: [[f32; 4]; 2],
     /// By axis, whether the direction is negative.
     negative: [bool; 4],
@@ -129,10 +129,10 @@ impl Slabs {
         Self { near, far, negative: NEGATIVE[octant], octant }
     }
 
-    /// Which boxes a ray may meet at a distance in `0..=t_max`, in the lowest bits, and a distance
-    /// before which it does not.
+    /// Returns the boxes that a ray may enter at a distance in `0..=t_max`, in the lowest bits, and
+    /// distances before which it does not.
     ///
-    /// Never without a box with a point on the ray.
+    /// Never omits a box that contains a point of the ray.
     #[inline(always)]
     pub fn enters(&self, planes: &Planes, t_max: f32) -> (u32, F32x8) {
         let mut near = F32x8::splat(0.0);
@@ -165,7 +165,7 @@ fn inverse<L: Lanes>(direction: L) -> L {
     L::splat(1.0) / kept
 }
 
-/// The factor and the term that make a near distance of a plane's coordinate.
+/// Returns the factor and the term that turn a plane's coordinate into a near distance.
 #[inline(always)]
 fn near<L: Lanes>(inverse: L, origin: L) -> [L; 2] {
     let sooner = inverse * L::splat(SOONER);
@@ -173,7 +173,7 @@ fn near<L: Lanes>(inverse: L, origin: L) -> [L; 2] {
     [sooner, -(shift + shift.abs() * L::splat(SLACK))]
 }
 
-/// The same for a far distance.
+/// Returns the factor and the term that turn a plane's coordinate into a far distance.
 #[inline(always)]
 fn far<L: Lanes>(inverse: L, origin: L) -> [L; 2] {
     let shift = origin * inverse;

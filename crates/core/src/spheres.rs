@@ -1,5 +1,4 @@
-//! Spheres as rays meet them: columns of centers and radii, single precision, in blocks of
-//! [`LEAF`] rows.
+//! Spheres in columns: centers and radii in single precision, in blocks of [`LEAF`] rows.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -7,7 +6,7 @@ use rayon::prelude::*;
 /// Spheres of a block, which is a leaf of the tree: one row of lanes for each column.
 pub const LEAF: usize = 8;
 
-/// So many rows are worth a task.
+/// Number of rows that are worth a task.
 const TASK: usize = 1 << 12;
 
 /// The columns of [`LEAF`] spheres side by side, so that a leaf is two lines of cache.
@@ -34,10 +33,10 @@ impl SphereBlock {
 pub struct Spheres {
     /// Centers and radii. The last block may have room left.
     blocks: Vec<SphereBlock>,
-    /// Place in the user's order, which the rows leave when the tree is built; of two spheres at
-    /// the same distance the one with the lower id is hit.
+    /// Place in the user's order; rows are permuted when the tree is built. Of two spheres at the same
+    /// distance the one with the lower id is hit.
     pub id: Vec<u32>,
-    /// What centers and radii are exactly, if the columns could not hold it; empty otherwise.
+    /// Exact centers and radii, if the single-precision columns cannot hold them; empty otherwise.
     pub precise: Vec<(DVec3, f64)>,
 }
 
@@ -45,7 +44,7 @@ impl Spheres {
     /// The most spheres there can be: the last few numbers of 32 bits mean something else.
     pub const MAX: usize = (u32::MAX - 16) as usize;
 
-    /// Spheres in the order given, which becomes their id.
+    /// Returns spheres in the given order, which becomes their id.
     ///
     /// # Panics
     /// If the columns differ in length.
@@ -57,7 +56,7 @@ impl Spheres {
         spheres
     }
 
-    /// No spheres, with room for as many.
+    /// Returns no spheres, with capacity for `count`.
     pub fn with_capacity(count: usize) -> Self {
         Self {
             blocks: Vec::with_capacity(count.div_ceil(LEAF)),
@@ -66,7 +65,7 @@ impl Spheres {
         }
     }
 
-    /// Of `count` rows: center and radius, and the id. `precise` is left empty.
+    /// Returns `count` spheres; `row` gives center and radius, and the id. `precise` stays empty.
     pub fn from_rows(count: usize, row: impl Fn(usize) -> ([f32; 4], u32) + Sync) -> Self {
         let block = |first: usize| {
             let mut block = SphereBlock::EMPTY;
@@ -85,7 +84,7 @@ impl Spheres {
         }
     }
 
-    /// Of blocks and the ids of their rows. `None` if a row has no sphere, or one that is not finite, or
+    /// Returns the spheres of blocks, with the ids of their rows; `None` if a row has no sphere, or one that is not finite, or
     /// if rows are left over.
     pub fn from_blocks(blocks: Vec<SphereBlock>, id: Vec<u32>) -> Option<Self> {
         if blocks.len() != id.len().div_ceil(LEAF) {
@@ -161,9 +160,9 @@ impl Spheres {
         (self.center(i).to_array().map(f32::to_bits), self.radius(i).to_bits())
     }
 
-    /// For each of some spheres the one that is hit in its place: of those that coincide the first
-    /// of the user's. In the order of [`Spheres::key`], without repetition; not all are of the rows
-    /// given.
+    /// Returns, for each of some spheres, the one that is hit in its place: of spheres that coincide, the
+    /// first in the user's order. Sorted by [`Spheres::key`], without repetition; some may not be among
+    /// the given rows.
     pub fn first_of_equals(&self, rows: impl Iterator<Item = u32>) -> Vec<u32> {
         let mut firsts: Vec<_> = rows.map(|row| (self.key(row as usize), row)).collect();
         if firsts.is_empty() {

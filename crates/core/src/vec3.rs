@@ -30,7 +30,7 @@ impl<T> Vec3<T> {
 }
 
 impl<L: Lanes> Vec3<L> {
-    /// The same three numbers in every lane.
+    /// Returns the vector with the same coordinates in every lane.
     #[inline(always)]
     pub fn splat(x: f32, y: f32, z: f32) -> Self {
         Self { x: L::splat(x), y: L::splat(y), z: L::splat(z) }
@@ -82,7 +82,7 @@ impl<L: Lanes> Vec3<L> {
         self.x.max(self.y).max(self.z)
     }
 
-    /// The same direction with length 1.
+    /// Returns the direction with length 1.
     #[inline(always)]
     pub fn normalize(self) -> Self {
         self * (L::splat(1.0) / self.dot(self).sqrt())
@@ -90,7 +90,7 @@ impl<L: Lanes> Vec3<L> {
 }
 
 impl Vec3<F32x16> {
-    /// The same in two rows of double precision.
+    /// Returns the vector in two rows of double precision.
     #[inline(always)]
     pub fn halves(self) -> [Vec3<F64x8>; 2] {
         let Vec3 { x: [x, x2], y: [y, y2], z: [z, z2] } = self.map(widen);

@@ -1,4 +1,4 @@
-//! Where readers put particles: columns that grow, and nothing that a file only claims.
+//! Builds a frame: columns that grow with the rows, never with a count that a file claims.
 
 use super::Format;
 use super::categories::{Codebook, Kind};
@@ -245,7 +245,7 @@ impl Builder {
         bytes as u64
     }
 
-    /// What was read.
+    /// Returns the frame.
     pub(crate) fn finish(mut self) -> ParticleFrame {
         forget_elements(&mut self.frame.kinds, self.schema.naming);
         for extra in self.extras {

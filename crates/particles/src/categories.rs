@@ -30,7 +30,7 @@ impl Codes {
         }
     }
 
-    /// Whether there is no row.
+    /// Whether it has no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -109,7 +109,7 @@ pub(crate) fn pick<T: Copy>(column: &mut Vec<T>, rows: &[u32]) {
     }
 }
 
-/// What particles of one type have in common.
+/// A type of particles: its name and element.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Kind {
     /// As the file calls it: a symbol, the name of an atom, a type's name or number.
@@ -155,7 +155,7 @@ impl Kinds {
 /// A column of texts: row `i` of `codes` is the place of particle `i`'s text in `names`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextColumn {
-    /// What the column is called.
+    /// The column's name.
     pub name: String,
     /// The different texts, in the order in which they come first.
     pub names: Vec<String>,

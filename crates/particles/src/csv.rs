@@ -215,7 +215,7 @@ pub(crate) fn header_names(line: &[u8]) -> Vec<String> {
     fields.map(|field| String::from_utf8_lossy(field.trim_ascii()).into_owned()).collect()
 }
 
-/// What stands between columns: the one that is there most often.
+/// Returns the separator of columns: the most frequent candidate.
 fn separator(header: &[u8]) -> u8 {
     let count = |separator: &u8| header.split(|byte| byte == separator).count();
     // Of equals the last wins: a comma, where there is none of any.

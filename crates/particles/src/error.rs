@@ -14,11 +14,11 @@ const LONGEST: usize = 600;
 pub struct FileError {
     /// The faulty file.
     pub path: PathBuf,
-    /// What is wrong, one sentence without a full stop.
+    /// The message: one sentence without a full stop.
     pub message: String,
-    /// What to write instead, where that can be told.
+    /// Advice: what to write instead, if known.
     pub help: Option<String>,
-    /// Where in the file; `None` if the whole file is meant.
+    /// The place in the file; `None` if the error concerns the whole file.
     pub place: Option<Box<Place>>,
     /// True if the file ends before what it announces: it is cut off, or still being written.
     pub cut_off: bool,
@@ -58,7 +58,7 @@ impl FileError {
         Self { place: Some(Box::new(place)), ..Self::whole_file(path, message) }
     }
 
-    /// The same error with what to write instead.
+    /// Returns the error with advice.
     #[must_use]
     pub fn with_help(self, help: impl Into<String>) -> Self {
         Self { help: Some(clipped(help)), ..self }

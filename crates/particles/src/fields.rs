@@ -1,6 +1,6 @@
 //! Lines cut into fields.
 
-/// Which bytes stand between fields.
+/// The separators of fields.
 type Separators = [bool; 256];
 
 const BLANKS: Separators = set(b" \t\r\x0B\x0C");
@@ -24,13 +24,13 @@ pub(crate) struct Fields<'l> {
 }
 
 impl<'l> Fields<'l> {
-    /// What stands between blanks.
+    /// Returns the fields between blanks.
     #[inline]
     pub(crate) fn blanks(line: &'l [u8]) -> Self {
         Self { rest: line, separators: &BLANKS }
     }
 
-    /// What stands between blanks, commas and semicolons, before a `#`.
+    /// Returns the fields between blanks, commas and semicolons, before a `#`.
     #[inline]
     pub(crate) fn marks(line: &'l [u8]) -> Self {
         let end = memchr::memchr(b'#', line).unwrap_or(line.len());

@@ -60,14 +60,14 @@ const MAGICS: [(usize, &[u8], &str, &str); 26] = [
     (
         0,
         b"spherule-prepared\n",
-        "a scene that was prepared for rendering",
+        "a prepared scene",
         "render it: spherule render {file} -o {stem}.png; or name the file that it was made of",
     ),
     (
         0,
         b"spherule-checkpoint\n",
-        "a render that Spherule keeps, not a scene",
-        "go on with it: spherule render --resume {file}; or put parts together with spherule merge",
+        "a checkpoint or a part of a render, not a scene",
+        "resume it: spherule render --resume {file}; or merge parts: spherule merge",
     ),
     (
         0,
@@ -492,7 +492,7 @@ mod tests {
             ),
             (b"PAR1\0\0".to_vec(), ["Parquet", "read_parquet('run.bin')"]),
             (b"spherule-prepared\n\0".to_vec(), ["prepared", "render run.bin -o run.png"]),
-            (b"spherule-checkpoint\n\0".to_vec(), ["render that", "--resume run.bin"]),
+            (b"spherule-checkpoint\n\0".to_vec(), ["a checkpoint", "--resume run.bin"]),
         ] {
             let found = named(&content, "data/run.bin").replace("data/", "");
             assert!(words.iter().all(|word| found.contains(word)), "{words:?}: {found}");

@@ -1,4 +1,4 @@
-//! What a frame of a file of particles holds, in columns.
+//! A frame of particles, in columns.
 
 use super::categories::{Kinds, TextColumn, pick};
 use super::options::{Format, Role};
@@ -41,24 +41,24 @@ pub struct ParticleFrame {
     pub step: Option<i64>,
     /// The time of the simulation in the file's own unit, if the file tells it.
     pub time: Option<f64>,
-    /// What a length of 1 is.
+    /// Unit of lengths.
     pub unit: LengthUnit,
-    /// How the file is written.
+    /// Format of the file.
     pub format: Format,
-    /// What was assumed or passed over: one sentence each.
+    /// Assumptions and omissions: one sentence each.
     pub warnings: Vec<String>,
 }
 
 /// A column of numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NumberColumn {
-    /// What the file calls it.
+    /// The name in the file.
     pub name: String,
     /// One for each particle; NaN where the file has none.
     pub values: Vec<f64>,
 }
 
-/// What a length of 1 is in a file.
+/// Unit of lengths in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthUnit {
     /// The file does not say, or lengths are reduced.
@@ -92,7 +92,7 @@ impl LengthUnit {
         }
     }
 
-    /// What it is called.
+    /// The unit's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Unknown => "unknown",
@@ -112,7 +112,7 @@ impl ParticleFrame {
         self.x.len()
     }
 
-    /// Whether there is none.
+    /// Whether it has no particles.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }

@@ -27,7 +27,7 @@ const VELOCITIES: [&str; 3] = ["vx", "vy", "vz"];
 /// The first of them, among all columns.
 const VELOCITY: usize = 7;
 
-/// Where positions begin.
+/// The byte of a row at which positions begin.
 const POSITION: usize = 20;
 
 /// Reads frames of a GRO file.

@@ -70,6 +70,10 @@ mod units;
 mod utf16;
 mod xyz;
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 pub use categories::{Codes, Kind, Kinds, TextColumn};
 pub use cell::Cell;
 pub use element::Element;
@@ -86,7 +90,7 @@ pub type Rgb = glam::Vec3;
 /// Maximum number of particles in a frame: the last few numbers of 32 bits have other meanings.
 pub const MAX_PARTICLES: u64 = (1 << 32) - 17;
 
-/// What the renderer needs beside the public interface. Anything here may change in any release.
+/// Items for the renderer. Anything here may change in any release.
 #[doc(hidden)]
 pub mod internals {
     /// Names of columns that stand for each other.

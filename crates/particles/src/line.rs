@@ -56,12 +56,12 @@ impl<'l> Line<'l> {
         String::from_utf8_lossy(self.bytes)
     }
 
-    /// What stands between blanks.
+    /// Returns the fields between blanks.
     pub(crate) fn fields(&self) -> Fields<'l> {
         Fields::blanks(self.bytes)
     }
 
-    /// Whether there is nothing but blanks.
+    /// Whether the line is blank.
     pub(crate) fn is_blank(&self) -> bool {
         self.bytes.trim_ascii().is_empty()
     }

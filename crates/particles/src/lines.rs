@@ -12,20 +12,20 @@ use std::sync::Arc;
 /// Longest line in bytes: a longer one is a sign that the file is not text.
 pub(crate) const LONGEST: usize = 1 << 20;
 
-/// How much is read at once; the rest of a line moves to the front before each read.
+/// Bytes that are read at once; the rest of a line moves to the front before each read.
 const BLOCK: usize = 1 << 18;
 
 /// A file's lines, one at a time.
 pub(crate) struct Lines {
     path: Arc<Path>,
     reader: Box<dyn Read + Send>,
-    /// What is read and not yet passed is `start..end`.
+    /// `start..end` of the buffer is read and not yet consumed.
     buffer: Vec<u8>,
     start: usize,
     end: usize,
     ended: bool,
     number: usize,
-    /// Where the last line began, and whether it ended with a carriage return.
+    /// The offset of the last line, and whether it ended with a carriage return.
     last: usize,
     returned: bool,
 }
@@ -63,7 +63,7 @@ impl Lines {
         Ok(Some(Line::new(&self.path, self.number, &self.buffer[range])))
     }
 
-    /// How the line that came last ended.
+    /// Returns the line ending of the last line.
     pub(crate) fn ending(&self) -> &'static [u8] {
         if self.returned { b"\r\n" } else { b"\n" }
     }

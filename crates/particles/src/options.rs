@@ -1,10 +1,10 @@
-//! How to read a file of particles.
+//! Options of readers: format, columns, frame, radii.
 
 use super::progress::ReadProgress;
 use crate::suggest;
 use std::str::FromStr;
 
-/// How a file of particles is written.
+/// Format of a particle file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
     /// A row `x y z` or `x y z radius` for each particle, or either with an id before it, with
@@ -57,13 +57,13 @@ impl Format {
         ("npz", Self::Npz),
     ];
 
-    /// What scene files and commands call it.
+    /// The name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, format)| *format == self).map_or("", |(name, _)| name)
     }
 }
 
-/// Which frame of a file with many.
+/// Choice of a frame in a file with several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameChoice {
     /// This one; the first is 0, as in OVITO.
@@ -94,7 +94,7 @@ impl FromStr for FrameChoice {
     }
 }
 
-/// Where radii come from.
+/// Source of radii.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Radii {
     /// The file's; where it has none, van der Waals radii of elements; where it has no elements
@@ -137,7 +137,7 @@ impl FromStr for Radii {
     }
 }
 
-/// What a column is to a particle.
+/// The role of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// The position's x.
@@ -182,7 +182,7 @@ impl Role {
 /// their numbers, from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
-    /// What some columns are, instead of what their names tell.
+    /// Roles of columns that override those of their names.
     pub roles: Vec<(Role, String)>,
     /// Columns to be kept as [`ParticleFrame::numbers`](super::ParticleFrame::numbers) or
     /// [`texts`](super::ParticleFrame::texts).
@@ -217,16 +217,16 @@ impl FromStr for Columns {
     }
 }
 
-/// How to read a file of particles.
+/// Options for reading a particle file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadOptions {
     /// `None`: told from the content.
     pub format: Option<Format>,
-    /// Which columns are what, and which are kept.
+    /// Roles of columns, and columns to keep.
     pub columns: Columns,
-    /// Which frame.
+    /// The frame to read.
     pub frame: FrameChoice,
-    /// Where radii come from.
+    /// Source of radii.
     pub radii: Radii,
     /// Factor on all radii, more than 0.
     pub radius_scale: f64,

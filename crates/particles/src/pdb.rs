@@ -55,7 +55,7 @@ const TEXTS: [&str; 10] = [
     "charge",
 ];
 
-/// How records begin by which a PDB file is told.
+/// The first words of records by which a PDB file is recognized.
 const RECORDS: [&[u8]; 18] = [
     b"HEADER", b"OBSLTE", b"TITLE ", b"COMPND", b"SOURCE", b"KEYWDS", b"EXPDTA", b"AUTHOR",
     b"REMARK", b"CRYST1", b"ORIGX1", b"SCALE1", b"MODEL ", b"ATOM  ", b"HETATM", b"SPLIT ",
@@ -72,7 +72,7 @@ pub(crate) struct Pdb {
     title: String,
 }
 
-/// What a record is to a reader of atoms.
+/// The meaning of a record to a reader of atoms.
 enum Record {
     Atom,
     Cell,
@@ -272,7 +272,7 @@ fn alternate(line: &[u8]) -> AlternateAtom<'_> {
     }
 }
 
-/// What tells the type of an atom: name, residue and element, as they stand.
+/// The fields that define the type of an atom: name, residue and element, as they stand.
 fn key(line: &[u8]) -> [u8; 10] {
     let mut key = [b' '; 10];
     for (to, from) in (12..16).chain(17..21).chain(76..78).enumerate() {

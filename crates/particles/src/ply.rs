@@ -31,14 +31,14 @@ impl Ply {
     }
 }
 
-/// What stands before the numbers.
+/// The header.
 struct Header {
     /// The order of bytes; `None` for text.
     order: Option<Order>,
     elements: Vec<Element>,
     title: String,
     lines: u64,
-    /// Where the numbers begin.
+    /// Offset of the numbers.
     end: usize,
 }
 
@@ -215,7 +215,7 @@ fn text(lines: &mut Lines, vertex: &Element, builder: &mut Builder) -> Result<()
     Ok(())
 }
 
-/// What follows the header of a binary file.
+/// The elements after the header of a binary file.
 struct Binary<'p, R> {
     reader: R,
     order: Order,

@@ -166,7 +166,7 @@ impl FrameCount {
     }
 }
 
-/// How many frames a file holds that are not cut off.
+/// Number of complete frames in a file.
 ///
 /// # Errors
 ///

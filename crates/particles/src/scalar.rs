@@ -15,7 +15,7 @@ pub(crate) enum Scalar {
     F64,
 }
 
-/// Which byte of a number comes first.
+/// Byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
     /// The least.

@@ -1,4 +1,4 @@
-//! Which column of a file is what.
+//! Roles of a file's columns.
 
 use super::aliases;
 use super::frame::LengthUnit;
@@ -6,7 +6,7 @@ use super::options::{Radii, ReadOptions, Role};
 use super::units;
 use crate::suggest;
 
-/// What a column is for.
+/// The use of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Slot {
     /// Nothing.
@@ -23,7 +23,7 @@ pub(crate) enum Slot {
     Extra(usize),
 }
 
-/// How names of types become elements.
+/// The rule by which names of types become elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Naming {
     /// Symbols, or atomic numbers.
@@ -51,7 +51,7 @@ const USUAL: [(Role, &[&str]); 10] = [
     (Role::Material, &["material"]),
 ];
 
-/// What every column of a file is for.
+/// The uses of all columns of a file.
 #[derive(Debug)]
 pub(crate) struct Schema {
     /// One for each column, up to the last that is for something.
@@ -79,12 +79,12 @@ impl Schema {
     ///
     /// # Errors
     ///
-    /// What is missing.
+    /// Names the missing columns.
     pub(crate) fn new(names: Vec<String>, options: &ReadOptions) -> Result<Self, String> {
         Self::with_roles(names, options, &[])
     }
 
-    /// The same, where the format knows more about some columns than their names.
+    /// Finds roles as [`Schema::new`] does, with roles that the format defines.
     pub(crate) fn with_roles(
         names: Vec<String>,
         options: &ReadOptions,
@@ -221,7 +221,7 @@ fn roles(names: &[String], slots: &[Slot], size: Role) -> Vec<(Role, String)> {
     columns.filter_map(|(name, slot)| Some((role(slot)?, name.clone()))).collect()
 }
 
-/// What columns are chosen from.
+/// The columns of a file, and the options by which roles are assigned.
 struct Choice<'c> {
     names: &'c [String],
     options: &'c ReadOptions,

@@ -1,4 +1,4 @@
-//! What kind of file this is, told from how it begins.
+//! Recognizes the format of a file by its first bytes and lines.
 
 use super::fields::Fields;
 use super::foreign::{self, Foreign};
@@ -7,7 +7,7 @@ use super::source::Source;
 use super::{cif, gro, gsd, header, number, numpy, pdb, ply, units, utf16};
 use crate::FileError;
 
-/// What the formats are that can be told.
+/// The formats that can be recognized.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
                      of crystals, GSD, PLY and arrays of NumPy; of others, name the format, as in --format xyz, \

@@ -48,7 +48,7 @@ impl Comments {
     }
 }
 
-/// What the columns are of rows without a header.
+/// Roles of the columns of rows without a header.
 #[derive(Debug, PartialEq)]
 struct Layout {
     columns: usize,

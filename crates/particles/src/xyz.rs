@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Most columns that `Properties` may name.
 const COLUMNS: usize = 10_000;
 
-/// What columns of extended XYZ are, besides what their names tell.
+/// Roles of extended XYZ's columns that their names do not tell.
 const KNOWN: [(Role, &str); 6] = [
     (Role::X, "pos_x"),
     (Role::Y, "pos_y"),
@@ -129,7 +129,7 @@ fn plain(line: &Line, options: &ReadOptions) -> Result<Schema, FileError> {
     Schema::new(names, options).map_err(|error| line.whole(error))
 }
 
-/// What the second line of a frame says.
+/// Contents of the second line of a frame.
 struct Comment {
     title: String,
     cell: Option<Cell>,

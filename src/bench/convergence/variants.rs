@@ -120,7 +120,7 @@ fn several_lights(scene: &NamedScene) -> Result<Option<Case>, BenchError> {
 fn caustics(scene: &NamedScene) -> Result<Option<Case>, BenchError> {
     let by_path = |scene: &mut Scene| scene.settings.integrator = Integrator::Path;
     let scene = changed(scene, "caustics", by_path);
-    Ok((!scene.world()?.casters.is_empty()).then_some(Case { scene, variants: &CAUSTICS }))
+    Ok((!scene.world()?.caustic_casters.is_empty()).then_some(Case { scene, variants: &CAUSTICS }))
 }
 
 fn direct(scene: &NamedScene) -> Case {

@@ -9,7 +9,7 @@ use super::rounds::Times;
 use super::scenes::{FIELD, NamedScene};
 use super::{BenchError, Options, Tell};
 use crate::image::Image;
-use crate::render::{self, RenderError, Skips, render};
+use crate::render::{self, Elisions, RenderError, render};
 use crate::report::Report;
 use crate::scene::{EnvironmentMap, Integrator, Material, Rgb, Scene};
 use crate::world::World;
@@ -28,7 +28,7 @@ struct Saving {
     about: &'static str,
     scene: &'static str,
     change: fn(&mut Scene),
-    without: Skips,
+    without: Elisions,
 }
 
 const SAVINGS: [Saving; 7] = [
@@ -37,49 +37,49 @@ const SAVINGS: [Saving; 7] = [
         about: "no tests against spheres where the tile sees none",
         scene: FIELD,
         change: |_| (),
-        without: Skips { empty_tiles: false, ..Skips::ALL },
+        without: Elisions { empty_tiles: false, ..Elisions::ALL },
     },
     Saving {
         name: "even background",
         about: "no paths where the tile sees one color, in the field without ground and sun",
         scene: FIELD,
         change: floating,
-        without: Skips { even_background: false, ..Skips::ALL },
+        without: Elisions { even_background: false, ..Elisions::ALL },
     },
     Saving {
         name: "no lens",
         about: "no samples of a lens, in the field through a pinhole",
         scene: FIELD,
         change: |scene| scene.camera.lens = None,
-        without: Skips { lens: false, ..Skips::ALL },
+        without: Elisions { lens: false, ..Elisions::ALL },
     },
     Saving {
         name: "no lights",
         about: "no samples of lights, in the field without its sun",
         scene: FIELD,
         change: |scene| scene.lights.clear(),
-        without: Skips { lights: false, ..Skips::ALL },
+        without: Elisions { lights: false, ..Elisions::ALL },
     },
     Saving {
         name: "no plane",
         about: "no tests against a ground, in the field without one",
         scene: FIELD,
         change: |scene| scene.ground = None,
-        without: Skips { plane: false, ..Skips::ALL },
+        without: Elisions { plane: false, ..Elisions::ALL },
     },
     Saving {
         name: "no glass",
         about: "no lists of the glass that paths are in, in the field with chalk for glass",
         scene: FIELD,
         change: chalk_for_glass,
-        without: Skips { glass: false, ..Skips::ALL },
+        without: Elisions { glass: false, ..Elisions::ALL },
     },
     Saving {
         name: "any occluder",
         about: "shadow rays end at the first sphere found, whether or not it is the nearest",
         scene: "paper-field-20",
         change: |scene| scene.settings.integrator = Integrator::Whitted { shadow_samples: 4 },
-        without: Skips { nearest_occluder: false, ..Skips::ALL },
+        without: Elisions { nearest_occluder: false, ..Elisions::ALL },
     },
 ];
 
@@ -144,8 +144,8 @@ fn of_saving(
     let world = scene.world()?;
     let mut first: Option<Image> = None;
     let times = Times::by_turns(options.rounds, 2, |contestant| {
-        let skips = if contestant == 0 { Skips::ALL } else { saving.without };
-        let (seconds, image) = draw(&world, &scene, skips)?;
+        let elisions = if contestant == 0 { Elisions::ALL } else { saving.without };
+        let (seconds, image) = draw(&world, &scene, elisions)?;
         if *first.get_or_insert_with(|| image.clone()) == image {
             return Ok(seconds);
         }
@@ -156,8 +156,12 @@ fn of_saving(
     Ok(Outcome { name, about: (*about).to_owned(), scene: scene.stem(), times })
 }
 
-fn draw(world: &World, scene: &NamedScene, skips: Skips) -> Result<(f64, Image), RenderError> {
-    let options = render::Options { skips, ..render::Options::default() };
+fn draw(
+    world: &World,
+    scene: &NamedScene,
+    elisions: Elisions,
+) -> Result<(f64, Image), RenderError> {
+    let options = render::Options { elisions, ..render::Options::default() };
     let render = render(world, &scene.scene.settings, &options)?;
     Ok((render.elapsed.as_secs_f64(), render.image))
 }
@@ -179,7 +183,7 @@ mod tests {
     #[test]
     fn every_saving_is_measured_once() {
         for (i, one) in SAVINGS.iter().enumerate() {
-            assert_ne!(one.without, Skips::ALL);
+            assert_ne!(one.without, Elisions::ALL);
             assert!(SAVINGS[..i].iter().all(|other| other.without != one.without));
         }
     }

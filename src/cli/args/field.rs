@@ -1,4 +1,4 @@
-//! What is said of scenes that are generated.
+//! Arguments of `spherule field`.
 
 use crate::cli::values::{self, Radii};
 use clap::ValueEnum;
@@ -6,16 +6,16 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub(in crate::cli) struct FieldArgs {
-    /// What to generate
+    /// Kind of scene
     #[arg(value_enum, default_value_t = Kind::Field)]
     pub(in crate::cli) kind: Kind,
-    /// The scene: a name that ends in .toml; the spheres go to a .csv file of the same name
+    /// Output scene, a name that ends in .toml; the spheres are written to a .csv file of the same name
     #[arg(short, long, value_name = "FILE.toml")]
     pub(in crate::cli) output: PathBuf,
-    /// Seed of all random numbers
+    /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(in crate::cli) seed: u64,
-    /// Nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(in crate::cli) quiet: bool,
     #[command(flatten)]
@@ -27,46 +27,46 @@ pub(in crate::cli) struct FieldArgs {
 pub(in crate::cli) enum Kind {
     /// N x N equal spheres on a plane
     Grid,
-    /// N x N random spheres on a plane: what `spherule render` shows when it is given no scene
+    /// N x N random spheres on a plane, as `spherule render` shows without a scene
     Field,
     /// N random spheres in a cube
     Volume,
-    /// A crystal, face-centered cubic, of N x N x N cells of four spheres
+    /// Face-centered cubic crystal of N x N x N cells of four spheres
     Lattice,
     /// Haines' sphereflake
     Sphereflake,
-    /// The last scene of "Ray Tracing in One Weekend"
+    /// Final scene of "Ray Tracing in One Weekend"
     Weekend,
 }
 
-/// Parameters of the generators; each belongs to some of the kinds.
+/// Parameters of the generators; each applies to some of the kinds.
 #[derive(Debug, Default, clap::Args)]
-#[command(next_help_heading = "Parameters; without them, the kind's own")]
+#[command(next_help_heading = "Parameters [default for each kind]")]
 pub(in crate::cli) struct ParameterArgs {
     /// grid, field: spheres along each side [20]; volume: spheres [10000]; lattice: cells along
     /// each edge [10]
     #[arg(long, value_name = "N")]
     pub(in crate::cli) count: Option<u64>,
-    /// grid [0.4], lattice, sphereflake [0.5]: one radius; field [0.1,0.45], volume: least and
-    /// greatest
+    /// grid [0.4], lattice, sphereflake [0.5]: radius of all spheres; field [0.1,0.45], volume: minimum and
+    /// maximum radius
     #[arg(long, value_name = "R|MIN,MAX", allow_hyphen_values = true, value_parser = values::radii)]
     pub(in crate::cli) radius: Option<Radii>,
     /// grid: distance between neighboring centers [1]
     #[arg(long, value_name = "DISTANCE", value_parser = values::finite)]
     pub(in crate::cli) spacing: Option<f64>,
-    /// field: shares of diffuse, metal and glass spheres [0.68,0.2,0.12]
+    /// field: fractions of diffuse, metal and glass spheres [0.68,0.2,0.12]
     #[arg(long, value_name = "D,M,G", allow_hyphen_values = true, value_parser = values::mix)]
     pub(in crate::cli) mix: Option<[f64; 3]>,
-    /// field [true], volume [false]: whether each sphere has its own color
+    /// field [true], volume [false]: give each sphere its own color
     #[arg(long, value_name = "BOOL")]
     pub(in crate::cli) colors: Option<bool>,
-    /// volume: edge of the cube [the cube root of N]
+    /// volume: edge length of the cube [the cube root of N]
     #[arg(long, value_name = "LENGTH", value_parser = values::finite)]
     pub(in crate::cli) size: Option<f64>,
-    /// lattice: thermal displacement, in distances between neighbors [0]
+    /// lattice: standard deviation of the thermal displacement, in nearest-neighbor distances [0]
     #[arg(long, value_name = "DEVIATION", value_parser = values::finite)]
     pub(in crate::cli) jitter: Option<f64>,
-    /// sphereflake: generations of children [4]
+    /// sphereflake: recursion depth [4]
     #[arg(long, value_name = "N")]
     pub(in crate::cli) level: Option<u32>,
 }

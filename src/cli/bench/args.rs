@@ -1,4 +1,4 @@
-//! The command as typed.
+//! Arguments of `spherule bench`.
 
 use crate::cli::threads;
 use crate::cli::values::{SAMPLES, THREADS};
@@ -14,38 +14,38 @@ pub(in crate::cli) struct Args {
     pub(super) measurement: Measurement,
 }
 
-/// What is measured.
+/// Benchmarks.
 #[derive(Debug, Subcommand)]
 pub(super) enum Measurement {
-    /// Finding what rays hit: every walk, for four classes of rays
+    /// Ray traversal: every algorithm, for four classes of rays
     #[command(after_help = TRAVERSAL)]
     Traversal(Common),
-    /// What more threads bring, and what one generator of random numbers for all of them costs
+    /// Scaling with threads, and the cost of a shared random number generator
     #[command(after_help = THREADS_EXAMPLES)]
     Threads(ThreadsArgs),
-    /// Building trees: time, memory and quality of each builder
+    /// BVH construction: time, memory and quality of each builder
     #[command(after_help = BUILD)]
     Build(Common),
-    /// What is saved by leaving out what a scene does not need
+    /// Time saved by skipping work that a scene does not need
     #[command(after_help = SKIPS)]
     Skips(Common),
-    /// Error against time and samples, for sets of settings
+    /// Error over time and samples, for sets of settings
     #[command(after_help = ERROR)]
     Error(Common),
-    /// The paper's tables and its figure 3, its tracer beside this program
+    /// Tables and figure 3 of the paper, with its ray tracer next to this program
     #[command(after_help = PAPER)]
     Paper(PaperArgs),
-    /// Russian roulette: error against time for each probability, in the paper's tracer and here
+    /// Russian roulette: error over time for each probability, in the paper's ray tracer and here
     #[command(after_help = ROULETTE)]
     Roulette(Common),
-    /// All of these, on one page: report.html
+    /// All of these, in one page: report.html
     #[command(after_help = EVERYTHING)]
     All(Common),
 }
 
 #[derive(Debug, clap::Args)]
 pub(super) struct ThreadsArgs {
-    /// Compare 1 to N threads [default: as --threads]
+    /// Measure with 1 to N threads [default: as --threads]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=256))]
     threads_up_to: Option<u16>,
     #[command(flatten)]
@@ -53,36 +53,36 @@ pub(super) struct ThreadsArgs {
 }
 
 impl ThreadsArgs {
-    /// What is asked of the measurement.
+    /// Options for the benchmark.
     pub(super) fn options(&self) -> Options {
-        let usual = self.common.options();
-        let threads = self.threads_up_to.map_or(usual.threads, usize::from);
-        Options { threads, ..usual }
+        let default = self.common.options();
+        let threads = self.threads_up_to.map_or(default.threads, usize::from);
+        Options { threads, ..default }
     }
 }
 
-/// What all measurements take.
+/// Arguments of all benchmarks.
 #[derive(Debug, clap::Args)]
 pub(super) struct Common {
-    /// Scenes [default: the measurement's own]
+    /// Scenes [default: those of the benchmark]
     #[arg(long, value_name = "NAME", num_args = 1..)]
     scenes: Vec<String>,
-    /// How often each contestant has its turn
+    /// Number of runs of each candidate
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = value_parser!(u32).range(1..=1000))]
     rounds: u32,
-    /// Threads [default: what the affinity mask and the control group's quota allow]
+    /// Number of threads [default: as the CPU affinity mask and the cgroup's quota allow]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(THREADS))]
     pub(super) threads: Option<u16>,
-    /// The folder for CSV, JSON, SVG, PNG and HTML; it is made if it is not there
+    /// Output folder for CSV, JSON, SVG, PNG and HTML files; created if it does not exist
     #[arg(short, long, value_name = "FOLDER", default_value = "bench")]
     pub(super) output: PathBuf,
-    /// A second instead of a minute: only whether it runs
+    /// Run for a second instead of a minute, only to check that the benchmark works
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// Everything, for as long as it takes
+    /// Run at full scale, without a time limit
     #[arg(long)]
     full: bool,
-    /// Nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(super) quiet: bool,
 }
@@ -91,16 +91,16 @@ pub(super) struct Common {
 pub(super) struct PaperArgs {
     #[command(flatten)]
     pub(super) common: Common,
-    /// Pixels along each side; the paper has 512 [default: 64, --full: 512]
+    /// Image width and height in pixels; the paper has 512 [default: 64, with --full: 512]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(8..=4096))]
     size: Option<u32>,
-    /// Samples in each pixel; the paper has 16 [default: 4, --full: 16]
+    /// Samples per pixel; the paper has 16 [default: 4, with --full: 16]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(SAMPLES))]
     spp: Option<u32>,
 }
 
 impl PaperArgs {
-    /// What is asked of the measurement.
+    /// Options for the benchmark.
     pub(super) fn options(&self) -> Options {
         let scale = Scale { size: self.size, spp: self.spp };
         Options { scale, ..self.common.options() }
@@ -108,17 +108,17 @@ impl PaperArgs {
 }
 
 impl Common {
-    /// Whether scenes are named.
+    /// Returns whether scenes were given.
     pub(super) fn has_scenes(&self) -> bool {
         !self.scenes.is_empty()
     }
 
-    /// Files that the scenes read.
+    /// Files that the scenes include.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         self.scenes.iter().flat_map(|scene| included_files(Path::new(scene))).collect()
     }
 
-    /// What is asked of a measurement.
+    /// Options for a benchmark.
     pub(super) fn options(&self) -> Options {
         let effort = match (self.quick, self.full) {
             (true, _) => Effort::Quick,
@@ -134,9 +134,9 @@ impl Common {
 }
 
 pub(in crate::cli) const EXAMPLES: &str = "\
-Each measurement prints tables and writes them to a folder, as CSV and JSON, with plots as SVG and
-PNG, and a page with everything. Contestants run by turns; medians are reported, with the least and
-the greatest. Results are compared: a difference is an error.
+Each benchmark prints tables and writes them to a folder as CSV and JSON, with plots as SVG and PNG,
+and an HTML page with everything. Candidates run in turns; the report gives the median, the minimum
+and the maximum. Results are compared: a difference is an error.
 
 Examples:
   spherule bench all
@@ -159,22 +159,22 @@ Examples:
   spherule bench build --scenes layer250k volume1m --threads 1";
 
 const SKIPS: &str = "\
-The picture is the same to the byte with each saving and without it. Converged tiles alone are
-compared otherwise: a picture that ends at an error, and gives samples to the tiles where they help
-most, with one that has as many samples of every pixel and the same error.
+The image is the same, byte for byte, whether work is skipped or not. The exception is adaptive
+sampling: a render that stops at an error and samples tiles where it helps most is compared with a
+render of the same error that takes equally many samples of every pixel.
 
 Examples:
   spherule bench skips
   spherule bench skips --rounds 15 --scenes veach my-scene.toml";
 
 const ERROR: &str = "\
-Compared are, by error against time, samples and rays:
-  in each scene            samplers, roulette, single rays, and samples where they help (adaptive)
-  where there are lights   choices among them: by the tree, by power, all alike (-lights)
-  where paths scatter once path tracing and whitted with 1 to 16 shadow samples (-direct)
-  without --scenes, too    those and ambient occlusion on chalk under a white sky (-sky)
-All of a group lead to the same picture. References are kept in the folder `references` of the output:
-the next run with the same scene, settings and renderer takes them from there.
+Error is measured against time, samples and rays for these groups of settings:
+  every scene               samplers, Russian roulette, single rays, adaptive sampling
+  scenes with lights        light selection: tree, power, uniform (-lights)
+  scenes with one bounce    path tracing, and whitted with 1 to 16 shadow samples (-direct)
+  also without --scenes     these, and ambient occlusion on chalk under a white sky (-sky)
+The settings of a group converge to the same image. Reference images are stored in the output's folder
+`references`; later runs with the same scene, settings and renderer use them again.
 
 Examples:
   spherule bench error
@@ -182,8 +182,8 @@ Examples:
   spherule bench error --full";
 
 const PAPER: &str = "\
-The paper's scenes at its own scale, without a tree, take minutes for each render: --full measures
-that. Otherwise pictures are smaller, which the report says, and times at full scale extrapolated
+At the paper's scale, without an acceleration structure, each render takes minutes: --full measures
+that. Otherwise images are smaller, as the report states, and times at full scale are extrapolated
 where they were measured to be linear.
 
 Examples:

@@ -1,4 +1,4 @@
-//! Where reports go.
+//! The output folder of reports.
 
 use crate::cli::Failure;
 use spherule::atomic::{check_destination, write_atomically};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Suffixes of the files of a report.
 const SUFFIXES: [&str; 4] = ["csv", "json", "svg", "png"];
 
-/// A folder that takes files.
+/// An output folder.
 pub(super) struct Folder(PathBuf);
 
 impl fmt::Display for Folder {
@@ -23,11 +23,10 @@ impl fmt::Display for Folder {
 }
 
 impl Folder {
-    /// Finds out whether files can be written there, and changes nothing: before much time is
-    /// spent on what goes in them.
+    /// Checks that files can be written to a folder, without changing anything, before benchmarks run.
     pub(super) fn new(path: &Path) -> Result<Self, Failure> {
         let probe = if path.is_dir() { path.join("report.json") } else { path.to_owned() };
-        let is_file = || path.is_file().then(|| io::Error::other("it is a file; name a folder"));
+        let is_file = || path.is_file().then(|| io::Error::other("it is a file; give a folder"));
         match check_destination(&probe).err().or_else(is_file) {
             Some(error) => Err(Failure::Write(path.to_owned(), error)),
             None => Ok(Self(path.to_owned())),
@@ -37,8 +36,8 @@ impl Folder {
     /// Checks that reports of these names and their page would replace no file that a scene reads, and no
     /// file but those of earlier reports.
     ///
-    /// The tables and plots of a report are named after it, but all their names are known only when it is
-    /// done. Its JSON, which is written first, tells that they are earlier ones.
+    /// Tables and plots have names that start with the report's, but their full names are known only at the
+    /// end. The report's JSON, which is written first, shows that they are from an earlier run.
     pub(super) fn check_free(
         &self,
         inputs: &[PathBuf],
@@ -53,32 +52,32 @@ impl Folder {
         if let Some(input) = input {
             let (input, folder) = (input.display(), self.0.display());
             let message = format!(
-                "{input}, which a scene reads, lies in {folder}, where a table or a plot could replace \
-                 it; give --output another folder"
+                "{input}, which a scene reads, is in {folder}, where a table or a plot could overwrite it; \
+                 use another folder for --output"
             );
             return Err(Failure::usage("bench", message));
         }
         if page.exists() && !is_own(&page, html::is_page) {
-            return Err(foreign(page));
+            return Err(not_overwritten(page));
         }
         for name in reports {
             let json = self.0.join(format!("{name}.json"));
             if !is_own(&json, Report::is_json) {
                 let found = self.files().into_iter().find(|file| is_of_report(file, name));
-                found.map_or(Ok(()), |file| Err(foreign(file)))?;
+                found.map_or(Ok(()), |file| Err(not_overwritten(file)))?;
             }
         }
         Ok(())
     }
 
-    /// Returns whether a file lies in the folder, whatever leads there.
+    /// Returns whether a file is in the folder, after resolving links.
     fn holds(&self, file: &Path) -> bool {
         let folder = self.0.canonicalize().ok();
         let file = file.canonicalize().ok();
         folder.is_some() && file.as_deref().and_then(Path::parent) == folder.as_deref()
     }
 
-    /// Files of the folder, in the order of their names.
+    /// Files of the folder, sorted by name.
     fn files(&self) -> Vec<PathBuf> {
         let entries = fs::read_dir(&self.0).into_iter().flatten().flatten();
         let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
@@ -86,7 +85,7 @@ impl Folder {
         files
     }
 
-    /// Writes all that reports hold, and the page.
+    /// Writes the reports and the page.
     pub(super) fn write(
         &self,
         page: &str,
@@ -134,9 +133,8 @@ fn is_own(path: &Path, test: impl Fn(&[u8]) -> bool) -> bool {
     path.is_file() && fs::read(path).is_ok_and(|content| test(&content))
 }
 
-fn foreign(path: PathBuf) -> Failure {
-    let why =
-        "it already exists, and bench did not write it; move it, or give --output another folder";
+fn not_overwritten(path: PathBuf) -> Failure {
+    let why = "it already exists, and was not written by bench; move it, or use another folder for --output";
     Failure::Write(path, io::Error::other(why))
 }
 

@@ -1,4 +1,4 @@
-//! `spherule bench`: what the program reaches on the user's own machine.
+//! `spherule bench`: benchmarks on the user's machine.
 
 mod args;
 mod files;
@@ -13,7 +13,7 @@ use spherule::bench::{
 use spherule::report::{Machine, Report};
 use std::process::ExitCode;
 
-/// A measurement: the name of its report, and how it is made.
+/// A benchmark: the name of its report, and its function.
 type Benchmark = (&'static str, fn(&Options, Tell) -> Result<Report, BenchError>);
 
 const TRAVERSAL: Benchmark = ("traversal", traversal::measure);
@@ -24,10 +24,10 @@ const ERROR: Benchmark = ("error", convergence::measure);
 const PAPER: Benchmark = ("paper", paper::measure);
 const ROULETTE: Benchmark = ("roulette", roulette::measure);
 
-/// The measurements of `all`, in their order.
+/// The benchmarks of `all`, in order.
 const ALL: [Benchmark; 7] = [TRAVERSAL, BUILD, THREADS, SKIPS, ERROR, PAPER, ROULETTE];
 
-/// Measures, prints tables, and writes files.
+/// Runs benchmarks, prints tables and writes files.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     match &args.measurement {
         Measurement::Traversal(common) => run_one(common, &common.options(), TRAVERSAL),
@@ -38,7 +38,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         Measurement::Paper(args) => run_one(&args.common, &args.options(), PAPER),
         Measurement::Roulette(common) => run_one(common, &common.options(), ROULETTE),
         Measurement::All(common) if common.has_scenes() => {
-            let message = "--scenes is for single measurements: each has scenes of its own";
+            let message = "--scenes does not apply to `all`; run the benchmarks one by one";
             Err(Failure::usage("bench", message))
         }
         Measurement::All(common) => run_all(common, &common.options(), "report", &ALL),
@@ -49,7 +49,7 @@ fn run_one(common: &Common, options: &Options, benchmark: Benchmark) -> Result<E
     run_all(common, options, benchmark.0, &[benchmark])
 }
 
-/// Runs some measurements, and writes their reports and a page of this name.
+/// Runs benchmarks, and writes their reports and a page of this name.
 fn run_all(
     common: &Common,
     options: &Options,
@@ -63,7 +63,7 @@ fn run_all(
     let pool = cores::pool(count)?;
     let tell = |words: &str| {
         if !common.quiet {
-            output::tell_plain(words);
+            output::print_error_line(words);
         }
     };
     let mut reports = Vec::new();
@@ -76,7 +76,7 @@ fn run_all(
     }
     folder.write(page, &reports, &Machine::this(count))?;
     if !common.quiet {
-        output::note(format_args!("tables, plots and {page}.html are in {folder}"));
+        output::note(format_args!("wrote tables, plots and {page}.html to {folder}"));
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -9,33 +9,32 @@
 use spherule::split::Part;
 use std::fmt;
 
-/// How one scheduler or launcher tells which task this is.
-struct Dialect {
-    /// As its users know it.
+/// Environment variables of a scheduler or launcher.
+struct TaskVariables {
+    /// Name for messages.
     name: &'static str,
-    /// The variable with the number of this task.
+    /// The variable that holds the task's number.
     task: &'static str,
-    /// A value that says that there is none.
+    /// A value that means that there is no task.
     none: &'static str,
     row: Row,
 }
 
-/// Which numbers tasks have.
+/// Numbering of tasks.
 enum Row {
-    /// From a first to a last one, by variables; without the first they begin at 1, and without the
-    /// third the step is 1.
+    /// From a first to a last number, in variables; by default the first is 1 and the step 1.
     Array { first: Option<&'static str>, last: &'static str, step: Option<&'static str> },
-    /// From 0; a variable has their number.
+    /// From 0; a variable holds their number.
     Ranks { size: &'static str },
-    /// From `first`; no variable has their number.
-    Endless { first: i64 },
+    /// From `first`; no variable holds their number.
+    Unbounded { first: i64 },
 }
 
-/// How many tasks Slurm's array has, which need not be a row.
+/// Number of tasks of Slurm's array, whose numbers may have gaps.
 const SLURM_COUNT: &str = "SLURM_ARRAY_TASK_COUNT";
 
-const ARRAYS: [Dialect; 7] = [
-    Dialect {
+const ARRAYS: [TaskVariables; 7] = [
+    TaskVariables {
         name: "Slurm",
         task: "SLURM_ARRAY_TASK_ID",
         none: "",
@@ -45,9 +44,19 @@ const ARRAYS: [Dialect; 7] = [
             step: Some("SLURM_ARRAY_TASK_STEP"),
         },
     },
-    Dialect { name: "PBS", task: "PBS_ARRAY_INDEX", none: "", row: Row::Endless { first: 1 } },
-    Dialect { name: "Torque", task: "PBS_ARRAYID", none: "", row: Row::Endless { first: 1 } },
-    Dialect {
+    TaskVariables {
+        name: "PBS",
+        task: "PBS_ARRAY_INDEX",
+        none: "",
+        row: Row::Unbounded { first: 1 },
+    },
+    TaskVariables {
+        name: "Torque",
+        task: "PBS_ARRAYID",
+        none: "",
+        row: Row::Unbounded { first: 1 },
+    },
+    TaskVariables {
         name: "Grid Engine",
         task: "SGE_TASK_ID",
         none: "undefined",
@@ -57,76 +66,80 @@ const ARRAYS: [Dialect; 7] = [
             step: Some("SGE_TASK_STEPSIZE"),
         },
     },
-    Dialect {
+    TaskVariables {
         name: "LSF",
         task: "LSB_JOBINDEX",
         none: "0",
         row: Row::Array { first: None, last: "LSB_JOBINDEX_END", step: Some("LSB_JOBINDEX_STEP") },
     },
-    Dialect {
+    TaskVariables {
         name: "AWS Batch",
         task: "AWS_BATCH_JOB_ARRAY_INDEX",
         none: "",
         row: Row::Ranks { size: "AWS_BATCH_JOB_ARRAY_SIZE" },
     },
-    Dialect {
+    TaskVariables {
         name: "Kubernetes",
         task: "JOB_COMPLETION_INDEX",
         none: "",
-        row: Row::Endless { first: 0 },
+        row: Row::Unbounded { first: 0 },
     },
 ];
 
-/// `PMIx` tells no size, but Slurm does, which is among those that use it.
-const LAUNCHERS: [Dialect; 6] = [
-    Dialect {
+/// `PMIx` sets no size, but Slurm, which uses it, does.
+const LAUNCHERS: [TaskVariables; 6] = [
+    TaskVariables {
         name: "Open MPI",
         task: "OMPI_COMM_WORLD_RANK",
         none: "",
         row: Row::Ranks { size: "OMPI_COMM_WORLD_SIZE" },
     },
-    Dialect {
+    TaskVariables {
         name: "MVAPICH",
         task: "MV2_COMM_WORLD_RANK",
         none: "",
         row: Row::Ranks { size: "MV2_COMM_WORLD_SIZE" },
     },
-    Dialect { name: "PMI", task: "PMI_RANK", none: "", row: Row::Ranks { size: "PMI_SIZE" } },
-    Dialect { name: "PMIx", task: "PMIX_RANK", none: "", row: Row::Ranks { size: "SLURM_NTASKS" } },
-    Dialect {
+    TaskVariables { name: "PMI", task: "PMI_RANK", none: "", row: Row::Ranks { size: "PMI_SIZE" } },
+    TaskVariables {
+        name: "PMIx",
+        task: "PMIX_RANK",
+        none: "",
+        row: Row::Ranks { size: "SLURM_NTASKS" },
+    },
+    TaskVariables {
         name: "srun",
         task: "SLURM_PROCID",
         none: "",
         row: Row::Ranks { size: "SLURM_NTASKS" },
     },
-    Dialect {
+    TaskVariables {
         name: "GNU parallel",
         task: "PARALLEL_SEQ",
         none: "",
-        row: Row::Endless { first: 1 },
+        row: Row::Unbounded { first: 1 },
     },
 ];
 
-/// Why the environment does not tell which part this is.
+/// Errors of `--part from-env`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(super) enum Silence {
-    #[error("no scheduler or launcher tells which task this is ({}); write --part K/N", names())]
+pub(super) enum TaskError {
+    #[error("no scheduler or launcher sets the number of this task ({}); use --part K/N", names())]
     Nothing,
-    #[error("{0} is `{1}`, which is no whole number")]
+    #[error("{0} is `{1}`, which is not an integer")]
     NoNumber(&'static str, String),
     #[error(
-        "{name} tells by {task} that this is task {number}, but not of how many; write --part \
-         from-env/N"
+        "{name} sets {task} for task {number}, but not the number of tasks; use --part from-env/N"
     )]
     NoCount { name: &'static str, task: &'static str, number: i64 },
     #[error(
-        "{task} is {number}, but tasks go from {first} to {last}{}; write --part from-env/N, and \
-         number them from {first} to {first} + N - 1", steps(*.step)
+        "{task} is {number}, but tasks are numbered from {first} to {last}{}; use --part from-env/N, and \
+         number tasks from {first} to {first} + N - 1", steps(*.step)
     )]
     Beyond { task: &'static str, number: i64, first: i64, last: i64, step: i64 },
     #[error(
-        "{SLURM_COUNT} is {count}, but there are {row} numbers from {first} to {last}{}: write \
-         --part from-env/N, and number tasks from 1 to N", steps(*.step)
+        "{SLURM_COUNT} is {count}, but there are {row} numbers from {first} to {last}{}; use --part \
+         from-env/N, and number tasks from 1 to N", steps(*.step)
     )]
     Gaps { count: i64, row: i64, first: i64, last: i64, step: i64 },
     #[error(
@@ -135,8 +148,8 @@ pub(super) enum Silence {
     )]
     Both { array: &'static str, rank: &'static str, number: i64 },
     #[error(
-        "{first} and {second} are both set and name different parts, or do not say of how many; \
-         unset one of them, or write --part K/N"
+        "{first} and {second} are both set, and give different parts or no number of parts; unset one of \
+         them, or use --part K/N"
     )]
     SeveralArrays { first: &'static str, second: &'static str },
 }
@@ -150,45 +163,45 @@ fn steps(step: i64) -> impl fmt::Display {
     if step == 1 { String::new() } else { format!(" in steps of {step}") }
 }
 
-/// The part that this process renders, from a function that returns the value of a variable. There are
-/// `count` parts, or as many as the environment says.
+/// Returns the part that this process renders; `variable` returns the value of an environment variable. There
+/// are `count` parts, or as many as the environment says.
 ///
 /// With a `count`, the tasks of arrays that users number are 1 to `count`, so that an array of some of
 /// these numbers renders some of the parts again.
 pub(super) fn part(
     variable: &dyn Fn(&str) -> Option<String>,
     count: Option<u32>,
-) -> Result<Part, Silence> {
-    let is_set = |dialect: &&Dialect| {
+) -> Result<Part, TaskError> {
+    let is_set = |dialect: &&TaskVariables| {
         variable(dialect.task).is_some_and(|value| !value.is_empty() && value != dialect.none)
     };
     let launcher = LAUNCHERS.iter().find(is_set);
     let mut arrays = ARRAYS.iter().filter(is_set);
     let Some(array) = arrays.next() else {
-        return launcher.ok_or(Silence::Nothing)?.part(variable, count);
+        return launcher.ok_or(TaskError::Nothing)?.part(variable, count);
     };
     let part = array.part(variable, count);
     if let Some(other) = arrays.find(|other| part.is_err() || other.part(variable, count) != part) {
-        return Err(Silence::SeveralArrays { first: array.task, second: other.task });
+        return Err(TaskError::SeveralArrays { first: array.task, second: other.task });
     }
-    if let Some(Dialect { task: rank, row: Row::Ranks { .. }, .. }) = launcher {
+    if let Some(TaskVariables { task: rank, row: Row::Ranks { .. }, .. }) = launcher {
         let number = number(variable, rank)?.unwrap_or(0);
         if number > 0 {
-            return Err(Silence::Both { array: array.task, rank, number });
+            return Err(TaskError::Both { array: array.task, rank, number });
         }
     }
     part
 }
 
-impl Dialect {
+impl TaskVariables {
     fn part(
         &self,
         variable: &dyn Fn(&str) -> Option<String>,
         count: Option<u32>,
-    ) -> Result<Part, Silence> {
+    ) -> Result<Part, TaskError> {
         let Self { name, task, .. } = *self;
         let read = |name: &'static str| number(variable, name);
-        let told = |name: Option<&'static str>| name.map_or(Ok(None), read);
+        let optional = |name: Option<&'static str>| name.map_or(Ok(None), read);
         let number = read(task)?.unwrap_or(0);
         let (first, last, step) = match (&self.row, count) {
             (row, Some(count)) => {
@@ -196,23 +209,23 @@ impl Dialect {
                 (first, Some(first + i64::from(count) - 1), 1)
             }
             (Row::Ranks { size }, None) => (0, read(size)?.map(|size| size - 1), 1),
-            (Row::Endless { first }, None) => (*first, None, 1),
+            (Row::Unbounded { first }, None) => (*first, None, 1),
             (Row::Array { first, last, step }, None) => {
-                (told(*first)?.unwrap_or(1), read(last)?, told(*step)?.unwrap_or(1).max(1))
+                (optional(*first)?.unwrap_or(1), read(last)?, optional(*step)?.unwrap_or(1).max(1))
             }
         };
-        let last = last.ok_or(Silence::NoCount { name, task, number })?;
+        let last = last.ok_or(TaskError::NoCount { name, task, number })?;
         let row = (last.saturating_sub(first) / step).saturating_add(1);
         if let (None, "Slurm", Some(count)) = (count, name, read(SLURM_COUNT)?)
             && count != row
         {
-            return Err(Silence::Gaps { count, row, first, last, step });
+            return Err(TaskError::Gaps { count, row, first, last, step });
         }
         let place = number.saturating_sub(first);
         let within = |value: i64| u32::try_from(value).ok();
         let part = within((place / step).saturating_add(1)).zip(within(row));
         let part = part.filter(|_| place >= 0 && place % step == 0);
-        part.and_then(|(number, count)| Part::new(number, count)).ok_or(Silence::Beyond {
+        part.and_then(|(number, count)| Part::new(number, count)).ok_or(TaskError::Beyond {
             task,
             number,
             first,
@@ -223,23 +236,23 @@ impl Dialect {
 }
 
 impl Row {
-    /// Number of the first task where the user gives the number of parts.
+    /// Number of the first task if the user gives the number of parts.
     fn first_of_counted(&self) -> i64 {
         match *self {
             Self::Array { .. } => 1,
             Self::Ranks { .. } => 0,
-            Self::Endless { first } => first,
+            Self::Unbounded { first } => first,
         }
     }
 }
 
-/// The number that a variable is, if it is set.
+/// Parses the number in a variable, if it is set.
 fn number(
     variable: &dyn Fn(&str) -> Option<String>,
     name: &'static str,
-) -> Result<Option<i64>, Silence> {
+) -> Result<Option<i64>, TaskError> {
     let Some(text) = variable(name).filter(|text| !text.is_empty()) else { return Ok(None) };
-    text.trim().parse().map(Some).map_err(|_| Silence::NoNumber(name, text))
+    text.trim().parse().map(Some).map_err(|_| TaskError::NoNumber(name, text))
 }
 
 #[cfg(test)]
@@ -247,7 +260,7 @@ mod tests {
     use super::*;
 
     /// What variables, written as a shell would, say.
-    fn told(variables: &str, count: Option<u32>) -> Result<String, String> {
+    fn optional(variables: &str, count: Option<u32>) -> Result<String, String> {
         let value = |name: &str| {
             let mut pairs = variables.split(' ').filter_map(|pair| pair.split_once('='));
             pairs.find(|pair| pair.0 == name).map(|pair| pair.1.to_owned())
@@ -272,7 +285,7 @@ mod tests {
             ("AWS_BATCH_JOB_ARRAY_INDEX=0 AWS_BATCH_JOB_ARRAY_SIZE=5", "1/5"),
             ("AWS_BATCH_JOB_ARRAY_INDEX=4 AWS_BATCH_JOB_ARRAY_SIZE=5", "5/5"),
         ] {
-            assert_eq!(told(&format!("{SLURM} {variables}"), None), Ok(expected.to_owned()));
+            assert_eq!(optional(&format!("{SLURM} {variables}"), None), Ok(expected.to_owned()));
         }
     }
 
@@ -293,13 +306,13 @@ mod tests {
                 "5/7",
             ),
         ] {
-            assert_eq!(told(variables, Some(7)), Ok(expected.to_owned()));
+            assert_eq!(optional(variables, Some(7)), Ok(expected.to_owned()));
         }
     }
 
     #[track_caller]
     fn refused(variables: &str, count: Option<u32>, words: &[&str]) {
-        let message = told(variables, count).expect_err("it does not tell");
+        let message = optional(variables, count).expect_err("it does not tell");
         assert!(words.iter().all(|word| message.contains(word)), "{variables}: {message}");
     }
 
@@ -353,8 +366,14 @@ mod tests {
         let names = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX", "--part K/N"];
         refused(both, Some(4), &names);
         refused(both, None, &names);
-        assert_eq!(told("SLURM_ARRAY_TASK_ID=3 JOB_COMPLETION_INDEX=2", Some(4)), Ok("3/4".into()));
-        assert_eq!(told("PBS_ARRAY_INDEX=2 PBS_ARRAYID=2", Some(4)), Ok("2/4".into()));
-        assert_eq!(told("SGE_TASK_ID=undefined JOB_COMPLETION_INDEX=0", Some(4)), Ok("1/4".into()));
+        assert_eq!(
+            optional("SLURM_ARRAY_TASK_ID=3 JOB_COMPLETION_INDEX=2", Some(4)),
+            Ok("3/4".into())
+        );
+        assert_eq!(optional("PBS_ARRAY_INDEX=2 PBS_ARRAYID=2", Some(4)), Ok("2/4".into()));
+        assert_eq!(
+            optional("SGE_TASK_ID=undefined JOB_COMPLETION_INDEX=0", Some(4)),
+            Ok("1/4".into())
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! `--part`: one machine's share of a render.
+//! `--part`: the part of a render for one machine.
 
 mod environment;
 
@@ -7,50 +7,49 @@ use super::names::SPLITS;
 use spherule::split::{Part, Split};
 use std::num::NonZeroU32;
 
-/// What says which part.
+/// Value of `--part` that takes the part from the environment.
 const FROM_ENVIRONMENT: &str = "from-env";
 
 /// Heading of the options for several machines.
-pub(super) const HEADING: &str = "Parts, for several machines; `spherule merge` puts them together";
+pub(super) const HEADING: &str = "Distributed rendering (combine the parts with `spherule merge`)";
 
-/// Which share of the render this is.
+/// Options for rendering one part of an image.
 #[derive(Clone, Copy, Debug, clap::Args)]
 #[command(next_help_heading = HEADING)]
 pub(super) struct PartArgs {
-    /// Render part K of N to a file named after --output with .K-of-N.part at its end; from-env takes
-    /// K, and N unless it is given, from the environment variables of Slurm, PBS, Grid Engine, LSF,
-    /// AWS Batch, Kubernetes, MPI or GNU parallel. Of a sequence, part K is every Nth picture, whole
+    /// Render part K of N to a file named after --output with the suffix .K-of-N.part; from-env takes K, and
+    /// N if it is not given, from the environment variables of Slurm, PBS, Grid Engine, LSF, AWS Batch,
+    /// Kubernetes, MPI or GNU parallel. Of a sequence, part K is every Nth image
     #[arg(long, value_name = "K/N|from-env[/N]", value_parser = choice)]
     part: Option<Choice>,
-    /// What parts differ in [default: tiles, or samples where each part has 16 or more of every pixel]
+    /// How to split the image [default: tiles, or samples if each part has 16 or more per pixel]
     #[arg(long, requires = "part", value_parser = SPLITS.parser())]
     pub(super) split: Option<Split>,
 }
 
-/// Who says which part.
+/// Source of the part's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
     User(Part),
-    /// Of so many, if that is said.
+    /// With the number of parts, if given.
     Environment(Option<NonZeroU32>),
 }
 
 impl PartArgs {
-    /// The part that is to be rendered, if it is but one; once the environment is asked, it need not be
-    /// asked again.
-    pub(super) fn settle(&mut self) -> Result<Option<Part>, Failure> {
+    /// Resolves the part from the environment if asked to, and returns it.
+    pub(super) fn resolve(&mut self) -> Result<Option<Part>, Failure> {
         if let Some(Choice::Environment(count)) = self.part {
-            // Variables that are no text are none of those that count.
+            // Variables that are not valid Unicode are ignored.
             let variable = |name: &str| std::env::var(name).ok();
             let part = environment::part(&variable, count.map(NonZeroU32::get));
-            let refuse = |silence| Failure::usage("render", format!("--part: {silence}"));
+            let refuse = |error| Failure::usage("render", format!("--part: {error}"));
             self.part = Some(Choice::User(part.map_err(refuse)?));
         }
-        Ok(self.settled())
+        Ok(self.resolved())
     }
 
-    /// The same after that.
-    pub(super) fn settled(self) -> Option<Part> {
+    /// Returns the part, once it is resolved.
+    pub(super) fn resolved(self) -> Option<Part> {
         match self.part {
             Some(Choice::User(part)) => Some(part),
             _ => None,
@@ -69,9 +68,13 @@ fn choice(text: &str) -> Result<Choice, String> {
         return Ok(Choice::Environment(None));
     }
     let count = rest.strip_prefix('/').and_then(|count| count.parse().ok());
-    let mend =
-        || format!("give {FROM_ENVIRONMENT}, or with the number of parts {FROM_ENVIRONMENT}/8");
-    count.map(|count| Choice::Environment(Some(count))).ok_or_else(mend)
+    let hint = || {
+        format!(
+            "give {FROM_ENVIRONMENT}, or {FROM_ENVIRONMENT}/N with the number of parts, as in \
+                    {FROM_ENVIRONMENT}/8"
+        )
+    };
+    count.map(|count| Choice::Environment(Some(count))).ok_or_else(hint)
 }
 
 #[cfg(test)]

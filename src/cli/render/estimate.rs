@@ -1,4 +1,4 @@
-//! Memory that a render takes, before it takes it.
+//! Estimates of the memory of a render.
 
 use super::job::Job;
 use super::layers::{need_statistics, wanted};
@@ -12,41 +12,42 @@ use spherule::scene::{Look, Scene};
 use spherule::world::Footprint;
 use std::fmt;
 
-/// Bytes that a thread writes while it renders tiles.
+/// Bytes of a thread's working memory.
 const WORKSPACE: u64 = 1 << 20;
 
-/// Bytes of a pixel's codes, twice, and of the file that they become.
+/// Bytes per pixel of two copies of the 8-bit image and of its file.
 const CODES: u64 = 12;
 
-/// Bytes of a pixel that drawing over a picture takes beside its layers.
+/// Bytes per pixel of overlays, without the layers.
 const OVERLAY: u64 = 16;
 
-/// The same where the background is transparent, with what is seen without the spheres.
+/// Bytes per pixel of overlays with a transparent background, including the image of the ground without
+/// spheres.
 const MATTE: u64 = 50;
 
-/// Memory that a render takes at most, beside the scene's columns, which are there.
+/// Estimated peak memory of a render, without the scene's columns, which are loaded already.
 #[derive(Clone, Debug)]
 pub(crate) struct Estimate {
     region: Region,
     spheres: u64,
-    /// Whether layers are part of the picture.
+    /// Whether layers are part of the image.
     layered: bool,
-    /// Bytes while spheres become columns and a tree.
+    /// Bytes during the construction of columns and tree.
     build: u64,
-    /// Bytes of the scene's columns, which are given back when the world is there.
+    /// Bytes of the scene's columns, which are freed once the world is built.
     scene: u64,
     /// Bytes of the world.
     world: u64,
-    /// Bytes of the sums and of the picture.
+    /// Bytes of the sample sums and of the image.
     film: u64,
-    /// Bytes of the layers and of the file, whichever are more.
+    /// Bytes of the layers or of the file, whichever is more.
     output: u64,
-    /// Bytes of all threads' own columns.
+    /// Bytes of the working memory of all threads.
     threads: u64,
 }
 
 impl Estimate {
-    /// Estimates what comes on top of a scene that is loaded.
+    /// Estimates the memory needed in addition to a loaded scene.
     pub(super) fn new(scene: &Scene, region: Region, job: &Job) -> Self {
         let footprint = Footprint::of(scene);
         Self {
@@ -62,7 +63,7 @@ impl Estimate {
         }
     }
 
-    /// The same of so many of the region's tiles.
+    /// Scales the estimate to a number of the region's tiles.
     pub(super) fn of_tiles(self, tiles: usize) -> Self {
         let part = |bytes: u64| {
             let share = u128::from(bytes) * tiles as u128;
@@ -71,38 +72,38 @@ impl Estimate {
         Self { film: part(self.film), output: part(self.output), ..self }
     }
 
-    /// Bytes on top of what is taken now.
+    /// Bytes needed in addition to the current use.
     fn need(&self) -> u64 {
         let rendering = self.world.saturating_add(self.picture()).saturating_add(self.threads);
         self.build.max(rendering.saturating_sub(self.scene))
     }
 
-    /// Bytes of all that grows with the picture's size.
+    /// Bytes that depend on the size of the image.
     fn picture(&self) -> u64 {
         self.film.saturating_add(self.output)
     }
 
-    /// Refuses a render that there is no memory for. Returns the bytes that the process has in memory at
-    /// most, by this estimate.
+    /// Returns an error if memory is insufficient, and else the estimated peak memory of the process in
+    /// bytes.
     pub(super) fn check(self) -> Result<u64, Failure> {
         let need = self.need();
         memory::check(need).map_err(|shortage| Failure::Memory(self, shortage))?;
         Ok(memory::resident().saturating_add(need).max(memory::peak().unwrap_or(0)))
     }
 
-    /// The whole story, for people.
+    /// Formats the error message.
     pub(crate) fn message(&self, shortage: &Shortage) -> String {
-        let mend = if self.build > self.picture() {
-            "render fewer spheres, or where there is more memory"
+        let hint = if self.build > self.picture() {
+            "render fewer spheres, or use a machine with more memory"
         } else {
-            "give --size or --region smaller numbers"
+            "use a smaller --size or --region"
         };
-        format!("{self} need {shortage}; {mend}")
+        format!("{self} need {shortage}; {hint}")
     }
 }
 
-/// Bytes of layers and of the encoded file: the more of both, for layers are dropped before the file is
-/// made of their channels.
+/// Bytes of the layers or of the encoded file, whichever is more, because layers are dropped before the file
+/// is encoded from their channels.
 fn output(job: &Job, look: &Look, region: Region) -> u64 {
     let pixels = u64::from(region.width) * u64::from(region.height);
     let layers = wanted(&job.encoding.layers);
@@ -116,14 +117,14 @@ fn output(job: &Job, look: &Look, region: Region) -> u64 {
     let channels: u64 = layers.iter().map(|layer| channels(*layer)).sum();
     let value = size_of::<f32>() as u64;
     let file = match job.format {
-        // Columns of values, and the compressed file.
+        // Channels, and the compressed file.
         Format::Exr => (3 + channels) * 2 * value,
         _ => CODES,
     };
     gathered.max(pixels * (file + channels * value))
 }
 
-/// Channels of a layer.
+/// Number of channels of a layer.
 fn channels(layer: Layer) -> u64 {
     match layer {
         Layer::Albedo | Layer::Normal | Layer::Variance => 3,

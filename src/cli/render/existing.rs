@@ -1,32 +1,32 @@
-//! Pictures that exist: whether a file is the picture that would be rendered, by what it says of itself.
+//! Detection of existing images for `--skip-existing`, by their metadata.
 
 use super::job::Job;
 use super::metadata::{self, INTERRUPTED, SAMPLES_TAKEN, SCENE};
-use super::prepare::Placed;
+use super::prepare::PlacedScene;
 use crate::cli::output;
 use spherule::image::{Image, Metadata, read_metadata};
 
-/// Metadata keys that say how a render went, not what it was to be.
+/// Metadata keys of results, which are not compared.
 const RESULTS: [&str; 4] = ["rounds", SAMPLES_TAKEN, "error", "error bound"];
 
-/// Returns whether the file of the picture is that picture already; says why it is not, if there is
-/// one.
-pub(super) fn is_there(job: &Job, placed: &Placed) -> bool {
+/// Returns whether the output file already is the image to render. Prints the reason if it exists but is
+/// another image.
+pub(super) fn is_up_to_date(job: &Job, placed: &PlacedScene) -> bool {
     if !job.sequence.skip_existing || !job.output.exists() {
         return false;
     }
     let Some(why) = difference(job, placed) else { return true };
     if !job.report.quiet {
         output::note(format_args!(
-            "{}: exists, but {why}; it is rendered anew",
+            "{}: already exists, but {why}; rendering it again",
             job.output.display()
         ));
     }
     false
 }
 
-/// Why the file is another picture.
-fn difference(job: &Job, placed: &Placed) -> Option<String> {
+/// Returns the reason why the file is another image.
+fn difference(job: &Job, placed: &PlacedScene) -> Option<String> {
     let found = match read_metadata(&job.output) {
         Ok(found) => found,
         Err(error) => return Some(format!("cannot be read ({error})")),
@@ -35,7 +35,7 @@ fn difference(job: &Job, placed: &Placed) -> Option<String> {
     if let Some(why) = differs(&metadata::expected(job, placed), &found, timed) {
         return Some(why);
     }
-    // What is cut off may still say what it was to be.
+    // A truncated file may have complete metadata.
     match Image::read(&job.output) {
         Err(error) => Some(format!("cannot be read ({error})")),
         Ok(image) if (image.width, image.height) != (placed.region.width, placed.region.height) => {
@@ -45,11 +45,11 @@ fn difference(job: &Job, placed: &Placed) -> Option<String> {
     }
 }
 
-/// Returns the first difference of a file's metadata from what is expected; `measured` ones say how
-/// many samples they took.
+/// Returns the first difference of a file's metadata from the expected metadata. If `measured` is true, the
+/// number of samples depends on a target and is recorded.
 fn differs(expected: &Metadata, found: &Metadata, measured: bool) -> Option<String> {
     if found.value(SCENE).is_none() {
-        return Some("does not say of which scene it is".to_owned());
+        return Some("its metadata does not identify the scene".to_owned());
     }
     if found.value(INTERRUPTED).is_some() || !measured && found.value(SAMPLES_TAKEN).is_some() {
         return Some("was interrupted".to_owned());
@@ -58,21 +58,21 @@ fn differs(expected: &Metadata, found: &Metadata, measured: bool) -> Option<Stri
         match found.value(key) {
             Some(own) if own == value => {}
             Some(own) if key == SCENE => return Some(scene_differs(value, own)),
-            Some(own) => return Some(format!("its {key} is {own}, not {value}")),
-            None => return Some(format!("says nothing of {key}, which is {value}")),
+            Some(own) => return Some(format!("its {key} is {own} instead of {value}")),
+            None => return Some(format!("its metadata lacks {key}, which is {value}")),
         }
     }
     let mut keys = found.iter().map(|(key, _)| key);
     let other = keys.find(|key| expected.value(key).is_none() && !RESULTS.contains(key));
-    other.map(|key| format!("says something of {key}, which is not given"))
+    other.map(|key| format!("its metadata has {key}, which is not set"))
 }
 
-/// The part of a scene that is another one.
+/// Returns a message that names the part of the scene that differs.
 fn scene_differs(expected: &str, found: &str) -> String {
     let mut parts = expected.split(", ").zip(found.split(", "));
     let other = parts.find(|(expected, found)| expected != found);
     let name = other.and_then(|(part, _)| part.split(' ').next()).unwrap_or("scene");
-    format!("shows another scene: other {name}")
+    format!("it shows another scene, with different {name}")
 }
 
 #[cfg(test)]
@@ -98,7 +98,7 @@ mod tests {
         for (entries, word) in [
             (&[("spp", "9")][..], "spp is 9"),
             (&[("frame", "")], "frame"),
-            (&[(SCENE, "")], "which scene"),
+            (&[(SCENE, "")], "identify the scene"),
             (&[(SCENE, "spheres 01, camera 03")], "camera"),
             (&[("slice", "z>3")], "slice"),
             (&[(SAMPLES_TAKEN, "7")], "interrupted"),
@@ -108,7 +108,7 @@ mod tests {
         }
         assert_eq!(
             differs(&expected, &metadata(&[]), true).as_deref(),
-            Some("does not say of which scene it is")
+            Some("its metadata does not identify the scene")
         );
     }
 }

@@ -1,17 +1,17 @@
 //! Files that a render reads and writes.
 
+use crate::cli::appearance::BarPlace;
 use crate::cli::args::RenderArgs;
 use crate::cli::files::Files;
-use crate::cli::looks::BarPlace;
 
-/// Returns the files of a render, but for numbered pictures: how many there are is not known yet.
+/// Returns the files of a render, without numbered images, whose count is not known yet.
 pub(in crate::cli) fn files(args: &RenderArgs) -> Files {
     let mut files = Files::new("render");
     if let Some(scene) = &args.scene {
         files.reads_scene(scene);
     }
     let many = args.is_sequence();
-    let part = args.part.settled().is_some() && !many;
+    let part = args.part.resolved().is_some() && !many;
     if let Some(prepared) = &args.prepare {
         files.writes("--prepare", prepared);
     } else if !part && !many {
@@ -20,11 +20,13 @@ pub(in crate::cli) fn files(args: &RenderArgs) -> Files {
     if let Some(BarPlace::File(bar, _)) = &args.looks.color_bar {
         files.writes("--color-bar", bar);
     }
-    match (&args.keep.checkpoint, &args.keep.resume) {
+    match (&args.checkpoints.checkpoint, &args.checkpoints.resume) {
         (Some(kept), _) if part => files.writes("--part", kept),
         (Some(kept), resumed) => {
             files.writes("--checkpoint", kept);
-            if let Some(resumed) = resumed.as_ref().filter(|_| !args.keep.resumes_into_itself()) {
+            if let Some(resumed) =
+                resumed.as_ref().filter(|_| !args.checkpoints.resumes_into_itself())
+            {
                 files.reads("the checkpoint of --resume", resumed);
             }
         }

@@ -1,13 +1,13 @@
-//! What is to be rendered, how, and where to: validated as far as it can be without the scene.
+//! A render job: scene, settings and output, validated as far as possible without the scene.
 
-use super::film::Container;
-use super::looks::with_columns;
+use super::appearance::with_columns;
+use super::prepared_file;
 use super::sequence::Common;
-use super::store;
+use super::video::Container;
+use crate::cli::appearance::{AppearanceArgs, BarPlace};
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
+use crate::cli::checkpoint::CheckpointArgs;
 use crate::cli::failure::Failure;
-use crate::cli::keep::KeepArgs;
-use crate::cli::looks::{BarPlace, LookArgs};
 use crate::cli::names;
 use crate::cli::particles::ParticleArgs;
 use crate::cli::picture_file;
@@ -27,22 +27,22 @@ use spherule::split::{Part, Split};
 use spherule::trace::Tracer;
 use std::path::PathBuf;
 
-/// The place of a picture among many.
+/// Place of an image in a sequence.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::cli) struct Place {
     /// From 0.
     pub(in crate::cli) index: u64,
-    /// True if no other one follows, as far as that is known.
+    /// True if no other image follows, as far as is known.
     pub(in crate::cli) last: bool,
 }
 
-/// A render to be done.
+/// A render job.
 #[derive(Clone)]
 pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) source: Source,
     pub(in crate::cli) looks: Looks,
-    /// What of it was typed.
-    pub(in crate::cli) typed: (&'a ParticleArgs, &'a LookArgs),
+    /// The options on the command line.
+    pub(in crate::cli) typed: (&'a ParticleArgs, &'a AppearanceArgs),
     pub(in crate::cli) color_bar: Option<&'a BarPlace>,
     pub(in crate::cli) output: PathBuf,
     pub(in crate::cli) format: Format,
@@ -50,22 +50,22 @@ pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) slices: &'a SliceArgs,
     pub(in crate::cli) views: &'a ViewArgs,
     pub(in crate::cli) style: &'a StyleArgs,
-    /// Which picture of a turn it is, from 0.
+    /// Number of the turntable's image, from 0.
     pub(in crate::cli) turn: Option<u32>,
-    /// Which of many frames it is.
+    /// Number of the trajectory frame.
     pub(in crate::cli) frame: Option<u64>,
-    /// Properties that it shares with the other pictures of its sequence.
+    /// Properties shared by all images of the sequence.
     pub(in crate::cli) common: Option<Common>,
     pub(in crate::cli) encoding: &'a EncodingArgs,
-    pub(in crate::cli) keep: &'a KeepArgs,
+    pub(in crate::cli) checkpoints: &'a CheckpointArgs,
     pub(in crate::cli) sequence: SequenceArgs,
-    /// Its place among many pictures.
+    /// Place in the sequence.
     pub(in crate::cli) place: Option<Place>,
-    /// The part of a sequence's pictures that is made here, if not all are.
+    /// The part of the sequence that this process renders, if not all.
     pub(in crate::cli) deal: Option<Part>,
-    /// The kind of the film that pictures go to, if they do.
-    pub(in crate::cli) film: Option<Container>,
-    /// Which part of the render it is, if it is but one.
+    /// Container format of the video, if there is one.
+    pub(in crate::cli) video: Option<Container>,
+    /// The part of the image that this process renders, if not all.
     pub(in crate::cli) part: Option<Part>,
     pub(in crate::cli) split: Option<Split>,
     pub(in crate::cli) speed: &'a SpeedArgs,
@@ -75,58 +75,58 @@ pub(in crate::cli) struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// What was typed, made sense of.
+    /// Creates the job from the arguments.
     pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
         let seed = args.picture.seed.unwrap_or(0);
-        // A format that is typed is that of pictures, whatever their names.
-        let film =
+        // An explicit format applies to images, whatever their names.
+        let video =
             Container::of_suffix(&args.output).filter(|_| args.encoding.output_format.is_none());
-        if film.is_some() {
+        if video.is_some() {
             check_film(args)?;
         } else if args.sequence.fps.is_some() {
-            let message =
-                "--fps is for films: end the name of --output in .mp4, .mov, .webm or .gif";
+            let message = "--fps applies only to videos; use an --output that ends in .mp4, .mov, .webm or .gif";
             return Err(Failure::usage("render", message));
         }
-        // Pictures of a film have codes of 8 bits, as those of PPM.
-        let format = match film {
+        // Images of a video have 8 bits, as PPM files do.
+        let format = match video {
             Some(_) => Format::Ppm,
             None => picture_file::format(&args.output, args.encoding.output_format)?,
         };
         if args.sequence.skip_existing && format == Format::Pfm {
-            let message = "--skip-existing needs pictures that say what they are: PFM has no room for \
-                           that; end the name of --output in .png, .ppm or .exr";
+            let message = "--skip-existing needs metadata, which PFM files cannot store; use an --output \
+                           that ends in .png, .ppm or .exr";
             return Err(Failure::usage("render", message));
         }
         if !args.encoding.layers.is_empty() && format != Format::Exr {
             let message = format!(
-                "{format} has no room for --layers; end the name of --output in .exr, or give --output-format exr"
+                "{format} files cannot store --layers; use an --output that ends in .exr, or --output-format \
+                 exr"
             );
             return Err(Failure::usage("render", message));
         }
         check_alpha(&args.style.look(None, Look::default()), format)?;
         let inside = matches!(&args.looks.color_bar, Some(BarPlace::Inside(_)));
         if inside && args.picture.region.is_some() {
-            let message = "--color-bar inside is for a whole picture: leave --region out";
+            let message = "--color-bar inside needs the whole image; remove --region";
             return Err(Failure::usage("render", message));
         }
         let source = match &args.scene {
             Some(path) => Source::of_path("render", path, &args.particles)?,
             None if args.particles.any() => {
-                let message = "these settings are for a file of particles: name one";
+                let message = "these options need a particle file; name one";
                 return Err(Failure::usage("render", message));
             }
             None => Source::Field { seed },
         };
         if matches!(source, Source::Prepared(_)) {
-            store::refuse_changes(args)?;
+            prepared_file::refuse_changes(args)?;
         }
         if args.style.preset().is_some() && !matches!(source, Source::Particles(..)) {
-            let message = "--preset is for a file of particles: a scene says how it looks";
+            let message = "--preset applies only to particle files; a scene defines its own style";
             return Err(Failure::usage("render", message));
         }
-        args.keep.check()?;
-        let part = args.part.settled();
+        args.checkpoints.check()?;
+        let part = args.part.resolved();
         let (part, deal) = if args.is_sequence() { (None, part) } else { (part, None) };
         let looks = args.looks.looks(args.particles.options().radius_scale);
         Ok(Self {
@@ -144,11 +144,11 @@ impl<'a> Job<'a> {
             frame: None,
             common: None,
             encoding: &args.encoding,
-            keep: &args.keep,
+            checkpoints: &args.checkpoints,
             sequence: args.sequence,
             place: None,
             deal,
-            film,
+            video,
             part,
             split: args.part.split,
             speed: &args.speed,
@@ -161,22 +161,22 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Returns whether it is one of many pictures.
+    /// Returns whether the image is part of a sequence.
     pub(in crate::cli) fn is_of_sequence(&self) -> bool {
         self.place.is_some()
     }
 
-    /// Returns whether the file of the picture says of which scene it is.
+    /// Returns whether the image's metadata identifies the scene.
     pub(in crate::cli) fn is_identified(&self) -> bool {
-        self.film.is_none() && (self.is_of_sequence() || self.sequence.skip_existing)
+        self.video.is_none() && (self.is_of_sequence() || self.sequence.skip_existing)
     }
 
-    /// The threads that do it.
+    /// Creates the thread pool.
     pub(in crate::cli) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
         threads::pool(self.threads)
     }
 
-    /// The tree for a render of so many spheres and samples.
+    /// Returns the tree builder for a number of spheres and samples.
     pub(in crate::cli) fn builder(&self, spheres: usize, samples: u64) -> Builder {
         match self.speed.builder {
             names::Builder::Auto => World::builder(spheres, samples),
@@ -186,7 +186,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The part of the picture that is rendered, once its size is known.
+    /// Returns the region that is rendered, for an image of known size.
     pub(in crate::cli) fn region(&self, settings: &Settings) -> Result<Region, Failure> {
         let (width, height) = (settings.width, settings.height);
         let Some(part) = self.picture.region else {
@@ -199,28 +199,28 @@ impl<'a> Job<'a> {
             return Ok(part);
         }
         let message = format!(
-            "--region {} does not lie in the picture of {width}x{height}; X + W is at most \
-             {width}, Y + H at most {height}",
+            "--region {} exceeds the image of {width}x{height} pixels; X + W is at most {width}, Y + H at \
+             most {height}",
             region_text(part)
         );
         Err(Failure::usage("render", message))
     }
 }
 
-/// Refuses what films cannot have.
+/// Rejects options that do not apply to videos.
 fn check_film(args: &RenderArgs) -> Result<(), Failure> {
-    let numbered = "write numbered pictures, as with -o NAME-%04d.png, and make the film of them";
+    let numbered = "write numbered images with -o NAME-%04d.png, and encode the video from them";
     let what = if !args.is_sequence() {
-        let message = "a film has many pictures: add --frame all or --turntable N, or end the name of \
-                       --output in .png";
+        let message = "a video needs a sequence of images; add --frame all or --turntable N, or use an \
+                       --output that ends in .png";
         return Err(Failure::usage("render", message));
     } else if !args.encoding.layers.is_empty() {
         "--layers"
     } else if args.encoding.bits.is_some() || args.encoding.ppm.is_some() {
         "--bits and --ppm"
-    } else if args.keep.file().is_some() {
+    } else if args.checkpoints.file().is_some() {
         "--checkpoint"
-    } else if args.part.settled().is_some() {
+    } else if args.part.resolved().is_some() {
         "--part"
     } else if args.sequence.skip_existing {
         "--skip-existing"
@@ -229,18 +229,18 @@ fn check_film(args: &RenderArgs) -> Result<(), Failure> {
     } else {
         return Ok(());
     };
-    Err(Failure::usage("render", format!("a film has no room for {what}: {numbered}")))
+    Err(Failure::usage("render", format!("a video cannot store {what}; {numbered}")))
 }
 
-/// Refuses a transparent background in files that cannot have one.
+/// Rejects a transparent background for formats without alpha.
 pub(in crate::cli) fn check_alpha(look: &Look, format: Format) -> Result<(), Failure> {
     if !look.is_transparent() || format.has_alpha() {
         return Ok(());
     }
     let suffixes = Format::list_suffixes(Format::has_alpha);
     let message = format!(
-        "{format} has no room for a transparent background; end the name of --output in {suffixes}, \
-         or give --background white"
+        "{format} files cannot store a transparent background; use an --output that ends in {suffixes}, or \
+         --background white"
     );
     Err(Failure::usage("render", message))
 }

@@ -1,4 +1,4 @@
-//! The layers beside the picture, once it is there.
+//! Layers of the image file (AOVs).
 
 use super::job::Job;
 use super::prepare::Prepared;
@@ -9,12 +9,12 @@ use spherule::overlay::Matte;
 use spherule::render::{Options, Render, RenderError};
 use spherule::scene::Settings;
 
-/// Whether the render has to measure some of those that were asked for.
+/// Returns whether a requested layer needs statistics of the render.
 pub(super) fn need_statistics(job: &Job) -> bool {
     wanted(&job.encoding.layers).into_iter().any(Layer::is_statistic)
 }
 
-/// The channels that were asked for: none takes no time.
+/// Renders the requested channels.
 pub(super) fn channels(
     job: &Job,
     prepared: &Prepared,
@@ -24,7 +24,7 @@ pub(super) fn channels(
     if wanted.is_empty() {
         return Ok(Vec::new());
     }
-    // No more than the picture has: who interrupts a render does not want to wait.
+    // No more samples than the image has, so that an interrupted render ends soon.
     let settings = Settings { spp: render.samples.most.max(1), ..prepared.scene.settings.clone() };
     let options =
         Options { tracer: job.tracer, region: Some(prepared.region), ..Options::default() };
@@ -38,13 +38,13 @@ pub(super) fn channels(
     Ok(layers.channels(&wanted))
 }
 
-/// Alpha as a channel, for files that are blended as radiance is or in codes.
+/// Alpha as a channel, for formats that blend linear or encoded values.
 pub(in crate::cli) fn alpha(matte: &Matte, format: Format) -> Channel {
     let values = if format == Format::Exr { matte.linear() } else { matte.encoded() };
     Channel { name: "A".to_owned(), values: Values::Floats(values) }
 }
 
-/// Those that were typed, each once; all if one is `None`.
+/// Returns the requested layers without repetition; all if one is `None`.
 pub(super) fn wanted(typed: &[Option<Layer>]) -> Vec<Layer> {
     let all = typed.contains(&None);
     Layer::ALL.into_iter().filter(|layer| all || typed.contains(&Some(*layer))).collect()

@@ -1,13 +1,13 @@
-//! How the picture is written, and what its file says about itself.
+//! Encoding and metadata of the image file.
 //!
-//! The file says everything that makes the picture, and nothing else: no time, no machine, no
-//! threads. Equal pictures have equal files.
+//! Metadata contain everything that determines the image, and nothing else: no time, machine or threads.
+//! Equal images have equal files.
 
 use super::job::Job;
 use super::layers;
-use super::prepare::{Placed, Prepared};
+use super::prepare::{PlacedScene, Prepared};
+use crate::cli::appearance::BarPlace;
 use crate::cli::args::EncodingArgs;
-use crate::cli::looks::BarPlace;
 use crate::cli::settings::{self, List};
 use serde_json::Value;
 use spherule::film::Region;
@@ -17,26 +17,26 @@ use spherule::render::{Render, Stage};
 use spherule::scene::particles::Legend;
 use spherule::scene::{Identity, Settings};
 
-/// What a picture is of.
+/// The subject of an image.
 pub(in crate::cli) struct Subject<'a> {
     /// The scene's title; empty if it has none.
     pub(in crate::cli) title: &'a str,
     pub(in crate::cli) settings: &'a Settings,
     pub(in crate::cli) region: Region,
-    /// How particles are looked at: names and values.
+    /// Settings for particles: names and values.
     pub(in crate::cli) looks: &'a [(String, String)],
 }
 
-/// Metadata key of the scene's identity, in the files of pictures that are identified.
+/// Metadata key of the scene's identity, in images of sequences.
 pub(super) const SCENE: &str = "scene";
 
-/// Metadata key of the samples taken, where their number does not follow from the settings.
+/// Metadata key of the number of samples, if it does not follow from the settings.
 pub(super) const SAMPLES_TAKEN: &str = "samples taken";
 
-/// Metadata key of a file that is not what it was to be.
+/// Metadata key of an incomplete image.
 pub(super) const INTERRUPTED: &str = "interrupted";
 
-/// All that the picture's file needs besides the picture.
+/// Returns the encoding options and metadata of the image file.
 pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> WriteOptions {
     let subject = Subject {
         title: &prepared.title,
@@ -47,9 +47,9 @@ pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> 
     subject.write_options(job.encoding, job.format, render)
 }
 
-/// Returns the metadata that the file of a complete picture has, but for how its render went.
-pub(super) fn expected(job: &Job, placed: &Placed) -> Metadata {
-    let Placed { scene, region, legend, identity, stored, .. } = placed;
+/// Returns the metadata of a complete image, without results of the render.
+pub(super) fn expected(job: &Job, placed: &PlacedScene) -> Metadata {
+    let PlacedScene { scene, region, legend, identity, stored, .. } = placed;
     let listed = stored.as_ref().map(|stored| stored.looks.as_slice());
     let subject = Subject {
         title: &job.source.title(scene),
@@ -60,8 +60,8 @@ pub(super) fn expected(job: &Job, placed: &Placed) -> Metadata {
     subject.describe(job.format, &subject.encoding(job.encoding, job.format))
 }
 
-/// Returns the settings by which particles are looked at, as a file lists them; a picture of many
-/// also says of which scene it is. What a prepared scene lists takes the place of what was typed.
+/// Returns the settings for particles as metadata, with the scene's identity for images of a sequence. The
+/// list of a prepared scene replaces the options.
 pub(super) fn looks(
     job: &Job,
     prepared: Option<&[(String, String)]>,
@@ -82,7 +82,7 @@ pub(super) fn looks(
     listed
 }
 
-/// The same of the command line.
+/// Returns the settings for particles of the command line.
 fn typed(job: &Job, legend: Option<&Legend>) -> Vec<(String, String)> {
     let (particles, looks) = job.typed;
     let listed = particles.list(job.frame).into_iter().chain(looks.list(legend));
@@ -99,7 +99,7 @@ fn texts(list: List) -> Vec<(String, String)> {
 }
 
 impl Subject<'_> {
-    /// How its picture is written, as typed or else as the scene says.
+    /// Returns the encoding options, of the command line or else of the scene.
     pub(in crate::cli) fn write_options(
         &self,
         typed: &EncodingArgs,
@@ -111,7 +111,7 @@ impl Subject<'_> {
         options
     }
 
-    /// The same without what the file says of itself.
+    /// Returns the encoding options without metadata.
     fn encoding(&self, typed: &EncodingArgs, format: Format) -> WriteOptions {
         WriteOptions {
             depth: typed.bits.filter(|_| format.has_sixteen_bits()).unwrap_or_default(),
@@ -123,12 +123,12 @@ impl Subject<'_> {
         }
     }
 
-    /// What the file says of the picture, but for how it was rendered.
+    /// Returns the metadata of the image, without results of the render.
     pub(in crate::cli) fn describe(&self, format: Format, options: &WriteOptions) -> Metadata {
         let mut metadata = Metadata::new();
         metadata.push("Software", concat!("spherule ", env!("CARGO_PKG_VERSION")));
         if !self.title.is_empty() {
-            // NUL is the one character that files have no room for.
+            // NUL is the only character that files cannot store.
             metadata.push("Title", self.title.replace('\0', " "));
         }
         let listed = texts(settings::list(self.settings, self.region));
@@ -164,7 +164,7 @@ impl Subject<'_> {
     }
 }
 
-/// What was to be reached before.
+/// Earlier targets of a resumed render.
 fn stage(stage: &Stage) -> String {
     let error = stage.until_error.map(|error| format!("until_error {error}, "));
     format!("{}spp {}", error.unwrap_or_default(), stage.spp)

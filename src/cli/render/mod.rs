@@ -1,51 +1,51 @@
-//! `spherule render`: renders a scene to a picture in a file.
+//! `spherule render`: renders a scene to an image file.
 
+mod appearance;
+mod checkpoint_writer;
 mod estimate;
 mod existing;
 mod files;
-mod film;
 mod job;
-mod keeper;
 mod layers;
-mod looks;
 mod memory;
 mod metadata;
 mod noise;
 mod notes;
 mod notices;
-mod numbers;
+mod numbered_names;
 mod part;
 mod prepare;
+mod prepared_file;
 mod resume;
 mod sequence;
-mod store;
 mod summary;
 mod survey;
 mod terminal;
+mod video;
 mod visibility;
 
+pub(super) use self::appearance::{check_bar, check_legend, color_bar, draw_bar, write_bar};
+use self::checkpoint_writer::CheckpointWriter;
 pub(super) use self::estimate::Estimate;
 use self::files::files;
-use self::film::Film;
 pub(super) use self::job::{Job, check_alpha};
-use self::keeper::Keeper;
 pub(super) use self::layers::alpha;
-pub(super) use self::looks::{check_bar, check_legend, color_bar, draw_bar, write_bar};
 pub(super) use self::metadata::Subject;
 use self::notices::Notices;
-use self::prepare::{Placed, Prepared};
+use self::prepare::{PlacedScene, Prepared};
 use self::resume::Resumed;
 use self::summary::Summary;
 pub(super) use self::summary::warnings;
 use self::terminal::Terminal;
+use self::video::Video;
 use super::args::RenderArgs;
-use super::command::Given;
+use super::invocation::Invocation;
 use super::progress::Meter;
 use super::views::draw_over as draw_look;
 use super::write_file::write_file;
 use super::{Failure, output, picture_file, signals};
 use spherule::overlay::Matte;
-use spherule::render::{End, Options, Render, RenderError, Unfinished};
+use spherule::render::{End, Options, Render, RenderError, ResumableRender};
 use spherule::scene::Scene;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -53,141 +53,142 @@ use std::time::{Duration, Instant};
 
 /// Result of a render, complete or not.
 struct Traced {
-    render: Unfinished,
+    render: ResumableRender,
     /// Exit code, if a signal ended it.
     signal: Option<u8>,
     /// Command that resumes it, if a checkpoint was written.
-    advice: Option<String>,
+    resume_command: Option<String>,
 }
 
-/// Renders, writes the picture, and prints a summary.
+/// Renders, writes the image, and prints a summary.
 pub(super) fn run(mut args: RenderArgs) -> Result<ExitCode, Failure> {
-    args.memory.obey();
-    let mut now = Given::of_process();
-    part::keep(&mut args, &mut now.typed)?;
-    let Some(path) = &args.keep.resume else {
+    args.memory.apply();
+    let mut now = Invocation::of_process();
+    part::add_checkpoint(&mut args, &mut now.typed)?;
+    let Some(path) = &args.checkpoints.resume else {
         files(&args).check()?;
-        let keeper = Keeper::new(&args.keep)?.map(|keeper| keeper.with(now, &args.output));
-        return run_as(&args, keeper.as_ref(), None);
+        let writer =
+            CheckpointWriter::new(&args.checkpoints)?.map(|writer| writer.with(now, &args.output));
+        return run_as(&args, writer.as_ref(), None);
     };
-    // The lock comes before the file is read: no other process writes it in between.
-    let keeper = Keeper::new(&args.keep)?;
+    // The file is locked before it is read, so that no other process writes it in between.
+    let writer = CheckpointWriter::new(&args.checkpoints)?;
     let (resumed, args, given) = Resumed::read(path, now)?;
     files(&args).check()?;
-    let keeper = keeper.map(|keeper| keeper.with(given, &args.output));
-    run_as(&args, keeper.as_ref(), Some(resumed))
+    let writer = writer.map(|writer| writer.with(given, &args.output));
+    run_as(&args, writer.as_ref(), Some(resumed))
 }
 
 fn run_as(
     args: &RenderArgs,
-    keeper: Option<&Keeper>,
+    writer: Option<&CheckpointWriter>,
     mut resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    store::refuse_sequence(args)?;
+    prepared_file::refuse_sequence(args)?;
     let job = Job::new(args)?;
     check_stream(args)?;
     check_bar(&job)?;
     terminal::check(job.report.terminal)?;
     if args.is_sequence() {
         let files = files(args);
-        return job.pool()?.install(|| sequence::run(&job, &files, keeper, resumed));
+        return job.pool()?.install(|| sequence::run(&job, &files, writer, resumed));
     }
     if let Some(resumed) = resumed.take_if(|_| args.sequence.first_picture.is_some()) {
         return Err(
-            resumed.refuse("it keeps a sequence; leave --frame and --turntable as they were")
+            resumed.refuse("it holds a sequence; use the same --frame and --turntable as before")
         );
     }
     if let Some(file) = &args.prepare {
-        return job.pool()?.install(|| store::write(&job, file));
+        return job.pool()?.install(|| prepared_file::write(&job, file));
     }
     picture_file::check(&job.output)?;
-    job.pool()?.install(|| make_picture(&job, keeper, resumed))
+    job.pool()?.install(|| render_image(&job, writer, resumed))
 }
 
-/// Refuses standard output for anything but a single picture, and reserves it for that picture.
+/// Reserves standard output for a single image; rejects it for parts and sequences.
 fn check_stream(args: &RenderArgs) -> Result<(), Failure> {
     let refuse = |message: &str| Err(Failure::usage("render", message));
-    if picture_file::is_stream(&args.output) && args.part.settled().is_some() {
-        return refuse("--part writes a file that is named after --output: give --output a name");
+    if picture_file::is_stream(&args.output) && args.part.resolved().is_some() {
+        return refuse("--part names its file after --output; give --output a file name");
     }
     if picture_file::is_stream(&args.output) && args.is_sequence() {
         return refuse(
-            "--output - is for one picture: leave out --turntable, and give --frame one",
+            "--output - takes one image; remove --turntable, and give --frame one frame",
         );
     }
     picture_file::check_stream("render", &args.output, args.report.json)
 }
 
-/// State that the pictures of a run share.
+/// State shared by the images of a run.
 #[derive(Default)]
 struct Session<'a> {
     notices: Notices,
-    keeper: Option<&'a Keeper>,
-    /// The film that pictures go to, if they do not go to files of their own.
-    film: Option<Film>,
+    writer: Option<&'a CheckpointWriter>,
+    /// The video, unless each image has its own file.
+    video: Option<Video>,
 }
 
-fn make_picture(
+fn render_image(
     job: &Job,
-    keeper: Option<&Keeper>,
+    writer: Option<&CheckpointWriter>,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
-    let mut session = Session { keeper, ..Session::default() };
-    make_placed(job, Placed::load(job, None)?, &mut session, resumed)
+    let mut session = Session { writer, ..Session::default() };
+    render_placed(job, PlacedScene::load(job, None)?, &mut session, resumed)
 }
 
-/// Makes the picture of a scene, unless it exists and is to be kept.
-fn make_placed(
+/// Renders the image of a scene, unless it exists and is skipped.
+fn render_placed(
     job: &Job,
-    placed: Placed,
+    placed: PlacedScene,
     session: &mut Session,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
     write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
-    // After a signal, nothing is looked at any more: what follows is interrupted at once, and kept.
-    if resumed.is_none() && signals::go_on().is_none() && existing::is_there(job, &placed) {
+    // After a signal, checks are left out: the render is interrupted at once and saved.
+    if resumed.is_none() && signals::end_pause().is_none() && existing::is_up_to_date(job, &placed)
+    {
         let tell = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
         session.notices.count_kept(&job.output, tell);
         return Ok(ExitCode::SUCCESS);
     }
     let mut prepared = placed.build(job)?;
-    let unfinished = resumed.map(|resumed| resumed.go_on(job, &prepared)).transpose()?;
-    finish_picture(job, &mut prepared, session, unfinished)
+    let unfinished = resumed.map(|resumed| resumed.into_render(job, &prepared)).transpose()?;
+    finish_image(job, &mut prepared, session, unfinished)
 }
 
-fn finish_picture(
+fn finish_image(
     job: &Job,
     prepared: &mut Prepared,
     session: &mut Session,
-    unfinished: Option<Unfinished>,
+    unfinished: Option<ResumableRender>,
 ) -> Result<ExitCode, Failure> {
-    prepared.tell(job, &mut session.notices);
-    let traced = trace(job, prepared, session.keeper, unfinished)?;
+    prepared.report(job, &mut session.notices);
+    let traced = trace(job, prepared, session.writer, unfinished)?;
     let finished = finish_traced(job, prepared, session, &traced);
-    // One that came while the picture was written ends a sequence, too. If something is to be saved or
-    // removed then, the next picture sees to that: it is interrupted at once. But nothing waits for
-    // input that may never come.
+    // A signal while the image is written ends a sequence, too. If something must be saved or removed, the
+    // next image does so: it is interrupted at once. But no input is awaited that may never come.
     let stream = job.common.as_ref().is_some_and(|common| !common.frames_all);
-    let saves = !stream && (session.keeper.is_some() || session.film.is_some());
+    let saves = !stream && (session.writer.is_some() || session.video.is_some());
     let goes_on = saves && job.place.is_some_and(|place| !place.last);
     let signal = if goes_on { traced.signal } else { traced.signal.or(signals::release()) };
     finished?;
     Ok(signal.map_or(ExitCode::SUCCESS, ExitCode::from))
 }
 
-/// Writes what was rendered: the picture, or the part.
+/// Writes the image or the part.
 fn finish_traced(
     job: &Job,
     prepared: &mut Prepared,
     session: &mut Session,
     traced: &Traced,
 ) -> Result<(), Failure> {
-    if let (Some(part), Some(keeper)) = (job.part, session.keeper) {
-        return part::finish(job, part, prepared, keeper, &traced.render);
+    if let (Some(part), Some(writer)) = (job.part, session.writer) {
+        return part::finish(job, part, prepared, writer, &traced.render);
     }
     if job.is_of_sequence() && !traced.render.is_complete() {
         let output = job.output.display();
-        output::warn(format_args!("interrupted: {output} is unfinished and is not written"));
+        output::warn(format_args!("interrupted: {output} is incomplete and is not written"));
         traced.advise(job);
         return Ok(());
     }
@@ -197,11 +198,11 @@ fn finish_traced(
     }
     let mut render = traced.render.render();
     write(job, prepared, session, &mut render)?;
-    traced.tell(job, prepared, &render);
+    traced.report(job, prepared, &render);
     Ok(())
 }
 
-/// Draws over the picture, writes it and its layers, and prints a summary.
+/// Draws overlays, writes the image and its layers, and prints a summary.
 fn write(
     job: &Job,
     prepared: &mut Prepared,
@@ -212,15 +213,15 @@ fn write(
     let options = metadata::write_options(job, prepared, render);
     let mut channels = layers::channels(job, prepared, render)?;
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
-    match &mut session.film {
-        Some(film) => film.add(&render.image, &options)?,
+    match &mut session.video {
+        Some(video) => video.add(&render.image, &options)?,
         None => write_file(&job.output, &render.image.encode(job.format, &channels, &options)?)?,
     }
-    Summary::new(job, prepared, render, &options).tell(job.report, &mut session.notices);
+    Summary::new(job, prepared, render, &options).report(job.report, &mut session.notices);
     Ok(())
 }
 
-/// Draws the look and the color bar over a picture; returns the matte of a transparent background.
+/// Draws the look and the color bar over an image; returns the matte of a transparent background.
 fn draw_over(prepared: &mut Prepared, render: &mut Render) -> Result<Option<Matte>, Failure> {
     let Scene { look, color_bar, settings, .. } = &prepared.scene;
     let region = prepared.region;
@@ -231,12 +232,12 @@ fn draw_over(prepared: &mut Prepared, render: &mut Render) -> Result<Option<Matt
     Ok(canvas.matte)
 }
 
-/// Renders from the beginning, or resumes a render.
+/// Starts or resumes a render.
 fn trace(
     job: &Job,
     prepared: &Prepared,
-    keeper: Option<&Keeper>,
-    unfinished: Option<Unfinished>,
+    writer: Option<&CheckpointWriter>,
+    unfinished: Option<ResumableRender>,
 ) -> Result<Traced, RenderError> {
     let meter = Meter::new(job.report.quiet || job.report.terminal);
     let options = Options {
@@ -248,15 +249,15 @@ fn trace(
     };
     signals::catch();
     let (world, settings) = (&prepared.world, &prepared.scene.settings);
-    let begin = || Unfinished::begin_share(world, settings, &options, prepared.share.clone());
+    let begin = || ResumableRender::begin_part(world, settings, &options, prepared.part.clone());
     let mut render = unfinished.map_or_else(begin, Ok)?;
     let caption = part::caption(job, prepared);
     let mut terminal = job.report.terminal.then(|| Terminal::new(settings));
     let after = |pause: Option<Duration>| pause.map(|pause| Instant::now() + pause);
-    // Between the pictures of a sequence, checkpoints are written only when they are due.
+    // Between the images of a sequence, checkpoints are written only when they are due.
     let last = job.place.is_none_or(|place| place.last);
     let (signal, kept) = loop {
-        let due = keeper.and_then(|keeper| keeper.due(job.keep));
+        let due = writer.and_then(|writer| writer.due(job.checkpoints));
         let drawn = after(terminal.as_ref().map(Terminal::pause));
         let stop = due.into_iter().chain(drawn).min();
         let show = |progress| {
@@ -266,32 +267,32 @@ fn trace(
             }
         };
         let end = render.run(&prepared.world, &Options { progress: Some(&show), ..options });
-        let signal = signals::go_on();
+        let signal = signals::end_pause();
         let ended = end != End::Cancelled || signal.is_some();
         if let Some(terminal) = &mut terminal {
             terminal.draw(&render.film().resolve());
         }
         let is_due = due.is_some_and(|due| due <= Instant::now());
-        let keep = keeper.filter(|_| is_due || ended && (last || end == End::Cancelled));
-        let kept = keep.is_some_and(|keeper| keeper.keep(job, prepared, &caption, &render));
+        let keep = writer.filter(|_| is_due || ended && (last || end == End::Cancelled));
+        let kept = keep.is_some_and(|writer| writer.save(job, prepared, &caption, &render));
         if ended {
             break (signal.filter(|_| end == End::Cancelled), kept);
         }
     };
     meter.finish();
-    let advice = keeper.filter(|_| kept).map(Keeper::advice);
-    Ok(Traced { render, signal, advice })
+    let resume_command = writer.filter(|_| kept).map(CheckpointWriter::resume_command);
+    Ok(Traced { render, signal, resume_command })
 }
 
 impl Traced {
-    /// Warns of an incomplete picture.
-    fn tell(&self, job: &Job, prepared: &Prepared, render: &Render) {
+    /// Warns of an incomplete image.
+    fn report(&self, job: &Job, prepared: &Prepared, render: &Render) {
         let output = job.output.display();
         if !render.complete && prepared.scene.settings.has_target() {
-            output::warn(format_args!("interrupted: {output} holds what there was"));
+            output::warn(format_args!("interrupted: {output} is incomplete"));
         } else if !render.complete {
             let share = 100.0 * prepared.taken(render);
-            output::warn(format_args!("interrupted: {output} holds {share:.1} % of the samples"));
+            output::warn(format_args!("interrupted: {output} has {share:.1} % of the samples"));
         }
         if matches!(render.end, End::Cancelled | End::Time) {
             self.advise(job);
@@ -300,8 +301,8 @@ impl Traced {
 
     /// Prints the command that resumes the render, if a checkpoint was written.
     fn advise(&self, job: &Job) {
-        if let Some(advice) = self.advice.as_ref().filter(|_| !job.report.quiet) {
-            output::note(advice);
+        if let Some(resume_command) = self.resume_command.as_ref().filter(|_| !job.report.quiet) {
+            output::note(resume_command);
         }
     }
 }

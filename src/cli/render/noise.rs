@@ -1,4 +1,4 @@
-//! How far the picture is from its limit, in a report.
+//! Error estimates in reports.
 
 use super::prepare::Prepared;
 use crate::cli::output;
@@ -8,7 +8,7 @@ use spherule::noise::CONFIDENCE;
 use spherule::render::{End, Render, Samples};
 use spherule::scene::Settings;
 
-/// How far the picture is from its limit, by its mean radiance.
+/// Estimated error of the image relative to its mean radiance.
 #[derive(Serialize)]
 pub(super) struct NoiseSummary {
     error: f64,
@@ -42,14 +42,14 @@ impl NoiseSummary {
         })
     }
 
-    /// As a line.
+    /// Formats the estimate as a line.
     pub(super) fn print(&self) {
         let percent = |share: f64| two_digits(100.0 * share);
         output::print(format_args!(
-            "error   {} % ({:.0} % sure that it is below {} %), {} samples per pixel ({} to {})",
+            "error   {} % (below {} % with {:.0} % confidence), {} samples per pixel ({} to {})",
             percent(self.error),
-            100.0 * self.confidence,
             percent(self.bound),
+            100.0 * self.confidence,
             two_digits(self.mean_samples),
             self.least_samples,
             self.most_samples,
@@ -57,20 +57,19 @@ impl NoiseSummary {
     }
 }
 
-/// A target that was not met, though nobody interrupted the render.
+/// Returns a warning if the render ended without reaching the target.
 pub(super) fn missed(render: &Render, settings: &Settings) -> Option<String> {
     let target = settings.until_error.filter(|_| render.end == End::Samples)?;
     let bound = render.noise.map(|noise| noise.bound).filter(|bound| *bound > target)?;
     Some(format!(
-        "the error is {} % at most, not {} %: {} samples per pixel are too few; give --spp a larger \
-         number",
+        "the error is at most {} % instead of {} %: {} samples per pixel are too few; increase --spp",
         two_digits(100.0 * bound),
         two_digits(100.0 * target),
         settings.spp
     ))
 }
 
-/// A number with three digits or more, two of them behind the point at most.
+/// Formats a number with at least three digits and at most two decimals.
 fn two_digits(number: f64) -> String {
     let places = if number < 0.1 {
         4

@@ -1,4 +1,4 @@
-//! Warnings and notes about the pictures of a run, each printed once.
+//! Warnings and notes about the images of a run, each printed once.
 
 use crate::cli::output;
 use std::collections::BTreeMap;
@@ -7,32 +7,31 @@ use std::path::Path;
 /// Maximum number of runs of numbers in a message.
 const LISTED: usize = 8;
 
-/// Messages about the pictures so far.
+/// Messages about the images so far.
 #[derive(Debug, Default)]
 pub(super) struct Notices {
-    /// Number of the current picture: its frame, or its place in a turn.
+    /// Number of the current image: its frame, or its place in the turntable.
     picture: u64,
     pictures: u64,
-    /// Warnings by their words without numbers: the text that was printed, and the pictures that it is
-    /// about.
+    /// Warnings by their text without numbers: the printed text, and the images that it applies to.
     warnings: BTreeMap<String, (String, Vec<u64>)>,
     notes: Vec<String>,
-    /// Pictures that show no sphere.
+    /// Images that show no sphere.
     empty: Vec<u64>,
-    /// Pictures whose spheres are partly beyond their edges.
+    /// Images whose spheres are partly beyond their edges.
     cropped: Vec<u64>,
-    /// Number of pictures that existed and were kept.
+    /// Number of images that existed and were kept.
     kept: u64,
 }
 
 impl Notices {
-    /// Begins the messages about a picture.
+    /// Starts the messages about an image.
     pub(super) fn start_picture(&mut self, picture: u64) {
         self.picture = picture;
         self.pictures += 1;
     }
 
-    /// Prints a warning, unless an earlier picture had the same one but for its numbers.
+    /// Prints a warning, unless an earlier image had the same one but for its numbers.
     pub(super) fn warn(&mut self, text: &str) {
         let words = text.chars().filter(|c| !c.is_ascii_digit()).collect();
         let (_, pictures) = self.warnings.entry(words).or_insert_with(|| {
@@ -52,56 +51,56 @@ impl Notices {
         }
     }
 
-    /// Counts a picture that exists and is kept; prints a note about it if `print` is true.
+    /// Counts an image that exists and is kept; prints a note about it if `print` is true.
     pub(super) fn count_kept(&mut self, output: &Path, print: bool) {
         self.kept += 1;
         if print {
-            output::note(format_args!("{}: exists and is kept", output.display()));
+            output::note(format_args!("{}: already exists, skipped", output.display()));
         }
     }
 
-    /// Returns the number of pictures so far.
+    /// Returns the number of images so far.
     pub(super) fn pictures(&self) -> u64 {
         self.pictures
     }
 
-    /// Returns the number of pictures that existed and were kept.
+    /// Returns the number of images that existed and were kept.
     pub(super) fn kept(&self) -> u64 {
         self.kept
     }
 
-    /// Counts the current picture among those that show no sphere.
+    /// Counts the current image among those that show no sphere.
     pub(super) fn count_empty(&mut self) {
         self.empty.push(self.picture);
     }
 
-    /// Counts the current picture among those with spheres beyond their edges.
+    /// Counts the current image among those with spheres beyond their edges.
     pub(super) fn count_cropped(&mut self) {
         self.cropped.push(self.picture);
     }
 
-    /// Prints the warnings that count pictures, at the end of a sequence; `noun` names their numbers.
+    /// Prints the warnings that count images, at the end of a sequence; `noun` names their numbers.
     pub(super) fn summarize(&self, noun: &str) {
         let pictures = self.pictures;
         if !self.empty.is_empty() {
             let (count, list) = (self.empty.len(), runs(&self.empty));
             output::warn(format_args!(
-                "no sphere is visible in {count} of {pictures} pictures: {noun} {list}"
+                "no sphere is visible in {count} of {pictures} images: {noun} {list}"
             ));
         }
         if !self.cropped.is_empty() {
             let (count, list) = (self.cropped.len(), runs(&self.cropped));
             output::warn(format_args!(
-                "spheres lie outside of {count} of {pictures} pictures, whose camera frames only the \
-                 first one: {noun} {list}; write the input to a file to frame all of them"
+                "spheres are outside the view in {count} of {pictures} images: {noun} {list}; the camera is \
+                 placed for the first one; write the input to a file to place it for all"
             ));
         }
-        // A warning about all pictures needs no list.
+        // A warning about all images needs no list.
         let some = |list: &[u64]| list.len() > 1 && (list.len() as u64) < pictures;
         for (text, list) in self.warnings.values().filter(|(_, list)| some(list)) {
             let (count, list) = (list.len(), runs(list));
             output::warn(format_args!(
-                "in {count} of {pictures} pictures, {noun} {list}, as said of the first: {text}"
+                "in {count} of {pictures} images, {noun} {list}, as in the first: {text}"
             ));
         }
     }

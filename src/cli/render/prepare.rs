@@ -1,10 +1,10 @@
-//! Preparation of a render: from a job to a world.
+//! Preparation of a render: loads the scene and builds the world.
 
 use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
-use super::{looks, metadata, part, visibility};
+use super::{appearance, metadata, part, visibility};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -15,45 +15,45 @@ use spherule::World;
 use spherule::bvh::builders::Builder;
 use spherule::film::Region;
 use spherule::prepared::{self, PreparedScene};
-use spherule::render::{Render, Share};
+use spherule::render::{ImagePart, Render};
 use spherule::scene::particles::{Cell, Legend, Particles};
 use spherule::scene::{Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A world that can be rendered, and what was found on the way to it.
+/// A world that is ready to render, with facts about its preparation.
 pub(super) struct Prepared {
-    /// The scene without its spheres: the world has taken them.
+    /// The scene without its spheres, which have moved to the world.
     pub(super) scene: Scene,
     pub(super) title: String,
     pub(super) world: World,
-    /// The part of the picture that is rendered.
+    /// The region that is rendered.
     pub(super) region: Region,
-    /// The share of that part that is rendered by this process.
-    pub(super) share: Share,
+    /// The samples and tiles of the region that this process renders.
+    pub(super) part: ImagePart,
     /// Builder of the tree.
     pub(super) builder: Builder,
-    /// Time for reading or generating.
+    /// Time to read or generate the scene.
     pub(super) load: Duration,
-    /// Time for the columns and the tree.
+    /// Time to build the columns and the tree.
     pub(super) build: Duration,
-    /// Estimated peak memory of the process in bytes, from before the world was built.
+    /// Estimated peak memory of the process in bytes, computed before the world was built.
     pub(super) estimate: u64,
     /// Settings that have no effect.
     pub(super) notes: Vec<String>,
-    /// The numbers that colors stand for, if they stand for any.
+    /// The color scale, if colors represent numbers.
     pub(super) legend: Option<Legend>,
-    /// Looks of particles as a prepared scene lists them for the picture's file.
+    /// Settings for particles from a prepared scene, for the image's metadata.
     looks: Option<Vec<(String, String)>>,
-    /// Identity of the scene, if the file of the picture or a checkpoint records it.
+    /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
     /// Warnings about the input.
     pub(super) warnings: Vec<String>,
-    /// Reason why the picture shows no sphere, if it shows none.
+    /// Reason why the image shows no sphere, if it shows none.
     pub(super) empty: Option<String>,
 }
 
-/// A scene with the job's settings in it, whose camera has no place yet.
+/// A scene with the job's settings, before its camera is placed.
 pub(super) struct Staged {
     pub(super) scene: Scene,
     /// Normals of the slices that cut anything, toward what is cut away.
@@ -63,11 +63,11 @@ pub(super) struct Staged {
 }
 
 impl Staged {
-    /// Loads the scene; `given` are its particles, if they were read before.
+    /// Loads the scene; `given` are its particles, if they are already loaded.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let looks::Loaded { mut scene, legend, cell } = looks::load(job, given)?;
-        scene.color_bar = looks::color_bar(job, legend.as_ref()).or(scene.color_bar);
+        let appearance::Loaded { mut scene, legend, cell } = appearance::load(job, given)?;
+        scene.color_bar = appearance::color_bar(job, legend.as_ref()).or(scene.color_bar);
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
@@ -78,28 +78,28 @@ impl Staged {
         check_alpha(&scene.look, job.format)?;
         job.picture.replace(&mut scene.settings);
         if job.part.is_some() {
-            // The picture is written elsewhere, from what the part's settings say.
+            // The image is written elsewhere, with the settings of the part.
             job.encoding.replace(&mut scene.settings);
         }
         Ok(Self { scene, cuts, legend, load })
     }
 }
 
-/// A scene whose camera and lights are placed. Everything that the picture depends on is known.
-pub(super) struct Placed {
+/// A scene whose camera and lights are placed, so that everything that determines the image is known.
+pub(super) struct PlacedScene {
     pub(super) scene: Scene,
     pub(super) legend: Option<Legend>,
     pub(super) region: Region,
-    /// Identity of the scene, if the file of the picture or a checkpoint records it.
+    /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
     /// The world, if the scene is a prepared one.
     pub(super) stored: Option<Box<PreparedScene>>,
     load: Duration,
 }
 
-impl Placed {
-    /// Loads the scene, applies the job's settings, and places the camera; `given` are its particles, if
-    /// they were read before.
+impl PlacedScene {
+    /// Loads the scene, applies the job's settings, and places the camera; `given` are its particles, if they
+    /// are already loaded.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         if let Source::Prepared(path) = &job.source {
             return Self::open(job, path);
@@ -114,12 +114,12 @@ impl Placed {
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
         }
-        let asked = job.keep.file().is_some() || job.is_identified();
+        let asked = job.checkpoints.file().is_some() || job.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
         Ok(Self { scene, legend, region, identity, stored: None, load })
     }
 
-    /// Opens a prepared scene, and puts in the job's settings.
+    /// Opens a prepared scene, and applies the job's settings.
     fn open(job: &Job, path: &Path) -> Result<Self, Failure> {
         let start = Instant::now();
         let mut stored = prepared::read(path)?;
@@ -155,7 +155,8 @@ impl Placed {
             scene = built.0;
             (built.1, builder)
         } else {
-            let part = share.size() as f64 / Share::whole(region, scene.settings.spp).size() as f64;
+            let part =
+                share.size() as f64 / ImagePart::whole(region, scene.settings.spp).size() as f64;
             let samples = samples(region, &scene.settings) as f64 * part;
             let builder = job.builder(scene.spheres.len(), samples as u64);
             let world = World::build_taking(&mut scene, builder)
@@ -172,7 +173,7 @@ impl Placed {
             scene,
             world,
             region,
-            share,
+            part: share,
             builder,
             load,
             build,
@@ -187,13 +188,13 @@ impl Placed {
 }
 
 impl Prepared {
-    /// Returns the settings of how particles look, as the metadata of a picture lists them.
+    /// Returns the settings for particles, as metadata list them.
     pub(super) fn looks(&self, job: &Job) -> Vec<(String, String)> {
         metadata::looks(job, self.looks.as_deref(), self.legend.as_ref(), self.identity.as_ref())
     }
 
-    /// Prints warnings and notes before the render takes its time.
-    pub(super) fn tell(&self, job: &Job, notices: &mut Notices) {
+    /// Prints warnings and notes before the render starts.
+    pub(super) fn report(&self, job: &Job, notices: &mut Notices) {
         self.warnings.iter().for_each(|text| notices.warn(text));
         match &self.empty {
             Some(_) if job.is_of_sequence() => notices.count_empty(),
@@ -228,16 +229,16 @@ impl Prepared {
     }
 }
 
-/// Refuses to draw a color bar into a part of a picture.
+/// Rejects a color bar inside a region of an image.
 fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
     if scene.color_bar.is_none() || job.picture.region.is_none() {
         return Ok(());
     }
-    let message = "a color bar inside is for a whole picture: leave --region out";
+    let message = "a color bar inside the image needs the whole image; remove --region";
     Err(Failure::usage("render", message))
 }
 
-/// Places the camera: for this scene alone, or for all pictures of its sequence.
+/// Places the camera for this scene, or for all images of its sequence.
 fn place_camera(job: &Job, scene: &mut Scene, cuts: &[DVec3]) -> Result<(), Failure> {
     match &job.common {
         Some(common) => {
@@ -248,7 +249,7 @@ fn place_camera(job: &Job, scene: &mut Scene, cuts: &[DVec3]) -> Result<(), Fail
     }
 }
 
-/// Returns the number of samples of a part of the picture.
+/// Returns the number of samples of a region.
 fn samples(region: Region, settings: &Settings) -> u64 {
     u64::from(region.width) * u64::from(region.height) * u64::from(settings.spp)
 }

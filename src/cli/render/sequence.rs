@@ -1,27 +1,26 @@
-//! Numbered pictures: of many frames of a file, of a turn, or of frames in a turn.
+//! Image sequences: of trajectory frames, of a turntable, or of both.
 //!
-//! Properties that would otherwise change from picture to picture without anything in the file
-//! changing are the same in all of them: see [`super::survey`]. A file is read twice for that,
-//! standard input once.
+//! Properties that depend on all frames, such as the camera and the color range, are the same in all images:
+//! see [`super::survey`]. A file is read twice for that, standard input once.
 
+mod frame_reader;
 mod plan;
-mod reel;
 
+use self::frame_reader::FrameReader;
 use self::plan::{Frames, Plan, Shot};
-use self::reel::Reel;
-use super::film::Film;
+use super::checkpoint_writer::CheckpointWriter;
 use super::job::{Job, Place};
-use super::keeper::Keeper;
-use super::numbers::numbered;
-use super::prepare::Placed;
+use super::numbered_names::numbered;
+use super::prepare::PlacedScene;
 use super::resume::Resumed;
 pub(in crate::cli) use super::survey::Common;
 use super::survey::Survey;
-use super::{Session, make_placed};
+use super::video::Video;
+use super::{Session, render_placed};
+use crate::cli::appearance::BarPlace;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::files::Files;
-use crate::cli::looks::BarPlace;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
@@ -31,27 +30,29 @@ use spherule::split::Part;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Makes the pictures, until one fails or is interrupted.
+/// Renders the images until one fails or is interrupted.
 ///
-/// `files` are all files of the command but the pictures.
+/// `files` are all files of the command except the images.
 pub(super) fn run(
     job: &Job,
     files: &Files,
-    keeper: Option<&Keeper>,
+    writer: Option<&CheckpointWriter>,
     resumed: Option<Resumed>,
 ) -> Result<ExitCode, Failure> {
     let resumed = match resumed {
         Some(resumed) if job.sequence.first_picture.is_none() => {
-            let why = "it keeps a single picture; leave out --turntable, and give --frame one";
+            let why = "it holds a single image; remove --turntable, and give --frame one frame";
             return Err(resumed.refuse(why));
         }
         resumed => resumed,
     };
-    let session = Session { keeper, ..Session::default() };
+    let session = Session { writer, ..Session::default() };
     let (particles, _) = job.typed;
-    let Some(range) = particles.frames() else { return run_turn(job, files, session, resumed) };
+    let Some(range) = particles.frames() else {
+        return run_turntable(job, files, session, resumed);
+    };
     let Source::Particles(path, options) = &job.source else {
-        let message = "--frame is for a file of particles: name one";
+        let message = "--frame needs a particle file";
         return Err(Failure::usage("render", message));
     };
     let mut options = ReadOptions { allow_empty: true, ..ReadOptions::clone(options) };
@@ -59,19 +60,19 @@ pub(super) fn run(
     let plan = Plan::new(Some(frames), job.views.turntable())?;
     let mut job = job.clone();
     job.looks.allow_empty = true;
-    let film = check_outputs(&job, &plan, files)?;
-    let mut reel = Reel::open(path, &options)?;
-    let survey = look_at(&job, &plan, path, &options, &mut reel)?;
+    let video = check_outputs(&job, &plan, files)?;
+    let mut reader = FrameReader::open(path, &options)?;
+    let survey = survey_frames(&job, &plan, path, &options, &mut reader)?;
     survey.check(path, &job.looks)?;
-    tell_framing(&job, &plan);
+    print_framing(&job, &plan);
     survey.fix_radius(&mut options);
     survey.fix_colors(&mut job.looks.coloring);
-    let session = Session { film, ..session };
-    Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reel, survey)
+    let session = Session { video, ..session };
+    Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
 }
 
-/// Makes the pictures of a turn around one scene.
-fn run_turn(
+/// Renders the images of a turntable around one scene.
+fn run_turntable(
     job: &Job,
     files: &Files,
     session: Session,
@@ -81,26 +82,25 @@ fn run_turn(
         && plan::is_stream(path)
     {
         let message = format!(
-            "--turntable reads its file for every picture, but {} can be read only once: write it to \
-             a file",
+            "--turntable reads its input for every image, but {} can be read only once; write it to a file",
             stream_name(path)
         );
         return Err(Failure::usage("render", message));
     }
     let plan = Plan::new(None, job.views.turntable())?;
-    let film = check_outputs(job, &plan, files)?;
-    let session = Session { film, ..session };
+    let video = check_outputs(job, &plan, files)?;
+    let session = Session { video, ..session };
     Sequence { job: job.clone(), plan, files, session, resumed }.of_turn()
 }
 
-/// Finds out whether all pictures that are made here can be written, and replace no other file of the
-/// command, as far as their number is known; returns the film that they go to, if they do.
-fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<Option<Film>, Failure> {
-    if let Some(container) = job.film {
+/// Checks that all images of this process can be written without replacing other files of the command, as far
+/// as their number is known; returns the video, if there is one.
+fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<Option<Video>, Failure> {
+    if let Some(container) = job.video {
         files.check_output("--output", &job.output)?;
-        return Film::new(&job.output, container, job.sequence.fps).map(Some);
+        return Video::new(&job.output, container, job.sequence.fps).map(Some);
     }
-    let known = (0..plan.count().unwrap_or(1)).filter(|&index| is_dealt(job, index));
+    let known = (0..plan.count().unwrap_or(1)).filter(|&index| is_assigned(job, index));
     let mut files = files.clone();
     for shot in known.filter_map(|index| plan.shot(index)) {
         let output = numbered(&job.output, shot.number, plan.digits());
@@ -111,20 +111,19 @@ fn check_outputs(job: &Job, plan: &Plan, files: &Files) -> Result<Option<Film>, 
     Ok(None)
 }
 
-/// Returns whether a picture is made here. Others may be made elsewhere: they are dealt out in
-/// turn.
-fn is_dealt(job: &Job, index: u64) -> bool {
+/// Returns whether this process renders an image. Parts of a sequence take the images in turn.
+fn is_assigned(job: &Job, index: u64) -> bool {
     let own = |part: Part| index % u64::from(part.count()) == u64::from(part.number() - 1);
     job.deal.is_none_or(own)
 }
 
-/// Looks at all frames that are shown or, of what can be read only once, at the first.
-fn look_at(
+/// Surveys all frames of the sequence, or only the first one if the input can be read only once.
+fn survey_frames(
     job: &Job,
     plan: &Plan,
     path: &Path,
     options: &ReadOptions,
-    reel: &mut Reel,
+    reader: &mut FrameReader,
 ) -> Result<Survey, Failure> {
     let mut survey = Survey::new(!plan.is_stream());
     let add = |survey: &mut Survey, number: u64, frame| {
@@ -133,13 +132,13 @@ fn look_at(
     };
     if plan.count().is_none() {
         if let Some(number) = plan.shot(0).and_then(|shot| shot.frame)
-            && let Some(frame) = reel.look(number)?
+            && let Some(frame) = reader.look(number)?
         {
             add(&mut survey, number, frame)?;
         }
         return Ok(survey);
     }
-    let mut first_pass = Reel::open(path, options)?;
+    let mut first_pass = FrameReader::open(path, options)?;
     let mut last = None;
     for number in plan.shots().filter_map(|shot| shot.frame) {
         if last.replace(number) == Some(number) {
@@ -151,13 +150,13 @@ fn look_at(
     if let Some(error) =
         plan.rest().or_else(|| plan.open_end().and_then(|end| first_pass.rest(end)))
     {
-        output::warn(format_args!("{error}\nthe frames before it are drawn"));
+        output::warn(format_args!("{error}\nthe frames before it are rendered"));
     }
     Ok(survey)
 }
 
-/// Says what the camera frames.
-fn tell_framing(job: &Job, plan: &Plan) {
+/// Prints which frames the camera shows.
+fn print_framing(job: &Job, plan: &Plan) {
     if job.report.quiet {
         return;
     }
@@ -167,7 +166,7 @@ fn tell_framing(job: &Job, plan: &Plan) {
             let (shown, frames) = (frames.min(pictures), plural(frames, "frame"));
             let pictures = plural(pictures, "picture");
             output::note(format_args!(
-                "{pictures} of a turn show {shown} of {frames}, and one camera frames all of these"
+                "{pictures} of a turntable show {shown} of {frames}, with one camera that frames all of them"
             ));
         }
         (Some(frames), _) => {
@@ -176,7 +175,7 @@ fn tell_framing(job: &Job, plan: &Plan) {
         _ => {
             let ranged =
                 matches!(&job.looks.coloring, Coloring::Column(colors) if colors.ends.is_none());
-            let colors = if ranged { ", and colors have its range" } else { "" };
+            let colors = if ranged { ", and its color range applies to all images" } else { "" };
             output::note(format_args!(
                 "the camera frames the first frame{colors}: the input can be read only once"
             ));
@@ -184,25 +183,25 @@ fn tell_framing(job: &Job, plan: &Plan) {
     }
 }
 
-/// Returns the name of input that can be read only once, as users know it.
+/// Returns the name of input that can be read only once, for messages.
 fn stream_name(path: &Path) -> String {
     if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() }
 }
 
-/// Pictures that are made one after another.
+/// Images that are rendered one after another.
 struct Sequence<'a> {
     job: Job<'a>,
     plan: Plan,
     files: &'a Files,
     session: Session<'a>,
-    /// The picture that goes on, which is the first.
+    /// The resumed image, which is the first one.
     resumed: Option<Resumed>,
 }
 
 impl Sequence<'_> {
     fn of_turn(mut self) -> Result<ExitCode, Failure> {
         for (index, shot) in (0..).zip(self.plan.shots()) {
-            if !self.is_made(index) {
+            if !self.is_rendered_here(index) {
                 continue;
             }
             let code = self.picture(index, &shot, None, None)?;
@@ -217,7 +216,7 @@ impl Sequence<'_> {
         mut self,
         path: &Path,
         options: &ReadOptions,
-        mut reel: Reel,
+        mut reader: FrameReader,
         mut survey: Survey,
     ) -> Result<ExitCode, Failure> {
         for warning in &survey.warnings {
@@ -226,15 +225,15 @@ impl Sequence<'_> {
         for index in 0.. {
             let Some(shot) = self.plan.shot(index) else { break };
             let Some(number) = shot.frame else { break };
-            if !self.is_made(index) {
-                // Of input that can be read only once, only reading tells whether there is more.
-                if self.plan.is_stream() && !reel.pass(number)? {
+            if !self.is_rendered_here(index) {
+                // If the input can be read only once, the end is known only after reading it.
+                if self.plan.is_stream() && !reader.pass(number)? {
                     break;
                 }
                 continue;
             }
             let again = self.plan.shot(index + 1).is_some_and(|next| next.frame == shot.frame);
-            let frame = if again { reel.look(number)? } else { reel.take(number)? };
+            let frame = if again { reader.look(number)? } else { reader.take(number)? };
             let Some(frame) = frame else { break };
             let angle = shot.turn.map(|turn| self.job.views.angle(turn));
             let result = survey.particles(path, frame, options).map_err(Failure::from);
@@ -248,17 +247,17 @@ impl Sequence<'_> {
                 return Ok(code);
             }
         }
-        let missing = self.plan.check_end(path, reel.passed());
+        let missing = self.plan.check_end(path, reader.passed());
         let code = self.finish()?;
         missing.map(|()| code)
     }
 
-    /// Returns whether a picture is made here and now.
-    fn is_made(&self, index: u64) -> bool {
-        is_dealt(&self.job, index) && index >= self.job.sequence.first_picture.unwrap_or(0)
+    /// Returns whether an image is rendered in this run.
+    fn is_rendered_here(&self, index: u64) -> bool {
+        is_assigned(&self.job, index) && index >= self.job.sequence.first_picture.unwrap_or(0)
     }
 
-    /// Returns whether no picture follows that is made here, as far as that is known.
+    /// Returns whether no image of this process follows, as far as is known.
     fn is_last(&self, index: u64) -> bool {
         let stride = self.job.deal.map_or(1, |part| u64::from(part.count()));
         self.plan.shot(index.saturating_add(stride)).is_none()
@@ -274,7 +273,7 @@ impl Sequence<'_> {
         let Shot { frame, turn, number } = *shot;
         let place = Some(Place { index, last: self.is_last(index) });
         let mut job = Job { turn, frame, common, place, ..self.job.clone() };
-        if job.film.is_none() {
+        if job.video.is_none() {
             job.output = numbered(&self.job.output, number, self.plan.digits());
             picture_file::check(&job.output)?;
             if self.plan.count().is_none() {
@@ -284,26 +283,28 @@ impl Sequence<'_> {
         let session = &mut self.session;
         session.notices.start_picture(number);
         let resumed = self.resumed.take();
-        let code = make_placed(&job, Placed::load(&job, particles)?, session, resumed)?;
-        // A bar in a file is that of all pictures.
+        let code = render_placed(&job, PlacedScene::load(&job, particles)?, session, resumed)?;
+        // A color bar in a file is the same for all images.
         self.job.color_bar = inside(self.job.color_bar);
         Ok(code)
     }
 
-    /// Completes the film, and tells what is known at the end.
+    /// Completes the video, and prints the final messages.
     fn finish(self) -> Result<ExitCode, Failure> {
-        let Session { notices, film, .. } = self.session;
+        let Session { notices, video, .. } = self.session;
         notices.summarize(self.plan.noun());
         if notices.pictures() == 0 {
             let which = self.job.deal.map_or_else(String::new, |part| format!(" of part {part}"));
-            output::warn(format_args!("there is no picture{which} to make"));
+            output::warn(format_args!("there is no image{which} to render"));
         }
         if !self.job.report.quiet && notices.kept() > 0 {
             let (kept, pictures) = (notices.kept(), notices.pictures());
-            output::note(format_args!("{kept} of {pictures} pictures existed and are kept"));
+            output::note(format_args!(
+                "{kept} of {pictures} images already existed and were skipped"
+            ));
         }
-        if let Some(film) = film {
-            let summary = film.finish()?;
+        if let Some(video) = video {
+            let summary = video.finish()?;
             if !self.job.report.quiet {
                 output::print(summary);
             }
@@ -312,12 +313,12 @@ impl Sequence<'_> {
     }
 }
 
-/// A color bar that every picture has.
+/// The color bar of all images.
 fn inside(bar: Option<&BarPlace>) -> Option<&BarPlace> {
     bar.filter(|bar| matches!(bar, BarPlace::Inside(_)))
 }
 
-/// An error of a whole file, of which nothing is rendered.
+/// An error of a whole file, before anything is rendered.
 fn refuse(path: &Path, message: String, help: String) -> Failure {
     FileError::whole_file(path, message).with_help(help).into()
 }

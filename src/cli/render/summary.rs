@@ -1,4 +1,4 @@
-//! How a render went: the same facts as lines and as JSON.
+//! Summary of a render, as text and as JSON.
 
 use super::job::Job;
 use super::memory;
@@ -23,7 +23,7 @@ use spherule::trace::PacketWidth;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// How a render went.
+/// Summary of a render.
 #[derive(Serialize)]
 pub(super) struct Summary<'a> {
     program: &'static str,
@@ -39,12 +39,12 @@ pub(super) struct Summary<'a> {
     skipped: Vec<String>,
     notes: &'a [String],
     warnings: Vec<String>,
-    /// Those of the warnings that only the render could bring.
+    /// Warnings of the render itself.
     #[serde(skip)]
     new_warnings: usize,
 }
 
-/// How rays found spheres, and who looked.
+/// Traversal and threads.
 #[derive(Serialize)]
 struct TracerSummary {
     threads: usize,
@@ -60,9 +60,9 @@ struct Statistics {
     dropped_spheres: u64,
     sphere_bytes: usize,
     tree_bytes: usize,
-    /// Of the process until now, all else included; null where the system does not tell.
+    /// Peak memory of the process; null if unknown.
     peak_bytes: Option<u64>,
-    /// What that was estimated to be before the world was built.
+    /// Estimated peak memory, computed before the world was built.
     estimated_peak_bytes: u64,
     load_seconds: f64,
     build_seconds: f64,
@@ -78,18 +78,18 @@ struct Statistics {
     non_finite_samples: u64,
     nesting_overflows: u64,
     exact_decisions: u64,
-    /// Share of each stage in the time of all threads, by name.
+    /// Fraction of the time of all threads for each stage, by name.
     stage_shares: BTreeMap<&'static str, f64>,
     tasks: TaskSummary,
 }
 
-/// How the work was divided.
+/// Statistics of tasks.
 #[derive(Serialize)]
 struct TaskSummary {
     count: u64,
     mean_seconds: f64,
     longest_seconds: f64,
-    /// The least share of their time for which so many threads would be busy.
+    /// Lower bound of the utilization of this many threads.
     efficiency_on_64_threads: f64,
 }
 
@@ -123,8 +123,8 @@ impl<'a> Summary<'a> {
         }
     }
 
-    /// Prints it, as JSON or else as lines, and the warnings that are new.
-    pub(super) fn tell(&self, report: ReportArgs, notices: &mut Notices) {
+    /// Prints the summary as JSON or as text, and its warnings.
+    pub(super) fn report(&self, report: ReportArgs, notices: &mut Notices) {
         if report.json {
             output::print_json(self);
         } else if !report.quiet {
@@ -144,7 +144,7 @@ impl<'a> Summary<'a> {
         }
         let tasks = &self.statistics.tasks;
         output::print(format_args!(
-            "tasks   {} of {:.2} ms, the longest {:.2} ms: 64 threads would be busy for {:.0} % of their time",
+            "tasks   {} of {:.2} ms, the longest {:.2} ms: 64 threads would have a utilization of {:.0} %",
             HumanCount(tasks.count),
             1e3 * tasks.mean_seconds,
             1e3 * tasks.longest_seconds,
@@ -251,7 +251,7 @@ fn lanes(width: PacketWidth) -> u32 {
     }
 }
 
-/// What is wrong with the picture.
+/// Returns warnings about the image.
 pub(in crate::cli) fn warnings(counters: &Counters, settings: &Settings) -> Vec<String> {
     let mut warnings = Vec::new();
     let mut warn = |count: u64, text: &dyn Fn(String) -> String| {
@@ -260,28 +260,27 @@ pub(in crate::cli) fn warnings(counters: &Counters, settings: &Settings) -> Vec<
         }
     };
     let limit = settings.depth.map_or_else(
-        || format!("the hard limit of {} scatterings", Settings::HARD_DEPTH),
+        || format!("the hard limit of {} bounces", Settings::HARD_DEPTH),
         |depth| format!("--depth {depth}"),
     );
     warn(counters.cut_paths, &|count| {
         let samples = HumanCount(counters.camera_rays);
         format!(
-            "{limit} cut {count} of {samples} paths: the picture is too dark by the light that \
-             they would have carried"
+            "{limit} ended {count} of {samples} paths: the image lacks their light and is too dark"
         )
     });
     warn(counters.bad_samples, &|count| {
         format!(
-            "{count} samples were negative or not finite and count as black: this is a fault of the program"
+            "{count} samples were negative or not finite and count as black: this is a bug in spherule"
         )
     });
     warn(counters.nesting_overflows, &|count| {
-        format!("{count} times a path was in more glass spheres at once than it can remember")
+        format!("{count} times a path was inside more nested glass spheres than it can track")
     });
     warnings
 }
 
-/// The part of all time that a stage took; 0 if there is none.
+/// Fraction of the total time that a stage took; 0 if there is none.
 fn share(times: &Times, stage: Stage) -> f64 {
     let total = times.total().as_secs_f64();
     if total > 0.0 { times.of(stage).as_secs_f64() / total } else { 0.0 }

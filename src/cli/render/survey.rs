@@ -1,5 +1,5 @@
-//! Properties that the pictures of a sequence share, found before the first one is rendered: where
-//! the camera stands, which numbers the colors stand for, and a radius that was guessed.
+//! Survey of a sequence before rendering: the camera, the color range and the guessed radius, which all
+//! images share.
 
 use super::job::Job;
 use super::prepare::Staged;
@@ -14,45 +14,44 @@ use spherule::world::WorldError;
 use spherule::world::framing::SequenceBounds;
 use std::path::Path;
 
-/// Properties that a picture shares with the others of its sequence.
+/// Properties shared by all images of a sequence.
 #[derive(Clone)]
 pub(in crate::cli) struct Common {
     pub(in crate::cli) camera: Camera,
-    /// Height of the ground that a preset puts under all frames.
+    /// Height of the preset's ground, below all frames.
     pub(in crate::cli) ground: Option<f64>,
-    /// True if the camera frames all pictures, and not only the first.
+    /// True if the camera is placed for all images, and not only for the first.
     pub(in crate::cli) frames_all: bool,
 }
 
-/// Findings about the frames that were looked at; memory does not grow with their number.
+/// Results of the survey, with memory independent of the number of frames.
 #[derive(Default)]
 pub(super) struct Survey {
     bounds: Option<SequenceBounds>,
-    /// Ends of the color map: the least and the greatest number in all frames.
+    /// Color range: the minimum and the maximum over all frames.
     ends: Option<[f64; 2]>,
-    /// True if colors stand for numbers, also where no frame has one that has a color.
+    /// True if colors represent numbers, also if no frame has a finite one.
     numeric: bool,
-    /// Types and texts, whose places choose their colors.
+    /// Types and strings, whose order determines their colors.
     names: SharedNames,
-    /// The radius of all particles, before it is scaled, if it may have been guessed.
+    /// The common radius of particles before scaling, if it may have been guessed.
     radius: Option<f64>,
     /// Warnings about the first frame that shows a sphere.
     pub(super) warnings: Vec<String>,
     frames: u64,
-    /// Frames that show a sphere.
+    /// Number of frames that show a sphere.
     shown: u64,
-    /// True if it looks at all frames, and not only at the first.
+    /// True if all frames are surveyed, and not only the first.
     all: bool,
 }
 
 impl Survey {
-    /// Creates a survey of `all` frames that are shown, or only of the first.
+    /// Creates a survey of all frames, or only of the first.
     pub(super) fn new(all: bool) -> Self {
         Self { all, ..Self::default() }
     }
 
-    /// Returns the particles of a frame, with types and texts at the places that they have in all
-    /// frames.
+    /// Returns the particles of a frame, with types and strings in the common order.
     pub(super) fn particles(
         &mut self,
         path: &Path,
@@ -63,7 +62,7 @@ impl Survey {
         of_frame(path, frame, options)
     }
 
-    /// Looks at the particles of a frame.
+    /// Surveys the particles of a frame.
     pub(super) fn add(
         &mut self,
         job: &Job,
@@ -97,21 +96,21 @@ impl Survey {
         Ok(())
     }
 
-    /// Reads the frames that follow with the radius that was guessed for the first.
+    /// Sets the radius guessed for the first frame for later frames.
     pub(super) fn fix_radius(&self, options: &mut ReadOptions) {
         if let Some(radius) = self.radius {
             options.radii = Radii::Missing(radius);
         }
     }
 
-    /// Has colors stand for the same numbers in all frames.
+    /// Sets the color range of all frames.
     pub(super) fn fix_colors(&self, coloring: &mut Coloring) {
         if let (Coloring::Column(colors), Some(ends)) = (coloring, self.ends) {
             colors.ends.get_or_insert(ends);
         }
     }
 
-    /// Refuses frames that all show no sphere, or that all lack what looks are for.
+    /// Returns an error if no frame shows a sphere, or if no frame has particles that an option names.
     pub(super) fn check(&self, path: &Path, looks: &Looks) -> Result<(), FileError> {
         if self.shown > 0 {
             looks.check_types(path, &self.names)?;
@@ -123,20 +122,20 @@ impl Survey {
             };
         }
         let frames = plural(self.frames, "frame");
-        let message = format!("shows no sphere in the {frames} that the camera is to frame");
-        let help = "the frames are empty, or --select and --slice leave nothing of them; of standard \
-                    input, the first frame counts";
+        let message = format!("has no sphere in {frames} of the sequence");
+        let help = "the frames are empty, or --select and --slice remove all particles; of standard input, \
+                    only the first frame is checked";
         Err(FileError::whole_file(path, message).with_help(help))
     }
 
-    /// Returns the properties that a picture shares with all others, in a turn by `angle`.
+    /// Returns the shared properties, for a turntable at `angle`.
     pub(super) fn common(&self, job: &Job, angle: Option<f64>) -> Result<Common, Failure> {
         let view = |angle| {
             let found = self.bounds.as_ref().ok_or(WorldError::NothingToFit);
             let failure = |error| Failure::World(job.source.name().into_owned(), error);
             found.and_then(|bounds| bounds.view(angle)).map_err(failure)
         };
-        // A ground lies under all frames, from whatever side it is seen.
+        // The ground is below all frames, for every view.
         let mut still = view(None)?;
         job.style.light(&mut still);
         let ground = still.ground.map(|ground| ground.height);
@@ -145,10 +144,10 @@ impl Survey {
     }
 }
 
-/// The radius of all particles, before it is scaled, if it may have been guessed.
+/// The common radius of particles before scaling, if it may have been guessed.
 fn guessed(particles: &Particles, options: &ReadOptions) -> Option<f64> {
     let elements = particles.kinds.table.iter().any(|kind| kind.element.is_some());
     let radius = particles.spheres.radius.first()?;
-    // Of a file with radii of its own, this one has no effect.
+    // This has no effect for a file with radii.
     (options.radii == Radii::Auto && !elements).then_some(radius / options.radius_scale)
 }

@@ -1,4 +1,4 @@
-//! Detection of pictures that show no sphere.
+//! Detection of images that show no sphere.
 
 use crate::cli::contents::spheres;
 use crate::cli::settings::region_text;
@@ -6,8 +6,8 @@ use spherule::World;
 use spherule::film::Region;
 use spherule::world::Visibility;
 
-/// Returns why a picture with so many samples per pixel shows no sphere, and what to do about it; `None` if
-/// it shows one.
+/// Returns the reason why an image with this many samples per pixel shows no sphere, and what to do about it;
+/// `None` if it shows one.
 pub(super) fn explain_empty(world: &World, region: Region, samples: u32) -> Option<String> {
     let all = world.spheres.len() as u64;
     let visibility = world.visibility(region, samples);
@@ -22,8 +22,8 @@ pub(super) fn explain_empty(world: &World, region: Region, samples: u32) -> Opti
             Some(format!("no sphere is visible: {}", out_of_view(world, region)))
         }
         Visibility::TooSmall { spheres: count, pixels } => Some(format!(
-            "no sphere may be visible: {} in the picture cover {pixels:.1e} pixels together; move the \
-             camera nearer, or make radii larger",
+            "possibly no sphere is visible: {} in the image cover {pixels:.1e} pixels in total; move the \
+             camera nearer, or use larger radii",
             spheres(count)
         )),
     }
@@ -34,10 +34,10 @@ fn out_of_view(world: &World, region: Region) -> String {
     let (width, height) = (world.camera.width, world.camera.height);
     if region != (Region { x: 0, y: 0, width, height }) {
         let region = region_text(region);
-        return format!("none of {count} is in the region {region}; choose another --region");
+        return format!("none of {count} is in the region {region}; use another --region");
     }
     format!(
-        "none of {count} is in the picture; point the camera at them, or leave out its `eye` and \
-         `target` to frame all of them"
+        "none of {count} is in view; point the camera at them, or remove its `eye` and `target` to frame all \
+         of them"
     )
 }

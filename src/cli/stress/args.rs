@@ -1,4 +1,4 @@
-//! The command as typed.
+//! Arguments of `spherule stress`.
 
 use crate::cli::names::regime;
 use crate::cli::values::{RAYS, THREADS};
@@ -8,37 +8,39 @@ use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub(in crate::cli) struct Args {
-    /// Rays, of all regimes together
+    /// Number of rays, for all regimes together
     #[arg(long, value_name = "N", default_value_t = 10_000_000)]
     #[arg(value_parser = value_parser!(u64).range(RAYS))]
     pub(super) rays: u64,
-    /// Seed of all random numbers
+    /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(super) seed: u64,
-    /// Threads [default: what the affinity mask and the control group's quota allow]
+    /// Number of threads [default: as the CPU affinity mask and the cgroup's quota allow]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(THREADS))]
     pub(super) threads: Option<u16>,
-    /// Regimes [default: all]
+    /// Regimes to test [default: all]
     #[arg(long, value_name = "NAME", num_args = 1.., value_parser = regime())]
     pub(super) regime: Vec<&'static Regime>,
-    /// The report as one JSON object on standard output; what is infinite is null
+    /// Print the report as one JSON object to standard output; infinite values are null
     #[arg(long)]
     pub(super) json: bool,
-    /// The report as CSV: a row for each regime and form
+    /// Write the report as CSV, with a row for each regime and intersection test
     #[arg(long, value_name = "FILE")]
     pub(super) csv: Option<PathBuf>,
-    /// A picture of the wrong decisions: .png or .svg
+    /// Write a plot of the wrong results: .png or .svg
     #[arg(long, value_name = "FILE")]
     pub(super) plot: Option<PathBuf>,
-    /// No progress and no tables
+    /// Print neither progress nor tables
     #[arg(short, long)]
     pub(super) quiet: bool,
 }
 
 pub(in crate::cli) const EXAMPLES: &str = "\
-Every ray is decided again in whole numbers, without any rounding. Of one ray in 16 that hits, this
-program is also asked whether anything is nearer than seven bounds at the distance and next to it,
-down to the next number of double precision. Exit code 0 says that it was never wrong, 1 that it was.
+Each ray is also tested in exact integer arithmetic, without rounding. For one hit in 16, Spherule
+must also answer correctly for seven maximum distances: the hit distance and values next to it,
+down to the adjacent double-precision numbers.
+
+Exit codes: 0 Spherule made no error, 1 Spherule made at least one
 
 Examples:
   spherule stress

@@ -1,4 +1,4 @@
-//! `spherule stress`: the precision ladder, on the user's own machine.
+//! `spherule stress`: compares intersection tests with exact arithmetic.
 
 mod args;
 mod plot;
@@ -22,17 +22,17 @@ use std::ptr;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// What `--json` prints.
+/// JSON output.
 #[derive(Serialize)]
 struct Summary<'a> {
-    /// Wrong decisions of this program, of every kind.
+    /// Wrong results of this program, of all kinds.
     wrong: u64,
     surface_rays: u64,
     #[serde(flatten)]
     report: &'a Report,
 }
 
-/// Runs, tells, and fails if this program was wrong anywhere.
+/// Runs the tests, prints the report, and fails if this program was wrong anywhere.
 pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     let format = args.plot.as_deref().map(plot_format).transpose()?;
     let mut files = Files::new("stress");
@@ -58,7 +58,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         if !args.quiet {
             output::print(table::text(&report));
         }
-        output::print(closing(&report));
+        output::print(conclusion(&report));
     }
     Ok(if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -66,7 +66,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
 fn plot_format(path: &Path) -> Result<Format, Failure> {
     Format::of_suffix(path).ok_or_else(|| {
         let name = path.display();
-        let message = format!("--plot takes a name that ends in .png or .svg, not {name}");
+        let message = format!("--plot {name}: use a name that ends in .png or .svg");
         Failure::usage("stress", message)
     })
 }
@@ -91,7 +91,7 @@ fn measure(args: &Args) -> Result<Report, Failure> {
     Ok(report)
 }
 
-/// Those chosen, in the usual order; all if none is.
+/// Returns the chosen regimes in the default order, or all if none is chosen.
 fn regimes(chosen: &[&'static Regime]) -> Vec<&'static Regime> {
     let is_chosen = |regime: &&Regime| chosen.iter().any(|other| ptr::eq(*other, *regime));
     REGIMES.iter().filter(|regime| chosen.is_empty() || is_chosen(regime)).collect()
@@ -104,11 +104,11 @@ fn write(
     write_atomically(path, fill).map_err(|error| Failure::Write(path.to_owned(), error))
 }
 
-/// The verdict.
-fn closing(report: &Report) -> String {
+/// Returns the last line of the report.
+fn conclusion(report: &Report) -> String {
     let (wrong, rays) = (report.wrong(Form::Spherule), report.rays + report.surface_rays());
     let [wrong, rays, bounds] = [wrong, rays, report.bounds()].map(HumanCount);
-    let counted = format!("{wrong} wrong decisions in {rays} rays and {bounds} bounds");
+    let counted = format!("{wrong} wrong results in {rays} rays and {bounds} bounds");
     let at_fault = report.regimes.iter().filter(|regime| regime.form(Form::Spherule).wrong() > 0);
     let names: Vec<_> = at_fault.map(|regime| regime.name).collect();
     if names.is_empty() { counted } else { format!("{counted}, in {}", names.join(", ")) }
@@ -130,8 +130,8 @@ mod tests {
     fn the_verdict_names_the_regimes_at_fault() {
         let regimes = REGIMES[..2].iter().collect();
         let mut report = stress::run(&Options { rays: 64, seed: 0, regimes }, &|_| ());
-        assert_eq!(closing(&report), "0 wrong decisions in 80 rays and 28 bounds");
+        assert_eq!(conclusion(&report), "0 wrong results in 80 rays and 28 bounds");
         report.regimes[1].forms[Form::Spherule as usize].wrong_spheres = 1234;
-        assert_eq!(closing(&report), "1,234 wrong decisions in 80 rays and 28 bounds, in inside");
+        assert_eq!(conclusion(&report), "1,234 wrong results in 80 rays and 28 bounds, in inside");
     }
 }

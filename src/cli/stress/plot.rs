@@ -1,18 +1,18 @@
-//! A picture of the wrong decisions: a line for each regime, a mark for each form, and how often it
-//! is wrong to the right. The axis is logarithmic; what is never wrong stands apart at the left.
+//! Plot of wrong results: a row for each regime, a mark for each intersection test, and the error rate on a
+//! logarithmic axis, with a separate place for zero at the left.
 
 use indicatif::HumanCount;
 use spherule::report::{Axis, Plot, Point, Series};
 use spherule::stress::{Form, RegimeReport, Report};
 
-/// Ends of the axis, in percent.
+/// Range of the axis, in percent.
 const RANGE: [f64; 2] = [1e-4, 100.0];
 
-/// The forms that are shown.
+/// Intersection tests that are shown.
 const FORMS: [(Form, &str); 3] =
     [(Form::Naive, "naive f32"), (Form::Good, "good f32"), (Form::Spherule, "Spherule")];
 
-/// The picture.
+/// Creates the plot.
 pub(super) fn plot(report: &Report) -> Plot {
     let count = HumanCount(report.rays);
     let range = Some(RANGE);
@@ -20,7 +20,8 @@ pub(super) fn plot(report: &Report) -> Plot {
         name: "stress".to_owned(),
         title: "Rays whose hit, miss or nearest sphere is wrong".to_owned(),
         about: format!("of {count} random rays, seed {}, in percent for each regime", report.seed),
-        note: "Whole numbers decide what is right. Spherule is asked as it ships.".to_owned(),
+        note: "The reference is exact integer arithmetic. Spherule is tested as it ships."
+            .to_owned(),
         place: Axis::names(report.regimes.iter().map(|regime| regime.name)),
         value: Axis { range, zero: Some("never".to_owned()), ..Axis::log("", "%") },
         series: FORMS.map(|(form, name)| series(name, form, &report.regimes)).to_vec(),

@@ -1,13 +1,13 @@
-//! What a run found, as tables for the terminal.
+//! Tables of the results, for the terminal.
 
 use spherule::report::{Cell, Column, Style, Table};
 use spherule::stress::{Form, FormReport, RegimeReport, Report};
 
-/// Forms that are shown, and their names.
+/// Intersection tests that are shown, and their names.
 const USUAL: &[(Form, &str)] =
     &[(Form::Naive, "naive"), (Form::Good, "good f32"), (Form::Spherule, "Spherule")];
 
-/// The same, and the usual remedy for self-hits.
+/// The same, with the common offset against self-intersection.
 const SURFACE: &[(Form, &str)] = &[
     (Form::Naive, "naive"),
     (Form::NaiveOffset, "t > 1e-4"),
@@ -15,10 +15,10 @@ const SURFACE: &[(Form, &str)] = &[
     (Form::Spherule, "Spherule"),
 ];
 
-/// This program, which alone is asked about bounds.
+/// This program, the only one that is tested with maximum distances.
 const OWN: &[(Form, &str)] = &[(Form::Spherule, "Spherule")];
 
-/// The tables.
+/// Formats the tables.
 pub(super) fn text(report: &Report) -> String {
     let regimes = &report.regimes;
     let tables = [
@@ -66,7 +66,7 @@ impl<'a> Grid<'a> {
         self.column(Column::new("rays", ""), |regime| Cell::Count(count(regime)))
     }
 
-    /// A column for each form: which share of all is wrong.
+    /// Adds a column for each intersection test: the fraction that is wrong.
     fn shares(
         self,
         group: &str,
@@ -82,7 +82,7 @@ impl<'a> Grid<'a> {
         })
     }
 
-    /// A column for each form: how large the error is.
+    /// Adds a column for each intersection test: the size of the error.
     fn errors(self, group: &str, error: fn(&FormReport) -> f64) -> Self {
         USUAL.iter().zip(headings(group)).fold(self, |grid, (&(form, name), group)| {
             let column = Column::new(name, "").group(group).style(Style::Size);
@@ -94,7 +94,7 @@ impl<'a> Grid<'a> {
     }
 }
 
-/// The heading, then none.
+/// Returns the heading once, then empty headings.
 fn headings(group: &str) -> impl Iterator<Item = &str> {
     [group].into_iter().chain(std::iter::repeat(""))
 }

@@ -1,11 +1,11 @@
-//! `spherule view` as typed.
+//! Arguments of `spherule view`.
 
 use crate::cli::args::RenderArgs;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Parser)]
 pub(in crate::cli) struct ViewerArgs {
-    /// No window: do what this file of events says, and end
+    /// Run a script of events without a window, and exit
     #[arg(long, value_name = "FILE")]
     pub(super) headless_script: Option<PathBuf>,
     #[command(flatten)]

@@ -1,50 +1,50 @@
-//! The color bar in the window: the colors of numbers, in the letters of the window.
+//! The color bar of the window.
 
 use super::canvas::{LIGHT, PAPER};
-use super::letters::{Letters, Target};
+use super::font::{SizedFont, Surface};
 use super::wrap::wrap;
 use spherule::color::{Rgb, Tick, ticks};
 use spherule::image::tone::srgb_encode;
 use spherule::scene::particles::Legend;
 
-/// Share of the window's height, and lines, that colors are high; fewer lines are not shown.
+/// Height of the bar as a fraction of the window's height, and the minimum height in lines of text.
 const SHARE: f64 = 0.35;
 const LEAST: u32 = 3;
 
-/// Share of the picture that the panel hides.
+/// Opacity of the panel.
 const COVER: f32 = 0.75;
 
-/// Share of the window's width that the panel may take.
+/// The panel takes at most this fraction (1 / WIDEST) of the window's width.
 const WIDEST: u32 = 2;
 
-/// Draws the bar in the lower right corner, above row `bottom`; nothing where there is no room.
-pub(super) fn draw(letters: &mut Letters, legend: &Legend, target: &mut Target, bottom: u32) {
-    let (line, margin) = (letters.line(), letters.margin());
-    let length = (f64::from(target.height) * SHARE) as u32;
+/// Draws the bar in the lower right corner, above row `bottom`, if it fits.
+pub(super) fn draw(font: &mut SizedFont, legend: &Legend, surface: &mut Surface, bottom: u32) {
+    let (line, margin) = (font.line(), font.margin());
+    let length = (f64::from(surface.height) * SHARE) as u32;
     let (thick, gap) = (line * 3 / 4, margin / 2);
     let most = (length / line).clamp(2, 8) as usize;
     let ticks = ticks(&legend.scale.range, most);
-    let numbers = ticks.iter().map(|tick| letters.width(&tick.label)).max().unwrap_or(0);
-    let room = target.width / WIDEST;
-    let title = wrap(letters, &legend.label, room.saturating_sub(2 * margin), 1).concat();
-    let width = (thick + gap + margin / 2 + numbers).max(letters.width(&title)) + 2 * margin;
+    let numbers = ticks.iter().map(|tick| font.width(&tick.label)).max().unwrap_or(0);
+    let room = surface.width / WIDEST;
+    let title = wrap(font, &legend.label, room.saturating_sub(2 * margin), 1).concat();
+    let width = (thick + gap + margin / 2 + numbers).max(font.width(&title)) + 2 * margin;
     let height = length + 2 * line + margin;
     if length < LEAST * line || height > bottom || width > room {
         return;
     }
-    let (left, top) = (target.width - width, bottom - height);
+    let (left, top) = (surface.width - width, bottom - height);
     for y in top..bottom {
-        for x in left..target.width {
-            target.blend((x as i32, y as i32), PAPER, COVER);
+        for x in left..surface.width {
+            surface.blend((x as i32, y as i32), PAPER, COVER);
         }
     }
-    letters.draw(&title, (left + margin, top + margin / 2), LIGHT, target);
+    font.draw(&title, (left + margin, top + margin / 2), LIGHT, surface);
     let first = top + margin / 2 + line + line / 2;
     for along in 0..length {
         let position = f64::from(length - 1 - along) / f64::from((length - 1).max(1));
         let color = code(legend.scale.at(position));
         for x in left + margin..left + margin + thick {
-            target.blend((x as i32, (first + along) as i32), color, 1.0);
+            surface.blend((x as i32, (first + along) as i32), color, 1.0);
         }
     }
     for Tick { value, label } in &ticks {
@@ -52,9 +52,9 @@ pub(super) fn draw(letters: &mut Letters, legend: &Legend, target: &mut Target, 
         let y = first + ((1.0 - position) * f64::from(length - 1)).round() as u32;
         let x = left + margin + thick;
         for x in x..x + margin / 2 {
-            target.blend((x as i32, y as i32), LIGHT, 1.0);
+            surface.blend((x as i32, y as i32), LIGHT, 1.0);
         }
-        letters.draw(label, (x + gap + margin / 2, y.saturating_sub(line / 2)), LIGHT, target);
+        font.draw(label, (x + gap + margin / 2, y.saturating_sub(line / 2)), LIGHT, surface);
     }
 }
 

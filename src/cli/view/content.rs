@@ -1,41 +1,41 @@
-//! What is shown, but for who looks and how: what takes a new world.
+//! Content of the viewer, without camera and settings: a change needs a new world.
 
 use glam::DVec3;
 use spherule::scene::{Camera, Preset};
 
-/// What is shown.
+/// Content of the viewer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Content {
-    /// Which frame of a trajectory; `None` for what the command line says.
+    /// Trajectory frame; `None` for that of the command line.
     pub(super) frame: Option<u64>,
-    /// Types that are not drawn.
+    /// Hidden types.
     pub(super) hidden: Vec<String>,
-    /// Planes beyond which nothing is drawn.
-    pub(super) cuts: Vec<Cut>,
-    /// The column that colors stand for; `None` for what the command line says.
+    /// Slices.
+    pub(super) cuts: Vec<CutPlane>,
+    /// Column of the colors; `None` for that of the command line.
     pub(super) color: Option<String>,
-    /// A look by name, and the camera that its lights stand by.
+    /// Preset, and the camera for its lights.
     pub(super) preset: Option<(Preset, Camera)>,
 }
 
-/// A plane: what is beyond it, by its center, is not drawn.
+/// A plane; spheres whose centers are beyond it are hidden.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cut {
-    /// Toward what is cut off.
+pub(super) struct CutPlane {
+    /// Normal, toward the hidden side.
     pub(super) normal: DVec3,
-    /// On the plane.
+    /// A point on the plane.
     pub(super) point: DVec3,
 }
 
 impl Content {
-    /// What holds for those that are drawn, as `--select` has it; `None` if all are.
+    /// Returns the condition for visible particles in the syntax of `--select`; `None` if all are visible.
     pub(super) fn condition(&self) -> Option<String> {
         let hidden = self.hidden.iter().map(|name| {
             let quote = if name.contains('"') { '\'' } else { '"' };
             format!("type != {quote}{name}{quote}")
         });
-        let cuts = self.cuts.iter().map(|Cut { normal: n, point }| {
-            // Differences first: far from the origin products would lose what they differ by.
+        let cuts = self.cuts.iter().map(|CutPlane { normal: n, point }| {
+            // Differences first: far from the origin, products would lose precision.
             let term = |axis: char, i: usize| format!("({axis} - {:?}) * {:?}", point[i], n[i]);
             format!("{} + {} + {} <= 0", term('x', 0), term('y', 1), term('z', 2))
         });
@@ -59,7 +59,8 @@ mod tests {
             spheres.push(DVec3::new(1e6 + x, 0.0, 1.0), 1.0, 0, Rgb::ONE);
         }
         let mut particles = Particles { spheres, ..Particles::default() };
-        let cut = Cut { normal: DVec3::new(1e-20, 0.0, -0.0), point: DVec3::new(1e6, -3.0, 7.5) };
+        let cut =
+            CutPlane { normal: DVec3::new(1e-20, 0.0, -0.0), point: DVec3::new(1e6, -3.0, 7.5) };
         let content = Content { cuts: vec![cut], ..Content::default() };
         let select: Selection = content.condition().unwrap().parse().unwrap();
         let looks = Looks { select: Some(select), ..Looks::default() };

@@ -1,28 +1,28 @@
-//! Numbers with as many digits as they are worth.
+//! Formatting of numbers with significant digits.
 
-/// Most digits: more may be those of a conversion from decimal numbers.
+/// Maximum number of digits; more could be artifacts of decimal conversion.
 const MOST: i32 = 15;
 
-/// Digits where nothing is known of the size of other values.
+/// Default number of digits.
 const USUAL: i32 = 6;
 
-/// Share of a range that can be told apart in what is shown of it.
+/// Resolution relative to the range of values.
 const STEP: f64 = 1e-5;
 
-/// Digits that are shown of a value that is small beside the range of its column.
+/// Minimum number of digits of a value that is small compared to the range of its column.
 const LEAST: i32 = 4;
 
-/// A coordinate or a length in a scene of this size.
+/// Formats a coordinate or a length in a scene of this size.
 pub(super) fn length(value: f64, size: f64) -> String {
     rounded(value, digits(value, size))
 }
 
-/// A value of a column whose values differ by at most `range`.
+/// Formats a value of a column whose values differ by at most `range`.
 pub(super) fn value(value: f64, range: f64) -> String {
     rounded(value, digits(value, range).max(LEAST))
 }
 
-/// The difference of the greatest and the least value.
+/// Returns the difference of the maximum and the minimum.
 pub(super) fn range(values: &[f64]) -> f64 {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) =
@@ -30,19 +30,19 @@ pub(super) fn range(values: &[f64]) -> f64 {
     if low < high { high - low } else { 0.0 }
 }
 
-/// Digits of a value down to what differs in a range.
+/// Returns the number of digits of a value that resolves differences in a range.
 fn digits(value: f64, range: f64) -> i32 {
     let step = range * STEP;
-    if step > 0.0 && step.is_finite() { order(value) - order(step) + 1 } else { USUAL }
+    if step > 0.0 && step.is_finite() { exponent(value) - exponent(step) + 1 } else { USUAL }
 }
 
-/// The power of ten that the first digit counts.
-fn order(value: f64) -> i32 {
+/// Returns the decimal exponent of the first digit.
+fn exponent(value: f64) -> i32 {
     let scientific = format!("{value:e}");
-    scientific.rsplit_once('e').and_then(|(_, order)| order.parse().ok()).unwrap_or(0)
+    scientific.rsplit_once('e').and_then(|(_, request)| request.parse().ok()).unwrap_or(0)
 }
 
-/// A value with so many digits; whole numbers with all of theirs.
+/// Formats a value with a number of digits; integers with all digits.
 fn rounded(value: f64, digits: i32) -> String {
     let whole = value.fract() == 0.0 && value.abs() < 1e15;
     if whole || !value.is_finite() {

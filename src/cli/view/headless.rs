@@ -1,10 +1,10 @@
-//! A viewer without a window: it does what a script says, one thing after the other.
+//! A viewer without a window, which runs a script.
 
-use super::command::{Action, Event, Held};
-use super::load::{Loader, Stage};
-use super::loading::{Progress, Watch};
-use super::pace::Pace;
-use super::save::{Seen, save_bar, save_picture, save_scene};
+use super::events::{Action, Event, Modifiers};
+use super::frame_rate::FrameRate;
+use super::load::{LoadedScene, Loader};
+use super::loading::{Progress, ProgressReporter};
+use super::save::{SavedImage, save_bar, save_picture, save_scene};
 use super::script::Step;
 use super::session::Session;
 use super::times::Times;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// A viewer, and all that a window's threads do for it.
+/// A viewer that loads and renders in the calling thread.
 pub(super) struct Headless {
     session: Session,
     job: Arc<Job<'static>>,
@@ -27,35 +27,35 @@ pub(super) struct Headless {
 }
 
 impl Headless {
-    /// Loads what the job speaks of.
+    /// Loads the scene of the job.
     pub(super) fn new(job: Job<'static>) -> Result<Self, Failure> {
         let job = Arc::new(job);
-        let (session, loader) = (Session::new(Pace::Whole), Loader::new(Arc::clone(&job)));
+        let (session, loader) = (Session::new(FrameRate::Whole), Loader::new(Arc::clone(&job)));
         let mut own = Self { session, job, loader, times: Times::default() };
         let stage = own.load()?;
         own.session.begin(stage, &own.job);
         Ok(own)
     }
 
-    /// Loads what the viewer wants to show.
-    fn load(&mut self) -> Result<Stage, Failure> {
+    /// Loads the viewer's content.
+    fn load(&mut self) -> Result<LoadedScene, Failure> {
         let progress = Arc::new(Progress::default());
-        let _watch = Watch::start(&progress, self.job.report.quiet, |_| ());
+        let _watch = ProgressReporter::start(&progress, self.job.report.quiet, |_| ());
         self.loader.load(&self.session.viewer.content, &progress)
     }
 
-    /// Does all that a script says.
+    /// Runs the steps of a script.
     pub(super) fn run(mut self, steps: &[(usize, Step)], json: bool) -> Result<(), Failure> {
         for (_, step) in steps {
             if !self.step(step)? {
                 break;
             }
         }
-        self.times.tell(self.session.viewer.facts.spheres, json);
+        self.times.print(self.session.viewer.facts.spheres, json);
         Ok(())
     }
 
-    /// Does one step; false if it is the last.
+    /// Runs one step; returns false to end the script.
     fn step(&mut self, step: &Step) -> Result<bool, Failure> {
         match step {
             Step::Size(width, height) => return self.event(Event::Resize(*width, *height)),
@@ -87,19 +87,19 @@ impl Headless {
             }
             Step::Turn(degrees) => {
                 let viewer = &mut self.session.viewer;
-                viewer.rig.orbit(degrees * std::f64::consts::PI / 180.0);
+                viewer.control.orbit(degrees * std::f64::consts::PI / 180.0);
                 viewer.change();
             }
             Step::Wait(samples) => self.wait(*samples)?,
             Step::Save(path) => self.save(path)?,
             Step::Window(path) => self.capture(path)?,
-            Step::Adapt => self.session.viewer.pace = Pace::measured(),
+            Step::Adapt => self.session.viewer.frame_rate = FrameRate::measured(),
             Step::Quit => return Ok(false),
         }
         Ok(true)
     }
 
-    /// Lets something happen; false if it ends the viewer.
+    /// Handles an event; returns false to end the viewer.
     fn event(&mut self, event: Event) -> Result<bool, Failure> {
         match self.session.viewer.handle(event) {
             None => (),
@@ -111,16 +111,16 @@ impl Headless {
                 self.save(&path.with_extension("toml"))?;
             }
             Some(Action::Load) => {
-                self.session.make_room();
+                self.session.drop_world();
                 let stage = self.load()?;
                 self.session.set(stage, &self.job);
             }
             Some(Action::Frame(side)) => self.session.frame(side),
             Some(Action::Pick(pixel, purpose)) => {
                 let viewer = &self.session.viewer;
-                let (camera, settings) = (viewer.rig.camera.clone(), viewer.settings.clone());
-                let picked = match &mut self.session.studio {
-                    Some(studio) => studio.pick(&camera, &settings, pixel)?,
+                let (camera, settings) = (viewer.control.camera.clone(), viewer.settings.clone());
+                let picked = match &mut self.session.renderer {
+                    Some(renderer) => renderer.pick(&camera, &settings, pixel)?,
                     None => None,
                 };
                 if let Some(line) = self.session.picked(picked, purpose) {
@@ -131,8 +131,8 @@ impl Headless {
         Ok(true)
     }
 
-    fn click(&mut self, place: DVec2, held: Held, double: bool) -> Result<(), Failure> {
-        use super::command::Button::Left;
+    fn click(&mut self, place: DVec2, held: Modifiers, double: bool) -> Result<(), Failure> {
+        use super::events::Button::Left;
         self.event(Event::Pointer(place))?;
         self.event(Event::Press { button: Left, held, double: false })?;
         self.event(Event::Release)?;
@@ -143,11 +143,11 @@ impl Headless {
         Ok(())
     }
 
-    /// Renders and draws what a window would show next.
-    fn expose(&mut self) -> Result<bool, Failure> {
-        let Some(order) = self.session.viewer.order() else { return Ok(false) };
-        let Some(studio) = &mut self.session.studio else { return Ok(false) };
-        let picture = studio.expose(&order, &AtomicBool::new(false))?;
+    /// Renders and draws the next contents of the window.
+    fn render(&mut self) -> Result<bool, Failure> {
+        let Some(request) = self.session.viewer.next_request() else { return Ok(false) };
+        let Some(renderer) = &mut self.session.renderer else { return Ok(false) };
+        let picture = renderer.render(&request, &AtomicBool::new(false))?;
         if let Some(picture) = picture {
             self.session.viewer.accept(picture);
         }
@@ -156,10 +156,10 @@ impl Headless {
 
     fn show_motion(&mut self) -> Result<(), Failure> {
         let start = Instant::now();
-        self.expose()?;
+        self.render()?;
         self.session.canvas.draw(&self.session.viewer);
         let time = start.elapsed();
-        self.session.viewer.pace.judge(time);
+        self.session.viewer.frame_rate.record_interval(time);
         self.times.moving.push(time);
         Ok(())
     }
@@ -167,42 +167,42 @@ impl Headless {
     fn wait(&mut self, samples: u32) -> Result<(), Failure> {
         self.session.viewer.settings.spp = samples;
         while self.session.viewer.whole().is_none_or(|picture| picture.samples < samples) {
-            if !self.expose()? {
+            if !self.render()? {
                 break;
             }
         }
         Ok(())
     }
 
-    /// Saves the picture or the scene, as the name says.
+    /// Saves the image or the scene, by the suffix of the name.
     fn save(&mut self, path: &Path) -> Result<(), Failure> {
         if self.session.viewer.whole().is_none() {
             self.wait(1)?;
         }
-        let (Some(settings), Some(studio)) =
-            (self.session.viewer.settings_of_picture(), &self.session.studio)
+        let (Some(settings), Some(renderer)) =
+            (self.session.viewer.settings_of_picture(), &self.session.renderer)
         else {
             return Ok(());
         };
         let viewer = &self.session.viewer;
         let Some(picture) = viewer.whole() else { return Ok(()) };
-        let (image, matte) = picture.seen();
-        let seen = Seen {
+        let (image, matte) = picture.visible();
+        let seen = SavedImage {
             title: &viewer.facts.title,
-            camera: &viewer.rig.camera,
+            camera: &viewer.control.camera,
             settings: &settings,
             look: viewer.look(),
             image,
             matte,
         };
         if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
-            return save_scene(&seen, &studio.stage.scene, studio.stage.origin.as_ref(), path);
+            return save_scene(&seen, &renderer.stage.scene, renderer.stage.origin.as_ref(), path);
         }
         save_picture(&seen, path)?;
         save_bar(&self.job, &viewer.facts, settings.height)
     }
 
-    /// Writes what a window would show.
+    /// Writes the contents of the window.
     fn capture(&mut self, path: &Path) -> Result<(), Failure> {
         self.session.canvas.draw(&self.session.viewer);
         let canvas = &self.session.canvas;

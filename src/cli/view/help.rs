@@ -1,14 +1,13 @@
-//! The help as pages that fit into a window: in columns where it is wide, on several pages where it
-//! is small.
+//! Layout of the help in columns and pages that fit into a window.
 
+use super::font::SizedFont;
 use super::keys::HELP;
-use super::letters::Letters;
 use super::wrap::wrap;
 
-/// Least width of an explanation beside its keys, in letters `m`.
+/// Minimum width of an explanation beside its keys, in units of the letter `m`.
 const LEAST: u32 = 12;
 
-/// A line of a column: keys, and what they do.
+/// A line of a column: keys and their explanation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Row {
     pub(super) keys: String,
@@ -26,38 +25,37 @@ pub(super) struct Layout {
 
 /// Number of pages in a window of this size on a display of this scale.
 pub(super) fn pages((width, height): (u32, u32), scale: f64) -> usize {
-    Letters::new(scale)
-        .map_or(1, |mut letters| Layout::new(&mut letters, width, height).pages.len())
+    SizedFont::new(scale).map_or(1, |mut font| Layout::new(&mut font, width, height).pages.len())
 }
 
 impl Layout {
-    /// Lays out all of the help.
-    pub(super) fn new(letters: &mut Letters, width: u32, height: u32) -> Self {
-        let (gap, margin) = (letters.margin(), letters.margin());
+    /// Lays out the help.
+    pub(super) fn new(font: &mut SizedFont, width: u32, height: u32) -> Self {
+        let (gap, margin) = (font.margin(), font.margin());
         let width = width.saturating_sub(margin).max(1);
         let widest =
-            |letters: &mut Letters, text: fn(&(&'static str, &'static str)) -> &'static str| {
-                HELP.iter().map(|row| letters.width(text(row))).max().unwrap_or(0)
+            |font: &mut SizedFont, text: fn(&(&'static str, &'static str)) -> &'static str| {
+                HELP.iter().map(|row| font.width(text(row))).max().unwrap_or(0)
             };
-        let keys = widest(letters, |row| row.0) + gap;
-        let whole = keys + widest(letters, |row| row.1) + gap;
+        let keys = widest(font, |row| row.0) + gap;
+        let whole = keys + widest(font, |row| row.1) + gap;
         let columns = (width / whole).max(1);
         let column = width / columns;
-        let beside = column >= keys + LEAST * letters.width("m");
+        let beside = column >= keys + LEAST * font.width("m");
         let indent = if beside { keys } else { 0 };
         let room = column.saturating_sub(gap).max(1);
         let blocks: Vec<Vec<Row>> = HELP
             .iter()
             .map(|(keys, what)| {
-                let what = wrap(letters, what, (room - indent.min(room)).max(1), usize::MAX);
-                let keys = wrap(letters, keys, room, usize::MAX);
+                let what = wrap(font, what, (room - indent.min(room)).max(1), usize::MAX);
+                let keys = wrap(font, keys, room, usize::MAX);
                 if beside { beside_each_other(&keys, &what) } else { below_each_other(keys, what) }
             })
             .collect();
-        let lines = (height / letters.line()).max(1) as usize;
+        let lines = (height / font.line()).max(1) as usize;
         let mut pages = paged(&blocks, columns as usize, lines);
         if pages.len() > 1 {
-            // A line tells of the others.
+            // One line holds the page number.
             pages = paged(&blocks, columns as usize, lines.saturating_sub(1).max(1));
         }
         Self { pages, width: column, indent }
@@ -75,8 +73,7 @@ fn below_each_other(keys: Vec<String>, what: Vec<String>) -> Vec<Row> {
     keys.chain(what.into_iter().map(|what| Row { what, ..Row::default() })).collect()
 }
 
-/// Fills columns of at most this many lines, and pages of this many columns, none of them higher than
-/// they all have to be.
+/// Fills columns of at most this many lines, and pages of this many columns, with balanced heights.
 fn paged(blocks: &[Vec<Row>], columns: usize, lines: usize) -> Vec<Vec<Vec<Row>>> {
     let fill = |lines: usize| {
         let mut filled: Vec<Vec<Row>> = vec![Vec::new()];
@@ -106,17 +103,16 @@ mod tests {
     #[test]
     fn every_page_fits_its_window_and_nothing_is_lost() {
         for scale in [1.0, 1.5, 2.0] {
-            let mut letters = Letters::new(scale).expect("a font");
+            let mut font = SizedFont::new(scale).expect("a font");
             // A narrower window has no room for the widest letters.
             for (width, height) in [(96, 72), (200, 150), (320, 240), (640, 360), (1280, 720)] {
-                let Layout { pages, width: column, indent } =
-                    Layout::new(&mut letters, width, height);
-                let rows = (height / letters.line()).max(1) as usize;
+                let Layout { pages, width: column, indent } = Layout::new(&mut font, width, height);
+                let rows = (height / font.line()).max(1) as usize;
                 for page in &pages {
                     assert!(page.len() as u32 * column <= width);
                     for row in page.iter().flatten() {
-                        assert!(letters.width(&row.keys) <= column, "{row:?}");
-                        assert!(indent + letters.width(&row.what) <= column, "{row:?}");
+                        assert!(font.width(&row.keys) <= column, "{row:?}");
+                        assert!(indent + font.width(&row.what) <= column, "{row:?}");
                     }
                     let highest = page.iter().map(Vec::len).max().unwrap_or(0);
                     assert!(highest + usize::from(pages.len() > 1) <= rows.max(2));

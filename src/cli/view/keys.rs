@@ -1,9 +1,9 @@
-//! What keys and mouse do: one table for the viewer, and one for its help and the manual.
+//! Key bindings, and the help for keys and mouse.
 
-use super::command::Command;
+use super::events::Command;
 
-/// Keys, as events and scripts write them, and what they do. Where OVITO or Blender have a key for
-/// something, it is theirs.
+/// Key bindings, with the names of keys in events and scripts. Keys are those of OVITO or Blender, where they
+/// have one.
 pub(super) const BINDINGS: [(&str, Command); 59] = [
     ("?", Command::Help),
     ("f1", Command::Help),
@@ -18,7 +18,7 @@ pub(super) const BINDINGS: [(&str, Command); 59] = [
     ("ctrl+7", Command::Side("-z")),
     ("0", Command::Side("iso")),
     ("9", Command::Side("auto")),
-    ("5", Command::Project),
+    ("5", Command::ToggleProjection),
     ("4", Command::Turn(-1, 0)),
     ("6", Command::Turn(1, 0)),
     ("8", Command::Turn(0, 1)),
@@ -66,47 +66,47 @@ pub(super) const BINDINGS: [(&str, Command); 59] = [
     ("ctrl+w", Command::Quit),
 ];
 
-/// Keys and gestures, and what they do, in words.
+/// Keys and gestures with explanations.
 pub(super) const HELP: [(&str, &str); 36] = [
-    ("left or middle drag", "turn about the pivot"),
-    ("right drag, shift+drag", "move across"),
-    ("wheel, ctrl+drag", "nearer, farther; the wheel, toward the pointer"),
+    ("left or middle drag", "orbit about the pivot"),
+    ("right drag, shift+drag", "pan"),
+    ("wheel, ctrl+drag", "zoom; the wheel, toward the pointer"),
     ("alt+drag, shift+wheel", "roll; field of view"),
-    ("click", "name the sphere, on standard output too"),
-    ("double click", "turn about this sphere from now on"),
-    ("ctrl+click", "sharpen the lens on this sphere"),
-    ("home a", "fit everything into the picture"),
-    ("r", "back to the camera of the beginning"),
-    ("1 3 7", "from the front, the right, above"),
-    ("ctrl+1 ctrl+3 ctrl+7", "from behind, the left, below"),
-    ("9 0", "broadside by the principal axes; from a corner"),
-    ("5", "parallel or central projection"),
-    ("4 6 8 2", "turn by 15 degrees"),
+    ("click", "identify the sphere, also on standard output"),
+    ("double click", "make this sphere the pivot"),
+    ("ctrl+click", "focus the lens on this sphere"),
+    ("home a", "fit everything into view"),
+    ("r", "reset the camera"),
+    ("1 3 7", "front, right, top view"),
+    ("ctrl+1 ctrl+3 ctrl+7", "back, left, bottom view"),
+    ("9 0", "view by the principal axes; isometric view"),
+    ("5", "perspective or orthographic projection"),
+    ("4 6 8 2", "orbit by 15 degrees"),
     (", .", "roll by 5 degrees"),
-    ("+ = -", "nearer, farther"),
-    ("f F", "narrower, wider field of view"),
-    ("l L", "open, close the lens"),
-    ("e E", "brighter, darker by a third of a stop"),
+    ("+ = -", "zoom in, out"),
+    ("f F", "decrease, increase the field of view"),
+    ("l L", "increase, decrease the aperture"),
+    ("e E", "increase, decrease exposure by 1/3 stop"),
     ("i", "next integrator"),
     ("m", "next sampler"),
-    ("p P", "next, last look, as --preset has them"),
-    ("b B", "next, last background: sky, a color, none"),
-    ("d o", "fade what is far; contours; on and off"),
-    ("c C", "color by the next, the last column"),
-    ("h delete", "hide the type of the sphere that was clicked"),
+    ("p P", "next, previous preset, as --preset"),
+    ("b B", "next, previous background"),
+    ("d o", "depth cue; contours; on, off"),
+    ("c C", "color by the next, previous column"),
+    ("h delete", "hide the type of the clicked sphere"),
     ("k", "color bar on, off"),
-    ("x", "then a drag: cut off the side that is shaded"),
-    ("H", "show all types, and what was cut off"),
-    ("right left", "next, last frame"),
-    ("page-down page-up", "ten frames on, back"),
+    ("x", "then drag: cut away the shaded side"),
+    ("H", "show all types, and what was cut away"),
+    ("right left", "next, previous frame"),
+    ("page-down page-up", "ten frames forward, back"),
     ("ctrl+right ctrl+left", "last, first frame"),
-    ("] [", "twice, half as many samples in the end"),
+    ("] [", "double, halve the samples per pixel"),
     ("tab", "status line on, off"),
-    ("s ctrl+s", "save the picture and its scene"),
-    ("? f1 esc q ctrl+q ctrl+w", "this help, page by page; close it, quit"),
+    ("s ctrl+s", "save the image and its scene"),
+    ("? f1 esc q ctrl+q ctrl+w", "this help, page by page; close it; quit"),
 ];
 
-/// What a key does, if anything.
+/// Returns the command of a key.
 pub(super) fn command(key: &str) -> Option<Command> {
     BINDINGS.iter().find(|binding| binding.0 == key).map(|binding| binding.1)
 }

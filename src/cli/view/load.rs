@@ -1,4 +1,5 @@
-//! Loading of what the viewer shows: particles or a scene, their looks, and their world.
+//! Loading of the viewer's content: reads particles or a scene, applies colors and materials, and builds the
+//! world.
 
 use super::content::Content;
 use super::digits;
@@ -23,8 +24,7 @@ use std::path::Path;
 use std::sync::{Arc, RwLock};
 use std::time::SystemTime;
 
-/// Maximum number of values in columns that are read before they are asked for: 20 columns of 200 000
-/// particles.
+/// Maximum number of values in columns that are read in advance: 20 columns of 200 000 particles.
 const VALUES: usize = 4_000_000;
 
 /// Maximum length in bytes of a file whose frames are counted at once.
@@ -33,30 +33,30 @@ const SHORT: u64 = 1 << 26;
 /// Columns that every file has.
 const USUAL: [&str; 5] = ["x", "y", "z", "radius", "type"];
 
-/// Number of spheres from which no second copy is kept: they are read again when they are needed.
+/// Number of spheres from which no second copy is kept, so that they are read again if necessary.
 const MANY: usize = 1 << 20;
 
-/// Number of spheres in the sketch of a large scene, which serves where only the outline matters.
+/// Number of spheres in the sketch of a large scene, which is used if only the outline matters.
 const SKETCH: usize = 100_000;
 
-/// Why many spheres of standard input can't be read again.
-const READ_ONCE: &str = "standard input can be read only once, and holds too many spheres to keep a \
-                         copy of them: write it to a file";
+/// Error for many spheres that cannot be read again from standard input.
+const READ_ONCE: &str = "standard input can be read only once, and has too many spheres to keep a copy; \
+                         write it to a file";
 
 /// Particles or a scene as read, before looks are applied.
 pub(super) struct Base {
     particles: Particles,
-    /// All of a scene file but its spheres; `None` for a file of particles.
+    /// The scene file without its spheres; `None` for a particle file.
     scene: Option<Scene>,
     frame: Option<u64>,
     frames: Option<u64>,
-    /// True if columns that are not there can be read from the file.
+    /// True if missing columns can be read from the file.
     more_columns: bool,
 }
 
 /// A scene that is shown, its world, and the facts about it.
-pub(super) struct Stage {
-    /// With its spheres, or with a sketch of them.
+pub(super) struct LoadedScene {
+    /// The scene with its spheres or with a sketch of them.
     pub(super) scene: Arc<RwLock<Scene>>,
     pub(super) world: World,
     /// Source of the spheres, if the scene has only a sketch of them.
@@ -68,12 +68,12 @@ pub(super) struct Stage {
     pub(super) warnings: Vec<String>,
 }
 
-/// Data that is needed to read a stage's spheres once more.
+/// Data needed to read a stage's spheres again.
 #[derive(Clone)]
 pub(super) struct Origin {
     job: Arc<Job<'static>>,
     content: Content,
-    /// The time and the length of the file when it was read.
+    /// Modification time and length of the file when it was read.
     stamp: Option<(SystemTime, u64)>,
 }
 
@@ -86,7 +86,7 @@ pub(super) struct Labels {
 }
 
 impl Base {
-    /// Reads the job's source. `before` was read last, and is returned if it has all that is needed.
+    /// Reads the job's source. `before` was read last, and is returned if it is sufficient.
     pub(super) fn load(
         job: &Job,
         content: &Content,
@@ -124,7 +124,7 @@ impl Base {
         Ok(Self { particles, scene: None, frame: content.frame, frames, more_columns })
     }
 
-    /// A scene's spheres as particles whose types are materials.
+    /// Converts a scene's spheres to particles whose types are materials.
     fn of_scene(mut scene: Scene) -> Self {
         let spheres = std::mem::take(&mut scene.spheres);
         let kind = |name: &String| Kind { name: name.clone(), element: None, virtual_site: false };
@@ -139,14 +139,14 @@ impl Base {
         Self { particles, scene: Some(scene), frame: None, frames: None, more_columns: false }
     }
 
-    /// Returns the facts about it for the viewer, but for those that follow from its looks.
+    /// Returns the facts for the viewer, without those that depend on colors and materials.
     fn facts(&self, job: &Job) -> Facts {
         let own = other_columns(&self.particles);
         let own = own.filter(|name| self.more_columns || self.particles.can_color_by(name));
         let has_types = !self.particles.kinds.codes.is_empty();
-        let usual = USUAL.into_iter().filter(|name| *name != "type" || has_types);
+        let default = USUAL.into_iter().filter(|name| *name != "type" || has_types);
         Facts {
-            columns: own.chain(usual).map(str::to_owned).collect(),
+            columns: own.chain(default).map(str::to_owned).collect(),
             frame: self.frame.unwrap_or(0),
             frames: self.frames,
             own_materials: self.scene.is_none()
@@ -157,22 +157,22 @@ impl Base {
     }
 }
 
-/// Particles with their looks applied, in a scene whose camera is not placed yet.
-struct Dressed {
+/// Particles with colors and materials, in a scene whose camera is not placed yet.
+struct StyledScene {
     scene: Scene,
     labels: Labels,
     legend: Option<Legend>,
     cell: Option<Cell>,
 }
 
-impl Dressed {
+impl StyledScene {
     fn new(
         job: &Job,
         content: &Content,
         mut particles: Particles,
         scene: Option<Scene>,
     ) -> Result<Self, Failure> {
-        let legend = dress(job, content, &mut particles)?;
+        let legend = apply_style(job, content, &mut particles)?;
         let cell = particles.cell;
         let labels = Labels {
             kinds: std::mem::take(&mut particles.kinds),
@@ -194,7 +194,7 @@ impl Dressed {
 pub(super) struct Loader {
     job: Arc<Job<'static>>,
     base: Option<Base>,
-    /// True if loading ever began.
+    /// True once loading has started.
     began: bool,
 }
 
@@ -203,12 +203,12 @@ impl Loader {
         Self { job, base: None, began: false }
     }
 
-    /// Reads the source if necessary, applies the looks, and builds the world.
+    /// Reads the source if necessary, applies colors and materials, and builds the world.
     pub(super) fn load(
         &mut self,
         content: &Content,
         progress: &Progress,
-    ) -> Result<Stage, Failure> {
+    ) -> Result<LoadedScene, Failure> {
         let job = &self.job;
         let first = !std::mem::replace(&mut self.began, true);
         if !first && self.base.is_none() && is_standard_input(&job.source) {
@@ -226,8 +226,8 @@ impl Loader {
             self.base = Some(read);
             parts
         };
-        let Dressed { mut scene, labels, legend, cell } =
-            Dressed::new(job, content, particles, scene)?;
+        let StyledScene { mut scene, labels, legend, cell } =
+            StyledScene::new(job, content, particles, scene)?;
         if first {
             check_legend(job, legend.as_ref())?;
         }
@@ -245,7 +245,8 @@ impl Loader {
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         let up = scene.camera.up;
         framing::hold(&mut scene, &[]).map_err(failed)?;
-        // The way that is up, not that of the picture, which leans: the camera turns about it.
+        // The scene's up direction, about which the camera orbits, not that of the image, which may be
+        // tilted.
         scene.camera.up = up;
         if let Some((preset, camera)) = &content.preset {
             let home = std::mem::replace(&mut scene.camera, camera.clone());
@@ -284,7 +285,7 @@ impl Loader {
         let origin = many.then(origin);
         let warnings = std::mem::take(&mut scene.warnings);
         let scene = Arc::new(RwLock::new(scene));
-        Ok(Stage {
+        Ok(LoadedScene {
             scene,
             world,
             origin,
@@ -298,15 +299,15 @@ impl Loader {
 }
 
 impl Origin {
-    /// Returns whether the spheres can be read once more, as far as that is known before.
+    /// Returns whether the spheres can be read again, as far as is known in advance.
     pub(super) fn is_readable(&self) -> bool {
         !is_standard_input(&self.job.source) && self.stamp == stamp(&self.job.source)
     }
 
-    /// Reads the spheres of the stage once more.
+    /// Reads the spheres of the stage again.
     ///
     /// # Errors
-    /// The file can't be read twice, has changed, or can't be read any more.
+    /// The file cannot be read twice, has changed, or cannot be read any more.
     pub(super) fn spheres(&self) -> Result<Spheres, Failure> {
         let name = self.job.source.name();
         let failed = |why: &str| Err(Failure::Window(format!("{name}: {why}")));
@@ -314,10 +315,10 @@ impl Origin {
             return Err(Failure::Window(READ_ONCE.to_owned()));
         }
         if self.stamp != stamp(&self.job.source) {
-            return failed("the file has changed since it was read: open it once more");
+            return failed("the file has changed since it was read; open it again");
         }
         let base = Base::load(&self.job, &self.content, None, &Progress::default())?;
-        let dressed = Dressed::new(&self.job, &self.content, base.particles, base.scene)?;
+        let dressed = StyledScene::new(&self.job, &self.content, base.particles, base.scene)?;
         Ok(dressed.scene.spheres)
     }
 }
@@ -326,14 +327,14 @@ fn is_standard_input(source: &Source) -> bool {
     matches!(source, Source::Particles(path, _) if path.as_os_str() == "-")
 }
 
-/// The time and the length of a source's file; `None` if it is none.
+/// Modification time and length of a source's file; `None` for other sources.
 fn stamp(source: &Source) -> Option<(SystemTime, u64)> {
     let (Source::Particles(path, _) | Source::Toml(path)) = source else { return None };
     let data = path.metadata().ok().filter(Metadata::is_file)?;
     Some((data.modified().ok()?, data.len()))
 }
 
-/// Some of many spheres: those that reach farthest in some directions, and others in even steps.
+/// Returns a sketch of many spheres: those that extend farthest in some directions, and others in even steps.
 fn sketch(spheres: &Spheres) -> Spheres {
     let count = spheres.len();
     let signs = [-1.0, 0.0, 1.0];
@@ -354,18 +355,18 @@ fn sketch(spheres: &Spheres) -> Spheres {
 }
 
 impl Labels {
-    /// The type of a sphere, if it has one.
+    /// Type of a sphere, if it has one.
     pub(super) fn kind(&self, row: usize) -> Option<&str> {
         self.kinds.kind(row).map(|kind| kind.name.as_str())
     }
 
-    /// The sphere's number in its file, if it is not its row.
+    /// Number of the sphere in its file, if it is not its row.
     pub(super) fn id(&self, row: usize) -> Option<f64> {
         let column = self.numbers.iter().find(|column| column.name == "id")?;
         column.values.get(row).copied()
     }
 
-    /// What the columns of the file say of a sphere.
+    /// Values of the file's columns for a sphere.
     pub(super) fn columns(&self, row: usize) -> impl Iterator<Item = String> {
         let numbers = self.numbers.iter().filter(|column| column.name != "id");
         let numbers = numbers.filter_map(move |column| {
@@ -379,7 +380,7 @@ impl Labels {
 }
 
 /// Drops hidden particles and colors the rest; returns the legend of the colors.
-fn dress(
+fn apply_style(
     job: &Job,
     content: &Content,
     particles: &mut Particles,
@@ -400,12 +401,12 @@ fn dress(
     Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }
 
-/// Returns whether particles have more values than are read though nothing asks for them.
+/// Returns whether particles have more values than are read in advance.
 fn has_many_values(particles: &Particles) -> bool {
     other_columns(particles).count().saturating_mul(particles.spheres.len()) > VALUES
 }
 
-/// Names of the columns of a file that positions, radii and types were not read from.
+/// Names of the columns other than positions, radii and types.
 fn other_columns(particles: &Particles) -> impl Iterator<Item = &str> {
     let shapes = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
     let roles = particles.roles.iter().filter(|(role, _)| shapes.contains(role));
@@ -414,8 +415,8 @@ fn other_columns(particles: &Particles) -> impl Iterator<Item = &str> {
     own.filter(move |name| !roles.contains(name) && !USUAL.contains(name))
 }
 
-/// Number of frames of a file, if that is known soon or someone wants to see others. Standard input
-/// has one: it can be read only once.
+/// Number of frames of a file, if it is fast to count or other frames are requested. Standard input has one,
+/// because it can be read only once.
 fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
     if path.as_os_str() == "-" {
         return Some(1);
@@ -424,7 +425,7 @@ fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
     short.then(|| particles::count_frames(path, options).ok()).flatten()
 }
 
-/// Half the diagonal of the box about all spheres.
+/// Half the diagonal of the bounding box of all spheres.
 fn size(spheres: &Spheres) -> f64 {
     let rows = || (0..spheres.len()).map(|row| (spheres.center(row), spheres.radius[row]));
     let low = rows().fold(DVec3::INFINITY, |low, (center, radius)| low.min(center - radius));

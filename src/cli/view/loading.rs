@@ -16,7 +16,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Loading {
     step: Step,
-    /// Share of the step that is done, 0..=1; `None` if that is unknown.
+    /// Fraction of the step that is done, 0..=1; `None` if unknown.
     pub(super) done: Option<f64>,
 }
 
@@ -25,32 +25,32 @@ pub(super) struct Loading {
 pub(super) enum Step {
     /// Reading or generating the spheres of this file.
     Reading(String),
-    /// Building the tree over so many spheres.
+    /// Building the tree over a number of spheres.
     Building(usize),
 }
 
-/// Progress of what a thread loads, which others look at.
+/// Progress of a loading thread, which other threads read.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
-    /// Bytes of the file that is read.
+    /// Size of the file in bytes.
     pub(super) read: ReadProgress,
     step: Mutex<Option<Step>>,
 }
 
-/// Reports of progress, until this is dropped.
-pub(super) struct Watch {
+/// A thread that reports progress until this is dropped.
+pub(super) struct ProgressReporter {
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Loading {
-    /// The first report: nothing is read yet.
+    /// Returns the first report, before anything is read.
     #[cfg(feature = "view")]
     pub(super) fn of(name: &str) -> Self {
         Self { step: Step::reading(name), done: None }
     }
 
-    /// The step and how far it is, in words.
+    /// Formats the step and its progress.
     pub(super) fn text(&self) -> String {
         let step = match &self.step {
             Step::Reading(name) => format!("reading {name}"),
@@ -66,7 +66,7 @@ impl Loading {
 }
 
 impl Step {
-    /// Creates the step of reading a file, which is named without its folders.
+    /// Creates the step of reading a file, named without its folders.
     pub(super) fn reading(name: &str) -> Self {
         let file = Path::new(name).file_name().map(|name| name.to_string_lossy().into_owned());
         Self::Reading(file.unwrap_or_else(|| name.to_owned()))
@@ -74,7 +74,7 @@ impl Step {
 }
 
 impl Progress {
-    /// Begins a step.
+    /// Starts a step.
     pub(super) fn begin(&self, step: Step) {
         *self.step.lock().unwrap_or_else(PoisonError::into_inner) = Some(step);
     }
@@ -89,8 +89,8 @@ impl Progress {
     }
 }
 
-impl Watch {
-    /// Reports on the terminal, unless `quiet`, and by `tell`.
+impl ProgressReporter {
+    /// Reports on the terminal, unless `quiet`, and through `tell`.
     pub(super) fn start(
         progress: &Arc<Progress>,
         quiet: bool,
@@ -112,11 +112,11 @@ impl Watch {
     }
 }
 
-impl Drop for Watch {
+impl Drop for ProgressReporter {
     fn drop(&mut self) {
         drop(self.stop.take());
         if let Some(thread) = self.thread.take() {
-            // A meter that panicked has said so.
+            // A panic of the thread has already been reported.
             let _ = thread.join();
         }
     }

@@ -1,39 +1,39 @@
-//! `spherule view`: a scene in a window, or as a script without a display goes through it.
+//! `spherule view`: an interactive viewer in a window, or run by a script without a display.
 //!
 //! ```text
-//! window or script -> events -> Viewer -> orders -> Studio -> pictures -> Viewer -> Canvas
+//! window or script -> events -> Viewer -> requests -> Renderer -> images -> Viewer -> Canvas
 //! ```
 //!
-//! The [`viewer`] is a state machine without clock, threads and files; [`headless`] drives it step by
-//! step, and `window`, the only file that knows of windows, with two threads for it: one loads what
-//! is to be seen, the other renders it.
+//! The [`viewer`] is a state machine without clock, threads and files. [`headless`] drives it in one thread.
+//! `window`, the only module that depends on a display, drives it with two threads: one loads, the other
+//! renders.
 
 mod args;
+mod camera_control;
 mod canvas;
-mod checks;
+mod checkerboard;
 mod colorbar;
-mod command;
+mod commands;
 mod content;
-mod develop;
 mod digits;
+mod events;
+mod font;
+mod frame_rate;
 mod headless;
 mod help;
+mod image;
 mod keys;
-mod letters;
 mod load;
 mod loading;
-mod obey;
-mod over;
-mod pace;
-mod picture;
-mod refine;
-mod rig;
+mod overlay;
+mod refinement;
+mod renderer;
 mod save;
 mod script;
 mod session;
 mod slicing;
-mod studio;
 mod times;
+mod tonemap;
 mod viewer;
 #[cfg(feature = "view")]
 mod window;
@@ -43,19 +43,19 @@ mod wrap;
 
 pub(super) use self::args::ViewerArgs;
 
-use self::command::Command;
+use self::events::Command;
 use self::headless::Headless;
 use self::script::Step;
 use super::Failure;
+use super::appearance::BarPlace;
 use super::files::{Files, STREAM};
-use super::looks::BarPlace;
 use super::render::{Job, check_bar};
 use super::source::is_scene;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What `--help` ends with.
+/// Returns the examples, keys and script commands at the end of `--help`.
 pub(super) fn examples() -> String {
     let mut text = "\
 Examples:
@@ -68,18 +68,18 @@ Keys and mouse:
 "
     .to_owned();
     for (keys, what) in keys::HELP {
-        // Strings take what is written to them.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "  {keys:<26} {what}");
     }
     text + "\n" + &script::manual()
 }
 
-/// Shows a scene until the user has seen enough.
+/// Runs the viewer.
 pub(super) fn run(args: Box<ViewerArgs>) -> Result<ExitCode, Failure> {
-    // A thread that reads or builds when the window closes is not waited for: what it refers to
-    // lives as long as the process.
+    // A thread that is loading when the window closes is not joined, so its references must live as long as
+    // the process.
     let args: &'static ViewerArgs = Box::leak(args);
-    args.render.memory.obey();
+    args.render.memory.apply();
     let job = Job::new(&args.render)?;
     refuse(args, &job)?;
     check_bar(&job)?;
@@ -100,8 +100,8 @@ fn open(job: Job<'static>, args: &ViewerArgs) -> Result<ExitCode, Failure> {
 
 #[cfg(not(feature = "view"))]
 fn open(_: Job<'static>, _: &ViewerArgs) -> Result<ExitCode, Failure> {
-    let message = "this program was built without windows: build it with `cargo install --path . \
-                   --features view`; --headless-script FILE needs none";
+    let message = "this program was built without windows; install it with `cargo install --path . \
+                   --features view`, or use --headless-script FILE";
     Err(Failure::Window(message.to_owned()))
 }
 
@@ -141,7 +141,7 @@ fn read_script(path: &Path) -> Result<Vec<(usize, Step)>, Failure> {
     script::parse(&text).map_err(failed)
 }
 
-/// Refuses options that say what to do with a picture once it is there.
+/// Rejects options that apply only to rendered files.
 fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
     let has = [
         ("--output -", args.render.output == Path::new(STREAM)),
@@ -150,15 +150,16 @@ fn refuse(args: &ViewerArgs, job: &Job) -> Result<(), Failure> {
         ("--layers", !args.render.encoding.layers.is_empty()),
         ("--part", job.part.is_some()),
         ("--turntable", job.views.turntable().is_some()),
-        ("--checkpoint", args.render.keep.checkpoint.is_some()),
-        ("--resume", args.render.keep.resume.is_some()),
+        ("--checkpoint", args.render.checkpoints.checkpoint.is_some()),
+        ("--resume", args.render.checkpoints.resume.is_some()),
         ("--terminal", args.render.report.terminal),
         ("--frame with several", args.render.particles.frames().is_some()),
     ];
     match has.into_iter().find(|(_, has)| *has) {
-        Some((name, _)) => {
-            Err(Failure::usage("view", format!("{name} is for `spherule render`; leave it out")))
-        }
+        Some((name, _)) => Err(Failure::usage(
+            "view",
+            format!("{name} applies only to `spherule render`; remove it"),
+        )),
         None => Ok(()),
     }
 }

@@ -1,4 +1,4 @@
-//! What was seen as files: the picture, and a scene that renders to it.
+//! Saving of the image, and of a scene that renders to it.
 
 use super::load::Origin;
 use super::viewer::Facts;
@@ -13,20 +13,20 @@ use std::path::Path;
 use std::path::PathBuf;
 use std::sync::{PoisonError, RwLock};
 
-/// All that makes a picture, and the picture.
-pub(super) struct Seen<'a> {
+/// An image with the scene and settings that it is made from.
+pub(super) struct SavedImage<'a> {
     pub(super) title: &'a str,
     pub(super) camera: &'a Camera,
-    /// With the samples that the picture has.
+    /// Settings with the image's number of samples.
     pub(super) settings: &'a Settings,
     pub(super) look: Look,
     pub(super) image: &'a Image,
-    /// How much of each pixel is not background, unless all is.
+    /// The part of each pixel that is not background; `None` for an opaque image.
     pub(super) matte: Option<&'a Matte>,
 }
 
-/// Writes the picture, as `spherule render` would of the saved scene.
-pub(super) fn save_picture(seen: &Seen, path: &Path) -> Result<(), Failure> {
+/// Writes the image, as `spherule render` does for the saved scene.
+pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure> {
     let format = Format::of_suffix(path)?;
     check_alpha(&seen.look, format)?;
     let Settings { width, height, exposure, tone, .. } = *seen.settings;
@@ -38,7 +38,7 @@ pub(super) fn save_picture(seen: &Seen, path: &Path) -> Result<(), Failure> {
     Ok(seen.image.write_layers(path, &channels, &options)?)
 }
 
-/// Writes the color bar, if it has a file of its own and colors stand for numbers.
+/// Writes the color bar, if it has its own file and colors represent numbers.
 pub(super) fn save_bar(job: &Job, facts: &Facts, height: u32) -> Result<(), Failure> {
     match &facts.legend {
         Some(legend) => write_bar(job, Some(legend), height),
@@ -46,23 +46,23 @@ pub(super) fn save_bar(job: &Job, facts: &Facts, height: u32) -> Result<(), Fail
     }
 }
 
-/// Writes the scene, with its spheres in a file beside it.
+/// Writes the scene, with its spheres in a separate file.
 pub(super) fn save_scene(
-    seen: &Seen,
+    seen: &SavedImage,
     scene: &RwLock<Scene>,
     origin: Option<&Origin>,
     path: &Path,
 ) -> Result<(), Failure> {
-    let Seen { title, camera, settings, ref look, .. } = *seen;
+    let SavedImage { title, camera, settings, ref look, .. } = *seen;
     let header = Header { title, camera, settings, look };
-    // Who looks at the scene meanwhile does not wait.
+    // Release the lock while writing, so that other threads do not wait.
     let scene = scene.read().unwrap_or_else(PoisonError::into_inner);
     let Some(origin) = origin else { return Ok(write_as(&scene, &header, path)?) };
     let whole = Scene { spheres: origin.spheres()?, ..scene.clone() };
     Ok(write_as(&whole, &header, path)?)
 }
 
-/// `view-002.png` if there is a picture or a scene `view-001` already.
+/// Returns the next free name: `view-002.png` if an image or a scene `view-001` exists.
 #[cfg(feature = "view")]
 pub(super) fn free_name(path: &Path) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -1,6 +1,6 @@
-//! Events in a file, line by line: what a script does to a viewer.
+//! Scripts for the viewer: files with one event per line.
 
-use super::command::{Button, Held};
+use super::events::{Button, Modifiers};
 use super::keys;
 use super::viewer::SCALES;
 use glam::DVec2;
@@ -8,13 +8,13 @@ use spherule::image::Format;
 use spherule::suggest;
 use std::path::PathBuf;
 
-/// Steps of a drag that does not say how many.
+/// Default number of steps of a drag.
 const STEPS: u32 = 16;
 
-/// Most repetitions, and most lines that they make.
+/// Maximum number of repetitions, and of steps after expanding them.
 const MOST: usize = 1 << 20;
 
-/// Words that begin a line.
+/// First words of lines.
 const STEP_NAMES: [&str; 18] = [
     "size",
     "scale",
@@ -36,44 +36,44 @@ const STEP_NAMES: [&str; 18] = [
     "quit",
 ];
 
-/// The manual of scripts.
+/// Returns the help for scripts.
 pub(super) fn manual() -> String {
     MANUAL.replace("SUFFIXES", &Format::written_suffixes())
 }
 
 const MANUAL: &str = "\
-A script for --headless-script is a file of lines; # begins a comment:
-  size 640x360                   the window's size
-  scale 1.5                      the display's scale, by which letters are larger
-  key KEY                        such as c, F, ctrl+3, home
-  click X,Y                      with ctrl, shift or alt after it, if held
-  double-click X,Y
-  press X,Y                      a drag begins, with what drag takes but steps=N after it
-  move X,Y                       the pointer goes there
-  release                        the drag ends
-  drag X,Y X,Y                   with left, middle or right, ctrl, shift or alt, and steps=N, after it
-  wheel STEPS X,Y                forward if positive; with shift after it, if held
-  turn RIGHT UP                  degrees about the pivot
-  wait N                         until the picture has N samples of each pixel
-  save FILE                      the picture: SUFFIXES
-  save FILE.toml                 the scene, which renders to the same picture
-  window FILE.png                what the window shows, letters and all
-  repeat N ... end               the lines between, N times; {} in a name is the count, from 000
-  adapt                          sizes by the clock from here on, as in a window: to measure
-  quit";
+Commands of scripts for --headless-script, one per line; # starts a comment:
+  size 640x360                   set the window's size
+  scale 1.5                      set the display's scale factor
+  key KEY                        press a key, such as c, F, ctrl+3, home
+  click X,Y                      click; may be followed by ctrl, shift or alt
+  double-click X,Y               double click
+  press X,Y                      start a drag; followed by the same words as drag, except steps=N
+  move X,Y                       move the pointer
+  release                        end the drag
+  drag X,Y X,Y                   drag; may be followed by left, middle or right, ctrl, shift or alt, steps=N
+  wheel STEPS X,Y                turn the wheel, forward if positive; may be followed by shift
+  turn RIGHT UP                  orbit about the pivot by angles in degrees
+  wait N                         wait until the image has N samples per pixel
+  save FILE                      save the image: SUFFIXES
+  save FILE.toml                 save a scene that renders to the same image
+  window FILE.png                save the contents of the window, with all text
+  repeat N ... end               repeat the lines between N times; {} in a name is the count, from 000
+  adapt                          from here on, choose image sizes by the clock as in a window, to measure
+  quit                           end the script";
 
-/// A line of a script.
+/// A step of a script.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Step {
     Size(u32, u32),
     Scale(f64),
     Key(String),
-    Click { place: DVec2, held: Held, double: bool },
-    Press { place: DVec2, button: Button, held: Held },
+    Click { place: DVec2, held: Modifiers, double: bool },
+    Press { place: DVec2, button: Button, held: Modifiers },
     Move(DVec2),
     Release,
-    Drag { from: DVec2, to: DVec2, button: Button, held: Held, steps: u32 },
-    Wheel { steps: f64, place: DVec2, held: Held },
+    Drag { from: DVec2, to: DVec2, button: Button, held: Modifiers, steps: u32 },
+    Wheel { steps: f64, place: DVec2, held: Modifiers },
     Turn(DVec2),
     Wait(u32),
     Save(PathBuf),
@@ -82,7 +82,7 @@ pub(super) enum Step {
     Quit,
 }
 
-/// The steps of a script, each with the number of its line.
+/// Parses a script. Returns its steps with their line numbers.
 pub(super) fn parse(text: &str) -> Result<Vec<(usize, Step)>, String> {
     let lines = text.lines().enumerate().map(|(row, line)| (row + 1, words(line)));
     let lines: Vec<(usize, Vec<&str>)> = lines.filter(|(_, words)| !words.is_empty()).collect();
@@ -100,7 +100,7 @@ fn words(line: &str) -> Vec<&str> {
 
 type Lines<'a, 'l> = &'l [(usize, Vec<&'a str>)];
 
-/// Reads up to the `end` of a block, or of the file, and returns what follows.
+/// Parses up to the `end` of a block, or of the file, and returns the rest.
 fn block<'a, 'l>(
     mut lines: Lines<'a, 'l>,
     depth: usize,
@@ -141,20 +141,20 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
             let scale = finite(scale)?;
             if !SCALES.contains(&scale) {
                 let (least, most) = (SCALES.start(), SCALES.end());
-                return Err(format!("a scale of {scale}, but scales are {least} to {most}"));
+                return Err(format!("scale {scale} is out of range, {least} to {most}"));
             }
             Step::Scale(scale)
         }
         ["key", key] if keys::command(key).is_some() => Step::Key((*key).to_owned()),
         ["key", key] => {
             let near = suggest::question(key, keys::BINDINGS.iter().map(|binding| binding.0));
-            return Err(format!("`{key}` is no key that does anything{near}"));
+            return Err(format!("`{key}` is not a bound key{near}"));
         }
         ["click", at, held @ ..] => {
             Step::Click { place: place(at)?, held: Words::of(held)?.held, double: false }
         }
         ["double-click", at] => {
-            Step::Click { place: place(at)?, held: Held::default(), double: true }
+            Step::Click { place: place(at)?, held: Modifiers::default(), double: true }
         }
         ["press", at, how @ ..] => {
             let Words { button, held, .. } = Words::of(how)?;
@@ -178,22 +178,22 @@ fn step(words: &[&str], count: Option<usize>) -> Result<Step, String> {
         ["quit"] => Step::Quit,
         [first, ..] => {
             let near = suggest::question(first, STEP_NAMES);
-            return Err(format!("`{first}` begins no step; see spherule view --help{near}"));
+            return Err(format!("unknown command `{first}`; see spherule view --help{near}"));
         }
         [] => return Err("nothing".to_owned()),
     })
 }
 
-/// What may stand after the places of a drag.
+/// Parses the words after the points of a drag.
 struct Words {
     button: Button,
-    held: Held,
+    held: Modifiers,
     steps: u32,
 }
 
 impl Words {
     fn of(words: &[&str]) -> Result<Self, String> {
-        let mut all = Self { button: Button::Left, held: Held::default(), steps: STEPS };
+        let mut all = Self { button: Button::Left, held: Modifiers::default(), steps: STEPS };
         for word in words {
             match *word {
                 "left" => all.button = Button::Left,
@@ -206,7 +206,9 @@ impl Words {
                     let steps = other.strip_prefix("steps=").ok_or_else(|| {
                         let words = ["left", "middle", "right", "shift", "ctrl", "alt"];
                         let near = suggest::question(other, words);
-                        format!("`{other}` is no button, no key and no steps=N{near}")
+                        format!(
+                            "`{other}` is neither a button, nor a modifier key, nor steps=N{near}"
+                        )
                     })?;
                     all.steps = number::<u32>(steps)?.clamp(1, MOST as u32);
                 }
@@ -216,30 +218,30 @@ impl Words {
     }
 }
 
-/// `{}` is how often the block was repeated before.
+/// `{}` is the number of the repetition, from 0.
 fn named(name: &str, count: Option<usize>) -> PathBuf {
     PathBuf::from(name.replace("{}", &format!("{:03}", count.unwrap_or(0))))
 }
 
 fn number<T: std::str::FromStr>(text: &str) -> Result<T, String> {
-    text.parse().map_err(|_| format!("`{text}` is no whole number of 0 or more"))
+    text.parse().map_err(|_| format!("`{text}` is not a non-negative integer"))
 }
 
 fn finite(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| format!("`{text}` is no number"))
+    number.ok_or_else(|| format!("`{text}` is not a number"))
 }
 
 fn pair<T: std::str::FromStr>(text: &str, between: char) -> Result<(T, T), String> {
     let parts =
         text.split_once(between).and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-    parts.ok_or_else(|| format!("`{text}` should be two numbers with {between} between them"))
+    parts.ok_or_else(|| format!("`{text}`: expected two numbers separated by {between}"))
 }
 
 fn place(text: &str) -> Result<DVec2, String> {
     let (x, y): (f64, f64) = pair(text, ',')?;
     let place = DVec2::new(x, y);
-    if place.is_finite() { Ok(place) } else { Err(format!("`{text}` is no place")) }
+    if place.is_finite() { Ok(place) } else { Err(format!("`{text}` is not a position")) }
 }
 
 #[cfg(test)]
@@ -256,7 +258,7 @@ mod tests {
             [Step::Size(64, 48), turn(), save("a-000.png"), turn(), save("a-001.png"), Step::Quit];
         assert_eq!(steps, expected);
         let drag = parse("drag 1,2 3.5,4 right ctrl steps=3").unwrap();
-        let held = Held { control: true, ..Held::default() };
+        let held = Modifiers { control: true, ..Modifiers::default() };
         let (from, to) = (DVec2::new(1.0, 2.0), DVec2::new(3.5, 4.0));
         let expected = Step::Drag { from, to, button: Button::Right, held, steps: 3 };
         assert_eq!(drag, [(1, expected)]);

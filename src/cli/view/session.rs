@@ -1,10 +1,10 @@
-//! A viewer with its scene and what it shows: what windows and scripts have in common.
+//! A viewing session: viewer, scene and actions that windows and scripts share.
 
 use super::canvas::Canvas;
-use super::command::Purpose;
-use super::load::{Origin, Stage};
-use super::pace::Pace;
-use super::studio::{Picked, Studio};
+use super::events::Purpose;
+use super::frame_rate::FrameRate;
+use super::load::{LoadedScene, Origin};
+use super::renderer::{Picked, Renderer};
 use super::viewer::Viewer;
 use crate::cli::output;
 use crate::cli::render::Job;
@@ -14,90 +14,93 @@ use spherule::scene::{Camera, Pose, Projection, Scene, Settings};
 use spherule::world::framing;
 use std::sync::{PoisonError, RwLock, TryLockError};
 
-/// Samples of a pixel that a viewer takes if nobody says how many.
+/// Default number of samples per pixel.
 pub(super) const SAMPLES: u32 = 1024;
 
-/// A viewer with its scene and what it shows.
+/// A viewer with its scene.
 pub(super) struct Session {
     pub(super) viewer: Viewer,
     pub(super) canvas: Canvas,
-    /// Where pictures are made, unless a thread of its own has it.
-    pub(super) studio: Option<Studio>,
+    /// The renderer, unless it belongs to another thread.
+    pub(super) renderer: Option<Renderer>,
 }
 
 impl Session {
-    /// A viewer of nothing yet.
-    pub(super) fn new(pace: Pace) -> Self {
+    /// Creates a session without a scene.
+    pub(super) fn new(frame_rate: FrameRate) -> Self {
         let (camera, settings) = (Camera::default(), Settings::default());
-        let viewer = Viewer::new(&camera, &settings, pace);
-        Self { viewer, canvas: Canvas::default(), studio: None }
+        let viewer = Viewer::new(&camera, &settings, frame_rate);
+        Self { viewer, canvas: Canvas::default(), renderer: None }
     }
 
     /// Shows the first scene.
-    pub(super) fn begin(&mut self, stage: Stage, job: &Job) {
+    pub(super) fn begin(&mut self, stage: LoadedScene, job: &Job) {
         let samples = job.picture.spp.unwrap_or(SAMPLES);
         begin(&mut self.viewer, &stage, samples);
         stage.warnings.iter().for_each(output::warn);
-        self.studio = Some(Studio::new(stage, job.tracer, builder(job, &self.viewer)));
+        self.renderer = Some(Renderer::new(stage, job.tracer, builder(job, &self.viewer)));
     }
 
-    /// Drops a large world that can be read again, to make room for the next.
-    pub(super) fn make_room(&mut self) {
-        let is_large =
-            |studio: &mut Studio| studio.stage.origin.as_ref().is_some_and(Origin::is_readable);
-        drop(self.studio.take_if(is_large));
+    /// Drops a large world that can be read again, to free memory for the next one.
+    pub(super) fn drop_world(&mut self) {
+        let is_large = |renderer: &mut Renderer| {
+            renderer.stage.origin.as_ref().is_some_and(Origin::is_readable)
+        };
+        drop(self.renderer.take_if(is_large));
     }
 
-    /// Shows another scene from where the camera stands.
-    pub(super) fn set(&mut self, stage: Stage, job: &Job) {
+    /// Shows another scene with the current camera.
+    pub(super) fn set(&mut self, stage: LoadedScene, job: &Job) {
         self.viewer.loaded(stage.facts.clone());
-        match &mut self.studio {
-            Some(studio) => studio.set(stage),
+        match &mut self.renderer {
+            Some(renderer) => renderer.set(stage),
             None => {
-                self.studio = Some(Studio::new(stage, job.tracer, builder(job, &self.viewer)));
+                self.renderer = Some(Renderer::new(stage, job.tracer, builder(job, &self.viewer)));
             }
         }
     }
 
-    /// Frames everything from a side, or from where the camera stands.
+    /// Fits everything into view, from a side or from the current direction.
     pub(super) fn frame(&mut self, side: Option<&str>) {
-        if let Some(studio) = &self.studio {
-            frame(&mut self.viewer, &studio.stage.scene, side);
+        if let Some(renderer) = &self.renderer {
+            frame(&mut self.viewer, &renderer.stage.scene, side);
         }
     }
 
-    /// Does with what was picked what it was picked for; returns what is to be told of it.
+    /// Handles a picked sphere by its purpose; returns the text to print.
     pub(super) fn picked(&mut self, picked: Option<Picked>, purpose: Purpose) -> Option<String> {
         picked_by(&mut self.viewer, picked, purpose)
     }
 }
 
-/// The tree for a window's pictures.
+/// Returns the tree builder for the viewer.
 pub(super) fn builder(job: &Job, viewer: &Viewer) -> spherule::bvh::builders::Builder {
     let Settings { width, height, spp, .. } = viewer.settings;
     let samples = u64::from(width) * u64::from(height) * u64::from(spp);
     job.builder(viewer.facts.spheres, samples)
 }
 
-/// Shows the first scene in a viewer, with so many samples in the end.
-pub(super) fn begin(viewer: &mut Viewer, stage: &Stage, samples: u32) {
+/// Shows the first scene in a viewer, with `samples` per pixel.
+pub(super) fn begin(viewer: &mut Viewer, stage: &LoadedScene, samples: u32) {
     let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
     let settings = Settings { spp: samples, ..scene.settings.clone() };
     let scale = viewer.scale;
-    *viewer = Viewer::new(&scene.camera, &settings, viewer.pace);
+    *viewer = Viewer::new(&scene.camera, &settings, viewer.frame_rate);
     viewer.scale = scale;
     viewer.loaded(stage.facts.clone());
 }
 
-/// Frames everything from a side, or from where the camera stands.
+/// Fits everything into view, from a side or from the current direction.
 pub(super) fn frame(viewer: &mut Viewer, scene: &RwLock<Scene>, side: Option<&str>) {
     let mut scene = match scene.try_write() {
         Ok(scene) => scene,
         Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-        // The window does not wait for a file.
-        Err(TryLockError::WouldBlock) => return viewer.say("the scene is in use: once more, soon"),
+        // The window does not wait for a file that is written.
+        Err(TryLockError::WouldBlock) => {
+            return viewer.show_message("the scene is being saved; try again");
+        }
     };
-    scene.camera = viewer.rig.camera.clone();
+    scene.camera = viewer.control.camera.clone();
     scene.settings = viewer.settings.clone();
     scene.look = viewer.look();
     match side.and_then(|side| from_side(side, &scene)) {
@@ -106,17 +109,17 @@ pub(super) fn frame(viewer: &mut Viewer, scene: &RwLock<Scene>, side: Option<&st
     }
     let (up, corners) = (scene.camera.up, corners(&scene));
     if framing::hold(&mut scene, &corners).is_err() {
-        return viewer.say("there is nothing to frame");
+        return viewer.show_message("no spheres to fit into view");
     }
-    // The way that is up, not that of the picture, which leans: the camera turns about it.
+    // The scene's up direction, about which the camera orbits, not that of the image, which may be tilted.
     scene.camera.up = up;
-    viewer.stand(scene.camera.clone());
+    viewer.set_camera(scene.camera.clone());
     if side.is_some_and(|side| side != "auto") {
-        viewer.rig.turn_upright(DVec3::Z);
+        viewer.control.set_vertical(DVec3::Z);
     }
 }
 
-/// A camera that looks the same way and frames everything.
+/// Returns a camera with the same direction that shows everything.
 fn fit(camera: &mut Camera) {
     if let Pose::LookAt { eye, target } = camera.pose {
         camera.pose = Pose::Fit { direction: target - eye, margin: Camera::FIT_MARGIN };
@@ -126,24 +129,24 @@ fn fit(camera: &mut Camera) {
     }
 }
 
-/// Does with what was picked what it was picked for; returns what is to be told of it.
+/// Handles a picked sphere by its purpose; returns the text to print.
 pub(super) fn picked_by(
     viewer: &mut Viewer,
     picked: Option<Picked>,
     purpose: Purpose,
 ) -> Option<String> {
     let Some(picked) = picked else {
-        viewer.say("nothing but ground and sky is here");
+        viewer.show_message("no sphere here");
         return None;
     };
-    viewer.say(picked.text.clone());
+    viewer.show_message(picked.text.clone());
     match purpose {
         Purpose::Name => {
             viewer.named = picked.kind;
             return Some(picked.text);
         }
-        Purpose::Pivot => viewer.rig.turn_about(picked.point),
-        Purpose::Focus => viewer.rig.focus(picked.point),
+        Purpose::Pivot => viewer.control.set_pivot(picked.point),
+        Purpose::Focus => viewer.control.focus(picked.point),
     }
     viewer.change();
     None

@@ -1,53 +1,53 @@
-//! The line along which the next slice cuts, and the side of it that goes.
+//! Drawing of the line of the next slice, and of the side that is cut away.
 
-use super::letters::Target;
+use super::font::Surface;
 use glam::DVec2;
 
-/// The line, and what shades the side that goes.
+/// Colors of the line and of the shading.
 const LINE: u32 = 0x00FF_C040;
 const SHADE: u32 = 0x0000_0000;
 
-/// Share of the picture that shade hides, and stripes in it.
+/// Opacity of the shading, and of its stripes.
 const COVER: f32 = 0.35;
 const STRIPES: f32 = 0.6;
 
-/// Pixels from one stripe to the next, of a stripe, and of half the line, at a scale of 1.
+/// Distance of stripes, width of a stripe, and half the width of the line, in pixels at a scale of 1.
 const PITCH: f64 = 12.0;
 const STRIPE: f64 = 2.0;
 const HALF: f64 = 1.0;
 
-/// Length of the arrow toward the side that goes, and of its head.
+/// Length of the arrow toward the side that is cut away, and of its head.
 const ARROW: f64 = 36.0;
 const HEAD: f64 = 10.0;
 
-/// Draws the line from the first point to the second, an arrow to its right, and shade over all of
-/// the picture that is there. Nothing, if both are the same point.
-pub(super) fn draw(target: &mut Target, [from, to]: [DVec2; 2], scale: f64) {
+/// Draws the line between two points, an arrow to its right, and shading over the right side of the image.
+/// Draws nothing if the points are equal.
+pub(super) fn draw(surface: &mut Surface, [from, to]: [DVec2; 2], scale: f64) {
     let Some(along) = (to - from).try_normalize() else { return };
     let right = DVec2::new(-along.y, along.x);
     let middle = (from + to) / 2.0;
     let tip = middle + right * ARROW * scale;
     let head = [along - right, -along - right].map(|way| tip + way * (HEAD * scale / 2f64.sqrt()));
     let strokes = [[from, to], [middle, tip], [tip, head[0]], [tip, head[1]]];
-    for y in 0..target.height {
-        for x in 0..target.width {
+    for y in 0..surface.height {
+        for x in 0..surface.width {
             let place = DVec2::new(f64::from(x), f64::from(y));
             let pixel = (x as i32, y as i32);
             if (place - from).dot(right) > 0.0 {
                 let stripe = (place.x + place.y).rem_euclid(PITCH * scale) < STRIPE * scale;
-                target.blend(pixel, SHADE, if stripe { STRIPES } else { COVER });
+                surface.blend(pixel, SHADE, if stripe { STRIPES } else { COVER });
             }
             let distance = strokes.iter().map(|&stroke| to_stroke(place, stroke));
             let distance = distance.fold(f64::INFINITY, f64::min);
             let cover = (HALF * scale + 0.5 - distance).clamp(0.0, 1.0);
             if cover > 0.0 {
-                target.blend(pixel, LINE, cover as f32);
+                surface.blend(pixel, LINE, cover as f32);
             }
         }
     }
 }
 
-/// Distance of a point from a stroke.
+/// Distance of a point from a line segment.
 fn to_stroke(place: DVec2, [from, to]: [DVec2; 2]) -> f64 {
     let way = to - from;
     let along = (place - from).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
@@ -62,8 +62,8 @@ mod tests {
 
     fn drawn(from: (f64, f64), to: (f64, f64)) -> Vec<u32> {
         let mut pixels = vec![WHITE; 120 * 90];
-        let mut target = Target { pixels: &mut pixels, width: 120, height: 90 };
-        draw(&mut target, [from, to].map(DVec2::from), 1.0);
+        let mut surface = Surface { pixels: &mut pixels, width: 120, height: 90 };
+        draw(&mut surface, [from, to].map(DVec2::from), 1.0);
         pixels
     }
 

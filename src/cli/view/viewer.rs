@@ -1,131 +1,129 @@
-//! The viewer without a window: what happens goes in, what is to be rendered comes out, and pictures
-//! become what the window shows. It knows no clock, no threads and no files, so that a window, a
-//! script and a test see the same.
+//! The viewer's state: it handles events, requests images, and holds what the window shows. It uses no clock,
+//! threads or files, so that a window, a script and a test behave in the same way.
 
-use super::command::{Action, Button, Event, Held, Purpose};
-use super::content::{Content, Cut};
+use super::camera_control::CameraControl;
+use super::content::{Content, CutPlane};
+use super::events::{Action, Button, Event, Modifiers, Purpose};
+use super::frame_rate::FrameRate;
+use super::image::Picture;
 use super::keys;
 use super::loading::Loading;
-use super::pace::Pace;
-use super::picture::Picture;
-use super::rig::Rig;
 use glam::DVec2;
 use spherule::scene::particles::Legend;
 use spherule::scene::{Background, Camera, Look, Settings};
 
-/// Least and most pixels on a side of the window.
+/// Minimum and maximum side of the window in pixels.
 const SIDES: (u32, u32) = (16, 16_384);
 
-/// Scales of displays.
+/// Range of display scales.
 pub(super) const SCALES: std::ops::RangeInclusive<f64> = 0.25..=8.0;
 
-/// Pixels that the pointer may move in a click.
+/// Maximum movement of the pointer during a click, in pixels.
 const CLICK: f64 = 4.0;
 
-/// Radians that a drag over the height of the window turns by.
+/// Angle of orbit for a drag over the height of the window, in radians.
 const TURN: f64 = 4.0;
 
-/// Factor on the distance for a step of the wheel, and for a drag over the height of the window.
+/// Factors of the distance for a step of the wheel, and for a drag over the height of the window.
 const WHEEL: f64 = 0.88;
 const DRAG: f64 = 8.0;
 
-/// Factor on the field of view for a step of the wheel.
+/// Factor of the field of view for a step of the wheel.
 pub(super) const WIDER: f64 = 1.1;
 
-/// What the viewer knows of what it shows.
+/// Facts about the viewer's content.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Facts {
     pub(super) title: String,
-    /// Spheres that are drawn.
+    /// Number of visible spheres.
     pub(super) spheres: usize,
-    /// Names by which spheres can be hidden.
+    /// Names of types that can be hidden.
     pub(super) types: Vec<String>,
-    /// Columns by which spheres can be colored.
+    /// Columns that can be colored by.
     pub(super) columns: Vec<String>,
-    /// The frame of a trajectory, from 0, if it was chosen by number, and how many there are.
+    /// The trajectory frame, from 0, if selected by number, and the number of frames.
     pub(super) frame: u64,
     pub(super) frames: Option<u64>,
-    /// Radius of the ball about all spheres.
+    /// Radius of the bounding sphere of the scene.
     pub(super) size: f64,
-    /// What the scene says is drawn over its pictures.
+    /// The scene's look.
     pub(super) look: Look,
-    /// True if particles have materials of their own, which looks do not replace.
+    /// True if particles have their own materials, which presets do not replace.
     pub(super) own_materials: bool,
-    /// The numbers that colors stand for, if they stand for any, and whether the picture has a color
-    /// bar of its own.
+    /// The color scale, if colors represent numbers, and whether the image has its own color bar.
     pub(super) legend: Option<Legend>,
     pub(super) color_bar: bool,
 }
 
-/// What was changed of the scene's look by keys.
+/// Changes of the scene's look by keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Touched {
+pub(super) struct LookChanges {
     pub(super) background: Option<Background>,
     pub(super) depth_cue: Option<bool>,
     pub(super) outline: Option<bool>,
 }
 
-/// What the pointer does.
+/// Current action of the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Drag {
-    /// A button went down here and nothing was moved yet.
-    Click(DVec2, Button, Held),
+    /// A button was pressed here, and the pointer has not moved yet.
+    Click(DVec2, Button, Modifiers),
     Turn,
     Pan,
     Zoom,
     Roll,
-    /// A cut that begins here.
-    Cut(DVec2),
+    /// A slice that starts here.
+    CutPlane(DVec2),
 }
 
-/// The viewer.
+/// State of the viewer.
 #[derive(Clone, Debug)]
 pub(super) struct Viewer {
-    pub(super) rig: Rig,
+    pub(super) control: CameraControl,
     pub(super) home: Camera,
-    /// With the size of the window, and the samples at which the picture is finished.
+    /// Settings with the size of the window, and the final number of samples.
     pub(super) settings: Settings,
     pub(super) content: Content,
-    pub(super) touched: Touched,
+    pub(super) touched: LookChanges,
     pub(super) facts: Facts,
-    pub(super) pace: Pace,
-    /// Of the sphere that was named last, its type.
+    pub(super) frame_rate: FrameRate,
+    /// Type of the last clicked sphere.
     pub(super) named: Option<String>,
-    /// What was done last, for the status line.
+    /// Message in the status line.
     pub(super) message: String,
-    /// The page of the help that is shown, from 0.
+    /// The visible page of the help, from 0.
     pub(super) help: Option<usize>,
     pub(super) status: bool,
-    /// True if a color bar is shown where the picture has none.
+    /// True if the window shows a color bar.
     pub(super) bar: bool,
     /// The display's scale.
     pub(super) scale: f64,
-    /// Progress of what is being loaded, if it takes a while.
+    /// Progress of loading, if it takes long.
     pub(super) loading: Option<Loading>,
-    /// Whether the next drag cuts.
+    /// True if the next drag is a slice.
     pub(super) cutting: bool,
     pub(super) shown: Option<Picture>,
-    /// Root of the mean squared error by the mean, estimated.
+    /// Estimated relative root mean square error.
     pub(super) noise: Option<f64>,
-    /// Grows with every change of what is to be seen.
+    /// Version of the view, which grows with every change.
     pub(super) version: u64,
-    /// A picture of half as many samples, for the noise.
+    /// An image of half as many samples, for the noise estimate.
     pub(super) half: Option<Picture>,
     pointer: DVec2,
     drag: Option<Drag>,
 }
 
 impl Viewer {
-    /// A viewer of a scene whose camera is placed by its eye.
-    pub(super) fn new(camera: &Camera, settings: &Settings, pace: Pace) -> Self {
+    /// Creates the viewer of a scene whose camera is placed by its eye.
+    pub(super) fn new(camera: &Camera, settings: &Settings, frame_rate: FrameRate) -> Self {
         Self {
-            rig: Rig::new(camera.clone(), 1.0),
+            control: CameraControl::new(camera.clone(), 1.0),
             home: camera.clone(),
             settings: Settings { until_error: None, time: None, ..settings.clone() },
             content: Content::default(),
-            touched: Touched::default(),
+            touched: LookChanges::default(),
             facts: Facts::default(),
-            pace,
+            frame_rate,
             named: None,
             message: "press ? for help".to_owned(),
             help: None,
@@ -143,20 +141,20 @@ impl Viewer {
         }
     }
 
-    /// Takes note of what there is to see now.
+    /// Sets the facts about new content.
     pub(super) fn loaded(&mut self, facts: Facts) {
-        self.rig.resize(facts.size);
+        self.control.resize(facts.size);
         self.facts = facts;
         self.loading = None;
         self.change();
     }
 
-    /// What is shown is not what it was: pictures begin anew.
+    /// Starts a new version: refinement starts anew.
     pub(super) fn change(&mut self) {
         self.version += 1;
     }
 
-    /// What is drawn over pictures.
+    /// Returns the current look.
     pub(super) fn look(&self) -> Look {
         let (own, touched) = (self.facts.look, self.touched);
         Look {
@@ -167,47 +165,49 @@ impl Viewer {
         }
     }
 
-    /// What is shown, if it is the whole picture of what is to be seen now.
+    /// Returns the current image if it is up to date and full-size.
     pub(super) fn whole(&self) -> Option<&Picture> {
         let whole = (self.settings.width, self.settings.height);
         let now = |picture: &&Picture| picture.version == self.version && picture.size() == whole;
         self.shown.as_ref().filter(now)
     }
 
-    /// The settings by which a render makes the whole picture that is shown.
+    /// Returns the settings that render the current full-size image.
     pub(super) fn settings_of_picture(&self) -> Option<Settings> {
         self.whole().map(|picture| Settings { spp: picture.samples, ..self.settings.clone() })
     }
 
-    /// Whether the pointer is moving the camera.
+    /// Returns whether the pointer is moving the camera.
     #[cfg(feature = "view")]
     pub(super) fn is_dragging(&self) -> bool {
         matches!(self.drag, Some(Drag::Turn | Drag::Pan | Drag::Zoom | Drag::Roll))
     }
 
-    /// The line from where a cut begins to where it would end now.
+    /// Returns the line of the current slice.
     pub(super) fn cut(&self) -> Option<[DVec2; 2]> {
         match self.drag {
-            Some(Drag::Cut(start)) => Some([start, self.pointer]),
+            Some(Drag::CutPlane(start)) => Some([start, self.pointer]),
             _ => None,
         }
     }
 
-    /// Takes in what happened, and says what others have to do for it.
+    /// Handles an event, and returns the action that it needs, if any.
     pub(super) fn handle(&mut self, event: Event) -> Option<Action> {
         match event {
             Event::Pointer(place) => self.point(place),
             Event::Press { button, held, double } => return self.press(button, held, double),
             Event::Release => return self.release(),
             Event::Wheel(steps, held) if held.shift => {
-                self.rig.widen(WIDER.powf(-steps));
+                self.control.scale_field_of_view(WIDER.powf(-steps));
                 self.change();
             }
             Event::Wheel(steps, _) => {
-                self.rig.zoom(WHEEL.powf(steps), self.in_heights(self.pointer));
+                self.control.zoom(WHEEL.powf(steps), self.to_image_heights(self.pointer));
                 self.change();
             }
-            Event::Key(key) => return keys::command(&key).and_then(|command| self.obey(command)),
+            Event::Key(key) => {
+                return keys::command(&key).and_then(|command| self.execute(command));
+            }
             Event::Resize(width, height) => {
                 let side = |side: u32| side.clamp(SIDES.0, SIDES.1);
                 (self.settings.width, self.settings.height) = (side(width), side(height));
@@ -222,15 +222,15 @@ impl Viewer {
         None
     }
 
-    /// A place in heights of the picture from its middle, to the right and upward.
-    fn in_heights(&self, place: DVec2) -> DVec2 {
+    /// Converts a position to units of the image's height from its center, to the right and upward.
+    fn to_image_heights(&self, place: DVec2) -> DVec2 {
         let size = DVec2::new(f64::from(self.settings.width), f64::from(self.settings.height));
         let offset = (place - size / 2.0) / size.y;
         DVec2::new(offset.x, -offset.y)
     }
 
     fn point(&mut self, place: DVec2) {
-        let moved = self.in_heights(place) - self.in_heights(self.pointer);
+        let moved = self.to_image_heights(place) - self.to_image_heights(self.pointer);
         if let Some(Drag::Click(start, button, held)) = self.drag {
             if place.distance(start) <= CLICK * self.scale.max(1.0) {
                 return;
@@ -239,18 +239,18 @@ impl Viewer {
         }
         self.pointer = place;
         match self.drag {
-            Some(Drag::Turn) => self.rig.orbit(DVec2::new(moved.x, -moved.y) * TURN),
-            Some(Drag::Pan) => self.rig.pan(moved),
-            Some(Drag::Zoom) => self.rig.zoom(DRAG.powf(-moved.y), DVec2::ZERO),
-            Some(Drag::Roll) => self.rig.roll(-moved.x * TURN),
-            Some(Drag::Click(..) | Drag::Cut(_)) | None => return,
+            Some(Drag::Turn) => self.control.orbit(DVec2::new(moved.x, -moved.y) * TURN),
+            Some(Drag::Pan) => self.control.pan(moved),
+            Some(Drag::Zoom) => self.control.zoom(DRAG.powf(-moved.y), DVec2::ZERO),
+            Some(Drag::Roll) => self.control.roll(-moved.x * TURN),
+            Some(Drag::Click(..) | Drag::CutPlane(_)) | None => return,
         }
         self.change();
     }
 
-    fn press(&mut self, button: Button, held: Held, double: bool) -> Option<Action> {
+    fn press(&mut self, button: Button, held: Modifiers, double: bool) -> Option<Action> {
         if std::mem::take(&mut self.cutting) {
-            self.drag = Some(Drag::Cut(self.pointer));
+            self.drag = Some(Drag::CutPlane(self.pointer));
             return None;
         }
         if double && button == Button::Left {
@@ -266,7 +266,7 @@ impl Viewer {
                 let purpose = if held.control { Purpose::Focus } else { Purpose::Name };
                 Some(Action::Pick(self.pixel(place), purpose))
             }
-            Drag::Cut(start) => self.cut_off(start),
+            Drag::CutPlane(start) => self.cut_off(start),
             _ => None,
         }
     }
@@ -278,19 +278,20 @@ impl Viewer {
         (place.x as u32, place.y as u32)
     }
 
-    /// Cuts off what is to the right of the way from `start` to the pointer.
+    /// Adds a slice that cuts away the right side of the line from `start` to the pointer.
     fn cut_off(&mut self, start: DVec2) -> Option<Action> {
-        let [a, b] = [start, self.pointer].map(|place| self.rig.ray(self.in_heights(place)));
-        // In perspective both rays start at the eye, in parallel projection they go the same way.
+        let [a, b] =
+            [start, self.pointer].map(|place| self.control.ray(self.to_image_heights(place)));
+        // In perspective both rays start at the eye; in orthographic projection they are parallel.
         let across = (b.0 + b.1) - (a.0 + a.1);
         let normal = a.1.cross(across).try_normalize()?;
-        self.content.cuts.push(Cut { normal, point: a.0 });
-        self.say("cut; H undoes it");
+        self.content.cuts.push(CutPlane { normal, point: a.0 });
+        self.show_message("cut; press H to undo");
         Some(Action::Load)
     }
 }
 
-fn drag_of(button: Button, held: Held) -> Drag {
+fn drag_of(button: Button, held: Modifiers) -> Drag {
     match button {
         _ if held.alt => Drag::Roll,
         _ if held.control => Drag::Zoom,

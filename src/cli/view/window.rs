@@ -1,23 +1,23 @@
-//! The window: the only file that knows of displays.
+//! The window, the only module that depends on a display.
 //!
-//! `winit` opens windows on X11 and Wayland, `softbuffer` puts pixels into them: neither needs a
-//! graphics processor, and both look for the display's libraries when they run.
+//! `winit` opens windows on X11 and Wayland, and `softbuffer` copies pixels to them. Neither needs a GPU, and
+//! both load the display's libraries at run time.
 
 mod files;
-mod hear;
 mod input;
+mod messages;
 
 use self::input::Input;
 use super::canvas::Canvas;
-use super::command::{Action, Event};
 use super::content::Content;
+use super::events::{Action, Event};
+use super::frame_rate::FrameRate;
 use super::load::Origin;
 use super::loading::Loading;
-use super::pace::Pace;
 use super::session;
 use super::times::Times;
 use super::viewer::Viewer;
-use super::worker::{News, Workers};
+use super::worker::{Message, Workers};
 use crate::cli::failure::Failure;
 use crate::cli::render::Job;
 use softbuffer::{Context, Surface};
@@ -37,7 +37,7 @@ use winit::window::{Window, WindowId};
 
 type Screen = Surface<Rc<Window>, Rc<Window>>;
 
-/// Displays pass over it, but pictures of the screen may take it for alpha.
+/// Displays ignore the highest byte, but screenshots may treat it as alpha.
 const OPAQUE: u32 = 0xFF00_0000;
 
 struct App {
@@ -46,44 +46,44 @@ struct App {
     input: Input,
     workers: Workers,
     screen: Option<(Rc<Window>, Screen)>,
-    /// What is saved; `None` until something was loaded.
+    /// The scene to save; `None` until one is loaded.
     scene: Option<Arc<RwLock<Scene>>>,
     /// Source of its spheres, if it has only a sketch of them.
     origin: Option<Origin>,
-    /// Content that was loaded last.
+    /// The last loaded content.
     loaded: Content,
-    /// Content to return to if loading fails, once its world was dropped to make room for the next.
+    /// Content to return to if loading fails, if its world was dropped to free memory.
     fallback: Option<Content>,
     job: Arc<Job<'static>>,
     savers: Vec<JoinHandle<()>>,
     /// Files that are being written.
     files: u32,
-    /// Whether the window is gone, and only files are waited for.
+    /// True if the window is closed, and only files are still being written.
     closed: bool,
-    tell: Arc<dyn Fn(News) + Send + Sync>,
+    tell: Arc<dyn Fn(Message) + Send + Sync>,
     output: PathBuf,
     samples: u32,
-    /// Whether the window's size was typed.
+    /// True if `--size` was given.
     sized: bool,
-    /// Whether the picture is to be saved as soon as it is whole.
+    /// True if the image will be saved as soon as it has full size.
     saving: bool,
     times: Times,
     clock: Clock,
     failure: Option<Failure>,
 }
 
-/// When things happened that are timed.
+/// Times of events, for statistics.
 #[derive(Default)]
 struct Clock {
-    /// The last motion, until a finer picture follows it.
+    /// Time of the last motion, until a finer image follows.
     moved: Option<Instant>,
-    /// Since when the window shows something else than what is to be seen.
+    /// Time since which the window has been out of date.
     stale: Option<Instant>,
-    /// Version, size and samples of the picture that it shows.
+    /// Version, size and samples of the visible image.
     shown: (u64, (u32, u32), u32),
 }
 
-/// Opens a window and shows what the job speaks of until it is closed.
+/// Opens a window for the job's scene, and runs until it is closed.
 pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     let events = event_loop()?;
     let proxy = events.create_proxy();
@@ -92,14 +92,14 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     let told = proxy.clone();
     let name = job.source.name().into_owned();
     let job = Arc::new(job);
-    let workers = Workers::start(&job, move |news| told.send_event(news).is_ok())?;
+    let workers = Workers::start(&job, move |message| told.send_event(message).is_ok())?;
     let mut settings = Settings { width: 1280, height: 720, ..Settings::default() };
     if let Some(size) = sized {
         (settings.width, settings.height) = (size.width, size.height);
     }
     let camera = spherule::scene::Camera::default();
     let mut app = App {
-        viewer: Viewer::new(&camera, &settings, Pace::measured()),
+        viewer: Viewer::new(&camera, &settings, FrameRate::measured()),
         canvas: Canvas::default(),
         input: Input::default(),
         workers,
@@ -112,7 +112,7 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
         savers: Vec::new(),
         files: 0,
         closed: false,
-        tell: Arc::new(move |news| drop(proxy.send_event(news))),
+        tell: Arc::new(move |message| drop(proxy.send_event(message))),
         output,
         samples,
         sized: sized.is_some(),
@@ -128,20 +128,19 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     let ended = ended.map_err(|error| if opened { lost() } else { no_display(&error) });
     app.workers.cancel();
     for saver in app.savers.drain(..) {
-        // One that panicked has said so.
+        // A panic has already been reported.
         let _ = saver.join();
     }
     ended?;
-    app.times.tell(app.viewer.facts.spheres, json);
+    app.times.print(app.viewer.facts.spheres, json);
     app.failure.map_or(Ok(()), Err)
 }
 
-/// The connection to the display. Libraries that are not there make `winit` panic: it is told in a
-/// line, as all else is.
-fn event_loop() -> Result<EventLoop<News>, Failure> {
+/// Connects to the display. Missing libraries make `winit` panic; this is reported as an error.
+fn event_loop() -> Result<EventLoop<Message>, Failure> {
     let hook = take_hook();
     set_hook(Box::new(|_| ()));
-    let opened = catch_unwind(AssertUnwindSafe(|| EventLoop::<News>::with_user_event().build()));
+    let opened = catch_unwind(AssertUnwindSafe(|| EventLoop::<Message>::with_user_event().build()));
     set_hook(hook);
     match opened {
         Ok(opened) => opened.map_err(|error| no_display(&error)),
@@ -154,22 +153,22 @@ fn event_loop() -> Result<EventLoop<News>, Failure> {
 
 fn no_display(why: &dyn std::fmt::Display) -> Failure {
     let why = why.to_string();
-    // Errors of the system begin with a place in the source of `winit`.
+    // System errors start with a location in the source of `winit`.
     let place = why.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
     let why = place.map_or(why.as_str(), |(_, rest)| rest).trim_end_matches('.');
     Failure::Window(format!(
-        "no window can be opened: {why}; set DISPLAY or WAYLAND_DISPLAY, or use --headless-script \
-         FILE, or `spherule render`"
+        "cannot open a window: {why}; set DISPLAY or WAYLAND_DISPLAY, or use --headless-script FILE or \
+         `spherule render`"
     ))
 }
 
-/// What is wrong when a window that was there is there no more, though nobody closed it.
+/// Error for a window that is gone without having been closed.
 fn lost() -> Failure {
-    Failure::Window("the display has gone, and the window with it".to_owned())
+    Failure::Window("the connection to the display was lost".to_owned())
 }
 
 fn no_picture(why: &dyn std::fmt::Display) -> Failure {
-    Failure::Window(format!("nothing can be drawn into the window: {why}"))
+    Failure::Window(format!("cannot draw to the window: {why}"))
 }
 
 impl App {
@@ -187,7 +186,7 @@ impl App {
             Some(Action::Load) => self.load(),
             Some(Action::Save) => {
                 self.saving = true;
-                self.viewer.say("saving as soon as the picture is whole");
+                self.viewer.show_message("saving when the image has full size");
             }
             Some(Action::Frame(side)) => {
                 if let Some(scene) = &self.scene {
@@ -195,14 +194,14 @@ impl App {
                 }
             }
             Some(Action::Pick(pixel, purpose)) => {
-                let at = (self.viewer.rig.camera.clone(), self.viewer.settings.clone());
+                let at = (self.viewer.control.camera.clone(), self.viewer.settings.clone());
                 self.workers.pick(at, pixel, purpose);
             }
         }
-        self.go_on();
+        self.update();
     }
 
-    /// Has the viewer's content loaded. A large world leaves the memory first if it can be read again.
+    /// Requests the viewer's content. A large world is dropped first if it can be read again.
     fn load(&mut self) {
         if self.origin.as_ref().is_some_and(Origin::is_readable) {
             self.fallback = Some(self.loaded.clone());
@@ -214,13 +213,13 @@ impl App {
         }
     }
 
-    /// Orders the next picture and shows what is new.
-    fn go_on(&mut self) {
+    /// Requests the next image and redraws the window.
+    fn update(&mut self) {
         if self.closed {
             return;
         }
         if self.scene.is_some() {
-            self.workers.order(self.viewer.order());
+            self.workers.request_image(self.viewer.next_request());
         }
         if self.saving && self.viewer.whole().is_some() {
             self.saving = false;
@@ -233,7 +232,7 @@ impl App {
 }
 
 impl App {
-    /// Puts the canvas into the window.
+    /// Copies the canvas to the window.
     fn redraw(&mut self) -> Result<(), softbuffer::SoftBufferError> {
         let Some((window, screen)) = &mut self.screen else { return Ok(()) };
         self.canvas.draw(&self.viewer);
@@ -246,7 +245,7 @@ impl App {
             }
             window.pre_present_notify();
             buffer.present()?;
-            self.take_times();
+            self.record_times();
         }
         Ok(())
     }
@@ -268,7 +267,7 @@ impl App {
     }
 }
 
-impl ApplicationHandler<News> for App {
+impl ApplicationHandler<Message> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.screen.is_none()
             && let Err(failure) = self.open(events)
@@ -278,8 +277,8 @@ impl ApplicationHandler<News> for App {
         }
     }
 
-    fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
-        self.hear(events, news);
+    fn user_event(&mut self, events: &ActiveEventLoop, message: Message) {
+        self.handle_message(events, message);
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {

@@ -1,14 +1,14 @@
-//! The two threads behind a window: one reads and builds what is to be seen, the other renders it.
+//! Background threads of a window: one loads scenes, the other renders them.
 //!
-//! Neither is waited for. The newest order wins: what is being rendered is cancelled by its flag, at
-//! the grain of a tile.
+//! The window waits for neither. The latest request wins: the current render is cancelled by a flag, which is
+//! checked for each tile.
 
-use super::command::Purpose;
 use super::content::Content;
-use super::load::{Loader, Stage};
-use super::loading::{Loading, Progress, Watch};
-use super::picture::{Order, Picture};
-use super::studio::{Picked, Studio};
+use super::events::Purpose;
+use super::image::{Picture, RenderRequest};
+use super::load::{LoadedScene, Loader};
+use super::loading::{Loading, Progress, ProgressReporter};
+use super::renderer::{Picked, Renderer};
 use crate::cli::failure::Failure;
 use crate::cli::render::Job;
 use rayon::ThreadPool;
@@ -19,56 +19,55 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-/// What a window hears of.
-pub(super) enum News {
+/// Messages to the window.
+pub(super) enum Message {
     /// Progress of loading.
     Loading(Loading),
-    /// There is something else to be seen.
-    Staged(Result<Box<Stage>, Failure>),
-    /// An order is done; nothing if it was cancelled.
+    /// New content is loaded.
+    Loaded(Result<Box<LoadedScene>, Failure>),
+    /// A request is done; `None` if it was cancelled.
     Picture(Result<Option<Picture>, Failure>),
     Picked(Result<Option<Picked>, Failure>, Purpose),
-    /// A file is there, or why not.
+    /// A file was saved, or failed.
     Saved(Result<PathBuf, Failure>),
 }
 
-/// What is to be loaded.
-struct Request {
+/// A request to load.
+struct LoadRequest {
     content: Content,
-    /// Closed once the world that is shown is dropped, if it is dropped before.
+    /// Closed once the current world is dropped, if it is dropped before loading.
     dropped: Option<Receiver<()>>,
 }
 
-/// What is to be rendered.
+/// Tasks of the rendering thread.
 enum Task {
-    Set(Box<Stage>),
+    Set(Box<LoadedScene>),
     /// Drops the world, and then the sender.
     Drop(Sender<()>),
-    Expose(Order, Arc<AtomicBool>),
+    Render(RenderRequest, Arc<AtomicBool>),
     Pick((Camera, Settings), (u32, u32), Purpose),
 }
 
-/// The threads, as the window sees them.
+/// Handles of the threads.
 pub(super) struct Workers {
-    requests: Sender<Request>,
+    requests: Sender<LoadRequest>,
     tasks: Sender<Task>,
-    /// What was ordered last, and the flag that cancels it.
-    ordered: Option<(Order, Arc<AtomicBool>)>,
+    /// The last request, and the flag that cancels it.
+    current: Option<(RenderRequest, Arc<AtomicBool>)>,
 }
 
 impl Workers {
-    /// Starts the threads; what they have done they tell by `tell`, which returns false when nobody
-    /// listens any more.
+    /// Starts the threads. They send messages through `tell`, which returns false once the receiver is gone.
     ///
     /// # Errors
     /// The pools of threads cannot be started.
     pub(super) fn start(
         job: &Arc<Job<'static>>,
-        tell: impl Fn(News) -> bool + Clone + Send + 'static,
+        tell: impl Fn(Message) -> bool + Clone + Send + 'static,
     ) -> Result<Self, Failure> {
         let (requests, wanted) = channel();
         let (tasks, todo) = channel();
-        // A render waits for all threads of its pool: it does not share them with a reader.
+        // A render waits for all threads of its pool, so it has a pool of its own.
         let (loaders, renderers) = (job.pool()?, job.pool()?);
         let (tracer, builder) = (job.tracer, job.builder(usize::MAX, u64::MAX));
         let loaded = tell.clone();
@@ -76,18 +75,18 @@ impl Workers {
         let quiet = job.report.quiet;
         thread::spawn(move || load(&loaders, loader, &wanted, loaded, quiet));
         thread::spawn(move || {
-            let studio = |stage| Studio::new(stage, tracer, builder);
-            render(&renderers, &todo, studio, tell);
+            let renderer = |stage| Renderer::new(stage, tracer, builder);
+            render(&renderers, &todo, renderer, tell);
         });
-        Ok(Self { requests, tasks, ordered: None })
+        Ok(Self { requests, tasks, current: None })
     }
 
-    /// Has something loaded.
+    /// Requests content.
     pub(super) fn load(&self, content: &Content) {
         self.request(content, None);
     }
 
-    /// Has something loaded after the world that is shown has left the memory.
+    /// Requests content, to be loaded after the current world is dropped.
     pub(super) fn replace(&mut self, content: &Content) {
         self.cancel();
         let (done, dropped) = channel();
@@ -96,50 +95,50 @@ impl Workers {
     }
 
     fn request(&self, content: &Content, dropped: Option<Receiver<()>>) {
-        // A thread that does not receive has ended, and so does the window.
-        let _ = self.requests.send(Request { content: content.clone(), dropped });
+        // If the receiving thread has ended, the window ends too.
+        let _ = self.requests.send(LoadRequest { content: content.clone(), dropped });
     }
 
-    /// Has pictures made of what was loaded.
-    pub(super) fn set(&mut self, stage: Box<Stage>) {
+    /// Sets the loaded content for rendering.
+    pub(super) fn set(&mut self, stage: Box<LoadedScene>) {
         self.cancel();
         let _ = self.tasks.send(Task::Set(stage));
     }
 
-    /// Has a picture made. An older order is cancelled, unless it is the first picture of what a
-    /// moving camera sees: else nothing would be seen of its way.
-    pub(super) fn order(&mut self, order: Option<Order>) {
-        match (&order, &self.ordered) {
+    /// Requests an image. An older request is cancelled, unless it is the first image of its version;
+    /// otherwise a moving camera would show nothing.
+    pub(super) fn request_image(&mut self, request: Option<RenderRequest>) {
+        match (&request, &self.current) {
             (Some(new), Some((old, _))) if new == old => return,
             (_, Some((old, _))) if !old.first => self.cancel(),
             _ => (),
         }
-        let Some(order) = order else { return };
+        let Some(request) = request else { return };
         let flag = Arc::new(AtomicBool::new(false));
-        let _ = self.tasks.send(Task::Expose(order.clone(), Arc::clone(&flag)));
-        self.ordered = Some((order, flag));
+        let _ = self.tasks.send(Task::Render(request.clone(), Arc::clone(&flag)));
+        self.current = Some((request, flag));
     }
 
-    /// Asks what is at a pixel: before the picture goes on.
+    /// Requests picking at a pixel, before rendering continues.
     pub(super) fn pick(&mut self, at: (Camera, Settings), pixel: (u32, u32), purpose: Purpose) {
         self.cancel();
         let _ = self.tasks.send(Task::Pick(at, pixel, purpose));
     }
 
-    /// Cancels what is being rendered.
+    /// Cancels the current render.
     pub(super) fn cancel(&mut self) {
-        if let Some((_, flag)) = self.ordered.take() {
+        if let Some((_, flag)) = self.current.take() {
             flag.store(true, Ordering::Relaxed);
         }
     }
 }
 
-/// Loads the newest of what is wanted, again and again.
+/// Loads the latest request, in a loop.
 fn load(
     pool: &ThreadPool,
     mut loader: Loader,
-    wanted: &Receiver<Request>,
-    tell: impl Fn(News) -> bool + Clone + Send + 'static,
+    wanted: &Receiver<LoadRequest>,
+    tell: impl Fn(Message) -> bool + Clone + Send + 'static,
     quiet: bool,
 ) {
     let mut next = None;
@@ -147,58 +146,60 @@ fn load(
         if let Some(newest) = wanted.try_iter().last() {
             request = newest;
         }
-        let Request { content, dropped } = request;
+        let LoadRequest { content, dropped } = request;
         let replaces = dropped.is_some();
         if let Some(dropped) = dropped {
-            // Nothing is sent: this waits until the sender is gone.
+            // Nothing is sent; this waits until the sender is dropped.
             let _ = dropped.recv();
         }
         let progress = Arc::new(Progress::default());
-        let told = tell.clone();
-        let watch = Watch::start(&progress, quiet, move |loading| _ = told(News::Loading(loading)));
+        let send = tell.clone();
+        let watch = ProgressReporter::start(&progress, quiet, move |loading| {
+            _ = send(Message::Loading(loading));
+        });
         let staged = pool.install(|| loader.load(&content, &progress).map(Box::new));
         drop(watch);
         next = wanted.try_iter().last();
         if replaces && next.is_some() {
-            // Two large worlds do not fit into the memory of one.
+            // Memory may not be sufficient for two large worlds.
             continue;
         }
-        if !tell(News::Staged(staged)) {
+        if !tell(Message::Loaded(staged)) {
             return;
         }
     }
 }
 
-/// Does what is to be done in order, but of orders only the newest.
+/// Runs tasks in order, but only the latest of render requests.
 fn render(
     pool: &ThreadPool,
     todo: &Receiver<Task>,
-    new: impl Fn(Stage) -> Studio,
-    tell: impl Fn(News) -> bool,
+    new: impl Fn(LoadedScene) -> Renderer,
+    tell: impl Fn(Message) -> bool,
 ) {
-    let mut studio: Option<Studio> = None;
+    let mut renderer: Option<Renderer> = None;
     while let Ok(first) = todo.recv() {
         let mut last = None;
         for task in std::iter::once(first).chain(todo.try_iter()) {
-            match (task, &mut studio) {
+            match (task, &mut renderer) {
                 (Task::Drop(done), _) => {
-                    (studio, last) = (None, None);
+                    (renderer, last) = (None, None);
                     drop(done);
                 }
-                (Task::Set(stage), None) => studio = Some(new(*stage)),
-                (Task::Set(stage), Some(studio)) => studio.set(*stage),
-                (Task::Expose(order, cancel), _) => last = Some((order, cancel)),
-                (Task::Pick((camera, settings), pixel, purpose), Some(studio)) => {
-                    let picked = pool.install(|| studio.pick(&camera, &settings, pixel));
-                    if !tell(News::Picked(picked, purpose)) {
+                (Task::Set(stage), None) => renderer = Some(new(*stage)),
+                (Task::Set(stage), Some(renderer)) => renderer.set(*stage),
+                (Task::Render(request, cancel), _) => last = Some((request, cancel)),
+                (Task::Pick((camera, settings), pixel, purpose), Some(renderer)) => {
+                    let picked = pool.install(|| renderer.pick(&camera, &settings, pixel));
+                    if !tell(Message::Picked(picked, purpose)) {
                         return;
                     }
                 }
                 (Task::Pick(..), None) => (),
             }
         }
-        if let (Some((order, cancel)), Some(studio)) = (last, &mut studio)
-            && !tell(News::Picture(pool.install(|| studio.expose(&order, &cancel))))
+        if let (Some((request, cancel)), Some(renderer)) = (last, &mut renderer)
+            && !tell(Message::Picture(pool.install(|| renderer.render(&request, &cancel))))
         {
             return;
         }

@@ -1,36 +1,30 @@
-//! Lines of text that fit: broken between words, or shortened in the middle.
+//! Line breaking of text, with an ellipsis in the middle if space is short.
 
-use super::letters::{ELLIPSIS, Letters};
+use super::font::{ELLIPSIS, SizedFont};
 
-/// Between two parts of the status line.
+/// Separator of the parts of the status line.
 const SEPARATOR: &str = "  |  ";
 
-/// Parts of a text as lines of at most this width, no more of them than there is room for: a part
-/// begins a line rather than being broken, and what has no room is left out of the middle.
-pub(super) fn flow(
-    letters: &mut Letters,
-    parts: &[String],
-    width: u32,
-    most: usize,
-) -> Vec<String> {
+/// Breaks the parts of a text into at most `most` lines of this width. A part starts a new line rather than
+/// being broken; if space is short, the middle is left out.
+pub(super) fn flow(font: &mut SizedFont, parts: &[String], width: u32, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for part in parts {
         if let Some(last) = lines.last_mut() {
             let longer = format!("{last}{SEPARATOR}{part}");
-            if letters.width(&longer) <= width {
+            if font.width(&longer) <= width {
                 *last = longer;
                 continue;
             }
         }
-        lines.extend(broken(letters, part, width));
+        lines.extend(broken(font, part, width));
     }
-    if lines.len() <= most { lines } else { wrap(letters, &parts.join(SEPARATOR), width, most) }
+    if lines.len() <= most { lines } else { wrap(font, &parts.join(SEPARATOR), width, most) }
 }
 
-/// A text as lines of at most this width, no more of them than there is room for: what has no room
-/// is left out of the middle.
-pub(super) fn wrap(letters: &mut Letters, text: &str, width: u32, most: usize) -> Vec<String> {
-    let lines = broken(letters, text, width);
+/// Breaks a text into at most `most` lines of this width; if space is short, the middle is left out.
+pub(super) fn wrap(font: &mut SizedFont, text: &str, width: u32, most: usize) -> Vec<String> {
+    let lines = broken(font, text, width);
     if lines.len() <= most {
         return lines;
     }
@@ -40,12 +34,12 @@ pub(super) fn wrap(letters: &mut Letters, text: &str, width: u32, most: usize) -
         let (head, tail) = (&all[..head], &all[all.len() - kept / 2..]);
         head.iter().chain([&ELLIPSIS]).chain(tail).collect::<String>()
     };
-    // The most letters for which there is room.
+    // Binary search for the maximum number of characters that fit.
     let (mut low, mut high) = (0, all.len());
     let mut best = Vec::new();
     while low < high {
         let middle = usize::midpoint(low, high);
-        let lines = broken(letters, &shortened(middle), width);
+        let lines = broken(font, &shortened(middle), width);
         if lines.len() <= most {
             (best, low) = (lines, middle + 1);
         } else {
@@ -55,14 +49,13 @@ pub(super) fn wrap(letters: &mut Letters, text: &str, width: u32, most: usize) -
     best
 }
 
-/// A text as lines of at most this width; a word that is wider is broken too, and a letter that is
-/// wider is left out.
-fn broken(letters: &mut Letters, text: &str, width: u32) -> Vec<String> {
+/// Breaks a text into lines of this width. A wider word is broken too, and a wider character is left out.
+fn broken(font: &mut SizedFont, text: &str, width: u32) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
     for word in text.split_inclusive(' ') {
         let longer = format!("{line}{word}");
-        if letters.width(longer.trim_end()) <= width {
+        if font.width(longer.trim_end()) <= width {
             line = longer;
             continue;
         }
@@ -72,13 +65,13 @@ fn broken(letters: &mut Letters, text: &str, width: u32) -> Vec<String> {
         line.clear();
         for letter in word.chars() {
             line.push(letter);
-            if letters.width(line.trim_end()) > width {
+            if font.width(line.trim_end()) > width {
                 line.pop();
                 if !line.is_empty() {
                     lines.push(std::mem::take(&mut line));
                 }
                 line.push(letter);
-                if letters.width(&line) > width {
+                if font.width(&line) > width {
                     line.clear();
                 }
             }
@@ -100,16 +93,15 @@ mod tests {
     #[test]
     fn lines_fit_at_every_size() {
         for scale in [1.0, 1.5, 2.0] {
-            let mut letters = Letters::new(scale).expect("a font");
+            let mut font = SizedFont::new(scale).expect("a font");
             for width in [3, 16, 64, 200, 333, 5000] {
                 for most in [1, 2, 5, 100] {
                     let parts = ["10 spheres".to_owned(), LONG.to_owned(), "end".to_owned()];
-                    for lines in [
-                        wrap(&mut letters, LONG, width, most),
-                        flow(&mut letters, &parts, width, most),
-                    ] {
+                    for lines in
+                        [wrap(&mut font, LONG, width, most), flow(&mut font, &parts, width, most)]
+                    {
                         assert!(lines.len() <= most);
-                        assert!(lines.iter().all(|line| letters.width(line) <= width));
+                        assert!(lines.iter().all(|line| font.width(line) <= width));
                     }
                 }
             }
@@ -118,21 +110,21 @@ mod tests {
 
     #[test]
     fn nothing_is_lost_that_has_room() {
-        let mut letters = Letters::new(1.0).expect("a font");
-        let lines = wrap(&mut letters, LONG, 150, 100);
+        let mut font = SizedFont::new(1.0).expect("a font");
+        let lines = wrap(&mut font, LONG, 150, 100);
         assert!(lines.len() > 2);
         assert_eq!(lines.concat().replace(' ', ""), LONG.replace(' ', ""));
         let parts = ["one part".to_owned(), "and another".to_owned()];
-        assert_eq!(flow(&mut letters, &parts, 5000, 3), ["one part  |  and another"]);
-        let narrow = letters.width("and another");
-        assert_eq!(flow(&mut letters, &parts, narrow, 3), ["one part", "and another"]);
+        assert_eq!(flow(&mut font, &parts, 5000, 3), ["one part  |  and another"]);
+        let narrow = font.width("and another");
+        assert_eq!(flow(&mut font, &parts, narrow, 3), ["one part", "and another"]);
     }
 
     #[test]
     fn the_middle_goes_first() {
-        let mut letters = Letters::new(1.0).expect("a font");
-        let line = wrap(&mut letters, LONG, 200, 1).concat();
+        let mut font = SizedFont::new(1.0).expect("a font");
+        let line = wrap(&mut font, LONG, 200, 1).concat();
         assert!(line.starts_with("saved /a") && line.ends_with("more"), "{line}");
-        assert!(line.contains(ELLIPSIS) && letters.width(&line) > 180, "{line}");
+        assert!(line.contains(ELLIPSIS) && font.width(&line) > 180, "{line}");
     }
 }

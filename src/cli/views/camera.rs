@@ -1,4 +1,4 @@
-//! Cameras: sides, projections and turns.
+//! Cameras: views from a side, projections and turntables.
 
 use super::ViewArgs;
 use crate::cli::Failure;
@@ -8,16 +8,16 @@ use spherule::suggest;
 use spherule::world::{WorldError, framing};
 use std::f64::consts::TAU;
 
-/// A side from which everything is framed.
+/// A view direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum View {
-    /// Broadside, by the principal axes.
+    /// Along the principal axis of least extent.
     Auto,
-    /// By a row of [`SIDES`].
+    /// Row of [`SIDES`].
     Side(usize),
 }
 
-/// Names, directions from the camera into the scene, and what is up: z, or else y.
+/// Names, view directions, and up directions: z, or else y.
 const SIDES: [(&str, DVec3, DVec3); 7] = [
     ("x", DVec3::NEG_X, DVec3::Z),
     ("-x", DVec3::X, DVec3::Z),
@@ -37,7 +37,7 @@ impl View {
     }
 }
 
-/// `auto` or the name of a side.
+/// Parses `auto` or the name of a side.
 pub(super) fn view(text: &str) -> Result<View, String> {
     let side = SIDES.iter().position(|side| side.0 == text).map(View::Side);
     let view = if text == "auto" { Some(View::Auto) } else { side };
@@ -48,12 +48,12 @@ pub(super) fn view(text: &str) -> Result<View, String> {
 /// 0 to 0.9.
 pub(super) fn margin(text: &str) -> Result<f64, String> {
     let share = text.parse().ok().filter(|share| (0.0..=0.9).contains(share));
-    share.ok_or_else(|| "give a share of the picture from 0 to 0.9, as in 0.05".to_owned())
+    share.ok_or_else(|| "give a fraction of the image from 0 to 0.9, as in 0.05".to_owned())
 }
 
 impl ViewArgs {
-    /// Places the camera of a scene that has its picture's size, in the picture `turn` of a turn.
-    /// `normals` are those of slices, as [`ViewArgs::choose`] takes them.
+    /// Places the camera of a scene whose image size is set, for image `turn` of a turntable. `normals` are
+    /// those of slices, as [`ViewArgs::choose`] takes them.
     pub(in crate::cli) fn frame(
         &self,
         scene: &mut Scene,
@@ -70,13 +70,13 @@ impl ViewArgs {
         if corners.is_empty() { Ok(()) } else { framing::hold(scene, &corners).map_err(failure) }
     }
 
-    /// Angle of a picture of the turn, in radians.
+    /// Angle of an image of the turntable, in radians.
     pub(in crate::cli) fn angle(&self, turn: u32) -> f64 {
         TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
     }
 
-    /// Sets how and from which side the camera of a scene looks, but not where it stands. A view that
-    /// nobody named shows the faces of cuts, whose `normals` point to what is cut away.
+    /// Sets projection and direction of the camera of a scene, but not its position. The default view shows
+    /// the caps of slices, whose `normals` point to the side that is cut away.
     pub(in crate::cli) fn choose(
         &self,
         scene: &mut Scene,
@@ -97,7 +97,7 @@ impl ViewArgs {
                 None if *direction == Camera::FIT_DIRECTION => {
                     *direction = framing::facing(*direction, normals);
                 }
-                // Broadside has two sides.
+                // The opposite direction is equally broadside.
                 Some(View::Auto) if faces_away(*direction, normals) => *direction = -*direction,
                 _ => (),
             }
@@ -105,8 +105,7 @@ impl ViewArgs {
         match (&mut scene.camera.pose, self.margin) {
             (Pose::Fit { margin, .. }, Some(typed)) => *margin = typed,
             (Pose::LookAt { .. }, Some(_)) => {
-                let message = "--margin is for a camera that frames everything, but the scene's \
-                               stands where it stands: add --view";
+                let message = "--margin has no effect on the scene's own camera; add --view";
                 return Err(Failure::usage("render", message));
             }
             (_, None) => (),
@@ -122,7 +121,7 @@ fn faces_away(direction: DVec3, normals: &[DVec3]) -> bool {
     count(direction) < count(-direction)
 }
 
-/// What is to be in the picture besides spheres: the corners of a cell that is drawn.
+/// Points that must be in view besides spheres: the corners of a cell that is drawn.
 pub(in crate::cli) fn corners(scene: &Scene) -> Vec<DVec3> {
     scene.look.cell.map_or_else(Vec::new, |cell| cell.corners().to_vec())
 }

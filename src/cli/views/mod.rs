@@ -1,13 +1,13 @@
-//! How particle files are repeated and framed on the command line, and what is drawn over pictures.
+//! Options for simulation cells, cameras and overlays.
 
 mod camera;
-mod over;
+mod overlay;
 mod periodic;
 mod style;
 
 use self::camera::View;
 pub(super) use self::camera::corners;
-pub(super) use self::over::{Canvas, draw_over, settings_of_layers};
+pub(super) use self::overlay::{Canvas, draw_over, settings_of_layers};
 pub(super) use self::style::{StyleArgs, scene_of_particles};
 use super::names::Names;
 use super::settings::List;
@@ -15,10 +15,15 @@ use clap::value_parser;
 use serde_json::json;
 use spherule::scene::{Camera, Projection, Scene};
 
-/// Projections, with their usual parameters.
+/// Projections, with their default parameters.
 const PROJECTIONS: Names<Projection> = Names(&[
-    ("perspective", Projection::Perspective { fov: 40.0 }, "What is nearer is larger"),
-    ("orthographic", Projection::Orthographic { height: None }, "Parallel rays: sizes compare"),
+    ("perspective", Projection::Perspective { fov: 40.0 }, "Closer objects appear larger"),
+    (
+        "orthographic",
+        Projection::Orthographic { height: None },
+        "Parallel rays: size does not depend on \
+                                                                 distance",
+    ),
 ]);
 
 /// The camera that frames all of a scene from a side of `--view`; `None` for another word.
@@ -26,50 +31,50 @@ pub(super) fn from_side(side: &str, scene: &Scene) -> Option<Camera> {
     camera::view(side).ok().map(|view| camera::of_view(view, scene))
 }
 
-/// Pictures of a turn: a day of film, at most.
+/// Range of the number of images of a turntable.
 const PICTURES: std::ops::RangeInclusive<i64> = 1..=100_000;
 
-/// What is in the picture.
+/// Options for the simulation cell and the camera.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Cell and view")]
 pub(super) struct ViewArgs {
-    /// Move particles into the cell, along the edges that the simulation repeats along
+    /// Wrap particles into the cell along its periodic directions
     #[arg(long)]
     wrap: bool,
-    /// So many copies of the cell along each of its edges
+    /// Replicate the cell NA, NB and NC times along its edges
     #[arg(long, value_name = "NA,NB,NC", value_parser = periodic::copies)]
     replicate: Option<[u32; 3]>,
     /// Draw the cell's edges
     #[arg(long)]
     cell: bool,
-    /// Frame everything from a side: auto (broadside, by the principal axes), x, y, z (from that
-    /// end of the axis), -x, -y, -z, or iso
+    /// Place the camera to show everything from a side: auto (along the principal axis of least extent), x,
+    /// y, z (from that end of the axis), -x, -y, -z, or iso
     #[arg(long, value_name = "SIDE", allow_hyphen_values = true, value_parser = camera::view)]
     view: Option<View>,
-    /// How directions become pixels
+    /// Camera projection
     #[arg(long, value_parser = PROJECTIONS.parser())]
     projection: Option<Projection>,
-    /// Share of the picture left free at its edges, 0 to 0.9, where the camera frames everything
+    /// Margin around the particles as a fraction of the image, 0 to 0.9, when the camera shows everything
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = camera::margin)]
     margin: Option<f64>,
-    /// Render N pictures of a full turn around the vertical axis, NAME-000.png and so on; with many
-    /// frames, they are spread evenly over the N pictures
+    /// Render N images of a full turn around the vertical axis, NAME-000.png and so on; with a range of
+    /// frames, they are spread evenly over the N images
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(PICTURES))]
     turntable: Option<u32>,
 }
 
 impl ViewArgs {
-    /// Pictures around the vertical axis; `None` for one from where the camera stands.
+    /// Number of images of the turntable; `None` without one.
     pub(super) fn turntable(&self) -> Option<u32> {
         self.turntable
     }
 
-    /// Whether the file of particles is to be changed, or its cell drawn.
+    /// Returns whether an option needs a particle file with a cell.
     pub(super) fn needs_cell(&self) -> bool {
         self.wrap || self.cell || self.replicate.is_some()
     }
 
-    /// What makes the picture, for its file.
+    /// Settings for the image's metadata.
     pub(super) fn list(&self) -> List {
         let mut list = List::new();
         if self.wrap {

@@ -1,4 +1,4 @@
-//! Cells: what they repeat.
+//! Wrapping and replication of periodic cells.
 
 use super::ViewArgs;
 use crate::cli::Failure;
@@ -12,28 +12,27 @@ pub(super) fn copies(text: &str) -> Result<[u32; 3], String> {
     counts
         .and_then(|counts| <[u32; 3]>::try_from(counts).ok())
         .filter(|counts| !counts.contains(&0))
-        .ok_or_else(|| "give three counts of 1 or more, as in 2,2,1".to_owned())
+        .ok_or_else(|| "give three integers of at least 1, as in 2,2,1".to_owned())
 }
 
 impl ViewArgs {
-    /// Refuses what only particles can be asked for.
+    /// Rejects options that apply only to particle files.
     pub(in crate::cli) fn refuse_cells(&self) -> Result<(), Failure> {
         if self.needs_cell() {
-            let message = "--wrap, --replicate and --cell are for files of particles";
+            let message = "--wrap, --replicate and --cell need a particle file";
             return Err(Failure::usage("render", message));
         }
         Ok(())
     }
 
-    /// Has the cell drawn, if that is asked for.
+    /// Draws the cell if `--cell` is given.
     pub(in crate::cli) fn show_cell(&self, scene: &mut Scene, cell: Option<&Cell>) {
         if self.cell {
             scene.look.cell = cell.copied();
         }
     }
 
-    /// Puts particles into their cell and repeats it, as asked for; returns the cell that holds them
-    /// then, if there is one.
+    /// Wraps and replicates particles as requested; returns the resulting cell, if there is one.
     pub(in crate::cli) fn repeat(
         &self,
         path: &Path,
@@ -47,7 +46,7 @@ impl ViewArgs {
             particles.replicate(copies).map_err(refused)?;
         }
         if self.cell && particles.cell.is_none() {
-            return Err(FileError::whole_file(path, "has no cell whose edges can be drawn"));
+            return Err(FileError::whole_file(path, "has no simulation cell to draw"));
         }
         Ok(particles.cell)
     }

@@ -1,4 +1,4 @@
-//! Looks by name.
+//! Options for presets and backgrounds.
 
 use crate::cli::settings::List;
 use serde_json::json;
@@ -6,30 +6,29 @@ use spherule::scene::particles::Particles;
 use spherule::scene::{Background, Look, Preset, Scene};
 use spherule::{color, suggest};
 
-/// What the picture looks like.
+/// Options for presets and backgrounds.
 #[derive(Clone, Debug, Default, clap::Args)]
-#[command(next_help_heading = "Look")]
+#[command(next_help_heading = "Style")]
 pub(in crate::cli) struct StyleArgs {
-    /// Material, light and lines of a file of particles by name: chalk, studio, cloudy, glossy,
-    /// depthcue or outline. Radii, colors and materials of --type go before it
+    /// Preset of material, light and outlines for particle files: chalk, studio, cloudy, glossy, depthcue or
+    /// outline. Radii, colors and materials of --type override it
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<Preset>,
-    /// In the sky's place, which goes on lighting the scene: a CSS color such as white or #rrggbb,
-    /// before --exposure; transparent, for PNG, EXR, TIFF and WebP, where of the ground only shadows are
-    /// left; or sky
-    /// [default: white with --preset, or else what the scene says]
+    /// Background: a CSS color such as white or #rrggbb, before --exposure; transparent, for PNG, EXR, TIFF
+    /// and WebP, where the ground shows only shadows; or sky. The sky lights the scene in any case [default:
+    /// white with --preset, or else the scene's background]
     #[arg(long, value_name = "COLOR", value_parser = background)]
-    background: Option<Typed>,
+    background: Option<BackgroundArg>,
 }
 
-/// A background, and how it was typed.
+/// A background, and its text on the command line.
 #[derive(Clone, Debug, PartialEq)]
-struct Typed {
+struct BackgroundArg {
     text: String,
     background: Background,
 }
 
-/// Makes a scene of particles; those without a material of their own have that of a preset.
+/// Creates a scene of particles; particles without a material get that of the preset.
 pub(in crate::cli) fn scene_of_particles(
     preset: Option<Preset>,
     particles: Particles,
@@ -44,10 +43,10 @@ pub(in crate::cli) fn scene_of_particles(
 fn preset(name: &str) -> Result<Preset, String> {
     let found = Preset::ALL.into_iter().find(|preset| preset.name() == name);
     let names = || Preset::ALL.map(Preset::name).into_iter();
-    found.ok_or_else(|| suggest::help(name, names(), "looks are"))
+    found.ok_or_else(|| suggest::help(name, names(), "presets are"))
 }
 
-fn background(text: &str) -> Result<Typed, String> {
+fn background(text: &str) -> Result<BackgroundArg, String> {
     let background = match text {
         "transparent" => Background::Transparent,
         "sky" => Background::Sky,
@@ -60,7 +59,7 @@ fn background(text: &str) -> Result<Typed, String> {
             )
         })?,
     };
-    Ok(Typed { text: text.to_owned(), background })
+    Ok(BackgroundArg { text: text.to_owned(), background })
 }
 
 impl StyleArgs {
@@ -68,20 +67,20 @@ impl StyleArgs {
         self.preset
     }
 
-    /// Makes a scene of particles; those without a material of their own have this look's.
+    /// Creates a scene of particles; particles without a material get that of the preset.
     pub(in crate::cli) fn scene(&self, particles: Particles, title: &str) -> Scene {
         scene_of_particles(self.preset, particles, title)
     }
 
-    /// What is drawn over a picture: as a preset says or else the scene, but for the cell, and for
-    /// the background if one was typed.
+    /// Returns the look: that of the preset or else of the scene, with the scene's cell, and with the
+    /// background of `--background`.
     pub(in crate::cli) fn look(&self, preset: Option<Preset>, own: Look) -> Look {
         let look = preset.map_or(own, Preset::look);
         let typed = self.background.as_ref().map(|typed| typed.background);
         Look { background: typed.unwrap_or(look.background), cell: own.cell, ..look }
     }
 
-    /// Sets what the look says of settings and of what is drawn over the picture, before others are typed.
+    /// Applies the preset's settings and look, before options override them.
     pub(in crate::cli) fn set(&self, scene: &mut Scene) {
         if let Some(preset) = self.preset {
             preset.set(scene);
@@ -89,14 +88,14 @@ impl StyleArgs {
         scene.look = self.look(self.preset, scene.look);
     }
 
-    /// Lights a scene whose camera has its place.
+    /// Lights a scene whose camera is placed.
     pub(in crate::cli) fn light(&self, scene: &mut Scene) {
         if let Some(preset) = self.preset {
             preset.light(scene);
         }
     }
 
-    /// What makes the picture, for its file.
+    /// Settings for the image's metadata.
     pub(in crate::cli) fn list(&self) -> List {
         let mut list = List::new();
         if let Some(preset) = self.preset {

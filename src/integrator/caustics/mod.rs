@@ -1,137 +1,141 @@
-//! Caustics: the light of lamps by way of a ball, looked for from diffuse surfaces.
+//! Caustics: samples of emitters by way of a specular sphere, from diffuse surfaces.
 //!
-//! [`look`] chooses who looks for which way of light; those wait until they fill a row. Their rays
-//! are traced in two legs: all from the surfaces to the balls, then, of those that nothing stops, from
-//! the balls to the lamps among the other shadow rays. [`follow`] and [`weight`] tell what such
-//! light counts that a path finds by chance.
+//! [`enqueue_queries`] chooses which path of light each surface point samples; the queries wait until
+//! they fill a row. Their shadow rays have two segments: all first segments, from surfaces to spheres,
+//! are traced at once; the second segments of those that are not occluded, from spheres to emitters,
+//! join the shadow queue. [`track_chains`] and [`mis_weight`] compute the weight of caustics that BSDF
+//! samples find.
 
 mod chain;
-mod legs;
-mod waiting;
+mod queues;
 
-pub(super) use chain::{follow, weight};
+pub(super) use chain::{mis_weight, track_chains};
 
 use super::Job;
-use super::gather::Gathered;
-use super::stages;
+use super::shading_row::ShadingRow;
+use super::shadow_queue;
 use super::workspace::{BATCH, Workspace};
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 use crate::ray::MISS;
 use crate::scene::{ConductorFresnel, Rgb};
-use crate::shade::{Bsdf, Each, Material};
+use crate::shade::{Bsdf, GatheredParams, Material};
 use crate::vec3::Vec3;
-use crate::world::{Casters, Conductor, Kind, Looking, Way, World};
-use chain::Chain;
-use legs::Legs;
-use waiting::{Row, Waiting};
+use crate::world::{CausticCasters, CausticPath, CausticQuery, Conductor, Kind, World};
+use chain::SpecularChain;
+use queues::{FirstSegments, QueryQueue, QueryRow};
 
-/// Who looks for caustics.
+/// Queues of caustic samples.
 #[derive(Default)]
 pub(super) struct Caustics {
-    /// Places: what paths have met since they left a diffuse surface.
-    chains: Vec<Chain>,
-    waiting: Waiting,
-    legs: Legs,
+    /// By path: specular bounces since the last diffuse surface.
+    chains: Vec<SpecularChain>,
+    queries: QueryQueue,
+    first_segments: FirstSegments,
 }
 
 impl Caustics {
-    /// Room for what a world needs: none where nothing casts light.
+    /// Allocates what a world needs: nothing if it has no caustics.
     pub(super) fn new(world: &World) -> Self {
-        if world.casters.is_empty() {
+        if world.caustic_casters.is_empty() {
             return Self::default();
         }
-        Self { chains: vec![Chain::NONE; BATCH], waiting: Waiting::new(), legs: Legs::new() }
+        Self {
+            chains: vec![SpecularChain::NONE; BATCH],
+            queries: QueryQueue::new(),
+            first_segments: FirstSegments::new(),
+        }
     }
 }
 
 impl Job<'_> {
-    /// What casts light, if it is looked for.
+    /// Returns the spheres that cast caustics, if caustics are sampled.
     #[inline(always)]
-    fn casters(&self) -> Option<&Casters> {
-        Some(&self.world.casters).filter(|casters| self.settings.caustics && !casters.is_empty())
+    fn casters(&self) -> Option<&CausticCasters> {
+        Some(&self.world.caustic_casters)
+            .filter(|casters| self.settings.caustics && !casters.is_empty())
     }
 }
 
-/// Chooses a way of light to look for, or none, for each path in `lanes`.
+/// Chooses a path of light to sample, or none, for each path in `lanes`, and enqueues the queries.
 #[inline(always)]
-pub(super) fn look<M: Material>(
+pub(super) fn enqueue_queries<M: Material>(
     job: &Job,
     work: &mut Workspace,
     bounce: u32,
-    (paths, bsdf, lanes): (&Gathered, &M::Bsdf<F32x16>, u32),
+    (shading, bsdf, lanes): (&ShadingRow, &M::Bsdf<F32x16>, u32),
 ) {
     if !M::DIFFUSE || bounce + 2 > job.depth() {
         return;
     }
     let Some(casters) = job.casters() else { return };
-    let (at, carried) = (&paths.starts.at, &paths.starts.carried);
-    let (draw, place) = job.sampler.caustic_row(&work.paths.numbers(carried), bounce);
+    let (at, state) = (&shading.surface_row.at, &shading.surface_row.state);
+    let (draw, place) = job.sampler.caustic_row(&work.paths.sampler_row(state), bounce);
     let chosen = casters.choose(at.point, at.normal, draw);
-    let lanes = lanes & chosen.lanes & !paths.starts.inside;
+    let lanes = lanes & chosen.lanes & !shading.surface_row.inside;
     if lanes == 0 {
         return;
     }
-    let facing = bsdf.eval(paths.outgoing, Vec3::splat(0.0, 0.0, 1.0));
-    let row = Row {
+    let facing = bsdf.eval(shading.outgoing, Vec3::splat(0.0, 0.0, 1.0));
+    let row = QueryRow {
         own: at.own,
-        path: carried.place.to_array(),
+        path: state.path.to_array(),
         code: chosen.code,
         probability: chosen.probability,
         place,
-        factor: carried.throughput.times(facing),
+        factor: state.throughput.times(facing),
         point: at.point,
         normal: at.normal,
     };
-    work.caustics.waiting.push(&row, lanes);
-    if work.caustics.waiting.len() >= MAX_LANES {
-        send(job, work, bounce);
+    work.caustics.queries.push(&row, lanes);
+    if work.caustics.queries.len() >= MAX_LANES {
+        sample_queries(job, work, bounce);
     }
 }
 
-/// Sends the rays of all that wait on their first leg, and those that come so far on the second.
+/// Samples all waiting queries, and traces their first segments.
 pub(super) fn flush(job: &Job, work: &mut Workspace, bounce: u32) {
     if job.casters().is_some() {
-        while work.caustics.waiting.len() > 0 {
-            send(job, work, bounce);
+        while work.caustics.queries.len() > 0 {
+            sample_queries(job, work, bounce);
         }
-        pass(job, work);
+        trace_first_segments(job, work);
     }
 }
 
-/// Finds the ways of a row of those that wait.
+/// Samples a row of waiting queries.
 #[inline(never)]
-fn send(job: &Job, work: &mut Workspace, bounce: u32) {
+fn sample_queries(job: &Job, work: &mut Workspace, bounce: u32) {
     let world = job.world;
-    let (row, lanes) = work.caustics.waiting.take();
-    let looking = Looking {
+    let (row, lanes) = work.caustics.queries.take();
+    let query = CausticQuery {
         point: row.point,
         normal: row.normal,
-        pair: row.code.map(|code| world.casters.pair(code)),
-        way: row.code.map(Way::of),
+        pair: row.code.map(|code| world.caustic_casters.pair(code)),
+        path: row.code.map(CausticPath::of),
         probability: row.probability,
     };
-    let sent = looking.sample(row.place);
-    let light = row.factor.times(colors(world, &looking, sent.incidence)) * sent.weight;
+    let sample = query.sample(row.place);
+    let light = row.factor.times(colors(world, &query, sample.incidence)) * sample.weight;
     let lit = Lanes::lt(F32x16::splat(0.0), light.max_element()).bits();
-    // What passes through glass scatters once more.
-    let through = |lane: &usize| looking.way[*lane] != Way::Reflected;
+    // Light through glass has one more bounce.
+    let through = |lane: &usize| query.path[*lane] != CausticPath::Reflected;
     let deep = (0..MAX_LANES).filter(|lane| bounce + 3 > job.depth() && through(lane));
-    let lanes = deep.fold(lanes & sent.lanes & lit, |lanes, lane| lanes & !(1 << lane));
-    if !work.caustics.legs.has_room() {
-        pass(job, work);
+    let lanes = deep.fold(lanes & sample.lanes & lit, |lanes, lane| lanes & !(1 << lane));
+    if !work.caustics.first_segments.has_room() {
+        trace_first_segments(job, work);
     }
-    work.caustics.legs.push_row((&looking, &sent), (&row.own, &row.path), light, lanes);
+    work.caustics.first_segments.push_row((&query, &sample), (&row.own, &row.path), light, lanes);
 }
 
-/// Radiance of the lamps, as balls color it.
+/// Returns the radiance of the emitters, times the color of the spheres.
 #[inline(always)]
-fn colors(world: &World, looking: &Looking, incidence: F32x16) -> Vec3<F32x16> {
+fn colors(world: &World, query: &CausticQuery, incidence: F32x16) -> Vec3<F32x16> {
     let white =
         Conductor { fresnel: ConductorFresnel::Constant(Rgb::ONE), tint: Rgb::ONE, roughness: 0.0 };
     let (mut metals, mut tints) = ([white; MAX_LANES], [Rgb::ONE; MAX_LANES]);
     let mut mirrors = false;
-    for (lane, pair) in looking.pair.iter().enumerate() {
-        let (id, own) = (world.material(pair.ball), world.color(pair.ball));
+    for (lane, pair) in query.pair.iter().enumerate() {
+        let (id, own) = (world.material(pair.sphere), world.color(pair.sphere));
         tints[lane] = pair.radiance;
         match id.kind() {
             Kind::Conductor => {
@@ -139,7 +143,7 @@ fn colors(world: &World, looking: &Looking, incidence: F32x16) -> Vec3<F32x16> {
                 mirrors = true;
             }
             Kind::Dielectric => {
-                let times = if looking.way[lane] == Way::Reflected { 1 } else { 2 };
+                let times = if query.path[lane] == CausticPath::Reflected { 1 } else { 2 };
                 let color = world.materials.dielectric[id.row()].color * own;
                 (0..times).for_each(|_| tints[lane] *= color);
             }
@@ -155,24 +159,25 @@ fn colors(world: &World, looking: &Looking, incidence: F32x16) -> Vec3<F32x16> {
     let (zero, one) = (F32x16::splat(0.0), F32x16::splat(1.0));
     let sine = (one - incidence * incidence).max(zero).sqrt();
     let outgoing = Vec3::new(sine, zero, incidence);
-    let metals = <Conductor as Material>::row::<F32x16>(&Each(&metals));
+    let metals = <Conductor as Material>::row::<F32x16>(&GatheredParams(&metals));
     tints.times(metals.sample(outgoing, [zero; 2], zero).weight)
 }
 
-/// Traces the first legs, and lets those that nothing stops go on among the shadow rays.
-fn pass(job: &Job, work: &mut Workspace) {
-    let mut legs = std::mem::take(&mut work.caustics.legs);
-    work.counters.exact_decisions += stages::find_hidden(job, &legs.rays, &mut legs.hits);
-    work.counters.shadow_rays += legs.rays.len() as u64;
-    for (row, next) in legs.next.iter().enumerate() {
-        if legs.hits.sphere[row] != MISS {
+/// Traces the first segments, and enqueues the second ones of those that are not occluded.
+fn trace_first_segments(job: &Job, work: &mut Workspace) {
+    let mut first = std::mem::take(&mut work.caustics.first_segments);
+    work.counters.exact_decisions +=
+        shadow_queue::test_occlusion(job, &first.rays, &mut first.hits);
+    work.counters.shadow_rays += first.rays.len() as u64;
+    for (row, next) in first.second.iter().enumerate() {
+        if first.hits.sphere[row] != MISS {
             continue;
         }
-        if !work.shadows.has_room(1) {
-            stages::occlude(job, work);
+        if !work.shadow_queue.has_room(1) {
+            shadow_queue::trace_shadow_rays(job, work);
         }
-        work.shadows.push(next);
+        work.shadow_queue.push(next);
     }
-    legs.clear();
-    work.caustics.legs = legs;
+    first.clear();
+    work.caustics.first_segments = first;
 }

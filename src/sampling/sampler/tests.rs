@@ -14,7 +14,7 @@ fn bits(numbers: [f32; 4]) -> [u32; 4] {
 
 #[test]
 fn a_state_is_small() {
-    assert!(size_of::<PathState>() <= 16);
+    assert!(size_of::<SamplerState>() <= 16);
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn smooth([u, v]: [f32; 2]) -> f64 {
 }
 
 /// Root mean square error of the mean of 256 samples, over pixels.
-fn error(kind: SamplerKind, pair: impl Fn(&Sampler, &PathState) -> [f32; 2]) -> f64 {
+fn error(kind: SamplerKind, pair: impl Fn(&Sampler, &SamplerState) -> [f32; 2]) -> f64 {
     const PIXELS: u32 = 100;
     let mean = (1.0_f64.exp() - 1.0).powi(2);
     let sampler = Sampler::new(kind, 17, 256);
@@ -209,15 +209,15 @@ fn error(kind: SamplerKind, pair: impl Fn(&Sampler, &PathState) -> [f32; 2]) -> 
 fn well_distributed_points_beat_random_ones() {
     let moment = |k: f64| ((k.exp() - 1.0) / k).powi(2);
     let random = ((moment(2.0) - moment(1.0).powi(2)) / 256.0).sqrt();
-    let first = |sampler: &Sampler, path: &PathState| {
+    let first = |sampler: &Sampler, path: &SamplerState| {
         let [u, v, _, _] = sampler.draw4(path, 0);
         [u, v]
     };
-    let second = |sampler: &Sampler, path: &PathState| {
+    let second = |sampler: &Sampler, path: &SamplerState| {
         let [_, _, u, v] = sampler.draw4(path, 0);
         [u, v]
     };
-    let beyond = |sampler: &Sampler, path: &PathState| {
+    let beyond = |sampler: &Sampler, path: &SamplerState| {
         let [u, v, _, _] = sampler.draw4(path, 64);
         [u, v]
     };
@@ -282,7 +282,7 @@ fn every_bit_of_a_key_counts() {
         let mut others = HashSet::from([path.other().key]);
         for bit in 0..64 {
             let seed = sampler.seed ^ 1 << bit;
-            let path = PathState { key: path.key ^ 1 << bit, ..path };
+            let path = SamplerState { key: path.key ^ 1 << bit, ..path };
             assert!(replicas.insert(Sampler { seed, ..sampler }.replica(0).seed), "{bit}");
             assert!(splits.insert(sampler.split(&path, 1, 4).key), "{kind:?} {bit}");
             assert!(beyond.insert(bits(sampler.draw4(&path, 64))), "{kind:?} {bit}");

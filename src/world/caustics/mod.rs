@@ -1,191 +1,195 @@
-//! Balls that cast the light of lamps: smooth mirrors, coats and glass, few of them, and few lamps.
+//! Caustics: specular spheres that focus the light of emitters on diffuse surfaces.
 //!
-//! What a diffuse surface gets from a lamp by such a ball is what its own sampling finds least well.
-//! But the way there is known in closed form ([`ball`]), so a point of the lamp can be chosen and
-//! then the direction in which it is seen, as light samples choose one. After "Manifold Next Event
-//! Estimation" (Hanika, Droske and Fascione, Computer Graphics Forum 2015), with all solutions at
-//! hand instead of a walk to one of them. Whatever both ways of sampling find is weighted by the
-//! density of each, so nothing has to be left to either alone.
+//! The spheres are smooth mirrors, coats and glass; there must be few of them, and few emitters. A
+//! diffuse surface's BSDF sampling finds this light with high variance. But the path is known in closed
+//! form ([`specular_sphere`]), so a point of the emitter can be sampled, and then the direction toward
+//! it, as for light samples. After "Manifold Next Event Estimation" (Hanika, Droske and Fascione,
+//! Computer Graphics Forum 2015), with all solutions at hand instead of a walk to one of them. Light
+//! that both techniques find is weighted by the power heuristic.
 
-mod ball;
-mod choice;
-mod link;
+mod connection;
 mod sample;
+mod selection;
+mod specular_sphere;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use link::Way;
-pub(crate) use sample::{Found, Looking, Sent};
+pub(crate) use connection::CausticPath;
+pub(crate) use sample::{CausticHit, CausticQuery, CausticSample};
 
 use super::World;
 use super::environment::luminance;
 use super::materials::Kind;
 use crate::sampling::Cone;
 use crate::scene::Rgb;
-use choice::Guess;
 use glam::DVec3;
 use rayon::prelude::*;
+use selection::ContributionEstimate;
 
-/// Balls, and lamps, of which more are left to chance: each pair takes its time at every surface.
-const MOST: usize = 4;
+/// Most specular spheres, and most emitters, for which caustics are sampled: each pair costs time at
+/// every surface.
+const MAX_COUNT: usize = 4;
 
-/// Sine of the angle that a lamp's radius fills from a ball, from which on chance finds the caustic as
-/// well: at 0.37 variance times time is 0.91 of what it is by chance, at 0.55 it is 1.12.
-const LARGEST: f64 = 0.4;
+/// Sine of an emitter's angular radius as seen from a sphere, from which on BSDF sampling finds the
+/// caustic as well: at 0.37 variance times time is 0.91 of that of BSDF sampling, at 0.55 it is 1.12.
+const MAX_EMITTER_SINE: f64 = 0.4;
 
-/// Spheres that are nearer than this share of their reach touch, but do not cut one another.
-const TOUCH: f64 = 1e-6;
+/// Overlap, relative to the distance, up to which spheres touch but do not intersect.
+const TOUCH_TOLERANCE: f64 = 1e-6;
 
-/// Every ball that casts the light of a lamp.
+/// All pairs of specular sphere and emitter whose caustics are sampled.
 #[derive(Clone, Debug, Default)]
-pub struct Casters {
-    pairs: Vec<Pair>,
+pub struct CausticCasters {
+    pairs: Vec<CasterPair>,
 }
 
-/// A ball that casts the light of a lamp.
+/// A specular sphere and an emitter.
 #[derive(Clone, Debug)]
-pub(crate) struct Pair {
+pub(crate) struct CasterPair {
     /// Rows of the spheres.
-    pub(crate) ball: u32,
-    pub(crate) lamp: u32,
+    pub(crate) sphere: u32,
+    pub(crate) emitter: u32,
     center: DVec3,
     radius: f64,
     /// Index of refraction outside over that inside; 0 for a mirror.
     index: f64,
     /// Whether light passes through.
     clear: bool,
-    /// From the ball's center to the lamp's.
+    /// Vector from the sphere's center to the emitter's.
     offset: DVec3,
-    lamp_radius: f64,
-    /// The lamp as it is seen from the ball's center.
+    emitter_radius: f64,
+    /// The emitter as seen from the sphere's center.
     cone: Cone,
     pub(crate) radiance: Rgb,
-    guess: Guess,
+    estimate: ContributionEstimate,
 }
 
-impl Pair {
-    /// The ways of light from the lamp by the ball.
+impl CasterPair {
+    /// Returns the paths of light from the emitter by the sphere.
     #[inline(always)]
-    fn ways(&self) -> &'static [Way] {
-        if self.clear { &Way::ALL } else { &Way::ALL[..1] }
+    fn paths(&self) -> &'static [CausticPath] {
+        if self.clear { &CausticPath::ALL } else { &CausticPath::ALL[..1] }
     }
 }
 
-impl Casters {
-    /// Of a world that is complete but for these.
+impl CausticCasters {
+    /// Finds the pairs of a world, which is complete otherwise.
     pub(super) fn find(world: &World) -> Self {
-        let lamps = &world.lights.emitters;
+        let emitters = &world.lights.emitters;
         let kinds = few_kinds(world);
-        let few = (1..=MOST).contains(&lamps.len()) && !kinds.is_empty();
+        let few = (1..=MAX_COUNT).contains(&emitters.len()) && !kinds.is_empty();
         if !few || !world.cut.is_empty() || world.features.nested_glass {
             return Self::default();
         }
-        let lamps: Vec<u32> = lamps.iter().copied().filter(|&row| is_whole(world, row)).collect();
+        let emitters: Vec<u32> =
+            emitters.iter().copied().filter(|&row| is_isolated(world, row)).collect();
         let rows = (0..world.spheres.len() as u32).into_par_iter();
-        let mut balls: Vec<u32> = rows.filter(|&row| casts(world, kinds, row)).collect();
-        balls.sort_unstable_by_key(|&row| world.spheres.id[row as usize]);
-        let pairs = balls.iter().map(|&ball| pairs(world, ball, &lamps));
-        Self { pairs: shared(pairs.collect()) }
+        let mut spheres: Vec<u32> = rows.filter(|&row| is_caster(world, kinds, row)).collect();
+        spheres.sort_unstable_by_key(|&row| world.spheres.id[row as usize]);
+        let pairs = spheres.iter().map(|&sphere| pairs(world, sphere, &emitters));
+        Self { pairs: distribute_shares(pairs.collect()) }
     }
 
-    /// Whether there is none.
+    /// Whether there are no pairs.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
 
-    /// Whether a sphere is one of them.
+    /// Whether a sphere is the specular sphere of a pair.
     pub(crate) fn has(&self, row: u32) -> bool {
-        self.pairs.iter().any(|pair| pair.ball == row)
+        self.pairs.iter().any(|pair| pair.sphere == row)
     }
 }
 
-/// The kinds of which there are few spheres, all together; without coats, which mirror least, if so
-/// there are.
+/// Returns the kinds of specular materials, if there are few spheres of them in total; without coats,
+/// which reflect least, if that makes them few.
 fn few_kinds(world: &World) -> &'static [Kind] {
     const KINDS: [Kind; 3] = [Kind::Conductor, Kind::Dielectric, Kind::Plastic];
     let count = |kinds: &&[Kind]| {
         let each = kinds.iter().map(|&kind| world.features.spheres_by_kind[kind as usize]);
-        (1..=MOST as u64).contains(&each.sum())
+        (1..=MAX_COUNT as u64).contains(&each.sum())
     };
     [&KINDS[..], &KINDS[..2]].into_iter().find(count).unwrap_or_default()
 }
 
-/// Whether a sphere is of these kinds and a smooth mirror, coated, or glass of which nothing is in the
-/// way inside.
-fn casts(world: &World, kinds: &[Kind], row: u32) -> bool {
+/// Whether a sphere is of these kinds and a smooth mirror, coated, or glass with nothing inside.
+fn is_caster(world: &World, kinds: &[Kind], row: u32) -> bool {
     let id = world.appearance.material.row(row as usize);
-    let casts = match id.kind() {
+    let specular = match id.kind() {
         Kind::Conductor => world.materials.conductor[id.row()].roughness == 0.0,
         Kind::Dielectric => world.materials.dielectric[id.row()].ior > 1.0,
         Kind::Plastic => world.materials.plastic[id.row()].ior > 1.0,
         _ => false,
     };
-    casts && kinds.contains(&id.kind()) && (id.kind() != Kind::Dielectric || is_whole(world, row))
+    specular
+        && kinds.contains(&id.kind())
+        && (id.kind() != Kind::Dielectric || is_isolated(world, row))
 }
 
-/// Whether neither another sphere nor the ground cuts into a sphere.
-fn is_whole(world: &World, row: u32) -> bool {
+/// Whether neither another sphere nor the ground intersects a sphere's surface.
+fn is_isolated(world: &World, row: u32) -> bool {
     let (center, radius) = world.spheres.exact(row as usize);
     let cuts = |other: usize| {
         let (at, reach) = world.spheres.exact(other);
         let distance = center.distance(at);
         other != row as usize
-            && distance < (radius + reach) * (1.0 - TOUCH)
-            && distance + radius > reach * (1.0 - TOUCH)
+            && distance < (radius + reach) * (1.0 - TOUCH_TOLERANCE)
+            && distance + radius > reach * (1.0 - TOUCH_TOLERANCE)
     };
     let grounded = world.ground.as_ref().is_some_and(|ground| {
-        (ground.normal.dot(center) - ground.height).abs() < radius * (1.0 - TOUCH)
+        (ground.normal.dot(center) - ground.height).abs() < radius * (1.0 - TOUCH_TOLERANCE)
     });
     !grounded && !(0..world.spheres.len()).into_par_iter().any(cuts)
 }
 
-/// What a ball casts of the light of each small lamp.
-fn pairs(world: &World, ball: u32, lamps: &[u32]) -> Vec<Pair> {
-    let (center, radius) = world.spheres.exact(ball as usize);
-    let material = world.material(ball);
+/// Returns the pairs of a specular sphere with all small emitters.
+fn pairs(world: &World, sphere: u32, emitters: &[u32]) -> Vec<CasterPair> {
+    let (center, radius) = world.spheres.exact(sphere as usize);
+    let material = world.material(sphere);
     let index = match material.kind() {
         Kind::Dielectric => 1.0 / f64::from(world.materials.dielectric[material.row()].ior),
         Kind::Plastic => 1.0 / f64::from(world.materials.plastic[material.row()].ior),
         _ => 0.0,
     };
     let clear = material.kind() == Kind::Dielectric;
-    let pair = |&lamp: &u32| {
-        let (at, lamp_radius) = world.spheres.exact(lamp as usize);
+    let pair = |&emitter: &u32| {
+        let (at, emitter_radius) = world.spheres.exact(emitter as usize);
         let offset = at - center;
-        let small = lamp_radius < offset.length() * LARGEST;
-        let apart = offset.length() > (radius + lamp_radius) * (1.0 + TOUCH);
-        let cone = Cone::toward_sphere(offset.length_squared(), lamp_radius)?;
-        let radiance = world.materials.emitter[world.material(lamp).row()].radiance;
-        let guess = Guess::default();
-        (small && apart).then_some(Pair {
-            ball,
-            lamp,
+        let small = emitter_radius < offset.length() * MAX_EMITTER_SINE;
+        let apart = offset.length() > (radius + emitter_radius) * (1.0 + TOUCH_TOLERANCE);
+        let cone = Cone::toward_sphere(offset.length_squared(), emitter_radius)?;
+        let radiance = world.materials.emitter[world.material(emitter).row()].radiance;
+        let estimate = ContributionEstimate::default();
+        (small && apart).then_some(CasterPair {
+            sphere,
+            emitter,
             center,
             radius,
             index,
             clear,
             offset,
-            lamp_radius,
+            emitter_radius,
             cone,
             radiance,
-            guess,
+            estimate,
         })
     };
-    lamps.iter().filter_map(pair).collect()
+    emitters.iter().filter_map(pair).collect()
 }
 
-/// Shares what each ball is worth among its lamps, by the light that reaches it from them.
-fn shared(balls: Vec<Vec<Pair>>) -> Vec<Pair> {
-    let ways = |pairs: &Vec<Pair>| pairs.first().map_or(0, |pair| pair.ways().len());
-    let ways: usize = balls.iter().map(ways).sum();
-    let light = |pair: &Pair| f64::from(luminance(pair.radiance) / pair.cone.pdf());
-    let share = |pairs: Vec<Pair>| {
+/// Sets each pair's share among the pairs of its sphere, by the light that reaches the sphere from its
+/// emitter.
+fn distribute_shares(spheres: Vec<Vec<CasterPair>>) -> Vec<CasterPair> {
+    let paths = |pairs: &Vec<CasterPair>| pairs.first().map_or(0, |pair| pair.paths().len());
+    let paths: usize = spheres.iter().map(paths).sum();
+    let light = |pair: &CasterPair| f64::from(luminance(pair.radiance) / pair.cone.pdf());
+    let share = |pairs: Vec<CasterPair>| {
         let all: f64 = pairs.iter().map(light).sum();
         pairs.into_iter().map(move |pair| {
             let share = light(&pair) / all;
-            pair.guessing(share, ways)
+            pair.with_estimate(share, paths)
         })
     };
-    balls.into_iter().flat_map(share).collect()
+    spheres.into_iter().flat_map(share).collect()
 }

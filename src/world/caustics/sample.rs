@@ -1,8 +1,8 @@
-//! Samples of the light that balls cast, and how likely a ray that is found by chance is one.
+//! Samples of caustics, and MIS weights of caustics that BSDF samples find.
 
-use super::ball::{Angle, Ball};
-use super::link::{Way, Ways, link};
-use super::{Casters, Pair};
+use super::connection::{CausticPath, PathMasks, connect};
+use super::specular_sphere::{Angle, SpecularSphere};
+use super::{CasterPair, CausticCasters};
 use crate::lanes::{Doubles, F32x16, F64x8, MAX_LANES, Mask, narrow, widen};
 use crate::sampling::{Cone, Frames};
 use crate::shade::fresnel;
@@ -10,67 +10,67 @@ use crate::vec3::Vec3;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 
-/// Points on surfaces, and of which pairs they look for which ways.
-pub(crate) struct Looking<'a> {
+/// A row of surface points, each with a pair and a path to sample.
+pub(crate) struct CausticQuery<'a> {
     pub(crate) point: Vec3<F32x16>,
     pub(crate) normal: Vec3<F32x16>,
-    pub(crate) pair: [&'a Pair; MAX_LANES],
-    pub(crate) way: [Way; MAX_LANES],
-    /// How likely those were chosen.
+    pub(crate) pair: [&'a CasterPair; MAX_LANES],
+    pub(crate) path: [CausticPath; MAX_LANES],
+    /// Probabilities of the choices.
     pub(crate) probability: F32x16,
 }
 
-/// Light that balls send to points, if nothing is in between.
-pub(crate) struct Sent {
-    /// Unit vectors from the points to the balls.
+/// A row of caustic samples: light that arrives if both segments are unoccluded.
+pub(crate) struct CausticSample {
+    /// Unit vectors from the points to the spheres.
     pub(crate) toward: Vec3<F32x16>,
-    /// Where rays leave the balls.
+    /// Points where rays leave the spheres.
     pub(crate) exit: Vec3<F32x16>,
-    /// Unit vectors from there to the lamps.
-    pub(crate) onward: Vec3<F32x16>,
-    /// Lengths of both.
+    /// Unit vectors from there to the emitters.
+    pub(crate) toward_emitter: Vec3<F32x16>,
+    /// Lengths of both segments.
     pub(crate) length: [[f64; MAX_LANES]; 2],
     /// Cosine of the angle of incidence.
     pub(crate) incidence: F32x16,
-    /// What to multiply the lamp's radiance with, and the surface's response to light along the
-    /// normal, and what smooth mirrors and colored glass take away.
+    /// Factor on the emitter's radiance, the surface's response to light along the normal, and the
+    /// color of mirrors and glass; includes the MIS weight.
     pub(crate) weight: F32x16,
-    /// Lanes in which there is any.
+    /// Lanes that have a sample.
     pub(crate) lanes: u32,
 }
 
-/// A ray from a surface that met a lamp by way of a ball.
+/// A ray from a diffuse surface that hit an emitter by way of a specular sphere.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
-    /// Where it started: the point, and the normal.
+pub(crate) struct CausticHit {
+    /// Origin: the point, and the normal.
     pub(crate) start: [glam::Vec3; 2],
-    /// Its direction there.
+    /// Direction at the origin.
     pub(crate) toward: glam::Vec3,
     /// Density of that direction by solid angle.
     pub(crate) pdf: f32,
-    pub(crate) ball: u32,
+    pub(crate) sphere: u32,
     pub(crate) through: bool,
-    pub(crate) lamp: u32,
-    /// Where it met the lamp, and in which direction.
+    pub(crate) emitter: u32,
+    /// Point of the emitter, and the direction of the ray there.
     pub(crate) end: [glam::Vec3; 2],
 }
 
-/// What of half a row comes of its links.
-struct Half {
+/// Samples of half a row, in double precision.
+struct HalfRow {
     toward: Vec3<F64x8>,
     exit: Vec3<F64x8>,
-    onward: Vec3<F64x8>,
+    toward_emitter: Vec3<F64x8>,
     length: [F64x8; 2],
     incidence: F64x8,
     weight: F64x8,
     found: u32,
 }
 
-impl Looking<'_> {
-    /// A sample for each, from two numbers in [0, 1).
+impl CausticQuery<'_> {
+    /// Samples each path, from two random numbers in [0, 1).
     #[inline(always)]
-    pub(crate) fn sample(&self, u: [F32x16; 2]) -> Sent {
-        let column = |of: &dyn Fn(&Pair) -> f64| self.pair.map(of);
+    pub(crate) fn sample(&self, u: [F32x16; 2]) -> CausticSample {
+        let column = |of: &dyn Fn(&CasterPair) -> f64| self.pair.map(of);
         let axis = |i: usize| F32x16::new(self.pair.map(|pair| pair.offset[i] as f32));
         let axes = Vec3::new(axis(0), axis(1), axis(2)).normalize();
         let cone = Cone::row(&self.pair.map(|pair| pair.cone));
@@ -78,16 +78,17 @@ impl Looking<'_> {
         let (seen, pdf) = (seen.halves(), widen(cone.pdfs() * self.probability));
         let (point, normal) = (self.point.halves(), self.normal.halves());
         let [low, high] = [0, 1].map(|half| {
-            let part = |of: &dyn Fn(&Pair) -> f64| F64x8::from(&column(of)[8 * half..8 * half + 8]);
-            let vector = |of: fn(&Pair) -> DVec3| {
+            let part =
+                |of: &dyn Fn(&CasterPair) -> f64| F64x8::from(&column(of)[8 * half..8 * half + 8]);
+            let vector = |of: fn(&CasterPair) -> DVec3| {
                 let axis = |i: usize| part(&move |pair| of(pair)[i]);
                 Vec3::new(axis(0), axis(1), axis(2))
             };
             let receiver = point[half] - vector(|pair| pair.center);
-            let lamp = (vector(|pair| pair.offset), part(&|pair| pair.lamp_radius));
-            let ball = (part(&|pair| pair.radius), part(&|pair| pair.index));
-            let ways = self.ways(half);
-            follow((receiver, normal[half]), (ball, lamp), (seen[half], pdf[half]), ways)
+            let emitter = (vector(|pair| pair.offset), part(&|pair| pair.emitter_radius));
+            let sphere = (part(&|pair| pair.radius), part(&|pair| pair.index));
+            let paths = self.paths(half);
+            sample_half((receiver, normal[half]), (sphere, emitter), (seen[half], pdf[half]), paths)
         });
         let center = |i: usize| F32x16::new(self.pair.map(|pair| pair.center[i] as f32));
         let lengths = |i: usize| {
@@ -96,10 +97,10 @@ impl Looking<'_> {
             row[8..].copy_from_slice(&high.length[i].to_array());
             row
         };
-        Sent {
+        CausticSample {
             toward: Vec3::narrow([low.toward, high.toward]).normalize(),
             exit: Vec3::narrow([low.exit, high.exit]) + Vec3::new(center(0), center(1), center(2)),
-            onward: Vec3::narrow([low.onward, high.onward]).normalize(),
+            toward_emitter: Vec3::narrow([low.toward_emitter, high.toward_emitter]).normalize(),
             length: [lengths(0), lengths(1)],
             incidence: narrow([low.incidence, high.incidence]),
             weight: narrow([low.weight, high.weight]),
@@ -108,62 +109,62 @@ impl Looking<'_> {
     }
 
     #[inline(always)]
-    fn ways(&self, half: usize) -> Ways<F64x8> {
-        let mask = |is: fn(Way) -> bool| {
-            let lane = |lane: usize| f64::from(u8::from(is(self.way[8 * half + lane])));
+    fn paths(&self, half: usize) -> PathMasks<F64x8> {
+        let mask = |is: fn(CausticPath) -> bool| {
+            let lane = |lane: usize| f64::from(u8::from(is(self.path[8 * half + lane])));
             F64x8::splat(0.0).lt(F64x8::new(std::array::from_fn(lane)))
         };
-        Ways {
-            through: mask(|way| way != Way::Reflected),
-            crosses: mask(|way| way == Way::Crossed),
-            inner: mask(|way| way == Way::Paraxial),
+        PathMasks {
+            through: mask(|path| path != CausticPath::Reflected),
+            crosses: mask(|path| path == CausticPath::Crossed),
+            inner: mask(|path| path == CausticPath::Paraxial),
         }
     }
 }
 
-/// Follows rays from receivers, told from the center of a ball, to the points of lamps that are seen
-/// from there in some directions.
+/// Connects receivers, relative to the center of a sphere, with the points of emitters that are visible
+/// from the center in directions `seen`.
 #[inline(always)]
-fn follow(
+fn sample_half(
     (receiver, normal): (Vec3<F64x8>, Vec3<F64x8>),
-    (ball, (offset, radius)): ((F64x8, F64x8), (Vec3<F64x8>, F64x8)),
+    (sphere, (offset, radius)): ((F64x8, F64x8), (Vec3<F64x8>, F64x8)),
     (seen, pdf): (Vec3<F64x8>, F64x8),
-    ways: Ways<F64x8>,
-) -> Half {
+    paths: PathMasks<F64x8>,
+) -> HalfRow {
     let (zero, one) = (F64x8::splat(0.0), F64x8::splat(1.0));
     let seen = seen * seen.inverse_length();
     let middle = offset.dot_unfused(seen);
     let off = offset - seen * middle;
     let half2 = radius * radius - off.dot_unfused(off);
     let distance = middle - Doubles::select(zero.lt(half2), half2, zero).sqrt();
-    let lamp = seen * distance;
-    let outside = (ball.0 * ball.0).lt(receiver.dot_unfused(receiver));
-    let link = link(ball, [receiver, lamp], ways);
-    let outward = (lamp - offset) * (one / radius);
+    let emitter = seen * distance;
+    let outside = (sphere.0 * sphere.0).lt(receiver.dot_unfused(receiver));
+    let connection = connect(sphere, [receiver, emitter], paths);
+    let outward = (emitter - offset) * (one / radius);
     let leaving = -outward.dot_unfused(seen);
-    let arriving = -outward.dot_unfused(link.onward);
-    let cosine = normal.dot_unfused(link.toward);
-    let density = pdf * leaving * link.spread / (distance * distance * arriving);
-    let kept = kept(link.at, ball.1, ways.through);
-    let own = cosine * F64x8::splat(FRAC_1_PI) * kept;
-    // By the power heuristic, and over the density.
-    let weight = cosine * kept * density / (density * density + own * own);
+    let arriving = -outward.dot_unfused(connection.toward_emitter);
+    let cosine = normal.dot_unfused(connection.toward);
+    let density = pdf * leaving * connection.spread / (distance * distance * arriving);
+    let fresnel_factor = fresnel_factor(connection.at, sphere.1, paths.through);
+    let own = cosine * F64x8::splat(FRAC_1_PI) * fresnel_factor;
+    // The power heuristic, divided by the density.
+    let weight = cosine * fresnel_factor * density / (density * density + own * own);
     let there = zero.lt(leaving) & zero.lt(arriving) & zero.lt(cosine) & zero.lt(density);
-    let found = link.found & outside & there & weight.lt(F64x8::splat(f64::from(f32::MAX)));
-    Half {
-        toward: link.toward,
-        exit: link.exit,
-        onward: link.onward,
-        length: link.length,
-        incidence: link.at.cosine,
+    let found = connection.found & outside & there & weight.lt(F64x8::splat(f64::from(f32::MAX)));
+    HalfRow {
+        toward: connection.toward,
+        exit: connection.exit,
+        toward_emitter: connection.toward_emitter,
+        length: connection.length,
+        incidence: connection.at.cosine,
         weight,
         found: found.bits(),
     }
 }
 
-/// Share of the light that goes that way, of what is not lost to colors.
+/// Returns the fraction of light that reflection or refraction keeps, without colors.
 #[inline(always)]
-fn kept<D: Doubles>(at: Angle<D>, index: D, through: D::Mask) -> D {
+fn fresnel_factor<D: Doubles>(at: Angle<D>, index: D, through: D::Mask) -> D {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
     let glass = zero.lt(index);
     let (reflected, _) = fresnel::dielectric(at.cosine, D::select(glass, index, D::splat(0.5)));
@@ -171,16 +172,16 @@ fn kept<D: Doubles>(at: Angle<D>, index: D, through: D::Mask) -> D {
     D::select(glass, D::select(through, passing, reflected), one)
 }
 
-impl Casters {
-    /// The pair that a code stands for.
+impl CausticCasters {
+    /// Returns the pair of a code.
     #[inline(always)]
-    pub(crate) fn pair(&self, code: u32) -> &Pair {
-        &self.pairs[(code / Way::COUNT) as usize]
+    pub(crate) fn pair(&self, code: u32) -> &CasterPair {
+        &self.pairs[(code / CausticPath::COUNT) as usize]
     }
 
-    /// What a ray that has found a lamp by chance counts, beside samples that might have found it.
-    pub(crate) fn weight(&self, found: &Found) -> f32 {
-        let same = |pair: &Pair| pair.ball == found.ball && pair.lamp == found.lamp;
+    /// Returns the MIS weight of an emitter that a BSDF sample has hit, beside caustic samples.
+    pub(crate) fn weight(&self, found: &CausticHit) -> f32 {
+        let same = |pair: &CasterPair| pair.sphere == found.sphere && pair.emitter == found.emitter;
         let Some(number) = self.pairs.iter().position(same) else { return 1.0 };
         let pair = &self.pairs[number];
         let [from, end] =
@@ -193,16 +194,16 @@ impl Casters {
         }
         let at = Angle { sine, cosine: ((1.0 - sine) * (1.0 + sine)).sqrt() };
         let index = if found.through { pair.index } else { 0.0 };
-        let ball = Ball::new(pair.radius, distance, index);
-        let turn = ball.turn(at);
-        let way = if found.through { Way::through(&turn) } else { Way::Reflected };
-        let outward = (end - pair.offset) / pair.lamp_radius;
+        let sphere = SpecularSphere::new(pair.radius, distance, index);
+        let turn = sphere.turn(at);
+        let path = if found.through { CausticPath::through(&turn) } else { CausticPath::Reflected };
+        let outward = (end - pair.offset) / pair.emitter_radius;
         let leaving = -outward.dot(end) / distance[1];
         let arriving = -outward.dot(found.end[1].as_dvec3());
-        let chance = self.probability(number, way, found.start) * pair.cone.pdf();
-        let spread = ball.spread(at, &turn);
+        let chance = self.probability(number, path, found.start) * pair.cone.pdf();
+        let spread = sphere.spread(at, &turn);
         let density = f64::from(chance) * leaving * spread / (distance[1] * distance[1] * arriving);
-        let own = f64::from(found.pdf) * kept(at, pair.index, found.through);
+        let own = f64::from(found.pdf) * fresnel_factor(at, pair.index, found.through);
         if leaving > 0.0 && arriving > 0.0 && density > 0.0 {
             let ratio = density / own;
             return (1.0 / (1.0 + ratio * ratio)) as f32;

@@ -1,17 +1,16 @@
-//! What can be sampled to find light: emissive spheres, points, suns and a picture of the sky.
+//! Lights that can be sampled: emissive spheres, points, suns and a picture of the sky.
 
-mod choice;
-mod disc;
-mod discs;
-mod grow;
+mod build;
 mod point;
 mod row;
+mod sampler;
+mod sphere_light;
 mod sun;
 mod tree;
 
-pub use disc::Disc;
 pub use point::Point;
 pub use row::{LightRow, ROW, ReceiverRow};
+pub use sphere_light::Disc;
 pub use sun::Sun;
 pub use tree::Receiver;
 
@@ -22,64 +21,63 @@ use super::{Cut, Frame, World};
 use crate::ray::MISS;
 use crate::scene::{self, LightChoice, Rgb, Scene};
 use crate::spheres::Spheres;
-use choice::Choice;
-use disc::toward_sphere;
 use glam::Vec3;
+use sampler::LightSampler;
+use sphere_light::view_sphere;
 
-/// The lights, each with a share of the samples: in proportion to what it would give to the point
-/// that looks for light if nothing stood between, unless the settings say otherwise.
+/// The lights. Unless the settings say otherwise, each is chosen in proportion to its estimated
+/// unoccluded contribution at the receiver.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
-    /// Rows of emissive spheres, in the order of [`Spheres::key`]: what is sampled does not depend on
-    /// the tree.
+    /// Rows of emissive spheres, in the order of [`Spheres::key`]: samples do not depend on the tree.
     pub emitters: Vec<u32>,
-    /// What each of them emits.
+    /// Radiance of each emissive sphere.
     radiance: Vec<Rgb>,
-    /// Points.
+    /// Point lights.
     pub points: Vec<Point>,
     /// Suns.
     pub suns: Vec<Sun>,
     /// Whether the environment is sampled as well, as the last light.
     pub sky: bool,
-    choice: Choice,
+    sampler: LightSampler,
     by: LightChoice,
     /// [`Frame::extent`].
     unit: f64,
-    /// Radii from its center within which an emissive sphere is close.
+    /// Distance from its center, in radii, within which an emissive sphere is close.
     reach: f64,
 }
 
-/// Light that arrives from a direction, if nothing is in between.
+/// A light sample: light that arrives from a direction, if it is not occluded.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSample {
     /// Unit vector toward the light.
     pub direction: Vec3,
     /// Distance of the light; infinite for suns and sky.
     pub t: f64,
-    /// The light's row if it is a sphere, which does not occlude itself; otherwise [`MISS`].
+    /// Row of the light if it is a sphere, which does not occlude itself; otherwise [`MISS`].
     pub target: u32,
-    /// Radiance over density: what to multiply with the surface's response.
+    /// Radiance over density: the factor on the surface's BSDF.
     pub weight: Rgb,
     /// Density by solid angle, without the choice of the light; `None` if the light has no extent.
     pub pdf: Option<f32>,
-    /// Whether it is an emissive sphere, so near or one of so many that a diffuse surface should look
-    /// for it too.
+    /// Whether the light is an emissive sphere that is so near, or one of so many, that a diffuse
+    /// surface should find it by BSDF samples too.
     pub close: bool,
 }
 
-/// A light as seen from a point, ready to be sampled any number of times.
-pub enum Aim<'a> {
+/// A light as seen from a point, which can be sampled any number of times.
+pub enum LightView<'a> {
     /// An emissive sphere.
     Disc(Disc),
-    /// Of no extent.
+    /// A light without extent.
     Delta(LightSample),
-    /// At infinity.
+    /// A light at infinity.
     Sun(&'a Sun),
     /// The environment's picture.
     Sky(&'a Picture),
 }
 
-/// A light in the order of the choice.
+/// A light in the order of the light sampler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Light {
     Emitter(usize),
@@ -111,38 +109,38 @@ impl Lights {
             }
         }
         let sky = environment.illuminates && environment.picture().is_some();
-        let (choice, by) = (Choice::None, scene.settings.light_choice);
+        let (sampler, by) = (LightSampler::None, scene.settings.light_choice);
         let unit = frame.extent();
         let mut lights =
-            Self { emitters, radiance, points, suns, sky, by, choice, reach: 0.0, unit };
-        lights.choice = Choice::new(&lights.balls(spheres, environment), by, unit);
+            Self { emitters, radiance, points, suns, sky, by, sampler, reach: 0.0, unit };
+        lights.sampler = LightSampler::new(&lights.light_bounds(spheres, environment), by, unit);
         lights.reach = lights.close_within();
         lights
     }
 
-    /// Those that are no spheres: the same where none is.
+    /// Returns the lights that are not spheres.
     pub(super) fn without_spheres(&self, environment: &Environment) -> Self {
         if self.emitters.is_empty() {
             return self.clone();
         }
         let (emitters, radiance) = (Vec::new(), Vec::new());
-        let mut lights = Self { emitters, radiance, choice: Choice::None, ..self.clone() };
-        let balls = lights.balls(&Spheres::default(), environment);
-        lights.choice = Choice::new(&balls, self.by, self.unit);
+        let mut lights = Self { emitters, radiance, sampler: LightSampler::None, ..self.clone() };
+        let light_bounds = lights.light_bounds(&Spheres::default(), environment);
+        lights.sampler = LightSampler::new(&light_bounds, self.by, self.unit);
         lights
     }
 
-    /// How many there are.
+    /// Returns the number of lights.
     pub fn len(&self) -> usize {
         self.emitters.len() + self.points.len() + self.suns.len() + usize::from(self.sky)
     }
 
-    /// Whether there is nothing to sample, and so no shadow ray.
+    /// Whether there is no light to sample, and so no shadow ray.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether light `index` has no extent, so that one shadow ray says all.
+    /// Whether light `index` has no extent, so that one shadow ray suffices.
     pub fn is_delta(&self, index: usize) -> bool {
         match self.light(index) {
             Light::Point(_) => true,
@@ -151,9 +149,8 @@ impl Lights {
         }
     }
 
-    /// The sun, if it is the only light: then there is nothing to choose, and it looks the same from
-    /// everywhere.
-    pub fn lone_sun(&self) -> Option<&Sun> {
+    /// Returns the sun if it is the only light: it needs no choice, and is the same from everywhere.
+    pub fn single_sun(&self) -> Option<&Sun> {
         if self.len() == 1 { self.suns.first() } else { None }
     }
 
@@ -170,29 +167,29 @@ impl Lights {
         }
     }
 
-    /// Light `index` as seen from a point of the surface of sphere `own`; `None` if the point is in
-    /// or on the light: such light is found by the surface's own sampling.
+    /// Returns light `index` as seen from a point on the surface of sphere `own`; `None` if the point
+    /// is in or on the light: BSDF samples find such light.
     #[inline]
-    pub fn aim<'a>(
+    pub fn view<'a>(
         &'a self,
         world: &'a World,
         index: usize,
         (origin, own): (Vec3, u32),
-    ) -> Option<Aim<'a>> {
+    ) -> Option<LightView<'a>> {
         match self.light(index) {
             Light::Emitter(i) if self.emitters[i] == own => None,
             Light::Emitter(i) => {
                 let row = self.emitters[i] as usize;
                 let from = (origin, self.reach);
-                Disc::new(&world.spheres, row, self.radiance[i], from).map(Aim::Disc)
+                Disc::new(&world.spheres, row, self.radiance[i], from).map(LightView::Disc)
             }
-            Light::Point(i) => self.points[i].sample(origin).map(Aim::Delta),
-            Light::Sun(i) => Some(Aim::Sun(&self.suns[i])),
-            Light::Sky => world.environment.picture().map(Aim::Sky),
+            Light::Point(i) => self.points[i].sample(origin).map(LightView::Delta),
+            Light::Sun(i) => Some(LightView::Sun(&self.suns[i])),
+            Light::Sky => world.environment.picture().map(LightView::Sky),
         }
     }
 
-    /// One sample of light `index`: that of [`Lights::aim`], by the short way where there is one.
+    /// Samples light `index` once, like [`Lights::view`], but on a shorter path where there is one.
     #[inline(always)]
     pub fn sample(
         &self,
@@ -203,26 +200,26 @@ impl Lights {
     ) -> Option<LightSample> {
         match self.light(index) {
             Light::Sun(i) => Some(self.suns[i].sample(u)),
-            _ => self.aim(world, index, from)?.sample(u),
+            _ => self.view(world, index, from)?.sample(u),
         }
     }
 
-    /// Density with which `choose` and `sample` find emissive sphere `row`; 0 from in or on it,
-    /// infinite if it is not close to a `diffuse` surface: then light samples alone count.
+    /// Returns the density with which `choose` and `sample` find emissive sphere `row`; 0 from in or on
+    /// it, infinite if it is not close to a `diffuse` surface: then light samples alone count.
     pub fn emitter_pdf(&self, spheres: &Spheres, row: u32, at: &Receiver, diffuse: bool) -> f32 {
         let key = spheres.key(row as usize);
         let found = self.emitters.binary_search_by_key(&key, |&other| spheres.key(other as usize));
         let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != at.own) else {
             return 0.0;
         };
-        match toward_sphere(spheres, row as usize, (at.point, self.reach)) {
+        match view_sphere(spheres, row as usize, (at.point, self.reach)) {
             Some((seen, _)) if diffuse && !seen.close => f32::INFINITY,
             Some((_, cone)) => self.probability(at, index) * cone.pdf(),
             None => 0.0,
         }
     }
 
-    /// Density with which the environment's picture is sampled in unit direction `toward`.
+    /// Returns the density with which the environment's picture is sampled in unit direction `toward`.
     pub fn sky_pdf(&self, environment: &Environment, toward: Vec3, at: &Receiver) -> f32 {
         match environment.picture() {
             Some(picture) if self.sky => self.probability(at, self.len() - 1) * picture.pdf(toward),
@@ -230,30 +227,30 @@ impl Lights {
         }
     }
 
-    /// Whether there is a sun that can be seen.
+    /// Whether a sun has a visible disc.
     pub fn suns_have_discs(&self) -> bool {
         self.suns.iter().any(|sun| sun.disc.is_some())
     }
 
-    /// Each sun that is seen in unit direction `toward`, and its radiance.
+    /// Returns each sun that is visible in unit direction `toward`, with its radiance.
     pub fn suns_toward(&self, toward: Vec3) -> impl Iterator<Item = (usize, Rgb)> {
         self.suns.iter().enumerate().filter_map(move |(i, sun)| {
             let cone = sun.disc.as_ref()?;
-            // 1 - cos from the chord, which does not cancel.
+            // 1 - cos by the chord, without cancellation.
             let height = (toward - sun.direction).length_squared() / 2.0;
             (height <= cone.height()).then_some((i, sun.radiance))
         })
     }
 
-    /// Density with which a direction toward sun `sun` is sampled.
+    /// Returns the density with which a direction toward sun `sun` is sampled.
     pub fn sun_pdf(&self, sun: usize, at: &Receiver) -> f32 {
         let index = self.emitters.len() + self.points.len() + sun;
         self.suns[sun].disc.map_or(0.0, |cone| self.probability(at, index) * cone.pdf())
     }
 }
 
-/// Rows and radiance of the spheres that emit and are whole: paths find the light of the others by
-/// chance alone.
+/// Returns rows and radiance of the emissive spheres that are not cut; only BSDF samples find the light
+/// of the others.
 fn emitters(
     (spheres, cut): (&Spheres, &Cut),
     appearance: &Appearance,
@@ -262,7 +259,7 @@ fn emitters(
     if materials.emitter.is_empty() {
         return Default::default();
     }
-    let whole = |row: u32| {
+    let is_uncut = |row: u32| {
         let (center, radius) = spheres.exact(row as usize);
         !cut.divides(center, radius)
     };
@@ -271,13 +268,12 @@ fn emitters(
         (id.kind() == Kind::Emitter).then(|| materials.emitter[id.row()].radiance)
     };
     let emits = |row: u32| Some((row, radiance(row).filter(|&radiance| radiance != Rgb::ZERO)?));
-    let emitters = (0..spheres.len() as u32).filter(|&row| emits(row).is_some() && whole(row));
+    let emitters = (0..spheres.len() as u32).filter(|&row| emits(row).is_some() && is_uncut(row));
     spheres.first_of_equals(emitters).into_iter().filter_map(emits).unzip()
 }
 
-impl Aim<'_> {
-    /// Light from a point of the light, from two numbers in [0, 1); `None` if there is none from
-    /// there.
+impl LightView<'_> {
+    /// Samples the light with two random numbers in [0, 1); `None` if the sample has no light.
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> Option<LightSample> {
         match self {

@@ -12,15 +12,15 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     pub(super) position: DVec3,
-    /// Radiant intensity; irradiance if there is no fall-off.
+    /// Radiant intensity; irradiance if there is no falloff.
     pub(super) intensity: Rgb,
-    /// World units per unit of the user, by whose distance light falls off; `None` if it does not.
+    /// World units per unit of the user, in which falloff is computed; `None` if there is none.
     pub(super) falloff: Option<f64>,
 }
 
-/// Points, as seen from others: one, or a row.
-struct Seen<D: Doubles> {
-    /// Unit vectors toward them.
+/// Point lights as seen from points: one, or a row.
+struct PointView<D: Doubles> {
+    /// Unit vectors toward the lights.
     direction: Vec3<D>,
     distance: D,
     weight: Vec3<D>,
@@ -28,31 +28,32 @@ struct Seen<D: Doubles> {
     apart: D::Mask,
 }
 
-/// `scale` is that of the fall-off, 0 where there is none.
+/// Returns a light as seen from a point; `scale` is that of the falloff, 0 if there is none.
 #[inline(always)]
-fn see<D: Doubles>(
+fn view<D: Doubles>(
     origin: Vec3<D>,
     (position, intensity): (Vec3<D>, Vec3<D>),
     scale: D,
-) -> Seen<D> {
+) -> PointView<D> {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
     let toward = position - origin;
     let distance = toward.dot_unfused(toward).sqrt();
-    // In double precision: in units far from 1, intensity and fall-off may each leave single
-    // precision. Next to a surface, light has no bound but this.
+    // Double precision: in units far from 1, intensity and falloff may each leave the range of single
+    // precision. Next to a surface, light has no other bound.
     let ratio = scale / distance;
     let falloff = D::select(zero.lt(scale), ratio * ratio, one);
     let most = D::splat(f64::from(BRIGHTEST));
     let weight = (intensity * falloff).map(|channel| D::select(channel.lt(most), channel, most));
     let direction = toward.map(|x| x / distance);
-    Seen { direction, distance, weight, apart: zero.lt(distance) }
+    PointView { direction, distance, weight, apart: zero.lt(distance) }
 }
 
 impl Point {
-    /// Light at a point; `None` at the light itself.
+    /// Samples the light at a point; `None` at the light itself.
     pub(super) fn sample(&self, origin: glam::Vec3) -> Option<LightSample> {
         let light = (self.position.into(), self.intensity.as_dvec3().into());
-        let seen: Seen<f64> = see(origin.as_dvec3().into(), light, self.falloff.unwrap_or(0.0));
+        let seen: PointView<f64> =
+            view(origin.as_dvec3().into(), light, self.falloff.unwrap_or(0.0));
         seen.apart.then(|| LightSample {
             direction: seen.direction.map(|x| x as f32).into(),
             t: seen.distance,
@@ -64,38 +65,38 @@ impl Point {
     }
 }
 
-/// Points of a row of lanes.
-struct Gathered {
+/// The point lights of a row of lanes.
+struct PointRow {
     position: [[f64; ROW]; 3],
     intensity: [[f64; ROW]; 3],
     scale: [f64; ROW],
 }
 
-impl Gathered {
-    /// How eight of them, from lane `first` on, are seen.
+impl PointRow {
+    /// Returns eight of the lights, from lane `first` on, as seen from `origin`.
     #[inline(always)]
-    fn see(&self, origin: Vec3<F64x8>, first: usize) -> Seen<F64x8> {
+    fn view(&self, origin: Vec3<F64x8>, first: usize) -> PointView<F64x8> {
         let part = |column: &[f64; ROW]| F64x8::from(&column[first..first + 8]);
         let vector = |[x, y, z]: &[[f64; ROW]; 3]| Vec3::new(part(x), part(y), part(z));
-        see(origin, (vector(&self.position), vector(&self.intensity)), part(&self.scale))
+        view(origin, (vector(&self.position), vector(&self.intensity)), part(&self.scale))
     }
 }
 
 impl Point {
-    /// How it is seen from eight points.
+    /// Returns the light as seen from eight points.
     #[inline(always)]
-    fn see_row(&self, origin: Vec3<F64x8>) -> Seen<F64x8> {
+    fn view_row(&self, origin: Vec3<F64x8>) -> PointView<F64x8> {
         let splat = |v: DVec3| Vec3::from(v).map(F64x8::splat);
         let light = (splat(self.position), splat(self.intensity.as_dvec3()));
-        see(origin, light, F64x8::splat(self.falloff.unwrap_or(0.0)))
+        view(origin, light, F64x8::splat(self.falloff.unwrap_or(0.0)))
     }
 }
 
 impl Lights {
     #[inline(always)]
-    fn gather_points(&self, light: &[u32; ROW], lanes: u32, first: usize) -> Gathered {
+    fn gather_points(&self, light: &[u32; ROW], lanes: u32, first: usize) -> PointRow {
         let column = [0.0; ROW];
-        let mut row = Gathered { position: [column; 3], intensity: [column; 3], scale: column };
+        let mut row = PointRow { position: [column; 3], intensity: [column; 3], scale: column };
         for lane in set_bits(lanes) {
             let point = &self.points[light[lane] as usize - first];
             for axis in 0..3 {
@@ -107,7 +108,8 @@ impl Lights {
         row
     }
 
-    /// [`Point::sample`] for each receiver in `lanes`: point `light[lane]`, counted from `first`.
+    /// Does what [`Point::sample`] does for each receiver in `lanes`: point `light[lane]`, counted from
+    /// `first`.
     #[inline(always)]
     pub(super) fn sample_points(
         &self,
@@ -117,10 +119,10 @@ impl Lights {
     ) -> LightRow {
         let origin = at.point.halves();
         let (low, high) = if let [lone] = &self.points[..] {
-            (lone.see_row(origin[0]), lone.see_row(origin[1]))
+            (lone.view_row(origin[0]), lone.view_row(origin[1]))
         } else {
             let points = self.gather_points(light, lanes, first);
-            (points.see(origin[0], 0), points.see(origin[1], 8))
+            (points.view(origin[0], 0), points.view(origin[1], 8))
         };
         let row = LightRow::distant(
             Vec3::narrow([low.direction, high.direction]),

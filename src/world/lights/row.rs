@@ -1,9 +1,9 @@
-//! Light samples in rows, sixteen at a time: each is a long chain of arithmetic, and in lanes the
-//! chains run side by side.
+//! Light samples in rows, sixteen at a time: each is a long chain of dependent arithmetic, and the
+//! chains of a row overlap.
 
-use super::choice::Choice;
-use super::discs::distances;
-use super::{Aim, Disc, LightSample, Lights, Receiver};
+use super::sampler::LightSampler;
+use super::sphere_light::distances;
+use super::{Disc, LightSample, LightView, Lights, Receiver};
 use crate::lanes::{F32x16, F64x8, Lanes, first_lanes, set_bits};
 use crate::ray::MISS;
 use crate::sampling::LightDraw;
@@ -15,38 +15,38 @@ use std::ops::Range;
 /// Samples in a row.
 pub const ROW: usize = 16;
 
-/// A row of points that are lit; lane by lane what [`Receiver`] is.
+/// A row of receivers; lane by lane a [`Receiver`].
 #[derive(Clone, Copy, Debug)]
 pub struct ReceiverRow {
-    /// Where they are.
+    /// Points.
     pub point: Vec3<F32x16>,
-    /// Unit normals, on the side that is lit.
+    /// Unit normals, on the sides that are lit.
     pub normal: Vec3<F32x16>,
-    /// The spheres whose surface it is.
+    /// Spheres whose surfaces the points are on.
     pub own: [u32; ROW],
 }
 
-/// Light that arrives, if nothing is in between; lane by lane what [`LightSample`] is.
+/// A row of light samples; lane by lane a [`LightSample`].
 #[derive(Clone, Copy, Debug)]
 pub struct LightRow {
-    /// Unit vectors toward the light.
+    /// Unit vectors toward the lights.
     pub direction: Vec3<F32x16>,
-    /// Distances of the light.
+    /// Distances of the lights.
     pub t: [f64; ROW],
     /// Rows of lights that are spheres, otherwise [`MISS`].
     pub target: [u32; ROW],
     /// Radiance over density, by channel.
     pub weight: Vec3<F32x16>,
-    /// Densities by solid angle; 0 for lights of no extent, and where they were not asked for.
+    /// Densities by solid angle; 0 for lights without extent, and where they are not needed.
     pub pdf: F32x16,
-    /// Lanes of lights that are close.
+    /// Lanes whose light is close.
     pub close: u32,
-    /// Lanes that are samples: there is no light in the others.
+    /// Lanes that have a sample; the others have no light.
     pub lanes: u32,
 }
 
 impl ReceiverRow {
-    /// The one in a lane.
+    /// Returns the receiver of a lane.
     #[inline(always)]
     pub fn receiver(&self, lane: usize) -> Receiver {
         let one = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]).into();
@@ -55,7 +55,7 @@ impl ReceiverRow {
 }
 
 impl LightRow {
-    /// Light from infinity, the same from everywhere.
+    /// Returns light from infinity, the same from everywhere.
     #[inline(always)]
     pub fn distant(direction: Vec3<F32x16>, weight: Rgb, lanes: u32) -> Self {
         Self {
@@ -69,13 +69,13 @@ impl LightRow {
         }
     }
 
-    /// No light.
+    /// Returns a row without samples.
     #[inline(always)]
     fn dark() -> Self {
         Self::distant(Vec3::splat(0.0, 0.0, 1.0), Rgb::ZERO, 0)
     }
 
-    /// One of the samples.
+    /// Returns the sample of a lane.
     #[inline]
     pub fn sample(&self, lane: usize) -> LightSample {
         let one = |v: Vec3<F32x16>| v.map(|row| row.to_array()[lane]).into();
@@ -90,7 +90,7 @@ impl LightRow {
         }
     }
 
-    /// These samples, and others in their lanes.
+    /// Merges with other samples, which replace those in their lanes.
     #[inline(always)]
     fn or(self, others: &Self) -> Self {
         if self.lanes == 0 {
@@ -111,7 +111,7 @@ impl LightRow {
         row
     }
 
-    /// Puts samples in lanes.
+    /// Writes samples to lanes.
     #[inline(always)]
     fn with(mut self, samples: impl Iterator<Item = (usize, LightSample)>) -> Self {
         for (lane, sample) in samples {
@@ -125,7 +125,7 @@ impl LightRow {
         self
     }
 
-    /// The same of lights that were chosen with these probabilities.
+    /// Divides weights, and multiplies densities, by the probabilities of the choices.
     #[inline(always)]
     fn chosen(self, probability: F32x16) -> Self {
         let weight = self.weight.map(|channel| channel / probability);
@@ -146,9 +146,9 @@ fn every(color: Rgb) -> Vec3<F32x16> {
 }
 
 impl Lights {
-    /// One sample of one light for each of the receivers in `lanes`, from the numbers of a set for
-    /// each: [`Lights::choose`] and [`Lights::sample`], and the probability of the choice is in
-    /// weights and densities.
+    /// Samples one light for each of the receivers in `lanes`, from a set of random numbers for each:
+    /// [`Lights::choose`] and [`Lights::sample`]. Weights and densities include the probability of the
+    /// choice.
     #[inline(always)]
     pub fn sample_row(
         &self,
@@ -158,21 +158,23 @@ impl Lights {
         lanes: u32,
     ) -> LightRow {
         let [u, v, ..] = numbers;
-        if let Some(sun) = self.lone_sun() {
+        if let Some(sun) = self.single_sun() {
             return sun.sample_row([u, v], lanes);
         }
         let draw = || LightDraw::light_row(numbers);
-        let (light, probability) = match &self.choice {
-            Choice::None => return LightRow::dark(),
-            Choice::Lone => return self.sample_lights(world, at, (&[0; ROW], lanes), [u, v]),
-            Choice::Tree(tree) => tree.choose_row(at, draw(), lanes),
-            Choice::Table(_) => self.choose_each(at, draw()),
+        let (light, probability) = match &self.sampler {
+            LightSampler::None => return LightRow::dark(),
+            LightSampler::Single => {
+                return self.sample_lights(world, at, (&[0; ROW], lanes), [u, v]);
+            }
+            LightSampler::Tree(tree) => tree.choose_row(at, draw(), lanes),
+            LightSampler::Table(_) => self.choose_each(at, draw()),
         };
         let samples = self.sample_lights(world, at, (&light, lanes), [u, v]);
         samples.chosen(F32x16::new(probability))
     }
 
-    /// Samples of the lights that were chosen.
+    /// Samples the lights that were chosen.
     #[inline(always)]
     fn sample_lights(
         &self,
@@ -217,8 +219,8 @@ impl Lights {
     }
 }
 
-impl Aim<'_> {
-    /// [`Aim::sample`] for the first `count` lanes of a row of numbers.
+impl LightView<'_> {
+    /// Does what [`LightView::sample`] does for the first `count` lanes of a row of random numbers.
     #[inline(always)]
     pub fn sample_row(&self, u: [F32x16; 2], count: usize) -> LightRow {
         let lanes = first_lanes(count);

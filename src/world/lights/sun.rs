@@ -9,8 +9,8 @@ use crate::vec3::Vec3 as Row3;
 use glam::{DVec3, Vec3};
 use std::f32::consts::PI;
 
-/// Degrees: a sun that is smaller has no extent, lest its radiance overflow. Single precision does
-/// not tell directions as close as that.
+/// Angular radius in degrees, up to which a sun has no extent: its radiance would overflow, and single
+/// precision does not distinguish such directions.
 const NO_DISC: f64 = 1e-6;
 
 /// A disc at infinity.
@@ -19,16 +19,17 @@ pub struct Sun {
     pub(super) frame: Frame,
     pub(super) direction: Vec3,
     pub(super) irradiance: Rgb,
-    /// `None`: of no extent.
+    /// The disc; `None` if it has no extent.
     pub(super) disc: Option<Cone>,
-    /// Of the disc.
+    /// Radiance of the disc.
     pub(super) radiance: Rgb,
-    /// Of a sample: radiance over density, or the irradiance if there is no extent.
+    /// Weight of a sample: radiance over density, or the irradiance if there is no extent.
     pub(super) weight: Rgb,
 }
 
 impl Sun {
-    /// `direction` is a unit vector toward it; `angular_radius` is in degrees, 0 or more.
+    /// Creates a sun; `direction` is a unit vector toward it, `angular_radius` is in degrees, 0 or
+    /// more.
     pub(super) fn new(direction: DVec3, irradiance: Rgb, angular_radius: f64) -> Self {
         let disc =
             (angular_radius > NO_DISC).then(|| Cone::from_half_angle(angular_radius.to_radians()));
@@ -48,7 +49,7 @@ impl Sun {
         }
     }
 
-    /// Light from a point of it.
+    /// Samples a direction toward the disc.
     #[inline(always)]
     pub(super) fn sample(&self, u: [f32; 2]) -> LightSample {
         LightSample {
@@ -64,7 +65,7 @@ impl Sun {
         }
     }
 
-    /// [`Sun::sample`] for `lanes` of a row of numbers.
+    /// Does what [`Sun::sample`] does for `lanes` of a row of random numbers.
     #[inline(always)]
     pub(super) fn sample_row(&self, u: [F32x16; 2], lanes: u32) -> LightRow {
         let (direction, pdf) = match &self.disc {

@@ -1,4 +1,4 @@
-//! What is sampled of each light, against the densities.
+//! Light samples against their densities.
 
 use super::*;
 use crate::image::Image;
@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 const ANYWHERE: Receiver = Receiver { point: Vec3::ZERO, normal: Vec3::Y, own: MISS };
 
-/// Degrees.
+/// Angular radius, in degrees.
 const SUNS: [f64; 3] = [0.266, 20.0, 0.0];
 
-/// A few lights of every kind; the emissive sphere of radius 1 at 0 is the largest.
+/// Returns a few lights of every kind; the emissive sphere of radius 1 at 0 is the largest.
 pub(super) fn world() -> World {
     let mut scene = Scene::default();
     let mut sphere = |center: DVec3, radius: f64, radiance: f32| {
@@ -37,7 +37,7 @@ pub(super) fn world() -> World {
     World::build(&scene).unwrap()
 }
 
-/// The light's index and row in the world of the emissive sphere that was the first in the scene.
+/// Returns the light's index and row in the world of the first emissive sphere of the scene.
 fn largest(world: &World) -> (usize, usize) {
     let is_largest = |row: &u32| world.spheres.id[*row as usize] == 0;
     let index = world.lights.emitters.iter().position(is_largest).unwrap();
@@ -54,20 +54,20 @@ fn emissive_spheres_are_sampled_by_their_density() {
         let origin = (center - toward * (distance * radius)).as_vec3();
         let from = (origin, MISS);
         let at = Receiver { point: origin, normal: toward.as_vec3(), own: MISS };
-        let aim = world.lights.aim(&world, index, from).unwrap();
+        let view = world.lights.view(&world, index, from).unwrap();
         let to_center = center - origin.as_dvec3();
         let angle = (radius / to_center.length()).asin();
         let axis = to_center.normalize().as_vec3();
-        let directions = random_pairs(400_000, 2).map(|u| Some(aim.sample(u)?.direction));
-        let pdf = aim.sample([0.5; 2]).and_then(|sample| sample.pdf).unwrap();
+        let directions = random_pairs(400_000, 2).map(|u| Some(view.sample(u)?.direction));
+        let pdf = view.sample([0.5; 2]).and_then(|sample| sample.pdf).unwrap();
         Grid::cone(axis, angle).check(directions, |_| pdf, Some(0.0));
         let of_all = world.lights.emitter_pdf(&world.spheres, row as u32, &at, false);
         assert!((of_all / (pdf * world.lights.probability(&at, index)) - 1.0).abs() < 1e-6);
-        for sample in random_pairs(10_000, 3).filter_map(|u| aim.sample(u)) {
+        for sample in random_pairs(10_000, 3).filter_map(|u| view.sample(u)) {
             assert_eq!((sample.pdf, sample.target), (Some(pdf), row as u32));
             let radiance = sample.weight * pdf / world.lights.radiance[index];
             assert!((radiance - Rgb::ONE).abs().max_element() < 1e-6, "{radiance}");
-            // At the edge rounding may take the ray past the sphere.
+            // At the edge, rounding may make the ray miss the sphere.
             let ray = ExactRay::new(origin, sample.direction, true);
             let root = intersect::confirm(&ray, center, radius, || false);
             assert!(root.is_none_or(|root| root.t == sample.t), "{sample:?}");
@@ -81,13 +81,13 @@ fn suns_are_sampled_by_their_density() {
     let lights = &world.lights;
     let first = lights.emitters.len() + lights.points.len();
     for (i, degrees) in SUNS.into_iter().enumerate() {
-        let aim = lights.aim(&world, first + i, (Vec3::ZERO, MISS)).unwrap();
+        let view = lights.view(&world, first + i, (Vec3::ZERO, MISS)).unwrap();
         let sun = lights.suns[i];
         let Some(cone) = sun.disc else {
-            assert!(degrees == 0.0 && aim.sample([0.3; 2]).unwrap().weight == sun.irradiance);
+            assert!(degrees == 0.0 && view.sample([0.3; 2]).unwrap().weight == sun.irradiance);
             continue;
         };
-        let directions = random_pairs(400_000, 4).map(|u| Some(aim.sample(u)?.direction));
+        let directions = random_pairs(400_000, 4).map(|u| Some(view.sample(u)?.direction));
         Grid::cone(sun.direction, degrees.to_radians()).check(
             directions,
             |_| cone.pdf(),
@@ -95,11 +95,11 @@ fn suns_are_sampled_by_their_density() {
         );
         let radiance = sun.radiance;
         let mut outside = 0;
-        for sample in random_pairs(10_000, 5).filter_map(|u| aim.sample(u)) {
+        for sample in random_pairs(10_000, 5).filter_map(|u| view.sample(u)) {
             assert_eq!(sample.pdf, Some(cone.pdf()));
             let weighted = sample.weight * cone.pdf() / radiance;
             assert!((weighted - Rgb::ONE).abs().max_element() < 1e-6);
-            // What a ray that goes there sees: that sun, but where rounding takes it past the edge.
+            // A ray in that direction sees that sun, except where rounding moves it past the edge.
             outside +=
                 i32::from(!lights.suns_toward(sample.direction).any(|seen| seen == (i, radiance)));
         }
@@ -113,8 +113,8 @@ fn suns_are_sampled_by_their_density() {
 fn the_sky_is_sampled_by_its_density() {
     let world = world();
     let last = world.lights.len() - 1;
-    let aim = world.lights.aim(&world, last, (Vec3::ZERO, MISS)).unwrap();
-    for sample in random_pairs(1000, 6).filter_map(|u| aim.sample(u)) {
+    let view = world.lights.view(&world, last, (Vec3::ZERO, MISS)).unwrap();
+    for sample in random_pairs(1000, 6).filter_map(|u| view.sample(u)) {
         let pdf = sample.pdf.unwrap();
         let of_all = world.lights.sky_pdf(&world.environment, sample.direction, &ANYWHERE);
         let probability = world.lights.probability(&ANYWHERE, last);

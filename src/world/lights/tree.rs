@@ -1,51 +1,51 @@
-//! Which light to sample: a choice that knows where the receiver is and how it is turned.
+//! The light tree: chooses a light by its estimated contribution to a receiver.
 //!
-//! After Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree
-//! Splitting", HPG 2018, with sixteen branches instead of two, all looked at in one row of lanes.
-//! So sixteen lights are chosen by what each would give if nothing stood between, thousands by what
-//! clusters would, and a crowd that is near is told apart sooner than by twos. Spheres shine in all
-//! directions: no cones of emission are kept.
+//! After Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting",
+//! HPG 2018, with sixteen branches instead of two, all evaluated in one row of lanes. So up to sixteen
+//! lights are chosen by their own unoccluded contributions, thousands by those of clusters, and a near
+//! group of lights is split sooner than by a binary tree. Spheres emit in all directions: there are no
+//! cones of emission.
 //!
-//! What is infinitely far is a ball [`FAR`] away, and what shines from everywhere is a ball as large
-//! as that about everything: one formula serves all.
+//! A light at infinity has bounds at the distance [`FAR`], and light from everywhere has bounds of that
+//! radius around the scene: one formula serves all.
 
 mod row;
 
-use super::grow::grow;
+use super::build::build_tree;
 use crate::lanes::{F32x16, Lanes};
 use crate::vec3;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Branches of a node, at most.
+/// Most branches of a node.
 pub(super) const BRANCHES: usize = 16;
 
-/// Distance of what is infinitely far, in units of which the spheres are about one wide.
+/// Distance of lights at infinity, in units of the scene's extent.
 pub(super) const FAR: f64 = 1e6;
 
-/// What a light below the horizon counts, beside one at the zenith: chances stay above 0, so that
+/// Weight of a light below the horizon, relative to the zenith: probabilities stay above 0, so that
 /// rounding cannot lose a light.
 const HIDDEN: f32 = 1e-2;
 
-/// Within a cluster, the least squared distance that counts, beside its squared radius: the mean of
-/// the reciprocal over a ball is that of a third from its middle, and lights fill less than the ball.
-/// Measured to be best.
+/// Least squared distance within a cluster, relative to its squared radius: the mean of the reciprocal
+/// over a ball is that at a third from its center, and lights fill less than the ball. The best of
+/// measured values.
 const WITHIN: f32 = 0.25;
 
-/// A light, or a cluster of them, as the choice sees it.
+/// Bounding sphere of a light or a cluster, with its power.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Ball {
+pub(super) struct LightBounds {
     pub(super) center: DVec3,
     pub(super) radius: f64,
     /// Irradiance on a plane that faces it, times the squared distance.
     pub(super) power: f64,
-    /// Irradiance on a plane that faces it, of light that does not fall off.
+    /// Irradiance on a plane that faces it, of light without falloff.
     pub(super) steady: f64,
-    /// Whether it is dark inside, as far as light samples go: an emissive sphere.
+    /// Whether light samples find nothing inside: an emissive sphere.
     pub(super) hollow: bool,
 }
 
-impl Ball {
+impl LightBounds {
     pub(super) fn scaled(self, factor: f64) -> Self {
         Self {
             center: self.center * factor,
@@ -65,55 +65,55 @@ fn scale(column: &mut [f32], factor: f32) {
 /// A point that is lit.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
-    /// Where it is.
+    /// The point.
     pub point: Vec3,
     /// Unit normal of its surface, on the side that is lit.
     pub normal: Vec3,
-    /// The sphere whose surface it is.
+    /// The sphere whose surface it is on.
     pub own: u32,
 }
 
-/// Clusters of lights, in columns. The children of a node are neighbors, the root's are the first.
+/// Clusters of lights, in columns. The children of a node are neighbors, and the root's are the first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     pub(super) x: Vec<f32>,
     pub(super) y: Vec<f32>,
     pub(super) z: Vec<f32>,
-    /// Negative for a hollow ball.
+    /// Radius of the bounds, negative if hollow.
     pub(super) radius: Vec<f32>,
     pub(super) power: Vec<f32>,
     pub(super) steady: Vec<f32>,
-    /// The first child; of a leaf, the light.
+    /// First child; the light of a leaf.
     pub(super) child: Vec<u32>,
-    /// How many children; 0 for a leaf.
+    /// Number of children; 0 for a leaf.
     pub(super) children: Vec<u8>,
-    /// The node above; [`ROOT`] at the top.
+    /// Parent node; [`ROOT`] for children of the root.
     pub(super) parent: Vec<u32>,
     /// Number of the root's children.
     pub(super) top: u8,
-    /// The leaf of each light; [`ROOT`] for one that does not shine.
+    /// Leaf of each light; [`ROOT`] for a light that is not luminous.
     pub(super) leaf: Vec<u32>,
 }
 
-/// Instead of a node: what is above all.
+/// The root, which has no row.
 pub(super) const ROOT: u32 = u32::MAX;
 
-/// Sums of chances that are all well within single precision.
+/// Range of sums that single precision resolves well.
 const RESOLVED: Range<f64> = 1e-30..1e30;
 
-/// The chances of neighbors, up to a factor.
+/// Relative probabilities of sibling nodes.
 struct Chances {
     each: [f32; BRANCHES],
     total: f64,
 }
 
 impl Tree {
-    /// The tree of these lights; `None` if none of them shines.
-    pub(super) fn new(lights: &[Ball]) -> Option<Self> {
-        grow(lights)
+    /// Builds the tree of these lights; `None` if none is luminous.
+    pub(super) fn new(lights: &[LightBounds]) -> Option<Self> {
+        build_tree(lights)
     }
 
-    /// The same tree where the unit of length is another.
+    /// Scales the unit of length.
     pub(super) fn scaled(mut self, factor: f32) -> Self {
         for column in [&mut self.x, &mut self.y, &mut self.z, &mut self.radius] {
             scale(column, factor);
@@ -122,15 +122,16 @@ impl Tree {
         self
     }
 
-    /// Chooses a light by a draw in [0, 1): its index, and the probability of the choice. The next
-    /// draw chooses the same light or a neighbor.
-    // Not where a lone light would have to go round it.
+    /// Chooses a light by a random number in [0, 1): its index, and the probability of the choice. The
+    /// next random number chooses the same light or a neighbor.
+    // Not inlined: the case of a single light should not have to jump around it.
     #[inline(never)]
     pub(super) fn choose(&self, at: &Receiver, draw: f64) -> (usize, f32) {
         self.descend((0, usize::from(self.top)), at, (draw, 1.0))
     }
 
-    /// Chooses among the `count` nodes from `first` on and below, which came with a probability.
+    /// Chooses among the `count` nodes from `first` on and their descendants, given the probability of
+    /// reaching them.
     fn descend(
         &self,
         (mut first, mut count): (usize, usize),
@@ -150,7 +151,7 @@ impl Tree {
         }
     }
 
-    /// The probability with which a light is chosen.
+    /// Returns the probability with which a light is chosen.
     #[inline(never)]
     pub(super) fn probability(&self, at: &Receiver, light: usize) -> f32 {
         let (mut node, mut probability) = (self.leaf[light], 1.0);
@@ -173,8 +174,8 @@ impl Tree {
         (self.child[node as usize] as usize, usize::from(self.children[node as usize]))
     }
 
-    /// The chances of the `count` nodes from `first` on. Where they leave single precision, power
-    /// alone decides.
+    /// Returns the relative probabilities of the `count` nodes from `first` on; by power alone if they
+    /// leave the range of single precision.
     #[inline(always)]
     fn chances(&self, first: usize, count: usize, at: &Receiver) -> Chances {
         let chances = Chances::new(self.irradiance(first, at), count);
@@ -185,7 +186,7 @@ impl Tree {
         Chances::new(row(&self.power) + row(&self.steady), count)
     }
 
-    /// About what each of the nodes from `first` on gives to a receiver, if nothing is in between.
+    /// Estimates the unoccluded irradiance of each of the nodes from `first` on at a receiver.
     #[inline(always)]
     fn irradiance(&self, first: usize, at: &Receiver) -> F32x16 {
         let row = |column: &[f32]| F32x16::load(&column[first..]);
@@ -209,7 +210,7 @@ struct Nodes<L> {
 }
 
 impl<L: Lanes> Nodes<L> {
-    /// About what each gives to the receiver in its lane, if nothing is in between.
+    /// Estimates the unoccluded irradiance of each node at the receiver in its lane.
     #[inline(always)]
     fn irradiance(&self, point: vec3::Vec3<L>, normal: vec3::Vec3<L>) -> L {
         let (zero, four) = (L::splat(0.0), L::splat(4.0));
@@ -218,12 +219,12 @@ impl<L: Lanes> Nodes<L> {
         let radius2 = radius * radius;
         let near = L::splat(1.0) / distance2.max(radius2 * L::splat(WITHIN)).sqrt();
         let (cosine, sine) = (toward.dot(normal) * near, radius.abs() * near);
-        // Of a disc that the horizon cuts, about what the part above gives.
+        // An approximation for the part of a disc that is above the horizon.
         let above = (cosine + sine).max(zero);
         let facing = L::select(cosine.lt(sine), above * above / (sine * four), cosine);
-        let whole = (near * near).mul_add(self.power, self.steady);
-        // What is faint beyond single precision keeps a chance.
-        let given = (whole * facing.max(L::splat(HIDDEN))).max(L::splat(f32::MIN_POSITIVE));
+        let total = (near * near).mul_add(self.power, self.steady);
+        // Light below the range of single precision keeps a positive probability.
+        let given = (total * facing.max(L::splat(HIDDEN))).max(L::splat(f32::MIN_POSITIVE));
         L::select(radius.is_negative() & distance2.lt(radius2), zero, given)
     }
 }
@@ -235,13 +236,13 @@ impl Chances {
         Self { each, total: each[..count].iter().copied().map(f64::from).sum() }
     }
 
-    /// The probability of a lane.
+    /// Returns the probability of a lane.
     #[inline(always)]
     fn of(&self, lane: usize) -> f64 {
         f64::from(self.each[lane]) / self.total
     }
 
-    /// The lane in whose share a draw falls, and where in that share, in [0, 1).
+    /// Returns the lane in whose share a random number falls, and its place in that share, in [0, 1).
     #[inline(always)]
     fn pick(&self, count: usize, draw: f64) -> (usize, f64) {
         let (mut left, mut last) = (draw * self.total, (0, 0.0));
@@ -254,7 +255,7 @@ impl Chances {
             }
             left -= chance;
         }
-        // Rounding may leave a little past the last lane.
+        // Rounding may leave a remainder past the last lane.
         (last.0, last.1.clamp(0.0, 1.0 - f64::EPSILON))
     }
 }

@@ -1,4 +1,4 @@
-//! What a beam of rays may hit: a region between planes that holds them all.
+//! Frustum culling: whether any ray of a beam may hit a sphere.
 
 use super::{Bvh, Child, Node};
 use crate::lanes::{F32x8, Lanes, Mask, set_bits};
@@ -8,14 +8,14 @@ use glam::DVec3;
 /// Planes of a beam.
 const SIDES: usize = 5;
 
-/// More than rays, planes and spheres are rounded by together, relative to their coordinates.
+/// A bound of the rounding of rays, planes and spheres together, relative to their coordinates.
 const ROUNDING: f32 = 4e-6;
 
 /// A convex region that holds rays, origins and all that lies ahead of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Beam {
     sides: [Side; SIDES],
-    /// What the region is widened by, in the unit of the scene.
+    /// Distance by which the region is widened, in the unit of the scene.
     margin: f32,
 }
 
@@ -42,8 +42,8 @@ impl Beam {
         Self { sides, margin: reach as f32 * ROUNDING }
     }
 
-    /// Which of eight convex bodies reach into the region, or nearly. `most` gives how far each of them
-    /// reaches along a direction, and the largest sum of coordinates of its points.
+    /// Returns which of eight convex bodies reach into the region, or nearly. `most` gives the support of
+    /// each body along a direction, and the largest sum of coordinates of its points.
     #[inline(always)]
     fn meets(&self, most: impl Fn([f32; 3]) -> (F32x8, F32x8)) -> u32 {
         let mut met = !0;

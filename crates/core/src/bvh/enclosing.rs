@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 struct Deepest {
     /// The least power of the point, less than 0.
     power: f64,
-    /// Of the sphere in the user's scene.
+    /// The sphere's place in the user's order.
     id: u32,
     row: u32,
 }

@@ -38,7 +38,7 @@ pub(super) struct NearestHit<L> {
     pub(super) t_max: L,
 }
 
-/// What a query for the first hit keeps besides, until the hit is decided.
+/// The candidate's sphere and the bound of all others, which decide a first hit at the end.
 #[derive(Clone, Copy)]
 pub(super) struct RunnerUp<L> {
     /// The nearest candidate; anything where there is none.

@@ -1,5 +1,5 @@
-//! What the decision in double precision is made of, and the bounds of its errors, which are those of
-//! the [module's documentation](super).
+//! Terms of the decision in double precision, and the bounds of their errors: see the [module's
+//! documentation](super).
 
 use super::E;
 use crate::lanes::Doubles;
@@ -11,8 +11,7 @@ use glam::DVec3;
 /// is for the mixed product.
 const PART: f64 = 1.0 / (1_u64 << 28) as f64;
 
-/// What the decision about a ray and a sphere is made of, rounded. One ray and one sphere, or a row of
-/// each.
+/// Rounded terms of the decision about a ray and a sphere; or about a row of each, in lanes.
 pub(super) struct Terms<D> {
     /// Squared length of the direction.
     pub(super) a: D,
@@ -42,7 +41,7 @@ impl<D: Doubles> Terms<D> {
         Self { a, b, distance2, p2, r2, chord2: r2 - p2, outside: distance2 - r2 }
     }
 
-    /// Where chord and side are at least 2^20 times their bounds, without a root: so the relative
+    /// Lanes in which chord and side are at least 2^20 times their bounds, without a root: so the relative
     /// error of the distance is below 2 x 2^-20 and a little, for that of `b` is at most 2^-36
     /// then. A line that certainly misses is clear as well.
     #[inline(always)]
@@ -70,7 +69,7 @@ impl<D: Doubles> Terms<D> {
             & (part * (self.distance2 + self.r2)).lt(self.outside.abs())
     }
 
-    /// Where the origin is outside, and the sphere ahead.
+    /// Lanes in which the origin is outside, and the sphere ahead.
     #[inline(always)]
     pub(super) fn enters(&self) -> D::Mask {
         D::splat(0.0).lt(self.outside) & D::splat(0.0).lt(self.b)

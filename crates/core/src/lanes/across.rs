@@ -1,4 +1,4 @@
-//! What moves values from lane to lane, and bits from place to place.
+//! Permutations: values move from lane to lane, and bits from place to place.
 
 use super::{F32x4, F32x8, F32x16, Lanes, U32x16};
 
@@ -52,20 +52,20 @@ const fn in_order() -> [u32; 256] {
     table
 }
 
-/// Puts some of sixteen lanes one after another.
+/// Packs some of sixteen lanes one after another (stream compaction).
 #[derive(Clone, Copy, Debug)]
 pub struct Packing {
-    /// Which lane comes to each place, in the last four bits.
+    /// The lane that moves to each place, in the lowest four bits.
     order: U32x16,
-    /// The same of the lower and the upper eight, in four bits each.
+    /// The lanes of the lower and of the upper eight, in four bits each.
     halves: [u32; 2],
-    /// How many of the lower.
+    /// Number of packed lanes of the lower eight.
     low: usize,
     count: usize,
 }
 
 impl Packing {
-    /// Of the lanes whose bits are set.
+    /// Returns the packing of the lanes whose bits are set.
     #[inline(always)]
     pub fn new(lanes: u32) -> Self {
         const PLACES: U32x16 =
@@ -84,7 +84,7 @@ impl Packing {
         }
     }
 
-    /// How many there are.
+    /// Number of packed lanes.
     #[inline(always)]
     pub fn count(&self) -> usize {
         self.count

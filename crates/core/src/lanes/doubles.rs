@@ -12,7 +12,7 @@ pub trait Doubles:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What comparisons return.
+    /// The result of comparisons.
     type Mask: Mask;
 
     /// `x` in every lane.
@@ -137,7 +137,7 @@ pub fn narrow([low, high]: [F64x8; 2]) -> F32x16 {
     bytemuck::cast([rounded(low), rounded(high)])
 }
 
-/// The same numbers in double precision.
+/// Returns the numbers in double precision.
 #[inline(always)]
 pub fn widen(row: F32x16) -> [F64x8; 2] {
     let [low, high]: [[f32; 8]; 2] = bytemuck::cast(row);

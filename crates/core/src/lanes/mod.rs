@@ -42,7 +42,7 @@ pub trait Lanes:
 {
     /// Number of lanes: 1, 4, 8 or 16.
     const WIDTH: usize;
-    /// What comparisons return.
+    /// The result of comparisons.
     type Mask: Mask;
 
     /// `x` in every lane.

@@ -1,4 +1,4 @@
-//! Rays and answers in columns.
+//! Rays and hits in columns.
 
 use super::QueryError;
 use crate::ray::MISS;
@@ -9,13 +9,13 @@ pub const NOTHING: u32 = MISS;
 /// Rays in columns: coordinate by coordinate, all of one length.
 #[derive(Clone, Copy, Debug)]
 pub struct RayColumns<'a> {
-    /// Where rays start: x, y, z.
+    /// Origins: x, y, z.
     pub origin: [&'a [f32]; 3],
-    /// Where they go: x, y, z, of any length but 0.
+    /// Directions: x, y, z, of any length but 0.
     pub direction: [&'a [f32]; 3],
 }
 
-/// Where answers about rays go, and where their search ends: columns as long as those of the rays.
+/// Columns for the hits of rays, as long as those of the rays.
 #[derive(Debug)]
 pub struct Hits<'a> {
     /// On entry, hits not nearer than this do not count; infinity for no bound. On return the
@@ -23,11 +23,12 @@ pub struct Hits<'a> {
     pub t: &'a mut [f64],
     /// On return the sphere's row in the columns that the tree was built from, or [`NOTHING`].
     pub sphere: &'a mut [u32],
-    /// On return point and normal; unchanged where nothing is hit. `None` if nobody wants to know.
+    /// On return point and normal; unchanged where nothing is hit. `None` to
+    /// leave them out.
     pub surface: Option<&'a mut [Surface]>,
 }
 
-/// What a ray hits first.
+/// The first hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Row of the sphere in the columns that the tree was built from.
@@ -40,8 +41,8 @@ pub struct Hit {
     pub normal: [f64; 3],
 }
 
-/// Where a ray hits. Both are solved in double precision from the sphere itself, so the point is on
-/// it up to the last bits.
+/// Point and normal of a hit, computed in double precision from the sphere, so that the point is on it up
+/// to the last bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Surface {
     /// The point, in the user's coordinates.
@@ -50,13 +51,13 @@ pub struct Surface {
     pub normal: [f64; 3],
 }
 
-/// What was noticed on the way.
+/// Counts of a batch of rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Rays that are no rays: something is not finite, the direction is zero, or the bound is NaN. They
-    /// hit nothing.
+    /// Invalid rays, which hit nothing: a coordinate is not finite, the direction is zero, or the bound is
+    /// NaN.
     pub invalid: u64,
-    /// Decisions that took arithmetic without rounding.
+    /// Decisions that were made on integers.
     pub exact: u64,
 }
 

@@ -5,10 +5,10 @@
 //! rounding would. To keep the conservative test within its range it multiplies coordinates
 //! by a power of two, which is exact, and nothing else is done to them.
 
-mod alone;
+mod batch;
 mod columns;
-mod plain;
-mod run;
+mod load;
+mod scaled_ray;
 
 pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 
@@ -36,9 +36,9 @@ pub enum QueryError {
     /// Columns differ in length.
     #[error("the columns differ in length: one has {expected} rows and another {found}")]
     Lengths {
-        /// Of the first column.
+        /// Length of the first column.
         expected: usize,
-        /// Of another.
+        /// Length of another column.
         found: usize,
     },
     /// Rows are numbers of 32 bits.
@@ -133,8 +133,8 @@ impl SphereTree {
         self.spheres.bytes() + self.bvh.bytes()
     }
 
-    /// What a ray hits first: of spheres at equal distances, the one of the lowest row. `None` if
-    /// nothing, or if the ray is invalid.
+    /// Returns the first hit of a ray: of spheres at equal distances, the one of the lowest row. `None`
+    /// if the ray hits nothing, or is invalid.
     pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
         let mut hit = None;
         self.run::<Closest>(
@@ -156,7 +156,7 @@ impl SphereTree {
         hit
     }
 
-    /// What each ray hits first: of spheres at equal distances, the one of the lowest row.
+    /// Finds the first hit of each ray: of spheres at equal distances, the one of the lowest row.
     ///
     /// # Errors
     /// Columns of different lengths.
@@ -179,7 +179,7 @@ impl SphereTree {
         ))
     }
 
-    /// Whether each ray hits anything nearer than `t`.
+    /// Finds whether each ray hits anything nearer than its bound in `t`.
     ///
     /// # Errors
     /// Columns of different lengths.

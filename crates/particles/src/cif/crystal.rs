@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Bytes of an atom as a sphere: four numbers in double precision, a material and a color.
 const ATOM_BYTES: u64 = 48;
 
-/// What the names of the columns of atoms begin with; newer files have a point at the end.
+/// Prefixes of the columns of atoms; newer files have a point at the end.
 const SITE: &str = "_atom_site_";
 
 /// Shares of the edges.
@@ -55,7 +55,7 @@ const SYMBOLS: [&str; 4] = [
 const HALL: [&str; 2] = ["_space_group_name_hall", "_symmetry_space_group_name_hall"];
 const NUMBERS_OF_GROUPS: [&str; 2] = ["_space_group_it_number", "_symmetry_int_tables_number"];
 
-/// What is taken for a title, the best last.
+/// Tags that serve as a title, the best last.
 const TITLES: [&str; 4] = [
     "_chemical_formula_sum",
     "_chemical_name_systematic",
@@ -69,7 +69,7 @@ pub(in super::super) struct Crystal {
     options: ReadOptions,
 }
 
-/// What a block says, in whatever order.
+/// Contents of a data block.
 struct Block {
     title: (usize, String),
     lengths: [f64; 3],

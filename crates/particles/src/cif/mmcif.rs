@@ -16,7 +16,7 @@ use crate::source::Source;
 use crate::undrawn::Undrawn;
 use std::sync::Arc;
 
-/// What the names of the columns begin with.
+/// Prefix of the columns.
 const SITE: &str = "_atom_site.";
 
 /// Columns of numbers, some of which may be unknown.
@@ -204,7 +204,7 @@ impl MmCif {
         Ok(model.is_some())
     }
 
-    /// Whether there is a loop of atoms at hand.
+    /// Whether the reader is in a loop of atoms.
     fn is_open(&mut self) -> Result<bool, FileError> {
         if self.sites.is_none() {
             self.sites = self.find()?;

@@ -1,4 +1,4 @@
-//! What is known of the elements; row 0 of every table is element 1.
+//! Tables of the elements: symbols, masses, radii; row 0 of every table is element 1.
 
 /// Symbols of all elements.
 #[rustfmt::skip]

@@ -8,7 +8,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-/// How a file begins.
+/// The first bytes of a file.
 pub(in super::super) const MAGIC: [u8; 8] = 0x65DF_65DF_65DF_65DF_u64.to_le_bytes();
 
 /// Bytes of the header and of an entry of the index.
@@ -28,7 +28,7 @@ pub(super) struct File {
     chunks: BTreeMap<(u64, u16), Chunk>,
 }
 
-/// Where a chunk is, and its shape.
+/// Offset and shape of a chunk.
 #[derive(Clone, Copy)]
 struct Chunk {
     rows: u64,
@@ -223,7 +223,7 @@ impl File {
         self.chunk(frame, name).map(|chunk| (chunk.rows, chunk.width))
     }
 
-    /// The same of a chunk of numbers, if the frame has it.
+    /// Returns a chunk of numbers, if the frame has it.
     pub(super) fn shape(&self, frame: u64, name: &str) -> Option<(u64, u64)> {
         let chunk = self.chunk(frame, name).filter(|chunk| (1..=10).contains(&chunk.kind))?;
         Some((chunk.rows, chunk.width))

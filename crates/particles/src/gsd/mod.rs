@@ -79,7 +79,7 @@ impl Gsd {
         self.file.columns(frame, name, places)
     }
 
-    /// The same of a chunk with one number for each particle.
+    /// Reads a chunk with one number for each particle.
     fn values(&mut self, name: &str, count: u64) -> Result<Option<Vec<f64>>, FileError> {
         Ok(self.particles(name, count, 1, &[0])?.and_then(|mut columns| columns.pop()))
     }

@@ -14,7 +14,7 @@ pub(super) fn tilted(low: [f64; 3], high: [f64; 3], tilt: [f64; 3]) -> Cell {
     Cell { origin: DVec3::from_array(low), vectors, periodic: [true; 3] }
 }
 
-/// The same from what dumps call bounds: those of the tilted box, along the axes.
+/// Returns the cell of a dump's bounds, which are those of the tilted box along the axes.
 pub(super) fn tilted_from_bounds(low: [f64; 3], high: [f64; 3], tilt: [f64; 3]) -> Cell {
     let [xy, xz, yz] = tilt;
     let [x_low, y_low, z_low] = low;

@@ -28,7 +28,7 @@ pub(in super::super) struct Data {
     done: bool,
 }
 
-/// What the file says besides its atoms.
+/// The header and the sections other than atoms.
 #[derive(Default)]
 struct Head {
     title: String,

@@ -34,7 +34,7 @@ pub(in super::super) struct Dump {
     units: LengthUnit,
 }
 
-/// What stands before the atoms of a frame.
+/// The header of a frame.
 #[derive(Default)]
 struct Head {
     step: Option<i64>,

@@ -13,7 +13,7 @@ const NAMES: [&str; 3] = ["vx", "vy", "vz"];
 /// The column of atoms that tells which is which.
 const ID: &str = "id";
 
-/// What is asked for of the section.
+/// The columns of the section that were asked for.
 #[derive(Default)]
 pub(super) struct Velocities {
     /// Columns to be kept: names as they were asked for, and the axis of each.

@@ -1,4 +1,4 @@
-//! What control groups leave: containers, and jobs of a cluster, have less memory than their machine.
+//! Memory limits of control groups: containers and cluster jobs have less memory than their machine.
 //!
 //! A process is in a group of one of two versions, and that in others: each has a limit, and the least
 //! of what they leave counts (Linux, "Documentation/admin-guide/cgroup-v2.rst" and "cgroup-v1/memory").
@@ -43,7 +43,7 @@ pub(super) fn left(root: &Path) -> Option<u64> {
     mounts.filter_map(|mount| mount.left(root, mount.group(&groups)?)).min()
 }
 
-/// Where groups are to be seen as folders.
+/// Mount points of control groups.
 struct Mount {
     version: &'static Version,
     /// The group that the folder shows.
@@ -89,7 +89,7 @@ impl Mount {
 }
 
 impl Version {
-    /// What one group leaves: its limit less what it uses, which files that are cached do not count to.
+    /// Returns the memory left in one group: its limit minus its usage, without cached files.
     fn left(&self, folder: &Path) -> Option<u64> {
         let number = |name: &str| fs::read_to_string(folder.join(name)).ok()?.trim().parse().ok();
         let (limit, used): (u64, u64) = (number(self.limit)?, number(self.used)?);

@@ -1,4 +1,4 @@
-//! Whether there is memory for what a file or a command line asks for, before it is taken.
+//! Checks that there is memory for what a file or a command line asks for, before it is allocated.
 //!
 //! Systems promise more memory than they have, and end programs that believe them. So whatever may
 //! take gigabytes, spheres in their columns, the world with its tree, the sums of a film, pictures,
@@ -26,7 +26,7 @@ static LIMIT: AtomicU64 = AtomicU64::new(u64::MAX);
 pub struct Shortage {
     /// Bytes that are needed.
     pub need: u64,
-    /// What is left; `None` if the system does not tell, but refused them.
+    /// Memory left; `None` if the system does not tell, but refused the allocation.
     pub left: Option<Left>,
 }
 
@@ -39,10 +39,10 @@ pub struct Left {
     pub bound: Bound,
 }
 
-/// What bounds the memory of a process.
+/// The limit that bounds the memory of a process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
-    /// What the machine has, less what is in use.
+    /// The memory of the machine, minus what is in use.
     Machine,
     /// The limit of its container or of its job, version 1 or 2 of control groups.
     ControlGroup,
@@ -67,12 +67,12 @@ pub fn limit_to(bytes: u64) {
     LIMIT.store(bytes, Ordering::Relaxed);
 }
 
-/// What this process can still take without swapping; `None` if the system does not tell.
+/// Returns the memory that this process can allocate without swapping; `None` if the system does not tell.
 pub fn left() -> Option<Left> {
     bounds().min_by_key(|left| left.bytes)
 }
 
-/// What each of the bounds that there are leaves to this process.
+/// Returns the memory that each limit leaves to this process.
 fn bounds() -> impl Iterator<Item = Left> {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());

@@ -143,7 +143,7 @@ impl<R: Read> Array<R> {
         }
     }
 
-    /// How many frames there are, none of them empty.
+    /// Returns the number of frames, none of them empty.
     pub(super) fn frames(&self) -> u64 {
         match self.shape[..] {
             _ if self.count() == 0 || self.columns() == 0 => 0,

@@ -1,4 +1,4 @@
-//! What the header of an array says: the type of its elements, and how many there are.
+//! The header of an array: the type of its elements, its shape and order.
 
 use crate::scalar::{Order, Scalar};
 
@@ -12,13 +12,13 @@ pub(super) struct Field {
     pub(super) kind: Item,
 }
 
-/// What an element is.
+/// The type of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Item {
     Number(Scalar, Order),
-    /// So many bytes of text, with zeros after its end.
+    /// Text of at most this many bytes, padded with zeros.
     Bytes(usize),
-    /// So many letters of four bytes, with zeros after the end.
+    /// Text of at most this many code points of four bytes, padded with zeros.
     Letters(usize, Order),
 }
 
@@ -57,7 +57,7 @@ impl Item {
     }
 }
 
-/// What stands in a header after a key.
+/// Returns the value after a key of a header.
 pub(super) fn after<'h>(header: &'h str, key: &str) -> Option<&'h str> {
     let rest = header.split_once(&format!("'{key}'"))?.1;
     Some(rest.trim_start().strip_prefix(':')?.trim_start())

@@ -22,7 +22,7 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-/// How an array begins.
+/// The first bytes of an array.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// Reads an array: rows of `x y z` or `x y z radius`, or of a structured type with these names;
@@ -54,7 +54,7 @@ impl Npy {
     }
 }
 
-/// What the columns of an array are.
+/// Roles of the columns of an array.
 fn schema<R: Read>(array: &Array<R>, options: &ReadOptions) -> Result<Schema, String> {
     let schema = columns(array, options)?;
     let is_number =

@@ -1,4 +1,4 @@
-//! Plan of a sequence: the pictures that it has.
+//! Plan of a sequence: the list of its images.
 
 use super::{refuse, stream_name};
 use crate::cli::failure::Failure;
@@ -7,35 +7,35 @@ use spherule::scene::FileError;
 use spherule::scene::particles::{FrameCount, ReadOptions};
 use std::path::Path;
 
-/// Digits of a frame's number: files that are sorted by name are sorted by frame, up to 10,000.
+/// Minimum number of digits of a frame's number, so that names sort by frame up to 10,000.
 const DIGITS: usize = 4;
 
-/// The same of a picture of a turn, at least.
+/// Minimum number of digits of a turntable's image.
 const TURN_DIGITS: usize = 3;
 
-/// Frames that are shown, in order.
+/// Frames of the sequence, in order.
 pub(super) struct Frames {
     range: FrameRange,
     /// Number of the range's frames; `None` for input that can be read only once.
     count: Option<u64>,
-    /// Frames of the file that are not cut off, if the range has no end.
+    /// Number of complete frames of the file, if the range has no end.
     end: Option<u64>,
-    /// The error that comes after them, if there is one.
+    /// The error after the complete frames, if there is one.
     rest: Option<FileError>,
 }
 
-/// The pictures of a sequence.
+/// The images of a sequence.
 pub(super) struct Plan {
     frames: Option<Frames>,
     turn: Option<u32>,
 }
 
-/// One of the pictures.
+/// An image of a sequence.
 pub(super) struct Shot {
-    /// In the name of its file.
+    /// Number in the file's name.
     pub(super) number: u64,
     pub(super) frame: Option<u64>,
-    /// Its place in a turn.
+    /// Place in the turntable.
     pub(super) turn: Option<u32>,
 }
 
@@ -45,8 +45,7 @@ pub(super) fn is_stream(path: &Path) -> bool {
 }
 
 impl Frames {
-    /// Counts the frames of a file, if it can be read more than once, and refuses a range that it does
-    /// not have.
+    /// Counts the frames of a file, if it can be read more than once; an error if the range exceeds them.
     pub(super) fn choose(
         path: &Path,
         options: &ReadOptions,
@@ -58,12 +57,12 @@ impl Frames {
         let most = range.last.map_or(u64::MAX, |last| last.saturating_add(1));
         let FrameCount { whole, rest } = FrameCount::of(path, options, most)?;
         if let Some(error) = rest.clone().filter(|error| !error.cut_off || whole == 0) {
-            let help = mend(range, whole);
+            let help = hint(range, whole);
             let error = if error.help.is_none() { error.with_help(help) } else { error };
             return Err(Failure::from(error).of_frame(whole));
         }
         if let Some(message) = missing(range, whole) {
-            return Err(refuse(path, message, mend(range, whole)));
+            return Err(refuse(path, message, hint(range, whole)));
         }
         let count = range.count_to(range.last.unwrap_or(whole - 1));
         let end = range.last.is_none().then_some(whole);
@@ -71,23 +70,23 @@ impl Frames {
     }
 }
 
-/// Returns a message that says what a file of so many frames lacks of a range, if it lacks any.
+/// Returns a message if a range exceeds the frames of a file.
 fn missing(range: FrameRange, whole: u64) -> Option<String> {
     if whole == 0 {
         return Some("holds no particles".to_owned());
     }
     let last = range.last.unwrap_or(range.first);
-    (whole <= last).then(|| format!("has no frame {last}, but {whole}, and the first is 0"))
+    (whole <= last).then(|| format!("has no frame {last}, only {whole} (the first is 0)"))
 }
 
-/// The frames of a range that a file of so many has, as they are typed.
-fn mend(range: FrameRange, whole: u64) -> String {
+/// Formats the available frames of a range as the command line takes them.
+fn hint(range: FrameRange, whole: u64) -> String {
     match whole.checked_sub(1) {
-        None => "a frame may be cut off".to_owned(),
-        Some(last) if range.first > last => format!("the last one is {last}: --frame {last}"),
+        None => "a frame may be truncated".to_owned(),
+        Some(last) if range.first > last => format!("use the last one, --frame {last}"),
         Some(last) => {
             let there = FrameRange { last: Some(last), ..range };
-            format!("draw those that there are: --frame {there}")
+            format!("render the existing frames with --frame {there}")
         }
     }
 }
@@ -95,24 +94,24 @@ fn mend(range: FrameRange, whole: u64) -> String {
 impl Plan {
     pub(super) fn new(frames: Option<Frames>, turn: Option<u32>) -> Result<Self, Failure> {
         if turn.is_some() && frames.as_ref().is_some_and(|frames| frames.count.is_none()) {
-            let message = "--turntable spreads the turn over all frames, but input that can be read \
-                           only once cannot be counted: write it to a file";
+            let message = "--turntable needs the number of frames, which is unknown for input that can be \
+                           read only once; write it to a file";
             return Err(Failure::usage("render", message));
         }
         Ok(Self { frames, turn })
     }
 
-    /// Number of pictures, if it is known: in a turn those of the turn, or else one for each frame.
+    /// Number of images, if known: those of the turntable, or else one for each frame.
     pub(super) fn count(&self) -> Option<u64> {
         self.turn.map(u64::from).or_else(|| self.frame_count())
     }
 
-    /// Number of frames, if it is known.
+    /// Number of frames, if known.
     pub(super) fn frame_count(&self) -> Option<u64> {
         self.frames.as_ref().and_then(|frames| frames.count)
     }
 
-    /// Returns the noun for the numbers of pictures.
+    /// Returns the noun for the numbers of images.
     pub(super) fn noun(&self) -> &'static str {
         if self.turn.is_some() { "numbers" } else { "frames" }
     }
@@ -130,7 +129,7 @@ impl Plan {
         }
     }
 
-    /// A picture, by its place from 0: of a turn, the frames are spread evenly over its pictures.
+    /// Returns an image by its place from 0. Frames are spread evenly over the images of a turntable.
     pub(super) fn shot(&self, index: u64) -> Option<Shot> {
         if self.count().is_some_and(|count| index >= count) {
             return None;
@@ -152,7 +151,7 @@ impl Plan {
         Some(Shot { number: if turn.is_some() { index } else { frame }, frame: Some(frame), turn })
     }
 
-    /// All pictures.
+    /// Returns all images.
     pub(super) fn shots(&self) -> impl Iterator<Item = Shot> + use<> {
         let shots: Vec<Shot> =
             (0..self.count().unwrap_or(0)).map_while(|index| self.shot(index)).collect();
@@ -165,15 +164,15 @@ impl Plan {
         frames.rest.clone()
     }
 
-    /// Frames of the file, if the range goes on to its end.
+    /// Number of frames of the file, if the range has no end.
     pub(super) fn open_end(&self) -> Option<u64> {
         self.frames.as_ref().and_then(|frames| frames.end)
     }
 
-    /// Checks that input that can be read only once had all frames, of which `passed` came.
+    /// Checks that input that can be read only once had all frames; `passed` were read.
     pub(super) fn check_end(&self, path: &Path, passed: u64) -> Result<(), Failure> {
         let Some(Frames { range, count: None, .. }) = &self.frames else { return Ok(()) };
-        // Frames after the last step were not looked for.
+        // Frames after the last step were not read.
         let last = range.last.map_or(range.first, |last| {
             range.first + (last - range.first) / range.step * range.step
         });
@@ -181,8 +180,8 @@ impl Plan {
             return Ok(());
         }
         let name = stream_name(path);
-        let message = format!("{name} has no frame {last}, but {passed}, and the first is 0");
-        Err(refuse(path, message, mend(*range, passed)))
+        let message = format!("{name} has no frame {last}, only {passed} (the first is 0)");
+        Err(refuse(path, message, hint(*range, passed)))
     }
 }
 
@@ -225,11 +224,11 @@ mod tests {
         let range = |first, last, step| FrameRange { first, last, step };
         assert_eq!(
             missing(range(15, Some(40), 1), 20).unwrap(),
-            "has no frame 40, but 20, and the first is 0"
+            "has no frame 40, only 20 (the first is 0)"
         );
-        assert!(mend(range(15, Some(40), 1), 20).ends_with("--frame 15-19"));
-        assert!(mend(range(15, Some(40), 2), 20).ends_with("--frame 15..19..2"));
-        assert!(mend(range(25, None, 1), 20).ends_with("--frame 19"));
+        assert!(hint(range(15, Some(40), 1), 20).ends_with("--frame 15-19"));
+        assert!(hint(range(15, Some(40), 2), 20).ends_with("--frame 15..19..2"));
+        assert!(hint(range(25, None, 1), 20).ends_with("--frame 19"));
         assert!(
             missing(range(20, None, 1), 20).is_some() && missing(range(19, None, 1), 20).is_none()
         );

@@ -1,11 +1,12 @@
-//! Pictures in half blocks: the upper pixel of a character is its color, the lower one its ground.
+//! Images in half blocks: the upper pixel is a character's foreground color, the lower one its background
+//! color.
 
 use super::Codes;
 
 /// Levels of each channel in the cube of 256 colors (xterm's).
 const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
 
-/// Returns the lines of a picture.
+/// Returns the lines of an image.
 pub(super) fn text(codes: &Codes, true_color: bool) -> Vec<u8> {
     let mut text = String::new();
     let width = codes.width as usize;
@@ -26,7 +27,7 @@ pub(super) fn text(codes: &Codes, true_color: bool) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// Returns the sequence that sets the color (38) or the ground (48) of the characters that follow.
+/// Returns the escape sequence that sets the foreground (38) or background (48) color.
 fn color(which: u8, [red, green, blue]: [u8; 3], true_color: bool) -> String {
     if true_color {
         format!("\x1b[{which};2;{red};{green};{blue}m")
@@ -35,8 +36,8 @@ fn color(which: u8, [red, green, blue]: [u8; 3], true_color: bool) -> String {
     }
 }
 
-/// Returns the nearest of xterm's 256 colors, beyond the 16 whose colors users choose: one of the
-/// cube or one of 24 grays.
+/// Returns the nearest of xterm's 256 colors, without the 16 user-defined ones: a color of the cube or one of
+/// 24 grays.
 fn nearest(code: [u8; 3]) -> u8 {
     let level = |value: u8| {
         let distance = |level: &usize| LEVELS[*level].abs_diff(value);

@@ -1,15 +1,15 @@
-//! Pictures as PNG files within the text, for Kitty and for iTerm.
+//! Inline PNG images, for Kitty and iTerm.
 
 use super::Codes;
 
-/// Bytes of an escape sequence of Kitty, at most; a multiple of 4.
+/// Maximum number of bytes of an escape sequence of Kitty; a multiple of 4.
 const CHUNK: usize = 4096;
 
-/// The number of the picture, which the next one replaces.
+/// Identifier of the image, which the next one replaces.
 const NUMBER: u32 = 31;
 
-/// Returns a picture for the Kitty graphics protocol, in so many columns and rows of cells. The
-/// terminal does not answer, and leaves the cursor where it is.
+/// Encodes an image for the Kitty graphics protocol, in `columns` x `rows` cells. The terminal does not
+/// answer, and does not move the cursor.
 ///
 /// <https://sw.kovidgoyal.net/kitty/graphics-protocol/>
 pub(super) fn kitty(codes: &Codes, [columns, rows]: [u32; 2]) -> Vec<u8> {
@@ -28,7 +28,7 @@ pub(super) fn kitty(codes: &Codes, [columns, rows]: [u32; 2]) -> Vec<u8> {
     text
 }
 
-/// Returns a picture for iTerm's inline images, in so many columns and rows of cells.
+/// Encodes an image for iTerm's inline images, in `columns` x `rows` cells.
 ///
 /// <https://iterm2.com/documentation-images.html>
 pub(super) fn iterm(codes: &Codes, [columns, rows]: [u32; 2]) -> Vec<u8> {
@@ -42,7 +42,7 @@ pub(super) fn iterm(codes: &Codes, [columns, rows]: [u32; 2]) -> Vec<u8> {
     .into_bytes()
 }
 
-/// Returns the picture as a PNG file; an empty one if it has no pixels.
+/// Encodes the image as PNG; empty if it has no pixels.
 fn png(codes: &Codes) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, codes.width, codes.height);

@@ -1,5 +1,5 @@
-//! The picture in the terminal, while it refines: as an image where the terminal takes one by the
-//! protocol of Kitty or iTerm or as sixels, or else in half blocks, two pixels in each character.
+//! Display of the image in the terminal while it refines: with the protocols of Kitty or iTerm, as sixels, or
+//! else in half blocks with two pixels per character.
 
 mod blocks;
 mod inline;
@@ -14,10 +14,10 @@ use spherule::scene::Settings;
 use std::io::{self, IsTerminal, Write, stdin, stdout};
 use std::time::{Duration, Instant};
 
-/// Least time between two pictures; and in times of what drawing the last one took.
+/// Minimum time between two updates: a duration, and a multiple of the time of the last update.
 const PAUSE: (Duration, u32) = (Duration::from_millis(250), 20);
 
-/// A way to show pictures in a terminal.
+/// Protocols for images in a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Protocol {
     /// Images of the Kitty graphics protocol.
@@ -41,7 +41,7 @@ struct Screen {
     cell: [u32; 2],
 }
 
-/// A picture of codes for a display.
+/// An image of 8-bit display values.
 struct Codes {
     width: u32,
     height: u32,
@@ -49,30 +49,30 @@ struct Codes {
     pixels: Vec<[u8; 3]>,
 }
 
-/// A place in the terminal where one picture after another is drawn.
+/// An area of the terminal in which images are drawn.
 pub(super) struct Terminal {
     protocol: Protocol,
     screen: Screen,
     table: Codes8,
-    /// Lines of the picture that is there.
+    /// Lines of the current image.
     lines: u32,
-    /// Time that it took to draw it.
+    /// Time to draw the current image.
     took: Duration,
-    /// True if something went wrong, and no more is drawn.
+    /// True after an error, when nothing is drawn any more.
     failed: bool,
 }
 
-/// Refuses to draw where nothing answers the question what can be drawn.
+/// Returns an error if standard output or input is not a terminal.
 pub(super) fn check(wanted: bool) -> Result<(), Failure> {
     if wanted && !(stdin().is_terminal() && stdout().is_terminal()) {
-        let message = "--terminal is for a terminal, not for files and pipes";
+        let message = "--terminal needs a terminal, not a file or a pipe";
         return Err(Failure::usage("render", message));
     }
     Ok(())
 }
 
 impl Terminal {
-    /// A place for pictures that are shown as these settings say.
+    /// Creates an area for images with these settings.
     pub(super) fn new(settings: &Settings) -> Self {
         let transform = DisplayTransform::nearest(settings.exposure, settings.tone);
         Self {
@@ -85,12 +85,12 @@ impl Terminal {
         }
     }
 
-    /// Time until the next picture.
+    /// Time until the next update.
     pub(super) fn pause(&self) -> Duration {
         PAUSE.0.max(self.took * PAUSE.1)
     }
 
-    /// Draws a picture in the place of the last one.
+    /// Draws an image in place of the last one.
     pub(super) fn draw(&mut self, image: &Image) {
         if self.failed {
             return;
@@ -102,25 +102,24 @@ impl Terminal {
         drop(output);
         match drawn {
             Ok(()) => self.lines = lines,
-            // Nobody looks any more.
+            // The terminal is closed.
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => self.failed = true,
             Err(error) => {
                 self.failed = true;
-                output::warn(format_args!("the terminal does not take pictures: {error}"));
+                output::warn(format_args!("cannot draw in the terminal: {error}"));
             }
         }
         self.took = start.elapsed();
     }
 
-    /// Returns the bytes that draw a picture in the place of the last one, and the number of lines
-    /// that it takes.
+    /// Returns the bytes that draw an image in place of the last one, and its number of lines.
     fn text(&self, image: &Image) -> (Vec<u8>, u32) {
         let [columns, rows] = fit([image.width, image.height], self.screen);
         let mut text = Vec::new();
         if self.lines > 0 {
             text.extend(format!("\x1b[{}A\r", self.lines).bytes());
         }
-        // Room for the picture, which may scroll what is above it.
+        // Make room for the image, which may scroll the text above it.
         text.extend(b"\n".repeat(rows as usize));
         text.extend(format!("\x1b[{rows}A\r").bytes());
         match self.protocol {
@@ -131,7 +130,7 @@ impl Terminal {
             protocol => {
                 let [width, height] = self.screen.cell;
                 let codes = self.codes(image, [columns * width, rows * height]);
-                // The cursor comes back: terminals differ in where they leave it.
+                // Restore the cursor, because terminals differ in where they leave it.
                 text.extend(b"\x1b7");
                 text.extend(match protocol {
                     Protocol::Kitty => inline::kitty(&codes, [columns, rows]),
@@ -144,7 +143,7 @@ impl Terminal {
         (text, rows)
     }
 
-    /// The codes of a picture, reduced to at most so many pixels.
+    /// Converts an image to display values, reduced to at most this many pixels.
     fn codes(&self, image: &Image, [columns, rows]: [u32; 2]) -> Codes {
         let (width, height) = (columns.min(image.width), rows.min(image.height));
         let code = |pixel: [f32; 3]| pixel.map(|value| self.table.code(value));
@@ -154,7 +153,7 @@ impl Terminal {
     }
 }
 
-/// The mean radiance of a picture in a pixel of a smaller one.
+/// Mean radiance of the image over a pixel of a smaller one.
 fn mean(image: &Image, (x, y): (u32, u32), (width, height): (u32, u32)) -> [f32; 3] {
     let range = |at: u32, small: u32, large: u32| {
         let edge = |at: u32| (u64::from(at) * u64::from(large) / u64::from(small)) as u32;
@@ -172,8 +171,8 @@ fn mean(image: &Image, (x, y): (u32, u32), (width, height): (u32, u32)) -> [f32;
     sum.map(|value| value / f32::max(count, 1.0))
 }
 
-/// Columns and rows of cells that a picture takes: as many as there are, with a line left for the
-/// prompt, but no more than it has pixels, of which two are above one another in a cell.
+/// Columns and rows of cells for an image: as many as the terminal has, except for one line for the prompt,
+/// but no more than pixels, of which a cell has two, one above the other.
 fn fit([width, height]: [u32; 2], screen: Screen) -> [u32; 2] {
     let most = [screen.columns.max(1), 2 * screen.rows.saturating_sub(1).max(1)].map(f64::from);
     let size = [width, height].map(f64::from);

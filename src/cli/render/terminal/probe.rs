@@ -1,28 +1,27 @@
-//! Detection of what the terminal can show, and of its size: asked of the terminal itself, or else
-//! of the environment.
+//! Detection of the terminal's image protocol and size, by a query or from the environment.
 
 use super::{Protocol, Screen};
 
-/// A question for Kitty's protocol, and one for the terminal's attributes, which every terminal
-/// answers: so the end of the answers is known.
+/// A query for Kitty's protocol, and one for the terminal's attributes, which every terminal answers and so
+/// marks the end of the answers.
 #[cfg(unix)]
 const QUESTION: &[u8] = b"\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\\x1b[c";
 
-/// Longest answer, in bytes.
+/// Maximum length of the answer in bytes.
 #[cfg(unix)]
 const LONGEST: usize = 4096;
 
-/// Terminals with inline images of iTerm, by their names in the environment.
+/// Terminals with iTerm's inline images, by their names in the environment.
 const ITERM: [&str; 5] = ["iTerm", "WezTerm", "mintty", "rio", "WarpTerminal"];
 
 /// Returns the best protocol of the terminal.
 pub(super) fn protocol() -> Protocol {
-    // Variables that are no text are none of those that count.
+    // Variables that are not valid Unicode are ignored.
     let variable = |name: &str| std::env::var(name).ok();
     chosen(&answer(), &variable)
 }
 
-/// Returns the protocol for an answer of the terminal, and what the environment says.
+/// Returns the protocol for an answer of the terminal and the environment variables.
 fn chosen(answer: &[u8], variable: &impl Fn(&str) -> Option<String>) -> Protocol {
     let names = ["TERM_PROGRAM", "LC_TERMINAL"].into_iter().filter_map(variable);
     let named = names.into_iter().any(|name| ITERM.iter().any(|own| name.contains(own)));
@@ -50,8 +49,7 @@ fn takes_sixels(answer: &[u8]) -> bool {
     attributes.split(|byte| *byte == b';').skip(1).any(|attribute| attribute == b"4")
 }
 
-/// Returns the terminal's attributes, without what begins and ends them; `None` before they have
-/// come.
+/// Returns the terminal's attributes, without delimiters; `None` if the answer has none yet.
 fn attributes(answer: &[u8]) -> Option<&[u8]> {
     const START: &[u8] = b"\x1b[?";
     let start = answer.windows(START.len()).position(|part| part == START)? + START.len();
@@ -59,7 +57,7 @@ fn attributes(answer: &[u8]) -> Option<&[u8]> {
     Some(&rest[..rest.iter().position(|byte| *byte == b'c')?])
 }
 
-/// Asks the terminal, and returns what it answers within a second.
+/// Queries the terminal, and returns its answer within a second.
 #[cfg(unix)]
 fn answer() -> Vec<u8> {
     use rustix::termios::{OptionalActions, SpecialCodeIndex, tcgetattr, tcsetattr};
@@ -95,7 +93,7 @@ fn answer() -> Vec<u8> {
     answer
 }
 
-/// Nothing is asked where terminals have no line discipline.
+/// Returns no answer, on systems without termios.
 #[cfg(not(unix))]
 fn answer() -> Vec<u8> {
     Vec::new()
@@ -103,16 +101,16 @@ fn answer() -> Vec<u8> {
 
 /// Returns the size of the terminal.
 pub(super) fn screen() -> Screen {
-    /// Width and height of a cell in pixels, if the terminal does not tell.
+    /// Default width and height of a cell in pixels.
     const CELL: [u32; 2] = [10, 20];
     let [columns, rows, width, height] = size();
-    let usual = |count: u32, usual: u32| if count > 0 { count } else { usual };
-    let (columns, rows) = (usual(columns, 80), usual(rows, 24));
-    let cell = [usual(width / columns, CELL[0]), usual(height / rows, CELL[1])];
+    let default = |count: u32, default: u32| if count > 0 { count } else { default };
+    let (columns, rows) = (default(columns, 80), default(rows, 24));
+    let cell = [default(width / columns, CELL[0]), default(height / rows, CELL[1])];
     Screen { columns, rows, cell }
 }
 
-/// Columns and rows of cells, width and height in pixels; 0 where they are not known.
+/// Columns and rows of cells, width and height in pixels; 0 if unknown.
 #[cfg(unix)]
 fn size() -> [u32; 4] {
     let size = rustix::termios::tcgetwinsize(std::io::stdout());

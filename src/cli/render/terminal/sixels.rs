@@ -1,4 +1,4 @@
-//! Pictures as sixels: bands of six rows, color by color.
+//! Images as sixels: bands of six rows, color by color.
 //!
 //! Digital Equipment Corporation, "VT330/VT340 Programmer Reference Manual", volume 2, chapter 14.
 
@@ -14,7 +14,7 @@ const BAYER: [[u32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15,
 /// Rows of a band.
 const BAND: usize = 6;
 
-/// Returns the sequence that draws a picture at the cursor.
+/// Returns the escape sequence that draws an image at the cursor.
 pub(super) fn text(codes: &Codes) -> Vec<u8> {
     let (width, colors) = (codes.width as usize, palette());
     let mut text = format!("\x1bP0;1q\"1;1;{};{}", codes.width, codes.height);
@@ -46,7 +46,7 @@ pub(super) fn text(codes: &Codes) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// Writes sixels, with a count before those that come more than three times in a row.
+/// Writes sixels, with run-length encoding for more than three equal ones.
 fn row(text: &mut String, sixels: impl Iterator<Item = u8>) {
     let mut sixels = sixels.peekable();
     while let Some(bits) = sixels.next() {

@@ -1,28 +1,28 @@
-//! From what a window hears to what happens to a viewer.
+//! Conversion of window events to viewer events.
 
-use crate::cli::view::command::{Button, Event, Held};
+use crate::cli::view::events::{Button, Event, Modifiers};
 use glam::DVec2;
 use std::time::{Duration, Instant};
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 
-/// Time and pixels between the two clicks of a double one.
+/// Maximum time and distance in pixels between the clicks of a double click.
 const DOUBLE: (Duration, f64) = (Duration::from_millis(400), 6.0);
 
-/// Pixels of a smooth wheel that are a step.
+/// Pixels per step of a smooth wheel.
 const NOTCH: f64 = 40.0;
 
-/// What was heard last.
+/// State of pointer, buttons and modifier keys.
 #[derive(Default)]
 pub(super) struct Input {
-    held: Held,
+    held: Modifiers,
     pointer: DVec2,
     click: Option<(Instant, DVec2)>,
     down: Option<MouseButton>,
 }
 
 impl Input {
-    /// What has happened, if it matters to a viewer.
+    /// Converts a window event, if the viewer handles it.
     pub(super) fn event(&mut self, event: &WindowEvent) -> Option<Event> {
         match event {
             WindowEvent::CloseRequested => Some(Event::Close),
@@ -51,7 +51,7 @@ impl Input {
         }
     }
 
-    /// One button at a time: what others do meanwhile does not count.
+    /// Tracks one button at a time; others are ignored meanwhile.
     fn button(&mut self, state: ElementState, own: MouseButton) -> Option<Event> {
         if state == ElementState::Released {
             return (self.down.take_if(|down| *down == own)).map(|_| Event::Release);
@@ -96,6 +96,6 @@ impl Input {
     }
 }
 
-fn held(state: ModifiersState) -> Held {
-    Held { shift: state.shift_key(), control: state.control_key(), alt: state.alt_key() }
+fn held(state: ModifiersState) -> Modifiers {
+    Modifiers { shift: state.shift_key(), control: state.control_key(), alt: state.alt_key() }
 }

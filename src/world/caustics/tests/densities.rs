@@ -1,15 +1,15 @@
-//! Samples and rays that chance finds, held against each other.
+//! Densities of caustic samples against MIS weights of BSDF samples.
 
 use crate::lanes::F32x16;
 use crate::scene::{ConductorFresnel, Material, NamedMaterial, Rgb, Scene};
 use crate::vec3::Vec3;
-use crate::world::caustics::{Casters, Found, Looking, Way};
+use crate::world::caustics::{CausticCasters, CausticHit, CausticPath, CausticQuery};
 use crate::world::{ROW, World};
 use glam::DVec3;
 use spherule_core::internals::random::Random;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-/// Small spheres of every kind that casts light, and two lamps.
+/// Small specular spheres of every kind, and two emitters.
 fn world() -> World {
     let mut scene = Scene::default();
     let white = Rgb::ONE;
@@ -41,64 +41,64 @@ fn first(v: Vec3<F32x16>) -> glam::Vec3 {
     v.map(|row| row.to_array()[0]).into()
 }
 
-/// Weight of a sample of a way, and what it is by the weight that chance has in the same direction;
-/// `None` if there is no such way.
+/// Returns the weight of a caustic sample, and the weight expected from the MIS weight of a BSDF sample
+/// in the same direction; `None` if the path does not exist.
 fn weights(
-    casters: &Casters,
+    caustic_casters: &CausticCasters,
     [point, normal]: [glam::Vec3; 2],
-    (number, way): (usize, Way),
+    (number, path): (usize, CausticPath),
     place: [f32; 2],
 ) -> Option<[f64; 2]> {
-    let pair = &casters.pairs[number];
-    let probability = casters.probability(number, way, [point, normal]);
-    let looking = Looking {
+    let pair = &caustic_casters.pairs[number];
+    let probability = caustic_casters.probability(number, path, [point, normal]);
+    let query = CausticQuery {
         point: splat(point),
         normal: splat(normal),
         pair: [pair; ROW],
-        way: [way; ROW],
+        path: [path; ROW],
         probability: F32x16::splat(probability),
     };
-    let sent = looking.sample(place.map(F32x16::splat));
-    if probability == 0.0 || sent.lanes & 1 == 0 || sent.incidence.to_array()[0] < 0.1 {
+    let sample = query.sample(place.map(F32x16::splat));
+    if probability == 0.0 || sample.lanes & 1 == 0 || sample.incidence.to_array()[0] < 0.1 {
         return None;
     }
-    let (toward, onward) = (first(sent.toward), first(sent.onward));
-    let chance = casters.weight(&Found {
+    let (toward, toward_emitter) = (first(sample.toward), first(sample.toward_emitter));
+    let chance = caustic_casters.weight(&CausticHit {
         start: [point, normal],
         toward,
         pdf: normal.dot(toward) * FRAC_1_PI as f32,
-        ball: pair.ball,
-        through: way != Way::Reflected,
-        lamp: pair.lamp,
-        end: [first(sent.exit) + onward * sent.length[1][0] as f32, onward],
+        sphere: pair.sphere,
+        through: path != CausticPath::Reflected,
+        emitter: pair.emitter,
+        end: [first(sample.exit) + toward_emitter * sample.length[1][0] as f32, toward_emitter],
     });
     let ratio = (1.0 / f64::from(chance) - 1.0).sqrt();
-    Some([f64::from(sent.weight.to_array()[0]), PI * ratio / (1.0 + ratio * ratio)])
+    Some([f64::from(sample.weight.to_array()[0]), PI * ratio / (1.0 + ratio * ratio)])
 }
 
-/// A direction that was sampled has the density that it is said to have when it is found by chance.
+/// Checks that the density of a caustic sample equals the density that BSDF samples assume for it.
 #[test]
-fn samples_and_rays_found_by_chance_agree_on_densities() {
+fn caustic_samples_and_bsdf_samples_agree_on_densities() {
     let (world, mut random) = (world(), Random::new(6));
     let (mut compared, mut apart) = ([0; 4], 0);
     for _ in 0..10_000 {
-        // All about, or behind the glass, where light takes all ways.
+        // Points all around, or behind the glass, where light takes all paths.
         let behind = DVec3::new(-4.0, 0.0, 2.5).normalize() + random.direction() * 0.3;
         let near = DVec3::Z * 2.5 + behind * random.between([1.0, 1.6]);
         let point = if random.coin() { random.in_cube() * 4.0 } else { near };
         let start = [world.frame.point(point), random.direction()].map(DVec3::as_vec3);
-        for number in 0..world.casters.pairs.len() {
-            for way in world.casters.pairs[number].ways() {
+        for number in 0..world.caustic_casters.pairs.len() {
+            for path in world.caustic_casters.pairs[number].paths() {
                 let place = [random.unit() as f32, random.unit() as f32];
-                let both = weights(&world.casters, start, (number, *way), place);
+                let both = weights(&world.caustic_casters, start, (number, *path), place);
                 let Some([sample, expected]) = both else { continue };
-                compared[*way as usize] += 1;
+                compared[*path as usize] += 1;
                 let off = (sample / expected - 1.0).abs();
                 apart += i32::from(off.is_nan() || off > 0.02);
             }
         }
     }
     assert!(compared.iter().all(|&compared| compared > 50), "{compared:?}");
-    // Next to where two ways meet, rounding may tell one from the other.
+    // Where two kinds of paths nearly coincide, rounding may confuse them.
     assert!(100 * apart < compared.iter().sum(), "{apart} of {compared:?}");
 }

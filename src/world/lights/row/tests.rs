@@ -1,4 +1,4 @@
-//! Rows of light samples against single ones, to the bit.
+//! Rows of light samples against single samples, to the bit.
 
 use super::*;
 use crate::sampling::{mix, stream, unit_pair};
@@ -7,14 +7,14 @@ use crate::vec3::Vec3 as Row3;
 use crate::world::Sun;
 use glam::{DVec3, Vec3};
 
-fn check(aim: &Aim, count: usize, seed: u64) {
+fn check(view: &LightView, count: usize, seed: u64) {
     let draws: [[f32; 2]; ROW] =
         std::array::from_fn(|lane| unit_pair(stream(mix(seed), lane as u64)));
     let u = [0, 1].map(|axis| F32x16::new(draws.map(|draw| draw[axis])));
-    let row = aim.sample_row(u, count);
+    let row = view.sample_row(u, count);
     assert_eq!(row.lanes, first_lanes(count));
     for (lane, &draw) in draws.iter().enumerate().take(count) {
-        let (sample, one) = (row.sample(lane), aim.sample(draw).expect("there is light"));
+        let (sample, one) = (row.sample(lane), view.sample(draw).expect("there is light"));
         assert_eq!(sample.direction, one.direction, "lane {lane}");
         assert_eq!((sample.t, sample.target), (one.t, one.target), "lane {lane}");
         assert_eq!(sample.weight, one.weight, "lane {lane}");
@@ -22,22 +22,22 @@ fn check(aim: &Aim, count: usize, seed: u64) {
 }
 
 #[test]
-fn a_row_is_what_its_lanes_are_one_by_one() {
+fn rows_equal_their_lanes() {
     let spheres = Spheres::from_columns(&[0.3], &[-0.5], &[0.7], &[0.25]);
-    // From afar, from near, and from where half of the lanes may be in doubt.
+    // From far, from near, and from where half of the lanes need the exact distance.
     for distance in [0.250_001, 0.3, 1.0, 100.0, 1e7] {
         let origin = Vec3::new(0.3, -0.5, 0.7) + Vec3::new(0.48, -0.6, 0.64) * distance;
         let disc = Disc::new(&spheres, 0, Rgb::ONE, (origin, 1.0)).expect("the point is outside");
-        let aim = Aim::Disc(disc);
-        (1..=ROW).for_each(|count| check(&aim, count, count as u64));
+        let view = LightView::Disc(disc);
+        (1..=ROW).for_each(|count| check(&view, count, count as u64));
     }
     for angle in [0.0, 0.27, 90.0] {
         let sun = Sun::new(DVec3::new(0.6, 0.0, 0.8), Rgb::ONE, angle);
-        check(&Aim::Sun(&sun), ROW, 1);
+        check(&LightView::Sun(&sun), ROW, 1);
     }
 }
 
-/// Receivers about the origin, on many sides.
+/// Receivers around the origin, facing many directions.
 fn receivers(seed: u64) -> [Receiver; ROW] {
     std::array::from_fn(|lane| {
         let number = |k| stream(mix(seed), 8 * lane as u64 + k);
@@ -84,9 +84,9 @@ fn rows_choose_and_sample_as_their_lanes_do(world: &World) {
 }
 
 #[test]
-fn lights_of_every_kind_alone_and_together() {
+fn rows_equal_their_lanes_for_every_kind_of_light() {
     use crate::scene::{Light, LightChoice, Material, NamedMaterial, Scene};
-    let lamps = |count: usize| {
+    let emitters = |count: usize| {
         let mut scene = Scene::default();
         for i in 0..count {
             let angle = i as f64;
@@ -98,9 +98,9 @@ fn lights_of_every_kind_alone_and_together() {
         }
         scene
     };
-    let mut scenes: Vec<Scene> = [1, 2, 16, 17, 60].map(lamps).into();
+    let mut scenes: Vec<Scene> = [1, 2, 16, 17, 60].map(emitters).into();
     let dark = || {
-        let mut scene = lamps(1);
+        let mut scene = emitters(1);
         scene.materials[0].material = Material::Lambertian { color: Rgb::ONE };
         scene
     };

@@ -1,7 +1,7 @@
 //! The choice of lights for a row of receivers.
 //!
-//! Near the root all of them look at the same nodes: there a lane is a receiver and not a node, which
-//! leaves sums and searches in lanes as well. What is below, each looks for alone.
+//! Near the root all receivers evaluate the same nodes: there a lane is a receiver and not a node, so
+//! that sums and searches are in lanes as well. Below, each receiver descends alone.
 
 use super::super::row::{ROW, ReceiverRow};
 use super::{BRANCHES, Nodes, RESOLVED, Tree};
@@ -10,18 +10,18 @@ use crate::vec3::Vec3;
 
 /// The nodes that half a row of receivers have chosen.
 struct Picked {
-    /// Places among their neighbors.
+    /// Places among the siblings.
     place: F64x8,
-    /// Where in the share of the node the draw has fallen.
+    /// Places of the random numbers in the shares of the nodes.
     rest: F64x8,
     probability: F64x8,
-    /// Lanes whose chances single precision resolves.
+    /// Lanes whose probabilities single precision resolves.
     resolved: u32,
 }
 
 impl Tree {
-    /// [`Tree::choose`] for each of the receivers in `lanes`: lights, and the probabilities of the
-    /// choices.
+    /// Does what [`Tree::choose`] does for each of the receivers in `lanes`; returns lights, and the
+    /// probabilities of the choices.
     #[inline(always)]
     pub(in super::super) fn choose_row(
         &self,
@@ -36,7 +36,7 @@ impl Tree {
             if wanted == 0 {
                 continue;
             }
-            // Not `map`, whose closure may be a call.
+            // Not `map`, whose closure might not be inlined.
             let mut of_half = [draw; BRANCHES];
             of_half.iter_mut().zip(&chances).for_each(|(of, &row)| *of = widen(row)[half]);
             let picked = pick(&of_half[..usize::from(self.top)], draw);
@@ -60,7 +60,7 @@ impl Tree {
         (light, probability)
     }
 
-    /// What each of the uppermost nodes gives to each receiver.
+    /// Estimates the contribution of each of the root's children to each receiver.
     #[inline(always)]
     fn chances_row(&self, at: &ReceiverRow) -> [F32x16; BRANCHES] {
         let mut chances = [F32x16::splat(0.0); BRANCHES];
@@ -77,7 +77,7 @@ impl Tree {
     }
 }
 
-/// In each lane the node in whose share a draw falls, of those with these chances.
+/// Returns in each lane the node in whose share a random number falls.
 #[inline(always)]
 fn pick(chances: &[F64x8], draw: F64x8) -> Picked {
     let (zero, one) = (F64x8::splat(0.0), F64x8::splat(1.0));

@@ -1,29 +1,29 @@
-//! Chances against frequencies, closed forms and what must not happen.
+//! Probabilities against frequencies and closed forms.
 
 use super::*;
 use crate::ray::MISS;
 use crate::sampling::statistics::{assert_chi_squared, random_pairs};
-use crate::world::lights::choice::Choice;
+use crate::world::lights::sampler::LightSampler;
 use crate::world::lights::tests::world;
 
-/// Draws of more digits than single precision has.
+/// Random numbers with more digits than single precision has.
 fn draws(count: u64, seed: u64) -> impl Iterator<Item = f64> {
     random_pairs(count, seed).map(|[u, v]| f64::from(u) + f64::from(v) / f64::from(1 << 24))
 }
 
-fn lamp(center: DVec3, radius: f64, power: f64) -> Ball {
-    Ball { center, radius, power, hollow: true, ..Ball::default() }
+fn emitter(center: DVec3, radius: f64, power: f64) -> LightBounds {
+    LightBounds { center, radius, power, hollow: true, ..LightBounds::default() }
 }
 
-/// Lamps of very different size and power in a cube of edge 2.
-fn lamps(count: u64) -> Vec<Ball> {
+/// Returns emitters of very different size and power in a cube of edge 2.
+fn emitters(count: u64) -> Vec<LightBounds> {
     let numbers: Vec<[f64; 2]> =
         random_pairs(3 * count, 5).map(|pair| pair.map(f64::from)).collect();
-    let lamp = |u: &[[f64; 2]]| {
+    let emitter = |u: &[[f64; 2]]| {
         let center = DVec3::new(u[0][0], u[0][1], u[1][0]) * 2.0 - 1.0;
-        lamp(center, 1e-3 + 0.02 * u[1][1].powi(4), 1e-3_f64.powf(u[2][0]))
+        emitter(center, 1e-3 + 0.02 * u[1][1].powi(4), 1e-3_f64.powf(u[2][0]))
     };
-    numbers.chunks_exact(3).map(lamp).collect()
+    numbers.chunks_exact(3).map(emitter).collect()
 }
 
 fn receivers() -> impl Iterator<Item = Receiver> {
@@ -33,7 +33,7 @@ fn receivers() -> impl Iterator<Item = Receiver> {
     all.map(|(place, normal)| Receiver { point: Vec3::from(place), normal, own: MISS })
 }
 
-/// Probabilities sum to 1, are those that choices tell, and those of their frequencies.
+/// Checks that probabilities sum to 1, agree with those that choices return, and with frequencies.
 fn check(tree: &Tree, at: &Receiver) {
     let lights = tree.leaf.len();
     let of = |light| f64::from(tree.probability(at, light));
@@ -52,7 +52,7 @@ fn check(tree: &Tree, at: &Receiver) {
 #[test]
 fn lights_are_chosen_by_their_probability() {
     for count in [1, 2, 3, 16, 17, 40, 3000] {
-        let tree = Tree::new(&lamps(count)).expect("lamps shine");
+        let tree = Tree::new(&emitters(count)).expect("emitters shine");
         receivers().for_each(|at| check(&tree, &at));
     }
 }
@@ -60,9 +60,9 @@ fn lights_are_chosen_by_their_probability() {
 #[test]
 fn lights_of_every_kind_are_chosen_by_their_probability() {
     let world = world();
-    let Choice::Tree(tree) = &world.lights.choice else { panic!("there are lights") };
+    let LightSampler::Tree(tree) = &world.lights.sampler else { panic!("there are lights") };
     receivers().for_each(|at| check(tree, &at));
-    // Next to, on and inside of lamps.
+    // Receivers next to, on and inside of emitters.
     for row in &world.lights.emitters {
         let (center, radius) = world.spheres.exact(*row as usize);
         for part in [0.0, 0.5, 1.0, 1.000_001, 1.1] {
@@ -73,16 +73,21 @@ fn lights_of_every_kind_are_chosen_by_their_probability() {
     }
 }
 
-/// Above the horizon a ball gives its power over squared distance times the cosine, exactly.
+/// Above the horizon, the estimate is power over squared distance times the cosine, exactly.
 #[test]
-fn a_few_lights_are_chosen_by_what_they_give() {
+fn few_lights_are_chosen_by_their_contribution() {
     let places = [[0.3, 0.4, 0.5], [0.0, 0.0, 2.0], [-0.9, 0.1, 0.2], [5.0, -3.0, 1.0]];
-    let lights: Vec<Ball> =
-        places.into_iter().zip(1..).map(|(at, i)| lamp(at.into(), 0.01, f64::from(i))).collect();
-    let sun = Ball { center: DVec3::new(0.6, 0.0, 0.8) * FAR, steady: 0.7, ..Ball::default() };
+    let lights: Vec<LightBounds> =
+        places.into_iter().zip(1..).map(|(at, i)| emitter(at.into(), 0.01, f64::from(i))).collect();
+    let sun = LightBounds {
+        center: DVec3::new(0.6, 0.0, 0.8) * FAR,
+        steady: 0.7,
+        ..LightBounds::default()
+    };
     let tree = Tree::new(&[&lights[..], &[sun]].concat()).expect("all shine");
     let at = Receiver { point: Vec3::ZERO, normal: Vec3::Z, own: MISS };
-    let irradiance = |light: &Ball| light.power * light.center.z / light.center.length().powi(3);
+    let irradiance =
+        |light: &LightBounds| light.power * light.center.z / light.center.length().powi(3);
     let given: Vec<f64> = lights.iter().map(irradiance).chain([0.7 * 0.8]).collect();
     let total: f64 = given.iter().sum();
     for (light, given) in given.into_iter().enumerate() {
@@ -92,10 +97,10 @@ fn a_few_lights_are_chosen_by_what_they_give() {
 }
 
 #[test]
-fn thousands_of_lights_are_told_apart() {
-    let mut lights = lamps(5000);
+fn thousands_of_lights_are_chosen_by_their_contribution() {
+    let mut lights = emitters(5000);
     let point = Vec3::new(0.1, 0.2, 0.3);
-    lights.push(lamp(DVec3::new(0.1, 0.2, 0.31), 0.005, 1.0));
+    lights.push(emitter(DVec3::new(0.1, 0.2, 0.31), 0.005, 1.0));
     let tree = Tree::new(&lights).expect("all shine");
     let facing = |normal| tree.probability(&Receiver { point, normal, own: MISS }, 5000);
     // It is seen among 300 others at first.
@@ -104,13 +109,13 @@ fn thousands_of_lights_are_told_apart() {
 }
 
 #[test]
-fn what_does_not_shine_is_not_chosen_and_what_shines_may_be() {
+fn luminous_lights_only_are_chosen() {
     let dark = [0.0, -1.0, f64::NAN, f64::INFINITY];
-    let lamps = |powers: &[f64]| -> Vec<Ball> {
-        powers.iter().map(|&power| lamp(DVec3::ONE, 0.1, power)).collect()
+    let emitters = |powers: &[f64]| -> Vec<LightBounds> {
+        powers.iter().map(|&power| emitter(DVec3::ONE, 0.1, power)).collect()
     };
-    assert!(Tree::new(&[]).is_none() && Tree::new(&lamps(&dark)).is_none());
-    let tree = Tree::new(&lamps(&[0.0, 1.0, f64::NAN, 1e-300, 1e300])).expect("three shine");
+    assert!(Tree::new(&[]).is_none() && Tree::new(&emitters(&dark)).is_none());
+    let tree = Tree::new(&emitters(&[0.0, 1.0, f64::NAN, 1e-300, 1e300])).expect("three shine");
     for at in receivers() {
         let chances = [0, 1, 2, 3, 4].map(|light| tree.probability(&at, light));
         assert!(chances[0] == 0.0 && chances[2] == 0.0, "{chances:?}");
@@ -120,8 +125,8 @@ fn what_does_not_shine_is_not_chosen_and_what_shines_may_be() {
 }
 
 #[test]
-fn thousands_in_one_place_are_chosen_alike() {
-    let tree = Tree::new(&vec![lamp(DVec3::X, 0.01, 1.0); 1000]).expect("all shine");
+fn coincident_lights_have_equal_probabilities() {
+    let tree = Tree::new(&vec![emitter(DVec3::X, 0.01, 1.0); 1000]).expect("all shine");
     for at in receivers() {
         for light in 0..1000 {
             let probability = tree.probability(&at, light);
@@ -130,11 +135,11 @@ fn thousands_in_one_place_are_chosen_alike() {
     }
 }
 
-/// Light samples find nothing from inside of an emissive sphere: other lights get all the chances.
+/// Light samples find nothing from inside of an emissive sphere: other lights get all the probability.
 #[test]
-fn the_sphere_around_is_left_to_others() {
-    let around = lamp(DVec3::ZERO, 10.0, 1e6);
-    let tree = Tree::new(&[around, lamp(DVec3::Z, 0.1, 1e-3)]).expect("both shine");
+fn an_enclosing_emitter_is_not_chosen() {
+    let around = emitter(DVec3::ZERO, 10.0, 1e6);
+    let tree = Tree::new(&[around, emitter(DVec3::Z, 0.1, 1e-3)]).expect("both shine");
     let at = Receiver { point: Vec3::ZERO, normal: Vec3::Z, own: MISS };
     assert_eq!((tree.probability(&at, 0), tree.probability(&at, 1)), (0.0, 1.0));
 }
@@ -142,7 +147,7 @@ fn the_sphere_around_is_left_to_others() {
 #[test]
 fn the_columns_are_compact() {
     for count in [17, 300, 5000, 100_000] {
-        let tree = Tree::new(&lamps(count)).expect("lamps shine");
+        let tree = Tree::new(&emitters(count)).expect("emitters shine");
         let nodes = tree.child.len() as f64;
         assert!(nodes < 1.4 * count as f64, "{count}: {nodes}");
     }

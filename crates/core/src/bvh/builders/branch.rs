@@ -17,8 +17,8 @@ const HEIGHT: usize = 3 * DEPTH;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Top {
     pub(super) bounds: Bounds,
-    /// What this part costs at least as one child of a wide node, as two at most, and so on, in
-    /// nodes that a ray visits, each weighed with half of its surface. The same for a leaf, 0.
+    /// Least cost of this part as one child of a wide node, as at most two children, and so on: the
+    /// sum of half the surface areas of its nodes. 0 for a leaf.
     pub(super) forest: [f32; WIDTH - 1],
     /// Branches on the longest path.
     pub(super) height: u8,
@@ -42,7 +42,7 @@ impl Top {
         Self { bounds: bounds(items), ..Branch::NONE.top }
     }
 
-    /// Of two parts.
+    /// Joins two parts.
     pub(super) fn join(a: &Self, b: &Self) -> Self {
         let bounds = a.bounds.union(&b.bounds);
         let mut forest = [bounds.half_area() as f32 + best(a, b, WIDTH).1; WIDTH - 1];
@@ -53,8 +53,8 @@ impl Top {
     }
 }
 
-/// How to share `roots` children of a wide node among two parts: how many the first one gets, and
-/// what both cost then (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through
+/// Distributes `roots` children of a wide node over two parts at least cost: returns the number for the
+/// first part, and the cost (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through
 /// Compressed Wide BVHs", HPG 2017).
 pub(super) fn best(a: &Top, b: &Top, roots: usize) -> (usize, f32) {
     let mut best = (1, a.forest[0] + b.forest[roots - 2]);

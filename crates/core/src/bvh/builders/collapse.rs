@@ -41,7 +41,7 @@ impl<'a> Part<'a> {
 /// Nodes in a row, as one task made them.
 struct Run {
     nodes: Vec<Node>,
-    /// What their children's numbers lack.
+    /// Offset to be added to their children's indices.
     base: usize,
 }
 

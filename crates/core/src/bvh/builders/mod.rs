@@ -1,9 +1,9 @@
-//! Building the tree.
+//! Builders of the tree: by medians, by the surface-area heuristic, by Morton codes.
 //!
 //! Spheres are cut in two parts, these again, and so on down to leaves of [`LEAF`] spheres. Parts are
 //! cut at multiples of a leaf, so all leaves but one are full and the spheres' order is the tree's.
-//! Where a part is cut is what builders differ in ([`Builder`]). The binary tree then becomes one of
-//! wide nodes (`collapse`).
+//! Builders differ in where they cut a part ([`Builder`]). The binary tree is then collapsed to wide
+//! nodes (`collapse`).
 //!
 //! All of it is a function of the spheres alone, whatever the number of threads and the order of
 //! rows: no two spheres are equal on an axis, as what tells them apart is where they are on the
@@ -32,7 +32,7 @@ use surface_area::SurfaceArea;
 /// Below this many spheres a subtree is built by one task: splitting costs more than it saves.
 const PARALLEL: usize = 4096;
 
-/// So many spheres about one center are looked at for some that coincide.
+/// Number of spheres about one center from which on those that coincide are searched for.
 const CROWD: usize = 64;
 
 /// With fewer rays than this for each sphere the time to build the best tree does not come back: it
@@ -40,7 +40,7 @@ const CROWD: usize = 64;
 /// uneven ones (measured with a quarter of a million spheres and with a million).
 const RAYS_PER_SPHERE: u64 = 4;
 
-/// How the tree is made: never what is found in it.
+/// The builder of a tree. Hits do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Builder {
@@ -57,21 +57,21 @@ impl Builder {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Median, Self::SurfaceArea, Self::Morton];
 
-    /// What is fastest if so many rays are traced in all.
+    /// Returns the builder that is fastest in total for a number of rays.
     pub fn for_rays(spheres: usize, rays: u64) -> Self {
         let few = (spheres as u64).saturating_mul(RAYS_PER_SPHERE);
         if rays < few { Self::Morton } else { Self::SurfaceArea }
     }
 }
 
-/// Where a part of the tree is cut.
+/// Cuts a part of the tree in two.
 trait Cut: Sync {
     /// Puts the spheres of the first part before those of the second; returns how many they are: a
     /// multiple of [`LEAF`], neither 0 nor all. There is more than a leaf of `items`, and `first` come
     /// before them.
     fn cut(&self, items: &mut [Item], first: usize) -> usize;
 
-    /// What cuts where the tree threatens to become too deep.
+    /// The cut that is used where the tree would become too deep.
     fn median(&self) -> &Median;
 
     /// Whether [`Cut::finish`] makes all that is below so many items.
@@ -91,14 +91,14 @@ fn snapped(place: usize, items: usize) -> usize {
     ((place + LEAF / 2) / LEAF).clamp(1, last) * LEAF
 }
 
-/// What spheres are exactly, by the user's order, if the columns do not hold it; empty otherwise.
+/// Exact spheres in the user's order, if the single-precision columns cannot hold them; empty otherwise.
 struct Precise {
     id: Vec<u32>,
     sphere: Vec<(DVec3, f64)>,
 }
 
 impl Precise {
-    /// What the columns do not hold of some spheres, which do without it from now on.
+    /// Takes the exact spheres out of the columns.
     fn taken(from: &mut Spheres) -> Self {
         let sphere = std::mem::take(&mut from.precise);
         let id = if sphere.is_empty() { Vec::new() } else { std::mem::take(&mut from.id) };
@@ -109,7 +109,7 @@ impl Precise {
         self.sphere.get(self.id.partition_point(|&id| id < item.id)).copied()
     }
 
-    /// What is equal of spheres that coincide.
+    /// Returns a key that is equal for spheres that coincide.
     fn key(&self, item: &Item) -> [u64; 4] {
         let rounded = || {
             let [x, y, z, radius] = item.sphere.map(f64::from);
@@ -123,8 +123,8 @@ impl Precise {
 
 /// Builds the tree and permutes `spheres` so that every leaf is a block.
 ///
-/// Of spheres that coincide only the first of the user's is ever hit. Where there are crowds of them,
-/// in whose boxes a walk would have to look into every leaf, the others are left out.
+/// Of spheres that coincide only the first in the user's order is ever hit. Where many coincide, so that
+/// a traversal would visit every leaf in their box, the others are left out.
 pub fn build(spheres: &mut Spheres, builder: Builder) -> Bvh {
     let mut from = std::mem::take(spheres);
     let rows = (0..from.len()).into_par_iter().with_min_len(PARALLEL);

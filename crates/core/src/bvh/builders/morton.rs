@@ -1,4 +1,4 @@
-//! Along Morton's curve, which fills space: one sort, and then there is next to nothing to decide.
+//! Builds along the Morton curve: one sort by Morton codes, then cuts where their highest bits change.
 //!
 //! A part is cut where the highest bit changes in which its spheres' places on the curve differ
 //! (Lauterbach, Garland, Sengupta, Luebke, Manocha, "Fast BVH Construction on GPUs", Eurographics
@@ -18,7 +18,7 @@ const BITS: u32 = 10;
 /// is near. Cubes, eight along each axis.
 const STRETCHES: usize = 512;
 
-/// So many spheres are worth a task.
+/// Number of spheres that are worth a task.
 const CHUNK: usize = 1 << 14;
 
 /// Bits of a place on a stretch that are ordered at a time.

@@ -7,11 +7,10 @@ use super::item::{AXES, Extent, Item, along, spread};
 use glam::Vec4;
 use rayon::prelude::*;
 
-/// Intervals into which an axis is cut.
+/// Number of bins of an axis.
 pub(super) const BINS: usize = 16;
 
-/// So many spheres are worth a task. Fixed, whatever the number of threads, though nothing depends
-/// on it.
+/// Number of spheres that are worth a task; independent of the number of threads.
 const CHUNK: usize = 1 << 14;
 
 /// Intervals of equal width on every axis, over the spread of some spheres' centers and radii.
@@ -35,12 +34,12 @@ impl Grid {
         Self { spread, scale: scale.min(Vec4::splat(f32::MAX)) }
     }
 
-    /// How widely the spheres are spread.
+    /// Returns the extent of the spheres' centers.
     pub(super) fn width(&self) -> Vec4 {
         self.spread.high - self.spread.low
     }
 
-    /// The interval of a sphere on each axis.
+    /// Returns the bin of a sphere on each axis.
     #[inline(always)]
     pub(super) fn bins(&self, item: &Item) -> [usize; AXES] {
         let place = (item.vector() - self.spread.low) * self.scale;
@@ -48,7 +47,7 @@ impl Grid {
         place.min(last).to_array().map(|bin| bin as usize % BINS)
     }
 
-    /// How many spheres are in each interval of an axis.
+    /// Counts the spheres in each bin of an axis.
     pub(super) fn count(&self, items: &[Item], axis: usize) -> [usize; BINS] {
         let count = |items: &[Item]| {
             let mut counts = [0; BINS];
@@ -87,7 +86,7 @@ impl Grid {
     }
 }
 
-/// The same for those of one interval: all threads cut it into intervals again if there are many.
+/// Partitions the spheres of one bin: with all threads and bins of its own if they are many.
 fn part_some(items: &mut [Item], axis: usize, place: usize) {
     if items.len() > CHUNK {
         let grid = Grid::over(items);
@@ -120,7 +119,7 @@ fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool + Sync) -> usize 
     total
 }
 
-/// The same for few: no branch depends on the condition, which is hard to predict.
+/// Partitions few spheres, without a branch on the condition, which is hard to predict.
 fn partition_chunk(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for i in 0..items.len() {
@@ -131,7 +130,7 @@ fn partition_chunk(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     count
 }
 
-/// What of the parted chunks is on the wrong side of `total`: before it and after it, as many.
+/// Returns the parts of chunks that are on the wrong side of `total`: as many before as after it.
 fn misplaced<'a>(
     mut items: &'a mut [Item],
     counts: &[usize],

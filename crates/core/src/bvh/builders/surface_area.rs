@@ -20,7 +20,7 @@ use crate::bvh::WIDTH;
 use crate::spheres::LEAF;
 use rayon::prelude::*;
 
-/// So many spheres are worth a task.
+/// Number of spheres that are worth a task.
 const CHUNK: usize = 1 << 14;
 
 /// Radii matter if the largest is more than this part of how widely the centers are spread.
@@ -66,7 +66,7 @@ pub(super) fn axes(spread: &Extent) -> usize {
     if radii > LARGE * width { AXES } else { AXES - 1 }
 }
 
-/// What is in the intervals of a grid.
+/// Extents and counts of the spheres in the bins of a grid.
 struct Histogram {
     extent: [[Extent; BINS]; AXES],
     count: [[usize; BINS]; AXES],

@@ -12,7 +12,7 @@ use crate::spheres::LEAF;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// So many spheres are few.
+/// Number of spheres up to which every cut is tried.
 pub(super) const SWEEP: usize = 256;
 
 /// Weight of a node of leaves beside that of a leaf. More than its time, which is about the same:
@@ -132,8 +132,7 @@ impl Sweep {
     }
 }
 
-/// Where items are on an axis, in the upper half of a number that is ordered so, and their places in
-/// the lower one.
+/// Returns sort keys: an item's coordinate on an axis in the upper half, its place in the lower half.
 fn keys_on<'a>(axis: usize, items: &[Item], keys: &'a mut [u64; SWEEP]) -> &'a mut [u64] {
     for (i, (key, item)) in keys.iter_mut().zip(items).enumerate() {
         *key = u64::from(ordered(item.sphere[axis])) << 32 | i as u64;
@@ -153,8 +152,8 @@ fn sorted(items: &[Item]) -> Vec<Item> {
     keys.iter().map(|&key| *item(key)).collect()
 }
 
-/// What leaves cost beside each other, and the nodes that they fill: a node that is not full is met
-/// as often as a full one.
+/// Returns the cost of leaves and of the nodes that they fill: a node that is not full is visited as
+/// often as a full one.
 fn weight(leaves: usize) -> f32 {
     leaves as f32 + NODE * leaves.div_ceil(WIDTH) as f32
 }

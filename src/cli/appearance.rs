@@ -1,0 +1,236 @@
+//! Options for the appearance of particles.
+
+use super::settings::List;
+use super::with_text::{self, WithText};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde_json::{Value, json};
+use spherule::color::{Map, Spacing};
+use spherule::drawing::Format;
+use spherule::scene::Corner;
+use spherule::scene::particles::{
+    Coloring, ColumnColors, ElementColors, Legend, Looks, Selection, TypeLook,
+};
+use spherule::suggest;
+use std::path::PathBuf;
+
+/// Options for the appearance of particles.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[command(next_help_heading = "Particle appearance")]
+pub(super) struct AppearanceArgs {
+    /// Draw only particles for which EXPR is true, as in 'element != H and z > 10'. Operators: == != < <= > >=,
+    /// and, or, not, + - * /, parentheses. Strings are words or quoted; names with other characters than
+    /// letters, digits and _ . : [ ] need backticks. Columns have the file's names, or the names of other
+    /// programs: resname, resid, chainid, segid, name, bfactor, occ, serial, q, mol
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<WithText<Selection>>())]
+    select: Option<WithText<Selection>>,
+    /// Color scheme for elements, also where the file has colors [default: the file's colors, or else jmol]
+    #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
+    colors: Option<Scheme>,
+    /// Color by a column of the file, or by x, y, z, radius, type, element, id or index: numbers by a color
+    /// map, strings by a cycle of ten colors. Names of other programs are accepted, as for --select
+    #[arg(long, value_name = "COLUMN")]
+    color_by: Option<String>,
+    /// Color map for --color-by; append _r to reverse it, as in `viridis_r` [default: viridis]
+    #[arg(long, value_name = "MAP", requires = "color_by", value_parser = map())]
+    color_map: Option<MapChoice>,
+    /// Values at the ends of the color map; values outside get the colors of the ends [default: auto, the
+    /// minimum and the maximum, in a sequence those of all frames]
+    #[arg(
+        long,
+        value_name = "LOW,HIGH|auto",
+        requires = "color_by",
+        allow_hyphen_values = true,
+        value_parser = ends
+    )]
+    color_range: Option<Ends>,
+    /// Logarithmic color scale
+    #[arg(long, requires = "color_by")]
+    color_log: bool,
+    /// Radius, color and material of a particle type, by its name or element; overrides all else; may be
+    /// repeated. Colors are #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and
+    /// emitter
+    #[arg(
+        long = "type",
+        value_name = "NAME:radius=R,color=COLOR,material=M",
+        value_parser = |text: &str| text.parse::<WithText<TypeLook>>()
+    )]
+    types: Vec<WithText<TypeLook>>,
+    /// Draw a color bar: to a .png or .svg file, or inside the image, in its lower right corner or with
+    /// inside:CORNER in one of top-left, top-right, bottom-left and bottom-right
+    #[arg(
+        long,
+        value_name = "FILE|inside[:CORNER]",
+        requires = "color_by",
+        value_parser = bar
+    )]
+    pub(super) color_bar: Option<BarPlace>,
+}
+
+/// Place of a color bar.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum BarPlace {
+    /// A separate file.
+    File(PathBuf, Format),
+    /// A corner of the image.
+    Inside(Corner),
+}
+
+/// Color schemes for elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Scheme {
+    /// Jmol's
+    Jmol,
+    /// Corey, Pauling and Koltun's
+    Cpk,
+}
+
+impl Scheme {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Jmol => "jmol",
+            Self::Cpk => "cpk",
+        }
+    }
+}
+
+/// Values at the ends of a color map; `None` for the range of the data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ends(Option<[f64; 2]>);
+
+/// Names of reversed maps, in the order of [`Map::ALL`].
+const REVERSED: [&str; 7] =
+    ["viridis_r", "cividis_r", "inferno_r", "magma_r", "plasma_r", "turbo_r", "coolwarm_r"];
+
+/// A color map, which may be reversed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct MapChoice {
+    map: Map,
+    reversed: bool,
+}
+
+fn map() -> impl TypedValueParser<Value = MapChoice> {
+    let names = Map::ALL.map(|map| PossibleValue::new(map.name()));
+    let reversed = REVERSED.map(|name| PossibleValue::new(name).hide(true));
+    PossibleValuesParser::new(names.into_iter().chain(reversed)).try_map(|name| {
+        let row = REVERSED.iter().position(|own| *own == name);
+        let map = row.map(|row| Map::ALL[row]).or_else(|| Map::named(&name));
+        let choice = |map| MapChoice { map, reversed: row.is_some() };
+        map.map(choice).ok_or("not one of the names")
+    })
+}
+
+/// `LOW,HIGH` or `auto`.
+fn ends(text: &str) -> Result<Ends, String> {
+    if text == "auto" {
+        return Ok(Ends(None));
+    }
+    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    let numbers = text.split_once(',').and_then(|(low, high)| Some([number(low)?, number(high)?]));
+    numbers
+        .filter(|[low, high]| low <= high)
+        .map(|ends| Ends(Some(ends)))
+        .ok_or_else(|| "give two numbers, the lower one first, as in -1,2.5, or auto".to_owned())
+}
+
+/// `inside`, with or without a corner, or a name that ends in `.png` or `.svg`.
+fn bar(text: &str) -> Result<BarPlace, String> {
+    let corner = match text.strip_prefix("inside") {
+        Some("") => Some(Corner::default()),
+        Some(rest) => rest.strip_prefix(':').and_then(Corner::named),
+        None => None,
+    };
+    let path = PathBuf::from(text);
+    match (corner, Format::of_suffix(&path)) {
+        (Some(corner), _) => Ok(BarPlace::Inside(corner)),
+        (None, Some(format)) => Ok(BarPlace::File(path, format)),
+        (None, None) => {
+            let names = Corner::ALL.map(|(name, _)| name);
+            let near = text.strip_prefix("inside:").map(|corner| suggest::question(corner, names));
+            let (near, names) = (near.unwrap_or_default(), names.join(", "));
+            Err(format!(
+                "give a name that ends in .png or .svg, or inside, or inside:CORNER with one of \
+                 {names}{near}"
+            ))
+        }
+    }
+}
+
+impl AppearanceArgs {
+    /// Converts the options for the reader; `radius_scale` multiplies the radii.
+    pub(super) fn looks(&self, radius_scale: f64) -> Looks {
+        let mut types: Vec<TypeLook> = self.types.iter().map(|look| (**look).clone()).collect();
+        let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
+        radii.for_each(|radius| *radius *= radius_scale);
+        let select = self.select.as_deref().cloned();
+        Looks { select, coloring: self.coloring(), types, allow_empty: false }
+    }
+
+    /// Settings for the image's metadata; the color range is that of the `legend`.
+    pub(super) fn list(&self, legend: Option<&Legend>) -> List {
+        let mut list = List::new();
+        with_text::insert(&mut list, "select", &self.select);
+        let mut put = |name: &str, value: Value| list.insert(name.to_owned(), value);
+        match &self.color_by {
+            Some(column) => put("color_by", json!(column)),
+            None => self.colors.and_then(|scheme| put("colors", json!(scheme.name()))),
+        };
+        if let Some(Legend { scale, .. }) = legend {
+            let reversed = if scale.reversed { "_r" } else { "" };
+            put("color_map", json!(format!("{}{reversed}", scale.map.name())));
+            put("color_range", json!(format!("{},{}", scale.range.low(), scale.range.high())));
+            if self.color_log {
+                put("color_log", json!(true));
+            }
+        }
+        with_text::insert(&mut list, "type", &self.types);
+        list
+    }
+
+    fn coloring(&self) -> Coloring {
+        if let Some(column) = self.color_by.clone() {
+            return Coloring::Column(ColumnColors {
+                column,
+                map: self.color_map.map(|choice| choice.map),
+                reversed: self.color_map.is_some_and(|choice| choice.reversed),
+                ends: self.color_range.and_then(|Ends(ends)| ends),
+                spacing: if self.color_log { Spacing::Logarithmic } else { Spacing::Linear },
+            });
+        }
+        match self.colors {
+            None => Coloring::Usual,
+            Some(Scheme::Jmol) => Coloring::Elements(ElementColors::Jmol),
+            Some(Scheme::Cpk) => Coloring::Elements(ElementColors::Cpk),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_go_to_files_and_corners() {
+        let corner = |top, left| Ok(BarPlace::Inside(Corner { top, left }));
+        assert_eq!(bar("inside"), corner(false, false));
+        assert_eq!(bar("inside:top-left"), corner(true, true));
+        assert_eq!(bar("inside:top-right"), corner(true, false));
+        assert_eq!(bar("inside.svg"), Ok(BarPlace::File("inside.svg".into(), Format::Svg)));
+        assert!(bar("inside:left").is_err() && bar("a.pdf").is_err() && bar("insider").is_err());
+    }
+
+    #[test]
+    fn every_map_can_be_reversed() {
+        for (map, reversed) in Map::ALL.into_iter().zip(REVERSED) {
+            assert_eq!(reversed, format!("{}_r", map.name()));
+        }
+    }
+
+    #[test]
+    fn ends_are_two_numbers() {
+        assert_eq!(ends("-1, 2.5"), Ok(Ends(Some([-1.0, 2.5]))));
+        assert_eq!(ends("auto"), Ok(Ends(None)));
+        for text in ["", "1", "2,1", "1,inf", "nan,1", "1,2,3", "a,b"] {
+            assert!(ends(text).is_err(), "{text}");
+        }
+    }
+}

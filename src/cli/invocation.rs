@@ -1,0 +1,197 @@
+//! The options of a command line, stored in checkpoints and combined with later ones by `--resume`.
+
+use super::args::Args;
+use super::command_line::command_line;
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Command, CommandFactory};
+use std::env;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+
+/// Options of a single run, which are not stored.
+const NOT_STORED: [&str; 7] =
+    ["checkpoint", "resume", "memory_limit", "quiet", "verbose", "stats", "json"];
+
+/// Options whose values are paths.
+const PATHS: [&str; 3] = ["scene", "output", "color_bar"];
+
+/// The option that is always stored: the output file.
+const ALWAYS_STORED: &str = "output";
+
+/// The definition of `spherule render`.
+pub(super) fn render_command() -> Command {
+    let mut program = Args::command();
+    program.build();
+    program.find_subcommand("render").cloned().unwrap_or(program)
+}
+
+/// Options with their values; flags have none.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct CommandOptions(Vec<(String, Vec<OsString>)>);
+
+/// A command line, and the folder in which it was run.
+pub(super) struct Invocation {
+    pub(super) folder: PathBuf,
+    pub(super) typed: CommandOptions,
+}
+
+impl Invocation {
+    /// The command line of this process.
+    pub(super) fn of_process() -> Self {
+        Self { folder: env::current_dir().unwrap_or_default(), typed: CommandOptions::of_process() }
+    }
+}
+
+impl CommandOptions {
+    /// Returns the options of this process if it runs `spherule render`.
+    fn of_process() -> Self {
+        let line = command_line().unwrap_or_default();
+        let matches = Args::command().try_get_matches_from(line);
+        let matches = matches.ok().and_then(|mut all| all.remove_subcommand());
+        matches.map_or(Self(Vec::new()), |(_, matches)| Self::of(&render_command(), &matches))
+    }
+
+    /// Returns the options that are on the command line of a command.
+    pub(super) fn of(command: &Command, matches: &ArgMatches) -> Self {
+        let typed = |arg: &&Arg| {
+            let id = arg.get_id().as_str();
+            let source = matches.try_contains_id(id).is_ok().then(|| matches.value_source(id));
+            source.flatten() == Some(ValueSource::CommandLine)
+        };
+        let values = |arg: &Arg| -> Vec<OsString> {
+            let raw = matches.get_raw(arg.get_id().as_str()).filter(|_| has_values(arg));
+            raw.into_iter().flatten().map(OsStr::to_owned).collect()
+        };
+        let options = command.get_arguments().filter(typed);
+        Self(options.map(|arg| (arg.get_id().to_string(), values(arg))).collect())
+    }
+
+    /// Returns the options to store, with `output` as the output file if none was given.
+    pub(super) fn stored(mut self, output: &Path) -> Self {
+        self.0.retain(|(id, _)| !NOT_STORED.contains(&id.as_str()));
+        if self.0.iter().all(|(id, _)| id != ALWAYS_STORED) {
+            self.0.push((ALWAYS_STORED.to_owned(), vec![output.into()]));
+        }
+        self
+    }
+
+    /// Makes paths absolute, relative to `folder`.
+    pub(super) fn relative_to(mut self, folder: &Path) -> Self {
+        let paths = self.0.iter_mut().filter(|(id, _)| PATHS.contains(&id.as_str()));
+        for value in paths.flat_map(|(_, values)| values) {
+            // `-` is standard input, and a color bar may be inside the image.
+            let text = value.to_str().unwrap_or_default();
+            if text != "-" && text != "inside" && !text.starts_with("inside:") {
+                *value = folder.join(&*value).into();
+            }
+        }
+        self
+    }
+
+    /// Sets the value of an option.
+    pub(super) fn set(&mut self, id: &str, value: impl Into<OsString>) {
+        self.0.retain(|(other, _)| other != id);
+        self.0.push((id.to_owned(), vec![value.into()]));
+    }
+
+    /// Combines the options with later ones, which override them.
+    pub(super) fn with(mut self, later: Self) -> Self {
+        let again = |id: &String| later.0.iter().any(|(other, _)| other == id);
+        self.0.retain(|(id, _)| !again(id));
+        self.0.extend(later.0);
+        self
+    }
+
+    /// Formats the options as arguments of the command.
+    pub(super) fn arguments(&self, command: &Command) -> Vec<OsString> {
+        let (mut options, mut places) = (Vec::new(), Vec::new());
+        for (id, values) in &self.0 {
+            let arg = command.get_arguments().find(|arg| arg.get_id() == id.as_str());
+            match arg.and_then(Arg::get_long) {
+                Some(name) if values.is_empty() => options.push(format!("--{name}").into()),
+                Some(name) => options.extend(values.iter().map(|value| option(name, value))),
+                None => places.extend(values.iter().cloned()),
+            }
+        }
+        if !places.is_empty() {
+            options.push("--".into());
+            options.extend(places);
+        }
+        options
+    }
+}
+
+fn has_values(arg: &Arg) -> bool {
+    arg.get_action().takes_values()
+}
+
+/// `--name=value`.
+fn option(name: &str, value: &OsStr) -> OsString {
+    let mut option = OsString::from(format!("--{name}="));
+    option.push(value);
+    option
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn typed(arguments: &[&str]) -> CommandOptions {
+        CommandOptions::of(&render_command(), &matches(arguments))
+    }
+
+    fn matches(arguments: &[impl Into<OsString> + Clone]) -> ArgMatches {
+        let mut line = vec![OsString::from("render")];
+        line.extend(arguments.iter().cloned().map(Into::into));
+        render_command().try_get_matches_from(line).expect("a line that is understood")
+    }
+
+    #[test]
+    fn what_was_typed_can_be_typed_again() {
+        let lines: [&[&str]; 4] = [
+            &[],
+            &["a.toml", "--size", "40x24", "--cell", "-o", "b.exr", "--layers", "id,normal"],
+            &[
+                "--select=not z > -1",
+                "--view",
+                "-z",
+                "--type",
+                "A:radius=1",
+                "--type",
+                "B:color=#ffffff",
+            ],
+            &["--checkpoint-every", "5s", "--", "-strange.xyz"],
+        ];
+        for line in lines {
+            let first = typed(line);
+            let again = first.arguments(&render_command());
+            let second = CommandOptions::of(&render_command(), &matches(&again));
+            assert_eq!(first, second, "{again:?}");
+        }
+        assert_eq!(typed(&["--cell", "x"]).arguments(&render_command()).len(), 3);
+    }
+
+    #[test]
+    fn what_comes_later_counts() {
+        let first = typed(&["a.toml", "--spp", "5", "--seed", "3", "--type", "A:radius=1"]);
+        let later = typed(&["--spp", "9", "--type", "B:radius=2", "--cell"]);
+        let both =
+            typed(&["a.toml", "--seed", "3", "--spp", "9", "--type", "B:radius=2", "--cell"]);
+        let sorted = |typed: CommandOptions| {
+            let mut arguments = typed.arguments(&render_command());
+            arguments.sort();
+            arguments
+        };
+        assert_eq!(sorted(first.with(later)), sorted(both));
+    }
+
+    #[test]
+    fn paths_are_those_of_the_folder() {
+        let line = typed(&["-", "--quiet", "--checkpoint", "c", "--spp", "2"]);
+        let kept = line.stored(Path::new("a.png")).relative_to(Path::new("/somewhere"));
+        let expected = ["--spp=2", "--output=/somewhere/a.png", "--", "-"];
+        assert_eq!(kept.arguments(&render_command()), expected);
+        let kept = typed(&["a/b.toml"]).relative_to(Path::new("/c"));
+        assert_eq!(kept.arguments(&render_command()), ["--", "/c/a/b.toml"]);
+    }
+}

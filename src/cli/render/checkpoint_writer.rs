@@ -1,0 +1,142 @@
+//! Writing of checkpoints.
+
+use super::job::Job;
+use super::prepare::Prepared;
+use crate::cli::checkpoint::CheckpointArgs;
+use crate::cli::invocation::{CommandOptions, Invocation, render_command};
+use crate::cli::{Failure, output};
+use spherule::atomic::{check_destination, remove_leftovers};
+use spherule::checkpoint::{self, Caption, Lock, Origin};
+use spherule::render::ResumableRender;
+use std::ffi::OsString;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Writes checkpoints to a file, which is locked against other processes.
+pub(super) struct CheckpointWriter {
+    path: PathBuf,
+    _lock: Option<Lock>,
+    folder: OsString,
+    typed: CommandOptions,
+    /// Time of the next checkpoint, across the images of a sequence.
+    due: Mutex<Option<Instant>>,
+    /// The last error, so that it is reported once.
+    failure: Mutex<Option<String>>,
+}
+
+impl CheckpointWriter {
+    /// Checks that checkpoints can be written, if they are requested, and locks their file, before anything
+    /// is read.
+    pub(super) fn new(args: &CheckpointArgs) -> Result<Option<Self>, Failure> {
+        let Some(path) = args.file().cloned() else { return Ok(None) };
+        check(&path).map_err(|error| Failure::Write(path.clone(), error))?;
+        let lock = Lock::take(&path)?;
+        if lock.is_none() {
+            output::warn(format_args!(
+                "{}: its file system does not support locks; make sure that no other process writes it",
+                path.display()
+            ));
+        }
+        if path.is_file() && !args.resumes_into_itself() {
+            return Err(Failure::CheckpointExists(path));
+        }
+        // They cost some space, no more.
+        let _ = remove_leftovers(&path);
+        let (folder, typed) = (OsString::new(), CommandOptions::default());
+        let (due, failure) = (Mutex::default(), Mutex::default());
+        Ok(Some(Self { path, _lock: lock, folder, typed, due, failure }))
+    }
+
+    /// Sets the command that checkpoints store, with its output file.
+    pub(super) fn with(self, given: Invocation, output: &Path) -> Self {
+        Self { folder: given.folder.into(), typed: given.typed.stored(output), ..self }
+    }
+
+    /// Time of the next checkpoint; `None` to write one only on exit.
+    pub(super) fn due(&self, args: &CheckpointArgs) -> Option<Instant> {
+        let mut due = self.due.lock().ok()?;
+        if due.is_none() {
+            *due = args.pause(Duration::ZERO).map(|pause| Instant::now() + pause);
+        }
+        *due
+    }
+
+    /// Sets the time of the next checkpoint, after the last one took `took`.
+    fn reschedule(&self, args: &CheckpointArgs, took: Option<Duration>) {
+        if let Ok(mut due) = self.due.lock() {
+            *due = args.pause(took.unwrap_or_default()).map(|pause| Instant::now() + pause);
+        }
+    }
+
+    /// Writes a checkpoint. On an error, prints a warning and continues the render. Returns whether it was
+    /// written.
+    pub(super) fn save(
+        &self,
+        job: &Job,
+        prepared: &Prepared,
+        caption: &Caption,
+        render: &ResumableRender,
+    ) -> bool {
+        let start = Instant::now();
+        let written = self.write(job, prepared, caption, render);
+        self.report(written.as_ref().err());
+        self.reschedule(job.checkpoints, written.is_ok().then(|| start.elapsed()));
+        written.is_ok()
+    }
+
+    /// Warns of a failure to write a checkpoint, unless the last one failed with the same error.
+    fn report(&self, error: Option<&io::Error>) {
+        let now = error.map(ToString::to_string);
+        let Ok(mut before) = self.failure.lock() else { return };
+        if let Some(why) = now.as_ref().filter(|_| *before != now) {
+            let left = if self.path.is_file() { "the last one remains" } else { "there is none" };
+            let path = self.path.display();
+            output::warn(format_args!(
+                "{path}: cannot write a checkpoint, {left}: {why}; the render continues"
+            ));
+        }
+        *before = now;
+    }
+
+    /// Writes a checkpoint.
+    pub(super) fn write(
+        &self,
+        job: &Job,
+        prepared: &Prepared,
+        caption: &Caption,
+        render: &ResumableRender,
+    ) -> io::Result<()> {
+        let folder = self.folder.clone();
+        let mut typed = self.typed.clone();
+        if let Some(place) = job.place {
+            typed.set("first_picture", place.index.to_string());
+        }
+        let arguments = typed.arguments(&render_command());
+        let missing = || io::Error::other("the scene was not identified");
+        let scene = prepared.identity.clone().ok_or_else(missing)?;
+        let origin = Origin { scene, folder, arguments, caption: caption.clone() };
+        checkpoint::write(&self.path, &origin, render)
+    }
+
+    /// The file of checkpoints.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns the command that resumes the render.
+    pub(super) fn resume_command(&self) -> String {
+        format!("resume with: spherule render --resume {}", self.path.display())
+    }
+}
+
+/// Checks that a file exists or can be created.
+fn check(path: &Path) -> io::Result<()> {
+    check_destination(path)?;
+    if path.exists() && !path.is_file() {
+        let message = "it is a device or a pipe; give a file";
+        return Err(io::Error::new(ErrorKind::InvalidInput, message));
+    }
+    Ok(())
+}

@@ -1,0 +1,64 @@
+//! `--prepare`: writes a scene with its acceleration structure to a file.
+
+use super::job::Job;
+use super::metadata;
+use super::notices::Notices;
+use super::prepare::{PlacedScene, Prepared};
+use super::write_bar;
+use crate::cli::args::RenderArgs;
+use crate::cli::contents::spheres;
+use crate::cli::failure::Failure;
+use crate::cli::output;
+use spherule::atomic::check_destination;
+use spherule::memory::Size;
+use spherule::prepared::{self, PrepareError};
+use spherule::scene::Identity;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Writes the scene of a job to a file.
+pub(super) fn write(job: &Job, file: &Path) -> Result<ExitCode, Failure> {
+    check_destination(file).map_err(|error| Failure::Write(file.to_owned(), error))?;
+    let mut placed = PlacedScene::load(job, None)?;
+    write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
+    let identity = placed.identity.take().unwrap_or_else(|| Identity::of(&placed.scene));
+    let mut built = placed.build(job)?;
+    built.report(job, &mut Notices::default());
+    job.encoding.replace(&mut built.scene.settings);
+    built.scene.title.clone_from(&built.title);
+    let Prepared { scene, world, builder, legend, .. } = &built;
+    let looks = metadata::looks(job, None, legend.as_ref(), None);
+    let written = prepared::write(file, scene, world, &identity, &looks, *builder);
+    written.map_err(|error| match error {
+        PrepareError::Write(error) => Failure::Write(file.to_owned(), error),
+        other => Failure::Prepare(job.source.name().into_owned(), other),
+    })?;
+    if !job.report.quiet {
+        let bytes = file.metadata().map_or(0, |metadata| metadata.len());
+        let count = spheres(world.spheres.len() as u64);
+        output::print(format_args!("{}: {count} with their tree, {}", file.display(), Size(bytes)));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Rejects sequences, whose images have different scenes.
+pub(super) fn refuse_sequence(args: &RenderArgs) -> Result<(), Failure> {
+    if args.prepare.is_none() || !args.is_sequence() {
+        return Ok(());
+    }
+    let message = "--prepare takes one scene; give --frame one frame";
+    Err(Failure::usage("render", message))
+}
+
+/// Rejects options that would change a prepared scene.
+pub(super) fn refuse_changes(args: &RenderArgs) -> Result<(), Failure> {
+    let none = args.looks.list(None).is_empty() && args.looks.color_bar.is_none();
+    let none = none && args.slices.list().is_empty() && args.style.list().is_empty();
+    let none = none && args.views.list().is_empty() && !args.is_sequence();
+    if args.prepare.is_none() && none && !args.particles.any() {
+        return Ok(());
+    }
+    let message = "spheres, materials and camera of a prepared scene are fixed; use the file it was made \
+                   from, or remove options that change them";
+    Err(Failure::usage("render", message))
+}

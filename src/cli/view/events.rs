@@ -1,0 +1,97 @@
+//! Events, commands and actions of the viewer.
+
+use glam::DVec2;
+
+/// Events from a window or a script.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Event {
+    /// The pointer moved to a position, in pixels from the top left corner.
+    Pointer(DVec2),
+    /// A button was pressed; `double` for the second press of a double click.
+    Press { button: Button, held: Modifiers, double: bool },
+    /// The pressed button was released.
+    Release,
+    /// The wheel turned by a number of steps, positive away from the user.
+    Wheel(f64, Modifiers),
+    /// A key was pressed, named as in [`super::keys::BINDINGS`].
+    Key(String),
+    /// The window was resized, in pixels.
+    Resize(u32, u32),
+    /// The display's scale factor changed.
+    Scale(f64),
+    /// The window was asked to close.
+    #[cfg(feature = "view")]
+    Close,
+}
+
+/// Mouse buttons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Button {
+    Left,
+    Middle,
+    Right,
+}
+
+/// Modifier keys.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Modifiers {
+    pub(super) shift: bool,
+    pub(super) control: bool,
+    pub(super) alt: bool,
+}
+
+/// Commands of keys. Numbers are steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Command {
+    Help,
+    Fit,
+    Reset,
+    /// One of the sides of `--view`.
+    Side(&'static str),
+    ToggleProjection,
+    /// Steps to the right and upward.
+    Turn(i8, i8),
+    Roll(i8),
+    Zoom(i8),
+    Widen(i8),
+    Open(i8),
+    Expose(i8),
+    Integrator,
+    Sampler,
+    Preset(i8),
+    Background(i8),
+    DepthCue,
+    Outline,
+    Hide,
+    ShowAll,
+    Color(i8),
+    Bar,
+    Slice,
+    Frame(i64),
+    Samples(i8),
+    Status,
+    Save,
+    Escape,
+    Quit,
+}
+
+/// Actions that need the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Action {
+    /// Pick the sphere at a pixel, for a purpose.
+    Pick((u32, u32), Purpose),
+    /// Fit everything into view, from a side or from the current direction.
+    Frame(Option<&'static str>),
+    /// Load the viewer's content.
+    Load,
+    Save,
+    Quit,
+}
+
+/// Purposes of picking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    Name,
+    Pivot,
+    Focus,
+}

@@ -1,0 +1,54 @@
+//! Render requests of the viewer, and their images.
+
+use super::overlay::OverlaidImage;
+use super::tonemap::{DisplaySettings, ToneMapped};
+use spherule::image::Image;
+use spherule::overlay::Matte;
+use spherule::scene::{Camera, Look, Settings};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A render request.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RenderRequest {
+    /// Version of the view, which grows with every change.
+    pub(super) version: u64,
+    pub(super) camera: Camera,
+    /// Settings with the size and the samples of this image.
+    pub(super) settings: Settings,
+    pub(super) look: Look,
+    /// Display settings of the window.
+    pub(super) display: DisplaySettings,
+    /// True for the first image of its version, which is not cancelled.
+    pub(super) first: bool,
+}
+
+/// A rendered image.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    pub(super) version: u64,
+    pub(super) samples: u32,
+    /// The rendered image.
+    pub(super) image: Image,
+    /// The image with overlays, if there are any.
+    pub(super) drawn: Option<OverlaidImage>,
+    /// The tone-mapped image.
+    pub(super) tone_mapped: Option<Arc<ToneMapped>>,
+    /// Rays of the last samples, and their time.
+    pub(super) rays: u64,
+    pub(super) elapsed: Duration,
+}
+
+impl Picture {
+    pub(super) fn size(&self) -> (u32, u32) {
+        (self.image.width, self.image.height)
+    }
+
+    /// Returns the image to show, with its matte if it is transparent.
+    pub(super) fn visible(&self) -> (&Image, Option<&Matte>) {
+        match &self.drawn {
+            Some(drawn) => (&drawn.image, drawn.matte.as_ref()),
+            None => (&self.image, None),
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Overlays of the viewer, as in `spherule render`, with reuse of the last image's layers.
+
+use super::image::RenderRequest;
+use crate::cli::views::settings_of_layers;
+use spherule::World;
+use spherule::film::Region;
+use spherule::image::Image;
+use spherule::layers::Growing;
+use spherule::overlay::{GroundRender, Matte, Overlay, Runs};
+use spherule::render::{Options, RenderError};
+
+/// An image with overlays.
+#[derive(Clone, Debug)]
+pub(super) struct OverlaidImage {
+    pub(super) image: Image,
+    /// The part of each pixel that is not background, with premultiplied colors; `None` for an opaque image.
+    pub(super) matte: Option<Matte>,
+}
+
+/// Cached layers of a world and its camera.
+#[derive(Default)]
+pub(super) struct OverlayCache {
+    runs: Option<Runs>,
+    layers: Option<Growing>,
+    ground: Option<GroundRender>,
+}
+
+impl OverlayCache {
+    /// Discards the cache after a change of camera or image size.
+    pub(super) fn invalidate(&mut self) {
+        (self.layers, self.ground) = (None, None);
+    }
+
+    /// Draws overlays over an image; `None` if cancelled.
+    pub(super) fn draw(
+        &mut self,
+        world: &mut World,
+        request: &RenderRequest,
+        mut image: Image,
+        options: &Options,
+    ) -> Result<Option<OverlaidImage>, RenderError> {
+        let settings = settings_of_layers(&request.settings, request.settings.spp);
+        let begin = || Growing::begin(world, &settings, options);
+        let known = self.layers.take().map_or_else(begin, Ok)?;
+        let layers = self.layers.insert(known);
+        if !layers.grow(world, &settings, options) {
+            return Ok(None);
+        }
+        if request.look.is_transparent() {
+            if self.ground.is_none() {
+                self.ground = GroundRender::begin(world, &request.settings, options)?;
+            }
+            if let Some(ground) = &mut self.ground
+                && !ground.go_on(world, &request.settings, options)?
+            {
+                return Ok(None);
+            }
+        }
+        let ground = self.ground.as_ref().filter(|_| request.look.is_transparent());
+        let deep = request.look.depth_cue || request.look.outline;
+        let find = || self.runs.get_or_insert_with(|| Runs::of(world)).depths(world);
+        let depths = deep.then(find);
+        let region = Region { x: 0, y: 0, width: image.width, height: image.height };
+        let layers = layers.layers();
+        let overlay = Overlay { world, region, layers: &layers, depths };
+        let matte = overlay.draw_look(&mut image, &request.look, ground.map(GroundRender::ground));
+        Ok(Some(OverlaidImage { image, matte }))
+    }
+}

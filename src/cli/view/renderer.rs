@@ -1,0 +1,221 @@
+//! Rendering of the viewer's images, and picking.
+
+use super::camera_control::CameraControl;
+use super::digits;
+use super::image::{Picture, RenderRequest};
+use super::load::LoadedScene;
+use super::overlay::{OverlaidImage, OverlayCache};
+use super::tonemap::{ToneMapped, ToneMapper};
+use crate::cli::failure::Failure;
+use crate::cli::render::draw_bar;
+use crate::cli::views::Canvas;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use spherule::World;
+use spherule::bvh::builders::Builder;
+use spherule::film::Region;
+use spherule::layers::{Layer, layers};
+use spherule::render::{End, Options, RenderError, ResumableRender};
+use spherule::scene::{Camera, ColorBar, Scene, Settings};
+use spherule::trace::Tracer;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The world, and the state of its current image.
+pub(super) struct Renderer {
+    pub(super) stage: LoadedScene,
+    pub(super) tracer: Tracer,
+    pub(super) builder: Builder,
+    /// Camera and settings of the world, without its spheres.
+    view: Scene,
+    /// The render of the current camera and settings.
+    state: Option<(Camera, ResumableRender)>,
+    overlay: OverlayCache,
+    tone_mapper: ToneMapper,
+    /// The color bar of full-size images.
+    color_bar: Option<ColorBar>,
+}
+
+/// A picked sphere.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Picked {
+    /// Description in one line.
+    pub(super) text: String,
+    pub(super) kind: Option<String>,
+    /// Hit point of the ray through the pixel.
+    pub(super) point: DVec3,
+}
+
+impl Renderer {
+    pub(super) fn new(stage: LoadedScene, tracer: Tracer, builder: Builder) -> Self {
+        let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+        let color_bar = scene.color_bar.clone();
+        drop(scene);
+        Self {
+            stage,
+            tracer,
+            builder,
+            view: Scene::default(),
+            state: None,
+            overlay: OverlayCache::default(),
+            tone_mapper: ToneMapper::default(),
+            color_bar,
+        }
+    }
+
+    /// Replaces the scene.
+    pub(super) fn set(&mut self, stage: LoadedScene) {
+        *self = Self::new(stage, self.tracer, self.builder);
+    }
+
+    /// Renders a requested image, continuing the last one if possible; `None` if cancelled.
+    ///
+    /// # Errors
+    /// The camera sees nothing.
+    pub(super) fn render(
+        &mut self,
+        request: &RenderRequest,
+        cancel: &AtomicBool,
+    ) -> Result<Option<Picture>, Failure> {
+        self.set_camera(&request.camera, &request.settings)?;
+        let start = Instant::now();
+        let options = Options { tracer: self.tracer, cancel: Some(cancel), ..Options::default() };
+        let mut state = self.state.take().filter(|(camera, _)| *camera == request.camera);
+        let extends =
+            |(_, state): &mut (Camera, ResumableRender)| state.extend(&request.settings).is_ok();
+        state = state.and_then(|mut state| extends(&mut state).then_some(state));
+        let world = &mut self.stage.world;
+        let begin = || {
+            let state = ResumableRender::begin(world, &request.settings, &options)?;
+            Ok::<_, RenderError>((request.camera.clone(), state))
+        };
+        let (_, state) = self.state.insert(state.map_or_else(begin, Ok)?);
+        let before = state.totals().counters.rays();
+        if state.run(world, &options) == End::Cancelled {
+            return Ok(None);
+        }
+        let (image, rays) = (state.film().resolve(), state.totals().counters.rays() - before);
+        let mut drawn = None;
+        if !request.look.is_plain() {
+            drawn = self.overlay.draw(world, request, image.clone(), &options)?;
+            if drawn.is_none() {
+                return Ok(None);
+            }
+        }
+        let whole = (request.settings.width, request.settings.height) == request.display.size;
+        if let Some(bar) = self.color_bar.as_ref().filter(|_| whole) {
+            let plain = || OverlaidImage { image: image.clone(), matte: None };
+            let OverlaidImage { image, matte } = drawn.get_or_insert_with(plain);
+            let mut canvas = Canvas { image, matte: matte.take() };
+            draw_bar(bar, &mut canvas, request.look.ink())?;
+            *matte = canvas.matte;
+        }
+        let (version, samples) = (request.version, request.settings.spp);
+        let mut picture = Picture {
+            version,
+            samples,
+            image,
+            drawn,
+            rays,
+            tone_mapped: None,
+            elapsed: Duration::ZERO,
+        };
+        let (width, height) = request.display.size;
+        let mut pixels = vec![0; width as usize * height as usize];
+        self.tone_mapper.map(picture.visible(), request.display, &mut pixels);
+        picture.tone_mapped = Some(Arc::new(ToneMapped { display: request.display, pixels }));
+        picture.elapsed = start.elapsed();
+        Ok(Some(picture))
+    }
+
+    /// Sets the camera of the world; rebuilds the world if the camera is too far away for its precision.
+    fn set_camera(&mut self, camera: &Camera, settings: &Settings) -> Result<(), Failure> {
+        let same = self.view.camera == *camera
+            && (self.view.settings.width, self.view.settings.height)
+                == (settings.width, settings.height);
+        if same {
+            return Ok(());
+        }
+        self.state = None;
+        self.overlay.invalidate();
+        (self.view.camera, self.view.settings) = (camera.clone(), settings.clone());
+        let title = self.stage.facts.title.clone();
+        let failed = |error| Failure::World(title.clone(), error);
+        if self.stage.world.look(&self.view).map_err(failed)? {
+            return Ok(());
+        }
+        let mut scene = self.stage.scene.write().unwrap_or_else(PoisonError::into_inner);
+        (scene.camera, scene.settings) = (camera.clone(), settings.clone());
+        let built = match &self.stage.origin {
+            None => World::build_with(&scene, self.builder),
+            Some(origin) => {
+                let spheres = origin.spheres()?;
+                World::build_taking(&mut Scene { spheres, ..scene.clone() }, self.builder)
+            }
+        };
+        self.stage.world = built.map_err(failed)?;
+        self.overlay = OverlayCache::default();
+        Ok(())
+    }
+
+    /// Picks the sphere at a pixel of the full-size image; `None` for ground and background.
+    ///
+    /// # Errors
+    /// The camera sees nothing.
+    pub(super) fn pick(
+        &mut self,
+        camera: &Camera,
+        settings: &Settings,
+        (x, y): (u32, u32),
+    ) -> Result<Option<Picked>, Failure> {
+        self.set_camera(camera, settings)?;
+        let region = Region { x, y, width: 1, height: 1 };
+        let options = Options { tracer: self.tracer, region: Some(region), ..Options::default() };
+        let found = layers(&self.stage.world, settings, &options, &[Layer::Id])?;
+        let row = found.pixels.first().map_or(usize::MAX, |pixel| pixel.id as usize);
+        let Some((center, radius)) = self.sphere(row) else { return Ok(None) };
+        let labels = &self.stage.labels;
+        let id = labels.id(row).unwrap_or(row as f64);
+        let kind = labels.kind(row).map(str::to_owned);
+        let extent = self.stage.facts.size;
+        let [a, b, c] = center.to_array().map(|value| digits::length(value, extent));
+        let length = digits::value(radius, extent);
+        let named = kind.as_ref().map_or(String::new(), |kind| format!("type {kind}, "));
+        let mut text = format!("sphere {id}: {named}at {a} {b} {c}, radius {length}");
+        for column in labels.columns(row) {
+            text += ", ";
+            text += &column;
+        }
+        let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let size = DVec2::new(f64::from(settings.width), f64::from(settings.height));
+        let offset = (place - size / 2.0) / size.y;
+        let ray = CameraControl::new(camera.clone(), extent).ray(offset * DVec2::new(1.0, -1.0));
+        Ok(Some(Picked { text, kind, point: intersect(ray, center, radius) }))
+    }
+}
+
+impl Renderer {
+    /// Center and radius of a sphere of the scene; in the world's single precision if the scene has only a
+    /// sketch.
+    fn sphere(&self, row: usize) -> Option<(DVec3, f64)> {
+        if self.stage.origin.is_none() {
+            let scene = self.stage.scene.read().unwrap_or_else(PoisonError::into_inner);
+            let there = row < scene.spheres.len();
+            return there.then(|| (scene.spheres.center(row), scene.spheres.radius[row]));
+        }
+        let World { spheres, frame, .. } = &self.stage.world;
+        let place = spheres.id.par_iter().position_any(|&id| id as usize == row)?;
+        let (center, radius) = spheres.exact(place);
+        Some((center / frame.scale + frame.shift, radius / frame.scale))
+    }
+}
+
+/// Intersection of a ray with a sphere that it is known to hit.
+fn intersect((origin, direction): (DVec3, DVec3), center: DVec3, radius: f64) -> DVec3 {
+    let along = (center - origin).dot(direction);
+    let across = (origin + direction * along).distance_squared(center);
+    let half = (radius * radius - across).max(0.0).sqrt();
+    let distance = if along > half { along - half } else { along + half };
+    origin + direction * distance
+}
