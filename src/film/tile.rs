@@ -16,7 +16,7 @@ pub struct Tile {
     pub(super) sums: Sums,
     /// Samples in each of the sums.
     pub samples: u32,
-    /// What its camera rays may hit: everything, or the background only.
+    /// The surfaces that its camera rays may hit: all, or the background only.
     pub view: View,
     /// What tells how far the sums are from their limit; none unless that is measured.
     pub probes: Probes,

@@ -25,7 +25,7 @@ pub struct Spheres {
 
 impl Spheres {
     /// The most spheres a scene may hold: row numbers are `u32`, and a few of them are reserved.
-    pub const MAX: u64 = (1 << 32) - 17;
+    pub const MAX: u64 = spherule_particles::MAX_PARTICLES;
 
     /// Bytes that the center and the radius of a sphere take.
     pub const POSITION_BYTES: u64 = 4 * size_of::<f64>() as u64;

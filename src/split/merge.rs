@@ -51,7 +51,7 @@ pub enum MergeError {
         name: String,
         /// The part that was there first.
         first: String,
-        /// What differs in the scene.
+        /// The part of the scene that differs.
         what: &'static str,
     },
     /// Samples would count twice.

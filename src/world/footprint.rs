@@ -156,7 +156,7 @@ impl ColorColumn {
     }
 }
 
-/// How many spheres are of a material that emits light.
+/// Number of spheres of a material that emits light.
 fn emitters(spheres: &scene::Spheres, materials: &[NamedMaterial]) -> u64 {
     let emits: Vec<bool> =
         materials.iter().map(|row| matches!(row.material, Material::Emitter { .. })).collect();

@@ -23,7 +23,7 @@ pub(crate) struct Parts {
     pub(crate) left_out: LeftOut,
 }
 
-/// How many spheres of a scene are not in its world.
+/// Number of spheres of a scene that are not in its world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct LeftOut {
     /// Slices leave nothing of them.

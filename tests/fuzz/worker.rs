@@ -22,12 +22,12 @@ const MEMORY: usize = 1 << 29;
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
 
-/// What the last panic said. Panics are told by answers alone: decoders of other crates may panic,
+/// Message of the last panic. Panics are reported by answers alone: decoders of other crates may panic,
 /// and be caught.
 static LAST_PANIC: Mutex<String> = Mutex::new(String::new());
 
 #[test]
-#[ignore = "the tests that need it start it"]
+#[ignore = "a worker process: the fuzzing tests start it"]
 fn answers() {
     let Ok(target) = std::env::var(TARGET) else { return };
     std::panic::set_hook(Box::new(|panic| *last_panic() = panic.to_string()));

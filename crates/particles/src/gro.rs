@@ -62,7 +62,7 @@ impl Gro {
     /// Reads the atoms; returns whether any has a velocity.
     fn atoms(&mut self, builder: &mut Builder, count: u64) -> Result<bool, FileError> {
         let schema = builder.schema().clone();
-        let others: Vec<(usize, Slot)> = schema.others().collect();
+        let others: Vec<(usize, Slot)> = schema.used_columns().collect();
         let has_kind = schema.slots.contains(&Slot::Kind);
         let (mut width, mut has_velocities) = (None, false);
         for atom in 0..count {

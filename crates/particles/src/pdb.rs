@@ -116,7 +116,7 @@ impl FrameReader for Pdb {
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let mut builder = Builder::new(self.lines.path(), Format::Pdb, &schema);
         builder.declare(&TEXTS, &["occupancy", "b_factor"]);
-        let others: Vec<(usize, Slot)> = schema.others().collect();
+        let others: Vec<(usize, Slot)> = schema.used_columns().collect();
         // Unless the user names a column, the type comes from several.
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
         let mut alternates = Alternates::default();

@@ -141,8 +141,8 @@ impl Schema {
         Ok(Self { slots, names, extras, asked, rest, naming, has_color, unused, roles, unit })
     }
 
-    /// The columns that are for something, except for those of positions.
-    pub(crate) fn others(&self) -> impl Iterator<Item = (usize, Slot)> {
+    /// Columns with a use other than position, with their indices.
+    pub(crate) fn used_columns(&self) -> impl Iterator<Item = (usize, Slot)> {
         let slots = self.slots.iter().copied().enumerate();
         slots.filter(|(_, slot)| !matches!(slot, Slot::Skip | Slot::Position(_)))
     }

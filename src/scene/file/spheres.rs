@@ -189,7 +189,8 @@ fn format(value: &Value) -> Result<Format, FileError> {
     Ok(format.map_or(Format::Xyzr, |(_, format)| format))
 }
 
-/// What is wrong with so many more spheres, if anything is; `held` bytes of them are there already.
+/// Checks that there is room for more spheres, of which `held` bytes are allocated already; the error says
+/// what is missing.
 fn check_room(
     before: &Spheres,
     added: &Footprint,

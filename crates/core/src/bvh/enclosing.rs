@@ -20,8 +20,8 @@ impl Bvh {
     /// which is the square of its distance from the center minus that of the radius; of equal powers,
     /// the first in the user's order. `None` if no sphere does.
     ///
-    /// Where two spheres meet, both have the same power: on a plane through them the border between
-    /// them continues the crease that is seen on their surfaces. (Aurenhammer, "Power Diagrams:
+    /// At the intersection of two spheres both have the same power: on a plane through them the border
+    /// between them continues the crease that is seen on their surfaces. (Aurenhammer, "Power Diagrams:
     /// Properties, Algorithms and Applications", SIAM Journal on Computing 1987.)
     pub fn enclosing_sphere(&self, spheres: &Spheres, point: Vec3) -> Option<u32> {
         if self.is_empty() {

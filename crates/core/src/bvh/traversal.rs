@@ -63,8 +63,7 @@ impl Query for Closest {
     const ANY: bool = false;
 }
 
-/// Whether a ray hits anything nearer than `t`: fills `sphere` of [`Hits`] with some sphere that it
-/// hits.
+/// Any hit of a ray nearer than `t`: fills `sphere` of [`Hits`] with some sphere that it hits.
 pub struct Any;
 
 impl Query for Any {

@@ -7,7 +7,6 @@ use super::occupancy::{Occupancies, Positions};
 use super::rows::Rows;
 use super::symmetry::{Operation, images};
 use super::tokens::{Token, Tokens};
-use crate::FileError;
 use crate::builder::Builder;
 use crate::cell::Cell;
 use crate::element::Element;
@@ -20,12 +19,13 @@ use crate::reader::FrameReader;
 use crate::schema::Schema;
 use crate::source::Source;
 use crate::undrawn::Undrawn;
+use crate::{FileError, Rgb};
 use glam::DVec3;
 use memchr::memmem;
 use std::sync::Arc;
 
 /// Bytes of an atom as a sphere: four numbers in double precision, a material and a color.
-const ATOM_BYTES: u64 = 48;
+const ATOM_BYTES: u64 = (4 * size_of::<f64>() + size_of::<u32>() + size_of::<Rgb>()) as u64;
 
 /// Prefixes of the columns of atoms; newer files have a point at the end.
 const SITE: &str = "_atom_site_";
