@@ -1,14 +1,14 @@
-//! Building trees: million spheres per second for each builder, on all threads of the machine (set
-//! `RAYON_NUM_THREADS` for fewer), fields of the paper's kind and volumes.
+//! BVH construction: million spheres per second of each builder, for the paper's fields and for volumes, on
+//! all threads of the machine (set `RAYON_NUM_THREADS` for fewer).
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use spherule::scene::generate::{Field, Generator, Volume};
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::spheres::Spheres;
+use spherule_render::scene::generate::{Field, Generator, Volume};
 use std::hint::black_box;
 use std::time::Duration;
 
-/// Spheres of a generator, scaled as a world is: by a power of two, to coordinates of about 1.
+/// Returns generated spheres, scaled as in a world by a power of two to coordinates of about 1.
 fn spheres(generator: &Generator) -> Spheres {
     let from = generator.generate(1).expect("parameters are valid").spheres;
     let reach = (0..from.len()).map(|i| from.center(i).abs().max_element()).fold(0.0, f64::max);

@@ -1,19 +1,19 @@
-//! What surrounds tracing: random numbers of each sampler, and samples that become pixels. All data
-//! stays in the second-level cache.
+//! Work around tracing: random numbers of each sampler, and accumulation of samples into pixels. All data
+//! fits in the second-level cache.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use spherule::film::{Film, Region, TILE};
-use spherule::sampling::Sampler;
-use spherule::scene::{Rgb, SamplerKind};
+use spherule_render::film::{Film, Region, TILE};
+use spherule_render::sampling::Sampler;
+use spherule_render::scene::{Rgb, SamplerKind};
 use std::hint::black_box;
 
 /// Samples per pixel.
 const SPP: u32 = 16;
 
-/// Sets of four numbers that are drawn for each sample: pixel and lens, and two scatterings.
+/// Sets of four numbers for each sample: pixel and lens, and two bounces.
 const SETS: u32 = 3;
 
-/// The sum of the numbers of a tile.
+/// Returns the sum of the numbers of a tile.
 fn numbers(sampler: &Sampler) -> f64 {
     let mut sum = 0.0;
     for (x, y) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (x, y))) {
@@ -34,8 +34,7 @@ fn samplers(criterion: &mut Criterion) {
     for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
         let sampler = Sampler::new(kind, 1, SPP);
         let mean = numbers(&sampler) / count as f64;
-        // Of so many numbers the mean of independent ones is within 0.005 of a half in all but one
-        // of ten million cases.
+        // The mean of this many independent numbers is off by more than 0.005 in one of ten million cases.
         assert!((mean - 0.5).abs() < 0.005, "{kind:?}: {mean}");
         group.bench_function(BenchmarkId::from_parameter(format!("{kind:?}")), |bencher| {
             bencher.iter(|| numbers(black_box(&sampler)));

@@ -1,24 +1,24 @@
-//! The tests that everything rests on: ray against sphere at every width, ray against eight boxes, and
-//! the decision. All data stays in the first-level cache.
+//! Intersection kernels: ray against sphere at every lane width, ray against eight boxes, and the
+//! double-precision confirmation. All data fits in the first-level cache.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DVec3, Vec3 as Point};
-use spherule::sampling::{stream, uniform_sphere, unit_pair};
 use spherule_core::internals::conservative::{Chord, ConservativeRay};
 use spherule_core::internals::intersect::confirm;
 use spherule_core::internals::lanes::{F32x4, F32x8, F32x16, Lanes, Mask};
 use spherule_core::internals::ray::{ExactRay, MISS, Rays};
 use spherule_core::internals::slabs::{Planes, Slabs};
 use spherule_core::internals::vec3::Vec3;
+use spherule_render::sampling::{stream, uniform_sphere, unit_pair};
 use std::hint::black_box;
 
-/// Spheres and rays in, how many of their pairs pass out.
+/// A kernel that counts the pairs of rays and spheres that pass a test.
 type Kernel = fn(&[(Point, f32)], &Rays) -> u32;
 
 const RAYS: usize = 16;
 const SPHERES: usize = 512;
 
-/// Spheres in the unit cube, and rays from around it that are aimed into it.
+/// Returns spheres in the unit cube, and rays from outside that point into it.
 fn data() -> (Vec<(Point, f32)>, Rays) {
     let point = |i: u64| {
         let ([x, y], [z, r]) = (unit_pair(stream(i, 0)), unit_pair(stream(i, 1)));
@@ -46,7 +46,7 @@ fn hits_by_filter<L: Lanes>(spheres: &[(Point, f32)], rays: &Rays) -> u32 {
     hits
 }
 
-/// Boxes about the spheres, eight at a time.
+/// Returns bounding boxes of the spheres, eight at a time.
 fn boxes(spheres: &[(Point, f32)]) -> Vec<Planes> {
     let planes = |eight: &[(Point, f32)]| {
         std::array::from_fn(|axis| {
@@ -96,7 +96,7 @@ fn kernels(criterion: &mut Criterion) {
             });
         }
     };
-    // In so tame a scene the filter lets nothing pass that the exact test rejects.
+    // In this easy scene, the conservative test passes only true hits.
     bench(
         "sphere",
         hits,

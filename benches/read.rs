@@ -1,17 +1,17 @@
-//! How fast files of particles are read, on one thread, in bytes of the file: `cargo bench --bench
-//! read`. The files, of a million particles each, are written to a temporary folder first.
+//! Readers of particle files on one thread, in bytes per second: `cargo bench --bench read`. Files of a
+//! million particles each are written to a temporary folder first.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use spherule::scene::particles::{Format, ReadOptions, read_frame};
+use spherule_render::scene::particles::{Format, ReadOptions, read_frame};
 use std::fs::File;
 use std::hint::black_box;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Particles in each file: 35 to 80 MB.
+/// Particles in each file, which has 35 to 80 MB.
 const COUNT: u64 = 1_000_000;
 
-/// A coordinate of a particle, 0 to 100, which no reader can guess.
+/// Returns a pseudorandom coordinate of a particle, 0 to 100.
 fn coordinate(seed: u64) -> f64 {
     let mixed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15);
     (mixed >> 11) as f64 / (1_u64 << 53) as f64 * 100.0

@@ -1,25 +1,24 @@
-//! Tracing alone: brute force, single rays one after another and many at a time, packets of 4, 8 and 16
-//! rays, and the choice among them, for four classes of rays; and that without the exact decision, to
-//! show what it costs. Rays are made beforehand; each walk's hits are compared with those of single
-//! rays.
+//! Ray traversal: brute force, single and interleaved rays, packets of 4, 8 and 16 rays, and the automatic
+//! choice, for four classes of rays; also without the exact decision, to measure its cost. Rays are generated
+//! beforehand, and hits are compared with those of single rays.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
-use spherule::sampling::{Frame, cosine_hemisphere, stream, unit_pair};
-use spherule::scene::generate::{Field, Generator, Volume};
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::bvh::{Any, Closest, Query, Traversal, Tree, Unverified, trace};
 use spherule_core::internals::bvh::{Bounds, Bvh};
 use spherule_core::internals::lanes::{F32x4, F32x8, F32x16, Lanes};
 use spherule_core::internals::ray::{Hits, MISS, Rays};
 use spherule_core::internals::spheres::Spheres;
+use spherule_render::sampling::{Basis, cosine_hemisphere, stream, unit_pair};
+use spherule_render::scene::generate::{Field, Generator, Volume};
 use std::hint::black_box;
 use std::time::Duration;
 
-/// Pixels along the side of the picture whose rays are traced.
+/// Width and height in pixels of the image whose rays are traced.
 const SIDE: u32 = 256;
 
-/// One way to trace rays.
+/// A traversal to measure.
 type Walk = fn(&Case, Traversal, &Rays) -> Hits;
 
 struct Case {
@@ -28,7 +27,7 @@ struct Case {
     bvh: Bvh,
 }
 
-/// Spheres of a generator, scaled as a world is: by a power of two, to coordinates of about 1.
+/// Returns generated spheres, scaled as in a world by a power of two to coordinates of about 1.
 fn case(name: &'static str, generator: &Generator) -> Case {
     let from = generator.generate(1).expect("parameters are valid").spheres;
     let reach = (0..from.len()).map(|i| from.center(i).abs().max_element()).fold(0.0, f64::max);
@@ -55,7 +54,7 @@ fn run<L: Lanes, Q: Query>(case: &Case, traversal: Traversal, rays: &Rays) -> Hi
     hits
 }
 
-/// Camera rays from a corner, in blocks of 4 x 4 pixels.
+/// Returns camera rays from a corner, in blocks of 4 x 4 pixels.
 fn camera(case: &Case) -> Rays {
     let Bounds { low, high } = case.bvh.bounds().expect("there are spheres");
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
@@ -75,7 +74,7 @@ fn camera(case: &Case) -> Rays {
     rays
 }
 
-/// From what the camera sees: toward a light, or anywhere above the surface.
+/// Returns rays from visible points, toward a light or cosine-distributed.
 fn secondary(case: &Case, toward: Option<Vec3>) -> Rays {
     let primary = camera(case);
     let hits = closest::<f32>(case, Traversal::Single, &primary);
@@ -87,7 +86,7 @@ fn secondary(case: &Case, toward: Option<Vec3>) -> Rays {
         let point = (center + normal * f64::from(case.spheres.radius(sphere))).as_vec3();
         let direction = toward.unwrap_or_else(|| {
             let u = unit_pair(stream(2, row as u64));
-            Frame::new(normal.as_vec3()).to_world(cosine_hemisphere(u)).normalize()
+            Basis::new(normal.as_vec3()).to_world(cosine_hemisphere(u)).normalize()
         });
         if direction.dot(normal.as_vec3()) > 0.0 {
             rays.push(point, direction, sphere as u32);
@@ -124,7 +123,7 @@ fn bench_class<Q: Query>(criterion: &mut Criterion, case: &Case, class: &str, ra
     bench("packet-8", run::<F32x8, Q>, Traversal::Packet);
     bench("packet-16", run::<F32x16, Q>, Traversal::Packet);
     bench("auto", run::<F32x16, Q>, Traversal::Auto);
-    // What exactness costs: the same walk without it. Few answers differ in scenes so tame.
+    // The cost of exactness: the same traversal without it. Few hits differ in easy scenes.
     let rough = run::<F32x16, Unverified<Q>>;
     let hits = rough(case, Traversal::Auto, rays);
     let differ = (0..rays.len())

@@ -78,57 +78,6 @@
 #[doc = include_str!("../docs/library.md")]
 struct LibraryGuide;
 
-// Exact ray queries on spheres.
 pub use spherule_core as query;
-#[doc(hidden)]
-pub use spherule_core::internals::{bvh, exact, intersect, lanes, ray, spheres, vec3};
-
-// Particle files, and what their readers share with scene files.
-#[doc(hidden)]
-pub use spherule_particles::internals::{memory, suggest};
-
-// Vocabulary: knows nothing of scenes.
-pub mod color;
-
-pub mod sampling;
-
-// The pipeline, in order.
-pub mod scene;
-pub mod world;
-
-pub mod trace;
-
-pub mod integrator;
-pub mod shade;
-
-pub mod checkpoint;
-pub mod film;
-pub mod layers;
-pub mod noise;
-pub mod overlay;
-pub mod prepared;
-pub mod render;
-pub mod split;
-
-#[cfg(feature = "cli")]
-pub mod drawing;
-
-pub mod atomic;
-pub mod image;
-mod sealed;
-
-// Judge what is above, and give it work.
-pub mod paper;
-pub mod stress;
-pub mod workload;
-
-// Measures it, and tells what was found.
-#[cfg(feature = "cli")]
-pub mod bench;
-#[cfg(feature = "cli")]
-pub mod report;
-
-pub use image::Image;
-pub use scene::Scene;
-pub use spherule_core::SphereTree;
-pub use world::World;
+pub use spherule_particles as particles;
+pub use spherule_render::*;

@@ -1,7 +1,6 @@
-//! The `spherule` program: renders scenes made of spheres, and looks at scenes and pictures.
+//! The `spherule` program: renders scenes of spheres, and inspects scenes and images.
 //!
-//! What is typed becomes `Args`, these become a validated job, and the job calls the library's
-//! public interface.
+//! The command line is parsed to `Args` and validated as a job, which calls the library's public interface.
 
 mod cli;
 

@@ -1,5 +1,5 @@
-//! Checkpoints and parts of which bytes are others: damaged ones are refused, and forged ones, whose hash
-//! is right, are refused or harmless. Neither makes the program fail or take memory without bound.
+//! Modified checkpoints and parts: damaged ones are refused, and forged ones with a correct hash are refused
+//! or harmless. Neither crashes the program or makes it allocate without bound.
 
 mod common;
 
@@ -9,30 +9,30 @@ use glam::DVec3;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
-use spherule::checkpoint::{self, Caption, Origin};
-use spherule::film::Region;
-use spherule::render::{ImagePart, Options, ResumableRender};
-use spherule::scene::{Identity, Scene};
-use spherule::split::{Merge, Part, Split};
-use spherule::world::World;
+use spherule_render::checkpoint::{self, Caption, Origin};
+use spherule_render::film::Region;
+use spherule_render::render::{ImagePart, Options, ResumableRender};
+use spherule_render::scene::{Identity, Scene};
+use spherule_render::split::{Merge, Part, Split};
+use spherule_render::world::World;
 use std::alloc::System;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Duration;
 use std::{fs, thread};
 
-/// Whoever asks for more ends this program.
+/// Memory limit of the process; larger allocations fail.
 const MEMORY: usize = 256 << 20;
 
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, MEMORY);
 
-/// Bytes before the length of the head, of that, and of the hash at the end.
+/// Bytes before the head's length, of the length, and of the hash at the end.
 const START: usize = 24;
 const LENGTH: usize = 8;
 const HASH: usize = 32;
 
-/// A small scene, to an error or not.
+/// Returns a small scene, with or without an error goal.
 fn scene(until_error: Option<f64>) -> Scene {
     let mut scene = furnace();
     sphere(&mut scene, [0.0, 0.0, 0.0], 1.0, lambertian(0.5));
@@ -42,7 +42,7 @@ fn scene(until_error: Option<f64>) -> Scene {
     scene
 }
 
-/// Renders that were stopped, or are parts, as files.
+/// Returns files of interrupted renders and of parts.
 fn files() -> &'static [Vec<u8>] {
     static FILES: OnceLock<Vec<Vec<u8>>> = OnceLock::new();
     FILES.get_or_init(|| {
@@ -60,7 +60,7 @@ fn files() -> &'static [Vec<u8>] {
     })
 }
 
-/// The file of a share of a render that was stopped after so many tasks.
+/// Returns the file of a part that was stopped after a number of tasks.
 fn kept(scene: &Scene, share: ImagePart, tasks: u32) -> Vec<u8> {
     let world = World::build(scene).expect("a world");
     let (count, cancel) = (AtomicU32::new(0), AtomicBool::new(false));
@@ -100,7 +100,7 @@ fn read(bytes: &[u8]) -> Result<(Origin, ResumableRender), String> {
     checkpoint::read(&path).map_err(|error| error.to_string())
 }
 
-/// A change of bytes.
+/// A modification of bytes.
 #[derive(Clone, Debug)]
 enum Change {
     Set(Index, Vec<u8>),
@@ -151,7 +151,7 @@ impl Change {
     }
 }
 
-/// The head of a file, and the blocks.
+/// Returns the head of a file, and the blocks.
 fn divided(file: &[u8]) -> [Vec<u8>; 2] {
     let (length, content) = file[START..file.len() - HASH].split_at(LENGTH);
     let length = u64::from_le_bytes(length.try_into().expect("eight bytes"));
@@ -159,7 +159,7 @@ fn divided(file: &[u8]) -> [Vec<u8>; 2] {
     [head.to_vec(), blocks.to_vec()]
 }
 
-/// A file with the right length of its head and the right hash.
+/// Returns a file with the correct length of its head and the correct hash.
 fn sealed(file: &[u8], [head, blocks]: &[Vec<u8>; 2]) -> Vec<u8> {
     let mut forged = file[..START].to_vec();
     forged.extend((head.len() as u64).to_le_bytes());
@@ -170,7 +170,7 @@ fn sealed(file: &[u8], [head, blocks]: &[Vec<u8>; 2]) -> Vec<u8> {
     forged
 }
 
-/// Does with what was read whatever is done with such files.
+/// Performs all operations on a file's content.
 fn use_up(origin: &Origin, mut render: ResumableRender, scene: &Scene) {
     drop(render.render());
     assert!(read(&written(origin, &render)).is_ok(), "it can be kept");
@@ -184,12 +184,12 @@ fn use_up(origin: &Origin, mut render: ResumableRender, scene: &Scene) {
     }
     let settings = render.settings();
     if (settings.width, settings.height) == (scene.settings.width, scene.settings.height) {
-        go_on(&mut render, scene);
+        resume_briefly(&mut render, scene);
     }
 }
 
-/// For a moment: who knows how many samples were asked for.
-fn go_on(render: &mut ResumableRender, scene: &Scene) {
+/// Resumes briefly, since the number of samples may be large.
+fn resume_briefly(render: &mut ResumableRender, scene: &Scene) {
     static WORLD: OnceLock<World> = OnceLock::new();
     let world = WORLD.get_or_init(|| World::build(scene).expect("a world"));
     let cancel = AtomicBool::new(false);

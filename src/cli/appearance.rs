@@ -4,13 +4,13 @@ use super::settings::List;
 use super::with_text::{self, WithText};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde_json::{Value, json};
-use spherule::color::{Map, Spacing};
-use spherule::drawing::Format;
-use spherule::scene::Corner;
-use spherule::scene::particles::{
-    Coloring, ColumnColors, ElementColors, Legend, Looks, Selection, TypeLook,
+use spherule_render::color::{Map, Spacing};
+use spherule_render::drawing::Format;
+use spherule_render::scene::Corner;
+use spherule_render::scene::particles::{
+    Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, Selection, TypeStyle,
 };
-use spherule::suggest;
+use spherule_render::suggest;
 use std::path::PathBuf;
 
 /// Options for the appearance of particles.
@@ -52,9 +52,9 @@ pub(super) struct AppearanceArgs {
     #[arg(
         long = "type",
         value_name = "NAME:radius=R,color=COLOR,material=M",
-        value_parser = |text: &str| text.parse::<WithText<TypeLook>>()
+        value_parser = |text: &str| text.parse::<WithText<TypeStyle>>()
     )]
-    types: Vec<WithText<TypeLook>>,
+    types: Vec<WithText<TypeStyle>>,
     /// Draw a color bar: to a .png or .svg file, or inside the image, in its lower right corner or with
     /// inside:CORNER in one of top-left, top-right, bottom-left and bottom-right
     #[arg(
@@ -157,12 +157,12 @@ fn bar(text: &str) -> Result<BarPlace, String> {
 
 impl AppearanceArgs {
     /// Converts the options for the reader; `radius_scale` multiplies the radii.
-    pub(super) fn looks(&self, radius_scale: f64) -> Looks {
-        let mut types: Vec<TypeLook> = self.types.iter().map(|look| (**look).clone()).collect();
+    pub(super) fn looks(&self, radius_scale: f64) -> ParticleStyle {
+        let mut types: Vec<TypeStyle> = self.types.iter().map(|look| (**look).clone()).collect();
         let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
         radii.for_each(|radius| *radius *= radius_scale);
         let select = self.select.as_deref().cloned();
-        Looks { select, coloring: self.coloring(), types, allow_empty: false }
+        ParticleStyle { select, coloring: self.coloring(), types, allow_empty: false }
     }
 
     /// Settings for the image's metadata; the color range is that of the `legend`.

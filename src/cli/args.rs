@@ -17,7 +17,7 @@ use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
 use super::{Failure, bench, compare, examples, merge, part, status, stress, view};
 use clap::{Parser, Subcommand};
-use spherule::image::Format;
+use spherule_render::image::Format;
 use std::path::PathBuf;
 
 /// Renders scenes of spheres with exact visibility; the image never depends on the performance settings

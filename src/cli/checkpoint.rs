@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::values::{self, OrNone};
-use spherule::atomic::FileIdentity;
+use spherule_render::atomic::FileIdentity;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

@@ -6,7 +6,7 @@ use super::files::Files;
 use super::output;
 use indicatif::HumanCount;
 use serde::Serialize;
-use spherule::image::{Comparison, Image, compare};
+use spherule_render::image::{Comparison, Image, compare};
 use std::borrow::Cow;
 use std::path::PathBuf;
 use std::process::ExitCode;

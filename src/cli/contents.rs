@@ -1,14 +1,14 @@
 //! Descriptions of a world's contents and of skipped work.
 
 use indicatif::HumanCount;
-use spherule::World;
-use spherule::world::Kind;
+use spherule_render::World;
+use spherule_render::shade::MaterialKind;
 
 /// Returns a phrase for each kind of content.
 pub(super) fn found(world: &World) -> Vec<String> {
     let features = &world.features;
     let mut found = Vec::new();
-    for kind in Kind::ALL {
+    for kind in MaterialKind::ALL {
         let count = features.spheres_by_kind[kind as usize];
         if count > 0 {
             found.push(format!("{} of {}", spheres(count), kind.name()));

@@ -7,10 +7,10 @@ use super::files::Files;
 use super::values::Radii;
 use super::{Failure, output};
 use clap::ValueEnum;
-use spherule::scene::generate::{
+use spherule_render::scene::generate::{
     DEFAULT_MIX, Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend,
 };
-use spherule::scene::write;
+use spherule_render::scene::write;
 use std::path::Path;
 use std::process::ExitCode;
 

@@ -1,8 +1,8 @@
 //! Light, ground and cameras for generated spheres.
 
 use glam::DVec3;
-use spherule::scene::generate::{Field, GenerateError, Generator, Group, default_scene};
-use spherule::scene::{
+use spherule_render::scene::generate::{Field, GenerateError, Generator, Group, default_scene};
+use spherule_render::scene::{
     Camera, Environment, EnvironmentMap, Lens, Material, NamedMaterial, Pose, Projection, Rgb,
     Scene,
 };

@@ -1,12 +1,12 @@
 //! Files that a command reads and writes, checked for conflicts before the work begins.
 //!
-//! An output never replaces an input or another output: files are told apart by their identity, not by
+//! An output never replaces an input or another output: files are compared by their identity, not by
 //! their names ([`FileIdentity`]). Files that are in the way only because of an earlier run are replaced, as
 //! usual.
 
 use super::Failure;
-use spherule::atomic::FileIdentity;
-use spherule::scene;
+use spherule_render::atomic::FileIdentity;
+use spherule_render::scene;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
@@ -151,7 +151,7 @@ fn identity(path: &Path) -> Option<FileIdentity> {
 
 #[cfg(unix)]
 mod streams {
-    use spherule::atomic::FileIdentity;
+    use spherule_render::atomic::FileIdentity;
     use std::fs::File;
     use std::io::{stdin, stdout};
     use std::os::fd::AsFd;
@@ -172,7 +172,7 @@ mod streams {
 
 #[cfg(not(unix))]
 mod streams {
-    use spherule::atomic::FileIdentity;
+    use spherule_render::atomic::FileIdentity;
 
     pub(super) fn input() -> Option<FileIdentity> {
         None

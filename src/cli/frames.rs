@@ -1,6 +1,6 @@
 //! Values of `--frame`.
 
-use spherule::scene::particles::FrameChoice;
+use spherule_render::scene::particles::FrameChoice;
 use std::fmt;
 use std::str::FromStr;
 

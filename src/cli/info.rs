@@ -9,10 +9,10 @@ use super::source::Source;
 use super::{Failure, output, settings, slices};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
-use spherule::World;
-use spherule::film::Region;
-use spherule::scene::{EnvironmentMap, Projection, Scene, bounds};
-use spherule::world::Kind;
+use spherule_render::World;
+use spherule_render::film::Region;
+use spherule_render::scene::{EnvironmentMap, Projection, Scene, bounds};
+use spherule_render::shade::MaterialKind;
 use std::process::ExitCode;
 
 /// Contents of a scene, with lengths in its own unit.
@@ -103,7 +103,7 @@ fn load(source: &Source, rows: Option<usize>) -> Result<(Scene, Option<ParticleI
         }
         return Ok((source.load()?, None));
     };
-    let particles = spherule::scene::particles::read(path, options)?;
+    let particles = spherule_render::scene::particles::read(path, options)?;
     let mut info = ParticleInfo::new(path, options, &particles);
     info.rows = rows.map(|count| RowInfo::new(&particles, count));
     Ok((Scene::of_particles(particles, &source.title(&Scene::default())), Some(info)))
@@ -195,7 +195,7 @@ impl CameraInfo {
             Projection::Perspective { .. } => "perspective",
             Projection::Orthographic { .. } => "orthographic",
         };
-        let eye = world.camera.eye / world.frame.scale + world.frame.shift;
+        let eye = world.camera.eye / world.transform.scale + world.transform.shift;
         Self { projection, eye: eye.to_array(), lens: world.camera.has_lens() }
     }
 
@@ -241,7 +241,7 @@ fn materials(scene: &Scene) -> Vec<MaterialInfo> {
     }
     let rows = scene.materials.iter().zip(counts);
     rows.map(|(named, spheres)| {
-        let kind = Kind::of(&named.material).name();
+        let kind = MaterialKind::of(&named.material).name();
         MaterialInfo { name: named.name.clone(), kind, spheres }
     })
     .collect()

@@ -1,7 +1,7 @@
 //! `--memory-limit`: an upper bound on memory.
 
 use bytesize::ByteSize;
-use spherule::memory;
+use spherule_render::memory;
 
 /// Option that limits memory.
 #[derive(Clone, Copy, Debug, clap::Args)]

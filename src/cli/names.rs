@@ -1,12 +1,12 @@
 //! Names of option values, and the values that they stand for.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use spherule::image::{Depth, Format, PpmEncoding};
-use spherule::layers::Layer;
-use spherule::scene::{Filter, Integrator, LightChoice, SamplerKind, Tone};
-use spherule::split::Split;
-use spherule::stress::{REGIMES, Regime};
-use spherule::trace::{PacketWidth, Traversal};
+use spherule_measure::stress::{REGIMES, Regime};
+use spherule_render::image::{Depth, Format, PpmEncoding};
+use spherule_render::layers::Layer;
+use spherule_render::scene::{Filter, Integrator, LightChoice, SamplerKind, Tone};
+use spherule_render::split::Split;
+use spherule_render::trace::{PacketWidth, Traversal};
 use std::mem::discriminant;
 
 /// Names of values with their help, in the order in which they are listed; names without help are not

@@ -8,10 +8,10 @@ use super::{Failure, output};
 use indicatif::HumanCount;
 use serde::Serialize;
 use serde_json::json;
-use spherule::scene::particles::{
+use spherule_render::scene::particles::{
     Columns, Element, Format, FrameChoice, LengthUnit, Particles, Radii, ReadOptions, count_frames,
 };
-use spherule::suggest;
+use spherule_render::suggest;
 use std::path::Path;
 
 /// Options for reading a particle file.

@@ -2,9 +2,9 @@
 
 use super::files::STREAM;
 use super::{Failure, output};
-use spherule::atomic::check_destination;
-use spherule::film::Region;
-use spherule::image::Format;
+use spherule_render::atomic::check_destination;
+use spherule_render::film::Region;
+use spherule_render::image::Format;
 use std::io::{IsTerminal, stdout};
 use std::path::Path;
 

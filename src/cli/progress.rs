@@ -2,7 +2,7 @@
 
 use super::output;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
-use spherule::render::Progress;
+use spherule_render::render::Progress;
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -175,7 +175,7 @@ fn bar() -> ProgressBar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spherule::noise::Noise;
+    use spherule_render::noise::Noise;
 
     fn at(done: f64, seconds: u64) -> Progress {
         let elapsed = Duration::from_secs(seconds);

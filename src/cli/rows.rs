@@ -2,7 +2,7 @@
 
 use super::output;
 use serde::Serialize;
-use spherule::scene::particles::Particles;
+use spherule_render::scene::particles::Particles;
 
 /// The first and last particles, without repetition.
 #[derive(Serialize)]

@@ -4,9 +4,9 @@ use super::args::{EncodingArgs, PictureArgs};
 use super::names::{FILTERS, INTEGRATORS, LIGHT_CHOICES, PPM, SAMPLERS, TONES};
 use super::values::OrNone;
 use serde_json::{Map, Value, json};
-use spherule::film::Region;
-use spherule::image::{Depth, Format, WriteOptions};
-use spherule::scene::{Integrator, Roulette, Settings};
+use spherule_render::film::Region;
+use spherule_render::image::{Depth, Format, WriteOptions};
+use spherule_render::scene::{Integrator, Roulette, Settings};
 
 /// Names and values, in order.
 pub(super) type List = Map<String, Value>;

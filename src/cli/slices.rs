@@ -3,8 +3,8 @@
 use super::settings::List;
 use glam::DVec3;
 use serde_json::json;
-use spherule::scene::{FileError, Scene, Slice, SliceMode, SlicePlane, bounds};
-use spherule::suggest;
+use spherule_render::scene::{FileError, Scene, Slice, SliceMode, SlicePlane, bounds};
+use spherule_render::suggest;
 use std::path::Path;
 
 /// Options for slices.

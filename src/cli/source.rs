@@ -2,9 +2,9 @@
 
 use super::Failure;
 use super::particles::ParticleArgs;
-use spherule::prepared::is_prepared;
-use spherule::scene::particles::ReadOptions;
-use spherule::scene::{FileError, Scene, generate};
+use spherule_render::prepared::is_prepared;
+use spherule_render::scene::particles::ReadOptions;
+use spherule_render::scene::{FileError, Scene, generate};
 use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

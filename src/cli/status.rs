@@ -3,9 +3,9 @@
 use super::output;
 use indicatif::HumanDuration;
 use serde::Serialize;
-use spherule::checkpoint::{CheckpointError, Origin, inspect, is_locked};
-use spherule::render::{ImagePart, Status};
-use spherule::split::holes;
+use spherule_render::checkpoint::{CheckpointError, Origin, inspect, is_locked};
+use spherule_render::render::{ImagePart, Status};
+use spherule_render::split::uncovered_parts;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -123,7 +123,7 @@ impl Report {
         let samples = usable.iter().map(|status| status.samples).sum();
         let shares: Vec<ImagePart> = usable.iter().map(|status| status.part.clone()).collect();
         let missing = whole.map_or_else(Vec::new, |status| {
-            holes(&ImagePart::whole(status.region, status.settings.spp), &shares)
+            uncovered_parts(&ImagePart::whole(status.region, status.settings.spp), &shares)
         });
         let wanted = whole.map_or(0, |status| {
             let pixels = u64::from(status.region.width) * u64::from(status.region.height);

@@ -1,8 +1,8 @@
 //! Parsers of option values. Errors state the valid range; clap adds the option's name and value.
 
-use spherule::film::Region;
-use spherule::scene::{Roulette, Settings};
-use spherule::suggest;
+use spherule_render::film::Region;
+use spherule_render::scene::{Roulette, Settings};
+use spherule_render::suggest;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 use std::time::Duration;

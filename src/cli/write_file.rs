@@ -2,7 +2,7 @@
 
 use super::files::STREAM;
 use super::{Failure, output, signals};
-use spherule::atomic::write_atomically;
+use spherule_render::atomic::write_atomically;
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;

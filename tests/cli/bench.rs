@@ -1,16 +1,16 @@
-//! Measurements as a command: what they write, and what they refuse.
+//! `spherule bench`: output files and errors.
 
 use crate::folder::{Folder, text};
 use serde_json::Value;
 use std::fs;
 
-/// Runs a measurement that takes no time to speak of.
+/// Runs a short measurement.
 fn quick(folder: &Folder, args: &[&str]) {
     let output = folder.succeed(&[&["bench"], args, &["--quick", "--quiet", "-o", "out"]].concat());
     assert!(output.is_empty(), "{output}");
 }
 
-/// Checks that every file in the folder `out` is whole; returns their names in order.
+/// Checks that every file in the folder `out` is complete; returns their names in order.
 fn check_files(folder: &Folder) -> Vec<String> {
     let entries = fs::read_dir(folder.path("out")).expect("a folder that is there");
     let files = entries.flatten().filter(|entry| entry.path().is_file());
@@ -129,7 +129,7 @@ fn only_earlier_reports_are_replaced() {
     folder.write("out/notes.png", "mine");
     folder.write("own.toml", "[[file]]\npath = \"out/points.csv\"\nradius = 0.5\n");
     let (own, paper) = ("own.toml", "paper-field-20");
-    // Other files of the folder are in nobody's way, nor are those of earlier reports.
+    // Other files in the folder are permitted, and those of earlier reports are replaced.
     for scene in [own, paper, own] {
         quick(&folder, &["threads", "--scenes", scene, "--threads-up-to", "1"]);
     }

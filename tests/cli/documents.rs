@@ -1,4 +1,4 @@
-//! Documents: their links lead to files.
+//! Links in documents.
 
 use std::fs;
 use std::path::{Path, PathBuf};

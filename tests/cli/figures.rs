@@ -1,12 +1,11 @@
-//! What figures need: no background, a color bar in the picture, and files that say how they came
-//! about.
+//! Images for figures: transparent background, color bar inside, and metadata.
 
 use crate::folder::{Folder, SMALL, text};
-use spherule::image::{Image, read_metadata};
+use spherule_render::image::{Image, read_metadata};
 use std::fs::File;
 use std::io::BufReader;
 
-/// Three balls in a row, with a column of numbers.
+/// Three spheres in a row, with a column of numbers.
 const BALLS: &str = "\
 3
 Properties=species:S:1:pos:R:3:q:R:1
@@ -25,7 +24,7 @@ fn picture(folder: &Folder, args: &[&str]) {
     folder.succeed(&[&SMALL[..], &["a.xyz", "--radii", "0.5", "--view", "z"], args].concat());
 }
 
-/// Red, green, blue and alpha of each pixel of a PNG file.
+/// Returns red, green, blue and alpha of each pixel of a PNG file.
 pub(crate) fn codes(folder: &Folder, name: &str) -> Vec<[u8; 4]> {
     let file = BufReader::new(File::open(folder.path(name)).expect("a file"));
     let mut reader = png::Decoder::new(file).read_info().expect("a header");
@@ -40,7 +39,7 @@ fn transparent_pictures_have_no_sky_and_keep_shadows() {
     picture(&folder, &["--background", "transparent", "-o", "a.png"]);
     let plain = codes(&folder, "a.png");
     assert_eq!(plain.len(), 40 * 24);
-    // The margin is empty, the middle full, and nothing between is brighter than white balls are.
+    // The margin is empty, the center opaque, and no pixel is brighter than white spheres.
     assert_eq!((plain[0], plain[12 * 40 + 20][3]), ([0; 4], 255));
     picture(&folder, &["--background", "transparent", "--preset", "studio", "-o", "b.png"]);
     let studio = codes(&folder, "b.png");

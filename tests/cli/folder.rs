@@ -1,4 +1,4 @@
-//! A folder for a test to work in.
+//! A temporary folder for a test.
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 use tempfile::TempDir;
 
-/// A small picture of plastic, metal and glass.
+/// Arguments of a small image of plastic, metal and glass.
 pub(crate) const SMALL: [&str; 6] = ["render", "--size", "40x24", "--spp", "4", "--quiet"];
 
-/// A folder that goes away with the test.
+/// A folder that is removed after the test.
 pub(crate) struct Folder(TempDir);
 
 impl Folder {
@@ -24,19 +24,19 @@ impl Folder {
         program.args(args).current_dir(&self.0).output().expect("a program that runs")
     }
 
-    /// What the program prints, once it has done what it should.
+    /// Runs the program, asserts success, and returns its output.
     pub(crate) fn succeed(&self, args: &[&str]) -> String {
         let output = self.run(args);
         assert!(output.status.success(), "{args:?}: {}", text(&output.stderr));
         text(&output.stdout)
     }
 
-    /// What the program prints, as JSON.
+    /// Runs the program and returns its output as JSON.
     pub(crate) fn json(&self, args: &[&str]) -> Value {
         serde_json::from_str(&self.succeed(args)).expect("one JSON object")
     }
 
-    /// The bytes of a small picture.
+    /// Returns the bytes of a small image.
     pub(crate) fn picture(&self, name: &str, args: &[&str]) -> Vec<u8> {
         let output = self.succeed(&[&SMALL, &["-o", name][..], args].concat());
         assert!(output.is_empty(), "{output}");
@@ -51,7 +51,7 @@ impl Folder {
         fs::write(self.path(name), content).expect("a folder that takes files");
     }
 
-    /// The path of a file in the folder.
+    /// Returns the path of a file in the folder.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }

@@ -1,8 +1,8 @@
-//! Picture formats, pictures on standard output, and files that are rendered without a command's name.
+//! Image formats, images on standard output, and files that are rendered without the name of a command.
 
 use crate::figures::codes;
 use crate::folder::{Folder, SMALL, text};
-use spherule::image::{Format, Image, compare, read_metadata};
+use spherule_render::image::{Format, Image, compare, read_metadata};
 use std::fs::File;
 use std::process::{Command, Output, Stdio};
 
@@ -48,7 +48,7 @@ fn every_format_holds_the_picture_and_its_settings() {
     folder.picture("deep.png", &["--bits", "16"]);
     let read = |name| Image::read(folder.path(name)).expect("a picture");
     assert_eq!(read("deep.tif"), read("deep.png"));
-    // Worse quality, fewer bytes.
+    // Lower quality gives smaller files.
     let small = folder.picture("q.jpg", &["--quality", "20"]).len();
     assert!(small < folder.picture("q.jpg", &["--quality", "95"]).len());
 }
@@ -147,13 +147,13 @@ fn files_are_rendered_without_the_name_of_a_command() {
     same(&folder.run(&[&["dump.xyz"], &options[..], &["b.png"]].concat()), "file first");
     same(&folder.run(&[&options[..], &["b.png", "dump.xyz"]].concat()), "options first");
     let piped = run_with_input(&folder, &[&["-"], &options[..], &["b.png"]].concat(), "dump.xyz");
-    // Pictures name the file that they were made of.
+    // Images name their source.
     assert!(piped.status.success() && Image::read(folder.path("b.png")).is_ok());
-    // What was typed is kept with a checkpoint, too.
+    // The command line is stored in a checkpoint, too.
     folder.succeed(&[&["dump.xyz"], &options[..], &["c.png", "--checkpoint", "c"]].concat());
     folder.succeed(&["--resume", "c", "--spp", "8", "-q"]);
     assert_eq!(read_metadata(folder.path("c.png")).expect("metadata").value("spp"), Some("8"));
-    // The name of a command is one, whatever files there are.
+    // The name of a command takes precedence over a file.
     assert_eq!(folder.run(&["info"]).status.code(), Some(2));
     folder.succeed(&[&["./info"], &options[..], &["d.png"]].concat());
     for (word, like) in [("dupm.xyz", "dump.xyz"), ("rendr", "render"), ("./dump.xy", "./dump.xyz")]

@@ -1,9 +1,9 @@
-//! Many frames of a file on the command line.
+//! Frames of a file on the command line.
 
 use crate::folder::{Folder, SMALL, text};
-use spherule::image::{Image, read_metadata};
+use spherule_render::image::{Image, read_metadata};
 
-/// A particle that moves one unit to the right from frame to frame, and a column that grows.
+/// Particles, one of which moves one unit to the right in each frame, with an increasing column.
 fn moving(frames: usize) -> String {
     let header = "Properties=species:S:1:pos:R:3:q:R:1";
     let frame =
@@ -35,8 +35,7 @@ fn every_frame_has_its_picture() {
     let folder = folder();
     run(&folder, &["--frame", "all", "-o", "b.png"]);
     assert_eq!(names(&folder), ["b-0000.png", "b-0001.png", "b-0002.png", "b-0003.png"]);
-    // The first particle stays where it is, for the camera does, and the other one moves: the camera
-    // frames all of the way.
+    // The camera is fixed and frames all frames, so the first particle stays and the other one moves.
     let pictures: Vec<Image> =
         names(&folder).iter().map(|name| Image::read(folder.path(name)).expect("read")).collect();
     let column = |image: &Image, x: u32| -> Vec<_> {
@@ -91,7 +90,7 @@ fn ranges_are_those_of_the_frames_that_have_numbers() {
     for (options, range) in [("", "-2,5"), (" --color-log", "0.5,5")] {
         let line = format!("render a.xyz --frame all --color-by q {TINY} -o a.png{options}");
         let told = said(&folder, 0, &line);
-        assert!(told.contains("gray for want of `q`: 2 of"), "{told}");
+        assert!(told.contains("2 particles have no value of `q`"), "{told}");
         for frame in 0..3 {
             let path = folder.path(&format!("a-000{frame}.png"));
             let metadata = read_metadata(path).expect("a picture");
@@ -100,7 +99,7 @@ fn ranges_are_those_of_the_frames_that_have_numbers() {
     }
     let none = "render none.xyz --frame all --color-by q --color-log -o n.png";
     let told = said(&folder, 1, none);
-    assert!(told.contains("`q` has no colors"), "{told}");
+    assert!(told.contains("cannot color by the column `q`"), "{told}");
     assert!(!names(&folder).iter().any(|name| name.starts_with('n')));
 }
 
@@ -139,7 +138,7 @@ fn types_have_one_color_in_all_frames() {
     assert!(unknown.contains("no type is called `Q4`"), "{unknown}");
 }
 
-/// Frames of particles of one kind at these places, each with a title of its own.
+/// Returns frames of particles of one type at these positions, each with its own title.
 fn trajectory(frames: &[&[[f64; 3]]]) -> String {
     let row = |[x, y, z]: &[f64; 3]| format!("C {x} {y} {z}\n");
     let rows = |frame: &[[f64; 3]]| frame.iter().map(row).collect::<String>();
@@ -149,7 +148,7 @@ fn trajectory(frames: &[&[[f64; 3]]]) -> String {
     frames.iter().map(frame).collect()
 }
 
-/// Returns whether a picture shows anything but the sky, and whether that keeps off the edges.
+/// Returns whether an image shows anything but the sky, and whether it is clear of the edges.
 fn shown(folder: &Folder, name: &str) -> (bool, bool) {
     let image = Image::read(folder.path(name)).expect("a picture");
     let painted = |x: u32, y: u32| image.pixel(x, y).is_some_and(|pixel| pixel[1] < 0.9);
@@ -160,7 +159,7 @@ fn shown(folder: &Folder, name: &str) -> (bool, bool) {
     (places.any(|(x, y)| painted(x, y)), !cropped)
 }
 
-/// Runs the program, and returns what it says, in one line.
+/// Runs the program, and returns its messages in one line.
 #[track_caller]
 fn said(folder: &Folder, code: i32, line: &str) -> String {
     let args: Vec<&str> = line.split(' ').collect();
@@ -192,7 +191,7 @@ fn the_camera_frames_all_frames_that_are_drawn() {
             }
         }
     }
-    // A range frames what it draws: with one frame, that alone.
+    // The camera frames only the frames of the range.
     let line = format!("render drift.xyz --radii 4 --frame 4-4 {TINY} -o one.png");
     said(&folder, 0, &line);
     let line = format!("render drift.xyz --radii 4 --frame 4 {TINY} -o single.png");
@@ -223,7 +222,7 @@ fn frames_that_show_nothing_are_counted_once() {
     assert!(!empty && full);
     let none = said(&folder, 1, &format!("{line} --select z>50"));
     assert!(none.contains("no sphere in 6 frames"), "{none}");
-    // A frame without atoms is one in plain XYZ too.
+    // A frame without atoms is valid in plain XYZ too.
     folder.write("plain.xyz", "1\n\nC 0 0 0\n0\n\n1\n\nC 0 0 1\n");
     let plain = said(&folder, 0, &format!("render plain.xyz --frame all {TINY} -o p.png"));
     assert!(plain.contains("in 1 of 3 images: frames 1"), "{plain}");
@@ -303,7 +302,7 @@ fn ranges_that_are_not_there_are_refused_before_anything_is_drawn() {
         assert!(told.contains(message), "{line}: {told}");
     }
     assert_eq!(names(&folder), [""; 0]);
-    // What is whole is drawn, and what is cut off is told of.
+    // Complete frames are drawn, and truncated ones are reported.
     let told = said(&folder, 0, &format!("render cut.xyz --frame all {TINY}"));
     assert!(told.contains("the file ends after 1 of 2 atoms"), "{told}");
     assert_eq!(names(&folder).len(), 3);

@@ -1,5 +1,4 @@
-//! Inputs that are no ordinary files, or hardly so: folders, devices, pipes, absurd lengths and
-//! names.
+//! Unusual inputs: folders, devices, pipes, extreme lengths and names.
 #![cfg(unix)]
 
 use crate::folder::{Folder, text};
@@ -12,10 +11,10 @@ use std::os::unix::fs::symlink;
 use std::process::Output;
 use std::time::Duration;
 
-/// More than any of these takes, on a machine that does much else.
+/// Time limit of each case, on a busy machine.
 const TIME: Duration = Duration::from_secs(60);
 
-/// Most bytes that a refusal takes to tell.
+/// Maximum length of an error message in bytes.
 const LONGEST: usize = 4000;
 
 fn run<'a>(folder: &Folder, args: impl IntoIterator<Item = &'a OsStr>) -> Output {
@@ -24,7 +23,7 @@ fn run<'a>(folder: &Folder, args: impl IntoIterator<Item = &'a OsStr>) -> Output
     program.output().expect("a program that runs")
 }
 
-/// Runs a command that must fail soon, in words, of which `word` is one.
+/// Runs a command that must fail soon, with a message that contains `word`.
 #[track_caller]
 fn refuse(folder: &Folder, line: &str, word: &str) {
     let output = run(folder, line.split(' ').map(OsStr::new));
@@ -46,7 +45,7 @@ fn folders_are_refused() {
         ("render a.toml", "a.toml: cannot be read"),
         ("render a.xyz", "a.xyz: cannot be read"),
         ("compare a.png a.png", "cannot read the picture \"a.png\""),
-        ("info file.toml", "there is no file a.xyz"),
+        ("info file.toml", "file not found: a.xyz"),
         ("info sky.toml", "cannot read the picture \"a.png\""),
     ] {
         refuse(&folder, line, word);
@@ -83,7 +82,7 @@ fn files_without_end_are_refused() {
 #[test]
 fn scenes_have_a_greatest_length() {
     let folder = Folder::new();
-    // Of holes: it takes no room on the disk.
+    // A sparse file, which takes no disk space.
     File::create(folder.path("long.toml")).unwrap().set_len((1 << 26) + 1).unwrap();
     refuse(&folder, "render long.toml", "cannot be read: it is longer than 67.1 MB");
 }
@@ -104,13 +103,13 @@ fn refusals_are_short_where_lines_are_long() {
     refuse(&folder, "info syntax.toml", "syntax.toml:1");
 }
 
-/// Runs a command while `content` goes into the pipe `name`, whose writer goes away then.
+/// Runs a command while `content` is written to the pipe `name`, which is then closed.
 fn run_with_pipe(line: &str, name: &str, content: &'static [u8]) -> Output {
     let folder = Folder::new();
     let path = folder.path(name);
     let made = std::process::Command::new("mkfifo").arg(&path).status();
     assert!(made.is_ok_and(|status| status.success()), "no pipe");
-    // Waits for a reader; whether that reads everything is its own business.
+    // Waits for a reader, which need not read everything.
     let writer = std::thread::spawn(move || {
         let _ = File::create(path).and_then(|mut pipe| pipe.write_all(content));
     });
@@ -152,7 +151,7 @@ fn pipes_that_end_early_are_refused() {
 #[test]
 fn files_that_cannot_be_opened_are_refused() {
     let folder = Folder::new();
-    // Links to themselves: unlike files without permissions, the superuser cannot open them either.
+    // Links to themselves, which, unlike files without permissions, the superuser cannot open either.
     for name in ["loop.toml", "loop.xyz", "loop.png"] {
         symlink(name, folder.path(name)).unwrap();
     }

@@ -1,10 +1,10 @@
-//! Layers beside the picture.
+//! Layers of images on the command line.
 
 use crate::folder::{Folder, text};
 use exr::meta::MetaData;
-use spherule::image::Image;
+use spherule_render::image::Image;
 
-/// The names of a file's channels.
+/// Returns the names of a file's channels.
 fn channels(folder: &Folder, name: &str) -> Vec<String> {
     let meta = MetaData::read_from_file(folder.path(name), true).expect("an EXR file");
     assert_eq!(meta.headers.len(), 1);

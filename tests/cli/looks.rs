@@ -1,7 +1,7 @@
-//! How particles look on the command line.
+//! Appearance of particles on the command line.
 
 use crate::folder::{Folder, text};
-use spherule::image::Image;
+use spherule_render::image::Image;
 
 const DUST: &str = "id,element,x,y,z,q,note\n7,C,0,0,0,-1,a\n8,O,3,0,0,0,b\n9,H,0,3,0,4,a\n";
 
@@ -12,7 +12,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// The picture of the dust with these looks.
+/// Returns the image of the particles with these options.
 fn picture(args: &[&str]) -> Image {
     let folder = folder();
     folder.picture("dust.ppm", &[&["dust.csv"], args].concat());
@@ -101,7 +101,7 @@ fn color_bars_are_written_beside_the_picture() {
     }
     let bar = text(&folder.read("bar.svg"));
     assert!(bar.contains("\nq\n") && bar.contains("\n4\n"), "{bar}");
-    // Neither exposure nor tone touches it.
+    // Exposure and tone curve do not affect it.
     let args = ["dust.csv", "--color-by", "q", "--color-bar", "b.svg", "--exposure", "2"];
     folder.picture("dust.ppm", &args);
     assert_eq!(text(&folder.read("b.svg")), bar);
@@ -123,7 +123,7 @@ fn looks_that_cannot_be_are_refused() {
         (&["dust.csv", "--color-by", "q", "--color-bar", "bar.pdf"], 2, ".png or .svg"),
         (&["dust.csv", "--color-by", "note", "--color-bar", "bar.png"], 2, "a numeric column"),
         (&["dust.csv", "--color-by", "q", "--color-bar", "no/bar.png"], 1, "cannot be written"),
-        (&["dust.csv", "--select", "z > "], 2, "missing here z > ^"),
+        (&["dust.csv", "--select", "z > "], 2, "name here z > ^"),
         (&["dust.csv", "--select", "mass > 1"], 1, "--> selection:1:1 | 1 | mass > 1 | ^^^^"),
         (&["dust.csv", "--select", "x > 9"], 1, "none of its 3 particles"),
         (&["dust.csv", "--type", "C:material=wood"], 2, "materials are: lambertian"),

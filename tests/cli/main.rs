@@ -1,4 +1,4 @@
-//! The program as its users meet it: commands, messages, exit codes and files.
+//! The program as users run it: commands, messages, exit codes and files.
 #![cfg(feature = "cli")]
 
 mod bench;

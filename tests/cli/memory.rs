@@ -1,16 +1,16 @@
-//! Memory: estimates beside what the process held, and limits that are named.
+//! Memory: estimates compared with the peak of the process, and limits.
 
 use crate::folder::{Folder, text};
 use serde_json::Value;
 use std::fmt::Write as _;
 
-/// Spheres of each source: so many that they take most of the memory.
+/// Number of spheres of each source, which dominate the memory.
 const COUNT: usize = 500_000;
 
-/// A picture so small that spheres decide.
+/// Arguments of an image that is small enough for spheres to dominate.
 const TINY: [&str; 7] = ["--size", "32x24", "--spp", "1", "--quiet", "-o", "x.png"];
 
-/// Renders a file of the folder; bytes as estimated and as held at most.
+/// Renders a file of the folder; returns the estimated and the peak memory in bytes.
 fn bytes(folder: &Folder, file: &str, args: &[&str]) -> (f64, f64) {
     let report = folder.json(&[&["render", file, "--json"], &TINY[..], args].concat());
     let number =
@@ -18,7 +18,7 @@ fn bytes(folder: &Folder, file: &str, args: &[&str]) -> (f64, f64) {
     (number("estimated_peak_bytes"), number("peak_bytes"))
 }
 
-/// Whether the estimate for a file is within 15 % of what it takes.
+/// Asserts that the estimate for a file is within 15 % of the peak.
 #[track_caller]
 fn estimated(folder: &Folder, file: &str, args: &[&str]) {
     let (estimate, peak) = bytes(folder, file, args);
@@ -26,13 +26,13 @@ fn estimated(folder: &Folder, file: &str, args: &[&str]) {
     assert!((0.85..1.15).contains(&ratio), "{file}: {estimate} for {peak}, {ratio}");
 }
 
-/// A place for each of many particles, in a cube.
+/// Returns the positions of many particles, in a cube.
 fn place(row: usize) -> [f64; 3] {
     let side = 80;
     [row % side, row / side % side, row / side / side].map(|cell| 0.7 * cell as f64)
 }
 
-/// The rows of a file, between a head and an end.
+/// Returns the rows of a file, between header and trailer.
 fn rows(head: &str, row: impl Fn(usize, [f64; 3]) -> String) -> String {
     let mut text = head.to_owned();
     for index in 0..COUNT {
@@ -182,7 +182,7 @@ fn limits_of_the_shell_are_obeyed_and_named() {
             let mut shell = std::process::Command::new("sh");
             shell.args(["-c", &line]).current_dir(folder.root()).output().expect("a shell")
         };
-        // Virtual memory has the program's own in it.
+        // Virtual memory includes that of the program itself.
         let named = [("v", 30 << 20, "virtual memory (ulimit -v)"), ("d", 0, "data (ulimit -d)")];
         for (option, own, name) in named {
             let few = limited(option, own + COUNT as u64 * least);

@@ -1,10 +1,10 @@
-//! Outputs: standard output that cannot be written, and files that would replace others.
+//! Outputs: failing standard output, and files that would replace others.
 
 use crate::folder::{Folder, SMALL, text};
 use std::fs::{self, File};
 use std::process::{Command, Output, Stdio};
 
-/// Runs a command line by a shell in the folder; `$0` is the program.
+/// Runs a shell command in the folder; `$0` is the program.
 fn shell(folder: &Folder, line: &str) -> Output {
     let mut shell = Command::new("sh");
     shell.args(["-c", line, env!("CARGO_BIN_EXE_spherule")]).current_dir(folder.root());
@@ -52,7 +52,7 @@ fn standard_output_that_cannot_be_written_is_an_error() {
         let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
         program.args(line).current_dir(folder.root()).stdout(Stdio::from(full));
         check(line, "No space left", &program.output().expect("a program that runs"));
-        // What was to be done is done.
+        // The work itself is done.
         if let Some(name) = line.iter().skip_while(|word| **word != "-o").nth(1)
             && !line.contains(&"--part")
         {
@@ -67,13 +67,13 @@ fn standard_output_that_cannot_be_written_is_an_error() {
         "exec \"$0\" render --size 8x8 --spp 1 --lanes 4 --traversal scalar 2>/dev/full",
     );
     assert_eq!(lost.status.code(), Some(1));
-    // Who closes standard error wants no messages.
+    // Closed standard error suppresses messages.
     let closed =
         shell(&folder, "exec \"$0\" render --size 8x8 --spp 1 --traversal scalar --lanes 4 2>&-");
     assert_eq!(closed.status.code(), Some(0));
 }
 
-/// A particle file with a trajectory of three frames and a column, a scene with an environment, a part.
+/// Writes a particle file of three frames with a column, a scene with an environment, and a part.
 fn with_inputs() -> Folder {
     let folder = Folder::new();
     let frame = "2\nProperties=species:S:1:pos:R:3:heat:R:1\nH 0 0 0 1\nO 0 1 0 2\n";
@@ -92,7 +92,7 @@ fn with_inputs() -> Folder {
     folder
 }
 
-/// All files of a folder with their contents.
+/// Returns all files of a folder with their contents.
 fn contents(folder: &Folder) -> Vec<(String, Vec<u8>)> {
     let entries = fs::read_dir(folder.root()).expect("a folder").flatten();
     let files = entries.filter(|entry| entry.path().is_file());
@@ -185,7 +185,7 @@ fn files_beside_a_scene_are_replaced_only_with_their_scene() {
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.contains("data.csv") && message.contains("already exists"), "{message}");
-    // Not even if somebody else's scene names it.
+    // Not even if another scene refers to it.
     folder.write("data.toml", "[[file]]\npath = \"data.csv\"\n");
     assert_eq!(folder.run(&["field", "-o", "data.toml"]).status.code(), Some(1));
     assert_eq!(folder.read("data.csv"), b"mine");
@@ -207,7 +207,7 @@ fn what_may_be_replaced_is() {
     let folder = with_inputs();
     folder.picture("old.png", &["--seed", "2"]);
     let lines = [
-        // A checkpoint goes on in its own file, whatever it is called.
+        // A checkpoint resumes in its own file, under any name.
         "render --resume ./kept --checkpoint sub/../kept --spp 8 -q",
         "render --resume kept --checkpoint other --spp 8 -q",
         "stress --rays 64 -q --csv /dev/null --plot p.svg",

@@ -1,4 +1,4 @@
-//! Files of particles on the command line.
+//! Particle files on the command line.
 
 use crate::folder::{Folder, SMALL, text};
 use serde_json::json;
@@ -93,7 +93,7 @@ fn settings_without_effect_are_refused() {
         (&["info", "run.dump", "--columns", "width=size"], 2, "no role of a column"),
         (&["info", "run.dump", "--format", "png"], 2, "formats are: xyzr"),
         (&["info", "run.dump", "--frame", "2"], 1, "has no frame 2"),
-        (&["info", "run.dump", "--radii", "vdw"], 1, "none of its particles has an element"),
+        (&["info", "run.dump", "--radii", "vdw"], 1, "no particle has an element"),
         (&["info", "run.dump", "--radii", "column:q"], 1, "no column is named `q`"),
     ] {
         let output = folder.run(args);

@@ -1,10 +1,10 @@
-//! Renders that are shared out: parts, the merged picture, and what is refused.
+//! Parts of renders, merged images, and errors.
 
 use crate::folder::{Folder, SMALL, text};
 use std::fs;
 use std::process::{Command, Output};
 
-/// Renders parts of the small picture.
+/// Renders parts of the small image.
 fn render(folder: &Folder, args: &[&str], parts: &[&str]) {
     for part in parts {
         let output = folder.succeed(&[&SMALL, args, &["--part", part]].concat());
@@ -32,7 +32,7 @@ fn parts_become_the_file_of_the_whole() {
         let parts = ["a.3-of-3.part", "a.1-of-3.part", "a.2-of-3.part"];
         folder.succeed(&[&["merge"], &parts[..], &["-o", "b.exr", "-q"]].concat());
         assert!(folder.read("b.exr") == whole, "{split}");
-        // Without layers and statistics, but for what was measured; exposed as said here.
+        // Without layers and statistics, except for measurements; with the exposure given here.
         folder.succeed(&[&["merge"], &parts[..], &["-o", "b.png", "-q"]].concat());
         folder
             .succeed(&[&["merge"], &parts[..], &["-o", "c.exr", "-q", "--layers", "id"]].concat());
@@ -104,7 +104,7 @@ fn what_does_not_belong_together_is_named() {
     let hole = merge(&["a.2-of-4.part"]);
     refused(&hole, 1, &["no part has sample 1 of tiles 1 to 6", "; nor sample 3", "--partial"]);
     let twice = merge(&["a.2-of-4.part", "a.1-of-2.part", "--partial"]);
-    refused(&twice, 1, &["a.1-of-2.part: has sample 2 of", "a.2-of-4.part has too"]);
+    refused(&twice, 1, &["a.1-of-2.part: has sample 2 of", "as does a.2-of-4.part"]);
     refused(&merge(&["b.3-of-4.part"]), 1, &["b.3-of-4.part: is of another scene", "spheres"]);
     refused(&merge(&["c.3-of-4.part"]), 1, &["c.3-of-4.part: has other layers", "a.4-of-4.part"]);
     refused(&merge(&["x.part"]), 1, &["x.part: cannot be read"]);
@@ -157,7 +157,7 @@ fn what_parts_cannot_do_is_said() {
     let folder = Folder::new();
     folder.write("a.xyz", "1\n\nH 0 0 0\n");
     let cases: &[(&str, &[&str])] = &[
-        ("--part 0/3", &["--part", "1/N to N/N"]),
+        ("--part 0/3", &["--part", "from 1 to N"]),
         ("--part 4/3", &["--part", "3/8"]),
         ("--part from-env/0", &["--part", "from-env/8"]),
         ("--split tiles", &["--part"]),

@@ -1,7 +1,7 @@
-//! Pictures: the same whatever the speed, and what the options say.
+//! Images: equal with all speed options, and options that change them.
 
 use crate::folder::{Folder, text};
-use spherule::image::{Image, read_metadata};
+use spherule_render::image::{Image, read_metadata};
 
 #[test]
 fn pictures_of_any_proportions_are_made() {

@@ -1,16 +1,16 @@
-//! `render --prepare`: scenes with their trees in files, and renders of these.
+//! `render --prepare`: prepared scenes, and renders of them.
 
 use crate::folder::{Folder, SMALL, text};
 use std::fs;
 
-/// Particles in a cell, with a column to color by.
+/// Particles in a periodic cell, with a column to color by.
 const PARTICLES: &str = "4\nLattice=\"4 0 0 0 4 0 0 0 4\" Properties=species:S:1:pos:R:3:charge:R:1\n\
     Na 0 0 0 1\nCl 2 0 0 -1\nNa 2 2 0 1.5\nCl 0 2 0 -0.5\n";
 
 /// A viewer without a window.
 const VIEW: [&str; 4] = ["view", "a.prepared", "--headless-script", "a.txt"];
 
-/// What is seen of them.
+/// Options of appearance and camera.
 const LOOKS: [&str; 6] = ["--color-by", "charge", "--view", "iso", "--replicate", "2,1,1"];
 
 #[test]
@@ -24,7 +24,7 @@ fn pictures_of_prepared_scenes_are_those_of_the_scene() {
     for name in ["a.png", "a.exr"] {
         let whole = folder.picture(name, &args);
         fs::remove_file(folder.path(name)).expect("it is there");
-        // Size, samples and seed are those that were said when it was prepared.
+        // Size, samples and seed are those given when it was prepared.
         folder.succeed(&["render", "a.prepared", "--quiet", "-o", name]);
         assert!(folder.read(name) == whole, "{name}");
     }

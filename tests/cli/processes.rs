@@ -1,7 +1,7 @@
-//! The program among others: pipes that close, signals.
+//! Closed pipes and signals.
 
 use crate::folder::{Folder, SMALL, text};
-use spherule::image::Image;
+use spherule_render::image::Image;
 use std::fs;
 use std::process::{Command, Stdio};
 
@@ -42,7 +42,7 @@ fn interrupts_save_what_there_is() {
         pause();
         catches_interrupts(child.id())
     });
-    // A few samples, too.
+    // Also with a few samples.
     pause();
     let kill = format!("kill -INT {}", child.id());
     let sent = Command::new("sh").args(["-c", &kill]).status();
@@ -58,7 +58,7 @@ fn interrupts_save_what_there_is() {
     assert!(picture.pixels.iter().any(|pixel| pixel[0] > 0.0));
 }
 
-/// Whether the process has a handler for signal 2.
+/// Returns whether the process has a handler for signal 2.
 #[cfg(target_os = "linux")]
 fn catches_interrupts(process: u32) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Wrong input: an exit code, a message in words, and no harm done.
+//! Invalid input: exit codes and messages, without changed files.
 
 use crate::folder::{Folder, text};
 use std::fs;

@@ -1,8 +1,8 @@
-//! What the program tells: statistics, notes, comparisons, help.
+//! Output of the program: statistics, notes, comparisons, help.
 
 use crate::folder::{Folder, SMALL, text};
 use serde_json::json;
-use spherule::image::{Image, WriteOptions};
+use spherule_render::image::{Image, WriteOptions};
 
 #[test]
 fn statistics_are_one_json_object() {

@@ -1,7 +1,7 @@
-//! Sequences of pictures: frames in a turn, parts, pictures that exist, films.
+//! Sequences of images: frames, turntables, parts, existing images, videos.
 
 use crate::folder::{Folder, text};
-use spherule::image::{Image, WriteOptions, read_metadata};
+use spherule_render::image::{Image, WriteOptions, read_metadata};
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
@@ -19,7 +19,7 @@ fn folder(frames: usize) -> Folder {
     folder
 }
 
-/// Runs `render a.xyz` at a small size, and returns what it says, in one line.
+/// Runs `render a.xyz` at a small size, and returns its messages in one line.
 #[track_caller]
 fn render(folder: &Folder, code: i32, args: &str) -> String {
     let line = format!("render a.xyz --size 32x24 --spp 2 {args}");
@@ -33,7 +33,7 @@ fn said(output: &Output, code: i32, line: &str) -> String {
     said
 }
 
-/// The contents of all files whose names end like this.
+/// Returns the contents of all files with this suffix.
 fn files(folder: &Folder, suffix: &str) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder.root()).expect("a folder");
     let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
@@ -110,7 +110,7 @@ fn pictures_that_exist_are_kept_if_they_are_the_same() {
     let kept = render(&folder, 0, &again);
     assert!(kept.contains("6 of 6 images already existed"), "{kept}");
     assert_eq!(numbers(&folder), before);
-    // One is missing, one cut off, one of other samples, one of another frame, one says nothing.
+    // Missing, truncated, with other samples, of another frame, and without metadata.
     fs::remove_file(folder.path("p-0000.png")).expect("it is there");
     let short = &whole["p-0001.png"];
     fs::write(folder.path("p-0001.png"), &short[..short.len() - 40]).expect("written");
@@ -151,11 +151,11 @@ fn other_scenes_and_settings_are_rendered_anew() {
     ] {
         let told = render(&folder, 0, &format!("{again} {args}"));
         assert!(told.contains(why) && !told.contains("already existed"), "{args}: {told}");
-        // Back to what it was.
+        // Restored.
         let back = render(&folder, 0, again);
         assert!(!back.contains("already existed"), "{args}: {back}");
     }
-    // Between the others, so that the camera stays where it stands.
+    // Between the others, so that the camera does not change.
     let moved = trajectory(4).replace("O 3.5", "O 3.25");
     folder.write("a.xyz", &moved);
     let told = render(&folder, 0, again);
@@ -165,7 +165,7 @@ fn other_scenes_and_settings_are_rendered_anew() {
     );
     assert!(told.contains("3 of 4 images already existed"), "{told}");
     assert!(render(&folder, 2, "--frame all -o p.pfm --skip-existing").contains(".exr"));
-    // Single pictures too.
+    // Single images too.
     render(&folder, 0, "-q -o one.png --skip-existing");
     let number = || fs::metadata(folder.path("one.png")).expect("a file").ino();
     let first = number();
@@ -175,7 +175,7 @@ fn other_scenes_and_settings_are_rendered_anew() {
     assert_ne!(number(), first);
 }
 
-/// Has a shell script stand for `ffmpeg`, or nothing.
+/// Replaces `ffmpeg` by a shell script, or removes it.
 fn film(folder: &Folder, script: Option<&str>, args: &str) -> Output {
     let tools = folder.path("tools");
     fs::create_dir_all(&tools).expect("a folder");
@@ -194,7 +194,7 @@ fn film(folder: &Folder, script: Option<&str>, args: &str) -> Output {
     command.output().expect("a program that runs")
 }
 
-/// Keeps what it is given, and how it was called.
+/// Stores its input and its arguments.
 const KEEPS: &str = "echo \"$@\" > called; cat > \"$last\"";
 
 #[test]

@@ -1,9 +1,9 @@
 //! Slices on the command line and in scene files.
 
 use crate::folder::{Folder, SMALL, text};
-use spherule::image::Image;
+use spherule_render::image::Image;
 
-/// A row of balls along x, in a cell that is longer.
+/// A row of spheres along x, in a longer cell.
 const ROW: &str = "\
 5
 Lattice=\"20 0 0 0 4 0 0 0 4\" Properties=species:S:1:pos:R:3
@@ -45,7 +45,7 @@ fn planes_cut_particles_away() {
     assert_eq!(spheres(&folder, &["--replicate", "2,1,1", "--slice", "x>50%"]), 5);
 }
 
-/// Pixels of red and of all other colors in a cube of balls whose layers next to a cut are red.
+/// Counts red and other pixels in an image of a cube of spheres whose layers next to a cut are red.
 fn faces(planes: &[&str], red: impl Fn([u32; 3]) -> bool, args: &[&str]) -> [usize; 2] {
     let folder = Folder::new();
     let atom = |i: u32| {
@@ -81,7 +81,7 @@ fn cameras_that_nobody_placed_look_at_cuts() {
     let red = |place: [u32; 3]| place[0] == 2 || place[2] == 2;
     let [red, blue] = faces(&["x<1.5", "z<1.5"], red, &[]);
     assert!(red > blue, "{red} {blue}");
-    // A view that is named stays.
+    // An explicit view is kept.
     let [red, _] = faces(&["z<1.5"], |place| place[2] == 2, &["--view", "z"]);
     assert_eq!(red, 0);
 }
@@ -127,8 +127,8 @@ fn planes_that_make_no_sense_are_refused() {
     let folder = folder();
     for (args, code, message) in [
         (&["--slice", "x>-1"][..], 1, "cut away all of its 5 spheres"),
-        (&["--slice", "w>1"], 2, "true of what is cut away"),
-        (&["--slice", "x=200%"], 2, "true of what is cut away"),
+        (&["--slice", "w>1"], 2, "true for the part to cut away"),
+        (&["--slice", "x=200%"], 2, "true for the part to cut away"),
         (&["--slice", "x>1", "--slice-mode", "cap"], 2, "did you mean `caps`"),
         (&["--slice-mode", "caps"], 2, "--slice"),
         (

@@ -1,11 +1,11 @@
-//! Progress of parts and checkpoints, as `spherule status` tells it.
+//! `spherule status`: progress of parts and checkpoints.
 
 use crate::folder::{Folder, SMALL, text};
 use serde_json::Value;
-use spherule::checkpoint::Lock;
+use spherule_render::checkpoint::Lock;
 use std::fs;
 
-/// Renders parts of the small picture.
+/// Renders parts of the small image.
 fn render(folder: &Folder, args: &[&str], parts: &[&str]) {
     for part in parts {
         folder.succeed(
@@ -14,7 +14,7 @@ fn render(folder: &Folder, args: &[&str], parts: &[&str]) {
     }
 }
 
-/// The report on some files, and the exit code.
+/// Returns the report on some files, and the exit code.
 fn status(folder: &Folder, files: &[&str]) -> (Value, Option<i32>) {
     let output = folder.run(&[&["status", "--json"], files].concat());
     let report = serde_json::from_slice(&output.stdout).expect("one JSON object");
@@ -37,7 +37,7 @@ fn what_is_done_and_what_is_missing_is_told() {
     let seconds = |name: &str| report[name].as_f64().expect("a number");
     let took: f64 =
         (0..2).map(|i| report["files"][i]["render_seconds"].as_f64().expect("a number")).sum();
-    // Half of the samples are left: they take as long as those that are there.
+    // Half of the samples remain, and need as much time as those that are done.
     assert!((seconds("remaining_seconds") - took).abs() < 1e-6 * took);
     assert!((seconds("longest_remaining_seconds") - took / 2.0).abs() < 1e-6 * took);
     render(&folder, &[], &["2/4", "3/4"]);
@@ -64,7 +64,7 @@ fn files_of_no_use_are_named_with_the_reason() {
         ("a.1-of-4.part", "a.1-of-2.part"),
         ("a.2-of-2.part", "another scene than a.1-of-2.part"),
         ("a.2-of-3.part", "filter"),
-        ("b.part", "no checkpoint"),
+        ("b.part", "not a checkpoint"),
         ("c.part", "damaged"),
     ] {
         let (report, code) = status(&folder, &["a.1-of-2.part", file]);

@@ -1,4 +1,4 @@
-//! The precision ladder as a command.
+//! `spherule stress`.
 
 use crate::folder::{Folder, text};
 use std::fs;

@@ -1,10 +1,10 @@
-//! The viewer without a window: scripts of events, and what they save.
+//! The viewer without a window: scripts of events, and saved files.
 
 use crate::folder::{Folder, text};
-use spherule::image::Image;
+use spherule_render::image::Image;
 use std::path::{Path, PathBuf};
 
-/// Three types, one of them in two places, a column, and two frames.
+/// Particles of three types, one of them twice, with a column, in two frames.
 const SALT: &str = "\
 4
 Properties=species:S:1:pos:R:3:q:R:1
@@ -20,14 +20,13 @@ Cl 0 3 0 -2
 K 0 0 3 1
 ";
 
-/// Does what a script says, and returns what the program prints.
+/// Runs a script, and returns the program's output.
 fn view(folder: &Folder, args: &[&str], script: &str) -> String {
     folder.write("script.txt", script);
     folder.succeed(&[&["view", "--headless-script", "script.txt", "--quiet"], args].concat())
 }
 
-/// Fails unless the scene `a.toml` renders to the bytes of the picture `a.png`, and goes on to them in a
-/// viewer.
+/// Asserts that the scene `a.toml` renders to the bytes of the image `a.png`, also in a viewer.
 #[track_caller]
 fn assert_comes_back(folder: &Folder, samples: u32) {
     folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.png"]);
@@ -125,7 +124,7 @@ fn windows_show_looks_as_pictures_of_them_do() {
     view(&folder, &["salt.xyz", "--preset", "outline"], script);
     assert_eq!(read("a.png"), read("w.png"));
     view(&folder, &["salt.xyz", "--background", "transparent"], script);
-    // Squares are seen where nothing is.
+    // The checkerboard is visible where nothing is drawn.
     let window = read("w.png");
     assert_ne!(window.pixel(0, 0), window.pixel(12, 0));
 }
@@ -135,7 +134,7 @@ fn clicks_name_spheres_and_their_types_can_be_hidden() {
     let folder = Folder::new();
     folder.write("salt.xyz", SALT);
     let salt = ["salt.xyz", "--radii", "1", "--view", "z"];
-    // From above the potassium is in front, and sodium right behind it.
+    // Seen from above, potassium is in front, and sodium right behind it.
     let first = view(&folder, &salt, "size 60x60\nclick 17,43\nclick 1,1");
     assert_eq!(first, "sphere 3: type K, at 0 0 3, radius 1, q = 1\n");
     let second = view(&folder, &salt, "size 60x60\nclick 17,43\nkey h\nclick 17,43\nkey c");
@@ -175,7 +174,7 @@ fn turns_are_numbered_and_windows_are_drawn() {
     let turn = ["turn-000.png", "turn-001.png", "turn-002.png"].map(read);
     assert!(turn[0] != turn[1] && turn[1] != turn[2]);
     let (window, help) = (read("w.png"), read("help.png"));
-    // The status line is below the picture's upper part, which help hides.
+    // The status line is below the image's upper part, which help hides.
     assert_eq!(window.pixels[..64 * 20], turn[2].pixels[..64 * 20]);
     assert_ne!(window.pixels, turn[2].pixels);
     assert_ne!(window.pixels[..64 * 20], help.pixels[..64 * 20]);
@@ -226,7 +225,7 @@ fn without_a_display_the_message_says_what_to_do() {
     assert!(message.contains("--headless-script") && message.lines().count() == 1, "{message}");
 }
 
-/// Every file that may hold particles or a scene.
+/// Returns every file that may contain particles or a scene.
 fn data_files() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = [
@@ -250,8 +249,8 @@ fn data_files() -> Vec<PathBuf> {
     files
 }
 
-/// The viewer opens what `render` takes, colors it by every column that it lists, and shows what
-/// `render` makes of the scene that it saves.
+/// The viewer opens every file that `render` accepts, colors it by every column that it lists, and shows the
+/// same image as `render` of the scene that it saves.
 #[test]
 fn the_viewer_opens_every_file_that_render_takes() {
     let folder = Folder::new();
@@ -301,7 +300,7 @@ fn standard_input_is_read_once_with_all_its_columns() {
     assert_eq!(text(&output.stdout), "sphere 3: type K, at 0 0 3, radius 1, q = 1\n");
 }
 
-/// The picture that a script writes as `w.png` in a window.
+/// Returns the image that a script writes as `w.png` in a window.
 fn window(folder: &Folder, args: &[&str], script: &str) -> Image {
     view(folder, args, &format!("{script}\nwindow w.png"));
     Image::read(folder.path("w.png")).expect("a picture")
@@ -334,7 +333,7 @@ fn help_fits_every_window_at_every_scale() {
                 break;
             }
             assert!(!pages.contains(&page) && count < 60, "{size} at {scale}");
-            // Text ends before the window does.
+            // Text ends within the window.
             assert!(is_free(&page, page.width - 3..page.width, 0..12), "{size} at {scale}");
             pages.push(page);
         }
@@ -375,7 +374,7 @@ fn the_side_that_a_slice_removes_is_shaded() {
         let darker = |x: u32| at(&cut, x, y)[1] < 0.8 * at(&plain, x, y)[1];
         assert!((86..90).all(darker), "{y}");
     }
-    // What was shaded is gone.
+    // The shading is gone.
     let after = window(&folder, &args, &format!("{script}\nrelease\nwait 1\nkey a\nwait 1"));
     assert_ne!(after, plain);
 }
@@ -387,15 +386,15 @@ fn color_bars_are_shown_and_saved() {
     let by_charge = ["salt.xyz", "--radii", "1", "--background", "white", "--color-by", "q"];
     let with = window(&folder, &by_charge, "size 320x240\nwait 1");
     let without = window(&folder, &by_charge, "size 320x240\nkey k\nkey tab\nwait 1");
-    let ends = [0x44_01_54, 0xFD_E7_25].map(spherule::color::srgb);
-    let near = |image: &Image, color: spherule::color::Rgb| {
+    let ends = [0x44_01_54, 0xFD_E7_25].map(spherule_render::color::srgb);
+    let near = |image: &Image, color: spherule_render::color::Rgb| {
         let close =
             |pixel: [f32; 3]| pixel.iter().zip(color.to_array()).all(|(a, b)| (a - b).abs() < 0.01);
         (200..320).any(|x| (60..220).any(|y| close(at(image, x, y))))
     };
     assert!(ends.iter().all(|&color| near(&with, color)));
     assert_ne!(with, without);
-    // In the picture it is the one of `render`, in that of the saved scene too.
+    // In the image it equals that of `render`, also for the saved scene.
     let inside = [&by_charge[..], &["--color-bar", "inside:top-left"]].concat();
     let by_charge = [&by_charge[..], &["--size", "160x200"]].concat();
     let inside = [&inside[..], &["--size", "160x200"]].concat();
@@ -410,7 +409,7 @@ fn color_bars_are_shown_and_saved() {
     view(&folder, &inside, script);
     folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.png"]);
     assert_eq!(Image::read(folder.path("r.png")).ok(), Image::read(folder.path("b.png")).ok());
-    // A file of its own.
+    // A separate file.
     view(&folder, &[&by_charge[..], &["--color-bar", "bar.svg"]].concat(), script);
     folder.succeed(&[&["render"], &by_charge[..], &["--color-bar", "c.svg"], &view_args].concat());
     assert!(folder.read("bar.svg") == folder.read("c.svg"));
@@ -437,7 +436,7 @@ fn numbers_have_the_digits_that_they_are_worth() {
     assert_eq!(lines[1], "sphere 1: at 90 0 0, radius 5, q = 1e-12");
 }
 
-/// The viewer keeps no copy of so many spheres: it makes them once more for the saved scene.
+/// The viewer keeps no copy of this many spheres: it generates them again for the saved scene.
 #[test]
 fn many_spheres_are_seen_and_saved() {
     let folder = Folder::new();
@@ -452,7 +451,7 @@ fn many_spheres_are_seen_and_saved() {
     assert_eq!(Image::read(folder.path("a.png")).ok(), Image::read(folder.path("r.png")).ok());
     let rows = text(&folder.read("a.csv")).lines().count();
     assert_eq!(rows, 1_048_601);
-    // Another world takes the place of the first one, and then the first one again.
+    // Another world replaces the first one, which then replaces it again.
     let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
     assert_ne!(read("c.png"), read("a.png"));
     assert_eq!(read("d.png"), read("a.png"));

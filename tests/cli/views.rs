@@ -1,9 +1,9 @@
-//! Cells, sides and turns on the command line.
+//! Periodic cells, views and turntables on the command line.
 
 use crate::folder::{Folder, SMALL, text};
-use spherule::image::Image;
+use spherule_render::image::Image;
 
-/// Two particles, one of them outside of its tilted cell.
+/// Two particles, one of them outside its tilted cell.
 const TILTED: &str = "\
 2
 Lattice=\"4 0 0 1 4 0 0 0 4\" Properties=species:S:1:pos:R:3 pbc=\"T T F\"
@@ -35,7 +35,7 @@ fn cells_wrap_repeat_and_are_drawn() {
     };
     assert_eq!((json(&[]), json(&["--replicate", "3,2,1"])), (2.into(), 12.into()));
     let with_cell = picture(&folder, "cell.png", &["--wrap", "--cell"]);
-    // The cell is framed too, so the particles are smaller, but edges go all through the picture.
+    // The cell is framed too, so the particles are smaller, but edges extend across the image.
     let columns = |image: &Image| {
         let gray = |x: u32| (0..image.height).any(|y| image.pixel(x, y).unwrap()[1] < 0.8);
         (0..image.width).filter(|&x| gray(x)).count()
@@ -52,7 +52,7 @@ fn sides_and_projections_frame_everything() {
             let args = ["--view", side, "--projection", projection, "--margin", "0.2", "--cell"];
             let image = picture(&folder, "side.png", &args);
             let (width, height) = (image.width as usize, image.height as usize);
-            // The margin stays white, and the rest does not.
+            // The margin is white, and the rest is not.
             let border = |row: usize| {
                 let (x, y) = (row % width, row / width);
                 x < 2 || y < 1 || x + 2 >= width || y + 1 >= height
@@ -87,8 +87,12 @@ fn settings_without_effect_are_refused() {
         "[look]\nbackground = \"transparent\"\n[[generate]]\nkind = \"grid\"\n",
     );
     for (line, code, message) in [
-        ("render bare.xyz --wrap", 1, "no cell to wrap by"),
-        ("render bare.xyz --replicate 2,1,1", 1, "no cell to replicate by"),
+        ("render bare.xyz --wrap", 1, "cannot wrap particles: the file has no cell"),
+        (
+            "render bare.xyz --replicate 2,1,1",
+            1,
+            "cannot replicate particles: the file has no cell",
+        ),
         ("render bare.xyz --cell", 1, "no simulation cell"),
         ("render a.xyz --replicate 1,1,2", 1, "not periodic along its edge c"),
         ("render a.xyz --replicate 60000,60000,1", 1, "at most"),
@@ -121,7 +125,7 @@ fn looks_and_backgrounds_make_pictures_of_their_own() {
     let mut pictures = Vec::new();
     for look in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
         let image = picture(&folder, "look.png", &["--preset", look, "--wrap"]);
-        // The corner is background or, in the studio, ground that looks like it.
+        // The corner is background or, in the studio, ground of the same color.
         let corner = image.pixel(0, 0).unwrap();
         assert!(corner.iter().all(|&value| value > 0.9), "{look}: {corner:?}");
         assert!(image.pixels.iter().any(|pixel| pixel[1] < 0.7), "{look}");

@@ -1,25 +1,25 @@
-//! What the tests that render share: scenes in a few lines, pictures, means and their errors.
+//! Helpers of tests that render: short scenes, images, means and their errors.
 
 #![allow(dead_code, reason = "each test crate uses its own part of this")]
 
 use glam::DVec3;
-use spherule::World;
-use spherule::image::Image;
-use spherule::render::{Options, Render, render};
-use spherule::scene::{
+use spherule_render::World;
+use spherule_render::image::Image;
+use spherule_render::render::{Options, Render, render};
+use spherule_render::scene::{
     Camera, ConductorFresnel, Environment, EnvironmentMap, Filter, Ground, Lens, Light, Material,
     NamedMaterial, Pose, Projection, Rgb, Roulette, Scene, Settings,
 };
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Standard errors that a mean may be off: by chance more than that happens once in 30 000 comparisons.
+/// Tolerance of means in standard errors; exceeded by chance once in 30 000 comparisons.
 pub(crate) const SIGMAS: f64 = 4.2;
 
-/// Pictures of an estimate that needs several: they tell its error to an eighth.
+/// Number of images for an estimate from several; its error is known to an eighth.
 const SEEDS: u64 = 32;
 
-/// Relative rounding of a radiance: a dozen single-precision operations lead to it.
+/// Relative rounding error of a radiance, after a dozen single-precision operations.
 const ROUNDING: f64 = 12.0 * f32::EPSILON as f64;
 
 /// A mean and its standard error.
@@ -30,7 +30,7 @@ pub(crate) struct Estimate {
 }
 
 impl Estimate {
-    /// From values that do not depend on one another.
+    /// Returns mean and error of independent values.
     pub(crate) fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
         let count = values.clone().count() as f64;
         let mean = values.clone().sum::<f64>() / count;
@@ -38,26 +38,27 @@ impl Estimate {
         Self { mean, error: (squares / (count - 1.0) / count).sqrt() }
     }
 
-    /// Of the red channel over a whole picture. Pixels draw independent numbers, so their spread tells the error
-    /// whatever the sampler; where the truth varies over the picture the error comes out too large.
-    pub(crate) fn of_picture(image: &Image) -> Self {
+    /// Returns mean and error of the red channel over an image. Pixels have independent random numbers, so
+    /// their variance gives the error for every sampler. If the expected value varies, the error is
+    /// overestimated.
+    pub(crate) fn of_image(image: &Image) -> Self {
         Self::of(image.pixels.iter().map(|pixel| f64::from(pixel[0])))
     }
 
-    /// The same after multiplication by an exact number.
+    /// Multiplies by an exact number.
     pub(crate) fn times(self, factor: f64) -> Self {
         Self { mean: self.mean * factor, error: self.error * factor.abs() }
     }
 }
 
-/// Whether a mean agrees with the truth, given its standard error.
+/// Returns whether a mean agrees with the expected value, given its standard error.
 pub(crate) fn within(mean: f64, truth: f64, sigmas: f64, error: f64) -> bool {
     (mean - truth).abs() <= sigmas * error + ROUNDING * truth.abs()
 }
 
-/// Fails unless the estimate agrees with the truth.
+/// Asserts that the estimate agrees with the expected value.
 #[track_caller]
-pub(crate) fn assert_truth(estimate: Estimate, truth: f64, what: &str) {
+pub(crate) fn assert_expected(estimate: Estimate, truth: f64, what: &str) {
     let Estimate { mean, error } = estimate;
     let sigmas = (mean - truth) / error;
     assert!(
@@ -66,13 +67,13 @@ pub(crate) fn assert_truth(estimate: Estimate, truth: f64, what: &str) {
     );
 }
 
-/// Fails unless two estimates agree.
+/// Asserts that two estimates agree.
 #[track_caller]
 pub(crate) fn assert_agree(a: Estimate, b: Estimate, what: &str) {
-    assert_truth(Estimate { error: a.error.hypot(b.error), ..a }, b.mean, what);
+    assert_expected(Estimate { error: a.error.hypot(b.error), ..a }, b.mean, what);
 }
 
-/// Fails unless every channel of every pixel is `value`, to the bit.
+/// Asserts that every channel of every pixel is exactly `value`.
 #[track_caller]
 pub(crate) fn assert_every_pixel(image: &Image, value: f32, what: &str) {
     for (i, pixel) in image.pixels.iter().enumerate() {
@@ -80,7 +81,7 @@ pub(crate) fn assert_every_pixel(image: &Image, value: f32, what: &str) {
     }
 }
 
-/// A ball of radius 1 at height 3 over a ground under a sun in the zenith, in direct light alone.
+/// Returns a sphere of radius 1 at height 3 above a ground under a sun at the zenith, with direct light only.
 pub(crate) fn noon() -> Scene {
     let mut scene = dark();
     sphere(&mut scene, [0.0, 0.0, 3.0], 1.0, lambertian(0.5));
@@ -91,7 +92,7 @@ pub(crate) fn noon() -> Scene {
     scene
 }
 
-/// An empty scene in the dark: 16 x 16 pixels, box filter, paths that end by nothing but depth.
+/// Returns an empty scene without light: 16 x 16 pixels, box filter, no roulette.
 pub(crate) fn dark() -> Scene {
     let settings = Settings {
         width: 16,
@@ -107,24 +108,24 @@ pub(crate) fn dark() -> Scene {
     scene
 }
 
-/// The same in an environment of radiance 1.
+/// Returns the same scene in an environment of radiance 1.
 pub(crate) fn furnace() -> Scene {
     Scene { environment: Environment::default(), ..dark() }
 }
 
-/// Radiance 0 from below, along -z, to 1 from above.
+/// Returns a gradient from radiance 0 below, along -z, to 1 above.
 pub(crate) fn gradient() -> EnvironmentMap {
     EnvironmentMap::Gradient { bottom: Rgb::ZERO, top: Rgb::ONE, up: DVec3::Z }
 }
 
-/// Adds a material and gives its row.
+/// Adds a material and returns its row.
 pub(crate) fn material(scene: &mut Scene, material: Material) -> u32 {
     let name = format!("material {}", scene.materials.len());
     scene.materials.push(NamedMaterial { name, material });
     scene.materials.len() as u32 - 1
 }
 
-/// Adds a sphere of a material of its own.
+/// Adds a sphere with its own material.
 pub(crate) fn sphere(scene: &mut Scene, center: impl Into<DVec3>, radius: f64, made_of: Material) {
     let row = material(scene, made_of);
     scene.spheres.push(center.into(), radius, row, Rgb::ONE);
@@ -152,17 +153,18 @@ pub(crate) fn mirror() -> Material {
     metal(0.0)
 }
 
-/// A white metal.
+/// Returns a white metal.
 pub(crate) fn metal(roughness: f64) -> Material {
     Material::Conductor { fresnel: ConductorFresnel::Constant(Rgb::ONE), roughness }
 }
 
-/// Looks from `eye` at `target` with a field of view in degrees; up is z, or y along z.
+/// Places the camera at `eye`, looking at `target`, with a field of view in degrees; up is z, or y for views
+/// along z.
 pub(crate) fn look(scene: &mut Scene, eye: DVec3, target: DVec3, fov: f64) {
     aim(scene, eye, target, Projection::Perspective { fov });
 }
 
-/// Looks from `eye` at `target` by parallel rays; the picture is `height` high.
+/// Places an orthographic camera at `eye`, looking at `target`, with an image of this height.
 pub(crate) fn look_parallel(scene: &mut Scene, eye: DVec3, target: DVec3, height: f64) {
     aim(scene, eye, target, Projection::Orthographic { height: Some(height) });
 }
@@ -173,31 +175,31 @@ fn aim(scene: &mut Scene, eye: DVec3, target: DVec3, projection: Projection) {
 }
 
 /// Builds and renders a scene.
-pub(crate) fn shoot(scene: &Scene) -> Render {
-    shoot_with(scene, &Options::default())
+pub(crate) fn render_scene(scene: &Scene) -> Render {
+    render_scene_with(scene, &Options::default())
 }
 
-/// Builds and renders a scene, as told.
-pub(crate) fn shoot_with(scene: &Scene, options: &Options) -> Render {
+/// Builds and renders a scene with options.
+pub(crate) fn render_scene_with(scene: &Scene, options: &Options) -> Render {
     let world = World::build(scene).expect("the scene is sound");
     let render = render(&world, &scene.settings, options).expect("settings in range");
     assert_eq!(render.counters.bad_samples, 0);
     render
 }
 
-/// Mean radiance over the whole picture.
+/// Returns the mean radiance of an image.
 pub(crate) fn measure(scene: &Scene) -> Estimate {
-    Estimate::of_picture(&shoot(scene).image)
+    Estimate::of_image(&render_scene(scene).image)
 }
 
-/// Estimates a number that pictures show, from pictures with different random numbers: where the picture varies, its
-/// pixels do not tell the error of their mean.
+/// Estimates a number from images with different seeds. If the expected value varies over the image, the
+/// variance of pixels does not give the error of their mean.
 pub(crate) fn over_seeds(scene: &Scene, number: impl Fn(&Image) -> f64) -> Estimate {
     let [estimate] = each_over_seeds(scene, |image| [number(image)]);
     estimate
 }
 
-/// The same for several numbers of each picture.
+/// Estimates several numbers from images with different seeds.
 pub(crate) fn each_over_seeds<const N: usize>(
     scene: &Scene,
     numbers: impl Fn(&Image) -> [f64; N],
@@ -214,9 +216,9 @@ pub(crate) fn each_over_seeds<const N: usize>(
     std::array::from_fn(|i| Estimate::of(pictures.iter().map(|numbers| numbers[i])))
 }
 
-/// Fails unless two scenes look alike in each of six bands of their pictures' rows.
+/// Asserts that images of two scenes agree in each of six bands of rows.
 #[track_caller]
-pub(crate) fn assert_alike(a: &Scene, b: &Scene, what: &str) {
+pub(crate) fn assert_scenes_agree(a: &Scene, b: &Scene, what: &str) {
     let bands = |image: &Image| {
         let rows = image.height / 6;
         [0, 1, 2, 3, 4, 5].map(|band| mean_of_rows(image, band * rows..(band + 1) * rows))
@@ -227,26 +229,26 @@ pub(crate) fn assert_alike(a: &Scene, b: &Scene, what: &str) {
     }
 }
 
-/// Mean of the red channel of rows.
+/// Returns the mean of the red channel over rows.
 pub(crate) fn mean_of_rows(image: &Image, rows: Range<u32>) -> f64 {
     let width = image.width as usize;
     let pixels = &image.pixels[rows.start as usize * width..rows.end as usize * width];
     pixels.iter().map(|pixel| f64::from(pixel[0])).sum::<f64>() / pixels.len() as f64
 }
 
-/// Mean of the red channel.
+/// Returns the mean of the red channel.
 pub(crate) fn mean(image: &Image) -> f64 {
     mean_of_rows(image, 0..image.height)
 }
 
-/// Radiance that leaves `point` toward `eye`: through a window so narrow that it does not vary.
+/// Returns the radiance from `point` toward `eye`, seen in a field of view so narrow that it does not vary.
 pub(crate) fn probe(scene: &mut Scene, point: DVec3, eye: DVec3) -> Estimate {
     look_parallel(scene, eye, point, 1e-5);
     measure(scene)
 }
 
-/// Spheres of every material on a ground, lit by every kind of light, seen through a lens: small and quick. Coordinates
-/// are exact in single precision, also far from the origin.
+/// Returns a small scene with spheres of every material on a ground, every kind of light, and a lens.
+/// Coordinates are exact in single precision, also far from the origin.
 pub(crate) fn menagerie() -> Scene {
     let mut scene = dark();
     scene.environment = Environment { map: menagerie_sky(), illuminates: true };
@@ -270,7 +272,7 @@ pub(crate) fn menagerie() -> Scene {
         let radius = 0.25 + f64::from(i % 3) / 4.0;
         scene.spheres.push(place + DVec3::Z, radius, rows[i as usize % rows.len()], color);
     }
-    // Glass in glass, and a lamp in it.
+    // Nested glass with an emitter inside.
     sphere(&mut scene, [0.0, 0.0, 7.0], 1.0, glass(1.5));
     sphere(&mut scene, [0.25, 0.0, 7.0], 0.5, glass(1.25));
     sphere(&mut scene, [0.25, 0.0, 7.0], 0.125, emitter(8.0, 0.0));
@@ -295,7 +297,7 @@ pub(crate) fn menagerie() -> Scene {
     scene
 }
 
-/// A few pixels, one of them bright.
+/// Returns an image of a few pixels, one of them bright.
 fn menagerie_sky() -> EnvironmentMap {
     let pixels =
         (0..32).map(|i| if i == 10 { [9.0, 8.0, 7.0] } else { [0.25, 0.5, 0.5] }).collect();

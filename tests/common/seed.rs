@@ -1,16 +1,16 @@
-//! Seeds of tests that try something else in every run.
+//! Seeds of randomized tests.
 
 use std::env;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// The number in an environment variable, if it is set.
+/// Returns the number in an environment variable, if it is set.
 pub(crate) fn number(name: &str) -> Option<u64> {
     let text = env::var(name).ok()?;
     Some(text.parse().unwrap_or_else(|_| panic!("{name} is `{text}`, which is not a whole number")))
 }
 
-/// The seed in an environment variable, or else the time. It is printed, so that a run that fails
-/// can be repeated.
+/// Returns the seed in an environment variable, or else the time. It is printed, so that a failed run can be
+/// repeated.
 #[expect(clippy::print_stderr, reason = "the seed is of use only where it is seen")]
 pub(crate) fn seed(name: &str) -> u64 {
     let time = || {

@@ -1,7 +1,7 @@
-//! Files that are not what was written.
+//! Damaged checkpoints.
 
 use crate::folder::{Folder, SMALL, text};
-use spherule::sampling::mix;
+use spherule_render::sampling::mix;
 use std::fs;
 
 #[test]
@@ -14,7 +14,7 @@ fn damaged_checkpoints_are_refused_and_stay() {
         let output = folder.run(&["render", "--resume", "c", "-o", "b.png"]);
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{what}: {message}");
-        let told = ["is damaged", "is no checkpoint", "version"];
+        let told = ["is damaged", "is not a checkpoint", "version"];
         assert!(told.iter().any(|told| message.contains(told)), "{what}: {message}");
         assert!(folder.read("c") == bytes && !folder.path("b.png").exists(), "{what}");
     };

@@ -1,35 +1,35 @@
-//! Renders that are killed, again and again, at random and while they write.
+//! Renders that are killed repeatedly, at random times and while they write.
 
 use crate::folder::Folder;
 use crate::process::{names, samples, start};
 use crate::seed;
-use spherule::image::Image;
-use spherule::sampling::mix;
+use spherule_render::image::Image;
+use spherule_render::sampling::mix;
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::process::Child;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Kills at least, and seconds for which it goes on; both end it.
+/// Minimum number of kills and seconds of the test, both of which must be reached.
 const KILLS: u32 = 200;
 
-/// Longest life of a program that may do nothing, in milliseconds.
+/// Maximum time until a kill that may precede all work, in milliseconds.
 const LIFE: u64 = 60;
 
-/// Longest time from a moment to a kill, in microseconds: in it, checkpoints are begun and written.
+/// Maximum delay from a checkpoint to a kill, in microseconds, in which further checkpoints are written.
 const PAUSE: u64 = 6000;
 
 const KEPT: &str = "render.checkpoint";
 
-/// Renders, each of a second or so: plain, to an error, with statistics.
+/// Renders of about a second: plain, to an error, with statistics.
 const RENDERS: [&[&str]; 3] = [
     &["--size", "96x64", "--spp", "160", "-o", "a.png"],
     &["--size", "96x64", "--until-error", "8%", "-o", "a.ppm"],
     &["--size", "64x48", "--spp", "48", "--layers", "variance,samples", "-o", "a.exr"],
 ];
 
-/// What is random, as a function of the kills so far.
+/// A random number generator, seeded by the number of kills so far.
 struct Chance(u64);
 
 impl Chance {
@@ -52,7 +52,7 @@ fn killed_renders_come_to_the_same_bytes() {
     }
 }
 
-/// Kills a render until it is through, and says how often.
+/// Kills and resumes a render until it completes, and returns the number of kills.
 fn kill_through(render: &[&str], chance: &mut Chance) -> u32 {
     let folder = Folder::new();
     let output = *render.last().expect("a name");
@@ -82,14 +82,14 @@ fn kill_through(render: &[&str], chance: &mut Chance) -> u32 {
         }
     }
     assert!(folder.read(output) == expected, "{render:?}: other bytes after {kills} kills");
-    // What killed programs left is gone, but for what a kill in the last moment left of the picture.
+    // Temporary files of killed programs are removed, except one of the image after a kill at the end.
     let left: Vec<_> = names(&folder);
     let own = |name: &&String| !name.starts_with(&format!(".{output}-"));
     assert_eq!(left.iter().filter(own).collect::<Vec<_>>(), [output, KEPT]);
     kills
 }
 
-/// Kills a program at some moment; false if it came to its end before.
+/// Kills a program at some moment; returns false if it ended before.
 fn kill(mut child: Child, folder: &Folder, chance: &mut Chance) -> bool {
     let mut moment = Moment::any(folder, chance);
     while !moment.has_come(folder) {
@@ -97,7 +97,7 @@ fn kill(mut child: Child, folder: &Folder, chance: &mut Chance) -> bool {
             assert!(status.success(), "{status}");
             return false;
         }
-        // On a machine that is busy, whoever only looks on is in the way.
+        // Polling less often leaves time to the program on a busy machine.
         sleep(Duration::from_micros(200));
     }
     sleep(Duration::from_micros(chance.below(PAUSE)));
@@ -105,17 +105,17 @@ fn kill(mut child: Child, folder: &Folder, chance: &mut Chance) -> bool {
     !child.wait().expect("a program that ends").success()
 }
 
-/// When a program is killed.
+/// The moment at which a program is killed.
 enum Moment {
-    /// After some time, which may be before it does anything.
+    /// At a time, which may precede all work.
     At(Instant),
-    /// When a checkpoint was replaced so often: the first number is that of the last one. The next one
-    /// is begun two milliseconds later, and nobody sees it before it takes the place of the last.
+    /// After a number of replacements of the checkpoint, with the file number of the last one. Writing of the
+    /// next one starts two milliseconds later, in an unnamed file until it replaces the last one.
     After(Option<u64>, u64),
 }
 
 impl Moment {
-    /// Most checkpoints in a life: however busy the machine is, a few lives come to an end.
+    /// Maximum number of checkpoints before a kill, so that some renders complete on a busy machine.
     const MOST: u64 = 6;
 
     fn any(folder: &Folder, chance: &mut Chance) -> Self {
@@ -134,7 +134,7 @@ impl Moment {
     }
 }
 
-/// Whether the checkpoint was replaced as often as is left.
+/// Returns whether the remaining number of replacements has been reached.
 fn replaced(folder: &Folder, last: &mut Option<u64>, left: &mut u64) -> bool {
     let now = number_of(folder);
     if *left > 0 && now != *last {
@@ -143,7 +143,7 @@ fn replaced(folder: &Folder, last: &mut Option<u64>, left: &mut u64) -> bool {
     *left == 0
 }
 
-/// What the system calls the file of the checkpoint.
+/// Returns the system's number of the checkpoint's file.
 fn number_of(folder: &Folder) -> Option<u64> {
     fs::metadata(folder.path(KEPT)).map(|file| file.ino()).ok()
 }

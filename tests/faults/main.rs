@@ -1,8 +1,8 @@
-//! Long renders, and all that may befall them: kills at any moment, signals, full disks, folders that vanish, files
-//! that are damaged. Whatever it is, what was kept is whole, and the picture comes to the same bytes in the end.
+//! Fault tolerance of long renders: kills at any moment, signals, full disks, removed folders, damaged files.
+//! In all cases, checkpoints are intact, and the final image has the same bytes.
 //!
-//! `SPHERULE_FAULT_SECONDS=600 cargo test --release --test faults` kills for ten minutes instead of some seconds;
-//! the moments are others in every run, and `SPHERULE_FAULT_SEED`, which a run that fails prints, repeats them.
+//! `SPHERULE_FAULT_SECONDS=600 cargo test --release --test faults` kills for ten minutes instead of a few
+//! seconds. Moments are random in every run; `SPHERULE_FAULT_SEED`, which a failed run prints, repeats them.
 #![cfg(all(feature = "cli", target_os = "linux"))]
 
 mod damage;

@@ -1,18 +1,18 @@
-//! Programs that run beside the test.
+//! Processes that the tests start.
 
 use crate::folder::{Folder, text};
-use spherule::checkpoint;
+use spherule_render::checkpoint;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A render that goes on and on.
+/// Arguments of a very long render.
 pub(crate) const LONG: [&str; 7] =
     ["render", "--size", "80x60", "--spp", "1000000", "--quiet", "--checkpoint-every=20ms"];
 
-/// Longer than anything takes that a test waits for.
+/// Time limit of everything that a test waits for.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Starts the program in a folder.
@@ -23,7 +23,7 @@ pub(crate) fn start(folder: &Folder, args: &[&str]) -> Child {
     program.spawn().expect("a program that starts")
 }
 
-/// Starts the program by a shell, after what `before` says.
+/// Starts the program in a shell, after the commands `before`.
 pub(crate) fn shell(folder: &Folder, before: &str, args: &[&str]) -> Output {
     let mut shell = Command::new("sh");
     let script = format!("{before}; exec \"$0\" \"$@\"");
@@ -31,7 +31,7 @@ pub(crate) fn shell(folder: &Folder, before: &str, args: &[&str]) -> Output {
     shell.current_dir(folder.root()).output().expect("a shell that starts")
 }
 
-/// Sends a signal by its name, or several, one after the other.
+/// Sends one or more signals by name.
 pub(crate) fn signal(child: &Child, names: &[&str]) {
     let kill: Vec<String> =
         names.iter().map(|name| format!("kill -{name} {}", child.id())).collect();
@@ -39,7 +39,7 @@ pub(crate) fn signal(child: &Child, names: &[&str]) {
     assert!(sent.is_ok_and(|status| status.success()), "{kill:?}");
 }
 
-/// Waits until something holds.
+/// Waits until a condition is true.
 #[track_caller]
 pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
     let start = Instant::now();
@@ -49,7 +49,7 @@ pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
-/// Waits until a file is there and has been replaced once.
+/// Waits until a file exists and has been replaced once.
 #[track_caller]
 pub(crate) fn wait_for_news(path: &Path) {
     use std::os::unix::fs::MetadataExt;
@@ -59,20 +59,20 @@ pub(crate) fn wait_for_news(path: &Path) {
     wait_for("a second checkpoint", || number().is_some_and(|now| Some(now) != first));
 }
 
-/// Samples of a checkpoint, which is whole.
+/// Returns the number of samples of a checkpoint, which must be intact.
 #[track_caller]
 pub(crate) fn samples(path: &Path) -> u64 {
     let (_, render) = checkpoint::read(path).unwrap_or_else(|error| panic!("{error}"));
     render.samples().total
 }
 
-/// What a program told, and the code with which it ended.
+/// Returns the messages and the exit code of a program.
 pub(crate) fn end(child: Child) -> (Option<i32>, String) {
     let output = child.wait_with_output().expect("a program that ends");
     (output.status.code(), text(&output.stderr))
 }
 
-/// The names of all files in a folder.
+/// Returns the names of all files in a folder.
 pub(crate) fn names(folder: &Folder) -> Vec<String> {
     let entries = fs::read_dir(folder.root()).expect("a folder");
     let mut names: Vec<String> =

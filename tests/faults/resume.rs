@@ -1,10 +1,10 @@
-//! What goes on, and what does not, where nothing goes wrong.
+//! Resuming without faults: what can resume, and errors.
 
 use crate::folder::{Folder, text};
 use crate::process::{end, signal, start, wait_for_news};
 use std::fs;
 
-/// A file of particles with columns and a cell.
+/// A particle file with columns and a cell.
 fn particles(folder: &Folder) {
     let head = "60\nLattice=\"4 0 0 0 4 0 0 0 4\" Properties=species:S:1:pos:R:3:heat:R:1\n";
     let row = |i: usize| {
@@ -35,7 +35,7 @@ const LOOKS: [&str; 17] = [
     "80x60",
 ];
 
-/// Starts a render that is kept, and ends it by a signal.
+/// Starts a render with a checkpoint, and ends it by a signal.
 fn interrupt(folder: &Folder, args: &[&str]) {
     let keep = ["--quiet", "--checkpoint", "c", "--checkpoint-every", "1ms"];
     let child = start(folder, &[args, &keep].concat());
@@ -54,14 +54,14 @@ fn nothing_need_be_said_again_wherever_it_goes_on() {
     let expected = folder.read("a.png");
     interrupt(&folder, &long);
     assert!(folder.read("a.png") != expected);
-    // From another folder: files are those of the first.
+    // From another folder, with the files of the first.
     fs::create_dir(folder.path("below")).expect("a folder");
     let below = ["-c", "cd below && exec \"$0\" render --resume ../c --threads 1 --quiet"];
     let mut shell = std::process::Command::new("sh");
     shell.args(below).arg(env!("CARGO_BIN_EXE_spherule")).current_dir(folder.root());
     assert!(shell.status().expect("a shell").success());
     assert!(folder.read("a.png") == expected);
-    // All of it at another place: what is there counts.
+    // With all files moved: those at the new place are used.
     let moved = Folder::new();
     for name in ["salt.xyz", "c"] {
         fs::copy(folder.path(name), moved.path(name)).expect("a copy");
@@ -82,7 +82,7 @@ fn more_is_added_to_what_was_over() {
     let last = ["render", "--resume", "c", "--spp", "96", "-o", "more.exr"];
     folder.succeed(&[&last[..], &other].concat());
     assert!(folder.read("more.exr") == folder.read("straight.exr"));
-    // A smaller error after a larger one: what is said of the picture says so too.
+    // A smaller error after a larger one: the metadata has the smaller one.
     folder.succeed(&[&small[..], &["--until-error", "50%", "--checkpoint", "d"]].concat());
     let report = folder.json(&["render", "--resume", "d", "--until-error", "15%", "--json", "-q"]);
     assert!(report["noise"]["bound"].as_f64().is_some_and(|bound| bound <= 0.15), "{report}");

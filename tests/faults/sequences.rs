@@ -1,4 +1,4 @@
-//! Sequences of pictures that are interrupted or killed, and go on.
+//! Sequences of images that are interrupted or killed, and resumed.
 
 use crate::folder::Folder;
 use crate::process::{LONG, end, names, signal, start, wait_for, wait_for_news};
@@ -6,7 +6,7 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::process::{Command, Stdio};
 
-/// Frames of a particle that moves.
+/// Frames of a moving particle.
 fn folder() -> Folder {
     let folder = Folder::new();
     let frame = |i: usize| format!("2\n\nC 0 0 0\nN {i} 2 1\n");
@@ -14,7 +14,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// Sequences of four pictures, some tenths of a second each.
+/// Sequences of four images, a few tenths of a second each.
 const SEQUENCES: [&[&str]; 2] = [
     &["render", "a.xyz", "--frame", "all", "--size", "64x48", "--spp", "150", "-q", "-o", "p.png"],
     &[
@@ -73,7 +73,7 @@ fn sequences_go_on_to_the_same_bytes() {
             assert!(before.len() < 4 && before.iter().all(|picture| expected.contains(picture)));
             folder.succeed(&["render", "--resume", "c", "-q"]);
             assert!(pictures(&folder) == expected, "{name}");
-            // Once all is done, nothing changes any more.
+            // Nothing changes once all is complete.
             folder.succeed(&["render", "--resume", "c", "-q"]);
             assert!(pictures(&folder) == expected, "{name}");
         }

@@ -1,8 +1,8 @@
-//! Ctrl-C and its like, limits of time, and other processes.
+//! Signals, time limits, and locks of other processes.
 
 use crate::folder::{Folder, SMALL, text};
 use crate::process::{LONG, end, names, samples, shell, signal, start, wait_for, wait_for_news};
-use spherule::image::Image;
+use spherule_render::image::Image;
 use std::fs;
 
 #[test]
@@ -29,7 +29,7 @@ fn a_second_signal_ends_it_at_once_and_files_are_whole() {
     let old = folder.read("spherule.png");
     let child = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
     wait_for_news(&folder.path("c"));
-    // Two of a kind may be taken for one.
+    // Two equal signals may be merged.
     signal(&child, &["INT", "TERM"]);
     let (code, message) = end(child);
     assert!([Some(143), Some(130)].contains(&code), "{message}");
@@ -46,7 +46,7 @@ fn time_ends_it_as_it_should_and_more_time_goes_on() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("--resume c"), "{}", text(&output.stderr));
     let (first, picture) = (samples(&folder.path("c")), folder.read("spherule.png"));
-    // Its time is over: nothing is added.
+    // Its time is used up, so nothing is added.
     folder.succeed(&["render", "--resume", "c"]);
     assert!(samples(&folder.path("c")) == first && folder.read("spherule.png") == picture);
     folder.succeed(&["render", "--resume", "c", "--time", "700ms"]);
@@ -68,7 +68,7 @@ fn one_process_at_a_time_writes_a_checkpoint() {
     assert!(child.try_wait().expect("a program").is_none() && !folder.path("b.png").exists());
     child.kill().expect("a program");
     child.wait().expect("a program");
-    // The system takes the lock back from those that are killed.
+    // The system releases the locks of killed processes.
     let again = start(&folder, &["render", "--resume", "c", "--quiet"]);
     wait_for_news(&folder.path("c"));
     signal(&again, &["TERM"]);
@@ -80,7 +80,7 @@ fn disks_that_are_full_leave_what_was_there() {
     let folder = Folder::new();
     let expected = folder.picture("straight.png", &[]);
     let keep = ["--checkpoint", "c", "--checkpoint-every", "none"];
-    // Files of 4 KiB at most: less than a checkpoint, more than the picture.
+    // Files are limited to 4 KiB: less than a checkpoint, more than the image.
     let args = [&SMALL[..], &keep, &["-o", "a.png"]].concat();
     let output = shell(&folder, "ulimit -f 8", &args);
     let message = text(&output.stderr);
@@ -90,7 +90,7 @@ fn disks_that_are_full_leave_what_was_there() {
         "{message}"
     );
     assert!(folder.read("a.png") == expected && !folder.path("c").exists());
-    // With a checkpoint that was there before, and a picture that there is no room for either.
+    // With an existing checkpoint, and an image that exceeds the limit as well.
     folder.succeed(&[&SMALL[..], &["--checkpoint", "c"]].concat());
     let kept = folder.read("c");
     let more = ["render", "--resume", "c", "--spp", "64", "-o", "a.pfm"];
@@ -114,7 +114,7 @@ fn folders_that_vanish_do_not_stop_a_render() {
     signal(&child, &["TERM"]);
     let (code, message) = end(child);
     assert_eq!(code, Some(143), "{message}");
-    assert!(message.contains("no folder") && message.contains("continues"), "{message}");
+    assert!(message.contains("not found") && message.contains("continues"), "{message}");
     assert!(Image::read(folder.path("spherule.png")).is_ok());
     samples(&folder.path("elsewhere/c"));
 }
@@ -132,7 +132,7 @@ fn places_that_take_no_checkpoint_are_told_before_the_render() {
     assert_eq!(folder.read("other"), b"something else");
 }
 
-/// Starts the program with standard input that goes on, and a pipe of a name.
+/// Starts the program with open standard input, and a named pipe.
 fn start_with_pipes(folder: &Folder, args: &[&str], input: &[u8]) -> std::process::Child {
     use std::io::Write;
     use std::process::{Command, Stdio};
@@ -140,14 +140,14 @@ fn start_with_pipes(folder: &Folder, args: &[&str], input: &[u8]) -> std::proces
     program.args(args).current_dir(folder.root());
     program.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = program.spawn().expect("a program that starts");
-    // Closed when the child is waited for.
+    // Closed by waiting for the child.
     child.stdin.as_mut().expect("a pipe").write_all(input).expect("a reader");
     child
 }
 
 #[test]
 fn one_signal_ends_whoever_waits_for_a_pipe() {
-    // Frames that are longer than what is read to find out the format.
+    // Frames are longer than the bytes that are read to detect the format.
     let frame =
         format!("4000\nProperties=species:S:1:pos:R:3\n{}", "H 0.125 0.25 0.375\n".repeat(4000));
     let xyz = frame.repeat(4);
@@ -172,7 +172,7 @@ fn one_signal_ends_whoever_waits_for_a_pipe() {
     }
 }
 
-/// The exit code of a program that ends soon; `None` for one that has to be killed.
+/// Returns the exit code of a program that ends soon; `None` if it has to be killed.
 fn end_in_time(mut child: std::process::Child) -> Option<i32> {
     for _ in 0..200 {
         if let Some(status) = child.try_wait().expect("a program") {

@@ -1,19 +1,17 @@
-//! Every reader on damaged files: cut, spliced, nested, with absurd numbers. Whatever the bytes, it
-//! ends soon, in little memory, without a panic, with something sound or a short error.
+//! Fuzzing of all readers with damaged files: truncated, spliced, nested, with extreme numbers. For all
+//! inputs, readers end soon, use little memory, do not panic, and return a valid result or a short error.
 //!
-//! Each file of `corpus/`, among them all that once did harm, is read as it is; then so are mutants
-//! of them, other ones in every run: their seed is the time, and a run that fails prints it.
-//! `SPHERULE_FUZZ_SEED` repeats a run, and `SPHERULE_FUZZ_SECONDS` sets the time for each of the
-//! targets:
+//! Each file of `corpus/`, which includes all inputs that failed in the past, is read; then random mutants of
+//! them. Their seed is the time, and a failed run prints it. `SPHERULE_FUZZ_SEED` repeats a run, and
+//! `SPHERULE_FUZZ_SECONDS` sets the time for each target:
 //!
 //! ```sh
 //! SPHERULE_FUZZ_SECONDS=600 SPHERULE_FUZZ_SEED=7 cargo test --release --test fuzz
 //! ```
 //!
-//! The cases run in a process of their own ([`worker`]),
-//! so that those that end it, by too much memory, time or stack, are told like the others: with the
-//! name of a file in `target/tmp` that holds the input, reduced. Mend the reader, and put the input
-//! into the corpus.
+//! Cases run in a separate process ([`worker`]), so that failures that end it (memory, time, stack) are
+//! reported like others, with the name of a file in `target/tmp` that contains the reduced input. Fix the
+//! reader, and add the input to the corpus.
 
 mod mutate;
 mod png;
@@ -31,11 +29,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Mutants of each target in an ordinary run, and the time after which it is content with fewer.
+/// Number of mutants of each target in an ordinary run, and the time limit.
 const MUTANTS: usize = 2000;
 const PATIENCE: Duration = Duration::from_secs(7);
 
-/// Different faults after which a run ends.
+/// Number of different faults after which a run ends.
 const FAULTS: usize = 10;
 
 #[test]
@@ -69,8 +67,8 @@ fn faults_are_told_and_overcome() {
     }
 }
 
-/// Runs a target on every seed, those of its corpus and `more`, and on mutants of them; the files
-/// `beside` are in the folder of each case.
+/// Runs a target on every seed, from its corpus and `more`, and on mutants of them. The files `beside` are in
+/// the folder of each case.
 fn fuzz(target: &str, more: &[PathBuf], beside: &[PathBuf]) {
     let seconds = seed::number("SPHERULE_FUZZ_SECONDS").map(Duration::from_secs);
     let seed = seed::seed("SPHERULE_FUZZ_SEED");
@@ -98,7 +96,7 @@ fn fuzz(target: &str, more: &[PathBuf], beside: &[PathBuf]) {
     assert!(messages.is_empty(), "{summary}\n{}", messages.join("\n"));
 }
 
-/// What one way to fail is told by, and a message about its first case.
+/// The signature of a fault, and a message about its first case.
 struct Fault {
     kind: String,
     message: String,
@@ -127,12 +125,12 @@ impl Faults<'_> {
     }
 }
 
-/// Faults that differ in numbers alone are one.
+/// Removes numbers, so that faults that differ only in numbers are equal.
 fn kind(fault: &str) -> String {
     fault.chars().filter(|letter| letter.is_alphabetic()).take(150).collect()
 }
 
-/// The files of a folder of the project, in the order of their names.
+/// Returns the files of a folder of the repository, sorted by name.
 fn files(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(folder).expect("a folder of the project");

@@ -1,21 +1,21 @@
-//! Mutants: seeds of a corpus with the kinds of damage that files suffer, and that attackers make.
+//! Mutation of corpus files: accidental and malicious damage.
 
 use crate::png;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use std::ops::Range;
 
-/// No mutant is longer: readers take longer the more they read.
+/// Maximum length of a mutant, to bound the time of readers.
 const LONGEST: usize = 1 << 19;
 
-/// What stands where a number stood.
+/// Replacements for numbers.
 const NUMBERS: &str = "nan inf -inf 0 -0 -0.0 0.0 1 -1 0.5 1e308 -1e308 1e999 1e-320 1e-45 1e38 \
                        3.5e38 1e20 1e-20 1e-310 255 65535 65536 100000 4294967279 4294967280 \
                        4294967295 4294967296 2000000000 1000000000 9223372036854775807 \
                        9223372036854775808 18446744073709551615 18446744073709551616 0xffffffff \
                        99999999999999999999999999999999999999999999999999";
 
-/// Bytes that mean something to one of the readers, or to none.
+/// Bytes with and without a meaning to readers.
 const WORDS: [&[u8]; 30] = [
     b"\0",
     b"\xff",
@@ -49,17 +49,16 @@ const WORDS: [&[u8]; 30] = [
     b"\x1f\x8b",
 ];
 
-/// Numbers that headers of pictures may claim.
+/// Numbers in headers of images.
 const CLAIMS: [u32; 12] =
     [0, 1, 2, 255, 256, 0x3fff, 0x7fff, 0x8000, 0xffff, 0x7fff_ffff, 0x8000_0000, u32::MAX];
 
-/// Kinds of damage; those of them that leave most lines as readable as they were; those to a
-/// number.
+/// Kinds of damage: all; those that leave most lines readable; those to a number.
 const KINDS: usize = 16;
 const ABSURD: Range<usize> = 10..KINDS;
 const NUMBER: Range<usize> = 13..KINDS;
 
-/// Makes mutants; the same for the same seed.
+/// A generator of mutants, determined by its seed.
 pub(crate) struct Mutator(Xoshiro256PlusPlus);
 
 impl Mutator {
@@ -67,20 +66,20 @@ impl Mutator {
         Self(Xoshiro256PlusPlus::seed_from_u64(seed))
     }
 
-    /// Uniform in `0..end`, where `end` is more than 0.
+    /// Returns a uniform number in `0..end`, for `end` above 0.
     pub(crate) fn below(&mut self, end: usize) -> usize {
         (self.0.next_u64() % end as u64) as usize
     }
 
-    /// One of these.
+    /// Returns a random element.
     pub(crate) fn one_of<'t, T>(&mut self, these: &'t [T]) -> &'t T {
         &these[self.below(these.len())]
     }
 
-    /// One of the seeds with one or more damages.
+    /// Returns a mutant: one of the seeds with one or more kinds of damage.
     pub(crate) fn mutant(&mut self, seeds: &[Vec<u8>]) -> Vec<u8> {
         let mut bytes = self.one_of(seeds).clone();
-        // Readers refuse most of what is damaged anyhow; what is only absurd gets further.
+        // Readers reject most damage early; extreme values get further.
         let kinds = self.one_of(&[0..KINDS, ABSURD, NUMBER]).clone();
         for _ in 0..=self.below(4) {
             self.damage(&mut bytes, seeds, kinds.clone());
@@ -111,7 +110,7 @@ impl Mutator {
         }
     }
 
-    /// A range of up to 64 bytes, or of any length.
+    /// Returns a range of up to 64 bytes, or of any length.
     fn range(&mut self, bytes: &[u8]) -> Range<usize> {
         let start = self.below(bytes.len() + 1);
         let most = bytes.len() - start;
@@ -138,7 +137,7 @@ impl Mutator {
         bytes.splice(at..at, copy);
     }
 
-    /// A part of another seed in the place of a part.
+    /// Replaces a part by a part of another seed.
     fn splice(&mut self, bytes: &mut Vec<u8>, seeds: &[Vec<u8>]) {
         let other = self.one_of(seeds);
         let part = other[self.range(other)].to_vec();
@@ -156,7 +155,7 @@ impl Mutator {
         }
     }
 
-    /// An absurd number, or one of any magnitude.
+    /// Returns an extreme number, or one of any magnitude.
     fn number(&mut self) -> String {
         let magnitude = *self.one_of(&[10, 40, 310]);
         if self.below(2) == 0 {
@@ -190,7 +189,7 @@ impl Mutator {
         }
     }
 
-    /// A line of a seed at another line's place.
+    /// Replaces a line by one of another seed.
     fn move_line(&mut self, bytes: &mut Vec<u8>, seeds: &[Vec<u8>]) {
         let other = self.one_of(seeds);
         let lines = words(other, |byte| byte != b'\n');
@@ -203,7 +202,7 @@ impl Mutator {
         }
     }
 
-    /// Brackets, quotes, keys in keys: deeper than any reader should follow.
+    /// Inserts deeply nested brackets, quotes or keys.
     fn nest(&mut self, bytes: &mut Vec<u8>) {
         let pairs: [[&[u8]; 2]; 5] =
             [[b"[", b"]"], [b"{a=", b"}"], [b"a.", b""], [b"[[", b"]]"], [b"[{a=", b"}]"]];
@@ -220,7 +219,7 @@ impl Mutator {
         bytes.splice(at..at, word.repeat(count));
     }
 
-    /// A number of four bytes, or two, in either order.
+    /// Replaces a number of four or two bytes, in either byte order.
     fn claim(&mut self, bytes: &mut [u8]) {
         let claim = *self.one_of(&CLAIMS);
         let four = [claim.to_be_bytes(), claim.to_le_bytes()];
@@ -241,7 +240,7 @@ impl Mutator {
     }
 }
 
-/// The longest runs of bytes of a kind.
+/// Returns the longest runs of bytes of a kind.
 fn words(bytes: &[u8], of_kind: impl Fn(u8) -> bool) -> Vec<Range<usize>> {
     let mut words = Vec::new();
     let mut start = 0;

@@ -1,6 +1,6 @@
-//! PNG files that are damaged within.
+//! PNG files with damaged content.
 
-/// Puts the right checksum into every chunk, so that damage gets past it.
+/// Corrects the checksum of every chunk, so that damage is not detected by it.
 pub(crate) fn seal(bytes: &mut [u8]) {
     let mut at = 8;
     while let Some(length) = bytes.get(at..at + 4) {

@@ -1,4 +1,4 @@
-//! The process that runs a target's cases, as seen from outside: it may answer, end or hang.
+//! The parent of the process that runs a target's cases, which may answer, end or hang.
 
 use crate::worker;
 use std::fs::{self, File};
@@ -9,13 +9,13 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// Time that a case may take, also on a machine that does much else.
+/// Time limit of a case, also on a busy machine.
 const TIME: Duration = Duration::from_secs(20);
 
-/// Most bytes of what an ended process said that are told.
+/// Maximum number of bytes of an ended process's messages that are reported.
 const TOLD: usize = 1000;
 
-/// A folder for a target's cases, and the process that runs them, once there is one.
+/// A folder for a target's cases, and the process that runs them, if it was started.
 pub(crate) struct Process<'t> {
     target: &'t str,
     folder: TempDir,
@@ -61,7 +61,7 @@ impl<'t> Process<'t> {
         }
     }
 
-    /// Puts an input where it stays.
+    /// Writes an input to a permanent file.
     pub(crate) fn keep(&self, bytes: &[u8], number: usize) -> PathBuf {
         let name = format!("failed-{}-{}-{number}", self.target, std::process::id());
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -81,7 +81,7 @@ impl<'t> Process<'t> {
 }
 
 impl Running {
-    /// Starts this very program as a [`worker`], whose standard error goes to the file `said`.
+    /// Starts this program as a [`worker`], with standard error in the file `said`.
     fn start(target: &str, said: &Path) -> Self {
         let mut child = Command::new(std::env::current_exe().expect("a program with a path"))
             .args(["worker::answers", "--exact", "--ignored", "--test-threads=1"])
@@ -96,7 +96,7 @@ impl Running {
         let output = BufReader::new(child.stdout.take().expect("a pipe"));
         let (send, answers) = channel();
         std::thread::spawn(move || {
-            // What the test harness says is no answer.
+            // Skips the test harness's output.
             let lines = output.lines().map_while(Result::ok);
             for line in lines {
                 let sent = line.split_once(worker::ANSWER).map(|(_, to)| send.send(to.to_owned()));
@@ -111,7 +111,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // One that has ended by itself cannot be killed.
+        // Fails if it has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,13 +1,12 @@
-//! Fewer bytes that fail alike (after Zeller, Hildebrandt, "Simplifying and Isolating
-//! Failure-Inducing Input", IEEE Transactions on Software Engineering 2002).
+//! Reduction of inputs that fail (after Zeller, Hildebrandt, "Simplifying and Isolating Failure-Inducing
+//! Input", IEEE Transactions on Software Engineering 2002).
 
 use std::time::{Duration, Instant};
 
-/// Time after which an input is short enough: cases that hang take long.
+/// Time limit of the reduction, since cases that hang take long.
 const TIME: Duration = Duration::from_secs(20);
 
-/// The input without what it does not need to fail: removes parts of halved lengths, as long as
-/// that goes.
+/// Removes parts of the input, of repeatedly halved lengths, as long as it fails in the same way.
 pub(crate) fn reduce(bytes: &[u8], mut fails: impl FnMut(&[u8]) -> bool) -> Vec<u8> {
     let start = Instant::now();
     let mut bytes = bytes.to_vec();

@@ -1,23 +1,25 @@
-//! What is done with an input, and what must be true of the outcome.
+//! Targets: operations on an input, and invariants of their results.
 
-use spherule::image::{Image, compare, read_metadata};
-use spherule::render::{Options, render};
-use spherule::scene::particles::{Format, FrameChoice, Radii, ReadOptions, count_frames, read};
-use spherule::scene::{Integrator, Scene, Spheres};
-use spherule::trace::{PacketWidth, Tracer, Traversal};
-use spherule::world::World;
+use spherule_render::image::{Image, compare, read_metadata};
+use spherule_render::render::{Options, render};
+use spherule_render::scene::particles::{
+    Format, FrameChoice, Radii, ReadOptions, count_frames, read,
+};
+use spherule_render::scene::{Integrator, Scene, Spheres};
+use spherule_render::trace::{PacketWidth, Tracer, Traversal};
+use spherule_render::world::World;
 use std::error::Error;
 use std::fs;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Scenes of more spheres are read, but not rendered.
+/// Maximum number of spheres of scenes that are rendered.
 const RENDERED: usize = 5000;
 
-/// Scenes of more spheres are rendered, but not without the tree.
+/// Maximum number of spheres of scenes that are rendered by brute force.
 const COMPARED: usize = 200;
 
-/// Most bytes of a message.
+/// Maximum length of a message in bytes.
 const LONGEST: usize = 5000;
 
 /// Reads a scene, and renders it if it is small.
@@ -25,7 +27,7 @@ pub(crate) fn scene(path: &Path) {
     look_at(told(Scene::load(path)));
 }
 
-/// Reads particles in every format, and renders them as those that they seem to have.
+/// Reads particles in every format, and renders them in detected formats.
 pub(crate) fn particles(path: &Path) {
     let options = |format, radius, scale| {
         let radii = Option::map_or(radius, Radii::Auto, Radii::Missing);
@@ -45,7 +47,7 @@ pub(crate) fn particles(path: &Path) {
     look_at(told(Scene::from_particles(path, &ReadOptions::default())));
 }
 
-/// Reads a picture and what it says about itself, compares it and renders a sphere under it.
+/// Reads an image and its metadata, compares it, and renders a sphere under it.
 pub(crate) fn picture(path: &Path) {
     told(read_metadata(path));
     if let Some(image) = told(Image::read(path)) {
@@ -59,7 +61,7 @@ pub(crate) fn picture(path: &Path) {
     look_at(told(Scene::parse(text, "sky", folder)));
 }
 
-/// Fails as the input says, to find out whether that is noticed.
+/// Fails in the way that the input names, to test the fuzzer.
 pub(crate) fn fault(path: &Path) {
     match fs::read(path).expect("a case").as_slice() {
         b"panic" => panic!("as told"),
@@ -76,7 +78,7 @@ fn endless(depth: u64) -> [u64; 64] {
     black_box(below.map(|value| value + depth))
 }
 
-/// What there is, or nothing after a look at the message.
+/// Returns the value, or `None` after a check of the error's message.
 fn told<T, E: Error>(outcome: Result<T, E>) -> Option<T> {
     outcome
         .map_err(|error| {
@@ -106,7 +108,7 @@ fn look_at(scene: Option<Scene>) {
     }
 }
 
-/// Renders a world, and, if it is tiny, without its tree.
+/// Renders a world, and, if it is tiny, also by brute force.
 fn draw(scene: &Scene, world: &World) {
     world.bvh.validate(&world.spheres).expect("a sound tree");
     let picture = render(world, &scene.settings, &Options::default()).expect("settings in range");

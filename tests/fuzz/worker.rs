@@ -1,5 +1,5 @@
-//! The process that runs a target's cases, from inside: paths come on standard input, answers go to
-//! standard output.
+//! The process that runs a target's cases: it reads paths from standard input, and writes answers to standard
+//! output.
 
 use crate::targets;
 use cap::Cap;
@@ -9,21 +9,21 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// The variable of the environment that names the target; without it this is no worker.
+/// Environment variable with the name of the target; only workers have it.
 pub(crate) const TARGET: &str = "SPHERULE_FUZZ_TARGET";
 
-/// What an answer stands behind: nothing, or how the case failed, in one line.
+/// Prefix of an answer, which is empty or describes the failure in one line.
 pub(crate) const ANSWER: &str = "spherule-fuzz-answer:";
 
-/// Memory that a case may take, in bytes. An allocation beyond it fails, which ends the process
-/// unless the reader asked whether it may.
+/// Memory limit of a case in bytes. A larger allocation fails, which ends the process unless the reader
+/// handles it.
 const MEMORY: usize = 1 << 29;
 
 #[global_allocator]
 static ALLOCATOR: Cap<System> = Cap::new(System, usize::MAX);
 
-/// Message of the last panic. Panics are reported by answers alone: decoders of other crates may panic,
-/// and be caught.
+/// Message of the last panic. Only answers report panics, since panics in decoders of other crates may be
+/// caught.
 static LAST_PANIC: Mutex<String> = Mutex::new(String::new());
 
 #[test]
@@ -40,7 +40,7 @@ fn answers() {
 }
 
 fn run(target: &str, path: &Path) -> Result<(), String> {
-    // Fails only if more than that is taken already.
+    // Fails only if more memory is already allocated.
     let _ = ALLOCATOR.set_limit(ALLOCATOR.allocated() + MEMORY);
     let outcome = catch_unwind(AssertUnwindSafe(|| match target {
         "scenes" => targets::scene(path),

@@ -1,4 +1,5 @@
-//! The library: pictures, walks, trees, queries and readers beside closed forms, oracles and one another.
+//! Tests of the library: images, traversals, BVHs, queries and readers, compared with closed forms and
+//! oracles.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,9 +1,9 @@
-//! Every file of `tests/data/particles` against what the program of its format reads from it, which
-//! `tools/readers/compare.py --answers` has written beside it.
+//! Readers of particle files, compared with other programs. `tools/readers/compare.py --answers` wrote the
+//! expected results to files in `tests/data/particles`.
 
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
-use spherule::scene::particles::{
+use spherule_render::scene::particles::{
     Cell, Element, LengthUnit, ParticleFrame, ReadOptions, count_frames, read_frame,
 };
 use std::collections::BTreeSet;
@@ -14,8 +14,7 @@ struct Answers {
     file: Vec<Answer>,
 }
 
-/// Contents that another program reads from a file, lengths in angstrom where the format has a
-/// unit.
+/// Contents that another program reads from a file; lengths are in angstrom if the format has a unit.
 #[derive(Deserialize)]
 struct Answer {
     name: String,
@@ -24,7 +23,7 @@ struct Answer {
     count: usize,
     cell: Option<[[f64; 3]; 3]>,
     origin: Option<[f64; 3]>,
-    /// The first positions, or all of them where their order is free.
+    /// The first positions, or all of them if their order is not defined.
     first: Vec<[f64; 3]>,
     #[serde(default)]
     last: Vec<[f64; 3]>,
@@ -36,7 +35,7 @@ struct Answer {
     elements: Vec<String>,
 }
 
-/// Answers have five decimals, files as few as three.
+/// Tolerance: expected results have five decimals, files at least three.
 const TOLERANCE: f64 = 2e-3;
 
 fn folder() -> PathBuf {
@@ -115,7 +114,7 @@ fn check_rows(answer: &Answer, positions: &[DVec3]) {
     }
 }
 
-/// Every expected atom is there, up to lattice translations.
+/// Asserts that every expected atom exists, up to lattice translations.
 fn check_set(answer: &Answer, frame: &ParticleFrame, positions: &[DVec3], cell: Cell) {
     let [a, b, c] = cell.vectors;
     let edges = DMat3::from_cols(a, b, c);

@@ -1,16 +1,18 @@
-//! Renders that are stopped and go on: whether they come to the same bytes as those that never stopped.
+//! Interrupted renders: resumed images have the same bytes as uninterrupted ones.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::film::Region;
-use spherule::render::{End, IncompatibleSettings, Options, Render, ResumableRender, render};
-use spherule::scene::{Filter, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
-use spherule::trace::{PacketWidth, Tracer};
-use spherule::world::World;
+use spherule_render::film::Region;
+use spherule_render::render::{
+    End, IncompatibleSettings, Options, Render, ResumableRender, render,
+};
+use spherule_render::scene::{Filter, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
+use spherule_render::trace::{PacketWidth, Tracer};
+use spherule_render::world::World;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Plastic and glass before an even sky, which some tiles see alone.
+/// Returns plastic and glass under a uniform sky, with tiles that see only the sky.
 fn still_life() -> Scene {
     let mut scene = furnace();
     sphere(&mut scene, [-0.5, 0.0, 0.0], 1.0, Material::Plastic { color: Rgb::ONE, ior: 1.5 });
@@ -23,14 +25,14 @@ fn still_life() -> Scene {
     scene
 }
 
-/// Renders until something was done so many times, or to the end.
+/// Renders until a number of tasks is done, or to the end.
 fn run_for(unfinished: &mut ResumableRender, world: &World, tasks: u64, threads: usize) -> End {
     let (done, cancel) = (AtomicU64::new(0), AtomicBool::new(false));
     let count = |_| {
         let last = done.fetch_add(1, Ordering::Relaxed) + 1 >= tasks;
         cancel.fetch_or(last, Ordering::Relaxed);
     };
-    // What never changes the picture.
+    // Options that never change the image.
     let widths = [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen];
     let tracer = Tracer { width: widths[tasks as usize % 4], ..Tracer::default() };
     let options =
@@ -39,7 +41,7 @@ fn run_for(unfinished: &mut ResumableRender, world: &World, tasks: u64, threads:
     pool.install(|| unfinished.run(world, &options))
 }
 
-/// Renders with a pause after every few tasks, on one thread and on several by turns.
+/// Renders with an interruption after every few tasks, alternately on one thread and on several.
 fn run_in_pieces(unfinished: &mut ResumableRender, world: &World, tasks: u64) -> u32 {
     let mut pauses = 0;
     while run_for(unfinished, world, tasks + u64::from(pauses % 3), 1 + pauses as usize % 3)
@@ -92,7 +94,7 @@ fn renders_go_on_to_the_bytes_of_those_that_never_stopped() {
     for (name, scene) in cases {
         for statistics in [false, true] {
             let options = Options { statistics, ..Options::default() };
-            let straight = shoot_with(&scene, &options);
+            let straight = render_scene_with(&scene, &options);
             assert!(straight.complete);
             for tasks in [1, 7] {
                 let pieces = in_pieces(&scene, &options, tasks);
@@ -106,7 +108,7 @@ fn renders_go_on_to_the_bytes_of_those_that_never_stopped() {
 fn regions_go_on_too() {
     let region = Some(Region { x: 13, y: 15, width: 40, height: 33 });
     let options = Options { region, ..Options::default() };
-    let straight = shoot_with(&still_life(), &options);
+    let straight = render_scene_with(&still_life(), &options);
     assert_same(&in_pieces(&still_life(), &options, 3), &straight, "region");
 }
 
@@ -125,15 +127,15 @@ fn more_samples_make_the_picture_of_so_many_from_the_start() {
         for spp in [5, 5, 21, 32, 70] {
             let settings = Settings { spp, ..scene.settings.clone() };
             unfinished.extend(&settings).expect("it is more");
-            // The last few passes of what was asked for before may be missing still.
+            // The last passes of the first goal may still be missing.
             run_for(&mut unfinished, &world, 60, 2);
         }
         assert_eq!(unfinished.run(&world, &options), End::Samples);
-        assert_same(&unfinished.render(), &shoot_with(&scene, &options), "70 samples");
+        assert_same(&unfinished.render(), &render_scene_with(&scene, &options), "70 samples");
     }
 }
 
-/// A first target and a second one, which is asked for after so many tasks.
+/// A first goal, and a second one that is set after a number of tasks.
 fn two_targets(world: &World, settings: [&Settings; 2], after: u64) -> Render {
     let mut unfinished =
         ResumableRender::begin(world, settings[0], &Options::default()).expect("settings in range");

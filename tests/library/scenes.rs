@@ -1,16 +1,16 @@
-//! Every scene of `scenes/` and of its gallery renders, and those with closed forms give them.
+//! Scenes of `scenes/` and its gallery: all render, and some have known images.
 
-use spherule::render::{Options, Render, render};
-use spherule::scene::Scene;
-use spherule::scene::particles::{self, ReadOptions};
-use spherule::world::World;
+use spherule_render::render::{Options, Render, render};
+use spherule_render::scene::Scene;
+use spherule_render::scene::particles::{self, ReadOptions};
+use spherule_render::world::World;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
 }
 
-/// A scene of the folder as a small picture.
+/// Returns a scene of the folder with a small image.
 fn picture(path: &Path, (width, height): (u32, u32), spp: u32) -> Render {
     let mut scene = Scene::load(path).unwrap_or_else(|error| panic!("{error}"));
     (scene.settings.width, scene.settings.height) = (width, height);
@@ -43,7 +43,7 @@ fn the_quartz_of_the_gallery_is_whole() {
     let read = particles::read(&path, &ReadOptions::default()).expect("a crystal");
     let (spheres, cell) = (read.spheres, read.cell.expect("a cell"));
     assert_eq!(spheres.len(), 9);
-    // Every silicon has four neighbors of oxygen at 1.60 to 1.62 angstrom, across faces too.
+    // Every silicon has four oxygen neighbors at 1.60 to 1.62 angstrom, also across faces.
     for silicon in 0..3 {
         let bond = |oxygen: usize, shift: usize| {
             let neighbor = [shift % 3, shift / 3 % 3, shift / 9].map(|share| share as f64 - 1.0);
@@ -71,7 +71,7 @@ fn a_mirror_in_a_gradient_sky_matches_its_closed_form() {
     let middle = image.pixels[65 * 32 + 32];
     // Straight back: the horizon.
     assert!((middle[1] - 0.5).abs() < 1e-3, "{middle:?}");
-    // Above and below the middle the sky is mirrored alike.
+    // The reflections of the sky above and below the center are symmetric.
     for row in 0..32 {
         let (above, below) =
             (image.pixels[65 * row + 32][1], image.pixels[65 * (64 - row) + 32][1]);

@@ -1,17 +1,17 @@
-//! Slices: what is left of spheres is what arithmetic says, whichever way rays find it.
+//! Slices: hits of cut spheres by all traversals, compared with an oracle and closed forms.
 
 use crate::common::{
-    assert_every_pixel, assert_truth, dark, emitter, furnace, glass, ground, lambertian, look,
-    look_parallel, material, mean, menagerie, noon, probe, shoot, shoot_with, sphere,
+    assert_every_pixel, assert_expected, dark, emitter, furnace, glass, ground, lambertian, look,
+    look_parallel, material, mean, menagerie, noon, probe, render_scene, render_scene_with, sphere,
 };
 use glam::{DVec3, Vec3};
-use spherule::layers::{Layer, layers};
-use spherule::ray::{GROUND, Hits, MISS, Rays};
-use spherule::render::Options;
-use spherule::sampling::{stream, uniform_sphere, unit};
-use spherule::scene::{Material, Rgb, Scene, Slice, SliceMode};
-use spherule::trace::{self, PacketWidth, Tracer, Traversal};
-use spherule::world::{World, WorldError};
+use spherule_render::layers::{Layer, layers};
+use spherule_render::ray::{GROUND, Hits, MISS, Rays};
+use spherule_render::render::Options;
+use spherule_render::sampling::{stream, uniform_sphere, unit};
+use spherule_render::scene::{Material, Rgb, Scene, Slice, SliceMode};
+use spherule_render::trace::{self, PacketWidth, Tracer, Traversal};
+use spherule_render::world::{World, WorldError};
 
 fn slice(normal: DVec3, distance: f64, mode: SliceMode) -> Slice {
     Slice { normal: normal.normalize(), distance, mode }
@@ -21,7 +21,7 @@ fn caps(normal: DVec3, distance: f64) -> Slice {
     slice(normal, distance, SliceMode::Caps)
 }
 
-/// Random numbers of a test.
+/// Returns the random numbers of a test.
 struct Numbers(u64);
 
 impl Numbers {
@@ -37,7 +37,7 @@ impl Numbers {
     }
 }
 
-/// Overlapping spheres, cut by some planes.
+/// Returns overlapping spheres, cut by some planes.
 fn crowd(slices: Vec<Slice>) -> Scene {
     let (mut scene, n) = (dark(), &mut Numbers(3));
     let row = material(&mut scene, lambertian(0.5));
@@ -49,8 +49,8 @@ fn crowd(slices: Vec<Slice>) -> Scene {
     scene
 }
 
-/// By how much the numbers of an oracle are off on purpose: an answer that this changes is too close
-/// to call in single precision.
+/// Perturbation of the oracle. Results that it changes cannot be decided in single precision, and are
+/// skipped.
 #[derive(Clone, Copy, Default)]
 struct Shift {
     radius: f64,
@@ -58,8 +58,8 @@ struct Shift {
     origin: DVec3,
 }
 
-/// The oracle: every sphere's kept part is a convex body, of which a ray hits the near end from
-/// outside and the far one from inside. Distance and row of the nearest, in double precision.
+/// The oracle: the remaining part of each sphere is convex, so a ray hits its near end from outside and its
+/// far end from inside. Returns distance and row of the nearest hit, in double precision.
 fn nearest(
     world: &World,
     slices: &[Slice],
@@ -71,7 +71,7 @@ fn nearest(
         (rays.origin.row(row).as_dvec3() + by.origin, rays.direction.row(row).as_dvec3());
     let (mut from, mut to) = (0.0_f64, f64::INFINITY);
     for slice in slices {
-        let height = world.frame.length(slice.depth(world.frame.shift)) + by.height;
+        let height = world.transform.length(slice.depth(world.transform.shift)) + by.height;
         let (above, rise) = (slice.normal.dot(origin) + height, slice.normal.dot(d));
         if rise < 0.0 {
             from = from.max(-above / rise);
@@ -100,7 +100,7 @@ fn nearest(
         }
         let t = if near > 0.0 { near } else { far };
         let power = (origin + d * t - center).length_squared() - r * r;
-        // Many caps have the same distance.
+        // Many caps are at the same distance.
         let closer = |(other, least, _)| (t, power) < (other, least);
         if best.is_none_or(closer) {
             best = Some((t, power, sphere as u32));
@@ -109,7 +109,7 @@ fn nearest(
     best.map(|(t, _, sphere)| (t, sphere))
 }
 
-/// Rays from everywhere, in space and on surfaces, in the world's unit.
+/// Returns rays from random points in space and on surfaces, in the world's unit.
 fn rays(world: &World, count: usize) -> Rays {
     let (mut rays, n) = (Rays::with_capacity(count), &mut Numbers(9));
     for i in 0..count {
@@ -118,7 +118,7 @@ fn rays(world: &World, count: usize) -> Rays {
             let origin = n.direction() * (0.2 + 2.0 * n.unit());
             rays.push(origin, (target * 0.3 - origin).normalize(), MISS);
         } else {
-            rays.push(n.point() * world.frame.scale as f32, direction, GROUND);
+            rays.push(n.point() * world.transform.scale as f32, direction, GROUND);
         }
     }
     rays
@@ -199,7 +199,7 @@ fn pictures_are_the_same_whatever_finds_spheres() {
     }
     for mode in [SliceMode::Caps, SliceMode::Hide, SliceMode::Remove] {
         scene.slices = vec![slice(DVec3::new(0.5, -1.0, 0.2), 1.0, mode), caps(DVec3::Z, 4.5)];
-        let usual = shoot(&scene).image;
+        let usual = render_scene(&scene).image;
         for traversal in [Traversal::Brute, Traversal::Single, Traversal::Stream, Traversal::Packet]
         {
             for width in
@@ -207,7 +207,7 @@ fn pictures_are_the_same_whatever_finds_spheres() {
             {
                 let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
                 assert_eq!(
-                    shoot_with(&scene, &options).image,
+                    render_scene_with(&scene, &options).image,
                     usual,
                     "{mode:?} {traversal:?} {width:?}"
                 );
@@ -215,13 +215,13 @@ fn pictures_are_the_same_whatever_finds_spheres() {
         }
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let image = pool.expect("threads").install(|| shoot(&scene).image);
+            let image = pool.expect("threads").install(|| render_scene(&scene).image);
             assert_eq!(image, usual, "{mode:?} {threads}");
         }
     }
 }
 
-/// A ball of radius 1 that is cut in half, seen by parallel rays; the picture is 4 high and wide.
+/// Returns a half sphere of radius 1, seen by parallel rays in an image of 4 x 4 units.
 fn half(eye: DVec3) -> Scene {
     let mut scene = furnace();
     sphere(&mut scene, [0.0; 3], 1.0, lambertian(0.5));
@@ -237,7 +237,7 @@ fn half_a_ball_has_half_its_outline_and_a_round_cap() {
         let world = World::build(scene).expect("a sound scene");
         let found = layers(&world, &scene.settings, &Options::default(), &[Layer::Normal])
             .expect("settings in range");
-        let sum = |of: fn(&spherule::layers::Features) -> f32| {
+        let sum = |of: fn(&spherule_render::layers::Features) -> f32| {
             found.pixels.iter().map(|pixel| f64::from(of(pixel))).sum::<f64>() * 16.0 / 4096.0
         };
         [sum(|pixel| pixel.coverage), sum(|pixel| pixel.normal[2])]
@@ -246,34 +246,33 @@ fn half_a_ball_has_half_its_outline_and_a_round_cap() {
     let near = |found: f64, truth: f64| assert!((found - truth).abs() < 0.01, "{found} {truth}");
     let [side, _] = area(&half(DVec3::X * 5.0));
     near(side, pi / 2.0);
-    // From above all that is seen is the cap, whose normal is up.
+    // From above, only the cap is visible, with an upward normal.
     let [above, upward] = area(&half(DVec3::Z * 5.0));
     near(above, pi);
     near(upward, pi);
     let [below, downward] = area(&half(DVec3::Z * -5.0));
     near(below, pi);
     near(downward, -2.0 / 3.0 * pi);
-    // At 45 degrees: a half disk, and a half ellipse beyond it; or the whole cap and what the ball
-    // shows under it.
+    // At 45 degrees: a half disk and a half ellipse beyond it, or the whole cap and the part of the sphere
+    // below it.
     let [slanted, _] = area(&half(DVec3::new(5.0, 0.0, 5.0)));
     near(slanted, pi / 2.0 * (1.0 + 0.5_f64.sqrt()));
 }
 
 #[test]
 fn caps_have_the_color_of_their_sphere() {
-    // Under a white sky a convex body of albedo 0.5 has radiance 0.5, cap and all; so has one whose
-    // spheres are cut.
+    // Under a white sky, a convex body of albedo 0.5 has radiance 0.5, including its cap.
     let mut scene = half(DVec3::Z * 5.0);
     look_parallel(&mut scene, DVec3::new(0.0, 1e-3, 5.0), DVec3::ZERO, 1e-3);
-    for pixel in &shoot(&scene).image.pixels {
+    for pixel in &render_scene(&scene).image.pixels {
         assert!((pixel[0] - 0.5).abs() < 1e-6, "{pixel:?}");
     }
-    // Two spheres that overlap: on the cap the border is in the middle.
+    // Two overlapping spheres: their border on the cap is in the middle.
     scene.spheres.push(DVec3::X * 1.2, 1.0, 0, Rgb::new(1.0, 0.5, 0.5));
     for (x, green) in [(0.59, 0.5), (0.61, 0.25)] {
         let at = DVec3::X * x;
         look_parallel(&mut scene, at + DVec3::Z * 5.0, at, 1e-3);
-        for pixel in &shoot(&scene).image.pixels {
+        for pixel in &render_scene(&scene).image.pixels {
             assert!((pixel[1] - green).abs() < 1e-6, "{x} {pixel:?}");
         }
     }
@@ -287,7 +286,7 @@ fn a_section_through_a_crystal_is_flat() {
         let place = DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100));
         scene.spheres.push(place, 0.5, row, Rgb::ONE);
     }
-    // Within the reach of a layer of spheres: squares of circles of radius 0.4.
+    // Within a layer of spheres: a square lattice of circles of radius 0.4.
     scene.slices = vec![caps(DVec3::Z, 5.3)];
     let middle = DVec3::new(4.5, 4.5, 5.0);
     look_parallel(&mut scene, middle + DVec3::Z * 20.0, middle, 10.0);
@@ -299,11 +298,11 @@ fn a_section_through_a_crystal_is_flat() {
     let flat = found.pixels.iter().filter(|pixel| pixel.normal[2] > 1.0 - 1e-6);
     assert!(flat.clone().all(|pixel| (pixel.depth - 19.7).abs() < 1e-4));
     let share = flat.count() as f64 / 1e4;
-    // Pixels on the circles' edges see something else too.
+    // Pixels on the edges of circles are only partly covered.
     assert!((0.3..0.5).contains(&share), "{share}");
-    // A white crystal in a white sky cannot be seen, wherever it is cut.
+    // A white crystal under a white sky is invisible, wherever it is cut.
     scene.settings.spp = 4;
-    assert_every_pixel(&shoot(&scene).image, 1.0, "a white crystal");
+    assert_every_pixel(&render_scene(&scene).image, 1.0, "a white crystal");
 }
 
 #[test]
@@ -312,7 +311,7 @@ fn what_is_hidden_keeps_its_shadow() {
     let radiance = |scene: &Scene, eye: DVec3, at: DVec3| {
         let mut scene = scene.clone();
         look_parallel(&mut scene, eye, at, 1e-3);
-        mean(&shoot(&scene).image)
+        mean(&render_scene(&scene).image)
     };
     let (above, side) = (DVec3::Z * 9.0, DVec3::new(9.0, 0.0, 0.5));
     let sunny = 0.5 / std::f64::consts::PI;
@@ -322,7 +321,7 @@ fn what_is_hidden_keeps_its_shadow() {
         (Some(SliceMode::Remove), sunny, sunny),
     ] {
         scene.slices = mode.map(|mode| slice(DVec3::Z, 2.0, mode)).into_iter().collect();
-        // From above there is the sphere, or the ground below; from the side the ground alone.
+        // From above, the sphere or the ground is visible; from the side, only the ground.
         assert!((radiance(&scene, above, DVec3::ZERO) - seen).abs() < 1e-6, "{mode:?}");
         assert!((radiance(&scene, side, DVec3::ZERO) - shadow).abs() < 1e-6, "{mode:?}");
         let beside = DVec3::X * 2.0;
@@ -337,11 +336,11 @@ fn removed_spheres_are_not_there() {
     let world = World::build(&cut).expect("a sound scene");
     let above = (0..cut.spheres.len()).filter(|&row| cut.spheres.z[row] > 3.5).count();
     assert_eq!(world.features.cut_away, above as u64);
-    let picture = shoot(&cut).image;
+    let picture = render_scene(&cut).image;
     let mut dropped = cut.clone();
     assert_eq!(dropped.drop_cut(), above);
     dropped.slices.clear();
-    assert_eq!(shoot(&dropped).image, picture);
+    assert_eq!(render_scene(&dropped).image, picture);
 }
 
 #[test]
@@ -350,9 +349,9 @@ fn half_a_lamp_lights_as_its_disk_does() {
     sphere(&mut scene, [0.0, 0.0, 2.0], 1.0, emitter(4.0, 0.0));
     ground(&mut scene, lambertian(0.5));
     scene.slices = vec![caps(DVec3::NEG_Z, -2.0)];
-    // The disk at height 2 is seen under an angle whose squared sine is 1/5.
+    // The disk at height 2 subtends an angle with a squared sine of 1/5.
     let estimate = probe(&mut scene, DVec3::ZERO, DVec3::new(6.0, 0.0, 2.0));
-    assert_truth(estimate, 0.5 * 4.0 / 5.0, "below half a lamp");
+    assert_expected(estimate, 0.5 * 4.0 / 5.0, "below half a lamp");
 }
 
 #[test]
@@ -377,13 +376,13 @@ fn cameras_frame_what_is_left() {
     for x in [0.0, 10.0] {
         sphere(&mut scene, [x, 0.0, 0.0], 1.0, lambertian(0.5));
     }
-    scene.camera = spherule::scene::Camera::default();
+    scene.camera = spherule_render::scene::Camera::default();
     scene.slices = vec![caps(DVec3::X, 5.0)];
     let world = World::build(&scene).expect("a sound scene");
-    let eye = world.camera.eye / world.frame.scale + world.frame.shift;
+    let eye = world.camera.eye / world.transform.scale + world.transform.shift;
     assert!(eye.length() < 6.0, "{eye}");
     scene.slices = vec![caps(DVec3::X, -5.0)];
     assert!(matches!(World::build(&scene), Err(WorldError::NothingToFit)));
     look(&mut scene, DVec3::Z * 5.0, DVec3::ZERO, 40.0);
-    assert_every_pixel(&shoot(&scene).image, 1.0, "nothing is left");
+    assert_every_pixel(&render_scene(&scene).image, 1.0, "nothing is left");
 }

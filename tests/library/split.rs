@@ -1,17 +1,17 @@
-//! Renders that are shared out and merged: whether they come to the bytes of the whole.
+//! Parts of renders: merged images have the same bytes as whole ones.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::film::{Film, Region};
-use spherule::layers::{Layer, Layers, features, layers};
-use spherule::render::{End, ImagePart, Options, Render, ResumableRender, render};
-use spherule::sampling::mix;
-use spherule::scene::{Identity, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
-use spherule::split::{Merge, MergeError, Part, Split};
-use spherule::world::World;
+use spherule_render::film::{Film, Region};
+use spherule_render::layers::{Layer, Layers, features, layers};
+use spherule_render::render::{End, ImagePart, Options, Render, ResumableRender, render};
+use spherule_render::sampling::mix;
+use spherule_render::scene::{Identity, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
+use spherule_render::split::{Merge, MergeError, Part, Split};
+use spherule_render::world::World;
 use std::sync::atomic::AtomicBool;
 
-/// Plastic, glass and a bright lamp, whose glints are added to what is dim, before an even sky.
+/// Returns plastic, glass and a bright emitter, with highlights on dark surfaces, under a uniform sky.
 fn still_life() -> Scene {
     let mut scene = furnace();
     sphere(&mut scene, [-0.5, 0.0, 0.0], 1.0, Material::Plastic { color: Rgb::ONE, ior: 1.5 });
@@ -25,18 +25,18 @@ fn still_life() -> Scene {
 }
 
 const STATISTICS: Options = Options {
-    tracer: spherule::trace::Tracer {
-        traversal: spherule::trace::Traversal::Auto,
-        width: spherule::trace::PacketWidth::Eight,
+    tracer: spherule_render::trace::Tracer {
+        traversal: spherule_render::trace::Traversal::Auto,
+        width: spherule_render::trace::PacketWidth::Eight,
     },
     region: None,
     progress: None,
     cancel: None,
     statistics: true,
-    elisions: spherule::render::Elisions::ALL,
+    elisions: spherule_render::render::Elisions::ALL,
 };
 
-/// A share of a render, complete.
+/// Returns a complete part of a render.
 fn take(
     world: &World,
     settings: &Settings,
@@ -54,7 +54,7 @@ fn whole(settings: &Settings) -> ImagePart {
     ImagePart::whole(Region { x: 0, y: 0, width, height }, spp)
 }
 
-/// All parts of a render, in any order.
+/// Returns all parts of a render, in any order.
 fn parts(
     world: &World,
     settings: &Settings,
@@ -147,7 +147,7 @@ fn parts_may_be_split_in_different_ways() {
         take(&world, &scene.settings, &Options::default(), ImagePart { samples, tiles })
     };
     let merged = merge(false, shares.map(take).into()).expect("they are all there").render();
-    assert_same(&merged, &shoot(&scene), "three pieces");
+    assert_same(&merged, &render_scene(&scene), "three pieces");
 }
 
 #[test]
@@ -203,8 +203,8 @@ fn what_is_missing_is_named() {
     let take = |share| take(&world, &scene.settings, &Options::default(), share);
     let message = merge(false, vec![take(second), take(first)]).map(drop);
     let message = message.map_err(|error| error.to_string());
-    let expected = "no part has samples 36 to 70 of tiles 1 to 3; render what is missing, or merge \
-                    what there is with --partial";
+    let expected = "no part has samples 36 to 70 of tiles 1 to 3; render the missing parts, or merge \
+                    the others with --partial";
     assert_eq!(message, Err(expected.to_owned()));
     assert_eq!(merge(true, Vec::new()).map(drop), Err(MergeError::Nothing));
 }
@@ -220,7 +220,7 @@ fn what_there_is_has_the_right_weights() {
     assert!(!merged.complete);
     assert_eq!((merged.samples.least, merged.samples.most), (0, 21));
     let statistics = merged.statistics.expect("they were asked for");
-    // The mean of 16 samples and 5 others, by pixels of the second tile.
+    // The mean of 16 samples and 5 others, for pixels of the second tile.
     let few = |samples: std::ops::Range<u32>| {
         merge(true, vec![take(samples, 0..24)]).expect("that may be").render().image
     };
@@ -259,10 +259,10 @@ fn parts_of_other_renders_are_refused() {
     };
     let usual = Options::default();
     let seed = refused(&usual, &|settings| settings.seed = 9);
-    let expected = "b: is no part of the same render as a: seed is 9, and 0 there; merge parts of \
+    let expected = "b: is not a part of the same render as a: seed is 9, but 0 there; merge parts of \
                     one render";
     assert_eq!(seed, expected);
-    assert!(refused(&usual, &|settings| settings.spp = 71).contains("spp is 71, and 70"));
+    assert!(refused(&usual, &|settings| settings.spp = 71).contains("spp is 71, but 70"));
     assert!(refused(&usual, &|settings| settings.exposure = 1.0).contains("exposure"));
     assert!(refused(&usual, &|s| s.sampler = SamplerKind::Independent).contains("sampler"));
     assert!(refused(&STATISTICS, &|_| ()).contains("statistics"));
@@ -277,7 +277,7 @@ fn parts_of_other_renders_are_refused() {
     merge.add("a", &identity, part(0..3)).expect("it is the first");
     let other = Identity::of(&furnace());
     let error = merge.add("b", &other, part(3..5)).map_err(|error| error.to_string());
-    let expected = "b: is of another scene than a: it has other spheres; merge parts of one render";
+    let expected = "b: is of another scene than a (different spheres); merge parts of one render";
     assert_eq!(error, Err(expected.to_owned()));
 }
 
@@ -293,7 +293,7 @@ fn parts_that_were_interrupted_are_refused_unless_that_may_be() {
     assert_eq!(part.run(&world, &options), End::Cancelled);
     let wanted = 83 * 61 * 70;
     let (name, error) = ("file 1".to_owned(), merge(false, vec![part.clone()]));
-    let expected = MergeError::ResumableRender { name, taken: 0, wanted };
+    let expected = MergeError::Interrupted { name, taken: 0, wanted };
     assert_eq!(error.map(drop), Err(expected));
     assert!(!merge(true, vec![part]).expect("that may be").is_complete());
 }

@@ -223,7 +223,7 @@ def binary():
 
 def space_groups():
     """Orders and structure factors of all settings, by gemmi."""
-    table = Path(__file__).resolve().parents[2] / "src/scene/particles/cif/space_groups.txt"
+    table = Path(__file__).resolve().parents[2] / "crates/particles/src/cif/space_groups.txt"
     lines = ["number;hall;operations;re_123;im_123;re_428;im_428"]
     for line in filter(None, table.read_text().splitlines()):
         number, hall, _ = line.split("\t")

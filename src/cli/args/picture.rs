@@ -6,11 +6,11 @@ use crate::cli::names::{
 };
 use crate::cli::values::{self, DepthLimit, OrNone, SAMPLES, Size, THREADS};
 use clap::value_parser;
-use spherule::film::Region;
-use spherule::image::{Depth, Format, PpmEncoding};
-use spherule::layers::Layer;
-use spherule::scene::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Tone};
-use spherule::trace::{PacketWidth, Traversal};
+use spherule_render::film::Region;
+use spherule_render::image::{Depth, Format, PpmEncoding};
+use spherule_render::layers::Layer;
+use spherule_render::scene::{Filter, Integrator, LightChoice, Roulette, SamplerKind, Tone};
+use spherule_render::trace::{PacketWidth, Traversal};
 use std::time::Duration;
 
 /// Render settings that override those of the scene.

@@ -3,9 +3,9 @@
 use crate::cli::threads;
 use crate::cli::values::{SAMPLES, THREADS};
 use clap::{Subcommand, value_parser};
-use spherule::bench::paper::Scale;
-use spherule::bench::{Effort, Options};
-use spherule::scene::included_files;
+use spherule_measure::bench::paper::Scale;
+use spherule_measure::bench::{Effort, Options};
+use spherule_render::scene::included_files;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, clap::Args)]

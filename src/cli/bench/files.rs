@@ -1,9 +1,9 @@
 //! The output folder of reports.
 
 use crate::cli::Failure;
-use spherule::atomic::{check_destination, write_atomically};
-use spherule::report::draw::{png, svg};
-use spherule::report::{Machine, Report, html};
+use spherule_measure::report::draw::{png, svg};
+use spherule_measure::report::{Machine, Report, html};
+use spherule_render::atomic::{check_destination, write_atomically};
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs;

@@ -7,14 +7,14 @@ pub(super) use self::args::{Args, EXAMPLES};
 use self::args::{Common, Measurement};
 use self::files::Folder;
 use super::{Failure, output, threads as cores};
-use spherule::bench::{
-    BenchError, Options, Tell, build, convergence, paper, roulette, skips, threads, traversal,
+use spherule_measure::bench::{
+    BenchError, Options, Progress, build, convergence, paper, roulette, skips, threads, traversal,
 };
-use spherule::report::{Machine, Report};
+use spherule_measure::report::{Machine, Report};
 use std::process::ExitCode;
 
 /// A benchmark: the name of its report, and its function.
-type Benchmark = (&'static str, fn(&Options, Tell) -> Result<Report, BenchError>);
+type Benchmark = (&'static str, fn(&Options, Progress) -> Result<Report, BenchError>);
 
 const TRAVERSAL: Benchmark = ("traversal", traversal::measure);
 const BUILD: Benchmark = ("build", build::measure);
@@ -61,14 +61,14 @@ fn run_all(
     folder.check_free(&common.inputs(), page, &names)?;
     let count = cores::count(common.threads);
     let pool = cores::pool(count)?;
-    let tell = |words: &str| {
+    let progress = |words: &str| {
         if !common.quiet {
             output::print_error_line(words);
         }
     };
     let mut reports = Vec::new();
     for (_, measure) in benchmarks {
-        let report = pool.install(|| measure(options, &tell))?;
+        let report = pool.install(|| measure(options, &progress))?;
         if !common.quiet {
             print(&report);
         }

@@ -6,7 +6,7 @@
 //! Several arrays at once are refused unless they name the same part; of several launchers the first of
 //! [`LAUNCHERS`] counts: `mpirun` within a Slurm job leaves `srun`'s variables in place.
 
-use spherule::split::Part;
+use spherule_render::split::Part;
 use std::fmt;
 
 /// Environment variables of a scheduler or launcher.
@@ -259,7 +259,7 @@ fn number(
 mod tests {
     use super::*;
 
-    /// What variables, written as a shell would, say.
+    /// Reads the part from variables, written as in a shell.
     fn optional(variables: &str, count: Option<u32>) -> Result<String, String> {
         let value = |name: &str| {
             let mut pairs = variables.split(' ').filter_map(|pair| pair.split_once('='));
@@ -312,7 +312,7 @@ mod tests {
 
     #[track_caller]
     fn refused(variables: &str, count: Option<u32>, words: &[&str]) {
-        let message = optional(variables, count).expect_err("it does not tell");
+        let message = optional(variables, count).expect_err("no part");
         assert!(words.iter().all(|word| message.contains(word)), "{variables}: {message}");
     }
 

@@ -4,7 +4,7 @@ mod environment;
 
 use super::Failure;
 use super::names::SPLITS;
-use spherule::split::{Part, Split};
+use spherule_render::split::{Part, Split};
 use std::num::NonZeroU32;
 
 /// Value of `--part` that takes the part from the environment.
@@ -22,7 +22,7 @@ pub(super) struct PartArgs {
     /// Kubernetes, MPI or GNU parallel. Of a sequence, part K is every Nth image
     #[arg(long, value_name = "K/N|from-env[/N]", value_parser = choice)]
     part: Option<Choice>,
-    /// How to split the image [default: tiles, or samples if each part has 16 or more per pixel]
+    /// Split the image by samples or by tiles [default: tiles, or samples if each part has 16 or more per pixel]
     #[arg(long, requires = "part", value_parser = SPLITS.parser())]
     pub(super) split: Option<Split>,
 }

@@ -6,24 +6,24 @@ use crate::cli::failure::Failure;
 use crate::cli::source::Source;
 use crate::cli::views::Canvas;
 use crate::cli::write_file::write_file;
-use spherule::atomic::check_destination;
-use spherule::color::bar::{Bar, Direction};
-use spherule::drawing::{DrawingError, Picture};
-use spherule::image::Image;
-use spherule::scene::particles::{self, Cell, Legend, Looks, Particles};
-use spherule::scene::{ColorBar, Rgb, Scene};
+use spherule_render::atomic::check_destination;
+use spherule_render::drawing::{DrawingError, Picture};
+use spherule_render::image::Image;
+use spherule_render::overlay::color_bar::{Bar, Direction};
+use spherule_render::scene::particles::{self, Cell, Legend, ParticleStyle, Particles};
+use spherule_render::scene::{ColorBar, Rgb, Scene};
 
 /// Length of a color bar as a fraction of the image's height.
 const BAR_SHARE: f64 = 0.35;
 
 /// Returns the source, with the columns that colors and selections need; an error if it has no particles.
-pub(super) fn with_columns(source: Source, looks: &Looks) -> Result<Source, Failure> {
+pub(super) fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Source, Failure> {
     match source {
         Source::Particles(path, mut options) => {
             options.columns.wanted = looks.columns();
             Ok(Source::Particles(path, options))
         }
-        other if *looks == Looks::default() => Ok(other),
+        other if *looks == ParticleStyle::default() => Ok(other),
         Source::Toml(_) | Source::Prepared(_) | Source::Field { .. } => {
             let message = "options for particles need a particle file; a scene defines its own colors and \
                            materials";

@@ -4,12 +4,11 @@ use super::job::Job;
 use super::layers::{need_statistics, wanted};
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
-use spherule::film::{Film, Region};
-use spherule::image::Format;
-use spherule::layers::{Layer, Layers};
-use spherule::memory::{self, Shortage, Size};
-use spherule::scene::{Look, Scene};
-use spherule::world::Footprint;
+use spherule_render::film::{Film, Region};
+use spherule_render::image::Format;
+use spherule_render::layers::{Layer, Layers};
+use spherule_render::memory::{self, Shortage, Size};
+use spherule_render::scene::{Footprint, Look, Scene};
 use std::fmt;
 
 /// Bytes of a thread's working memory.
@@ -66,8 +65,8 @@ impl Estimate {
     /// Scales the estimate to a number of the region's tiles.
     pub(super) fn of_tiles(self, tiles: usize) -> Self {
         let part = |bytes: u64| {
-            let share = u128::from(bytes) * tiles as u128;
-            (share / u128::from(Film::tile_count(self.region)).max(1)) as u64
+            let portion = u128::from(bytes) * tiles as u128;
+            (portion / u128::from(Film::tile_count(self.region)).max(1)) as u64
         };
         Self { film: part(self.film), output: part(self.output), ..self }
     }

@@ -4,7 +4,7 @@ use super::job::Job;
 use super::metadata::{self, INTERRUPTED, SAMPLES_TAKEN, SCENE};
 use super::prepare::PlacedScene;
 use crate::cli::output;
-use spherule::image::{Image, Metadata, read_metadata};
+use spherule_render::image::{Image, Metadata, read_metadata};
 
 /// Metadata keys of results, which are not compared.
 const RESULTS: [&str; 4] = ["rounds", SAMPLES_TAKEN, "error", "error bound"];

@@ -17,14 +17,14 @@ use crate::cli::slices::SliceArgs;
 use crate::cli::source::Source;
 use crate::cli::threads;
 use crate::cli::views::{StyleArgs, ViewArgs};
-use spherule::World;
-use spherule::bvh::builders::Builder;
-use spherule::film::Region;
-use spherule::image::Format;
-use spherule::scene::particles::Looks;
-use spherule::scene::{Look, Settings};
-use spherule::split::{Part, Split};
-use spherule::trace::Tracer;
+use spherule_render::World;
+use spherule_render::bvh::builders::Builder;
+use spherule_render::film::Region;
+use spherule_render::image::Format;
+use spherule_render::scene::particles::ParticleStyle;
+use spherule_render::scene::{Look, Settings};
+use spherule_render::split::{Part, Split};
+use spherule_render::trace::Tracer;
 use std::path::PathBuf;
 
 /// Place of an image in a sequence.
@@ -40,7 +40,7 @@ pub(in crate::cli) struct Place {
 #[derive(Clone)]
 pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) source: Source,
-    pub(in crate::cli) looks: Looks,
+    pub(in crate::cli) looks: ParticleStyle,
     /// The options on the command line.
     pub(in crate::cli) typed: (&'a ParticleArgs, &'a AppearanceArgs),
     pub(in crate::cli) color_bar: Option<&'a BarPlace>,
@@ -176,7 +176,7 @@ impl<'a> Job<'a> {
         threads::pool(self.threads)
     }
 
-    /// Returns the tree builder for a number of spheres and samples.
+    /// Returns the BVH builder for a number of spheres and samples.
     pub(in crate::cli) fn builder(&self, spheres: usize, samples: u64) -> Builder {
         match self.speed.builder {
             names::Builder::Auto => World::builder(spheres, samples),

@@ -2,12 +2,12 @@
 
 use super::job::Job;
 use super::prepare::Prepared;
-use spherule::film::Region;
-use spherule::image::{Channel, Format, Values};
-use spherule::layers::{Layer, Layers, layers};
-use spherule::overlay::Matte;
-use spherule::render::{Options, Render, RenderError};
-use spherule::scene::Settings;
+use spherule_render::film::Region;
+use spherule_render::image::{Channel, Format, Values};
+use spherule_render::layers::{Layer, Layers, layers};
+use spherule_render::overlay::Matte;
+use spherule_render::render::{Options, Render, RenderError};
+use spherule_render::scene::Settings;
 
 /// Returns whether a requested layer needs statistics of the render.
 pub(super) fn need_statistics(job: &Job) -> bool {

@@ -10,12 +10,12 @@ use crate::cli::appearance::BarPlace;
 use crate::cli::args::EncodingArgs;
 use crate::cli::settings::{self, List};
 use serde_json::Value;
-use spherule::film::Region;
-use spherule::image::{Format, Metadata, QUALITY, WriteOptions};
-use spherule::layers::Layer;
-use spherule::render::{Render, Stage};
-use spherule::scene::particles::Legend;
-use spherule::scene::{Identity, Settings};
+use spherule_render::film::Region;
+use spherule_render::image::{Format, Metadata, QUALITY, WriteOptions};
+use spherule_render::layers::Layer;
+use spherule_render::render::{Render, Stage};
+use spherule_render::scene::particles::Legend;
+use spherule_render::scene::{Identity, Settings};
 
 /// The subject of an image.
 pub(in crate::cli) struct Subject<'a> {
@@ -50,7 +50,7 @@ pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> 
 /// Returns the metadata of a complete image, without results of the render.
 pub(super) fn expected(job: &Job, placed: &PlacedScene) -> Metadata {
     let PlacedScene { scene, region, legend, identity, stored, .. } = placed;
-    let listed = stored.as_ref().map(|stored| stored.looks.as_slice());
+    let listed = stored.as_ref().map(|stored| stored.metadata.as_slice());
     let subject = Subject {
         title: &job.source.title(scene),
         settings: &scene.settings,

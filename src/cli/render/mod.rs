@@ -44,9 +44,9 @@ use super::progress::Meter;
 use super::views::draw_over as draw_look;
 use super::write_file::write_file;
 use super::{Failure, output, picture_file, signals};
-use spherule::overlay::Matte;
-use spherule::render::{End, Options, Render, RenderError, ResumableRender};
-use spherule::scene::Scene;
+use spherule_render::overlay::Matte;
+use spherule_render::render::{End, Options, Render, RenderError, ResumableRender};
+use spherule_render::scene::Scene;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -148,8 +148,8 @@ fn render_placed(
     // After a signal, checks are left out: the render is interrupted at once and saved.
     if resumed.is_none() && signals::end_pause().is_none() && existing::is_up_to_date(job, &placed)
     {
-        let tell = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
-        session.notices.count_kept(&job.output, tell);
+        let notify = if job.is_of_sequence() { job.report.verbose } else { !job.report.quiet };
+        session.notices.count_kept(&job.output, notify);
         return Ok(ExitCode::SUCCESS);
     }
     let mut prepared = placed.build(job)?;
@@ -291,8 +291,8 @@ impl Traced {
         if !render.complete && prepared.scene.settings.has_target() {
             output::warn(format_args!("interrupted: {output} is incomplete"));
         } else if !render.complete {
-            let share = 100.0 * prepared.taken(render);
-            output::warn(format_args!("interrupted: {output} has {share:.1} % of the samples"));
+            let percent = 100.0 * prepared.taken(render);
+            output::warn(format_args!("interrupted: {output} has {percent:.1} % of the samples"));
         }
         if matches!(render.end, End::Cancelled | End::Time) {
             self.advise(job);

@@ -3,10 +3,10 @@
 use super::prepare::Prepared;
 use crate::cli::output;
 use serde::Serialize;
-use spherule::film::Region;
-use spherule::noise::CONFIDENCE;
-use spherule::render::{End, Render, Samples};
-use spherule::scene::Settings;
+use spherule_render::film::Region;
+use spherule_render::noise::CONFIDENCE;
+use spherule_render::render::{End, Render, Samples};
+use spherule_render::scene::Settings;
 
 /// Estimated error of the image relative to its mean radiance.
 #[derive(Serialize)]
@@ -44,7 +44,7 @@ impl NoiseSummary {
 
     /// Formats the estimate as a line.
     pub(super) fn print(&self) {
-        let percent = |share: f64| two_digits(100.0 * share);
+        let percent = |fraction: f64| two_digits(100.0 * fraction);
         output::print(format_args!(
             "error   {} % (below {} % with {:.0} % confidence), {} samples per pixel ({} to {})",
             percent(self.error),

@@ -1,10 +1,10 @@
 //! Notes about options that have no effect.
 
 use super::job::Job;
-use spherule::World;
-use spherule::image::{Depth, Format};
-use spherule::scene::{Integrator, Roulette, Settings, Tone};
-use spherule::trace::Traversal;
+use spherule_render::World;
+use spherule_render::image::{Depth, Format};
+use spherule_render::scene::{Integrator, Roulette, Settings, Tone};
+use spherule_render::trace::Traversal;
 
 /// The bounce at which Russian roulette by throughput starts, from 1.
 const ROULETTE_BEGINS: u32 = 4;

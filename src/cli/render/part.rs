@@ -10,12 +10,12 @@ use super::prepare::Prepared;
 use crate::cli::args::RenderArgs;
 use crate::cli::invocation::CommandOptions;
 use crate::cli::{Failure, output};
-use spherule::checkpoint::Caption;
-use spherule::film::{Film, Region};
-use spherule::layers::{Layer, features};
-use spherule::render::{ImagePart, Options, ResumableRender};
-use spherule::scene::Scene;
-use spherule::split::Part;
+use spherule_render::checkpoint::Caption;
+use spherule_render::film::{Film, Region};
+use spherule_render::layers::{Layer, features};
+use spherule_render::render::{ImagePart, Options, ResumableRender};
+use spherule_render::scene::Scene;
+use spherule_render::split::Part;
 use std::path::{Path, PathBuf};
 
 /// Returns the file of part `number`: `a.07-of-64.part` for the image `a.png`.
@@ -70,7 +70,7 @@ pub(super) fn add_checkpoint(
 }
 
 /// Returns the samples and tiles to render: all, or those of the part.
-pub(super) fn share(job: &Job, region: Region, scene: &Scene) -> Result<ImagePart, Failure> {
+pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<ImagePart, Failure> {
     let settings = &scene.settings;
     let whole = ImagePart::whole(region, settings.spp);
     let Some(part) = job.part else { return Ok(whole) };
@@ -140,9 +140,9 @@ pub(super) fn finish(
 }
 
 /// Returns the tiles whose layers a part renders: its own, or else an equal number of all.
-fn known_tiles(part: Part, share: &ImagePart, region: Region) -> std::ops::Range<u32> {
+fn known_tiles(part: Part, image_part: &ImagePart, region: Region) -> std::ops::Range<u32> {
     let tiles = Film::tile_count(region);
-    if share.tiles == (0..tiles) { part.of(tiles) } else { share.tiles.clone() }
+    if image_part.tiles == (0..tiles) { part.of(tiles) } else { image_part.tiles.clone() }
 }
 
 #[cfg(test)]
@@ -163,11 +163,11 @@ mod tests {
     fn every_tile_is_known_to_one_part() {
         let region = Region { x: 0, y: 0, width: 33, height: 33 };
         let whole = ImagePart::whole(region, 4);
-        for split in [None, Some(spherule::split::Split::Tiles)] {
+        for split in [None, Some(spherule_render::split::Split::Tiles)] {
             let tiles = (1..=4).flat_map(|number| {
                 let part = Part::new(number, 4).expect("it is one of them");
-                let share = part.of_image(&whole, split).expect("there are enough");
-                known_tiles(part, &share, region)
+                let image_part = part.of_image(&whole, split).expect("there are enough");
+                known_tiles(part, &image_part, region)
             });
             assert!(tiles.eq(0..9), "{split:?}");
         }

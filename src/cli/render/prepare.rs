@@ -11,13 +11,13 @@ use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
 use glam::DVec3;
-use spherule::World;
-use spherule::bvh::builders::Builder;
-use spherule::film::Region;
-use spherule::prepared::{self, PreparedScene};
-use spherule::render::{ImagePart, Render};
-use spherule::scene::particles::{Cell, Legend, Particles};
-use spherule::scene::{Identity, Scene, Settings};
+use spherule_render::World;
+use spherule_render::bvh::builders::Builder;
+use spherule_render::film::Region;
+use spherule_render::prepared::{self, PreparedScene};
+use spherule_render::render::{ImagePart, Render};
+use spherule_render::scene::particles::{Cell, Legend, Particles};
+use spherule_render::scene::{Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -31,11 +31,11 @@ pub(super) struct Prepared {
     pub(super) region: Region,
     /// The samples and tiles of the region that this process renders.
     pub(super) part: ImagePart,
-    /// Builder of the tree.
+    /// Builder of the BVH.
     pub(super) builder: Builder,
     /// Time to read or generate the scene.
     pub(super) load: Duration,
-    /// Time to build the columns and the tree.
+    /// Time to build the columns and the BVH.
     pub(super) build: Duration,
     /// Estimated peak memory of the process in bytes, computed before the world was built.
     pub(super) estimate: u64,
@@ -142,21 +142,22 @@ impl PlacedScene {
     /// Builds the world, unless its estimated memory exceeds the limit.
     pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
         let Self { mut scene, legend, region, identity, stored, load } = self;
-        let share = part::share(job, region, &scene)?;
-        let estimate = Estimate::new(&scene, region, job).of_tiles(share.tiles.len()).check()?;
+        let image_part = part::image_part(job, region, &scene)?;
+        let estimate =
+            Estimate::new(&scene, region, job).of_tiles(image_part.tiles.len()).check()?;
         let start = Instant::now();
         let name = || job.source.name().into_owned();
         let mut looks = None;
         let (world, builder) = if let Some(mut stored) = stored {
             stored.scene = scene;
-            looks = Some(std::mem::take(&mut stored.looks));
+            looks = Some(std::mem::take(&mut stored.metadata));
             let builder = stored.builder;
             let built = stored.build().map_err(|error| Failure::Prepare(name(), error))?;
             scene = built.0;
             (built.1, builder)
         } else {
-            let part =
-                share.size() as f64 / ImagePart::whole(region, scene.settings.spp).size() as f64;
+            let part = image_part.size() as f64
+                / ImagePart::whole(region, scene.settings.spp).size() as f64;
             let samples = samples(region, &scene.settings) as f64 * part;
             let builder = job.builder(scene.spheres.len(), samples as u64);
             let world = World::build_taking(&mut scene, builder)
@@ -173,7 +174,7 @@ impl PlacedScene {
             scene,
             world,
             region,
-            part: share,
+            part: image_part,
             builder,
             load,
             build,
@@ -223,7 +224,7 @@ impl Prepared {
         samples(self.region, &self.scene.settings)
     }
 
-    /// Returns the share of the samples that a render has taken, 0..=1.
+    /// Returns the fraction of the samples that a render has taken, 0..=1.
     pub(super) fn taken(&self, render: &Render) -> f64 {
         render.samples.total as f64 / self.samples() as f64
     }

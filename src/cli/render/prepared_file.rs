@@ -9,10 +9,10 @@ use crate::cli::args::RenderArgs;
 use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use spherule::atomic::check_destination;
-use spherule::memory::Size;
-use spherule::prepared::{self, PrepareError};
-use spherule::scene::Identity;
+use spherule_render::atomic::check_destination;
+use spherule_render::memory::Size;
+use spherule_render::prepared::{self, PrepareError};
+use spherule_render::scene::Identity;
 use std::path::Path;
 use std::process::ExitCode;
 

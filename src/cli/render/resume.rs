@@ -8,9 +8,9 @@ use crate::cli::args::RenderArgs;
 use crate::cli::invocation::{CommandOptions, Invocation, render_command};
 use crate::cli::settings::region_text;
 use clap::{ArgMatches, FromArgMatches};
-use spherule::checkpoint::{self, Origin};
-use spherule::render::ResumableRender;
-use spherule::scene::Settings;
+use spherule_render::checkpoint::{self, Origin};
+use spherule_render::render::ResumableRender;
+use spherule_render::scene::Settings;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 

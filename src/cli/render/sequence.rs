@@ -24,9 +24,9 @@ use crate::cli::files::Files;
 use crate::cli::output;
 use crate::cli::picture_file;
 use crate::cli::source::Source;
-use spherule::scene::FileError;
-use spherule::scene::particles::{Coloring, Particles, ReadOptions};
-use spherule::split::Part;
+use spherule_render::scene::FileError;
+use spherule_render::scene::particles::{Coloring, Particles, ReadOptions};
+use spherule_render::split::Part;
 use std::path::Path;
 use std::process::ExitCode;
 

@@ -13,13 +13,13 @@ use crate::cli::progress::rate;
 use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
-use spherule::bvh::builders::Builder;
-use spherule::image::WriteOptions;
-use spherule::integrator::clock::{Stage, Times};
-use spherule::integrator::counters::Counters;
-use spherule::render::{Render, Tasks};
-use spherule::scene::Settings;
-use spherule::trace::PacketWidth;
+use spherule_render::bvh::builders::Builder;
+use spherule_render::image::WriteOptions;
+use spherule_render::integrator::clock::{Stage, Times};
+use spherule_render::integrator::counters::Counters;
+use spherule_render::render::{Render, Tasks};
+use spherule_render::scene::Settings;
+use spherule_render::trace::PacketWidth;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
@@ -139,8 +139,8 @@ impl<'a> Summary<'a> {
 
     fn print_stages(&self) {
         for stage in Stage::ALL {
-            let share = self.statistics.stage_shares.get(stage.name()).copied().unwrap_or(0.0);
-            output::print(format_args!("        {:<8} {:5.1} %", stage.name(), 100.0 * share));
+            let fraction = self.statistics.stage_shares.get(stage.name()).copied().unwrap_or(0.0);
+            output::print(format_args!("        {:<8} {:5.1} %", stage.name(), 100.0 * fraction));
         }
         let tasks = &self.statistics.tasks;
         output::print(format_args!(
@@ -218,7 +218,7 @@ impl Statistics {
             dropped_spheres: world.features.vanished + world.features.hidden,
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),
-            peak_bytes: spherule::memory::peak(),
+            peak_bytes: spherule_render::memory::peak(),
             estimated_peak_bytes: prepared.estimate,
             load_seconds: prepared.load.as_secs_f64(),
             build_seconds: prepared.build.as_secs_f64(),
@@ -235,7 +235,7 @@ impl Statistics {
             nesting_overflows: counters.nesting_overflows,
             exact_decisions: counters.exact_decisions,
             stage_shares: Stage::ALL
-                .map(|stage| (stage.name(), share(&render.times, stage)))
+                .map(|stage| (stage.name(), time_fraction(&render.times, stage)))
                 .into(),
             tasks: TaskSummary::new(&render.tasks),
         }
@@ -281,7 +281,7 @@ pub(in crate::cli) fn warnings(counters: &Counters, settings: &Settings) -> Vec<
 }
 
 /// Fraction of the total time that a stage took; 0 if there is none.
-fn share(times: &Times, stage: Stage) -> f64 {
+fn time_fraction(times: &Times, stage: Stage) -> f64 {
     let total = times.total().as_secs_f64();
     if total > 0.0 { times.of(stage).as_secs_f64() / total } else { 0.0 }
 }

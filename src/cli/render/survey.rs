@@ -6,12 +6,12 @@ use super::prepare::Staged;
 use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::views::corners;
-use spherule::scene::particles::{
-    Coloring, Looks, ParticleFrame, Particles, Radii, ReadOptions, SharedNames, of_frame,
+use spherule_render::scene::particles::{
+    Coloring, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions, SharedNames, of_frame,
 };
-use spherule::scene::{Camera, FileError};
-use spherule::world::WorldError;
-use spherule::world::framing::SequenceBounds;
+use spherule_render::scene::{Camera, FileError};
+use spherule_render::world::WorldError;
+use spherule_render::world::framing::SequenceBounds;
 use std::path::Path;
 
 /// Properties shared by all images of a sequence.
@@ -111,12 +111,12 @@ impl Survey {
     }
 
     /// Returns an error if no frame shows a sphere, or if no frame has particles that an option names.
-    pub(super) fn check(&self, path: &Path, looks: &Looks) -> Result<(), FileError> {
+    pub(super) fn check(&self, path: &Path, looks: &ParticleStyle) -> Result<(), FileError> {
         if self.shown > 0 {
             looks.check_types(path, &self.names)?;
             return match &looks.coloring {
                 Coloring::Column(colors) if self.numeric && self.ends.is_none() => {
-                    Err(colors.no_range(path))
+                    Err(colors.range_error(path))
                 }
                 _ => Ok(()),
             };

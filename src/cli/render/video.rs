@@ -1,9 +1,9 @@
 //! Videos: images that are piped to `ffmpeg` as they are rendered.
 
 use crate::cli::failure::Failure;
-use spherule::atomic::{Pending, check_destination, remove_leftovers};
-use spherule::image::tone::{Codes8, DisplayTransform};
-use spherule::image::{Image, WriteOptions};
+use spherule_render::atomic::{Pending, check_destination, remove_leftovers};
+use spherule_render::image::tone::{Codes8, DisplayTransform};
+use spherule_render::image::{Image, WriteOptions};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};

@@ -2,9 +2,9 @@
 
 use crate::cli::contents::spheres;
 use crate::cli::settings::region_text;
-use spherule::World;
-use spherule::film::Region;
-use spherule::world::Visibility;
+use spherule_render::World;
+use spherule_render::film::Region;
+use spherule_render::world::Visibility;
 
 /// Returns the reason why an image with this many samples per pixel shows no sphere, and what to do about it;
 /// `None` if it shows one.

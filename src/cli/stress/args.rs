@@ -3,12 +3,12 @@
 use crate::cli::names::regime;
 use crate::cli::values::{RAYS, THREADS};
 use clap::value_parser;
-use spherule::stress::Regime;
+use spherule_measure::stress::Regime;
 use std::path::PathBuf;
 
 #[derive(Debug, clap::Args)]
 pub(in crate::cli) struct Args {
-    /// Number of rays, for all regimes together
+    /// Total number of rays in all regimes
     #[arg(long, value_name = "N", default_value_t = 10_000_000)]
     #[arg(value_parser = value_parser!(u64).range(RAYS))]
     pub(super) rays: u64,

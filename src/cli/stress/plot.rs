@@ -2,8 +2,8 @@
 //! logarithmic axis, with a separate place for zero at the left.
 
 use indicatif::HumanCount;
-use spherule::report::{Axis, Plot, Point, Series};
-use spherule::stress::{Form, RegimeReport, Report};
+use spherule_measure::report::{Axis, Plot, Point, Series};
+use spherule_measure::stress::{Form, RegimeReport, Report};
 
 /// Range of the axis, in percent.
 const RANGE: [f64; 2] = [1e-4, 100.0];
@@ -29,16 +29,16 @@ pub(super) fn plot(report: &Report) -> Plot {
 }
 
 fn series(name: &str, form: Form, regimes: &[RegimeReport]) -> Series {
-    let shares = regimes.iter().map(|regime| 100.0 * regime.wrong_share(form));
-    Series::marks(name, shares.enumerate().map(|(i, share)| Point::new(i as f64, share)))
+    let fractions = regimes.iter().map(|regime| 100.0 * regime.wrong_fraction(form));
+    Series::marks(name, fractions.enumerate().map(|(i, fraction)| Point::new(i as f64, fraction)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spherule::drawing::Format;
-    use spherule::report::draw::draw;
-    use spherule::stress::{Options, REGIMES, run};
+    use spherule_measure::report::draw::draw;
+    use spherule_measure::stress::{Options, REGIMES, run};
+    use spherule_render::drawing::Format;
 
     #[test]
     fn both_pictures_show_every_regime() {

@@ -1,7 +1,7 @@
 //! Tables of the results, for the terminal.
 
-use spherule::report::{Cell, Column, Style, Table};
-use spherule::stress::{Form, FormReport, RegimeReport, Report};
+use spherule_measure::report::{Cell, Column, Style, Table};
+use spherule_measure::stress::{Form, FormReport, RegimeReport, Report};
 
 /// Intersection tests that are shown, and their names.
 const USUAL: &[(Form, &str)] =
@@ -102,7 +102,7 @@ fn headings(group: &str) -> impl Iterator<Item = &str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spherule::stress::{Options, REGIMES, run};
+    use spherule_measure::stress::{Options, REGIMES, run};
 
     #[test]
     fn columns_stand_below_their_headings() {

@@ -1,7 +1,7 @@
 //! Camera control: orbit about a pivot, pan, and zoom toward the pointer.
 
 use glam::{DQuat, DVec2, DVec3};
-use spherule::scene::{Camera, Lens, Pose, Projection};
+use spherule_render::scene::{Camera, Lens, Pose, Projection};
 
 /// Minimum angle between the view direction and the vertical axis, in radians.
 const POLE: f64 = 0.01;

@@ -10,7 +10,7 @@ use super::tonemap::{DisplaySettings, ToneMapper};
 use super::viewer::Viewer;
 use super::wrap::{flow, wrap};
 use indicatif::HumanCount;
-use spherule::scene::Settings;
+use spherule_render::scene::Settings;
 
 /// Colors of text and of its background.
 pub(super) const PAPER: u32 = 0x0018_181C;

@@ -1,7 +1,7 @@
 //! Checkerboard behind transparent images.
 
 use rayon::prelude::*;
-use spherule::image::Image;
+use spherule_render::image::Image;
 
 /// Side of a square in pixels of the window.
 const SQUARE: u32 = 12;

@@ -3,9 +3,9 @@
 use super::canvas::{LIGHT, PAPER};
 use super::font::{SizedFont, Surface};
 use super::wrap::wrap;
-use spherule::color::{Rgb, Tick, ticks};
-use spherule::image::tone::srgb_encode;
-use spherule::scene::particles::Legend;
+use spherule_render::color::{Rgb, Tick, ticks};
+use spherule_render::image::tone::srgb_encode;
+use spherule_render::scene::particles::Legend;
 
 /// Height of the bar as a fraction of the window's height, and the minimum height in lines of text.
 const SHARE: f64 = 0.35;

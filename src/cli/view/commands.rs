@@ -5,7 +5,9 @@ use super::events::{Action, Command};
 use super::help;
 use super::viewer::{LookChanges, Viewer, WIDER};
 use glam::DVec2;
-use spherule::scene::{Background, Camera, Integrator, Pose, Preset, Rgb, SamplerKind, Settings};
+use spherule_render::scene::{
+    Background, Camera, Integrator, Pose, Preset, Rgb, SamplerKind, Settings,
+};
 
 /// Angles of commands, in degrees.
 const TURN: f64 = 15.0;

@@ -1,7 +1,7 @@
 //! Content of the viewer, without camera and settings: a change needs a new world.
 
 use glam::DVec3;
-use spherule::scene::{Camera, Preset};
+use spherule_render::scene::{Camera, Preset};
 
 /// Content of the viewer.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,8 +47,8 @@ impl Content {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spherule::scene::particles::{Looks, Particles, Selection};
-    use spherule::scene::{Rgb, Spheres};
+    use spherule_render::scene::particles::{ParticleStyle, Particles, Selection};
+    use spherule_render::scene::{Rgb, Spheres};
     use std::path::Path;
 
     #[test]
@@ -63,7 +63,7 @@ mod tests {
             CutPlane { normal: DVec3::new(1e-20, 0.0, -0.0), point: DVec3::new(1e6, -3.0, 7.5) };
         let content = Content { cuts: vec![cut], ..Content::default() };
         let select: Selection = content.condition().unwrap().parse().unwrap();
-        let looks = Looks { select: Some(select), ..Looks::default() };
+        let looks = ParticleStyle { select: Some(select), ..ParticleStyle::default() };
         looks.apply(Path::new("test"), &mut particles).unwrap();
         assert_eq!(particles.spheres.len(), 2);
     }

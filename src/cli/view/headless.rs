@@ -12,7 +12,7 @@ use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::render::Job;
 use glam::DVec2;
-use spherule::atomic::write_atomically;
+use spherule_render::atomic::write_atomically;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -206,7 +206,8 @@ impl Headless {
     fn capture(&mut self, path: &Path) -> Result<(), Failure> {
         self.session.canvas.draw(&self.session.viewer);
         let canvas = &self.session.canvas;
-        let file = spherule::drawing::encode(&canvas.codes(), (canvas.width, canvas.height))?;
+        let file =
+            spherule_render::drawing::encode(&canvas.codes(), (canvas.width, canvas.height))?;
         write_atomically(path, |writer| writer.write_all(&file))
             .map_err(|error| Failure::Write(path.to_owned(), error))
     }

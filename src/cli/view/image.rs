@@ -2,9 +2,9 @@
 
 use super::overlay::OverlaidImage;
 use super::tonemap::{DisplaySettings, ToneMapped};
-use spherule::image::Image;
-use spherule::overlay::Matte;
-use spherule::scene::{Camera, Look, Settings};
+use spherule_render::image::Image;
+use spherule_render::overlay::Matte;
+use spherule_render::scene::{Camera, Look, Settings};
 use std::sync::Arc;
 use std::time::Duration;
 

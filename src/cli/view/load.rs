@@ -11,13 +11,13 @@ use crate::cli::source::Source;
 use crate::cli::views::scene_of_particles;
 use glam::DVec3;
 use rayon::prelude::*;
-use spherule::World;
-use spherule::scene::particles::{
-    self, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend, Looks,
-    NumberColumn, Particles, ReadOptions, ReadProgress, Role, TextColumn,
+use spherule_render::World;
+use spherule_render::scene::particles::{
+    self, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend, NumberColumn,
+    ParticleStyle, Particles, ReadOptions, ReadProgress, Role, TextColumn,
 };
-use spherule::scene::{Rgb, Scene, Spheres};
-use spherule::world::framing;
+use spherule_render::scene::{Rgb, Scene, Spheres};
+use spherule_render::world::framing;
 use std::collections::HashSet;
 use std::fs::Metadata;
 use std::path::Path;
@@ -116,7 +116,7 @@ impl Base {
         options.progress = progress.read.clone();
         let mut particles = particles::read(path, &options)?;
         let more_columns = path.is_file() && has_many_values(&particles);
-        let select = Looks { select: job.looks.select.clone(), ..Looks::default() };
+        let select = ParticleStyle { select: job.looks.select.clone(), ..ParticleStyle::default() };
         select.apply(path, &mut particles)?;
         job.views.repeat(path, &mut particles)?;
         options.progress = ReadProgress::default();
@@ -244,7 +244,7 @@ impl Loader {
         job.views.frame(&mut scene, None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         let up = scene.camera.up;
-        framing::hold(&mut scene, &[]).map_err(failed)?;
+        framing::include_points(&mut scene, &[]).map_err(failed)?;
         // The scene's up direction, about which the camera orbits, not that of the image, which may be
         // tilted.
         scene.camera.up = up;
@@ -396,7 +396,8 @@ fn apply_style(
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
     let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
-    let looks = Looks { select, coloring, types: job.looks.types.clone(), allow_empty: false };
+    let looks =
+        ParticleStyle { select, coloring, types: job.looks.types.clone(), allow_empty: false };
     let name = job.source.name();
     Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::progress::LoadMeter;
 use indicatif::HumanCount;
-use spherule::scene::particles::ReadProgress;
+use spherule_render::scene::particles::ReadProgress;
 use std::path::Path;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,7 +25,7 @@ pub(super) struct Loading {
 pub(super) enum Step {
     /// Reading or generating the spheres of this file.
     Reading(String),
-    /// Building the tree over a number of spheres.
+    /// Building the BVH of a number of spheres.
     Building(usize),
 }
 
@@ -90,11 +90,11 @@ impl Progress {
 }
 
 impl ProgressReporter {
-    /// Reports on the terminal, unless `quiet`, and through `tell`.
+    /// Reports on the terminal, unless `quiet`, and through `notify`.
     pub(super) fn start(
         progress: &Arc<Progress>,
         quiet: bool,
-        tell: impl Fn(Loading) + Send + 'static,
+        notify: impl Fn(Loading) + Send + 'static,
     ) -> Self {
         let (stop, stopped) = channel();
         let progress = Arc::clone(progress);
@@ -103,7 +103,7 @@ impl ProgressReporter {
             while stopped.recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout) {
                 if let Some(loading) = progress.loading() {
                     meter.show(&loading.text(), loading.done);
-                    tell(loading);
+                    notify(loading);
                 }
             }
             meter.finish();

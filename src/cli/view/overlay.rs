@@ -2,12 +2,12 @@
 
 use super::image::RenderRequest;
 use crate::cli::views::settings_of_layers;
-use spherule::World;
-use spherule::film::Region;
-use spherule::image::Image;
-use spherule::layers::Growing;
-use spherule::overlay::{GroundRender, Matte, Overlay, Runs};
-use spherule::render::{Options, RenderError};
+use spherule_render::World;
+use spherule_render::film::Region;
+use spherule_render::image::Image;
+use spherule_render::layers::ProgressiveLayers;
+use spherule_render::overlay::{GroundRender, Matte, Overlay, RunBounds};
+use spherule_render::render::{Options, RenderError};
 
 /// An image with overlays.
 #[derive(Clone, Debug)]
@@ -20,8 +20,8 @@ pub(super) struct OverlaidImage {
 /// Cached layers of a world and its camera.
 #[derive(Default)]
 pub(super) struct OverlayCache {
-    runs: Option<Runs>,
-    layers: Option<Growing>,
+    runs: Option<RunBounds>,
+    layers: Option<ProgressiveLayers>,
     ground: Option<GroundRender>,
 }
 
@@ -40,10 +40,10 @@ impl OverlayCache {
         options: &Options,
     ) -> Result<Option<OverlaidImage>, RenderError> {
         let settings = settings_of_layers(&request.settings, request.settings.spp);
-        let begin = || Growing::begin(world, &settings, options);
+        let begin = || ProgressiveLayers::begin(world, &settings, options);
         let known = self.layers.take().map_or_else(begin, Ok)?;
         let layers = self.layers.insert(known);
-        if !layers.grow(world, &settings, options) {
+        if !layers.refine(world, &settings, options) {
             return Ok(None);
         }
         if request.look.is_transparent() {
@@ -51,14 +51,14 @@ impl OverlayCache {
                 self.ground = GroundRender::begin(world, &request.settings, options)?;
             }
             if let Some(ground) = &mut self.ground
-                && !ground.go_on(world, &request.settings, options)?
+                && !ground.run(world, &request.settings, options)?
             {
                 return Ok(None);
             }
         }
         let ground = self.ground.as_ref().filter(|_| request.look.is_transparent());
         let deep = request.look.depth_cue || request.look.outline;
-        let find = || self.runs.get_or_insert_with(|| Runs::of(world)).depths(world);
+        let find = || self.runs.get_or_insert_with(|| RunBounds::of(world)).depths(world);
         let depths = deep.then(find);
         let region = Region { x: 0, y: 0, width: image.width, height: image.height };
         let layers = layers.layers();

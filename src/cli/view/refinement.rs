@@ -4,8 +4,8 @@ use super::frame_rate::refined;
 use super::image::{Picture, RenderRequest};
 use super::tonemap::DisplaySettings;
 use super::viewer::Viewer;
-use spherule::image::Image;
-use spherule::scene::{SamplerKind, Settings};
+use spherule_render::image::Image;
+use spherule_render::scene::{SamplerKind, Settings};
 
 /// Number of samples per pixel from which images grow by a constant number of samples, and that number.
 const STEP: u32 = 16;

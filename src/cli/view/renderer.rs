@@ -11,13 +11,13 @@ use crate::cli::render::draw_bar;
 use crate::cli::views::Canvas;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use spherule::World;
-use spherule::bvh::builders::Builder;
-use spherule::film::Region;
-use spherule::layers::{Layer, layers};
-use spherule::render::{End, Options, RenderError, ResumableRender};
-use spherule::scene::{Camera, ColorBar, Scene, Settings};
-use spherule::trace::Tracer;
+use spherule_render::World;
+use spherule_render::bvh::builders::Builder;
+use spherule_render::film::Region;
+use spherule_render::layers::{Layer, layers};
+use spherule_render::render::{End, Options, RenderError, ResumableRender};
+use spherule_render::scene::{Camera, ColorBar, Scene, Settings};
+use spherule_render::trace::Tracer;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
@@ -142,7 +142,7 @@ impl Renderer {
         (self.view.camera, self.view.settings) = (camera.clone(), settings.clone());
         let title = self.stage.facts.title.clone();
         let failed = |error| Failure::World(title.clone(), error);
-        if self.stage.world.look(&self.view).map_err(failed)? {
+        if self.stage.world.set_camera(&self.view).map_err(failed)? {
             return Ok(());
         }
         let mut scene = self.stage.scene.write().unwrap_or_else(PoisonError::into_inner);
@@ -204,10 +204,10 @@ impl Renderer {
             let there = row < scene.spheres.len();
             return there.then(|| (scene.spheres.center(row), scene.spheres.radius[row]));
         }
-        let World { spheres, frame, .. } = &self.stage.world;
+        let World { spheres, transform, .. } = &self.stage.world;
         let place = spheres.id.par_iter().position_any(|&id| id as usize == row)?;
         let (center, radius) = spheres.exact(place);
-        Some((center / frame.scale + frame.shift, radius / frame.scale))
+        Some((center / transform.scale + transform.shift, radius / transform.scale))
     }
 }
 

@@ -4,10 +4,10 @@ use super::load::Origin;
 use super::viewer::Facts;
 use crate::cli::failure::Failure;
 use crate::cli::render::{Job, Subject, alpha, check_alpha, write_bar};
-use spherule::film::Region;
-use spherule::image::{Channel, Format, Image, WriteOptions};
-use spherule::overlay::Matte;
-use spherule::scene::{Camera, Header, Look, Scene, Settings, write_as};
+use spherule_render::film::Region;
+use spherule_render::image::{Channel, Format, Image, WriteOptions};
+use spherule_render::overlay::Matte;
+use spherule_render::scene::{Camera, Header, Look, Scene, Settings, write_as};
 use std::path::Path;
 #[cfg(feature = "view")]
 use std::path::PathBuf;

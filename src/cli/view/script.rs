@@ -4,8 +4,8 @@ use super::events::{Button, Modifiers};
 use super::keys;
 use super::viewer::SCALES;
 use glam::DVec2;
-use spherule::image::Format;
-use spherule::suggest;
+use spherule_render::image::Format;
+use spherule_render::suggest;
 use std::path::PathBuf;
 
 /// Default number of steps of a drag.

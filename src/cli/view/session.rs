@@ -10,8 +10,8 @@ use crate::cli::output;
 use crate::cli::render::Job;
 use crate::cli::views::{corners, from_side};
 use glam::DVec3;
-use spherule::scene::{Camera, Pose, Projection, Scene, Settings};
-use spherule::world::framing;
+use spherule_render::scene::{Camera, Pose, Projection, Scene, Settings};
+use spherule_render::world::framing;
 use std::sync::{PoisonError, RwLock, TryLockError};
 
 /// Default number of samples per pixel.
@@ -73,8 +73,8 @@ impl Session {
     }
 }
 
-/// Returns the tree builder for the viewer.
-pub(super) fn builder(job: &Job, viewer: &Viewer) -> spherule::bvh::builders::Builder {
+/// Returns the BVH builder for the viewer.
+pub(super) fn builder(job: &Job, viewer: &Viewer) -> spherule_render::bvh::builders::Builder {
     let Settings { width, height, spp, .. } = viewer.settings;
     let samples = u64::from(width) * u64::from(height) * u64::from(spp);
     job.builder(viewer.facts.spheres, samples)
@@ -108,7 +108,7 @@ pub(super) fn frame(viewer: &mut Viewer, scene: &RwLock<Scene>, side: Option<&st
         None => fit(&mut scene.camera),
     }
     let (up, corners) = (scene.camera.up, corners(&scene));
-    if framing::hold(&mut scene, &corners).is_err() {
+    if framing::include_points(&mut scene, &corners).is_err() {
         return viewer.show_message("no spheres to fit into view");
     }
     // The scene's up direction, about which the camera orbits, not that of the image, which may be tilted.

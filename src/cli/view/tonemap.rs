@@ -3,10 +3,10 @@
 
 use super::checkerboard::over_checkerboard;
 use rayon::prelude::*;
-use spherule::image::Image;
-use spherule::image::tone::{Codes8, DisplayTransform};
-use spherule::overlay::Matte;
-use spherule::scene::{Settings, Tone};
+use spherule_render::image::Image;
+use spherule_render::image::tone::{Codes8, DisplayTransform};
+use spherule_render::overlay::Matte;
+use spherule_render::scene::{Settings, Tone};
 
 /// Display settings of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,12 +80,12 @@ fn stretch(codes: &[u32], from: (u32, u32), pixels: &mut [u32], to: (u32, u32)) 
     let across = taps(to.0 as usize, width);
     let down = taps(to.1 as usize, from.1 as usize);
     let rows = pixels.par_chunks_mut(to.0 as usize);
-    rows.zip(&down).for_each(|(row, &(upper, below, share))| {
+    rows.zip(&down).for_each(|(row, &(upper, below, weight))| {
         let [upper, below] = [upper, below].map(|y| &codes[y * width..(y + 1) * width]);
         let column: Vec<u32> =
-            upper.iter().zip(below).map(|(a, b)| blended(*a, *b, share)).collect();
-        for (pixel, &(left, right, share)) in row.iter_mut().zip(&across) {
-            *pixel = blended(column[left], column[right], share);
+            upper.iter().zip(below).map(|(a, b)| blended(*a, *b, weight)).collect();
+        for (pixel, &(left, right, weight)) in row.iter_mut().zip(&across) {
+            *pixel = blended(column[left], column[right], weight);
         }
     });
 }
@@ -102,9 +102,9 @@ fn taps(count: usize, from: usize) -> Vec<(usize, usize, u32)> {
     (0..count).map(place).collect()
 }
 
-/// Interpolates two colors, with weight `share / 256` of the second: red and blue at once, then green.
-fn blended(a: u32, b: u32, share: u32) -> u32 {
-    let mix = |mask: u32| (((a & mask) * (256 - share) + (b & mask) * share) >> 8) & mask;
+/// Interpolates two colors, with weight `weight / 256` of the second: red and blue at once, then green.
+fn blended(a: u32, b: u32, weight: u32) -> u32 {
+    let mix = |mask: u32| (((a & mask) * (256 - weight) + (b & mask) * weight) >> 8) & mask;
     mix(0x00FF_00FF) | mix(0x0000_FF00)
 }
 

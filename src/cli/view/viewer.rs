@@ -9,8 +9,8 @@ use super::image::Picture;
 use super::keys;
 use super::loading::Loading;
 use glam::DVec2;
-use spherule::scene::particles::Legend;
-use spherule::scene::{Background, Camera, Look, Settings};
+use spherule_render::scene::particles::Legend;
+use spherule_render::scene::{Background, Camera, Look, Settings};
 
 /// Minimum and maximum side of the window in pixels.
 const SIDES: (u32, u32) = (16, 16_384);

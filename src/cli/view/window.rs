@@ -21,7 +21,7 @@ use super::worker::{Message, Workers};
 use crate::cli::failure::Failure;
 use crate::cli::render::Job;
 use softbuffer::{Context, Surface};
-use spherule::scene::{Scene, Settings};
+use spherule_render::scene::{Scene, Settings};
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::path::PathBuf;
@@ -60,7 +60,7 @@ struct App {
     files: u32,
     /// True if the window is closed, and only files are still being written.
     closed: bool,
-    tell: Arc<dyn Fn(Message) + Send + Sync>,
+    notify: Arc<dyn Fn(Message) + Send + Sync>,
     output: PathBuf,
     samples: u32,
     /// True if `--size` was given.
@@ -97,7 +97,7 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     if let Some(size) = sized {
         (settings.width, settings.height) = (size.width, size.height);
     }
-    let camera = spherule::scene::Camera::default();
+    let camera = spherule_render::scene::Camera::default();
     let mut app = App {
         viewer: Viewer::new(&camera, &settings, FrameRate::measured()),
         canvas: Canvas::default(),
@@ -112,7 +112,7 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
         savers: Vec::new(),
         files: 0,
         closed: false,
-        tell: Arc::new(move |message| drop(proxy.send_event(message))),
+        notify: Arc::new(move |message| drop(proxy.send_event(message))),
         output,
         samples,
         sized: sized.is_some(),

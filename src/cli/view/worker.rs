@@ -12,7 +12,7 @@ use super::renderer::{Picked, Renderer};
 use crate::cli::failure::Failure;
 use crate::cli::render::Job;
 use rayon::ThreadPool;
-use spherule::scene::{Camera, Settings};
+use spherule_render::scene::{Camera, Settings};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -57,26 +57,27 @@ pub(super) struct Workers {
 }
 
 impl Workers {
-    /// Starts the threads. They send messages through `tell`, which returns false once the receiver is gone.
+    /// Starts the threads. They send messages through `notify`, which returns false once the receiver is
+    /// gone.
     ///
     /// # Errors
     /// The pools of threads cannot be started.
     pub(super) fn start(
         job: &Arc<Job<'static>>,
-        tell: impl Fn(Message) -> bool + Clone + Send + 'static,
+        notify: impl Fn(Message) -> bool + Clone + Send + 'static,
     ) -> Result<Self, Failure> {
         let (requests, wanted) = channel();
         let (tasks, todo) = channel();
         // A render waits for all threads of its pool, so it has a pool of its own.
         let (loaders, renderers) = (job.pool()?, job.pool()?);
         let (tracer, builder) = (job.tracer, job.builder(usize::MAX, u64::MAX));
-        let loaded = tell.clone();
+        let loaded = notify.clone();
         let loader = Loader::new(Arc::clone(job));
         let quiet = job.report.quiet;
         thread::spawn(move || load(&loaders, loader, &wanted, loaded, quiet));
         thread::spawn(move || {
             let renderer = |stage| Renderer::new(stage, tracer, builder);
-            render(&renderers, &todo, renderer, tell);
+            render(&renderers, &todo, renderer, notify);
         });
         Ok(Self { requests, tasks, current: None })
     }
@@ -138,7 +139,7 @@ fn load(
     pool: &ThreadPool,
     mut loader: Loader,
     wanted: &Receiver<LoadRequest>,
-    tell: impl Fn(Message) -> bool + Clone + Send + 'static,
+    notify: impl Fn(Message) -> bool + Clone + Send + 'static,
     quiet: bool,
 ) {
     let mut next = None;
@@ -153,7 +154,7 @@ fn load(
             let _ = dropped.recv();
         }
         let progress = Arc::new(Progress::default());
-        let send = tell.clone();
+        let send = notify.clone();
         let watch = ProgressReporter::start(&progress, quiet, move |loading| {
             _ = send(Message::Loading(loading));
         });
@@ -164,7 +165,7 @@ fn load(
             // Memory may not be sufficient for two large worlds.
             continue;
         }
-        if !tell(Message::Loaded(staged)) {
+        if !notify(Message::Loaded(staged)) {
             return;
         }
     }
@@ -175,7 +176,7 @@ fn render(
     pool: &ThreadPool,
     todo: &Receiver<Task>,
     new: impl Fn(LoadedScene) -> Renderer,
-    tell: impl Fn(Message) -> bool,
+    notify: impl Fn(Message) -> bool,
 ) {
     let mut renderer: Option<Renderer> = None;
     while let Ok(first) = todo.recv() {
@@ -191,7 +192,7 @@ fn render(
                 (Task::Render(request, cancel), _) => last = Some((request, cancel)),
                 (Task::Pick((camera, settings), pixel, purpose), Some(renderer)) => {
                     let picked = pool.install(|| renderer.pick(&camera, &settings, pixel));
-                    if !tell(Message::Picked(picked, purpose)) {
+                    if !notify(Message::Picked(picked, purpose)) {
                         return;
                     }
                 }
@@ -199,7 +200,7 @@ fn render(
             }
         }
         if let (Some((request, cancel)), Some(renderer)) = (last, &mut renderer)
-            && !tell(Message::Picture(pool.install(|| renderer.render(&request, &cancel))))
+            && !notify(Message::Picture(pool.install(|| renderer.render(&request, &cancel))))
         {
             return;
         }

@@ -5,9 +5,14 @@ use super::font::{ELLIPSIS, SizedFont};
 /// Separator of the parts of the status line.
 const SEPARATOR: &str = "  |  ";
 
-/// Breaks the parts of a text into at most `most` lines of this width. A part starts a new line rather than
-/// being broken; if space is short, the middle is left out.
-pub(super) fn flow(font: &mut SizedFont, parts: &[String], width: u32, most: usize) -> Vec<String> {
+/// Breaks the parts of a text into at most `max_lines` lines of this width. A part starts a new line rather
+/// than being broken; if space is short, the middle is left out.
+pub(super) fn flow(
+    font: &mut SizedFont,
+    parts: &[String],
+    width: u32,
+    max_lines: usize,
+) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for part in parts {
         if let Some(last) = lines.last_mut() {
@@ -19,13 +24,17 @@ pub(super) fn flow(font: &mut SizedFont, parts: &[String], width: u32, most: usi
         }
         lines.extend(broken(font, part, width));
     }
-    if lines.len() <= most { lines } else { wrap(font, &parts.join(SEPARATOR), width, most) }
+    if lines.len() <= max_lines {
+        lines
+    } else {
+        wrap(font, &parts.join(SEPARATOR), width, max_lines)
+    }
 }
 
-/// Breaks a text into at most `most` lines of this width; if space is short, the middle is left out.
-pub(super) fn wrap(font: &mut SizedFont, text: &str, width: u32, most: usize) -> Vec<String> {
+/// Breaks a text into at most `max_lines` lines of this width; if space is short, the middle is left out.
+pub(super) fn wrap(font: &mut SizedFont, text: &str, width: u32, max_lines: usize) -> Vec<String> {
     let lines = broken(font, text, width);
-    if lines.len() <= most {
+    if lines.len() <= max_lines {
         return lines;
     }
     let all: Vec<char> = text.chars().collect();
@@ -40,7 +49,7 @@ pub(super) fn wrap(font: &mut SizedFont, text: &str, width: u32, most: usize) ->
     while low < high {
         let middle = usize::midpoint(low, high);
         let lines = broken(font, &shortened(middle), width);
-        if lines.len() <= most {
+        if lines.len() <= max_lines {
             (best, low) = (lines, middle + 1);
         } else {
             high = middle;
@@ -95,12 +104,13 @@ mod tests {
         for scale in [1.0, 1.5, 2.0] {
             let mut font = SizedFont::new(scale).expect("a font");
             for width in [3, 16, 64, 200, 333, 5000] {
-                for most in [1, 2, 5, 100] {
+                for max_lines in [1, 2, 5, 100] {
                     let parts = ["10 spheres".to_owned(), LONG.to_owned(), "end".to_owned()];
-                    for lines in
-                        [wrap(&mut font, LONG, width, most), flow(&mut font, &parts, width, most)]
-                    {
-                        assert!(lines.len() <= most);
+                    for lines in [
+                        wrap(&mut font, LONG, width, max_lines),
+                        flow(&mut font, &parts, width, max_lines),
+                    ] {
+                        assert!(lines.len() <= max_lines);
                         assert!(lines.iter().all(|line| font.width(line) <= width));
                     }
                 }

@@ -3,9 +3,9 @@
 use super::ViewArgs;
 use crate::cli::Failure;
 use glam::DVec3;
-use spherule::scene::{Camera, Pose, Projection, Scene};
-use spherule::suggest;
-use spherule::world::{WorldError, framing};
+use spherule_render::scene::{Camera, Pose, Projection, Scene};
+use spherule_render::suggest;
+use spherule_render::world::{WorldError, framing};
 use std::f64::consts::TAU;
 
 /// A view direction.
@@ -63,11 +63,15 @@ impl ViewArgs {
         self.choose(scene, normals)?;
         let corners = corners(scene);
         if let Some(turn) = turn {
-            framing::turn(scene, &corners, self.angle(turn));
+            framing::orbit(scene, &corners, self.angle(turn));
         }
         let name = scene.title.clone();
         let failure = |error: WorldError| Failure::World(name, error);
-        if corners.is_empty() { Ok(()) } else { framing::hold(scene, &corners).map_err(failure) }
+        if corners.is_empty() {
+            Ok(())
+        } else {
+            framing::include_points(scene, &corners).map_err(failure)
+        }
     }
 
     /// Angle of an image of the turntable, in radians.

@@ -13,7 +13,7 @@ use super::names::Names;
 use super::settings::List;
 use clap::value_parser;
 use serde_json::json;
-use spherule::scene::{Camera, Projection, Scene};
+use spherule_render::scene::{Camera, Projection, Scene};
 
 /// Projections, with their default parameters.
 const PROJECTIONS: Names<Projection> = Names(&[

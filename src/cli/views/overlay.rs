@@ -1,12 +1,12 @@
 //! Drawing of overlays over rendered images.
 
-use spherule::World;
-use spherule::film::Region;
-use spherule::image::Image;
-use spherule::layers::{self, Layer, layers};
-use spherule::overlay::{self, Matte, Overlay, ground};
-use spherule::render::{Options, Render, RenderError};
-use spherule::scene::{Look, Settings};
+use spherule_render::World;
+use spherule_render::film::Region;
+use spherule_render::image::Image;
+use spherule_render::layers::{self, Layer, layers};
+use spherule_render::overlay::{self, Matte, Overlay, ground};
+use spherule_render::render::{Options, Render, RenderError};
+use spherule_render::scene::{Look, Settings};
 
 /// An image with its matte, for overlays.
 pub(in crate::cli) struct Canvas<'a> {

@@ -2,8 +2,8 @@
 
 use super::ViewArgs;
 use crate::cli::Failure;
-use spherule::scene::particles::{Cell, Particles, PeriodicError};
-use spherule::scene::{FileError, Scene};
+use spherule_render::scene::particles::{Cell, Particles, PeriodicError};
+use spherule_render::scene::{FileError, Scene};
 use std::path::Path;
 
 /// `NA,NB,NC`.

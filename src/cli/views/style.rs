@@ -2,9 +2,9 @@
 
 use crate::cli::settings::List;
 use serde_json::json;
-use spherule::scene::particles::Particles;
-use spherule::scene::{Background, Look, Preset, Scene};
-use spherule::{color, suggest};
+use spherule_render::scene::particles::Particles;
+use spherule_render::scene::{Background, Look, Preset, Scene};
+use spherule_render::{color, suggest};
 
 /// Options for presets and backgrounds.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -111,7 +111,7 @@ impl StyleArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spherule::scene::Rgb;
+    use spherule_render::scene::Rgb;
 
     #[test]
     fn colors_and_looks_are_read() {

@@ -1,17 +1,17 @@
-//! Whether stopping biases any pixel: its mean over many renders against that over plain renders.
+//! Bias of adaptive sampling: the mean of each pixel over many renders, compared with plain renders.
 
 use super::{caustic, with_target};
 use crate::common::*;
-use spherule::image::Image;
-use spherule::render::{End, Options, Render, render};
-use spherule::scene::{Scene, Settings};
-use spherule::world::World;
+use spherule_render::image::Image;
+use spherule_render::render::{End, Options, Render, render};
+use spherule_render::scene::{Scene, Settings};
+use spherule_render::world::World;
 
-/// Chance that a test fails although nothing is biased: one in a million for either number, with the normal
-/// quantile that belongs to it.
+/// Probability of a failure without bias, one in a million for either number, and the corresponding normal
+/// quantile.
 const QUANTILE: f64 = 4.75;
 
-/// Light that only few paths find, in two tiles: of 32 pixels and of four.
+/// Light that few paths find, in two tiles: of 32 pixels and of four.
 fn scene() -> Scene {
     let mut scene = caustic();
     (scene.settings.width, scene.settings.height) = (18, 2);
@@ -39,9 +39,9 @@ impl Means {
         Self(sums.into_iter().map(of_sum).collect())
     }
 
-    /// Two numbers that are normal if both have the same expectations: the sum of the squared differences of pixels, each
-    /// by its error (by the cube root, after Wilson and Hilferty, "The Distribution of Chi-Square", PNAS 1931), and that
-    /// of the differences.
+    /// Returns two numbers that are normally distributed if both have the same expected values: the sum of
+    /// squared differences of pixels relative to their errors (by the cube root, after Wilson and Hilferty,
+    /// "The Distribution of Chi-Square", PNAS 1931), and the sum of the differences.
     fn against(&self, other: &Self) -> [f64; 2] {
         let pairs = self.0.iter().zip(&other.0);
         let off = pairs.map(|(a, b)| (a[0] - b[0]) / (a[1] + b[1]).sqrt());
@@ -65,7 +65,7 @@ fn plain(scene: &Scene, spp: u32, statistics: bool) -> impl Fn(u64) -> Render + 
     shots(scene, Settings { spp, ..scene.settings.clone() }, statistics)
 }
 
-/// Of many samples of every pixel.
+/// Returns means and errors of plain renders.
 fn truth(scene: &Scene) -> Means {
     let shot = plain(scene, 1024, false);
     Means::of((0..100).map(|seed| shot(1_000_000 + seed).image))
@@ -88,8 +88,8 @@ fn no_pixel_is_biased_by_stopping() {
     assert!(most >= 8 * fewest, "{fewest} to {most} samples decide nothing");
 }
 
-/// The same numbers tell at once when samples have a say in how many there are: here a picture ends at its first 32 if
-/// these themselves say that its error is small.
+/// The same numbers detect bias if samples decide on their own number: here an image stops after its first 32
+/// samples if their own estimate of the error is small.
 #[test]
 fn bias_would_be_seen() {
     let scene = scene();

@@ -1,15 +1,15 @@
-//! Renders that end when they are right: whether they are, whether they say so, and whether stopping spoils them.
+//! Adaptive sampling: the error, its estimate, and bias by stopping.
 
 mod bias;
 use crate::common::*;
 use glam::DVec3;
-use spherule::film::Region;
-use spherule::render::{End, Options, Render, render};
-use spherule::scene::{Integrator, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
-use spherule::world::World;
+use spherule_render::film::Region;
+use spherule_render::render::{End, Options, Render, render};
+use spherule_render::scene::{Integrator, Material, Rgb, Roulette, SamplerKind, Scene, Settings};
+use spherule_render::world::World;
 use std::time::Duration;
 
-/// White plastic in a white furnace: 1 in every pixel, and noise wherever a sphere is.
+/// White plastic in a white furnace: 1 in every pixel, with noise on spheres.
 fn plastic_heap() -> Scene {
     let mut scene = furnace();
     for (x, y) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
@@ -21,8 +21,8 @@ fn plastic_heap() -> Scene {
     scene
 }
 
-/// The inside of a lamp that reflects 0.8 of its light: 5 in every pixel. Paths survive by less than that, and get ever
-/// brighter: the fourth moment of their light is barely finite.
+/// The inside of an emitter of albedo 0.8: 5 in every pixel. The survival probability is lower than that, so
+/// weights of paths grow, and the fourth moment of their radiance is barely finite.
 fn spiky() -> Scene {
     let mut scene = dark();
     sphere(&mut scene, [0.0; 3], 1.0, emitter(1.0, 0.8));
@@ -31,8 +31,8 @@ fn spiky() -> Scene {
     scene
 }
 
-/// A lamp over glass on a ground: in the glass's shadow is light that only paths find which hit the lamp by
-/// chance, for it is not looked for.
+/// An emitter above glass on a ground. Caustic sampling is off, so only paths that hit the emitter find the
+/// light in the shadow of the glass.
 fn caustic() -> Scene {
     let mut scene = dark();
     ground(&mut scene, lambertian(0.8));
@@ -48,7 +48,7 @@ fn with_target(mut scene: Scene, error: f64) -> Scene {
     scene
 }
 
-/// A scene, and its picture without error.
+/// A scene, and its exact image.
 struct Case {
     name: &'static str,
     scene: Scene,
@@ -62,7 +62,8 @@ fn cases() -> Vec<Case> {
     };
     let mut reference = caustic();
     (reference.settings.spp, reference.settings.seed) = (1 << 14, 999);
-    let truth = shoot(&reference).image.pixels.iter().map(|pixel| f64::from(pixel[0])).collect();
+    let truth =
+        render_scene(&reference).image.pixels.iter().map(|pixel| f64::from(pixel[0])).collect();
     vec![
         case("heap", with_target(plastic_heap(), 0.02), 1.0),
         case("spiky", with_target(spiky(), 0.2), 5.0),
@@ -70,7 +71,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// Root of the mean squared error, by the mean.
+/// Returns the root mean squared error relative to the mean.
 fn true_error(render: &Render, truth: &[f64]) -> f64 {
     let count = truth.len() as f64;
     let pairs = render.image.pixels.iter().zip(truth);
@@ -92,7 +93,7 @@ fn each_seed(scene: &Scene, seeds: u64, statistics: bool) -> Vec<Render> {
     (0..seeds).map(one).collect()
 }
 
-/// If each bound held with the probability 0.95, fewer of 60 would be seen to hold once in 500 times.
+/// If each bound holds with probability 0.95, fewer of 60 hold by chance once in 500 runs.
 const HELD_OF_60: usize = 52;
 
 #[test]
@@ -110,14 +111,14 @@ fn errors_are_below_their_bounds_as_often_as_claimed_and_nothing_is_biased() {
             (told, truly) = (told + noise.error.powi(2), truly + error.powi(2));
         }
         assert!(held >= HELD_OF_60, "{name}: {held} of 60");
-        // Renders stop when the estimate is low, so a little is missing.
+        // Renders stop when the estimate is low, so it is slightly too low.
         assert!(told < 1.3 * truly && truly < 2.0 * told, "{name}: {told} {truly}");
         let means = renders.iter().map(|render| mean(&render.image));
-        assert_truth(Estimate::of(means), average(&truth), name);
+        assert_expected(Estimate::of(means), average(&truth), name);
     }
 }
 
-/// With as many samples of all pixels the estimate is that of the true error, without any stopping.
+/// With uniform sampling, the estimate agrees with the true error.
 #[test]
 fn estimates_are_true_on_average() {
     for Case { name, mut scene, truth } in cases() {
@@ -130,7 +131,7 @@ fn estimates_are_true_on_average() {
         let scale = average(&truth).powi(2);
         let by_pixel =
             of(&|render| render.statistics.as_ref().map_or(0.0, |all| mean(&all.variance) / scale));
-        // Ratios of sums are without bias in large pictures only.
+        // Ratios of sums are unbiased only in large images.
         let error = by_pixel.error.hypot(0.05 * truly.mean);
         assert_agree(Estimate { error, ..by_pixel }, truly, name);
     }
@@ -142,7 +143,7 @@ fn counts_and_bytes_do_not_depend_on_threads() {
     let by_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let options = Options { statistics: true, ..Options::default() };
-        pool.install(|| shoot_with(&scene, &options))
+        pool.install(|| render_scene_with(&scene, &options))
     };
     let (one, three) = (by_threads(1), by_threads(3));
     assert!(one.image == three.image && one.samples == three.samples && one.noise == three.noise);
@@ -162,7 +163,7 @@ fn every_integrator_and_sampler_reaches_its_target() {
             let mut scene = with_target(caustic(), 0.1);
             (scene.settings.integrator, scene.settings.sampler) = (integrator, sampler);
             scene.environment.map = gradient();
-            let render = shoot(&scene);
+            let render = render_scene(&scene);
             assert_eq!(render.end, End::Error, "{integrator:?} {sampler:?}");
         }
     }
@@ -173,13 +174,13 @@ fn small_pictures_and_regions_end() {
     for (width, height) in [(1, 1), (3, 2), (17, 1), (5, 40)] {
         let mut scene = with_target(plastic_heap(), 0.2);
         (scene.settings.width, scene.settings.height) = (width, height);
-        let render = shoot(&scene);
+        let render = render_scene(&scene);
         assert_eq!(render.end, End::Error, "{width} x {height}");
         assert_eq!(render.image.pixels.len() as u32, width * height);
     }
     let region = Some(Region { x: 13, y: 15, width: 9, height: 5 });
     let options = Options { region, ..Options::default() };
-    let render = shoot_with(&with_target(plastic_heap(), 0.1), &options);
+    let render = render_scene_with(&with_target(plastic_heap(), 0.1), &options);
     assert_eq!((render.image.width, render.image.height, render.end), (9, 5, End::Error));
 }
 
@@ -190,7 +191,7 @@ fn pictures_without_noise_end_at_once() {
     let mut white = with_target(furnace(), 0.01);
     sphere(&mut white, [0.0; 3], 1.0, lambertian(1.0));
     for (scene, value) in [(black, 0.0), (white, 1.0), (with_target(furnace(), 0.01), 1.0)] {
-        let render = shoot(&scene);
+        let render = render_scene(&scene);
         assert_every_pixel(&render.image, value, "no noise");
         assert_eq!((render.end, render.samples.most), (End::Error, 16));
     }
@@ -201,12 +202,12 @@ fn samples_per_pixel_are_a_limit() {
     for spp in [1, 8, 50, 100] {
         let mut scene = with_target(caustic(), 1e-6);
         scene.settings.spp = spp;
-        let render = shoot(&scene);
+        let render = render_scene(&scene);
         assert_eq!((render.end, render.complete), (End::Samples, true));
         assert_eq!((render.samples.least, render.samples.most), (spp, spp));
-        // As many samples of every pixel: the same picture as without a target.
+        // Uniform sampling: the same image as without an error goal.
         scene.settings.until_error = None;
-        assert!(shoot(&scene).image == render.image, "{spp}");
+        assert!(render_scene(&scene).image == render.image, "{spp}");
     }
 }
 
@@ -216,7 +217,7 @@ fn a_time_limit_leaves_no_pixel_out() {
     scene.settings.spp = Settings::HARD_SAMPLES;
     for milliseconds in [1, 300] {
         scene.settings.time = Some(Duration::from_millis(milliseconds));
-        let render = shoot(&scene);
+        let render = render_scene(&scene);
         assert_eq!((render.end, render.complete), (End::Time, true));
         assert!(render.samples.least > 0 && render.noise.is_some(), "{:?}", render.samples);
     }

@@ -1,12 +1,12 @@
-//! What layers are called in a file, and of which type they are.
+//! Names and types of the channels of layers in a file.
 
 use super::all_of;
 use crate::common::*;
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
-use spherule::image::Values::{Floats, Integers};
-use spherule::image::{Image, WriteOptions};
-use spherule::layers::{Features, Layer};
-use spherule::render::Options;
+use spherule_render::image::Values::{Floats, Integers};
+use spherule_render::image::{Image, WriteOptions};
+use spherule_render::layers::{Features, Layer};
+use spherule_render::render::Options;
 
 #[test]
 fn statistics_come_from_the_render() {
@@ -16,7 +16,7 @@ fn statistics_come_from_the_render() {
     let statistics = [Layer::Variance, Layer::Samples];
     assert_eq!(layers.channels(&statistics), []);
     layers.statistics =
-        shoot_with(&scene, &Options { statistics: true, ..Options::default() }).statistics;
+        render_scene_with(&scene, &Options { statistics: true, ..Options::default() }).statistics;
     let known = layers.statistics.clone().expect("what was asked for");
     let channels = layers.channels(&statistics);
     let green = known.variance.pixels.iter().map(|pixel| pixel[1]).collect();

@@ -1,19 +1,19 @@
-//! Pictures without their background: what is left of them, and how much of each pixel it takes.
+//! Mattes: images without background, and the coverage of each pixel.
 
-use crate::common::{emitter, furnace, lambertian, look_parallel, noon, shoot, sphere};
+use crate::common::{emitter, furnace, lambertian, look_parallel, noon, render_scene, sphere};
 use glam::DVec3;
-use spherule::World;
-use spherule::film::Region;
-use spherule::image::{Channel, Image, ImageError, Values, WriteOptions};
-use spherule::layers::{Layer, layers};
-use spherule::overlay::{self, Matte, Overlay, draw_alpha};
-use spherule::render::{Options, render};
-use spherule::scene::Scene;
+use spherule_render::World;
+use spherule_render::film::Region;
+use spherule_render::image::{Channel, Image, ImageError, Values, WriteOptions};
+use spherule_render::layers::{Layer, layers};
+use spherule_render::overlay::{self, Matte, Overlay, draw_alpha};
+use spherule_render::render::{Options, render};
+use spherule_render::scene::Scene;
 use std::f64::consts::PI;
 
 const SIZE: u32 = 64;
 
-/// A picture without its background, and what it was before.
+/// Returns an image without its background, and the original.
 fn lifted(scene: &Scene) -> ([Image; 2], Matte) {
     let mut world = World::build(scene).expect("a sound scene");
     let options = Options::default();
@@ -23,8 +23,8 @@ fn lifted(scene: &Scene) -> ([Image; 2], Matte) {
         layers(&world, &scene.settings, &options, &[Layer::Depth]).expect("settings in range");
     let region = Region { x: 0, y: 0, width: SIZE, height: SIZE };
     let mut after = before.clone();
-    let matte =
-        Overlay { world: &world, region, layers: &layers, depths: None }.lift(&mut after, ground);
+    let matte = Overlay { world: &world, region, layers: &layers, depths: None }
+        .remove_background(&mut after, ground);
     assert_eq!(
         render(&world, &scene.settings, &options).expect("settings in range").image,
         before,
@@ -33,7 +33,7 @@ fn lifted(scene: &Scene) -> ([Image; 2], Matte) {
     ([before, after], matte)
 }
 
-/// Noon, seen by parallel rays that go down at 45 degrees; the picture is 10 high.
+/// Returns a scene at noon, seen by parallel rays downward at 45 degrees, with an image height of 10.
 fn slanted() -> Scene {
     let mut scene = noon();
     look_parallel(&mut scene, DVec3::new(0.0, -20.0, 20.0), DVec3::ZERO, 10.0);
@@ -41,10 +41,10 @@ fn slanted() -> Scene {
     scene
 }
 
-/// The pixel in which a point is seen.
+/// Returns the pixel in which a point is visible.
 fn pixel(scene: &Scene, point: DVec3) -> usize {
     let world = World::build(scene).expect("a sound scene");
-    let place = world.camera.pixel(world.camera.view(world.frame.point(point)));
+    let place = world.camera.pixel(world.camera.view(world.transform.point(point)));
     place.y as usize * SIZE as usize + place.x as usize
 }
 
@@ -55,12 +55,12 @@ fn the_umbra_is_black_and_as_large_as_the_sphere() {
     let area = |values: &[f32]| {
         values.iter().map(|&value| f64::from(value)).sum::<f64>() * (10.0 / f64::from(SIZE)).powi(2)
     };
-    // Disks: on the ground it is seen aslant.
+    // Disks; the one on the ground is seen obliquely.
     let (disk, aslant) = (PI, PI * 0.5_f64.sqrt());
     assert!((area(&matte.coverage) - disk).abs() < 0.01, "{}", area(&matte.coverage));
     assert!((area(&matte.shadow) - aslant).abs() < 0.01, "{}", area(&matte.shadow));
     let alpha = matte.linear();
-    // They do not overlap in the picture.
+    // They do not overlap in the image.
     assert!((area(&alpha) - disk - aslant).abs() < 0.02, "{}", area(&alpha));
     let umbra = pixel(&scene, DVec3::ZERO);
     assert_eq!((matte.shadow[umbra], alpha[umbra], after.pixels[umbra]), (1.0, 1.0, [0.0; 3]));
@@ -75,8 +75,11 @@ fn the_umbra_is_black_and_as_large_as_the_sphere() {
 #[test]
 fn over_the_ground_that_was_taken_out_it_is_the_picture_again() {
     let mut scene = slanted();
-    let bare =
-        shoot(&Scene { spheres: spherule::scene::Spheres::default(), ..scene.clone() }).image;
+    let bare = render_scene(&Scene {
+        spheres: spherule_render::scene::Spheres::default(),
+        ..scene.clone()
+    })
+    .image;
     scene.settings.spp = 256;
     let ([before, after], matte) = lifted(&scene);
     for (row, alpha) in matte.linear().into_iter().enumerate() {
@@ -95,7 +98,7 @@ fn where_there_is_no_ground_coverage_is_alpha() {
     assert!(matte.shadow.is_empty());
     assert_eq!(matte.linear(), matte.encoded());
     for (pixel, alpha) in after.pixels.iter().zip(matte.linear()) {
-        // A ball of albedo 0.25 in the furnace: all that varies is its share of the pixel.
+        // A sphere of albedo 0.25 in the furnace: only its coverage of the pixel varies.
         assert!((pixel[1] - 0.25 * alpha).abs() < 1e-5, "{pixel:?} {alpha}");
     }
 }
@@ -129,7 +132,7 @@ fn shadows_over_white_have_the_code_of_white_in_the_shadow() {
     let shadow = vec![0.0, 0.25, 0.5, 1.0];
     let matte = Matte { coverage: vec![0.0; 4], shadow: shadow.clone() };
     for (alpha, shadow) in matte.encoded().into_iter().zip(shadow) {
-        let code = spherule::image::tone::srgb_encode(f64::from(1.0 - shadow));
+        let code = spherule_render::image::tone::srgb_encode(f64::from(1.0 - shadow));
         assert!((f64::from(1.0 - alpha) - code).abs() < 1e-6);
     }
     assert_eq!(matte.linear(), matte.shadow);
@@ -153,7 +156,7 @@ fn png_holds_colors_beside_alpha() {
     let mut codes = vec![0; reader.output_buffer_size().expect("a size")];
     reader.next_frame(&mut codes).expect("pixels");
     assert_eq!(codes, [255, 188, 0, 128, 0, 0, 0, 64, 255, 255, 255, 255]);
-    // EXR holds what is premultiplied.
+    // EXR has premultiplied colors.
     assert_eq!(Image::read(&exr).expect("a picture"), image);
     for name in ["a.pfm", "a.ppm"] {
         let refused =

@@ -1,4 +1,4 @@
-//! Layers beside the picture: closed forms, brute force, and the channels that they come to.
+//! Layers: compared with closed forms and brute force, and their channels in files.
 
 mod channels;
 mod mattes;
@@ -6,12 +6,12 @@ mod mattes;
 use crate::common::*;
 use glam::DVec3;
 use rayon::ThreadPoolBuilder;
-use spherule::World;
-use spherule::film::Region;
-use spherule::layers::{Features, GROUND_PLANE, Layer, Layers, NOTHING, layers};
-use spherule::render::Options;
-use spherule::scene::{ConductorFresnel, Material, Rgb, Scene};
-use spherule::trace::{PacketWidth, Tracer, Traversal};
+use spherule_render::World;
+use spherule_render::film::Region;
+use spherule_render::layers::{Features, GROUND_PLANE, Layer, Layers, NOTHING, layers};
+use spherule_render::render::Options;
+use spherule_render::scene::{ConductorFresnel, Material, Rgb, Scene};
+use spherule_render::trace::{PacketWidth, Tracer, Traversal};
 
 fn all_of(scene: &Scene) -> Layers {
     with(scene, &Options::default())
@@ -22,7 +22,7 @@ fn with(scene: &Scene, options: &Options) -> Layers {
     layers(&world, &scene.settings, options, &Layer::ALL).expect("settings in range")
 }
 
-/// What a window sees that is so narrow that nothing varies.
+/// Returns the layers of a field of view that is so narrow that nothing varies.
 fn through_window(scene: &mut Scene, eye: DVec3, point: DVec3, parallel: bool) -> Features {
     (scene.settings.width, scene.settings.height) = (2, 2);
     if parallel {
@@ -46,7 +46,7 @@ fn assert_sees(seen: Features, normal: DVec3, depth: f64, id: u32) {
 
 #[test]
 fn one_sphere_is_known_in_closed_form() {
-    // Near the origin and far away, small and large; the second sphere is not in the way.
+    // Near the origin and far away, small and large; the second sphere is not visible.
     for (center, radius) in [
         (DVec3::ZERO, 1.0),
         (DVec3::new(1e3, -2e3, 512.0), 0.125),
@@ -134,7 +134,7 @@ fn albedo_is_the_color_of_each_material() {
     }
 }
 
-/// A disc in parallel projection: its area, and the means over it. Beyond its edge nothing counts.
+/// A disc in orthographic projection: its area, and the means over it. Nothing outside contributes.
 #[test]
 fn edges_are_shares() {
     let mut scene = dark();
@@ -147,7 +147,7 @@ fn edges_are_shares() {
     let pi = std::f64::consts::PI;
     assert!((sum(&|pixel| f64::from(pixel.coverage)) - pi).abs() < 2e-3);
     assert!((sum(&|pixel| f64::from(pixel.albedo[1])) - 0.5 * pi).abs() < 1e-3);
-    // Half a ball has the volume 2/3 pi.
+    // A half ball has the volume 2/3 pi.
     assert!((sum(&|pixel| f64::from(pixel.normal[2])) - 2.0 / 3.0 * pi).abs() < 2e-3);
     for pixel in pixels {
         assert_eq!(pixel.depth.is_infinite(), pixel.coverage == 0.0, "{pixel:?}");
@@ -156,7 +156,7 @@ fn edges_are_shares() {
     }
 }
 
-/// The sphere that a ray hits first, by the textbook in double precision; `None` where rounding could matter.
+/// Returns the closest hit by the textbook formula in double precision; `None` where rounding could matter.
 fn first_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<u32> {
     let mut nearest = (f64::INFINITY, NOTHING);
     for i in 0..scene.spheres.len() {

@@ -1,13 +1,13 @@
-//! Arrangements that leave a tree nothing to split by, and giants beside dust.
+//! Arrangements that builders cannot split, and extreme ratios of radii.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::image::Image;
-use spherule::render::Options;
-use spherule::scene::{Rgb, Scene};
-use spherule::trace::{Tracer, Traversal};
+use spherule_render::image::Image;
+use spherule_render::render::Options;
+use spherule_render::scene::{Rgb, Scene};
+use spherule_render::trace::{Tracer, Traversal};
 
-/// Spheres of one diffuse material in a white sky.
+/// Returns spheres of one diffuse material under a white sky.
 fn of_spheres(spheres: impl Iterator<Item = (DVec3, f64)>) -> Scene {
     let mut scene = furnace();
     material(&mut scene, lambertian(0.6));
@@ -22,7 +22,7 @@ fn of_spheres(spheres: impl Iterator<Item = (DVec3, f64)>) -> Scene {
 
 fn by_brute_force(scene: &Scene) -> Image {
     let tracer = Tracer { traversal: Traversal::Brute, ..Tracer::default() };
-    shoot_with(scene, &Options { tracer, ..Options::default() }).image
+    render_scene_with(scene, &Options { tracer, ..Options::default() }).image
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn the_tree_never_changes_the_picture() {
             ),
         ];
     for (what, scene) in scenes {
-        assert_eq!(shoot(&scene).image, by_brute_force(&scene), "{what}");
+        assert_eq!(render_scene(&scene).image, by_brute_force(&scene), "{what}");
     }
 }
 
@@ -58,7 +58,7 @@ fn few_spheres_are_right_in_trees_that_are_not_full() {
             let angle = f64::from(i) * 2.4;
             (DVec3::new(angle.cos(), angle.sin(), 0.3 * angle.cos()), 0.3)
         }));
-        let image = shoot(&scene).image;
+        let image = render_scene(&scene).image;
         assert_eq!(image, by_brute_force(&scene), "{count}");
         if count == 0 {
             assert_every_pixel(&image, 1.0, "nothing but sky");
@@ -72,19 +72,19 @@ fn a_million_spheres_in_one_place() {
     let small = |mut scene: Scene| {
         (scene.settings.width, scene.settings.height, scene.settings.spp) = (4, 4, 1);
         look(&mut scene, DVec3::new(3.0, 2.0, 5.0), DVec3::ZERO, 25.0);
-        shoot(&scene).image
+        render_scene(&scene).image
     };
     let one = small(of_spheres(std::iter::once((DVec3::ZERO, 1.0))));
     let identical = (0..COUNT).map(|_| (DVec3::ZERO, 1.0));
     assert_eq!(small(of_spheres(identical)), one, "identical");
-    // Exact in single precision; the outermost is the one that is seen.
+    // Exact in single precision; the outermost is visible.
     let radius = |i: u32| f64::from(COUNT + 1 + i) / f64::from(2 * COUNT);
     let concentric = (0..COUNT).map(|i| (DVec3::ZERO, radius(i)));
     assert_eq!(small(of_spheres(concentric)), one, "concentric");
 }
 
-/// Dust on a giant ball looks as on a plane, also where the dust is a tower beside which the ball's center has no room
-/// for another digit.
+/// Small spheres on a huge sphere look as on a plane, also if they are stacked so high that the huge sphere's
+/// center needs all digits.
 #[test]
 fn dust_on_a_giant() {
     let row: Vec<_> =
@@ -109,7 +109,7 @@ fn dust_on_a_giant() {
                 scene
             };
             let what = format!("{what} of {size} on {radius}");
-            assert_alike(&scene(false), &scene(true), &what);
+            assert_scenes_agree(&scene(false), &scene(true), &what);
         }
     }
 }

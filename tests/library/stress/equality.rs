@@ -1,23 +1,23 @@
-//! One picture: whatever the threads, the packets, the tree and the part that is asked for.
+//! Equal images for all threads, packets, builders and regions.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::World;
-use spherule::bvh::builders::Builder;
-use spherule::film::Region;
-use spherule::image::Image;
-use spherule::integrator::counters::Counters;
-use spherule::render::{Options, render};
-use spherule::sampling::{stream, unit};
-use spherule::scene::{
+use spherule_render::World;
+use spherule_render::bvh::builders::Builder;
+use spherule_render::film::Region;
+use spherule_render::image::Image;
+use spherule_render::integrator::counters::Counters;
+use spherule_render::render::{Options, render};
+use spherule_render::sampling::{stream, unit};
+use spherule_render::scene::{
     EnvironmentMap, Integrator, Lens, Pose, Projection, Rgb, SamplerKind, Scene,
 };
-use spherule::trace::{PacketWidth, Tracer, Traversal};
+use spherule_render::trace::{PacketWidth, Tracer, Traversal};
 
 const INTEGRATORS: [Integrator; 3] =
     [Integrator::Path, Integrator::Whitted { shadow_samples: 3 }, Integrator::Ao { distance: 2.0 }];
 
-/// Everything there is, in a picture whose sides are no multiples of a tile, with a part of a pass.
+/// All features, in an image whose sides are not multiples of a tile, with an incomplete pass.
 fn everything(integrator: Integrator) -> Scene {
     let mut scene = menagerie();
     (scene.settings.width, scene.settings.height, scene.settings.spp) = (37, 21, 19);
@@ -38,11 +38,11 @@ fn every_tracer_makes_the_same_picture() {
     ];
     for integrator in INTEGRATORS {
         let scene = everything(integrator);
-        let picture = shoot(&scene);
+        let picture = render_scene(&scene);
         for traversal in TRAVERSALS {
             for width in WIDTHS {
                 let tracer = Tracer { traversal, width };
-                let other = shoot_with(&scene, &Options { tracer, ..Options::default() });
+                let other = render_scene_with(&scene, &Options { tracer, ..Options::default() });
                 assert!(other.image == picture.image, "{integrator:?} {tracer:?}");
                 let work = |counters: &Counters| (counters.rays(), counters.cut_paths);
                 let (expected, got) = (work(&picture.counters), work(&other.counters));
@@ -52,7 +52,7 @@ fn every_tracer_makes_the_same_picture() {
     }
 }
 
-/// Tiles in which no sphere can be seen are not traced; brute force traces them all.
+/// Tiles without visible spheres are not traced; brute force traces all tiles.
 #[test]
 fn what_is_skipped_is_background() {
     let projections =
@@ -72,10 +72,10 @@ fn what_is_skipped_is_background() {
         (scene.camera.projection, scene.camera.lens, scene.camera.near) = (projection, lens, 0.3);
         (scene.settings.width, scene.settings.height, scene.settings.spp) = (150, 130, 5);
         scene.environment.map = EnvironmentMap::Constant(Rgb::new(0.3, 0.7, 1.1));
-        let picture = shoot_with(&scene, &Options::default());
+        let picture = render_scene_with(&scene, &Options::default());
         assert!(picture.counters.skipped_samples > 10_000, "{}", picture.counters.skipped_samples);
         let tracer = Tracer { traversal: Traversal::Brute, ..Tracer::default() };
-        let brute = shoot_with(&scene, &Options { tracer, ..Options::default() });
+        let brute = render_scene_with(&scene, &Options { tracer, ..Options::default() });
         assert_eq!(brute.counters.skipped_samples, 0);
         assert!(brute.image == picture.image, "{projection:?} {lens:?}");
     }
@@ -102,7 +102,7 @@ fn every_builder_makes_the_same_picture() {
     }
 }
 
-/// Small spheres of all materials, emitters among them, so that trees have something to differ in.
+/// Small spheres of all materials, including emitters, so that BVHs differ.
 fn add_dust(scene: &mut Scene) {
     let center = |i: usize| {
         let number = |k| f64::from(unit(stream(i as u64, k) as u32));
@@ -121,7 +121,7 @@ fn every_number_of_threads_makes_the_same_picture() {
         scene.settings.sampler = sampler;
         let picture = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.expect("threads can be started").install(|| shoot(&scene).image)
+            pool.expect("threads can be started").install(|| render_scene(&scene).image)
         };
         let one = picture(1);
         for threads in [2, 5] {
@@ -141,27 +141,28 @@ fn crop(image: &Image, region: Region) -> Vec<[f32; 3]> {
 fn a_region_is_a_part_of_the_whole() {
     for integrator in INTEGRATORS {
         let scene = everything(integrator);
-        let whole = shoot(&scene).image;
+        let whole = render_scene(&scene).image;
         for (x, y, width, height) in
             [(0, 0, 37, 21), (5, 3, 20, 17), (36, 20, 1, 1), (16, 0, 16, 21)]
         {
             let region = Region { x, y, width, height };
-            let part = shoot_with(&scene, &Options { region: Some(region), ..Options::default() });
+            let part =
+                render_scene_with(&scene, &Options { region: Some(region), ..Options::default() });
             assert_eq!((part.image.width, part.image.height), (width, height));
             assert!(part.image.pixels == crop(&whole, region), "{integrator:?} {region:?}");
         }
     }
 }
 
-/// Independent numbers do not depend on how many samples there are, nor on the passes that they come in: the first 16
-/// of 32 samples are those of a picture of 16, so what the others add is not negative.
+/// Independent random numbers do not depend on the number of samples or passes. The first 16 of 32 samples
+/// are those of an image of 16, so the contribution of the others is not negative.
 #[test]
 fn samples_do_not_depend_on_their_number() {
     let mut scene = everything(Integrator::Path);
     scene.settings.sampler = SamplerKind::Independent;
     let mut mean = |spp: u32| {
         scene.settings.spp = spp;
-        shoot(&scene).image
+        render_scene(&scene).image
     };
     let (first, both) = (mean(16), mean(32));
     for (half, all) in first.pixels.iter().flatten().zip(both.pixels.iter().flatten()) {
@@ -170,16 +171,16 @@ fn samples_do_not_depend_on_their_number() {
     }
 }
 
-/// The order of the spheres in the scene does not matter where none coincide: they, and the lights among them, are in
-/// the order of the tree.
+/// Without coincident spheres, their order in the scene does not matter: spheres and emitters are sorted in
+/// the order of the BVH.
 #[test]
 fn shuffled_spheres_make_the_same_picture() {
     let scene = everything(Integrator::Path);
     let mut shuffled = scene.clone();
-    shuffled.spheres = spherule::scene::Spheres::default();
+    shuffled.spheres = spherule_render::scene::Spheres::default();
     let count = scene.spheres.len();
     for i in 0..count {
-        // One-to-one as 7 and the number of spheres have no common factor.
+        // A permutation, since 7 and the number of spheres have no common factor.
         let row = (7 * i + 3) % count;
         let spheres = &scene.spheres;
         shuffled.spheres.push(
@@ -190,13 +191,13 @@ fn shuffled_spheres_make_the_same_picture() {
         );
     }
     assert_ne!(count % 7, 0);
-    assert!(shoot(&shuffled).image == shoot(&scene).image);
+    assert!(render_scene(&shuffled).image == render_scene(&scene).image);
 }
 
 #[test]
 fn the_seed_changes_the_picture() {
     let mut scene = everything(Integrator::Path);
-    let zero = shoot(&scene).image;
+    let zero = render_scene(&scene).image;
     scene.settings.seed = 1;
-    assert!(shoot(&scene).image != zero);
+    assert!(render_scene(&scene).image != zero);
 }

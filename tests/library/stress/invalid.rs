@@ -1,15 +1,15 @@
-//! Scenes that code can make and no file can hold: each is an error that says what is wrong, none a panic.
+//! Invalid scenes that code can build but files cannot contain: errors that name the problem, never panics.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::scene::{
+use spherule_render::scene::{
     BRIGHTEST, EnvironmentMap, Ground, Integrator, Lens, Light, Material, Pose, Projection, Rgb,
     Roulette, Scene,
 };
-use spherule::{Image, World};
+use spherule_render::{Image, World};
 use std::sync::Arc;
 
-/// Fails unless the world of a scene that was spoiled is an error that speaks of `what`.
+/// Asserts that building the world of an invalid scene is an error whose message contains `what`.
 #[track_caller]
 fn assert_refused(what: &str, spoil: impl FnOnce(&mut Scene)) {
     let mut scene = dark();
@@ -62,7 +62,7 @@ fn cameras_that_see_nothing() {
     }
     assert_refused("near", |scene| scene.camera.near = -1.0);
     assert_refused("no spheres", |scene| {
-        scene.spheres = spherule::scene::Spheres::default();
+        scene.spheres = spherule_render::scene::Spheres::default();
         scene.camera.pose = Pose::Fit { direction: DVec3::X, margin: 0.0 };
     });
 }

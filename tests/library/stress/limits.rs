@@ -1,9 +1,9 @@
-//! Settings at their limits, lights at theirs, renders that are stopped.
+//! Settings and lights at their limits, and interrupted renders.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::render::{Options, Progress};
-use spherule::scene::{Integrator, Light, Rgb, Roulette, SamplerKind};
+use spherule_render::render::{Options, Progress};
+use spherule_render::scene::{Integrator, Light, Rgb, Roulette, SamplerKind};
 use std::f64::consts::PI;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,10 +16,10 @@ fn pictures_of_any_shape() {
         sphere(&mut scene, [0.0; 3], 1.0, lambertian(0.5));
         look_parallel(&mut scene, DVec3::Z * 3.0, DVec3::ZERO, 3.0 / f64::from(width.max(height)));
         (scene.settings.width, scene.settings.height, scene.settings.spp) = (width, height, 1);
-        let image = shoot(&scene).image;
+        let image = render_scene(&scene).image;
         assert_eq!((image.width, image.height), (width, height));
         assert_eq!(image.pixels.len(), width as usize * height as usize);
-        // Pixels are square: the sphere is as many of them wide as it is high.
+        // Pixels are square, so the sphere has equal width and height.
         let seen = image.pixels.iter().filter(|pixel| **pixel == [0.5; 3]).count();
         assert!(seen > 0, "{width} x {height}");
     }
@@ -36,8 +36,8 @@ fn a_wide_picture_is_a_high_one_turned() {
     };
     // Each covers the disc, of radius 16 pixels.
     let area = |width: u32, height: u32| f64::from(width * height) - PI * 256.0;
-    assert_truth(dark_pixels(64, 40), area(64, 40), "wide");
-    assert_truth(dark_pixels(40, 64), area(40, 64), "high");
+    assert_expected(dark_pixels(64, 40), area(64, 40), "wide");
+    assert_expected(dark_pixels(40, 64), area(40, 64), "high");
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn depth_from_nothing_to_a_million() {
     look(&mut scene, DVec3::new(1.0, 1.0, 4.0), DVec3::new(0.7, 0.7, 0.0), 40.0);
     let mut picture = |depth| {
         scene.settings.depth = depth;
-        shoot(&scene).image
+        render_scene(&scene).image
     };
     let nothing = picture(Some(0));
     assert!(nothing.pixels.iter().all(|pixel| pixel[0] <= 1.0) && nothing != picture(Some(1)));
@@ -64,26 +64,26 @@ fn samples_of_any_number() {
             scene.environment.map = gradient();
             sphere(&mut scene, [0.0; 3], 1.0, lambertian(1.0));
             (scene.settings.sampler, scene.settings.spp) = (sampler, spp);
-            // Half of the sky is seen from the equator, and it is symmetric.
+            // Half of the sky is visible from the equator, and it is symmetric.
             let estimate = probe(&mut scene, DVec3::X, DVec3::X * 3.0);
-            assert_truth(estimate, 0.5, &format!("{sampler:?} {spp}"));
+            assert_expected(estimate, 0.5, &format!("{sampler:?} {spp}"));
         }
     }
 }
 
-/// More samples than the first block of a Sobol sequence has.
+/// More samples than in the first block of a Sobol sequence.
 #[test]
 fn a_hundred_thousand_samples() {
     let mut scene = dark();
     scene.environment.map = gradient();
     sphere(&mut scene, [0.0; 3], 1.0, lambertian(1.0));
     (scene.settings.width, scene.settings.height, scene.settings.spp) = (2, 2, 100_000);
-    assert_truth(probe(&mut scene, DVec3::X, DVec3::X * 3.0), 0.5, "1e5 samples");
+    assert_expected(probe(&mut scene, DVec3::X, DVec3::X * 3.0), 0.5, "1e5 samples");
 }
 
 #[test]
 fn lights_of_any_size_from_any_distance() {
-    // Radius, place, radiance: a point, one over the horizon as seen along it, one that is the sky.
+    // Radius, position, radiance: nearly a point, one at the horizon, one that fills the sky.
     let lights = [
         (1e-6, DVec3::new(0.0, 1.0, 2.0), 1e12),
         (1e-12, DVec3::new(0.0, 1.0, 2.0), 1e24),
@@ -95,18 +95,22 @@ fn lights_of_any_size_from_any_distance() {
         ground(&mut scene, lambertian(1.0));
         sphere(&mut scene, center, radius, emitter(radiance, 0.0));
         scene.settings.depth = Some(1);
-        // Form factor: (r / d)^2 times the cosine, while all of it is above the horizon.
+        // Form factor: (r / d)^2 times the cosine, if the emitter is above the horizon.
         let distance = center.length();
         let truth = (radius / distance).powi(2) * center.z / distance * f64::from(radiance);
         for integrator in [Integrator::Path, Integrator::Whitted { shadow_samples: 4 }] {
             scene.settings.integrator = integrator;
             let eye = DVec3::new(1.0, -1.0, 0.02);
-            assert_truth(probe(&mut scene, DVec3::ZERO, eye), truth, &format!("{radius} {center}"));
+            assert_expected(
+                probe(&mut scene, DVec3::ZERO, eye),
+                truth,
+                &format!("{radius} {center}"),
+            );
         }
     }
 }
 
-/// The radiance of so small a disc is past single precision, its irradiance is not.
+/// The radiance of this small disc overflows single precision, its irradiance does not.
 #[test]
 fn suns_of_any_size() {
     for angular_radius in [0.0, 1e-300, 1e-30, 1e-18, 1e-7, 1e-5, 1e-3] {
@@ -117,12 +121,12 @@ fn suns_of_any_size() {
         for integrator in [Integrator::Path, Integrator::Whitted { shadow_samples: 4 }] {
             scene.settings.integrator = integrator;
             let estimate = probe(&mut scene, DVec3::ZERO, DVec3::new(1.0, -1.0, 2.0));
-            assert_truth(estimate, 1e5 / PI, &format!("{angular_radius}"));
+            assert_expected(estimate, 1e5 / PI, &format!("{angular_radius}"));
         }
     }
 }
 
-/// A light around the scene: its inside lights everything alike, and nobody samples it from within.
+/// An emitter around the scene: its inside gives uniform light, and is not sampled as a light.
 #[test]
 fn a_light_that_covers_everything() {
     for roulette in [Roulette::None, Roulette::Throughput] {
@@ -131,7 +135,7 @@ fn a_light_that_covers_everything() {
         sphere(&mut scene, [1.0, 0.0, 0.0], 1.0, lambertian(0.5));
         look(&mut scene, DVec3::Z * 5.0, DVec3::X, 10.0);
         scene.settings.roulette = roulette;
-        assert_every_pixel(&shoot(&scene).image, 1.0, "inside a light");
+        assert_every_pixel(&render_scene(&scene).image, 1.0, "inside a light");
     }
 }
 
@@ -141,21 +145,21 @@ fn no_lights_are_darkness() {
         let mut scene = dark();
         sphere(&mut scene, [0.0; 3], 1.0, lambertian(0.5));
         scene.settings.integrator = integrator;
-        let render = shoot(&scene);
+        let render = render_scene(&scene);
         assert_every_pixel(&render.image, 0.0, "no lights");
         assert_eq!(render.counters.shadow_rays, 0);
-        // Lights that do not shine are none.
+        // Lights without radiance are dropped.
         scene.lights.push(Light::Point {
             position: DVec3::Y * 3.0,
             intensity: Rgb::ZERO,
             falloff: true,
         });
         sphere(&mut scene, [3.0, 0.0, 0.0], 1.0, emitter(0.0, 0.0));
-        assert_every_pixel(&shoot(&scene).image, 0.0, "dark lights");
+        assert_every_pixel(&render_scene(&scene).image, 0.0, "dark lights");
     }
 }
 
-/// A light where a surface is, and one inside: finite pictures.
+/// A light on a surface, and one inside: images are finite.
 #[test]
 fn lights_on_surfaces() {
     for position in [DVec3::Z, DVec3::ZERO, DVec3::Z * (1.0 + 1e-9)] {
@@ -165,12 +169,12 @@ fn lights_on_surfaces() {
             scene.lights.push(Light::Point { position, intensity: Rgb::ONE, falloff: true });
             look_parallel(&mut scene, DVec3::Z * 3.0, DVec3::ZERO, 0.1);
             scene.settings.integrator = integrator;
-            assert_eq!(shoot(&scene).image.count_non_finite(), 0);
+            assert_eq!(render_scene(&scene).image.count_non_finite(), 0);
         }
     }
 }
 
-/// Roughness from a mirror's to none that single precision can square.
+/// Roughness from a mirror's to values whose squares underflow in single precision.
 #[test]
 fn metal_of_any_roughness() {
     for roughness in [1.0, 1e-2, 1e-4, 1e-10, 1e-20, 1e-24, 1e-30, 1e-44, 1e-60, 0.0] {
@@ -179,9 +183,9 @@ fn metal_of_any_roughness() {
         sphere(&mut scene, [3.0, 0.0, 0.0], 1.0, emitter(1.0, 0.0));
         look(&mut scene, DVec3::Z * 3.0, DVec3::ZERO, 20.0);
         let estimate = measure(&scene);
-        // What is masked is lost: nothing of it for facets that are nearly flat.
+        // Masked light is lost, which is negligible for nearly flat facets.
         let truth = if roughness < 1e-3 { 1.0 } else { estimate.mean.min(1.0) };
-        assert_truth(estimate, truth, &format!("{roughness}"));
+        assert_expected(estimate, truth, &format!("{roughness}"));
     }
 }
 
@@ -193,7 +197,8 @@ fn a_cancelled_render_has_what_there_is() {
         scene
     };
     let cancel = AtomicBool::new(true);
-    let stopped = shoot_with(&scene, &Options { cancel: Some(&cancel), ..Options::default() });
+    let stopped =
+        render_scene_with(&scene, &Options { cancel: Some(&cancel), ..Options::default() });
     assert!(!stopped.complete);
     assert_every_pixel(&stopped.image, 0.0, "nothing was done");
 
@@ -201,9 +206,9 @@ fn a_cancelled_render_has_what_there_is() {
     let progress = |progress: Progress| cancel.store(progress.done > 0.3, Ordering::Relaxed);
     let options =
         Options { cancel: Some(&cancel), progress: Some(&progress), ..Options::default() };
-    let stopped = shoot_with(&scene, &options);
+    let stopped = render_scene_with(&scene, &options);
     assert!(!stopped.complete);
-    // A third of the samples is one pass over all tiles, so every pixel has some, and they are all 1.
+    // A third of the samples is one pass over all tiles, so every pixel has samples, all of them 1.
     assert_every_pixel(&stopped.image, 1.0, "some samples");
     assert!(stopped.counters.camera_rays < 64 * 64 * 64);
 }
@@ -219,7 +224,8 @@ fn progress_ends_at_one() {
             *last = (progress.done, progress.rays);
         }
     };
-    let render = shoot_with(&scene, &Options { progress: Some(&progress), ..Options::default() });
+    let render =
+        render_scene_with(&scene, &Options { progress: Some(&progress), ..Options::default() });
     let (done, rays) = *last.lock().expect("no thread fails");
     assert!(render.complete && done == 1.0 && rays == render.counters.rays());
 }

@@ -1,4 +1,4 @@
-//! Scenes made to break a renderer: degenerate, gigantic, tiny, far away, nested, empty, endless.
+//! Hard scenes: degenerate, huge, tiny, far away, nested, empty, unlimited.
 
 mod degenerate;
 mod equality;

@@ -1,9 +1,9 @@
-//! Cameras in and on surfaces, surfaces in and on one another.
+//! Cameras inside and on surfaces, nested and coincident surfaces.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::render::Render;
-use spherule::scene::{Material, Rgb, Scene};
+use spherule_render::render::Render;
+use spherule_render::scene::{Material, Rgb, Scene};
 
 #[test]
 fn on_a_surface_the_direction_decides() {
@@ -15,17 +15,21 @@ fn on_a_surface_the_direction_decides() {
             let mut scene = furnace();
             sphere(&mut scene, [0.0; 3], 1.0, made_of);
             look(&mut scene, normal, normal * 2.0, 120.0);
-            assert_every_pixel(&shoot(&scene).image, 1.0, &format!("outward, {normal}"));
-            // Narrower than what glass reflects totally, which would never come out.
+            assert_every_pixel(&render_scene(&scene).image, 1.0, &format!("outward, {normal}"));
+            // Narrower than the angle of total reflection, at which paths would never leave the glass.
             look(&mut scene, normal, DVec3::ZERO, 50.0);
-            assert_every_pixel(&shoot(&scene).image, inward, &format!("inward, {normal}"));
+            assert_every_pixel(&render_scene(&scene).image, inward, &format!("inward, {normal}"));
             look(&mut scene, DVec3::ZERO, normal, 120.0);
-            assert_every_pixel(&shoot(&scene).image, inward, &format!("from the center, {normal}"));
+            assert_every_pixel(
+                &render_scene(&scene).image,
+                inward,
+                &format!("from the center, {normal}"),
+            );
         }
     }
 }
 
-/// Of equal spheres the first one is all there is, from outside, from inside, and through glass.
+/// Of equal spheres, only the first one is visible, from outside, from inside, and through glass.
 #[test]
 fn the_first_of_equal_spheres_wins() {
     let kinds = [lambertian(0.3), emitter(2.0, 0.1), glass(1.5), mirror()];
@@ -45,7 +49,7 @@ fn the_first_of_equal_spheres_wins() {
             {
                 let picture = |mut scene: Scene| {
                     look(&mut scene, eye, DVec3::ZERO, fov);
-                    shoot(&scene).image
+                    render_scene(&scene).image
                 };
                 let (twins, alone) = (picture(with(&[first, second])), picture(with(&[first])));
                 assert!(twins == alone, "{first:?} before {second:?} from {eye}");
@@ -54,19 +58,19 @@ fn the_first_of_equal_spheres_wins() {
     }
 }
 
-/// An emitter that coincides with an earlier sphere is not there for light samples either.
+/// An emitter that coincides with an earlier sphere is not sampled as a light either.
 #[test]
 fn an_emitter_that_cannot_be_seen_does_not_shine() {
     let mut scene = dark();
     ground(&mut scene, lambertian(0.5));
     sphere(&mut scene, [0.0, 0.0, 2.0], 1.0, lambertian(0.5));
     sphere(&mut scene, [0.0, 0.0, 2.0], 1.0, emitter(5.0, 0.0));
-    assert_every_pixel(&shoot(&scene).image, 0.0, "the emitter comes second");
+    assert_every_pixel(&render_scene(&scene).image, 0.0, "the emitter comes second");
     scene.spheres.material.reverse();
-    assert!(mean(&shoot(&scene).image) > 0.0, "the emitter comes first");
+    assert!(mean(&render_scene(&scene).image) > 0.0, "the emitter comes first");
 }
 
-/// Nested, touching, overlapping glass, and shells too thin for single precision: nothing is lost and nothing doubled.
+/// Nested, touching and overlapping glass, and shells too thin for single precision: energy is conserved.
 #[test]
 fn glass_in_glass_keeps_the_furnace() {
     let shells = [0.5, 0.1, 1e-3, 1e-6, 1e-7, 0.0];
@@ -86,8 +90,8 @@ fn glass_in_glass_keeps_the_furnace() {
             );
             for eye in [DVec3::new(3.0, 2.0, 4.0), DVec3::new(0.1, 0.95, 0.0), DVec3::ZERO] {
                 look(&mut scene, center + eye, center - DVec3::Y * 0.1, 60.0);
-                let Render { image, counters, .. } = shoot(&scene);
-                // What total reflection keeps in a shell for 4096 bounces is cut, and counted; all else is there.
+                let Render { image, counters, .. } = render_scene(&scene);
+                // Paths that total reflection traps in a shell for 4096 bounces are ended and counted.
                 let lost = (1.0 - mean(&image)) * counters.camera_rays as f64;
                 let what = format!("shell {thickness}, {eye}: {lost}");
                 assert!((lost - counters.cut_paths as f64).abs() < 0.01, "{what}, {counters:?}");
@@ -97,8 +101,8 @@ fn glass_in_glass_keeps_the_furnace() {
     }
 }
 
-/// Two white spheres that touch, small and far from the rest of a scene, so that the gap beside the contact is of the
-/// size of single precision's steps: light gets out of it as it does near the origin.
+/// Two touching white spheres, small and far from the rest of a scene, so that the gap next to the contact is
+/// about one unit in the last place of single precision: light leaves it as near the origin.
 #[test]
 fn contacts_do_not_swallow_light() {
     const SIZE: f64 = 0.007_812_5;
@@ -118,8 +122,8 @@ fn contacts_do_not_swallow_light() {
     assert_agree(gap(DVec3::new(96.0, 32.0, -24.0)), gap(DVec3::ZERO), "far and near");
 }
 
-/// The inside of one sphere, touched by another from within, seen along the gap between them: no light of the sky
-/// gets in.
+/// The inside of a sphere that touches another one inside it, seen along the gap between them: no light of
+/// the sky enters.
 #[test]
 fn closed_spheres_are_tight() {
     for offset in [0.0, 50.0] {
@@ -128,16 +132,16 @@ fn closed_spheres_are_tight() {
             let mut scene = furnace();
             sphere(&mut scene, contact + DVec3::Y * 2.0, 2.0, lambertian(0.9));
             sphere(&mut scene, contact + DVec3::Y, 1.0, lambertian(0.9));
-            // Between z^2 / 4 and z^2 / 2, where the two surfaces are.
+            // Between the two surfaces at z^2 / 4 and z^2 / 2.
             let eye = contact + DVec3::new(0.0, 0.37 * z * z, z);
             look(&mut scene, eye, contact, 90.0);
             scene.settings.depth = Some(50);
-            assert_every_pixel(&shoot(&scene).image, 0.0, &format!("{offset} {z}"));
+            assert_every_pixel(&render_scene(&scene).image, 0.0, &format!("{offset} {z}"));
         }
     }
 }
 
-/// A white room of one sphere lets nobody out: paths are cut, and counted.
+/// No path leaves a closed white sphere: paths are ended by the depth limit, and counted.
 #[test]
 fn a_closed_white_room_is_cut_by_the_hard_limit_and_says_so() {
     for made_of in [lambertian(1.0), mirror()] {
@@ -145,20 +149,20 @@ fn a_closed_white_room_is_cut_by_the_hard_limit_and_says_so() {
         sphere(&mut scene, [0.0; 3], 1.0, made_of);
         look(&mut scene, DVec3::new(0.2, 0.1, 0.3), DVec3::X, 90.0);
         (scene.settings.width, scene.settings.height, scene.settings.spp) = (4, 4, 2);
-        let render = shoot(&scene);
+        let render = render_scene(&scene);
         assert_eq!(render.counters.cut_paths, 32);
         assert_every_pixel(&render.image, 0.0, "no light gets in");
         scene.settings.depth = Some(100_000);
-        assert_eq!(shoot(&scene).counters.cut_paths, 32);
+        assert_eq!(render_scene(&scene).counters.cut_paths, 32);
     }
 }
 
-/// Colors of single spheres are factors, whatever else has its own.
+/// Colors of single spheres are factors, also if other spheres have none.
 #[test]
 fn colors_of_spheres_are_factors() {
     let mut scene = furnace();
     let row = material(&mut scene, lambertian(0.5));
     scene.spheres.push(DVec3::ZERO, 1.0, row, Rgb::new(1.0, 0.5, 0.25));
     look(&mut scene, DVec3::Z * 3.0, DVec3::ZERO, 20.0);
-    assert!(shoot(&scene).image.pixels.iter().all(|pixel| *pixel == [0.5, 0.25, 0.125]));
+    assert!(render_scene(&scene).image.pixels.iter().all(|pixel| *pixel == [0.5, 0.25, 0.125]));
 }

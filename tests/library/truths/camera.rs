@@ -1,11 +1,11 @@
-//! What pinhole and lens make of a sphere.
+//! Images of a sphere by pinhole and lens.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::image::Image;
-use spherule::scene::{Lens, Projection, Scene};
+use spherule_render::image::Image;
+use spherule_render::scene::{Lens, Projection, Scene};
 
-/// A sphere that emits 1 at (x, 0, -z), seen from the origin along -z with tangents up to `tangent`.
+/// Returns a sphere that emits 1 at (x, 0, -z), seen from the origin along -z with tangents up to `tangent`.
 fn lamp(radius: f64, z: f64, x: f64, tangent: f64) -> Scene {
     let mut scene = dark();
     sphere(&mut scene, [x, 0.0, -z], radius, emitter(1.0, 0.0));
@@ -15,7 +15,7 @@ fn lamp(radius: f64, z: f64, x: f64, tangent: f64) -> Scene {
     scene
 }
 
-/// Sums over a picture of 2 `half` by 2 `half`: of radiance, and of radiance times x and x squared.
+/// Returns sums over an image of 2 `half` by 2 `half`: of radiance, and of radiance times x and x squared.
 fn moments(image: &Image, half: f64) -> [f64; 3] {
     let pixel = 2.0 * half / f64::from(image.width);
     let mut sums = [0.0; 3];
@@ -41,18 +41,18 @@ fn a_pinhole_projects_a_sphere_to_an_ellipse() {
     for (radius, z, x, tangent, area, center) in truths {
         let scene = lamp(radius, z, x, tangent);
         let [seen, shifted, _] = each_over_seeds(&scene, |image| moments(image, tangent));
-        assert_truth(seen, area, &format!("area, {radius} {z} {x}"));
-        assert_truth(shifted, area * center, &format!("center, {radius} {z} {x}"));
+        assert_expected(seen, area, &format!("area, {radius} {z} {x}"));
+        assert_expected(shifted, area * center, &format!("center, {radius} {z} {x}"));
     }
 }
 
-/// A point blurs to a disc of diameter A |D - S| / D in the plane in focus, of variance diameter^2 / 16; where the lens
-/// sees all of it, no energy is lost.
+/// A point blurs to a disc of diameter A |D - S| / D in the focal plane, with variance diameter^2 / 16. If
+/// the whole disc is in the image, no energy is lost.
 #[test]
 fn a_thin_lens_blurs_by_its_diameter() {
     let (aperture, focus) = (0.1, 2.0);
     for distance in [1.0, 4.0, 1000.0, 2.0] {
-        // The same size in the picture, whatever the distance.
+        // The same size in the image at all distances.
         let tangent = 0.04;
         let mut scene = lamp(0.004 * distance, distance, 0.0, tangent);
         let energy_and_variance = |image: &Image| {
@@ -63,21 +63,21 @@ fn a_thin_lens_blurs_by_its_diameter() {
         scene.camera.lens = Some(Lens { aperture, focus: Some(focus) });
         let blurred = each_over_seeds(&scene, energy_and_variance);
         assert_agree(blurred[0], sharp[0], &format!("energy at {distance}"));
-        // Variances of independent shifts add up.
+        // Variances of independent offsets add.
         let added = Estimate {
             mean: blurred[1].mean - sharp[1].mean,
             error: blurred[1].error.hypot(sharp[1].error),
         };
         let diameter = aperture * (distance - focus).abs() / distance / focus;
-        assert_truth(added, diameter.powi(2) / 16.0, &format!("variance at {distance}"));
+        assert_expected(added, diameter.powi(2) / 16.0, &format!("variance at {distance}"));
     }
 }
 
 #[test]
 fn an_aperture_of_nothing_is_a_pinhole() {
     let mut scene = lamp(1.0, 3.0, 0.5, 1.0);
-    let pinhole = shoot(&scene).image;
+    let pinhole = render_scene(&scene).image;
     scene.camera.lens = Some(Lens { aperture: 0.0, focus: None });
-    assert_eq!(shoot(&scene).image, pinhole);
+    assert_eq!(render_scene(&scene).image, pinhole);
     assert!(matches!(scene.camera.projection, Projection::Perspective { .. }));
 }

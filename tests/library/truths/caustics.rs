@@ -1,14 +1,14 @@
-//! Light by way of mirrors and glass is the same whether it is looked for or left to chance.
+//! Caustics have the same expected value with and without caustic sampling.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::image::Image;
-use spherule::scene::{Integrator, Material, Rgb, Scene, Settings};
+use spherule_render::image::Image;
+use spherule_render::scene::{Integrator, Material, Rgb, Scene, Settings};
 
-/// Blocks of a picture each way.
+/// Blocks of an image along each axis.
 const BLOCKS: usize = 4;
 
-/// A ground under a lamp.
+/// Returns a ground under an emitter.
 fn lit() -> Scene {
     let mut scene = dark();
     ground(&mut scene, lambertian(0.7));
@@ -26,7 +26,7 @@ fn red_glass() -> Material {
     Material::Dielectric { ior: 1.7, color: Rgb::new(0.8, 0.3, 0.3) }
 }
 
-/// Means of the blocks.
+/// Returns the means of the blocks.
 fn blocks(image: &Image) -> [f64; BLOCKS * BLOCKS] {
     let (width, height) = (image.width as usize, image.height as usize);
     let mut sums = [0.0; BLOCKS * BLOCKS];
@@ -37,13 +37,13 @@ fn blocks(image: &Image) -> [f64; BLOCKS * BLOCKS] {
     sums.map(|sum| sum * (BLOCKS * BLOCKS) as f64 / (width * height) as f64)
 }
 
-/// Fails unless all blocks are as bright without the search for caustics as with it, and the search
-/// changes what is drawn.
+/// Asserts that all blocks have the same mean with and without caustic sampling, and that sampling changes
+/// the image.
 #[track_caller]
 fn assert_unbiased(scene: &Scene, what: &str) {
     let mut chance = scene.clone();
     chance.settings.caustics = false;
-    assert_ne!(shoot(scene).image.pixels, shoot(&chance).image.pixels, "{what}");
+    assert_ne!(render_scene(scene).image.pixels, render_scene(&chance).image.pixels, "{what}");
     let pairs = each_over_seeds(scene, blocks).into_iter().zip(each_over_seeds(&chance, blocks));
     for (block, (looked, found)) in pairs.enumerate() {
         assert_agree(looked, found, &format!("{what}, block {block}"));
@@ -82,13 +82,13 @@ fn paths_are_as_long_as_they_may_be() {
         sphere(&mut scene, [-1.0, 0.0, 1.0], 1.0, mirror());
         sphere(&mut scene, [1.1, 0.0, 1.0], 1.0, glass(1.5));
         scene.settings.depth = Some(depth);
-        // Of what a ball reflects that lets nearly all through, chance finds little.
+        // Path tracing alone finds little of the light that a nearly transparent sphere reflects.
         scene.settings.spp = 256;
         assert_unbiased(&scene, &format!("depth {depth}"));
     }
 }
 
-/// What the technique is not for.
+/// Scenes to which caustic sampling does not apply.
 #[test]
 fn other_scenes_are_what_they_are_without() {
     let mut rough = lit();
@@ -113,6 +113,10 @@ fn other_scenes_are_what_they_are_without() {
     for (case, scene) in [rough, nested, filled, sunk, large, shallow, direct].iter().enumerate() {
         let chance = Settings { caustics: false, ..scene.settings.clone() };
         let chance = Scene { settings: chance, ..scene.clone() };
-        assert_eq!(shoot(scene).image.pixels, shoot(&chance).image.pixels, "case {case}");
+        assert_eq!(
+            render_scene(scene).image.pixels,
+            render_scene(&chance).image.pixels,
+            "case {case}"
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::scene::{Integrator, Light, Rgb};
+use spherule_render::scene::{Integrator, Light, Rgb};
 use std::f64::consts::PI;
 
 #[test]
@@ -20,14 +20,14 @@ fn a_sphere_under_a_gradient() {
         let mut scene = dark();
         scene.environment.map = gradient();
         sphere(&mut scene, [0.0; 3], 1.0, lambertian(1.0));
-        assert_truth(probe(&mut scene, normal, normal * 3.0), truth, &format!("{degrees}"));
+        assert_expected(probe(&mut scene, normal, normal * 3.0), truth, &format!("{degrees}"));
         scene.settings.integrator = Integrator::Whitted { shadow_samples: 16 };
         scene.settings.spp = 4;
-        assert_truth(measure(&scene), truth, &format!("{degrees}, whitted"));
+        assert_expected(measure(&scene), truth, &format!("{degrees}, whitted"));
     }
 }
 
-/// The phase function of a diffuse sphere, without noise but for the limb and the terminator, which pixels straddle.
+/// The phase function of a diffuse sphere, without noise except in pixels on the limb and the terminator.
 #[test]
 fn the_phases_of_a_sphere() {
     let truths = [
@@ -49,12 +49,12 @@ fn the_phases_of_a_sphere() {
         });
         look_parallel(&mut scene, DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 2.0);
         let disc = over_seeds(&scene, mean).times(4.0 / PI);
-        assert_truth(disc, truth, &format!("{degrees}"));
+        assert_expected(disc, truth, &format!("{degrees}"));
     }
 }
 
-/// Seen from the side through its middle column, equal heights are equal areas of a sphere: the mean is that over
-/// the surface, which is the view factor.
+/// In the middle column, seen from the side, equal heights are equal areas of a sphere. So the mean is that
+/// over the surface, which is the view factor.
 #[test]
 fn view_factors_between_spheres() {
     let truths = [
@@ -70,6 +70,6 @@ fn view_factors_between_spheres() {
         look_parallel(&mut scene, DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, 2.0);
         (scene.settings.width, scene.settings.height) = (1, 512);
         scene.settings.depth = Some(1);
-        assert_truth(over_seeds(&scene, mean), truth, &format!("{radius} at {distance}"));
+        assert_expected(over_seeds(&scene, mean), truth, &format!("{radius} at {distance}"));
     }
 }

@@ -1,21 +1,21 @@
-//! Closed spheres: light from outside never gets in, and light from inside stays.
+//! Closed spheres: no light enters or leaves.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::render::Options;
-use spherule::scene::{
+use spherule_render::render::Options;
+use spherule_render::scene::{
     Environment, EnvironmentMap, Integrator, Light, LightChoice, Material, Rgb, Scene, Slice,
     SliceMode,
 };
-use spherule::trace::{PacketWidth, Tracer, Traversal};
+use spherule_render::trace::{PacketWidth, Tracer, Traversal};
 use std::f64::consts::PI;
 
 const WHITTED: Integrator = Integrator::Whitted { shadow_samples: 4 };
 
-/// Radius of the closed spheres, which are around the origin.
+/// Radius of the closed spheres, which are centered at the origin.
 const RADIUS: f64 = 3.0;
 
-/// Every kind of material that nothing passes through and that does not emit.
+/// Every kind of opaque material that does not emit.
 fn opaque() -> [(&'static str, Material); 5] {
     [
         ("diffuse", lambertian(0.75)),
@@ -34,7 +34,7 @@ fn reflective() -> Material {
     Material::Reflective { color: Rgb::splat(0.75), diffuse: 0.75, mirror: 0.25 }
 }
 
-/// A light outside of the closed spheres.
+/// A light outside the closed spheres.
 #[derive(Clone, Copy, Debug)]
 enum Outside {
     Sun,
@@ -91,7 +91,7 @@ impl Outside {
     }
 }
 
-/// A closed sphere with the camera in it, off its center and looking past it.
+/// Returns a closed sphere with the camera inside, off-center and not looking at the center.
 fn closed(made_of: Material) -> Scene {
     let mut scene = dark();
     sphere(&mut scene, [0.0; 3], RADIUS, made_of);
@@ -100,7 +100,7 @@ fn closed(made_of: Material) -> Scene {
     scene
 }
 
-/// Adds what stands in a room: spheres of every material, beside and around one another.
+/// Adds spheres of every material to a room, next to and inside one another.
 fn furnish(scene: &mut Scene) {
     let materials = opaque().map(|(_, made_of)| made_of);
     for (place, made_of) in materials.into_iter().chain([glass(1.5), mirror()]).enumerate() {
@@ -113,7 +113,7 @@ fn furnish(scene: &mut Scene) {
 
 #[track_caller]
 fn assert_black(scene: &Scene, what: &str) {
-    assert_every_pixel(&shoot(scene).image, 0.0, what);
+    assert_every_pixel(&render_scene(scene).image, 0.0, what);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn no_light_enters_a_closed_sphere() {
     }
 }
 
-/// All of it again, with spheres in the room that paths and shadow rays start from.
+/// The same tests, with spheres in the room from which paths and shadow rays start.
 #[test]
 fn no_light_enters_a_furnished_room() {
     for (what, made_of) in opaque() {
@@ -170,14 +170,14 @@ fn closed_spheres_are_black_whatever_finds_them() {
                 [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen]
             {
                 let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
-                let image = shoot_with(&scene, &options).image;
+                let image = render_scene_with(&scene, &options).image;
                 assert_every_pixel(&image, 0.0, &format!("{traversal:?} {width:?}"));
             }
         }
     }
 }
 
-/// A closed sphere in glass, and glass in a closed sphere with the camera in the glass.
+/// A closed sphere inside glass, and glass inside a closed sphere with the camera in the glass.
 #[test]
 fn glass_lets_no_light_through_a_closed_sphere() {
     for integrator in [Integrator::Path, WHITTED] {
@@ -192,13 +192,13 @@ fn glass_lets_no_light_through_a_closed_sphere() {
     }
 }
 
-/// A closed sphere around a light shows that light alone, as often as it is reflected, whatever
-/// light is outside.
+/// Inside a closed sphere around a light, only that light and its reflections are visible, for any light
+/// outside.
 #[test]
 fn light_inside_lights_the_inside_alone() {
     let albedo = 0.5;
     let point = Light::Point { position: DVec3::ZERO, intensity: Rgb::splat(9.0), falloff: true };
-    // Radiance that an irradiance of 9 / RADIUS^2 = 1 causes, and what comes back to the walls.
+    // Radiance by an irradiance of 9 / RADIUS^2 = 1, and its reflections between the walls.
     let direct = albedo / PI;
     for outside in [None, Some(Outside::Everything)] {
         let mut scene = closed(lambertian(albedo as f32));
@@ -211,14 +211,14 @@ fn light_inside_lights_the_inside_alone() {
             scene.settings.depth = Some(depth);
             scene.settings.spp = 64;
             let estimate = measure(&scene);
-            assert_truth(estimate, truth, &format!("{depth} {outside:?}"));
+            assert_expected(estimate, truth, &format!("{depth} {outside:?}"));
             scene.settings.integrator = WHITTED;
-            assert_truth(measure(&scene), direct, &format!("whitted {depth} {outside:?}"));
+            assert_expected(measure(&scene), direct, &format!("whitted {depth} {outside:?}"));
         }
     }
 }
 
-/// The inside of a wall under a light that is not in the middle, near that wall and far from it.
+/// The inside of a wall under a light that is off-center, near that wall and far from it.
 #[test]
 fn walls_are_lit_across_the_room() {
     let position = DVec3::new(0.0, 0.0, 2.0);
@@ -235,12 +235,12 @@ fn walls_are_lit_across_the_room() {
         for integrator in [Integrator::Path, WHITTED] {
             scene.settings.integrator = integrator;
             look(&mut scene, DVec3::new(0.5, 0.5, 0.5), point, 1e-4);
-            assert_truth(measure(&scene), truth, &format!("{point} {integrator:?}"));
+            assert_expected(measure(&scene), truth, &format!("{point} {integrator:?}"));
         }
     }
 }
 
-/// An emitter of radius 1 in the middle lights walls of radius 3 by a ninth.
+/// An emitter of radius 1 in the center gives walls of radius 3 a ninth of its radiosity.
 #[test]
 fn an_emitter_lights_the_room_that_it_is_in() {
     for made_of in [lambertian(0.5), reflective()] {
@@ -254,13 +254,13 @@ fn an_emitter_lights_the_room_that_it_is_in() {
             Outside::Everything.add(&mut scene);
             assert_agree(measure(&scene), inside, &format!("{integrator:?}"));
             if matches!(made_of, Material::Lambertian { .. }) {
-                assert_truth(inside, 0.5 * 4.0 / 9.0, &format!("{integrator:?}"));
+                assert_expected(inside, 0.5 * 4.0 / 9.0, &format!("{integrator:?}"));
             }
         }
     }
 }
 
-/// The inside of an emitter: its own light, reflected once and twice, and no other.
+/// The inside of an emitter: only its own light, reflected once and twice.
 #[test]
 fn no_light_enters_an_emitter() {
     let (albedo, depths) = (0.5_f32, [(0, 1.0), (1, 1.5), (2, 1.75)]);
@@ -269,16 +269,16 @@ fn no_light_enters_an_emitter() {
         outside.add(&mut scene);
         for (depth, truth) in depths {
             scene.settings.depth = Some(depth);
-            let image = shoot(&scene).image;
+            let image = render_scene(&scene).image;
             assert_every_pixel(&image, truth, &format!("{outside:?} {depth}"));
         }
         scene.settings.integrator = WHITTED;
-        assert_every_pixel(&shoot(&scene).image, 1.0, &format!("whitted {outside:?}"));
+        assert_every_pixel(&render_scene(&scene).image, 1.0, &format!("whitted {outside:?}"));
     }
 }
 
-/// Chords of a sphere are shorter than `distance` where the cosine on the surface is less than that over the
-/// diameter: a share of 1 - (distance / diameter)^2 of the directions is open.
+/// A chord is shorter than `distance` if the cosine at the surface is less than distance / diameter, so a
+/// fraction of 1 - (distance / diameter)^2 of the directions is open.
 #[test]
 fn occlusion_inside_a_sphere_goes_by_its_chords() {
     for factor in [0.1, 0.5, 0.9, 1.0, 1.5] {
@@ -286,11 +286,11 @@ fn occlusion_inside_a_sphere_goes_by_its_chords() {
         scene.settings.integrator = Integrator::Ao { distance: factor * 2.0 * RADIUS };
         scene.settings.spp = 256;
         let truth = (1.0 - factor * factor).max(0.0);
-        assert_truth(measure(&scene), truth, &format!("{factor}"));
+        assert_expected(measure(&scene), truth, &format!("{factor}"));
     }
 }
 
-/// The ground lets no light through either: not to its own underside, and not to what is below.
+/// The ground blocks light as well, from its own underside and from everything below.
 #[test]
 fn the_ground_is_dark_below_lights_that_are_above() {
     let above = [
@@ -336,18 +336,18 @@ fn the_ground_is_lit_from_below() {
         (scene.settings.depth, scene.settings.spp) = (Some(1), 256);
         for side in [-1.0, 1.0] {
             let estimate = probe(&mut scene, DVec3::ZERO, DVec3::new(1.0, 1.0, 3.0) * side);
-            assert_truth(estimate, 0.5 * 0.8 / PI, &format!("{integrator:?} {side}"));
+            assert_expected(estimate, 0.5 * 0.8 / PI, &format!("{integrator:?} {side}"));
         }
     }
 }
 
-/// A point light on the z axis.
+/// Returns a point light on the z axis.
 fn point_at(z: f64) -> Light {
     Light::Point { position: DVec3::Z * z, intensity: Rgb::splat(9.0), falloff: true }
 }
 
-/// Half of a closed sphere, and a slab of one, with the camera inside; with lights where the rest of it was, and
-/// with or without spheres inside.
+/// Half of a closed sphere, and a slab of one, with the camera inside; with lights in the part that was cut
+/// away, and with or without spheres inside.
 #[test]
 fn no_light_enters_a_sphere_that_is_cut() {
     let caps = |normal| Slice { normal, distance: 1.0, mode: SliceMode::Caps };
@@ -380,7 +380,7 @@ fn no_light_enters_a_sphere_that_is_cut() {
     }
 }
 
-/// A light inside of half a sphere lights its wall, and not what is outside.
+/// A light inside a half sphere lights its wall, and nothing outside.
 #[test]
 fn light_stays_in_a_sphere_that_is_cut() {
     for integrator in [Integrator::Path, WHITTED] {
@@ -391,14 +391,14 @@ fn light_stays_in_a_sphere_that_is_cut() {
         (scene.settings.depth, scene.settings.spp) = (Some(1), 256);
         look(&mut scene, DVec3::new(0.5, 0.5, -0.5), DVec3::NEG_Z * RADIUS, 1e-4);
         let truth = 0.5 * 9.0 / (PI * (RADIUS + 0.5).powi(2));
-        assert_truth(measure(&scene), truth, &format!("the wall, {integrator:?}"));
-        // The cap is lit from above alone, from a distance of 1.
+        assert_expected(measure(&scene), truth, &format!("the wall, {integrator:?}"));
+        // The cap is lit only from above, from a distance of 1.
         look(&mut scene, DVec3::new(1.0, 0.0, 5.0), DVec3::Z, 1e-4);
-        assert_truth(measure(&scene), 0.5 * 9.0 / PI, &format!("the cap, {integrator:?}"));
+        assert_expected(measure(&scene), 0.5 * 9.0 / PI, &format!("the cap, {integrator:?}"));
     }
 }
 
-/// A sphere that is hidden from the camera still keeps the light from what is inside.
+/// A sphere that is hidden from the camera still blocks light from its inside.
 #[test]
 fn spheres_that_are_hidden_stay_closed() {
     for integrator in [Integrator::Path, WHITTED, Integrator::Ao { distance: f64::INFINITY }] {
@@ -413,7 +413,7 @@ fn spheres_that_are_hidden_stay_closed() {
         scene.settings.integrator = integrator;
         look(&mut scene, DVec3::Z * 9.0, DVec3::ZERO, 60.0);
         assert_black(&scene, &format!("{integrator:?}"));
-        // What is inside is seen.
+        // Its inside is visible.
         scene.slices[0].mode = SliceMode::Remove;
         assert!(measure(&scene).mean > 0.0);
     }

@@ -1,8 +1,8 @@
-//! Furnaces: where light comes alike from everywhere, what loses nothing cannot be seen.
+//! Furnaces: in uniform light, lossless surfaces are invisible.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::scene::{Integrator, Material, Rgb, Roulette, SamplerKind, Scene};
+use spherule_render::scene::{Integrator, Material, Rgb, Roulette, SamplerKind, Scene};
 
 const SAMPLERS: [SamplerKind; 3] =
     [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent];
@@ -15,12 +15,12 @@ fn a_diffuse_sphere_shows_its_albedo_in_every_sample() {
             sphere(&mut scene, [0.0; 3], 1.0, lambertian(albedo));
             look(&mut scene, DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 20.0);
             scene.settings.sampler = sampler;
-            assert_every_pixel(&shoot(&scene).image, albedo, "diffuse");
+            assert_every_pixel(&render_scene(&scene).image, albedo, "diffuse");
         }
     }
 }
 
-/// Everything that a white furnace cannot show, in one heap: touching, nested and overlapping.
+/// Returns spheres of all lossless materials: touching, nested and overlapping.
 fn heap(materials: &[Material]) -> Scene {
     let mut scene = furnace();
     scene.settings.spp = 32;
@@ -35,7 +35,7 @@ fn heap(materials: &[Material]) -> Scene {
             }
         }
     }
-    // In the gap, touching all eight; and bigger ones behind, that overlap.
+    // In the gap, touching all eight; and larger ones behind, which overlap.
     add([0.0; 3], 3.0_f64.sqrt() - 1.0);
     add([0.0, 0.0, -3.0], 1.5);
     add([0.7, 0.0, -3.5], 1.5);
@@ -62,7 +62,7 @@ fn white_surfaces_are_invisible() {
         ] {
             scene.settings.roulette = roulette;
             scene.settings.sampler = sampler;
-            let render = shoot(&scene);
+            let render = render_scene(&scene);
             assert_eq!(render.counters.cut_paths, 0, "{what}");
             assert_every_pixel(&render.image, 1.0, what);
         }
@@ -73,13 +73,13 @@ fn white_surfaces_are_invisible() {
 fn white_plastic_and_rounds_of_roulette_are_white_on_average() {
     let plastic = Material::Plastic { color: Rgb::ONE, ior: 1.5 };
     let mut scene = heap(&[plastic]);
-    assert_truth(measure(&scene), 1.0, "plastic");
-    // E[x^2] = e / (1 - (1 - e) / p): finite as the share 1 - e that stays in the heap is well below p.
+    assert_expected(measure(&scene), 1.0, "plastic");
+    // E[x^2] = e / (1 - (1 - e) / p): finite, since the fraction 1 - e that does not escape is well below p.
     scene.settings.roulette = Roulette::Fixed(0.9);
-    assert_truth(measure(&scene), 1.0, "plastic with roulette");
+    assert_expected(measure(&scene), 1.0, "plastic with roulette");
 }
 
-/// Every picture from inside a sphere that emits 1 and reflects `albedo`.
+/// Returns images from inside a sphere that emits 1 and reflects `albedo`.
 fn inside(albedo: f32) -> Scene {
     let mut scene = dark();
     sphere(&mut scene, [0.0; 3], 1.0, emitter(1.0, albedo));
@@ -101,7 +101,7 @@ fn depth_cuts_the_geometric_series() {
             sum += throughput;
         }
         assert!(within(f64::from(sum), truth, 0.0, 0.0), "{sum} {truth}");
-        assert_every_pixel(&shoot(&scene).image, sum, "depth");
+        assert_every_pixel(&render_scene(&scene).image, sum, "depth");
     }
 }
 
@@ -110,7 +110,7 @@ fn an_emitting_sphere_from_inside_is_the_whole_series() {
     for albedo in [0.2, 0.5, 0.8, 0.9] {
         let truth = 1.0 / (1.0 - f64::from(albedo));
         let mut scene = inside(albedo);
-        // Without chance, one path is as good as many.
+        // Without randomness, one path is enough.
         scene.settings.spp = 1;
         for roulette in [Roulette::None, Roulette::Fixed(1.0)] {
             scene.settings.roulette = roulette;
@@ -119,12 +119,12 @@ fn an_emitting_sphere_from_inside_is_the_whole_series() {
         }
         scene.settings.spp = 64;
         scene.settings.roulette = Roulette::Throughput;
-        assert_truth(measure(&scene), truth, &format!("{albedo}, roulette by throughput"));
+        assert_expected(measure(&scene), truth, &format!("{albedo}, roulette by throughput"));
         // A higher albedo would need p above its square for a finite variance.
         for p in [0.9, 0.5] {
             if f64::from(albedo).powi(2) < p {
                 scene.settings.roulette = Roulette::Fixed(p);
-                assert_truth(measure(&scene), truth, &format!("{albedo} survives by {p}"));
+                assert_expected(measure(&scene), truth, &format!("{albedo} survives by {p}"));
             }
         }
     }
@@ -136,16 +136,17 @@ fn whitted_keeps_the_furnace_for_what_does_not_light_itself() {
     scene.settings.integrator = Integrator::Whitted { shadow_samples: 4 };
     sphere(&mut scene, [-1.0, 0.0, 0.0], 0.9, mirror());
     sphere(&mut scene, [1.0, 0.0, 0.0], 0.9, glass(1.5));
-    assert_every_pixel(&shoot(&scene).image, 1.0, "mirror and glass");
+    assert_every_pixel(&render_scene(&scene).image, 1.0, "mirror and glass");
     let mut scene = furnace();
     scene.settings.integrator = Integrator::Whitted { shadow_samples: 4 };
     sphere(&mut scene, [0.0; 3], 1.0, lambertian(0.5));
     look(&mut scene, DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 20.0);
     let estimate = measure(&scene);
-    assert_truth(estimate, 0.5, "diffuse");
+    assert_expected(estimate, 0.5, "diffuse");
 }
 
-/// An emitter of radius 1 in a shell of radius 2, both of one albedo: their radiances by the view factors 1/4 and 3/4.
+/// An emitter of radius 1 in a shell of radius 2, both of one albedo: their radiances by the view factors 1/4
+/// and 3/4.
 #[test]
 fn concentric_spheres_exchange_light() {
     for (albedo, inner, shell) in
@@ -157,8 +158,8 @@ fn concentric_spheres_exchange_light() {
         scene.settings.roulette = Roulette::Throughput;
         let eye = DVec3::new(0.0, 0.0, 1.5);
         look(&mut scene, eye, DVec3::ZERO, 20.0);
-        assert_truth(measure(&scene), inner, &format!("emitter, {albedo}"));
+        assert_expected(measure(&scene), inner, &format!("emitter, {albedo}"));
         look(&mut scene, eye, DVec3::new(0.0, 0.0, 2.0), 100.0);
-        assert_truth(measure(&scene), shell, &format!("shell, {albedo}"));
+        assert_expected(measure(&scene), shell, &format!("shell, {albedo}"));
     }
 }

@@ -1,10 +1,10 @@
-//! Glass spheres: Fresnel's shares, and all internal reflections in a gradient.
+//! Glass spheres: Fresnel reflectance, and all internal reflections in a gradient.
 
 use crate::common::*;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Share that a surface of glass reflects.
+/// Returns the Fresnel reflectance of glass.
 fn fresnel(cosine: f64, ior: f64) -> f64 {
     let refracted = (1.0 - (1.0 - cosine * cosine) / (ior * ior)).sqrt();
     let s = (cosine - ior * refracted) / (cosine + ior * refracted);
@@ -12,12 +12,12 @@ fn fresnel(cosine: f64, ior: f64) -> f64 {
     0.5 * (s * s + p * p)
 }
 
-/// The point of the unit sphere that a ray along -z meets at this distance from the axis.
+/// Returns the point of the unit sphere that a ray along -z hits at this distance from the axis.
 fn at_impact(impact: f64) -> DVec3 {
     DVec3::new(impact, 0.0, (1.0 - impact * impact).sqrt())
 }
 
-/// With one scattering only what is reflected outside gets to the sky; with two, what crosses the sphere as well.
+/// With one bounce, only outside reflections reach the sky; with two, paths through the sphere as well.
 #[test]
 fn one_interface_and_two() {
     let truths = [
@@ -38,15 +38,15 @@ fn one_interface_and_two() {
         for (depth, truth) in [(1, reflected), (2, reflected + (1.0 - reflected).powi(2))] {
             scene.settings.depth = Some(depth);
             let estimate = probe(&mut scene, point, point + DVec3::Z * 2.0);
-            assert_truth(estimate, truth, &format!("{degrees} degrees, depth {depth}"));
+            assert_expected(estimate, truth, &format!("{degrees} degrees, depth {depth}"));
         }
     }
 }
 
-/// Radiance of a glass sphere at an impact parameter in the sky (1 + z) / 2, seen along -z.
+/// Returns the radiance of a glass sphere at an impact parameter under the sky (1 + z) / 2, seen along -z.
 ///
-/// Reflected outside, the ray turns by pi - 2 i; refracted twice, by 2 (i - t), and each reflection inside adds
-/// pi - 2 t: a geometric series of turns, each weighted by its share.
+/// An outside reflection deflects the ray by pi - 2 i, two refractions by 2 (i - t), and each reflection
+/// inside adds pi - 2 t: a geometric series of deflections, weighted by Fresnel factors.
 fn in_gradient(impact: f64, ior: f64) -> f64 {
     let (i, t) = (impact.asin(), (impact / ior).asin());
     let reflected = fresnel(i.cos(), ior);
@@ -76,11 +76,11 @@ fn a_glass_sphere_in_a_gradient() {
     ];
     for (ior, impact, truth) in truths {
         assert!(within(in_gradient(impact, ior), truth, 1.0, 1e-9), "{ior} {impact}");
-        scene.spheres = spherule::scene::Spheres::default();
+        scene.spheres = spherule_render::scene::Spheres::default();
         sphere(&mut scene, [0.0; 3], 1.0, glass(ior));
         let point = at_impact(impact);
         let estimate = probe(&mut scene, point, point + DVec3::Z * 2.0);
-        assert_truth(estimate, truth, &format!("ior {ior}, impact {impact}"));
+        assert_expected(estimate, truth, &format!("ior {ior}, impact {impact}"));
     }
 }
 
@@ -92,11 +92,12 @@ fn the_disc_of_a_glass_sphere_in_a_gradient() {
         sphere(&mut scene, [0.0; 3], 1.0, glass(ior));
         look_parallel(&mut scene, DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 2.0);
         let disc = over_seeds(&scene, mean).times(4.0 / PI);
-        assert_truth(disc, truth, &format!("{ior}"));
+        assert_expected(disc, truth, &format!("{ior}"));
     }
 }
 
-/// A bubble in glass around the camera, and glass that only surrounds: by the same index they are not there.
+/// A bubble in glass around the camera, and glass that only surrounds it: with equal indices they are
+/// invisible.
 #[test]
 fn equal_indices_do_not_refract() {
     let mut scene = dark();
@@ -107,5 +108,5 @@ fn equal_indices_do_not_refract() {
     sphere(&mut scene, [0.5, 0.2, -0.2], 0.3, glass(1.5));
     let point = at_impact(0.5);
     let estimate = probe(&mut scene, point, point + DVec3::Z * 2.0);
-    assert_truth(estimate, in_gradient(0.5, 1.5), "nested spheres of one index");
+    assert_expected(estimate, in_gradient(0.5, 1.5), "nested spheres of one index");
 }

@@ -2,12 +2,12 @@
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::scene::{Integrator, Light, LightChoice, Material, Rgb, Scene, Settings};
+use spherule_render::scene::{Integrator, Light, LightChoice, Material, Rgb, Scene, Settings};
 use std::f64::consts::PI;
 
 const WHITTED: Integrator = Integrator::Whitted { shadow_samples: 16 };
 
-/// White ground that reflects no light but what comes from a light.
+/// White ground with direct light only.
 fn receiver() -> Scene {
     let mut scene = dark();
     ground(&mut scene, lambertian(1.0));
@@ -15,14 +15,14 @@ fn receiver() -> Scene {
     scene
 }
 
-/// Radiance of the ground at the origin, seen from `eye`, by both integrators.
+/// Returns the radiance of the ground at the origin, seen from `eye`, by both integrators.
 #[track_caller]
 fn assert_at_origin(scene: &mut Scene, eye: DVec3, truth: f64, what: &str) {
     scene.settings.integrator = Integrator::Path;
-    assert_truth(probe(scene, DVec3::ZERO, eye), truth, what);
+    assert_expected(probe(scene, DVec3::ZERO, eye), truth, what);
     scene.settings.integrator = WHITTED;
     scene.settings.spp /= 8;
-    assert_truth(measure(scene), truth, &format!("{what}, whitted"));
+    assert_expected(measure(scene), truth, &format!("{what}, whitted"));
     scene.settings.spp *= 8;
 }
 
@@ -44,13 +44,13 @@ fn irradiance_of_a_sphere() {
         let (sin, cos) = f64::to_radians(degrees).sin_cos();
         let mut scene = receiver();
         sphere(&mut scene, DVec3::new(sin, 0.0, cos) * distance, radius, emitter(1.0, 0.0));
-        // Under a light above that nearly touches the ground, and away from one beside.
+        // Below a light that nearly touches the ground, and away from one to the side.
         let eye = DVec3::new(-5.0, 0.0, if degrees == 0.0 { 0.05 } else { 3.0 });
         assert_at_origin(&mut scene, eye, truth, &format!("{radius} {distance} {degrees}"));
     }
 }
 
-/// A round light behind a round occluder: the share of the disc that is seen.
+/// A spherical light behind a spherical occluder: the visible fraction of the disc.
 #[test]
 fn penumbra() {
     let truths = [
@@ -81,7 +81,7 @@ fn point_lights_fall_off_or_do_not() {
         scene.lights.push(Light::Point { position, intensity: Rgb::splat(7.0), falloff });
         let truth = 7.0 * factor * cosine / PI;
         assert_at_origin(&mut scene, DVec3::new(-3.0, 1.0, 2.0), truth, "no sphere");
-        // Another unit of length in the world than in the scene.
+        // The unit of length in the world differs from the scene's.
         sphere(&mut scene, [900.0, 0.0, 5.0], 1.0, lambertian(0.5));
         assert_at_origin(&mut scene, DVec3::new(-3.0, 1.0, 2.0), truth, "a large world");
     }
@@ -96,7 +96,7 @@ fn suns_give_their_irradiance() {
             irradiance: Rgb::ONE,
             angular_radius,
         });
-        // A disc above the horizon gives its irradiance times the cosine to its middle.
+        // A disc above the horizon gives its irradiance times the cosine to its center.
         let truth = 0.8 / PI;
         assert_at_origin(
             &mut scene,
@@ -107,7 +107,7 @@ fn suns_give_their_irradiance() {
     }
 }
 
-/// A mirror shows the disc of the sun with irradiance over pi sin^2, and nothing beside it.
+/// A mirror shows the sun's disc with the radiance irradiance / (pi sin^2), and nothing around it.
 #[test]
 fn a_mirror_shows_the_sun() {
     let angle = 2.0_f64.to_radians();
@@ -122,7 +122,7 @@ fn a_mirror_shows_the_sun() {
     for integrator in [Integrator::Path, WHITTED] {
         scene.settings.integrator = integrator;
         for (degrees, truth) in [(0.0, radiance), (1.9, radiance), (2.1, 0.0)] {
-            // Turned off the mirrored direction within the plane of reflection.
+            // Rotated away from the mirrored direction in the plane of reflection.
             let turn = f64::to_radians(degrees);
             let view = DVec3::new(
                 -0.6 * turn.cos() - 0.8 * turn.sin(),
@@ -130,12 +130,12 @@ fn a_mirror_shows_the_sun() {
                 0.8 * turn.cos() - 0.6 * turn.sin(),
             );
             let estimate = probe(&mut scene, DVec3::ZERO, view * 3.0);
-            assert_truth(estimate, truth, &format!("{degrees} {integrator:?}"));
+            assert_expected(estimate, truth, &format!("{degrees} {integrator:?}"));
         }
     }
 }
 
-/// All kinds of light and of surfaces that are lit, by both integrators.
+/// All kinds of lights and of lit surfaces, by both integrators.
 #[test]
 fn path_and_whitted_agree_on_direct_light() {
     let plastic = Material::Plastic { color: Rgb::splat(0.7), ior: 1.5 };
@@ -163,8 +163,7 @@ fn path_and_whitted_agree_on_direct_light() {
     }
 }
 
-/// More lamps than are told apart at a glance, some of them next to surfaces: one light chosen at a time gives
-/// what all of them one by one do.
+/// Many emitters, some of them close to surfaces: sampling one light at a time gives the sum over all lights.
 #[test]
 fn many_lights_are_those_of_all_together() {
     let plastic = Material::Plastic { color: Rgb::splat(0.7), ior: 1.5 };
@@ -194,7 +193,8 @@ fn many_lights_are_those_of_all_together() {
     }
 }
 
-/// Lamps of very different sizes and powers over surfaces of several kinds, beside a point and a sun.
+/// Returns emitters of very different sizes and powers above surfaces of several kinds, with a point light
+/// and a sun.
 fn crowd() -> Scene {
     let mut scene = dark();
     ground(&mut scene, lambertian(0.5));
@@ -225,7 +225,7 @@ fn whichever_way_lights_are_chosen_there_is_as_much_light() {
             Scene { settings, ..scene.clone() }
         };
         let tree = by(LightChoice::Tree);
-        assert_alike(&tree, &by(LightChoice::Power), "by power");
-        assert_alike(&tree, &by(LightChoice::Uniform), "all alike");
+        assert_scenes_agree(&tree, &by(LightChoice::Power), "by power");
+        assert_scenes_agree(&tree, &by(LightChoice::Uniform), "all alike");
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures whose radiance is known in closed form, or by a quadrature that shares nothing with the renderer.
+//! Images whose radiance is known in closed form, or by a quadrature that is independent of the renderer.
 
 mod camera;
 mod caustics;

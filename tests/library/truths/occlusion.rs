@@ -2,11 +2,11 @@
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::scene::{Integrator, Scene};
+use spherule_render::scene::{Integrator, Scene};
 
 const AO: Integrator = Integrator::Ao { distance: f64::INFINITY };
 
-/// White ground and one sphere above the origin, in a white sky.
+/// Returns white ground and one sphere above the origin, under a white sky.
 fn above_ground(height: f64) -> Scene {
     let mut scene = furnace();
     scene.settings.integrator = AO;
@@ -15,7 +15,8 @@ fn above_ground(height: f64) -> Scene {
     scene
 }
 
-/// The visible share of the sky from the ground at `x`, seen along a ray that passes under the sphere.
+/// Returns the visible fraction of the sky from the ground at `x`, seen along a ray that passes under the
+/// sphere.
 fn sky_seen_from_ground(scene: &mut Scene, x: f64) -> Estimate {
     let point = DVec3::new(x, 0.0, 0.0);
     probe(scene, point, point + DVec3::new(5.0, 0.0, 0.1))
@@ -34,7 +35,7 @@ fn a_plane_touched_by_a_sphere() {
     ];
     for (x, truth) in truths {
         let mut scene = above_ground(1.0);
-        assert_truth(sky_seen_from_ground(&mut scene, x), truth, &format!("{x}"));
+        assert_expected(sky_seen_from_ground(&mut scene, x), truth, &format!("{x}"));
     }
 }
 
@@ -52,7 +53,7 @@ fn a_plane_under_and_through_a_sphere() {
     for (height, x, occlusion) in occlusions {
         let mut scene = above_ground(height);
         let estimate = sky_seen_from_ground(&mut scene, x);
-        assert_truth(estimate, 1.0 - occlusion, &format!("{height} {x}"));
+        assert_expected(estimate, 1.0 - occlusion, &format!("{height} {x}"));
     }
 }
 
@@ -77,7 +78,7 @@ fn two_spheres_that_touch() {
         sphere(&mut scene, [0.0, 0.0, 2.0], 1.0, lambertian(0.3));
         let point = DVec3::new(sin, 0.0, cos);
         // Along the plane between the spheres, into the gap.
-        assert_truth(
+        assert_expected(
             probe(&mut scene, point, point + DVec3::X * 5.0),
             truth,
             &format!("{degrees}"),
@@ -85,18 +86,19 @@ fn two_spheres_that_touch() {
     }
 }
 
-/// What is farther than the limit does not occlude: from straight below, the nearest point of the sphere is 1 away.
+/// Spheres beyond the limit do not occlude: from straight below, the nearest point of the sphere is at
+/// distance 1.
 #[test]
 fn occlusion_ends_at_its_distance() {
     for (distance, truth) in [(0.999, 1.0), (100.0, 0.75)] {
         let mut scene = above_ground(2.0);
         scene.settings.integrator = Integrator::Ao { distance };
-        assert_truth(sky_seen_from_ground(&mut scene, 0.0), truth, &format!("{distance}"));
+        assert_expected(sky_seen_from_ground(&mut scene, 0.0), truth, &format!("{distance}"));
     }
 }
 
-/// A ground sphere of radius 1e7 is the plane; on one of 1e5, the tilt of the ground toward a small light shows already.
-/// The picture of one matches the other's in each band of rows, without rings.
+/// A ground sphere of radius 1e7 equals the plane; with 1e5, the tilt of the ground toward a small light is
+/// visible. Their images match in each band of rows, without rings.
 #[test]
 fn a_giant_sphere_is_a_plane() {
     let scene = |plane: bool| {
@@ -118,5 +120,5 @@ fn a_giant_sphere_is_a_plane() {
         scene.settings.depth = Some(5);
         scene
     };
-    assert_alike(&scene(false), &scene(true), "giant and plane");
+    assert_scenes_agree(&scene(false), &scene(true), "giant and plane");
 }

@@ -1,16 +1,16 @@
-//! A picture for a sky: what it gives a plane, by both integrators, against a sum over directions.
+//! Environment maps: irradiance of a plane by both integrators, compared with a sum over directions.
 
 use crate::common::*;
 use glam::DVec3;
-use spherule::image::Image;
-use spherule::scene::{Environment, EnvironmentMap, Integrator, Scene};
+use spherule_render::image::Image;
+use spherule_render::scene::{Environment, EnvironmentMap, Integrator, Scene};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 const WIDTH: usize = 16;
 const HEIGHT: usize = 8;
 
-/// A smooth sky with one bright pixel; or that pixel alone.
+/// Returns a smooth sky with one bright pixel, or only that pixel.
 fn value(column: usize, row: usize, smooth: bool) -> f32 {
     let background = if smooth { 0.2 + 0.1 * row as f32 + 0.02 * column as f32 } else { 0.0 };
     if (column, row) == (5, 2) { 300.0 } else { background }
@@ -22,8 +22,8 @@ fn picture(smooth: bool, rotation: f64) -> EnvironmentMap {
     EnvironmentMap::Picture { image: Arc::new(image), up: DVec3::Z, rotation, scale: 2.0 }
 }
 
-/// Irradiance over pi on a plane that faces the picture's top: bilinear between the pixels' middles, by midpoints
-/// of latitude and longitude.
+/// Returns the irradiance divided by pi of a plane that faces the map's top, with bilinear interpolation
+/// between pixel centers, by the midpoint rule over latitude and longitude.
 fn truth(smooth: bool) -> f64 {
     let (steps_v, steps_u) = (1600, 3200);
     let mut sum = 0.0;
@@ -62,13 +62,13 @@ fn a_plane_gets_what_the_picture_gives() {
             for integrator in [Integrator::Path, Integrator::Whitted { shadow_samples: 4 }] {
                 scene.settings.integrator = integrator;
                 let estimate = probe(&mut scene, DVec3::ZERO, DVec3::new(0.0, 1.0, 1.0));
-                assert_truth(estimate, truth, &format!("smooth {smooth}, {integrator:?}"));
+                assert_expected(estimate, truth, &format!("smooth {smooth}, {integrator:?}"));
             }
         }
     }
 }
 
-/// A backdrop is seen by the camera and by mirrors, and lights nothing.
+/// A backdrop is visible to the camera and in mirrors, and lights nothing.
 #[test]
 fn a_backdrop_does_not_light() {
     for integrator in [Integrator::Path, Integrator::Whitted { shadow_samples: 4 }] {
@@ -77,7 +77,7 @@ fn a_backdrop_does_not_light() {
             scene.environment.illuminates = false;
             scene.settings.integrator = integrator;
             let estimate = probe(&mut scene, DVec3::ZERO, DVec3::new(0.0, 1.0, 1.0));
-            assert_every_pixel(&shoot(&scene).image, 0.0, &format!("{estimate:?}"));
+            assert_every_pixel(&render_scene(&scene).image, 0.0, &format!("{estimate:?}"));
         }
     }
 }

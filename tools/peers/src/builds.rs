@@ -4,8 +4,8 @@ use crate::options::Options;
 use crate::scenes::Columns;
 use peak_alloc::PeakAlloc;
 use serde::Serialize;
-use spherule::SphereTree;
-use spherule::workload::SphereScene;
+use spherule_core::SphereTree;
+use spherule_measure::workload::SphereScene;
 use std::error::Error;
 use std::time::Instant;
 

@@ -6,9 +6,9 @@ use crate::referee::{Referee, Verdicts};
 use crate::scenes::Columns;
 use cpu_time::ThreadTime;
 use serde::Serialize;
-use spherule::SphereTree;
-use spherule::query::{Hits, NOTHING, QueryError};
-use spherule::workload::SphereScene;
+use spherule_core::SphereTree;
+use spherule_core::{Hits, NOTHING, QueryError};
+use spherule_measure::workload::SphereScene;
 use std::time::Duration;
 
 /// One way to ask Embree.

@@ -9,7 +9,7 @@ mod packet;
 use libloading::Library;
 pub use packet::Call;
 use packet::{Answers, Any, Arguments, Closest, Packet, Valid};
-use spherule::query::RayColumns;
+use spherule_core::RayColumns;
 use std::ffi::{CString, c_char, c_void};
 use std::mem::ManuallyDrop;
 use std::path::Path;
@@ -234,7 +234,7 @@ impl Drop for Scene<'_> {
 }
 
 impl Scene<'_> {
-    /// The row of the sphere that each ray hits first, or [`spherule::query::NOTHING`], and its
+    /// The row of the sphere that each ray hits first, or [`spherule_core::NOTHING`], and its
     /// distance; `spheres` and `t` are as long as the columns of rays.
     pub fn intersect(&self, rays: &RayColumns, call: Call, spheres: &mut [u32], t: &mut [f32]) {
         let calls = &self.device.calls;

@@ -3,7 +3,7 @@
 use crate::embree::{Build, Device, EmbreeError};
 use crate::rays::{Class, Order};
 use clap::{Parser, ValueEnum};
-use spherule::workload::SphereScene;
+use spherule_measure::workload::SphereScene;
 use std::path::PathBuf;
 
 /// The scenes that are compared when nobody says which.

@@ -4,9 +4,9 @@ use crate::scenes::Columns;
 use clap::ValueEnum;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
-use spherule::SphereTree;
-use spherule::query::{Hits, NOTHING, QueryError, RayColumns, Surface};
-use spherule::workload::{LIGHT, View, above};
+use spherule_core::SphereTree;
+use spherule_core::{Hits, NOTHING, QueryError, RayColumns, Surface};
+use spherule_measure::workload::{LIGHT, View, above};
 use std::borrow::Cow;
 
 /// A class of rays.
@@ -185,7 +185,7 @@ impl Order {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spherule::workload::SphereScene;
+    use spherule_measure::workload::SphereScene;
 
     #[test]
     fn every_order_has_every_pixel() {

@@ -4,9 +4,9 @@ use crate::rays::Rays;
 use crate::scenes::Columns;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
-use spherule::exact::{self, Distance};
-use spherule::query::NOTHING;
-use spherule::ray::ExactRay;
+use spherule_core::NOTHING;
+use spherule_core::internals::exact::{self, Distance};
+use spherule_core::internals::ray::ExactRay;
 use std::cmp::Ordering;
 
 /// Rays about which the systems differ, and who was wrong.

@@ -1,6 +1,6 @@
 //! The spheres of both systems.
 
-use spherule::workload::{SphereScene, WorkloadError};
+use spherule_measure::workload::{SphereScene, WorkloadError};
 
 /// Spheres in columns, as both systems get them.
 #[derive(Debug, Default)]

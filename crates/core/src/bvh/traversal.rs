@@ -221,9 +221,9 @@ fn trace_chunks<'a, L: Lanes, Q: Query>(
                 trace_brute_force::<L, Q>(resolver, rows, &[u32::MAX; CHUNK]);
             }
             Traversal::Single => {
-                interleaved::trace::<_, SingleRay, 1>(bvh, resolver, ray_starts(rows));
+                interleaved::trace::<_, SingleRay, 1>(bvh, resolver, RayStarts::all(rows));
             }
-            Traversal::Stream => trace_incoherent(bvh, resolver, ray_starts(rows)),
+            Traversal::Stream => trace_incoherent(bvh, resolver, RayStarts::all(rows)),
             Traversal::Packet => trace_packets::<L, Q>(bvh, f32::INFINITY, resolver, rows),
             Traversal::Auto if spheres.len() <= SMALL_SCENE => {
                 trace_small_scene::<L, Q>(bvh, resolver, rows);
@@ -244,13 +244,9 @@ fn trace_small_scene<L: Lanes, Q: Query>(
     rows: Range<usize>,
 ) {
     let rays = resolver.rays;
-    let (mut incoherent, mut count) = ([0_u32; CHUNK], 0);
-    let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
-        let lanes = coherent_lanes::<L>(rays, row, bvh.mean_leaf_extent);
-        incoherent[count] = !lanes;
-        count += 1;
-        (lanes != 0).then_some((row, lanes))
-    });
+    let mut incoherent = [0; CHUNK];
+    let others = Incoherent::Masks(incoherent.iter_mut());
+    let packets = PacketStarts::<L>::new(rays, rows.clone(), bvh.mean_leaf_extent, others);
     interleaved::trace::<_, Packet<L>, PACKETS_IN_FLIGHT>(bvh, resolver, packets);
     trace_brute_force::<L, Q>(resolver, rows, &incoherent);
 }
@@ -281,11 +277,8 @@ fn trace_packets<L: Lanes, Q: Query>(
 ) {
     let rays = resolver.rays;
     let mut incoherent = IncoherentRays::in_chunk(rows.start);
-    let packets = rows.clone().step_by(L::WIDTH).filter_map(|row| {
-        let lanes = coherent_lanes::<L>(rays, row, extent);
-        incoherent.push::<L>(row, !lanes & lanes_from(row, L::WIDTH, rows.end));
-        (lanes != 0).then_some((row, lanes))
-    });
+    let others = Incoherent::List(&mut incoherent);
+    let packets = PacketStarts::<L>::new(rays, rows, extent, others);
     interleaved::trace::<_, Packet<L>, PACKETS_IN_FLIGHT>(bvh, resolver, packets);
     if !incoherent.is_empty() {
         trace_incoherent(bvh, resolver, incoherent.starts());
@@ -294,11 +287,7 @@ fn trace_packets<L: Lanes, Q: Query>(
 
 /// Traces rays one by one, many of them in flight.
 #[inline(always)]
-fn trace_incoherent<Q: Query>(
-    bvh: &Bvh,
-    resolver: &mut HitResolver<Q>,
-    rays: impl Iterator<Item = RayStart>,
-) {
+fn trace_incoherent<Q: Query>(bvh: &Bvh, resolver: &mut HitResolver<Q>, rays: RayStarts) {
     if Q::ANY || !resolver.is_single_precision() {
         interleaved::trace::<_, SingleRay, RAYS_IN_FLIGHT>(bvh, resolver, rays);
     } else {
@@ -311,14 +300,13 @@ fn trace_incoherent<Q: Query>(
 #[inline(always)]
 fn trace_unresolved<Q: Query>(bvh: &Bvh, resolver: &mut HitResolver<Q>, brute_force: bool) {
     let mut unresolved = std::mem::take(&mut resolver.unresolved);
-    let rows = unresolved.iter().map(|&row| row as usize);
-    let start = |row| RayStart { row, few: true };
+    let rays = RayStarts::Listed { first: 0, places: unresolved.iter(), few: FEW };
     if brute_force {
-        rows.for_each(|row| SingleRay::test_all_spheres(resolver, row));
+        rays.for_each(|ray| SingleRay::test_all_spheres(resolver, ray.row));
     } else if unresolved.len() >= RAYS_IN_FLIGHT {
-        interleaved::trace::<_, SingleRay, RAYS_IN_FLIGHT>(bvh, resolver, rows.map(start));
+        interleaved::trace::<_, SingleRay, RAYS_IN_FLIGHT>(bvh, resolver, rays);
     } else if !unresolved.is_empty() {
-        interleaved::trace::<_, SingleRay, 1>(bvh, resolver, rows.map(start));
+        interleaved::trace::<_, SingleRay, 1>(bvh, resolver, rays);
     }
     // Keeps the allocation.
     unresolved.clear();
@@ -360,14 +348,14 @@ fn coherent_lanes<L: Lanes>(rays: &Rays, row: usize, leaf_extent: f32) -> u32 {
 /// The numbers of lanes.
 const LANES: [u32; MAX_LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
-/// Set in the place of a ray that has few others of its packet beside it.
+/// Set in the position of a ray that has few others of its packet beside it.
 const FEW: u32 = 1 << 31;
 
 /// Rays of a chunk that are traced one by one, in their order.
 struct IncoherentRays {
     /// The chunk's first ray.
     first: usize,
-    /// Places in the chunk, and [`FEW`].
+    /// Positions in the chunk, and [`FEW`].
     place: [u32; CHUNK],
     count: usize,
 }
@@ -403,20 +391,91 @@ impl IncoherentRays {
     }
 
     /// All of the rays.
-    #[inline(always)]
-    fn starts(&self) -> impl Iterator<Item = RayStart> {
-        self.place[..self.count].iter().map(|&place| RayStart {
-            row: self.first + (place & !FEW) as usize,
-            few: place & FEW != 0,
-        })
+    fn starts(&self) -> RayStarts<'_> {
+        RayStarts::Listed { first: self.first, places: self.place[..self.count].iter(), few: 0 }
     }
 }
 
-/// All rays of some rows.
-#[inline(always)]
-fn ray_starts(rows: Range<usize>) -> impl Iterator<Item = RayStart> {
-    let few = is_few(rows.len());
-    rows.map(move |row| RayStart { row, few })
+/// Rays to be traced one by one. A single type, so that the traversal is compiled once.
+enum RayStarts<'a> {
+    /// All rays of some rows.
+    Rows { rows: Range<usize>, few: bool },
+    /// Rays at these positions from row `first` on, with [`FEW`]; `few` is added to each.
+    Listed { first: usize, places: std::slice::Iter<'a, u32>, few: u32 },
+}
+
+impl RayStarts<'_> {
+    /// All rays of some rows.
+    fn all(rows: Range<usize>) -> Self {
+        let few = is_few(rows.len());
+        Self::Rows { rows, few }
+    }
+}
+
+impl Iterator for RayStarts<'_> {
+    type Item = RayStart;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<RayStart> {
+        match self {
+            Self::Rows { rows, few } => rows.next().map(|row| RayStart { row, few: *few }),
+            Self::Listed { first, places, few } => places.next().map(|&place| {
+                let place = place | *few;
+                RayStart { row: *first + (place & !FEW) as usize, few: place & FEW != 0 }
+            }),
+        }
+    }
+}
+
+/// Packets of the coherent rays of a chunk. Lists the other rays on the way.
+struct PacketStarts<'a, L> {
+    rays: &'a Rays,
+    /// Rows to be divided into packets.
+    rows: Range<usize>,
+    /// Extent of a leaf, which tells coherent rays from incoherent ones.
+    extent: f32,
+    others: Incoherent<'a>,
+    width: PhantomData<L>,
+}
+
+/// Destination of the incoherent rays of a chunk.
+enum Incoherent<'a> {
+    /// A mask for each packet.
+    Masks(std::slice::IterMut<'a, u32>),
+    /// Rows.
+    List(&'a mut IncoherentRays),
+}
+
+impl<'a, L: Lanes> PacketStarts<'a, L> {
+    fn new(rays: &'a Rays, rows: Range<usize>, extent: f32, others: Incoherent<'a>) -> Self {
+        Self { rays, rows, extent, others, width: PhantomData }
+    }
+}
+
+impl<L: Lanes> Iterator for PacketStarts<'_, L> {
+    type Item = (usize, u32);
+
+    /// Returns the first row and the active lanes of the next packet.
+    #[inline(always)]
+    fn next(&mut self) -> Option<(usize, u32)> {
+        while !self.rows.is_empty() {
+            let row = self.rows.start;
+            self.rows.start += L::WIDTH;
+            let lanes = coherent_lanes::<L>(self.rays, row, self.extent);
+            match &mut self.others {
+                Incoherent::Masks(masks) => {
+                    masks.next().into_iter().for_each(|mask| *mask = !lanes);
+                }
+                Incoherent::List(list) => {
+                    list.push::<L>(row, !lanes & lanes_from(row, L::WIDTH, self.rows.end));
+                }
+            }
+            if lanes != 0 {
+                return Some((row, lanes));
+            }
+        }
+        None
+    }
 }
 
 /// Whether rays are set up one by one: setting up a row of lanes takes about as long as eight rays.

@@ -1,8 +1,8 @@
 //! Sequential reading of trajectory frames.
 
 use crate::cli::failure::Failure;
-use spherule::scene::FileError;
-use spherule::scene::particles::{Frames, ParticleFrame, ReadOptions};
+use spherule_render::scene::FileError;
+use spherule_render::scene::particles::{Frames, ParticleFrame, ReadOptions};
 use std::path::Path;
 
 /// A trajectory that is read frame by frame.

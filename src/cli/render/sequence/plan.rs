@@ -3,8 +3,8 @@
 use super::{refuse, stream_name};
 use crate::cli::failure::Failure;
 use crate::cli::frames::FrameRange;
-use spherule::scene::FileError;
-use spherule::scene::particles::{FrameCount, ReadOptions};
+use spherule_render::scene::FileError;
+use spherule_render::scene::particles::{FrameCount, ReadOptions};
 use std::path::Path;
 
 /// Minimum number of digits of a frame's number, so that names sort by frame up to 10,000.

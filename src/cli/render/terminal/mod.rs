@@ -8,9 +8,9 @@ mod sixels;
 
 use crate::cli::failure::Failure;
 use crate::cli::output;
-use spherule::image::Image;
-use spherule::image::tone::{Codes8, DisplayTransform};
-use spherule::scene::Settings;
+use spherule_render::image::Image;
+use spherule_render::image::tone::{Codes8, DisplayTransform};
+use spherule_render::scene::Settings;
 use std::io::{self, IsTerminal, Write, stdin, stdout};
 use std::time::{Duration, Instant};
 

@@ -35,7 +35,7 @@ impl App {
         };
         let (scene, picture, path) = (Arc::clone(scene), picture.clone(), free_name(&self.output));
         let (title, camera) = (self.viewer.facts.title.clone(), self.viewer.control.camera.clone());
-        let (tell, look) = (Arc::clone(&self.tell), self.viewer.look());
+        let (notify, look) = (Arc::clone(&self.notify), self.viewer.look());
         let (job, origin) = (Arc::clone(&self.job), self.origin.clone());
         let facts = self.viewer.facts.clone();
         self.viewer.show_message(format!("saving {}", path.display()));
@@ -47,7 +47,7 @@ impl App {
             let saved = save_picture(&seen, &path)
                 .and_then(|()| save_bar(&job, &facts, settings.height))
                 .and_then(|()| save_scene(&seen, &scene, origin.as_ref(), &toml));
-            tell(Message::Saved(saved.map(|()| path)));
+            notify(Message::Saved(saved.map(|()| path)));
         });
         self.savers.push(saver);
         self.files += 1;

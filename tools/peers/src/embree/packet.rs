@@ -1,6 +1,6 @@
 //! Rays as Embree takes them, filled from columns, and what it answers, put into columns.
 
-use spherule::query::RayColumns;
+use spherule_core::RayColumns;
 use std::ffi::c_void;
 use std::ptr;
 

@@ -1,0 +1,292 @@
+//! Pictures: linear RGB in memory, and reading and writing of files.
+//!
+//! A render is an [`Image`] of linear radiance. [`Image::write`] writes it to a file: unchanged (EXR,
+//! PFM), or exposed, tone-mapped and sRGB-encoded for a display (all others). [`Image::read`] is the
+//! inverse, for environment maps and for [`compare()`]. Files are written atomically
+//! ([`atomic::write_atomically`]), and [`check_writable`] detects an unwritable destination before
+//! hours are spent on the picture.
+
+mod channel;
+mod codes;
+pub mod compare;
+mod error;
+mod exr;
+mod format;
+mod metadata;
+mod netpbm;
+mod options;
+mod pfm;
+mod png;
+mod ppm;
+mod radiance;
+mod raster;
+pub mod tone;
+mod xmp;
+
+pub use self::channel::{Channel, Values};
+pub use self::compare::{CompareError, Comparison, Difference, compare};
+pub use self::error::ImageError;
+pub use self::format::Format;
+pub use self::metadata::{Metadata, read_metadata};
+pub use self::options::{Depth, PpmEncoding, QUALITY, WriteOptions};
+
+use crate::{atomic, memory};
+use std::path::Path;
+
+/// A picture in linear RGB with the primaries of sRGB.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Width in pixels, 1 or more.
+    pub width: u32,
+    /// Height in pixels, 1 or more.
+    pub height: u32,
+    /// `width * height` triples (red, green, blue), row by row from the top left. Values of renders are
+    /// 0 or more; files may have any, including NaN.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+impl Image {
+    /// Creates a picture from pixels, row by row from the top left.
+    ///
+    /// # Errors
+    /// [`ImageError::Shape`] if there are not exactly `width * height` pixels, or none at all.
+    pub fn new(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self, ImageError> {
+        let image = Self { width, height, pixels };
+        image.check_shape()?;
+        Ok(image)
+    }
+
+    /// Creates a picture of one color.
+    ///
+    /// # Errors
+    /// [`ImageError::Shape`] if `width` or `height` is 0, and [`ImageError::Memory`] if the pixels need
+    /// more memory than there is.
+    pub fn filled(width: u32, height: u32, color: [f32; 3]) -> Result<Self, ImageError> {
+        let area = u64::from(width) * u64::from(height);
+        let bytes = area.saturating_mul(size_of::<[f32; 3]>() as u64);
+        let too_large = |shortage| ImageError::Memory { width, height, shortage };
+        memory::check(bytes).map_err(|shortage| too_large(Some(shortage)))?;
+        let count = usize::try_from(area).map_err(|_| too_large(None))?;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| too_large(None))?;
+        pixels.resize(count, color);
+        Self::new(width, height, pixels)
+    }
+
+    /// Returns the pixel in column `x` from the left and row `y` from the top; `None` outside of the
+    /// picture.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        let index = y as usize * self.width as usize + x as usize;
+        if x < self.width { self.pixels.get(index).copied() } else { None }
+    }
+
+    /// Returns the number of values that are NaN or infinite: 0 for a valid render.
+    ///
+    /// PNG and PPM cannot store such values ([`tone::DisplayTransform`] maps them to codes), so callers
+    /// that write a picture can warn of them.
+    pub fn count_non_finite(&self) -> u64 {
+        self.pixels.iter().flatten().filter(|value| !value.is_finite()).count() as u64
+    }
+
+    /// Reads a picture in any [`Format`], which is recognized by content, not by name.
+    ///
+    /// Integer codes are decoded by the sRGB curve; floats are linear already. Gray becomes RGB, and
+    /// alpha is dropped without dividing by it. Of an EXR file the first part with channels `R`, `G`,
+    /// `B`, or only `Y`, is read in its data window. Radiance values are divided by the header's
+    /// `EXPOSURE`.
+    ///
+    /// # Errors
+    /// [`ImageError::Read`] if the file cannot be read, [`ImageError::UnknownContent`] if its format is
+    /// unknown, [`ImageError::Malformed`] if it is cut off, damaged, uses an unsupported feature, or
+    /// claims more than 2^28 pixels in a compressed format.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ImageError> {
+        let path = path.as_ref();
+        let (format, bytes) = format::read_file(path)?;
+        format.decode(&bytes).map_err(|reason| ImageError::malformed(path, format, reason))
+    }
+
+    /// Writes a file in one of [`Format::WRITTEN`], chosen by the suffix of `path` (in any case).
+    ///
+    /// EXR and PFM get the linear values unchanged, without exposure and tone, including NaN and
+    /// infinity; the others get exposed, tone-mapped, sRGB-encoded codes. PFM has no metadata. The file
+    /// is complete or absent: see [`atomic::write_atomically`].
+    ///
+    /// # Errors
+    /// [`ImageError::UnknownSuffix`]; [`ImageError::Shape`] if size and pixels of the picture are
+    /// inconsistent; [`ImageError::Exposure`] and [`ImageError::Metadata`] for invalid options;
+    /// [`ImageError::Encode`] if the format cannot store the picture; [`ImageError::Write`] if the file
+    /// cannot be written.
+    pub fn write(&self, path: impl AsRef<Path>, options: &WriteOptions) -> Result<(), ImageError> {
+        self.write_layers(path, &[], options)
+    }
+
+    /// Writes an EXR file with channels in addition to `R`, `G` and `B`, or a file of another format
+    /// that [has alpha](Format::has_alpha) with the channel `A`; without additional channels the same
+    /// as [`Image::write`].
+    ///
+    /// With the alpha channel `A`, the picture's colors are premultiplied. EXR stores them like this,
+    /// the other formats store straight colors.
+    ///
+    /// # Errors
+    /// Those of [`Image::write`]; [`ImageError::Layers`] for another format, and
+    /// [`ImageError::Channel`] for a name that is invalid or in use, or a number of values that differs
+    /// from the number of pixels.
+    pub fn write_layers(
+        &self,
+        path: impl AsRef<Path>,
+        channels: &[Channel],
+        options: &WriteOptions,
+    ) -> Result<(), ImageError> {
+        let path = path.as_ref();
+        let bytes = self.encode(Format::of_suffix(path)?, channels, options)?;
+        atomic::write_atomically(path, |file| file.write_all(&bytes))
+            .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
+    }
+
+    /// Returns the content of the file that [`Image::write_layers`] writes, in any writable format.
+    ///
+    /// # Errors
+    /// Those of [`Image::write_layers`], except for those of the file itself.
+    pub fn encode(
+        &self,
+        format: Format,
+        channels: &[Channel],
+        options: &WriteOptions,
+    ) -> Result<Vec<u8>, ImageError> {
+        self.check_shape()?;
+        options.check()?;
+        channel::check(channels, self.pixels.len())?;
+        if !format.supports(channels) {
+            return Err(ImageError::Layers { format });
+        }
+        format
+            .encode(self, channels, options)
+            .map_err(|reason| ImageError::Encode { format, reason })
+    }
+
+    fn check_shape(&self) -> Result<(), ImageError> {
+        let area = u64::from(self.width) * u64::from(self.height);
+        if area == 0 || area != self.pixels.len() as u64 {
+            let (width, height, count) = (self.width, self.height, self.pixels.len());
+            return Err(ImageError::Shape { width, height, count });
+        }
+        Ok(())
+    }
+}
+
+/// Checks whether [`Image::write`] could write `path`, without changing an existing file.
+///
+/// Intended for use before a long render. Writing may still fail later, for example on a full disk.
+///
+/// # Errors
+/// [`ImageError::UnknownSuffix`], or [`ImageError::Write`] if the folder is missing or not writable, if
+/// `path` is a folder, or if it is a file that must not be written.
+pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    Format::of_suffix(path)?;
+    atomic::check_destination(path)
+        .map_err(|reason| ImageError::Write { path: path.to_owned(), reason })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// A picture of distinct values in 0..1.
+    pub(super) fn ramp(width: u32, height: u32) -> Image {
+        let count = width as usize * height as usize;
+        let value = |index: usize| index as f32 / (3 * count) as f32;
+        let pixels = (0..count).map(|i| [value(3 * i), value(3 * i + 1), value(3 * i + 2)]);
+        Image::new(width, height, pixels.collect()).unwrap()
+    }
+
+    #[test]
+    fn constructors_check_the_length() {
+        assert!(Image::new(2, 3, vec![[0.0; 3]; 6]).is_ok());
+        assert!(Image::new(2, 3, vec![[0.0; 3]; 5]).is_err());
+        assert!(Image::new(0, 3, vec![]).is_err());
+        assert!(Image::filled(4, 0, [1.0; 3]).is_err());
+        for (width, height) in [(u32::MAX, u32::MAX), (u32::MAX, 1 << 30), (1 << 31, 1 << 31)] {
+            let error = Image::filled(width, height, [1.0; 3]).expect_err("too large");
+            assert!(matches!(error, ImageError::Memory { .. }), "{error}");
+            assert!(error.to_string().contains(&width.to_string()), "{error}");
+        }
+        assert_eq!(Image::filled(2, 1, [1.0; 3]).unwrap().pixels, vec![[1.0; 3]; 2]);
+    }
+
+    #[test]
+    fn pixels_are_found_and_non_finite_ones_counted() {
+        let mut image = ramp(3, 2);
+        assert_eq!(image.pixel(2, 1), Some(image.pixels[5]));
+        assert_eq!(image.pixel(3, 0), None);
+        assert_eq!(image.pixel(0, 2), None);
+        image.pixels[1] = [f32::NAN, 1.0, f32::NEG_INFINITY];
+        assert_eq!(image.count_non_finite(), 2);
+    }
+
+    #[test]
+    fn every_format_survives_odd_sizes() {
+        let folder = tempfile::tempdir().unwrap();
+        for (width, height) in [(1, 1), (1, 7), (7, 1), (5, 3), (33, 17)] {
+            let image = ramp(width, height);
+            for (name, tolerance) in [
+                ("a.exr", 0.0),
+                ("a.PFM", 0.0),
+                ("a.png", 0.01),
+                ("a.ppm", 0.01),
+                ("a.tif", 0.01),
+                ("a.webp", 0.01),
+                ("a.jpeg", 0.2),
+            ] {
+                let path = folder.path().join(name);
+                image.write(&path, &WriteOptions::default()).unwrap();
+                let back = Image::read(&path).unwrap();
+                assert_eq!((back.width, back.height), (width, height));
+                let error = compare(&back, &image).unwrap().max_difference.value;
+                assert!(error <= tolerance, "{name} {width} x {height}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn content_decides_the_format_and_not_the_suffix() {
+        let folder = tempfile::tempdir().unwrap();
+        let (true_name, other_name) = (folder.path().join("a.pfm"), folder.path().join("a.png"));
+        ramp(3, 2).write(&true_name, &WriteOptions::default()).unwrap();
+        fs::rename(true_name, &other_name).unwrap();
+        assert_eq!(Image::read(&other_name).unwrap(), ramp(3, 2));
+    }
+
+    #[test]
+    fn unwritable_destinations_are_detected_and_unchanged() {
+        let folder = tempfile::tempdir().unwrap();
+        let good = folder.path().join("good.png");
+        assert!(check_writable(&good).is_ok());
+        assert!(!good.exists());
+        fs::write(&good, b"old").unwrap();
+        assert!(check_writable(&good).is_ok());
+        assert_eq!(fs::read(&good).unwrap(), b"old");
+        for name in ["missing/a.png", "a.gif", "a", "good.png/a.exr"] {
+            assert!(check_writable(folder.path().join(name)).is_err(), "{name}");
+        }
+        fs::create_dir(folder.path().join("folder.png")).unwrap();
+        let message = check_writable(folder.path().join("folder.png")).unwrap_err().to_string();
+        assert!(message.contains("folder.png") && message.contains("is a folder"), "{message}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn damaged_pictures_and_options_are_refused_before_the_file_is_touched() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let torn = Image { width: 2, height: 2, pixels: vec![[0.0; 3]; 3] };
+        assert!(matches!(
+            torn.write(&path, &WriteOptions::default()),
+            Err(ImageError::Shape { .. })
+        ));
+        let dark = WriteOptions { exposure: f64::NAN, ..WriteOptions::default() };
+        assert!(matches!(ramp(1, 1).write(&path, &dark), Err(ImageError::Exposure(_))));
+        assert!(!path.exists());
+    }
+}

@@ -1,0 +1,47 @@
+//! Ambient occlusion: the cosine-weighted fraction of directions in which nothing is nearer than a
+//! limit.
+//!
+//! Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", EGWR 1998. Surfaces are tinted by
+//! their color, whatever their material; rays that hit nothing see the environment.
+
+use super::Job;
+use super::shading_row::{ShadingRow, SurfaceRow};
+use super::shadow_queue::{self, enqueue_shadow_rays};
+use super::stages;
+use super::workspace::Workspace;
+use crate::lanes::F32x16;
+use crate::ray::MISS;
+use crate::sampling::cosine_hemispheres;
+use crate::scene::Rgb;
+use crate::shade::MaterialKind;
+use crate::vec3::Vec3;
+use crate::world::{LightRow, ROW};
+
+/// Traces one ambient occlusion ray per path; `distance` is in world units.
+pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
+    stages::intersect(job, work);
+    for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
+        let direction = work.rays.direction.row(row);
+        work.paths.radiance[work.states.path(row)] = job.world.environment.radiance(direction);
+    }
+    for kind in MaterialKind::ALL {
+        let Some(queue) = work.queues.take(kind) else { continue };
+        for rows in queue.rows() {
+            let surface_row = SurfaceRow::load(&queue, rows.0);
+            let shading = ShadingRow::new(&queue, rows, &surface_row);
+            let numbers = work.paths.sampler_row(&shading.surface_row.state);
+            let draw = job.sampler.scatter_row(&numbers, 0, false);
+            let direction = shading.to_world(cosine_hemispheres(draw.direction));
+            let sky = LightRow {
+                t: [distance; ROW],
+                ..LightRow::distant(direction, Rgb::ONE, shading.lanes)
+            };
+            let colors = shading.surface_row.at.own.map(|hit| job.world.albedo(hit));
+            let channel = |i: usize| F32x16::new(colors.map(|color| color[i]));
+            let light = Vec3::new(channel(0), channel(1), channel(2));
+            enqueue_shadow_rays(job, work, &surface_row, (&sky, shading.lanes), light);
+        }
+        work.queues.put(kind, queue);
+    }
+    shadow_queue::trace_shadow_rays(job, work);
+}

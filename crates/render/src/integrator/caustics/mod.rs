@@ -1,0 +1,185 @@
+//! Caustics: samples of emitters by way of a specular sphere, from diffuse surfaces.
+//!
+//! [`enqueue_queries`] chooses which path of light each surface point samples; the queries wait until
+//! they fill a row. Their shadow rays have two segments: all first segments, from surfaces to spheres,
+//! are traced at once; the second segments of those that are not occluded, from spheres to emitters,
+//! join the shadow queue. [`track_chains`] and [`mis_weight`] compute the weight of caustics that BSDF
+//! samples find.
+
+mod chain;
+mod queues;
+
+pub(super) use chain::{mis_weight, track_chains};
+
+use super::Job;
+use super::shading_row::ShadingRow;
+use super::shadow_queue;
+use super::workspace::{BATCH, Workspace};
+use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
+use crate::ray::MISS;
+use crate::scene::{ConductorFresnel, Rgb};
+use crate::shade::conductor::Conductor;
+use crate::shade::{Bsdf, GatheredParams, Material, MaterialKind};
+use crate::vec3::Vec3;
+use crate::world::{CausticCasters, CausticPath, CausticQuery, World};
+use chain::SpecularChain;
+use queues::{FirstSegments, QueryQueue, QueryRow};
+
+/// Queues of caustic samples.
+#[derive(Default)]
+pub(super) struct Caustics {
+    /// By path: specular bounces since the last diffuse surface.
+    chains: Vec<SpecularChain>,
+    queries: QueryQueue,
+    first_segments: FirstSegments,
+}
+
+impl Caustics {
+    /// Allocates what a world needs: nothing if it has no caustics.
+    pub(super) fn new(world: &World) -> Self {
+        if world.caustic_casters.is_empty() {
+            return Self::default();
+        }
+        Self {
+            chains: vec![SpecularChain::NONE; BATCH],
+            queries: QueryQueue::new(),
+            first_segments: FirstSegments::new(),
+        }
+    }
+}
+
+impl Job<'_> {
+    /// Returns the spheres that cast caustics, if caustics are sampled.
+    #[inline(always)]
+    fn casters(&self) -> Option<&CausticCasters> {
+        Some(&self.world.caustic_casters)
+            .filter(|casters| self.settings.caustics && !casters.is_empty())
+    }
+}
+
+/// Chooses a path of light to sample, or none, for each path in `lanes`, and enqueues the queries.
+#[inline(always)]
+pub(super) fn enqueue_queries<M: Material>(
+    job: &Job,
+    work: &mut Workspace,
+    bounce: u32,
+    (shading, bsdf, lanes): (&ShadingRow, &M::Bsdf<F32x16>, u32),
+) {
+    if !M::DIFFUSE || bounce + 2 > job.depth() {
+        return;
+    }
+    let Some(casters) = job.casters() else { return };
+    let (at, state) = (&shading.surface_row.at, &shading.surface_row.state);
+    let (draw, place) = job.sampler.caustic_row(&work.paths.sampler_row(state), bounce);
+    let chosen = casters.choose(at.point, at.normal, draw);
+    let lanes = lanes & chosen.lanes & !shading.surface_row.inside;
+    if lanes == 0 {
+        return;
+    }
+    let facing = bsdf.eval(shading.outgoing, Vec3::splat(0.0, 0.0, 1.0));
+    let row = QueryRow {
+        own: at.own,
+        path: state.path.to_array(),
+        code: chosen.code,
+        probability: chosen.probability,
+        place,
+        factor: state.throughput.times(facing),
+        point: at.point,
+        normal: at.normal,
+    };
+    work.caustics.queries.push(&row, lanes);
+    if work.caustics.queries.len() >= MAX_LANES {
+        sample_queries(job, work, bounce);
+    }
+}
+
+/// Samples all waiting queries, and traces their first segments.
+pub(super) fn flush(job: &Job, work: &mut Workspace, bounce: u32) {
+    if job.casters().is_some() {
+        while work.caustics.queries.len() > 0 {
+            sample_queries(job, work, bounce);
+        }
+        trace_first_segments(job, work);
+    }
+}
+
+/// Samples a row of waiting queries.
+#[inline(never)]
+fn sample_queries(job: &Job, work: &mut Workspace, bounce: u32) {
+    let world = job.world;
+    let (row, lanes) = work.caustics.queries.take();
+    let query = CausticQuery {
+        point: row.point,
+        normal: row.normal,
+        pair: row.code.map(|code| world.caustic_casters.pair(code)),
+        path: row.code.map(CausticPath::of),
+        probability: row.probability,
+    };
+    let sample = query.sample(row.place);
+    let light = row.factor.times(colors(world, &query, sample.incidence)) * sample.weight;
+    let lit = Lanes::lt(F32x16::splat(0.0), light.max_element()).bits();
+    // Light through glass has one more bounce.
+    let through = |lane: &usize| query.path[*lane] != CausticPath::Reflected;
+    let deep = (0..MAX_LANES).filter(|lane| bounce + 3 > job.depth() && through(lane));
+    let lanes = deep.fold(lanes & sample.lanes & lit, |lanes, lane| lanes & !(1 << lane));
+    if !work.caustics.first_segments.has_room() {
+        trace_first_segments(job, work);
+    }
+    work.caustics.first_segments.push_row((&query, &sample), (&row.own, &row.path), light, lanes);
+}
+
+/// Returns the radiance of the emitters, times the color of the spheres.
+#[inline(always)]
+fn colors(world: &World, query: &CausticQuery, incidence: F32x16) -> Vec3<F32x16> {
+    let white =
+        Conductor { fresnel: ConductorFresnel::Constant(Rgb::ONE), tint: Rgb::ONE, roughness: 0.0 };
+    let mut metals = [white.params(Rgb::ONE); MAX_LANES];
+    let mut tints = [Rgb::ONE; MAX_LANES];
+    let mut mirrors = false;
+    for (lane, pair) in query.pair.iter().enumerate() {
+        let (id, own) = (world.material(pair.sphere), world.color(pair.sphere));
+        tints[lane] = pair.radiance;
+        match id.kind() {
+            MaterialKind::Conductor => {
+                metals[lane] = world.materials.conductor[id.row()].params(own);
+                mirrors = true;
+            }
+            MaterialKind::Dielectric => {
+                let times = if query.path[lane] == CausticPath::Reflected { 1 } else { 2 };
+                let color = world.materials.dielectric[id.row()].color * own;
+                (0..times).for_each(|_| tints[lane] *= color);
+            }
+            // A coat has no color.
+            _ => {}
+        }
+    }
+    let channel = |i: usize| F32x16::new(tints.each_ref().map(|tint| tint[i]));
+    let tints = Vec3::new(channel(0), channel(1), channel(2));
+    if !mirrors {
+        return tints;
+    }
+    let (zero, one) = (F32x16::splat(0.0), F32x16::splat(1.0));
+    let sine = (one - incidence * incidence).max(zero).sqrt();
+    let outgoing = Vec3::new(sine, zero, incidence);
+    let metals = <Conductor as Material>::row::<F32x16>(&GatheredParams(metals));
+    tints.times(metals.sample(outgoing, [zero; 2], zero).weight)
+}
+
+/// Traces the first segments, and enqueues the second ones of those that are not occluded.
+fn trace_first_segments(job: &Job, work: &mut Workspace) {
+    let mut first = std::mem::take(&mut work.caustics.first_segments);
+    work.counters.exact_decisions +=
+        shadow_queue::test_occlusion(job, &first.rays, &mut first.hits);
+    work.counters.shadow_rays += first.rays.len() as u64;
+    for (row, next) in first.second.iter().enumerate() {
+        if first.hits.sphere[row] != MISS {
+            continue;
+        }
+        if !work.shadow_queue.has_room(1) {
+            shadow_queue::trace_shadow_rays(job, work);
+        }
+        work.shadow_queue.push(next);
+    }
+    first.clear();
+    work.caustics.first_segments = first;
+}

@@ -1,0 +1,108 @@
+//! Camera rays: the start of paths.
+
+use super::Job;
+use super::clock::Stage;
+use super::interior;
+use super::workspace::Workspace;
+use crate::film::Tile;
+use crate::lanes::{F32x16, F64x8, MAX_LANES, widen};
+use crate::sampling::{self, Sampler};
+use crate::world::World;
+use std::ops::Range;
+
+/// Starts a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
+/// neighbors in the image: packets are square.
+pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspace) {
+    generate_streams(job, tile.pixels().map(|(x, y)| (x, y, *job.sampler)), samples, work);
+}
+
+/// Starts paths for streams of samples: column and row of a pixel, and the sampler of its numbers.
+pub fn generate_streams(
+    job: &Job,
+    streams: impl Iterator<Item = (u32, u32, Sampler)>,
+    samples: Range<u32>,
+    work: &mut Workspace,
+) {
+    let mut count = 0;
+    for (x, y, sampler) in streams {
+        work.start_samples(&sampler, (x, y, samples.start), count..count + samples.len());
+        count += samples.len();
+    }
+    work.start_paths(count);
+    for first in (0..count).step_by(MAX_LANES) {
+        let state = work.states.init_camera(first);
+        let numbers = work.paths.sampler_row(&state);
+        let offset = job.filter.offset_row(job.sampler.pixel_row(&numbers));
+        let lens =
+            job.has_lens().then(|| sampling::concentric_disk(job.sampler.lens_row(&numbers)));
+        generate_rays(job, work, first, (offset, lens));
+    }
+    finish_camera_rays(job, work);
+}
+
+/// Starts a path through the center of each of the tile's pixels and of the lens.
+pub fn generate_centers(job: &Job, tile: &Tile, work: &mut Workspace) {
+    let mut count = 0;
+    for (x, y) in tile.pixels() {
+        work.start_samples(job.sampler, (x, y, 0), count..count + 1);
+        count += 1;
+    }
+    work.start_paths(count);
+    let middle = [F32x16::splat(0.0); 2];
+    for first in (0..count).step_by(MAX_LANES) {
+        work.states.init_camera(first);
+        generate_rays(job, work, first, (middle, Some(middle)));
+    }
+    finish_camera_rays(job, work);
+}
+
+/// Replaces sixteen pixel coordinates, stored as ray origins, by rays, with offsets from the pixels'
+/// centers and points on the lens.
+#[inline(always)]
+fn generate_rays(
+    job: &Job,
+    work: &mut Workspace,
+    first: usize,
+    (offset, lens): ([F32x16; 2], Option<[F32x16; 2]>),
+) {
+    let (origin, direction) = (&mut work.rays.origin, &mut work.rays.direction);
+    let pixel = origin.load::<F32x16>(first);
+    let (columns, rows) = (widen(pixel.x), widen(pixel.y));
+    let [across, down] = [widen(offset[0]), widen(offset[1])];
+    let lens = lens.map(|[u, v]| [widen(u), widen(v)]);
+    for half in 0..2 {
+        let middle = F64x8::splat(0.5);
+        let place = [columns[half] + middle + across[half], rows[half] + middle + down[half]];
+        let (from, toward) = job.world.camera.rays(place, lens.map(|[u, v]| [u[half], v[half]]));
+        origin.set_row(first + 8 * half, from);
+        direction.set_row(first + 8 * half, toward);
+    }
+}
+
+/// Counts the camera rays, and initializes the interior lists.
+fn finish_camera_rays(job: &Job, work: &mut Workspace) {
+    let count = work.len();
+    if work.paths.tracks_interiors() {
+        (0..count).for_each(|path| init_interior_list(job.world, work, path));
+    }
+    work.counters.camera_rays += count as u64;
+    work.clock.end(Stage::Generate);
+}
+
+/// Adds the glass spheres that contain the origin of a camera ray to its interior list. For an origin
+/// on a surface, the direction decides.
+fn init_interior_list(world: &World, work: &mut Workspace, row: usize) {
+    let ray = work.rays.exact(row);
+    let path = work.states.path(row);
+    for &sphere in &world.features.glass_at_camera {
+        let offset = ray.origin - world.spheres.center(sphere as usize).as_dvec3();
+        let radius = f64::from(world.spheres.radius(sphere as usize));
+        let outside = offset.length_squared() - radius * radius;
+        let inward = offset.dot(ray.direction) < 0.0;
+        if (outside < 0.0 || (outside == 0.0 && inward))
+            && !interior::insert(world, work.paths.interior_list(path), sphere)
+        {
+            work.counters.nesting_overflows += 1;
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Scattering of paths at glass, sixteen at a time.
+
+use super::Job;
+use super::interior;
+use super::material_queues::MaterialQueue;
+use super::next_rays::RayRow;
+use super::path_state::PathStateRow;
+use super::path_state::PreviousBounce;
+use super::surface::chord_length;
+use super::workspace::Workspace;
+use crate::lanes::{
+    Doubles, F32x16, F64x8, Lanes, MAX_LANES, Mask, Packing, load_doubles, set_bits, store_rounded,
+    widen,
+};
+use crate::ray::MISS;
+use crate::scene::Rgb;
+use crate::shade::MaterialKind;
+use crate::shade::dielectric::{self, Interface};
+use crate::vec3::Vec3;
+use crate::world::World;
+
+/// Doubles that are computed at once.
+const HALF: usize = MAX_LANES / 2;
+
+/// A row of hits on glass, with the states of the paths.
+struct GlassHits {
+    state: PathStateRow,
+    hit: [u32; MAX_LANES],
+    point: Vec3<F32x16>,
+    direction: Vec3<F32x16>,
+    normal: [[f64; MAX_LANES]; 3],
+    radius: [f32; MAX_LANES],
+    /// Indices of refraction inside the spheres and outside of them, as in [`Interface`].
+    index: [[f32; MAX_LANES]; 2],
+    choice: [f32; MAX_LANES],
+}
+
+/// Rays that glass reflects or refracts.
+struct GlassRays {
+    direction: [[f32; MAX_LANES]; 3],
+    /// Distance to where a ray leaves the sphere that it enters; infinite for others.
+    t: [f64; MAX_LANES],
+    /// Lanes whose rays go on inside the sphere.
+    inward: u32,
+}
+
+/// Reflects or refracts every path that has hit glass.
+pub(super) fn scatter(job: &Job, work: &mut Workspace, bounce: u32) {
+    let Some(queue) = work.queues.take(MaterialKind::Dielectric) else { return };
+    let (tinted, nested) = (is_tinted(job.world), work.paths.tracks_interiors());
+    for (first, lanes) in queue.rows() {
+        let state = queue.state_row(first);
+        let choice = job.sampler.lobe_row(&work.paths.sampler_row(&state), bounce);
+        let mut hits = gather_hits(job.world, work, (&queue, first), (state, choice));
+        if nested {
+            set_bits(lanes).for_each(|lane| find_outside_ior(job.world, work, &mut hits, lane));
+        }
+        let rays = reflect_or_refract(&hits);
+        if nested {
+            set_bits(lanes & rays.inward)
+                .for_each(|lane| enter_sphere(job.world, work, &hits, lane));
+        }
+        let state = update_states(job.world, tinted, &hits);
+        spawn_rays(work, lanes, (&hits, &state), &rays);
+    }
+    work.queues.put(MaterialKind::Dielectric, queue);
+}
+
+/// Whether any glass absorbs light.
+fn is_tinted(world: &World) -> bool {
+    world.features.colors || world.materials.dielectric.iter().any(|glass| glass.color != Rgb::ONE)
+}
+
+#[inline(always)]
+fn gather_hits(
+    world: &World,
+    work: &Workspace,
+    (queue, first): (&MaterialQueue, usize),
+    (state, choice): (PathStateRow, F32x16),
+) -> GlassHits {
+    let hit = queue.hit_row(first).to_array();
+    let mut radius = [0.0; MAX_LANES];
+    for (radius, &hit) in radius.iter_mut().zip(&hit) {
+        *radius = world.spheres.radius(hit as usize);
+    }
+    GlassHits {
+        state,
+        hit,
+        point: queue.point_row(first),
+        direction: queue.direction_row(first),
+        normal: work.surface.normal.pick(&queue.ray_row(first).to_array()),
+        radius,
+        index: [indices(world, &hit), [1.0; MAX_LANES]],
+        choice: choice.to_array(),
+    }
+}
+
+/// Returns the indices of refraction of glass spheres.
+#[inline(always)]
+fn indices(world: &World, rows: &[u32; MAX_LANES]) -> [f32; MAX_LANES] {
+    if let [only] = world.materials.dielectric.as_slice() {
+        return [only.ior; MAX_LANES];
+    }
+    let mut indices = [1.0; MAX_LANES];
+    for (index, &row) in indices.iter_mut().zip(rows) {
+        *index = interior::ior(world, row);
+    }
+    indices
+}
+
+/// Removes the sphere that a path has hit from its interior list, and finds the index of refraction
+/// outside.
+fn find_outside_ior(world: &World, work: &mut Workspace, hits: &mut GlassHits, lane: usize) {
+    let inside = work.paths.interior_list(hits.state.path.to_array()[lane] as usize);
+    hits.index[1][lane] = interior::outside_ior(world, hits.hit[lane], inside);
+}
+
+/// Adds the sphere that a path has hit to its interior list.
+fn enter_sphere(world: &World, work: &mut Workspace, hits: &GlassHits, lane: usize) {
+    let inside = work.paths.interior_list(hits.state.path.to_array()[lane] as usize);
+    let fits = interior::insert(world, inside, hits.hit[lane]);
+    work.counters.nesting_overflows += u64::from(!fits);
+}
+
+#[inline(always)]
+fn reflect_or_refract(hits: &GlassHits) -> GlassRays {
+    let mut rays = GlassRays { direction: [[0.0; MAX_LANES]; 3], t: [0.0; MAX_LANES], inward: 0 };
+    for first in [0, HALF] {
+        reflect_or_refract_half(hits, first, &mut rays);
+    }
+    rays
+}
+
+#[inline(always)]
+fn reflect_or_refract_half(hits: &GlassHits, first: usize, rays: &mut GlassRays) {
+    let lanes = first..first + HALF;
+    let singles = |column: &[f32; MAX_LANES]| load_doubles(&column[first..]);
+    let doubles =
+        |column: &[f64; MAX_LANES]| F64x8::new(*column[first..].first_chunk().expect("half a row"));
+    let [x, y, z] = hits.normal.each_ref().map(doubles);
+    let normal = Vec3::new(x, y, z);
+    let passage = dielectric::scatter(&Interface {
+        direction: hits.direction.map(|x| widen(x)[first / HALF]),
+        normal,
+        ior_inside: singles(&hits.index[0]),
+        ior_outside: singles(&hits.index[1]),
+        choice: singles(&hits.choice),
+    });
+    let Vec3 { x, y, z } = passage.direction;
+    for (column, x) in rays.direction.iter_mut().zip([x, y, z]) {
+        store_rounded(x, &mut column[first..]);
+    }
+    let [x, y, z] = rays.direction.each_ref().map(singles);
+    let t = chord_length(normal, singles(&hits.radius), Vec3::new(x, y, z));
+    let t = Doubles::select(passage.inward, t, F64x8::splat(f64::INFINITY));
+    rays.t[lanes].copy_from_slice(&t.to_array());
+    rays.inward |= passage.inward.bits() << first;
+}
+
+/// Returns the next states: changed at real interfaces, unchanged at surfaces inside of other glass.
+#[inline(always)]
+fn update_states(world: &World, tinted: bool, hits: &GlassHits) -> PathStateRow {
+    let real = Lanes::lt(F32x16::splat(0.0), F32x16::new(hits.index[1]));
+    let state = hits.state;
+    let previous = state.previous.next(F32x16::splat(0.0), false);
+    let previous = PreviousBounce(Lanes::select(real, previous.0, state.previous.0));
+    let throughput = if tinted { tint(world, real.bits(), hits) } else { state.throughput };
+    PathStateRow { throughput, previous, ..state }
+}
+
+/// Multiplies the throughput of the paths in `lanes` by the color of the glass.
+fn tint(world: &World, lanes: u32, hits: &GlassHits) -> Vec3<F32x16> {
+    let mut color = [[1.0; MAX_LANES]; 3];
+    for lane in set_bits(lanes) {
+        let hit = hits.hit[lane];
+        let glass = &world.materials.dielectric[world.material(hit).row()];
+        let Rgb { x, y, z } = glass.color * world.color(hit);
+        (color[0][lane], color[1][lane], color[2][lane]) = (x, y, z);
+    }
+    let [x, y, z] = color;
+    let color = Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z));
+    hits.state.throughput.times(color)
+}
+
+#[inline(always)]
+fn spawn_rays(
+    work: &mut Workspace,
+    lanes: u32,
+    (hits, state): (&GlassHits, &PathStateRow),
+    rays: &GlassRays,
+) {
+    let [x, y, z] = rays.direction;
+    let direction = Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z));
+    let ray_row = RayRow { origin: hits.point, direction, own: &hits.hit, state };
+    let next_rays = &mut work.next_rays;
+    let first = next_rays.push(&Packing::new(lanes), &ray_row);
+    let ends = next_rays.hits.sphere[first..].iter_mut().zip(hits.hit);
+    for (lane, (end, hit)) in ends.enumerate() {
+        *end = if rays.inward >> lane & 1 == 1 { hit } else { MISS };
+    }
+    next_rays.hits.t[first..first + MAX_LANES].copy_from_slice(&rays.t);
+    next_rays.entry.copy(first, &hits.normal);
+}

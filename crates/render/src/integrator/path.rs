@@ -1,0 +1,125 @@
+//! Path tracing with next-event estimation and multiple importance sampling.
+//!
+//! At each surface a path samples one light, chosen by its estimated contribution there, and continues
+//! in a direction sampled from the BSDF. Light that both techniques can find is weighted by the power
+//! heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
+//! SIGGRAPH 1995), except that from a diffuse surface an emitter that is not close, a sun or a point
+//! light is left to light samples alone: BSDF samples would only add variance. A constant or gradient
+//! environment is left to BSDF samples alone. Diffuse surfaces also sample caustics: emitters seen by
+//! one mirror or one glass sphere.
+
+use super::Job;
+use super::caustics;
+use super::clock::Stage;
+use super::direct_light::sample_direct_light;
+use super::emission;
+use super::glass;
+use super::material_queues::MaterialQueue;
+use super::material_table::gather_bsdfs;
+use super::path_state::PathStateRow;
+use super::roulette::{roulette_active, roulette_threshold, survival_probability};
+use super::shading_row::{ShadingRow, SurfaceRow};
+use super::shadow_queue;
+use super::stages::{self, KindVisitor};
+use super::workspace::Workspace;
+use crate::lanes::{F32x16, Lanes, Mask};
+use crate::shade::{Bsdf, Material, MaterialId, MaterialKind};
+
+/// Follows all paths to their ends.
+pub fn integrate(job: &Job, work: &mut Workspace) {
+    let threshold = roulette_threshold(job.world);
+    for bounce in 0.. {
+        stages::intersect(job, work);
+        emission::add_environment(job, work);
+        emission::add_emitted(job, work);
+        if bounce == job.depth() {
+            work.counters.cut_paths += work.queues.hit_count();
+            return;
+        }
+        caustics::track_chains(job, work);
+        glass::scatter(job, work, bounce);
+        stages::for_each_kind(
+            job.world,
+            &mut Shade { job, work, bounce: Bounce { index: bounce, threshold } },
+        );
+        caustics::flush(job, work, bounce);
+        shadow_queue::trace_shadow_rays(job, work);
+        work.advance();
+        work.clock.end(Stage::Shade);
+        if work.is_empty() {
+            return;
+        }
+        work.counters.bounce_rays += work.len() as u64;
+    }
+}
+
+/// A bounce: its index from 0, and the throughput below which roulette may end paths.
+#[derive(Clone, Copy)]
+struct Bounce {
+    index: u32,
+    threshold: f32,
+}
+
+/// A visitor that shades the queues of one bounce.
+struct Shade<'a> {
+    job: &'a Job<'a>,
+    work: &'a mut Workspace,
+    bounce: Bounce,
+}
+
+impl KindVisitor for Shade<'_> {
+    fn visit<M: Material>(&mut self, kind: MaterialKind, table: impl Fn(MaterialId) -> M) {
+        let Some(queue) = self.work.queues.take(kind) else { return };
+        for rows in queue.rows() {
+            shade(self.job, self.work, self.bounce, (&queue, rows), (kind, &table));
+        }
+        self.work.queues.put(kind, queue);
+    }
+}
+
+/// Samples a light for each of at most sixteen hits of a queue, and spawns the next rays.
+fn shade<M: Material>(
+    job: &Job,
+    work: &mut Workspace,
+    bounce: Bounce,
+    (queue, rows): (&MaterialQueue, (usize, u32)),
+    material: (MaterialKind, &impl Fn(MaterialId) -> M),
+) {
+    let surface_row = SurfaceRow::load(queue, rows.0);
+    let shading = ShadingRow::new(queue, rows, &surface_row);
+    let materials = (job.world, work.material_table.as_ref());
+    let bsdf = gather_bsdfs(materials, material, &shading.surface_row.at.own);
+    if job.has_lights() {
+        let lanes = shading.lanes & !bsdf.is_delta().bits();
+        sample_direct_light::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
+        caustics::enqueue_queries::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
+    }
+    spawn_rays::<M>(job, work, bounce, (&shading, &bsdf));
+}
+
+/// Samples the BSDFs, applies Russian roulette, and spawns the next rays of the paths that survive.
+#[inline(always)]
+fn spawn_rays<M: Material>(
+    job: &Job,
+    work: &mut Workspace,
+    Bounce { index, threshold }: Bounce,
+    (shading, bsdf): (&ShadingRow, &M::Bsdf<F32x16>),
+) {
+    let (roulette, state) = (job.settings.roulette, &shading.surface_row.state);
+    // Without a choice between lobes and without roulette, no random numbers are needed for them.
+    let choose = !M::DIFFUSE || roulette_active(roulette, index);
+    let draw = job.sampler.scatter_row(&work.paths.sampler_row(state), index, choose);
+    let scatter = bsdf.sample(shading.outgoing, draw.direction, draw.lobe);
+    let throughput = state.throughput.times(scatter.weight);
+    let greatest = throughput.max_element();
+    let survival = survival_probability(roulette, greatest, index, threshold);
+    let survives = Lanes::lt(draw.roulette, survival) & Lanes::lt(F32x16::splat(0.0), greatest);
+    let next = PathStateRow {
+        throughput: throughput.map(|channel| channel / survival),
+        previous: state.previous.next(scatter.pdf, M::DIFFUSE),
+        normal: shading.surface_row.at.normal,
+        ..*state
+    };
+    let (lanes, direction) = (shading.lanes & survives.bits(), shading.to_world(scatter.incoming));
+    work.spawn_rays(job.world, (shading.surface_row, lanes), direction, &next);
+}

@@ -1,0 +1,121 @@
+//! Rows of sixteen hits as their materials see them, with the states of the paths.
+
+use super::material_queues::MaterialQueue;
+use super::path_state::PathStateRow;
+use super::workspace::Workspace;
+use crate::lanes::{F32x16, Lanes, U32x16};
+use crate::sampling::{Bases, Basis};
+use crate::vec3::Vec3;
+use crate::world::{ROW, ReceiverRow};
+
+/// A row of surface points from which shadow rays or next rays start.
+pub struct SurfaceRow {
+    /// Rows of the rays that hit the points; arbitrary in lanes without a path.
+    pub rows: U32x16,
+    /// Points, normals on the sides that the rays come from, and spheres.
+    pub at: ReceiverRow,
+    /// Lanes whose sphere is hit from inside.
+    pub inside: u32,
+    /// States of the paths.
+    pub state: PathStateRow,
+}
+
+/// A row of surface points with their local bases.
+pub struct ShadingRow<'a> {
+    /// The surface points.
+    pub surface_row: &'a SurfaceRow,
+    /// Lanes that have a path.
+    pub lanes: u32,
+    /// Transforms to world space and back; z is the normal on the side that the ray comes from.
+    pub bases: Bases<F32x16>,
+    /// Local unit vectors toward the origins of the rays.
+    pub outgoing: Vec3<F32x16>,
+}
+
+impl SurfaceRow {
+    /// Broadcasts the hit of the path in `row` to all lanes.
+    pub fn broadcast(work: &Workspace, row: usize, local: &LocalSurface) -> Self {
+        let splat = |v: glam::Vec3| Vec3::from(v).map(F32x16::splat);
+        Self {
+            rows: U32x16::splat(row as u32),
+            at: ReceiverRow {
+                point: splat(work.surface.point.row(row)),
+                normal: splat(local.basis.normal),
+                own: [work.hits.sphere[row]; ROW],
+            },
+            inside: if local.inside { u32::from(u16::MAX) } else { 0 },
+            state: work.states.broadcast(row),
+        }
+    }
+
+    /// Loads sixteen hits of a queue.
+    #[inline(always)]
+    pub fn load(queue: &MaterialQueue, first: usize) -> Self {
+        Self {
+            rows: queue.ray_row(first),
+            at: ReceiverRow {
+                point: queue.point_row(first),
+                normal: queue.facing_row(first),
+                own: queue.hit_row(first).to_array(),
+            },
+            inside: queue.inside(first),
+            state: queue.state_row(first),
+        }
+    }
+}
+
+impl<'a> ShadingRow<'a> {
+    /// Creates a row from sixteen hits of a queue, of which `lanes` are valid, and their surface
+    /// points.
+    #[inline(always)]
+    pub fn new(
+        queue: &MaterialQueue,
+        (first, lanes): (usize, u32),
+        surface_row: &'a SurfaceRow,
+    ) -> Self {
+        let bases = Bases::about(surface_row.at.normal);
+        let mut outgoing = bases.to_local(-queue.direction_row(first));
+        // At grazing angles, rounding may move the direction below the horizon.
+        outgoing.z = Lanes::max(outgoing.z, F32x16::splat(f32::EPSILON));
+        Self { surface_row, lanes, bases, outgoing }
+    }
+
+    /// Transforms local directions to world space, of unit length.
+    #[inline(always)]
+    pub fn to_world(&self, local: Vec3<F32x16>) -> Vec3<F32x16> {
+        self.bases.to_world(local).normalize()
+    }
+}
+
+/// A surface point with its local basis.
+#[derive(Clone, Copy)]
+pub struct LocalSurface {
+    /// Transform to world space and back; z is the normal on the side that the ray comes from.
+    pub basis: Basis,
+    /// Local unit vector toward the origin of the ray.
+    pub outgoing: glam::Vec3,
+    /// Whether the sphere is hit from inside.
+    pub inside: bool,
+}
+
+impl LocalSurface {
+    /// Creates the basis of the hit in row `row`.
+    #[inline]
+    pub fn new(work: &Workspace, row: usize) -> Self {
+        let direction = work.rays.direction.row(row);
+        let normal = work.surface.normal.row(row);
+        let inside = normal.dot(direction.as_dvec3()) > 0.0;
+        let facing = if inside { -normal } else { normal };
+        let basis = Basis::new(facing.as_vec3());
+        let mut outgoing = basis.to_local(-direction);
+        // At grazing angles, rounding may move the direction below the horizon.
+        outgoing.z = outgoing.z.max(f32::EPSILON);
+        Self { basis, outgoing, inside }
+    }
+
+    /// Transforms a sampled direction to world space, of unit length.
+    #[inline]
+    pub fn to_world(&self, incoming: glam::Vec3) -> glam::Vec3 {
+        self.basis.to_world(incoming).normalize()
+    }
+}

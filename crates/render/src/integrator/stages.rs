@@ -1,0 +1,44 @@
+//! Stages that integrators share.
+
+use super::Job;
+use super::clock::Stage;
+use super::surface::compute_surfaces;
+use super::workspace::Workspace;
+use crate::film::View;
+use crate::shade::{Material, MaterialId, MaterialKind};
+use crate::trace;
+use crate::world::World;
+
+/// Traces the rays, computes the surface points, and fills the material queues.
+pub fn intersect(job: &Job, work: &mut Workspace) {
+    if let Some(ground) = job.unreachable_ground() {
+        trace::intersect_ground(&ground, &work.rays, &mut work.hits);
+    }
+    match std::mem::replace(&mut work.view, View::Anything) {
+        View::Background => trace::closest_ground(job.world, &work.rays, &mut work.hits),
+        View::Anything => {
+            work.counters.exact_decisions +=
+                trace::closest(job.tracer, job.world, &work.rays, &mut work.hits);
+        }
+    }
+    work.clock.end(Stage::Trace);
+    compute_surfaces(job.world, work);
+    work.sort(job.world);
+    work.clock.end(Stage::Surface);
+}
+
+/// A visitor of the kinds of materials.
+pub trait KindVisitor {
+    /// Visits one kind, whose materials `table` returns.
+    fn visit<M: Material>(&mut self, kind: MaterialKind, table: impl Fn(MaterialId) -> M);
+}
+
+/// Calls a visitor for every kind of material except glass.
+pub fn for_each_kind(world: &World, system: &mut impl KindVisitor) {
+    let tables = &world.materials;
+    system.visit(MaterialKind::Lambertian, |id| tables.lambertian[id.row()]);
+    system.visit(MaterialKind::Conductor, |id| tables.conductor[id.row()]);
+    system.visit(MaterialKind::Plastic, |id| tables.plastic[id.row()]);
+    system.visit(MaterialKind::Reflective, |id| tables.reflective[id.row()]);
+    system.visit(MaterialKind::Emitter, |id| tables.emitter[id.row()].surface());
+}

@@ -1,0 +1,259 @@
+//! The workspace of a task: its columns, allocated once and reused for each tile.
+
+use super::caustics::Caustics;
+use super::clock::Clock;
+use super::counters::Counters;
+use super::elisions::Elisions;
+use super::material_queues::{ESCAPED, HitColumns, MaterialQueues};
+use super::material_table::MaterialTable;
+use super::next_rays::{NextRays, RayRow};
+use super::path_state::{PathStateRow, PathStates};
+use super::shading_row::SurfaceRow;
+use super::shadow_queue::ShadowQueue;
+use super::surface::{Surface, chord_length, exit_distance};
+use crate::film::View;
+use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
+use crate::ray::{GROUND, Hits, MISS, Rays};
+use crate::sampling::{Sampler, SamplerRow, SamplerState, SamplerStates};
+use crate::scene::Rgb;
+use crate::vec3 as row;
+use crate::world::World;
+use glam::Vec3;
+use std::mem::swap;
+use std::ops::Range;
+
+/// Paths of a batch: 16 samples of each pixel of a tile. With fewer, more rows of lanes are half empty
+/// when most paths have ended: with 1024, scenes of a few spheres take 5 % longer, with 512 12 %.
+pub const BATCH: usize = 4096;
+
+/// Rows of a column: room for a partial row of lanes, and such that columns do not all start in the
+/// same sets of the first-level cache.
+pub(super) const ROWS: usize = BATCH + MAX_LANES;
+
+/// Capacity of a path's interior list.
+const MAX_NESTING: usize = 16;
+
+/// Everything that a task writes while it renders a tile.
+///
+/// Paths have an index, `0..BATCH`, from the camera to their end. Those that are alive have a row in
+/// `rays`, `hits`, `surface` and `states`. Each bounce writes new rows, in the order of shading,
+/// without gaps (compaction), so that neighbors hit the same kind of material.
+pub struct Workspace {
+    /// By row: the current ray of each path.
+    pub rays: Rays,
+    /// By row: the hit of the ray.
+    pub hits: Hits,
+    /// By row: the surface point of the hit.
+    pub surface: Surface,
+    /// By row: the path state.
+    pub states: PathStates,
+    /// By path: radiance and sampler states.
+    pub paths: Paths,
+    /// Hits by kind of material.
+    pub queues: MaterialQueues,
+    /// Materials of the spheres, if there are few.
+    pub material_table: Option<MaterialTable>,
+    /// Rays of the next bounce.
+    pub(super) next_rays: NextRays,
+    /// Shadow rays of light samples.
+    pub shadow_queue: ShadowQueue,
+    /// Caustic queries and their rays.
+    pub(super) caustics: Caustics,
+    /// View of the camera rays: anything, or only background.
+    pub view: View,
+    /// Counts of work.
+    pub counters: Counters,
+    /// Times of the stages.
+    pub clock: Clock,
+}
+
+/// Radiance and sampler states, by path.
+pub struct Paths {
+    /// Radiance found so far.
+    pub radiance: Vec<Rgb>,
+    /// Sampler states, without the place in the sequence, which is part of the path state.
+    pub sampler_states: SamplerStates,
+    /// Interior lists: the glass spheres that contain the path, of fixed capacity; none if paths can be
+    /// in at most one.
+    interiors: Vec<u32>,
+    nesting: usize,
+}
+
+impl Workspace {
+    /// Allocates room for [`BATCH`] paths through `world`.
+    pub fn new(world: &World, elisions: Elisions) -> Self {
+        let normals = world.lights.by_receiver();
+        let nesting = if elisions.glass && !world.features.nested_glass { 0 } else { MAX_NESTING };
+        Self {
+            rays: Rays::with_capacity(BATCH),
+            hits: Hits::with_capacity(BATCH),
+            surface: Surface::with_rows(ROWS),
+            states: PathStates::new(normals),
+            paths: Paths {
+                radiance: vec![Rgb::ZERO; BATCH],
+                sampler_states: SamplerStates::with_paths(BATCH),
+                interiors: vec![MISS; BATCH * nesting],
+                nesting,
+            },
+            queues: MaterialQueues::new(world, normals),
+            material_table: MaterialTable::new(world, ESCAPED),
+            next_rays: NextRays::new(normals),
+            shadow_queue: ShadowQueue::new(),
+            caustics: Caustics::new(world),
+            view: View::Anything,
+            counters: Counters::default(),
+            clock: Clock::new(),
+        }
+    }
+
+    /// Returns the number of paths that are alive.
+    pub fn len(&self) -> usize {
+        self.rays.len()
+    }
+
+    /// Whether no path is alive.
+    pub fn is_empty(&self) -> bool {
+        self.rays.is_empty()
+    }
+
+    /// Starts the samples from `first` on of the pixel in column `x` and row `y`; stores the pixel's
+    /// coordinates as origins of rays.
+    pub(super) fn start_samples(
+        &mut self,
+        sampler: &Sampler,
+        (x, y, first): (u32, u32, u32),
+        rows: Range<usize>,
+    ) {
+        for (row, first) in rows.clone().step_by(MAX_LANES).zip((first..).step_by(MAX_LANES)) {
+            if rows.end - row >= MAX_LANES {
+                let start = sampler.start_row(x, y, first);
+                self.paths.sampler_states.set_row(row, &start);
+                self.states.set_sequence(row, &start.positions);
+                continue;
+            }
+            for (row, sample) in (row..rows.end).zip(first..) {
+                let start = sampler.start(x, y, sample);
+                self.paths.sampler_states.set(row, &start);
+                self.states.set_sequence_of(row, start.sobol());
+            }
+        }
+        self.rays.origin.x[rows.clone()].fill(x as f32);
+        self.rays.origin.y[rows].fill(y as f32);
+    }
+
+    /// Starts `count` paths, whose samples have been started. The caller sets their rays.
+    pub(super) fn start_paths(&mut self, count: usize) {
+        self.rays.begin(count);
+        self.hits.t[..count].fill(f64::INFINITY);
+        self.hits.sphere[..count].fill(MISS);
+        self.paths.radiance[..count].fill(Rgb::ZERO);
+        let nesting = self.paths.nesting;
+        self.paths.interiors[..count * nesting].fill(MISS);
+    }
+
+    /// Returns the sampler state of the path in a row.
+    pub(super) fn sampler_state(&self, row: usize) -> SamplerState {
+        self.paths.sampler_states.state(self.states.path(row), self.states.sequence_place(row))
+    }
+
+    /// Fills the material queues.
+    pub(super) fn sort(&mut self, world: &World) {
+        let Self { rays, hits, surface, states, .. } = self;
+        self.queues.sort(
+            world,
+            self.material_table.as_ref(),
+            &HitColumns { rays, hits, surface, states },
+        );
+    }
+
+    /// Spawns the next rays of the paths in `lanes`, with these states. Rays inside of a sphere start
+    /// with their exit as a hit. Paths that are not in `lanes` end.
+    #[inline(always)]
+    pub(super) fn spawn_rays(
+        &mut self,
+        world: &World,
+        (surface_row, lanes): (&SurfaceRow, u32),
+        direction: row::Vec3<F32x16>,
+        state: &PathStateRow,
+    ) {
+        let (origin, own) = (surface_row.at.point, &surface_row.at.own);
+        let ray_row = RayRow { origin, direction, own, state };
+        let first = self.next_rays.push(&Packing::new(lanes), &ray_row);
+        for lane in set_bits(lanes & surface_row.inside) {
+            let (own, row) = (surface_row.at.own[lane], surface_row.rows.to_array()[lane] as usize);
+            if own != GROUND {
+                let next = first + (lanes & ((1 << lane) - 1)).count_ones() as usize;
+                let direction = self.next_rays.rays.direction.row(next);
+                let t = self.chord_length(world, row, direction);
+                self.next_rays.hits.set(next, t, own);
+                self.next_rays.entry.set(next, self.surface.normal.row(row));
+            }
+        }
+    }
+
+    /// Returns the distance from the point of a sphere that `row` has hit, or of the sphere's cap,
+    /// through the inside to where `direction` leaves the sphere.
+    #[inline]
+    pub fn chord_length(&self, world: &World, row: usize, direction: Vec3) -> f64 {
+        if !world.cut.is_empty() {
+            return self.chord_length_cut(world, row, direction);
+        }
+        let radius = f64::from(world.spheres.radius(self.hits.sphere[row] as usize));
+        chord_length(self.surface.normal.row(row).into(), radius, direction.as_dvec3().into())
+    }
+
+    /// Returns the chord's length where spheres are cut; a separate function, out of the way of the
+    /// usual case.
+    #[cold]
+    fn chord_length_cut(&self, world: &World, row: usize, direction: Vec3) -> f64 {
+        let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
+        let direction = direction.as_dvec3();
+        if world.cut.divides(center, radius) {
+            return exit_distance(
+                self.surface.point.row(row).as_dvec3() - center,
+                radius,
+                direction,
+            );
+        }
+        chord_length(self.surface.normal.row(row).into(), radius, direction.into())
+    }
+
+    /// Makes the next rays the current ones.
+    pub fn advance(&mut self) {
+        let next_rays = &mut self.next_rays;
+        swap(&mut self.rays, &mut next_rays.rays);
+        swap(&mut self.hits, &mut next_rays.hits);
+        swap(&mut self.surface.normal, &mut next_rays.entry);
+        swap(&mut self.states, &mut next_rays.states);
+        next_rays.rays.truncate(0);
+    }
+}
+
+impl Paths {
+    /// Returns the sampler states of a row of paths.
+    #[inline(always)]
+    pub fn sampler_row(&self, state: &PathStateRow) -> SamplerRow<'_> {
+        SamplerRow::new(state.sequence, state.path, &self.sampler_states)
+    }
+
+    /// Adds light to the paths in `lanes`.
+    #[inline(always)]
+    pub fn add(&mut self, path: U32x16, light: row::Vec3<F32x16>, lanes: u32) {
+        let path = path.to_array();
+        let row::Vec3 { x, y, z } = light.map(F32x16::to_array);
+        for lane in set_bits(lanes) {
+            self.radiance[path[lane] as usize] += Rgb::new(x[lane], y[lane], z[lane]);
+        }
+    }
+
+    /// Whether paths have interior lists.
+    pub fn tracks_interiors(&self) -> bool {
+        self.nesting > 0
+    }
+
+    /// Returns the interior list of a path.
+    #[inline]
+    pub fn interior_list(&mut self, path: usize) -> &mut [u32] {
+        &mut self.interiors[path * self.nesting..(path + 1) * self.nesting]
+    }
+}

@@ -1,0 +1,248 @@
+//! Layers (AOVs): auxiliary channels of each pixel for denoisers and compositors.
+//!
+//! They are computed by a separate pass of camera rays, so that all integrators have them, and a render
+//! without layers costs nothing. The rays are the picture's: the same samples of the same filter
+//! through the same lens, so that edges and blur are at the same positions.
+
+mod progressive;
+mod sums;
+
+pub use self::progressive::ProgressiveLayers;
+use self::progressive::TileLayers;
+use crate::film::{Film, Region};
+use crate::image::{Channel, Values};
+use crate::integrator::Job;
+use crate::integrator::workspace::Workspace;
+use crate::ray::{GROUND, MISS};
+use crate::render::{self, Options, RenderError, Statistics};
+use crate::sampling::{PixelFilter, Sampler};
+use crate::scene::Settings;
+use crate::world::World;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Maximum number of samples of a pixel for layers: an edge then has 256 levels.
+pub const SAMPLES: u32 = 256;
+
+/// The id of a pixel whose center shows no surface.
+pub const NOTHING: u32 = MISS;
+
+/// The id of a pixel whose center shows the ground plane.
+pub const GROUND_PLANE: u32 = GROUND;
+
+/// A layer: an auxiliary channel of the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Layer {
+    /// [`Features::albedo`]: channels `albedo.R`, `albedo.G`, `albedo.B`.
+    Albedo,
+    /// [`Features::normal`]: channels `normal.X`, `normal.Y`, `normal.Z`.
+    Normal,
+    /// [`Features::depth`]: channel `depth.Z`.
+    Depth,
+    /// [`Features::coverage`]: channel `coverage.Y`.
+    Coverage,
+    /// [`Features::id`]: channel `id.Y`, of integers.
+    Id,
+    /// [`Statistics::variance`], which the render measures: channels `variance.R`, `variance.G`,
+    /// `variance.B`.
+    Variance,
+    /// [`Statistics::samples`], which the render counts: channel `samples.Y`, of integers.
+    Samples,
+}
+
+/// Features of a pixel: of the first hits of its rays, for any material.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Features {
+    /// Mean of [`World::albedo`], linear RGB, 0..=1; rays that hit nothing count as black.
+    pub albedo: [f32; 3],
+    /// Mean of the unit normals on the visible side, in the scene's axes; rays that hit nothing count
+    /// as 0, so that it is shorter at edges.
+    pub normal: [f32; 3],
+    /// Mean distance from the camera, in the scene's unit, of the rays that hit: from the eye in
+    /// perspective, from the plane through the eye in parallel projection. Infinite if none hits.
+    pub depth: f32,
+    /// Fraction of the rays that hit a sphere or the ground, 0..=1.
+    pub coverage: f32,
+    /// Fraction of the rays that hit the ground, 0..=1, included in `coverage`.
+    pub ground: f32,
+    /// The sphere at the pixel's center, through the center of the lens: its index in the scene, from
+    /// 0; or else [`NOTHING`] or [`GROUND_PLANE`].
+    pub id: u32,
+}
+
+/// The layers of a picture, or of a region of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layers {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Features, row by row from the top left.
+    pub pixels: Vec<Features>,
+    /// Statistics of the same pixels from the render; [`layers`] leaves them empty.
+    pub statistics: Option<Statistics>,
+}
+
+impl Layer {
+    /// All layers.
+    pub const ALL: [Self; 7] = [
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+        Self::Coverage,
+        Self::Id,
+        Self::Variance,
+        Self::Samples,
+    ];
+
+    /// Returns the name before the dot in its channels' names.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Albedo => "albedo",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Coverage => "coverage",
+            Self::Id => "id",
+            Self::Variance => "variance",
+            Self::Samples => "samples",
+        }
+    }
+
+    /// Whether the render computes it: see [`Options::statistics`].
+    pub fn is_statistic(self) -> bool {
+        matches!(self, Self::Variance | Self::Samples)
+    }
+
+    fn channels(self, layers: &Layers) -> Vec<Channel> {
+        let channel = |part, values| Channel { name: format!("{}.{part}", self.name()), values };
+        let pixels = &layers.pixels;
+        let floats = |part, value: &dyn Fn(&Features) -> f32| {
+            channel(part, Values::Floats(pixels.iter().map(value).collect()))
+        };
+        let statistics = layers.statistics.iter();
+        match self {
+            Self::Albedo => [('R', 0), ('G', 1), ('B', 2)]
+                .map(|(part, i)| floats(part, &|pixel| pixel.albedo[i]))
+                .into(),
+            Self::Normal => [('X', 0), ('Y', 1), ('Z', 2)]
+                .map(|(part, i)| floats(part, &|pixel| pixel.normal[i]))
+                .into(),
+            Self::Depth => vec![floats('Z', &|pixel| pixel.depth)],
+            Self::Coverage => vec![floats('Y', &|pixel| pixel.coverage)],
+            Self::Id => {
+                let ids = pixels.iter().map(|pixel| pixel.id).collect();
+                vec![channel('Y', Values::Integers(ids))]
+            }
+            Self::Variance => statistics
+                .flat_map(|statistics| {
+                    [('R', 0), ('G', 1), ('B', 2)].map(|part| (statistics, part))
+                })
+                .map(|(statistics, (part, i))| {
+                    let variance = statistics.variance.pixels.iter().map(|pixel| pixel[i]);
+                    channel(part, Values::Floats(variance.collect()))
+                })
+                .collect(),
+            Self::Samples => statistics
+                .map(|statistics| channel('Y', Values::Integers(statistics.samples.clone())))
+                .collect(),
+        }
+    }
+}
+
+impl Features {
+    /// Features of a pixel without hits, or of an unknown one.
+    pub const NONE: Self = Self {
+        albedo: [0.0; 3],
+        normal: [0.0; 3],
+        depth: f32::INFINITY,
+        coverage: 0.0,
+        ground: 0.0,
+        id: NOTHING,
+    };
+}
+
+impl Layers {
+    /// Gathers the layers of a region from ranges of tiles, with features as [`features`] returns them;
+    /// missing tiles have no features.
+    pub fn gather(region: Region, pieces: &[(Range<u32>, Vec<Features>)]) -> Self {
+        let Region { x: left, y: top, width, height } = region;
+        let mut pixels = vec![Features::NONE; width as usize * height as usize];
+        for (tiles, features) in pieces {
+            let tiles = Film::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
+            let positions = tiles.flat_map(Region::morton);
+            for ((x, y), &features) in positions.zip(features) {
+                pixels[(y - top) as usize * width as usize + (x - left) as usize] = features;
+            }
+        }
+        Self { width, height, pixels, statistics: None }
+    }
+
+    /// Returns the bytes of the layers of a region during their computation.
+    pub fn bytes(region: Region) -> u64 {
+        // By tile, then by row; and the data of tiles.
+        let pixel = 2 * size_of::<Features>() as u64 + 10;
+        u64::from(region.width) * u64::from(region.height) * pixel
+    }
+
+    /// Returns the channels of some layers, for [`Image::write_layers`](crate::Image::write_layers);
+    /// none for layers that need missing statistics.
+    pub fn channels(&self, layers: &[Layer]) -> Vec<Channel> {
+        layers.iter().flat_map(|layer| layer.channels(self)).collect()
+    }
+}
+
+/// Computes the layers of a picture, with as many samples as the picture but at most [`SAMPLES`].
+///
+/// Only the region and the tracer of `options` are used. Like the picture's, pixels have the same bytes
+/// for any number of threads and any tracer, in a region and in the whole. If `wanted` has only
+/// [`Layer::Id`] and statistics, one ray per pixel is traced, and only the ids are valid.
+///
+/// # Errors
+/// Those of [`render()`](crate::render::render()).
+pub fn layers(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    wanted: &[Layer],
+) -> Result<Layers, RenderError> {
+    let region = render::check(world, settings, options)?;
+    let tiles = 0..Film::tile_count(region);
+    let features = features(world, settings, options, wanted, tiles.clone())?;
+    Ok(Layers::gather(region, &[(tiles, features)]))
+}
+
+/// Computes the features of some tiles of the region, by their numbers: tile by tile, in the order of
+/// [`Tile::pixels`](crate::film::Tile::pixels).
+///
+/// # Errors
+/// Those of [`render()`](crate::render::render()).
+pub fn features(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    wanted: &[Layer],
+    tiles: Range<u32>,
+) -> Result<Vec<Features>, RenderError> {
+    let region = render::check(world, settings, options)?;
+    let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
+    let filter = PixelFilter::new(settings.filter);
+    let (tracer, elisions) = (options.tracer, options.elisions);
+    let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions };
+    let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
+    let sampled = wanted.iter().any(traced);
+    let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
+    let tiles = Film::with_tiles(region, tiles, false).tiles;
+    let features: Vec<Vec<Features>> = tiles
+        .into_par_iter()
+        .map_init(
+            || Workspace::new(world, elisions),
+            |work, tile| {
+                let mut layers = TileLayers::new(tile);
+                layers.refine(&job, samples, work);
+                layers.features()
+            },
+        )
+        .collect();
+    Ok(features.into_iter().flatten().collect())
+}

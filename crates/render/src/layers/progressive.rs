@@ -1,0 +1,189 @@
+//! Layers that are refined together with their picture.
+
+use super::sums::Sums;
+use super::{Features, Layers, SAMPLES};
+use crate::film::{Film, Region, Tile, View};
+use crate::integrator::generate::{generate, generate_centers};
+use crate::integrator::workspace::Workspace;
+use crate::integrator::{Job, stages};
+use crate::render::{self, Options, RenderError, passes, view};
+use crate::sampling::{PixelFilter, Sampler};
+use crate::scene::{SamplerKind, Settings};
+use crate::trace::Traversal;
+use crate::world::World;
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Layers that are refined by more samples: equal to the last bit to those that
+/// [`layers`](super::layers()) computes at once with this number of samples.
+#[derive(Debug)]
+pub struct ProgressiveLayers {
+    region: Region,
+    settings: Settings,
+    tiles: Vec<TileLayers>,
+}
+
+/// Layers of a tile with the samples so far.
+#[derive(Debug)]
+pub(super) struct TileLayers {
+    tile: Tile,
+    sums: Vec<Sums>,
+    samples: u32,
+    /// Whether the ids at the pixels' centers are known.
+    centered: bool,
+}
+
+impl ProgressiveLayers {
+    /// Creates layers without samples, for the region of `options`.
+    ///
+    /// # Errors
+    /// Those of [`render()`](crate::render::render()).
+    pub fn begin(
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Self, RenderError> {
+        let region = render::check(world, settings, options)?;
+        let film = Film::with_tiles(region, 0..u32::MAX, false);
+        let tiles = film.tiles.into_iter().map(TileLayers::new).collect();
+        Ok(Self { region, settings: settings.clone(), tiles })
+    }
+
+    /// Takes the samples that pixels lack of those of `settings`, at most [`SAMPLES`]. Returns false if
+    /// the options' flag cancels it, which is checked for each tile. `world` must be that of the
+    /// beginning; if the settings are incompatible with the samples so far, all start again.
+    pub fn refine(&mut self, world: &World, settings: &Settings, options: &Options) -> bool {
+        if !extends(&self.settings, settings) {
+            self.tiles.iter_mut().for_each(TileLayers::reset);
+        }
+        self.settings = settings.clone();
+        let (samples, tiles) = (settings.spp.min(SAMPLES), self.tiles.len());
+        let cancelled = || options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
+        let filter = PixelFilter::new(settings.filter);
+        let (tracer, elisions) = (options.tracer, options.elisions);
+        let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions };
+        let next = AtomicUsize::new(0);
+        let queue: Vec<Mutex<&mut TileLayers>> = self.tiles.iter_mut().map(Mutex::new).collect();
+        rayon::broadcast(|_| {
+            let mut work = Workspace::new(world, elisions);
+            while !cancelled() {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(Ok(mut tile)) = queue.get(number).map(Mutex::lock) else { return };
+                tile.refine(&job, samples, &mut work);
+            }
+        });
+        next.into_inner() >= tiles && self.tiles.iter().all(|tile| tile.is_complete(samples))
+    }
+
+    /// Returns the layers so far.
+    pub fn layers(&self) -> Layers {
+        let features: Vec<Vec<Features>> =
+            self.tiles.par_iter().with_min_len(16).map(TileLayers::features).collect();
+        let tiles = 0..self.tiles.len() as u32;
+        Layers::gather(self.region, &[(tiles, features.into_iter().flatten().collect())])
+    }
+}
+
+/// Whether the samples of `a` are among those of `b`.
+fn extends(a: &Settings, b: &Settings) -> bool {
+    let strata = a.sampler != SamplerKind::Stratified || a.spp == b.spp;
+    (a.sampler, a.seed, a.filter) == (b.sampler, b.seed, b.filter) && a.spp <= b.spp && strata
+}
+
+impl TileLayers {
+    /// Returns the layers of a tile without samples.
+    pub(super) fn new(tile: Tile) -> Self {
+        let sums = vec![Sums::default(); tile.len() as usize];
+        Self { tile, sums, samples: 0, centered: false }
+    }
+
+    fn reset(&mut self) {
+        self.sums.fill(Sums::default());
+        (self.samples, self.centered) = (0, false);
+    }
+
+    fn is_complete(&self, samples: u32) -> bool {
+        self.samples == samples && self.centered
+    }
+
+    /// Takes the missing samples, and traces the rays through the pixels' centers.
+    pub(super) fn refine(&mut self, job: &Job, samples: u32, work: &mut Workspace) {
+        if self.is_complete(samples) {
+            return;
+        }
+        if !self.centered && job.tracer.traversal != Traversal::Brute {
+            self.tile.view = view(job, &self.tile);
+        }
+        if self.tile.view == View::Anything || job.world.ground.is_some() {
+            self.trace(job, samples, work);
+        }
+        (self.samples, self.centered) = (samples, true);
+    }
+
+    fn trace(&mut self, job: &Job, samples: u32, work: &mut Workspace) {
+        work.view = self.tile.view;
+        for pass in passes(samples).filter(|pass| pass.end > self.samples) {
+            let pass = pass.start.max(self.samples)..pass.end;
+            let count = pass.len();
+            generate(job, &self.tile, pass, work);
+            stages::intersect(job, work);
+            for (pixel, sums) in self.sums.iter_mut().enumerate() {
+                (pixel * count..(pixel + 1) * count).for_each(|row| sums.add(job.world, work, row));
+            }
+        }
+        if self.centered {
+            return;
+        }
+        generate_centers(job, &self.tile, work);
+        stages::intersect(job, work);
+        for (sums, &hit) in self.sums.iter_mut().zip(&work.hits.sphere) {
+            sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);
+        }
+    }
+
+    /// Returns the features of its pixels, in the order of [`Tile::pixels`].
+    pub(super) fn features(&self) -> Vec<Features> {
+        self.sums.iter().map(|sums| sums.mean(self.samples)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::{Layer, layers};
+    use crate::scene::generate::default_scene;
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn refined_layers_equal_those_computed_at_once() {
+        let mut scene = default_scene(4);
+        (scene.settings.width, scene.settings.height) = (40, 27);
+        let world = World::build(&scene).unwrap();
+        for sampler in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
+            let of = |spp| Settings { spp, sampler, ..scene.settings.clone() };
+            let options = Options::default();
+            let mut growing = ProgressiveLayers::begin(&world, &of(1), &options).unwrap();
+            for spp in [1, 2, 5, 16, 20, 37, 36, 40] {
+                assert!(growing.refine(&world, &of(spp), &options));
+                let whole = layers(&world, &of(spp), &options, &[Layer::Depth]).unwrap();
+                assert_eq!(growing.layers(), whole, "{sampler:?} {spp}");
+            }
+        }
+    }
+
+    #[test]
+    fn cancelled_layers_can_be_resumed() {
+        let mut scene = default_scene(4);
+        (scene.settings.width, scene.settings.height, scene.settings.spp) = (40, 27, 3);
+        let world = World::build(&scene).unwrap();
+        let flag = AtomicBool::new(true);
+        let stopped = Options { cancel: Some(&flag), ..Options::default() };
+        let mut growing = ProgressiveLayers::begin(&world, &scene.settings, &stopped).unwrap();
+        assert!(!growing.refine(&world, &scene.settings, &stopped));
+        assert!(growing.refine(&world, &scene.settings, &Options::default()));
+        let whole = layers(&world, &scene.settings, &Options::default(), &[Layer::Depth]).unwrap();
+        assert_eq!(growing.layers(), whole);
+    }
+}

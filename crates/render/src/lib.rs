@@ -1,0 +1,57 @@
+//! The renderer of Spherule: scenes, worlds, path tracing, films and image files.
+//!
+//! This is the implementation of the crate `spherule`, which has the public interface: use that. Anything here may
+//! change in any release. The modules, in the order of the data:
+//!
+//! ```text
+//! settings, color, sampling   vocabulary
+//! scene                       what users write
+//! world                       what kernels read
+//! trace, shade, integrator    one batch of paths
+//! film, noise, render         tiles, their error, and rounds over them
+//! layers, overlay, image      pictures and their files
+//! ```
+
+#![forbid(unsafe_code)]
+
+// Exact ray queries on spheres.
+pub use spherule_core as query;
+pub use spherule_core::internals::{bvh, exact, intersect, lanes, ray, spheres, vec3};
+
+// Particle files, and what their readers share with scene files.
+pub use spherule_particles::internals::{memory, suggest};
+
+// Vocabulary: knows nothing of scenes.
+pub mod color;
+pub mod sampling;
+pub mod settings;
+
+// The pipeline, in order.
+pub mod scene;
+pub mod world;
+
+pub mod trace;
+
+pub mod integrator;
+pub mod shade;
+
+pub mod checkpoint;
+pub mod film;
+pub mod layers;
+pub mod noise;
+pub mod overlay;
+pub mod prepared;
+pub mod render;
+pub mod split;
+
+#[cfg(feature = "drawing")]
+pub mod drawing;
+
+pub mod atomic;
+pub mod image;
+mod sealed;
+
+pub use image::Image;
+pub use scene::Scene;
+pub use spherule_core::SphereTree;
+pub use world::World;

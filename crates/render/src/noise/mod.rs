@@ -1,0 +1,42 @@
+//! Estimates the error of an image, and where more samples reduce it most.
+//!
+//! # Probes
+//!
+//! The error of a pixel's mean cannot be estimated from its own samples: these are not independent, and
+//! their spread, like the difference of two halves of their sequence, overestimates it several times.
+//! But pixels have independent random numbers, so the squared error of a picture is the sum of the
+//! variances of its pixels' means, and such a sum can be estimated from some of them. [`Probes`] are
+//! pixels drawn at random, one per block of neighbors, and rendered twice in addition to the picture,
+//! each time with as many samples as the picture's own: half of the squared difference of two such
+//! means is an unbiased estimate of the variance of one, including the gain of the sequence.
+//!
+//! # Absence of bias
+//!
+//! The number of samples of a pixel is decided by probes, their rays, and a pilot of all pixels, whose
+//! random numbers are independent of the picture's. So, given all counts, each pixel is the mean of the
+//! first points of its own scrambled sequence, every one of them uniform: its expectation is that of
+//! one sample. The picture's samples do not influence their number. (With a time limit, the clock does,
+//! and samples take time.)
+//!
+//! Likewise the estimate of the picture's squared error is unbiased after any number of rounds: of two
+//! sets of probes one steers, and only the other judges. What remains is that the render stops when
+//! that estimate is low; the bound that is compared with the target allows for it.
+//!
+//! # The bound
+//!
+//! The judging probes' terms are independent and not negative, so the lower tail of their sum is
+//! Gaussian or lighter, however heavy the upper one is: the sum lies more than `x` times the root of
+//! the sum of their second moments below its expectation with a probability of at most exp(-x^2/2)
+//! (Maurer, "A Bound on the Deviation Probability for Sums of Non-Negative Random Variables", JIPAM
+//! 2003). Second moments are estimated by the squares of the terms, and third moments are added to the
+//! bound, so that it holds for several decisions and for errors that few pixels dominate. Noise that no
+//! probe finds is underestimated: noise of events too rare for the probes' samples, or with an infinite
+//! fourth moment (roulette that makes paths ever brighter).
+//!
+//! [`Probes`]: crate::film::Probes
+
+mod estimate;
+mod plan;
+
+pub use estimate::{CONFIDENCE, Estimate, Noise, gain, mean_radiance, squared_error};
+pub use plan::{Goal, Slope, next_round, steering_variance, work};

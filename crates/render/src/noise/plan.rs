@@ -1,0 +1,269 @@
+//! Adaptive sampling: chooses the tiles that get more samples, as a function of the film.
+
+use super::estimate::neighbors;
+use crate::film::{Film, Role, Tile};
+use serde::{Deserialize, Serialize};
+
+/// Minimum and maximum exponent of the decrease of variance with samples.
+const EXPONENTS: (f64, f64) = (0.5, 2.0);
+
+/// Weight in pixels of the whole picture's mean noise in a tile's estimate, beside its own 4096: no
+/// tile is considered noise-free only because its probes found nothing.
+const PRIOR_PIXELS: f64 = 128.0;
+
+/// Minimum and maximum work of a round, as fractions of the work before it: the minimum limits the
+/// number of decisions.
+const WORK: (f64, f64) = (1.0 / 16.0, 0.5);
+
+/// Number of tiles below which steps are small under a time limit, and the divisor of such a step.
+const FEW_TILES: usize = 64;
+const SMALL_STEP: u32 = 16;
+
+/// Limits of adaptive sampling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Goal {
+    /// Minimum number of samples for probes to be reliable.
+    pub first: u32,
+    /// Maximum number of samples of a pixel.
+    pub most: u32,
+    /// Whether a time limit ends the render: then it starts with single samples.
+    pub timed: bool,
+}
+
+/// The rate at which variance falls with samples, learned from tiles whose samples were doubled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Slope {
+    /// Sum of the tiles' variances before and after doubling.
+    sums: [f64; 2],
+}
+
+impl Default for Slope {
+    /// The rate of independent samples, with little weight.
+    fn default() -> Self {
+        Self { sums: [2e-12, 1e-12] }
+    }
+}
+
+impl Slope {
+    /// Learns from variances `before` and `after` doubling the samples; older values decay.
+    pub fn learn(&mut self, before: f64, after: f64) {
+        self.sums = [self.sums[0] / 2.0 + before, self.sums[1] / 2.0 + after];
+    }
+
+    /// Returns the exponent: variance is inversely proportional to this power of the number of samples.
+    pub fn exponent(&self) -> f64 {
+        let exponent = (self.sums[0] / self.sums[1]).log2();
+        if exponent.is_finite() { exponent.clamp(EXPONENTS.0, EXPONENTS.1) } else { 1.0 }
+    }
+}
+
+impl Goal {
+    /// Returns the number of samples of a tile after its next step, in a film of `tiles` tiles.
+    pub fn next(&self, samples: u32, tiles: usize) -> u32 {
+        let next = match samples {
+            _ if samples < self.first && self.timed => (2 * samples).clamp(1, self.first),
+            _ if samples < self.first => self.first,
+            _ if self.timed && tiles < FEW_TILES => {
+                samples + (samples / SMALL_STEP).next_multiple_of(self.first.max(SMALL_STEP))
+            }
+            _ => samples.saturating_mul(2),
+        };
+        next.min(self.most)
+    }
+}
+
+/// Returns the sum of the variances of a tile's pixels, by the steering probes.
+pub fn steering_variance(tile: &Tile) -> f64 {
+    tile.probes.readings(Role::Steer).map(|reading| reading.weight * reading.squared).sum()
+}
+
+/// Returns the tiles of the next round in descending order of benefit; none if all have the maximum of
+/// samples.
+///
+/// `wanted` is the factor by which the picture's squared error must fall, less than 1; 0 if there is no
+/// error target.
+pub fn next_round(film: &Film, goal: &Goal, slope: Slope, wanted: f64) -> Vec<u32> {
+    let least = film.tiles.iter().filter(|tile| tile.probes.streams() > 0);
+    let least = least.map(|tile| tile.samples).min().unwrap_or(0);
+    let mut open: Vec<u32> = (0..film.tiles.len() as u32)
+        .filter(|&tile| is_open(&film.tiles[tile as usize], goal))
+        .collect();
+    if least < goal.first {
+        // Uniform; if time is short, the remaining tiles are scattered over the picture.
+        open.retain(|&tile| film.tiles[tile as usize].samples == least);
+        open.sort_by_key(|&tile| crate::sampling::mix(u64::from(tile)));
+        return open;
+    }
+    let tiles = Benefit::of(film, goal, slope.exponent());
+    open.sort_by(|&a, &b| tiles[b as usize].rate().total_cmp(&tiles[a as usize].rate()));
+    let total: f64 = tiles.iter().map(|tile| tile.variance).sum();
+    let spent: f64 = film.tiles.iter().map(work).sum();
+    let (mut left, mut added, mut count) = (total, 0.0, 0);
+    for &tile in &open {
+        let enough = left <= total * wanted && added >= WORK.0 * spent;
+        if enough || added > WORK.1 * spent {
+            break;
+        }
+        left -= tiles[tile as usize].gained;
+        added += tiles[tile as usize].work;
+        count += 1;
+    }
+    open.truncate(count);
+    open
+}
+
+/// Whether a tile can have more samples, and needs them.
+fn is_open(tile: &Tile, goal: &Goal) -> bool {
+    tile.probes.streams() > 0 && tile.samples < goal.most
+}
+
+/// Returns the rays that a tile has taken, by those of its probes: independent of the picture's own.
+pub fn work(tile: &Tile) -> f64 {
+    f64::from(tile.samples) * per_sample(tile)
+}
+
+/// Returns the rays of a sample of each pixel; more than 0 even if all rays leave the scene.
+fn per_sample(tile: &Tile) -> f64 {
+    f64::from(tile.len()) * tile.probes.rays_per_sample()
+}
+
+/// Benefit and cost of a step of a tile.
+#[derive(Clone, Copy, Debug)]
+struct Benefit {
+    /// Sum of the variances of its pixels.
+    variance: f64,
+    /// Expected decrease of the variance.
+    gained: f64,
+    /// Cost of the step.
+    work: f64,
+}
+
+impl Benefit {
+    /// Computes the benefit of each tile, also by probes of its neighbors, whose noise is scaled to the
+    /// tile's own number of samples.
+    fn of(film: &Film, goal: &Goal, exponent: f64) -> Vec<Self> {
+        let count = film.tiles.len();
+        // Noise and pixels of each tile, as for one sample.
+        let power = |samples: u32| f64::from(samples.max(1)).powf(exponent);
+        let measured = |tile: &Tile| tile.probes.streams() > 0;
+        let rows: Vec<(f64, f64)> = film
+            .tiles
+            .iter()
+            .map(|tile| {
+                if measured(tile) {
+                    (steering_variance(tile), f64::from(tile.len()))
+                } else {
+                    (0.0, 0.0)
+                }
+            })
+            .zip(&film.tiles)
+            .map(|((variance, pixels), tile)| (variance * power(tile.samples), pixels))
+            .collect();
+        let sum = |a: (f64, f64), b: (f64, f64)| (a.0 + b.0, a.1 + b.1);
+        let (noise, pixels) = rows.iter().copied().fold((0.0, 0.0), sum);
+        let mean = noise / f64::max(pixels, 1.0);
+        let benefit = |(index, tile): (usize, &Tile)| {
+            let pooled = neighbors(index, film.columns(), count)
+                .map(|(at, weight)| (weight * rows[at].0, weight * rows[at].1))
+                .fold((PRIOR_PIXELS * mean, PRIOR_PIXELS), sum);
+            let variance = pooled.0 / pooled.1 * rows[index].1 / power(tile.samples);
+            let next = goal.next(tile.samples, count);
+            let gained = variance * (1.0 - power(tile.samples) / power(next));
+            let steps = f64::from(next.saturating_sub(tile.samples));
+            Self { variance, gained, work: steps * per_sample(tile) }
+        };
+        film.tiles.iter().enumerate().map(benefit).collect()
+    }
+
+    fn rate(&self) -> f64 {
+        self.gained / self.work.max(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Density, Region};
+    use crate::scene::Rgb;
+
+    fn steps(goal: Goal, tiles: usize) -> Vec<u32> {
+        let step = |&samples: &u32| {
+            Some(goal.next(samples, tiles)).filter(|next| samples < goal.most && *next > samples)
+        };
+        std::iter::successors(Some(0), step).collect()
+    }
+
+    #[test]
+    fn samples_double_up_to_the_limit() {
+        let goal = Goal { first: 16, most: 100, timed: false };
+        assert_eq!(steps(goal, 1000), [0, 16, 32, 64, 100]);
+        let timed = Goal { timed: true, ..goal };
+        assert_eq!(steps(timed, 1000), [0, 1, 2, 4, 8, 16, 32, 64, 100]);
+        assert_eq!(steps(timed, 3), [0, 1, 2, 4, 8, 16, 32, 48, 64, 80, 96, 100]);
+        assert_eq!(steps(Goal { first: 3, most: 3, timed: true }, 9), [0, 1, 2, 3]);
+        let odd = Goal { first: 12, ..timed };
+        assert_eq!(steps(odd, 1000), [0, 1, 2, 4, 8, 12, 24, 48, 96, 100]);
+    }
+
+    #[test]
+    fn slopes_follow_new_values() {
+        let mut slope = Slope::default();
+        assert_eq!(slope.exponent(), 1.0);
+        slope.learn(8.0, 3.0);
+        assert!((slope.exponent() - (8.0_f64 / 3.0).log2()).abs() < 1e-9);
+        slope.learn(1e9, 1.0);
+        assert_eq!(slope.exponent(), 2.0);
+        slope.learn(0.0, 0.0);
+        assert!(slope.exponent().is_finite());
+    }
+
+    /// Four tiles in a row; probes of tile `noisy` find noise, and tile 3 needs none.
+    fn film(noisy: usize) -> Film {
+        let mut film = Film::new(Region { x: 0, y: 0, width: 64, height: 16 }, false).unwrap();
+        film.place_probes(Density { block: 64, replicas: 1 }, 1, |tile| tile.region.x < 48);
+        for (index, tile) in film.tiles.iter_mut().enumerate() {
+            let streams = tile.probes.streams();
+            let samples = (0..16 * streams).map(|i| {
+                let odd = index == noisy && i / 16 % 2 == 1;
+                Rgb::splat(if odd { 2.0 } else { 1.0 })
+            });
+            tile.samples = 16;
+            tile.probes.add(&samples.collect::<Vec<_>>(), 16);
+            tile.probes.rays = 16 * streams as u64;
+        }
+        film
+    }
+
+    #[test]
+    fn noisy_tiles_come_first_and_others_last() {
+        let goal = Goal { first: 16, most: 64, timed: false };
+        let film = film(1);
+        let some = next_round(&film, &goal, Slope::default(), 0.9);
+        assert_eq!(some, [1]);
+        let all = next_round(&film, &goal, Slope::default(), 0.0);
+        assert!(all.len() >= 2 && all[0] == 1 && !all.contains(&3), "{all:?}");
+        let done = Goal { most: 16, ..goal };
+        assert!(next_round(&film, &done, Slope::default(), 0.0).is_empty());
+    }
+
+    #[test]
+    fn older_values_count_half() {
+        let mut slope = Slope::default();
+        slope.learn(8.0, 3.0);
+        slope.learn(1.0, 1.0);
+        assert!((slope.exponent() - (5.0_f64 / 2.5).log2()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn probes_that_judge_do_not_steer() {
+        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false).unwrap();
+        film.place_probes(Density { block: 64, replicas: 1 }, 1, |_| true);
+        // Probes of the two roles alternate, with two streams each: only those of judges differ.
+        let probes = &mut film.tiles[0].probes;
+        let radiance = |stream: usize| Rgb::splat(if stream % 4 == 3 { 2.0 } else { 1.0 });
+        let samples: Vec<Rgb> = (0..probes.streams()).map(radiance).collect();
+        probes.add(&samples, 1);
+        assert_eq!(steering_variance(&film.tiles[0]), 0.0);
+        assert!(crate::noise::squared_error(&film).value > 0.0);
+    }
+}

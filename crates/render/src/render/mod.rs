@@ -1,0 +1,155 @@
+//! Rendering: passes over tiles, which are distributed over threads.
+//!
+//! A plain render takes the same number of samples for every pixel. With an error target or a time
+//! limit, it goes in rounds over the tiles that need more samples: see [`crate::noise`]. Both can be
+//! stopped and resumed without changing the picture: see [`ResumableRender`].
+
+mod adapt;
+mod error;
+mod header;
+mod incompatible;
+mod part;
+mod pass;
+mod resumable;
+mod schedule;
+mod state;
+mod status;
+mod target;
+mod tasks;
+mod uniform;
+mod watch;
+
+pub use crate::integrator::elisions::Elisions;
+pub use error::RenderError;
+pub(crate) use error::check;
+pub(crate) use header::RenderHeader;
+pub use incompatible::IncompatibleSettings;
+pub(crate) use incompatible::difference;
+pub use part::ImagePart;
+pub(crate) use pass::view;
+pub use resumable::ResumableRender;
+pub use status::Status;
+pub use target::{End, Stage};
+pub use tasks::Tasks;
+pub use watch::Totals;
+
+use self::pass::PASS;
+use crate::film::Region;
+use crate::image::Image;
+use crate::integrator::clock::Times;
+use crate::integrator::counters::Counters;
+use crate::noise::Noise;
+use crate::scene::Settings;
+use crate::trace::Tracer;
+use crate::world::World;
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+/// Options of a render that do not change the image.
+#[derive(Clone, Copy, Default)]
+pub struct Options<'a> {
+    /// Traversal of rays; the default is the fastest.
+    pub tracer: Tracer,
+    /// Renders only this part of the picture; `None` for all of it. Its pixels are the same as in the
+    /// whole picture, unless a target decides on the number of samples, which considers only the
+    /// region.
+    pub region: Option<Region>,
+    /// Called with the progress after each tile, on any thread.
+    pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    /// Set this to end the render early, with the samples so far.
+    pub cancel: Option<&'a AtomicBool>,
+    /// Whether [`Render::statistics`] are computed, which needs probes and so takes time.
+    pub statistics: bool,
+    /// Work that may be omitted without changing the image; the default is all.
+    pub elisions: Elisions,
+}
+
+/// Progress of a render.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Fraction of the work that is done, 0..=1; estimated with a target, so that it may decrease.
+    pub done: f64,
+    /// Rays traced so far.
+    pub rays: u64,
+    /// Rendering time, without interruptions.
+    pub elapsed: Duration,
+    /// Estimated error of the image, if it is measured.
+    pub noise: Option<Noise>,
+}
+
+/// The result of a render: the finished image, or the image so far.
+#[derive(Clone, Debug)]
+pub struct Render {
+    /// Mean radiance of each pixel.
+    pub image: Image,
+    /// Number of samples.
+    pub samples: Samples,
+    /// Estimated error of the image, if it was measured.
+    pub noise: Option<Noise>,
+    /// Variance and samples of each pixel, if requested.
+    pub statistics: Option<Statistics>,
+    /// Counters of rays and decisions, probes included.
+    pub counters: Counters,
+    /// Time in each stage, summed over threads.
+    pub times: Times,
+    /// Division of the work into tasks.
+    pub tasks: Tasks,
+    /// Rendering time.
+    pub elapsed: Duration,
+    /// Reason why it ended.
+    pub end: End,
+    /// Targets in the order in which they are reached: several if the render was extended.
+    pub stages: Vec<Stage>,
+    /// Whether all samples were taken: otherwise the render was cancelled.
+    pub complete: bool,
+}
+
+/// Numbers of samples of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Samples {
+    /// Total of all pixels.
+    pub total: u64,
+    /// Minimum over pixels.
+    pub least: u32,
+    /// Maximum over pixels.
+    pub most: u32,
+    /// Number of rounds: together with the settings, it identifies the picture.
+    pub rounds: u32,
+}
+
+/// Statistics of each pixel, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statistics {
+    /// Variance of the pixel's mean, by channel, in squared units of radiance.
+    ///
+    /// The variance of the pixel's samples over their number, times a factor for the gain of the
+    /// sequence over independent samples, from probes of the tile and its neighbors. The estimate for a
+    /// single pixel is noisy: it is 0 for a pixel whose samples found no light.
+    pub variance: Image,
+    /// Number of samples.
+    pub samples: Vec<u32>,
+}
+
+/// Renders `world` with the threads of the current rayon pool.
+///
+/// The picture depends only on the world and the settings: it has the same bytes for any number of
+/// threads and any tracer; a time limit decides only the number of samples.
+///
+/// # Errors
+/// Settings out of range, or for another picture size than that of the world's camera; a region that is
+/// not in the picture.
+pub fn render(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+) -> Result<Render, RenderError> {
+    let mut unfinished = ResumableRender::begin(world, settings, options)?;
+    unfinished.run(world, options);
+    Ok(unfinished.render())
+}
+
+/// Returns the samples of each pass.
+pub(crate) fn passes(spp: u32) -> impl Iterator<Item = Range<u32>> {
+    (0..spp).step_by(PASS as usize).map(move |first| first..spp.min(first + PASS))
+}

@@ -1,0 +1,150 @@
+//! Passes: samples of a tile, batch by batch.
+
+use crate::film::{Pilot, Region, Tile, View};
+use crate::integrator::Job;
+use crate::integrator::clock::Stage;
+use crate::integrator::generate::generate_streams;
+use crate::integrator::workspace::{BATCH, Workspace};
+use crate::sampling::Sampler;
+use crate::scene::Rgb;
+use crate::world::World;
+use glam::DVec2;
+use std::ops::Range;
+
+/// Samples per pixel and pass; those of a tile are one batch of paths.
+pub(super) const PASS: u32 = 16;
+
+/// Returns the surfaces that camera rays of a tile may hit.
+pub(crate) fn view(job: &Job, tile: &Tile) -> View {
+    let world = job.world;
+    let reach = f64::from(job.filter.radius()) - 0.5;
+    let Region { x, y, width, height } = tile.region;
+    let low = DVec2::new(f64::from(x), f64::from(y)) - reach;
+    let high = DVec2::new(f64::from(x + width), f64::from(y + height)) + reach;
+    let hit = world.bvh.may_be_hit(&world.spheres, &world.camera.beam(low, high));
+    if hit { View::Anything } else { View::Background }
+}
+
+/// Returns the radiance of all samples of a tile, if they are equal and known.
+pub(super) fn uniform_radiance(world: &World, tile: &Tile) -> Option<Rgb> {
+    uniform_view(world, tile.view)
+}
+
+fn uniform_view(world: &World, view: View) -> Option<Rgb> {
+    let only = world.ground.is_none() && !world.lights.suns_have_discs();
+    world.environment.constant().filter(|_| only && view == View::Background)
+}
+
+/// The data of a tile that its camera rays need.
+#[derive(Clone, Copy)]
+pub(super) struct TileView {
+    region: Region,
+    view: View,
+}
+
+/// Samples of a tile that are not yet added to its sums.
+pub(super) enum TileSamples {
+    /// Samples of equal radiance.
+    Uniform(Rgb),
+    /// The radiance of this number of paths of a workspace.
+    Paths(usize),
+}
+
+impl TileView {
+    pub(super) fn of(tile: &Tile) -> Self {
+        Self { region: tile.region, view: tile.view }
+    }
+
+    /// Takes samples of the pixels.
+    pub(super) fn take(self, job: &Job, samples: Range<u32>, work: &mut Workspace) -> TileSamples {
+        work.clock.restart();
+        let uniform = uniform_view(job.world, self.view).filter(|_| job.elisions.even_background);
+        if let Some(radiance) = uniform {
+            let pixels = u64::from(self.region.width) * u64::from(self.region.height);
+            work.counters.skipped_samples += pixels * samples.len() as u64;
+            return TileSamples::Uniform(radiance);
+        }
+        let streams = self.region.morton().map(|(x, y)| (x, y, *job.sampler));
+        TileSamples::Paths(trace_paths(job, self.view, (streams, samples), work))
+    }
+}
+
+impl TileSamples {
+    /// Adds the samples to their tile: `count` for each of its pixels.
+    pub(super) fn add(self, tile: &mut Tile, count: u32, work: &mut Workspace) {
+        match self {
+            Self::Uniform(radiance) => tile.add_even(radiance, count),
+            Self::Paths(paths) => {
+                work.counters.bad_samples += tile.add(&work.paths.radiance[..paths], count);
+            }
+        }
+        work.clock.end(Stage::Film);
+    }
+}
+
+/// Adds samples to the pixels of a tile.
+pub(super) fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
+    let count = samples.end - samples.start;
+    TileView::of(tile).take(job, samples, work).add(tile, count, work);
+}
+
+/// Adds to the probes of a tile the samples that they lack, up to the end, as long as `proceed` is
+/// true.
+pub(super) fn probe_pass(
+    job: &Job,
+    tile: &mut Tile,
+    samples: Range<u32>,
+    work: &mut Workspace,
+    proceed: impl Fn() -> bool,
+) {
+    let Some(batch) = BATCH.checked_div(tile.probes.streams()) else { return };
+    while samples.start + tile.probes.samples < samples.end && proceed() {
+        let first = samples.start + tile.probes.samples;
+        let range = first..samples.end.min(first.saturating_add(batch as u32));
+        let count = range.len() as u32;
+        work.clock.restart();
+        let rays = work.counters.rays();
+        let streams = tile.probes.starts(job.sampler);
+        let paths = trace_paths(job, tile.view, (streams, range), work);
+        work.counters.bad_samples += tile.probes.add(&work.paths.radiance[..paths], count);
+        tile.probes.rays += work.counters.rays() - rays;
+        work.clock.end(Stage::Film);
+    }
+}
+
+/// Takes pilot samples, which are not part of the picture: one pixel of each `block`, and `samples` of
+/// it, at most [`PASS`].
+pub(super) fn pilot_pass(
+    job: &Job,
+    tile: &mut Tile,
+    (block, samples): (u32, u32),
+    work: &mut Workspace,
+) {
+    if let Some(radiance) = uniform_radiance(job.world, tile) {
+        let sum = f64::from(tile.len()) * radiance.to_array().map(f64::from).iter().sum::<f64>();
+        tile.probes.pilot = Some(Pilot { sum: sum / 3.0, variance: 0.0 });
+        return;
+    }
+    work.clock.restart();
+    let pixels = Pilot::starts(tile, job.sampler, job.settings.seed, block);
+    let streams = pixels.iter().map(|&(x, y, sampler, _)| (x, y, sampler));
+    let paths = trace_paths(job, tile.view, (streams, 0..samples), work);
+    let weights = pixels.iter().map(|&(.., weight)| weight);
+    tile.probes.pilot = Some(Pilot::new(&work.paths.radiance[..paths], samples, weights));
+    work.clock.end(Stage::Film);
+}
+
+/// Traces the paths of samples to their ends, and returns their number.
+fn trace_paths(
+    job: &Job,
+    view: View,
+    (streams, samples): (impl Iterator<Item = (u32, u32, Sampler)>, Range<u32>),
+    work: &mut Workspace,
+) -> usize {
+    work.view = view;
+    generate_streams(job, streams, samples, work);
+    let paths = work.len();
+    job.integrate(work);
+    work.clock.end(Stage::Shade);
+    paths
+}

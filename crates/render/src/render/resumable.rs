@@ -1,0 +1,286 @@
+//! Renders that can be stopped, saved and resumed.
+
+use super::part::ImagePart;
+use super::state::State;
+use super::target::{self, End, Stage, Target};
+use super::watch::{Totals, Watch};
+use super::{
+    IncompatibleSettings, Options, Render, RenderError, Samples, Statistics, adapt, error,
+    incompatible, pass, uniform,
+};
+use crate::film::{Film, Region};
+use crate::integrator::Job;
+use crate::noise;
+use crate::sampling::{PixelFilter, Sampler};
+use crate::scene::{Integrator, Settings};
+use crate::trace::Traversal;
+use crate::world::World;
+use rayon::prelude::*;
+
+/// The complete state of a render that may have been stopped.
+///
+/// # Determinism
+///
+/// A render that is stopped and resumed, any number of times, with any number of threads and any
+/// tracer, produces the same bytes as one that was never stopped: the samples of a pixel are summed
+/// without rounding, and adaptive decisions are functions of this state. A render with a time limit
+/// follows a fixed sequence of steps; time only decides how many of them are made.
+///
+/// # Extending a render
+///
+/// [`ResumableRender::extend`] asks for more samples, a smaller error or more time:
+///
+/// * More samples, without an error target: the result is that of a render with as many from the start.
+/// * More time: the sequence of steps continues.
+/// * A smaller error, or more samples with an error target: the previous target is reached first, then
+///   the new one. So the result depends on the sequence of requests, not on when they were made; a
+///   render with the last target alone may take other samples, and is equally valid.
+#[derive(Clone, Debug)]
+pub struct ResumableRender {
+    pub(super) settings: Settings,
+    /// Targets, in the order in which they are reached.
+    pub(super) stages: Vec<Stage>,
+    /// Number of targets that were reached.
+    pub(super) met: usize,
+    /// Whether sums of squares are kept.
+    pub(super) statistics: bool,
+    /// The part of the image to render.
+    pub(super) part: ImagePart,
+    pub(super) state: State,
+    pub(super) totals: Totals,
+    pub(super) end: End,
+}
+
+impl ResumableRender {
+    /// Returns a render without samples; `world` and `settings` are those of [`super::render()`]. Of
+    /// the options, region and statistics hold for the whole render.
+    ///
+    /// # Errors
+    /// Those of [`super::render()`].
+    pub fn begin(
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+    ) -> Result<Self, RenderError> {
+        let part = ImagePart::whole(error::check(world, settings, options)?, settings.spp);
+        Self::begin_part(world, settings, options, part)
+    }
+
+    /// Returns a render of one part of an image, to be merged with others. The settings are those of the
+    /// whole image, without an error target: a part alone does not know the error of the image.
+    ///
+    /// # Errors
+    /// Those of [`super::render()`], and a part that exceeds the image.
+    pub fn begin_part(
+        world: &World,
+        settings: &Settings,
+        options: &Options,
+        part: ImagePart,
+    ) -> Result<Self, RenderError> {
+        let statistics = options.statistics;
+        let region = error::check(world, settings, options)?;
+        if part.common(&ImagePart::whole(region, settings.spp)).as_ref() != Some(&part) {
+            return Err(RenderError::Part(part));
+        }
+        let mut film = Film::with_tiles(region, part.tiles.clone(), statistics);
+        let state = with_job(world, settings, options, |job| {
+            if options.tracer.traversal != Traversal::Brute && options.elisions.empty_tiles {
+                film.tiles.par_iter_mut().for_each(|tile| tile.view = pass::view(job, tile));
+            }
+            let measured = settings.has_target() || statistics;
+            if measured { State::new(job, film) } else { State::unmeasured(film) }
+        });
+        let stages = if settings.has_target() { vec![Stage::of(settings)] } else { Vec::new() };
+        let (settings, totals, end) = (settings.clone(), Totals::default(), End::Cancelled);
+        Ok(Self { settings, stages, met: 0, statistics, part, state, totals, end })
+    }
+
+    /// Adds the samples of another part of the same image. Returns false if the two are incompatible;
+    /// then this one is unusable.
+    pub(crate) fn merge(&mut self, other: Self) -> bool {
+        self.totals.add(&other.totals);
+        self.statistics == other.statistics && self.state.film.merge(other.state.film)
+    }
+
+    /// Completes merged parts to the whole image: missing tiles are black.
+    pub(crate) fn fill_missing(&mut self) {
+        self.part = ImagePart::whole(self.region(), self.settings.spp);
+        self.state.film.fill(self.statistics);
+        self.state.round = uniform::rounds_taken(&self.state.film);
+        let complete = self.samples().least == self.settings.spp;
+        self.end = if complete { End::Samples } else { End::Cancelled };
+    }
+
+    /// Renders until all targets are reached, time is up, or `options.cancel` is set, with the threads of
+    /// the current rayon pool. A pass over a tile is always finished.
+    ///
+    /// `world` must be the one that the render began with. Region and statistics of the options are
+    /// ignored: those of the beginning hold.
+    pub fn run(&mut self, world: &World, options: &Options) -> End {
+        let watch = Watch::new(options, &self.totals);
+        let settings = self.settings.clone();
+        self.end = with_job(world, &settings, options, |job| {
+            if settings.has_target() {
+                self.reach_targets(job, &watch)
+            } else {
+                uniform::run(job, self.part.samples.clone(), &mut self.state, &watch)
+            }
+        });
+        self.totals = watch.totals();
+        self.end
+    }
+
+    /// Reaches the remaining targets.
+    fn reach_targets(&mut self, job: &Job, watch: &Watch) -> End {
+        let mut end = self.end;
+        while let Some(&stage) = self.stages.get(self.met) {
+            let target = Target::new(stage, self.settings.time);
+            end = adapt::run(job, &mut self.state, &target, watch);
+            if matches!(end, End::Cancelled | End::Time) {
+                return end;
+            }
+            self.met += 1;
+        }
+        end
+    }
+
+    /// Asks for more samples, a smaller error or more time. Exposure and tone may change freely.
+    ///
+    /// # Errors
+    /// A setting is out of range, asks for less than before, or changes although all samples depend on
+    /// it; or the samples are stratified, and the number of strata would change.
+    pub fn extend(&mut self, settings: &Settings) -> Result<(), IncompatibleSettings> {
+        settings.check()?;
+        incompatible::check(&self.settings, settings)?;
+        if settings.spp != self.settings.spp && !self.is_whole() {
+            return Err(IncompatibleSettings::Part { then: self.settings.spp, now: settings.spp });
+        }
+        let stage = Stage::of(settings);
+        if settings.has_target() && self.stages.last() != Some(&stage) {
+            self.stages.push(stage);
+        }
+        if settings.spp != self.settings.spp {
+            self.part = ImagePart::whole(self.region(), settings.spp);
+        }
+        self.settings = settings.clone();
+        Ok(())
+    }
+
+    /// Returns the image so far with its statistics.
+    pub fn render(&self) -> Render {
+        let (film, settings) = (&self.state.film, &self.settings);
+        let statistics = self.statistics.then(|| Statistics {
+            variance: film.variance(|tile| noise::gain(film, tile)),
+            samples: film.samples(),
+        });
+        let measured = settings.has_target() || self.statistics;
+        let Totals { counters, times, tasks, elapsed } = self.totals;
+        Render {
+            image: film.resolve(),
+            samples: self.samples(),
+            noise: measured.then(|| self.state.noise(settings.until_error.is_some())).flatten(),
+            statistics,
+            counters,
+            times,
+            tasks,
+            elapsed,
+            end: self.end,
+            stages: self.stages.clone(),
+            complete: self.is_complete(),
+        }
+    }
+
+    /// Returns the part of the image to render.
+    pub fn part(&self) -> &ImagePart {
+        &self.part
+    }
+
+    /// Whether that part is the whole image.
+    pub fn is_whole(&self) -> bool {
+        self.part == ImagePart::whole(self.region(), self.settings.spp)
+    }
+
+    /// Whether all targets or the time limit were reached.
+    pub fn is_complete(&self) -> bool {
+        self.end != End::Cancelled
+    }
+
+    /// Returns the number of samples so far.
+    pub fn samples(&self) -> Samples {
+        let tiles = &self.state.film.tiles;
+        let counts = || tiles.iter().map(|tile| tile.samples);
+        let total = tiles.iter().map(|tile| u64::from(tile.samples) * u64::from(tile.len()));
+        Samples {
+            total: total.sum(),
+            least: counts().min().unwrap_or(0),
+            most: counts().max().unwrap_or(0),
+            rounds: self.state.round,
+        }
+    }
+
+    /// Returns the settings of the last extension.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Returns the targets in order; the last is that of the settings.
+    pub fn stages(&self) -> &[Stage] {
+        &self.stages
+    }
+
+    /// Returns the region of the picture, in pixels.
+    pub fn region(&self) -> Region {
+        self.state.film.region
+    }
+
+    /// Whether [`Render::statistics`] are computed.
+    pub fn statistics(&self) -> bool {
+        self.statistics
+    }
+
+    /// Returns the film: sums and counts of samples.
+    pub fn film(&self) -> &Film {
+        &self.state.film
+    }
+
+    /// Returns the film for filling its sums.
+    pub(crate) fn film_mut(&mut self) -> &mut Film {
+        &mut self.state.film
+    }
+
+    /// Returns counters and times so far.
+    pub fn totals(&self) -> &Totals {
+        &self.totals
+    }
+}
+
+/// Calls `work` with the job that all tasks of a render use.
+fn with_job<T>(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    work: impl FnOnce(&Job) -> T,
+) -> T {
+    let sampler = Sampler::new(settings.sampler, settings.seed, target::strata(settings));
+    let filter = PixelFilter::new(settings.filter);
+    let settings = in_world_units(world, settings);
+    work(&Job {
+        world,
+        settings: &settings,
+        sampler: &sampler,
+        filter: &filter,
+        tracer: options.tracer,
+        elisions: options.elisions,
+    })
+}
+
+/// Returns the settings with lengths in the world's units.
+fn in_world_units(world: &World, settings: &Settings) -> Settings {
+    let integrator = match settings.integrator {
+        Integrator::Ao { distance } => {
+            Integrator::Ao { distance: world.transform.length(distance) }
+        }
+        other => other,
+    };
+    Settings { integrator, ..settings.clone() }
+}

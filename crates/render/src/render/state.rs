@@ -1,0 +1,131 @@
+//! State of a render: film, plan of steps, and noise.
+
+use super::pass;
+use super::target::Target;
+use crate::film::{Density, Film, Tile};
+use crate::integrator::Job;
+use crate::noise::{self, Estimate, Noise, Slope};
+use serde::{Deserialize, Serialize};
+
+/// The state that decides all further work: a render that resumes from a saved state makes the same
+/// picture as one without interruptions.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    /// Sums, probes and counts.
+    pub(super) film: Film,
+    /// Number of rounds that were started.
+    pub(super) round: u32,
+    /// Remaining steps of this round, in order.
+    pub(super) plan: Vec<Step>,
+    /// Steps at the head of the plan that were in progress when the render was cancelled: all of them
+    /// are continued first, so that the steps of any later end are a prefix of the one sequence.
+    pub(super) begun: usize,
+    /// Tiles of this round whose samples it doubles.
+    pub(super) doubled: Vec<u32>,
+    /// Variance of these tiles before the round, by steering probes.
+    pub(super) variance: f64,
+    pub(super) slope: Slope,
+}
+
+/// A step of a plan: samples of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Step {
+    /// Index in the film.
+    pub(super) tile: u32,
+    /// Samples per pixel after the step.
+    pub(super) samples: u32,
+}
+
+impl State {
+    /// Returns the state of a render that has not started.
+    pub(super) fn new(job: &Job, mut film: Film) -> Self {
+        let world = job.world;
+        film.place_probes(Density::of(film.pixels()), job.settings.seed, |tile| {
+            pass::uniform_radiance(world, tile).is_none()
+        });
+        Self::unmeasured(film)
+    }
+
+    /// Returns the state of a render that measures nothing.
+    pub(super) fn unmeasured(film: Film) -> Self {
+        Self {
+            film,
+            round: 0,
+            plan: Vec::new(),
+            begun: 0,
+            doubled: Vec::new(),
+            variance: 0.0,
+            slope: Slope::default(),
+        }
+    }
+
+    /// Estimates the error of the picture, once all pixels have samples. For a decision, `by_probes`,
+    /// the mean radiance is that of pilot and probes alone.
+    pub(super) fn noise(&self, by_probes: bool) -> Option<Noise> {
+        let begun = self.film.tiles.iter().all(|tile| tile.samples > 0);
+        let mean = if by_probes {
+            noise::mean_radiance(&self.film)
+        } else {
+            Estimate { value: self.film.mean(), ..Estimate::default() }
+        };
+        begun.then(|| Noise::new(noise::squared_error(&self.film), self.film.pixels(), mean))
+    }
+
+    /// Ends a round and plans the next; returns false if no pixel can get more samples.
+    pub(super) fn next_round(&mut self, target: &Target, noise: Option<Noise>) -> bool {
+        if self.variance > 0.0 {
+            self.slope.learn(self.variance, self.steering_variance(&self.doubled));
+        }
+        let plan = noise::next_round(&self.film, &target.goal, self.slope, target.wanted(noise));
+        let tiles = &self.film.tiles;
+        let samples = |tile: u32| tiles[tile as usize].samples;
+        let next = |tile: u32| target.goal.next(samples(tile), tiles.len());
+        let doubles = |&tile: &u32| {
+            samples(tile) >= target.goal.first && next(tile) == samples(tile).saturating_mul(2)
+        };
+        let doubled: Vec<u32> = plan.iter().copied().filter(doubles).collect();
+        self.plan = plan.into_iter().map(|tile| Step { tile, samples: next(tile) }).collect();
+        self.variance = self.steering_variance(&doubled);
+        self.doubled = doubled;
+        self.round += 1;
+        !self.plan.is_empty()
+    }
+
+    fn steering_variance(&self, tiles: &[u32]) -> f64 {
+        let of = |&tile: &u32| noise::steering_variance(&self.film.tiles[tile as usize]);
+        tiles.iter().map(of).sum()
+    }
+
+    /// Returns the rays that the picture has taken.
+    pub(super) fn work(&self) -> f64 {
+        self.film.tiles.iter().map(noise::work).sum()
+    }
+
+    /// Returns the tiles of the first `count` steps, with their samples after the step.
+    pub(super) fn take(&mut self, count: usize) -> Vec<(&mut Tile, u32)> {
+        let mut samples = vec![None; self.film.tiles.len()];
+        self.plan[..count].iter().for_each(|step| samples[step.tile as usize] = Some(step.samples));
+        let tiles = self.film.tiles.iter_mut().zip(samples);
+        tiles.filter_map(|(tile, samples)| Some((tile, samples?))).collect()
+    }
+
+    /// Removes those of the first `count` steps that are done.
+    pub(super) fn remove_done(&mut self, count: usize) {
+        let mut at = 0;
+        let tiles = &self.film.tiles;
+        let before = self.plan.len();
+        self.plan.retain(|step| {
+            at += 1;
+            at > count || !step.is_done(&tiles[step.tile as usize])
+        });
+        self.begun = count - (before - self.plan.len());
+    }
+}
+
+impl Step {
+    /// Whether the tile and its probes have the samples of this step.
+    fn is_done(self, tile: &Tile) -> bool {
+        let probed = tile.probes.streams() == 0 || tile.probes.samples >= self.samples;
+        probed && tile.samples >= self.samples
+    }
+}

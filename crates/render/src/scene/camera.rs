@@ -1,0 +1,82 @@
+//! Cameras: projection, pose and lens.
+
+use glam::DVec3;
+
+/// A camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Map from directions to pixels.
+    pub projection: Projection,
+    /// Position and view direction.
+    pub pose: Pose,
+    /// Approximate up direction in the picture; need not be perpendicular to the view. If it is
+    /// parallel to the view, a coordinate axis that is not parallel replaces it.
+    pub up: DVec3,
+    /// Thin lens; `None` is a pinhole.
+    pub lens: Option<Lens>,
+    /// Rays start where they cross the plane at this distance along the view axis: 0 or more.
+    pub near: f64,
+}
+
+/// Map from directions to pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Central projection.
+    Perspective {
+        /// Vertical field of view, degrees, more than 0 and less than 180.
+        fov: f64,
+    },
+    /// Parallel projection.
+    Orthographic {
+        /// Height of the picture in the scene's unit, more than 0; `None` frames all spheres.
+        height: Option<f64>,
+    },
+}
+
+/// Position and view direction of a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pose {
+    /// At `eye`, toward `target`; the two differ.
+    LookAt {
+        /// Origin of rays.
+        eye: DVec3,
+        /// The point in the middle of the picture.
+        target: DVec3,
+    },
+    /// As near as possible with all spheres in the picture.
+    Fit {
+        /// View direction, from the camera into the scene; not zero.
+        direction: DVec3,
+        /// Fraction of the picture left free at its edges, 0..1.
+        margin: f64,
+    },
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Diameter, 0 or more; 0 is a pinhole.
+    pub aperture: f64,
+    /// Distance of the plane in focus along the view axis, more than 0; `None` is the distance of the
+    /// target (under [`Pose::Fit`], of the middle of the spheres' bounds).
+    pub focus: Option<f64>,
+}
+
+impl Camera {
+    /// Default view direction of a camera that frames all spheres: from the right, above and in front.
+    pub const FIT_DIRECTION: DVec3 = DVec3::new(-0.6, -0.4, -1.0);
+    /// Default margin of such a camera.
+    pub const FIT_MARGIN: f64 = 0.05;
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            projection: Projection::Perspective { fov: 40.0 },
+            pose: Pose::Fit { direction: Self::FIT_DIRECTION, margin: Self::FIT_MARGIN },
+            up: DVec3::Y,
+            lens: None,
+            near: 0.0,
+        }
+    }
+}

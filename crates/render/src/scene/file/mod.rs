@@ -1,0 +1,212 @@
+//! Scene files: TOML, validated completely.
+//!
+//! Reading has two steps. `toml` parses tables that know the position of each key and value; then one
+//! function per section checks every key, its kind and its range, so that every error is reported with
+//! its line and what to write instead. `scenes/README.md` describes every key.
+
+mod block;
+mod camera;
+mod color_bar;
+mod environment;
+mod lights;
+mod look;
+mod materials;
+mod render;
+mod schema;
+mod slices;
+mod spheres;
+mod value;
+
+use self::block::{Block, Source};
+use self::materials::Materials;
+use super::particles::{self, Particles, ReadOptions, TypeMaterial};
+use super::{
+    Camera, Environment, EnvironmentMap, FileError, Light, Look, Material, NamedMaterial, Rgb,
+    Scene, Settings, Spheres,
+};
+use crate::memory::{self, Shortage, read_at_most};
+use memchr::memchr_iter;
+use spherule_particles::internals::{clipped, listed};
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use toml::de::DeTable;
+
+/// Maximum length of a scene file, in bytes: about a million spheres. More belong in a particle file.
+const MAX_BYTES: u64 = 1 << 26;
+
+/// Name of the material of particles that have none of their own.
+const PARTICLES: &str = "particles";
+
+/// Bytes of memory per delimiter of a file while it is parsed: of keys, list items, lines and sections,
+/// as measured with files of spheres.
+const DELIMITER_BYTES: [(u8, u64); 4] = [(b'=', 106), (b',', 373), (b'\n', 71), (b'[', 270)];
+
+/// Additional bytes of memory per byte of a file.
+const TEXT_BYTES: u64 = 8;
+
+/// Returns the files that a scene file names, whether they exist or not: particle files and the
+/// environment map. A file that is not a scene names none; [`Scene::load`] reports what is wrong with
+/// it. Nor does a pipe, which can be read only once.
+pub fn included_files(path: &Path) -> Vec<PathBuf> {
+    if !path.is_file() {
+        return Vec::new();
+    }
+    let Some(text) = read_text(path).ok().filter(|text| check_memory(text).is_ok()) else {
+        return Vec::new();
+    };
+    let Ok(document) = text.parse::<toml::Table>() else { return Vec::new() };
+    let picture = document.get("environment").and_then(|environment| environment.get("file"));
+    let particles = document.get("file").and_then(toml::Value::as_array).into_iter().flatten();
+    let names = particles.filter_map(|file| file.get("path")).chain(picture);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    names.filter_map(toml::Value::as_str).map(|name| folder.join(name)).collect()
+}
+
+fn read_text(path: &Path) -> Result<String, FileError> {
+    let bytes = File::open(path)
+        .and_then(|file| read_at_most(file, MAX_BYTES))
+        .map_err(|error| FileError::whole_file(path, format!("cannot be read: {error}")))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        FileError::whole_file(path, format!("is not UTF-8 text (byte {at})"))
+            .with_help("a scene is a TOML file; a particle file must not be named .toml")
+    })
+}
+
+/// Checks that memory suffices for the tables of a text.
+fn check_memory(text: &str) -> Result<(), Shortage> {
+    memory::check(parse_bytes(text))
+}
+
+impl Scene {
+    /// Reads a scene file and the files that it names, with paths relative to the scene file.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be read or is not a valid scene: the error says where and what to write.
+    pub fn load(path: &Path) -> Result<Self, FileError> {
+        let text = read_text(path)?;
+        Self::parse(&text, &path.to_string_lossy(), path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Reads a scene from text; `name` is its name in messages, and paths in it are relative to
+    /// `folder`.
+    ///
+    /// # Errors
+    ///
+    /// Same as [`Scene::load`].
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
+        let source = Source { path: Path::new(name), text, folder };
+        check_memory(text)
+            .map_err(|shortage| FileError::whole_file(source.path, format!("needs {shortage}")))?;
+        let document = DeTable::parse(text).map_err(|error| {
+            let end = text.len()..text.len();
+            source.error(error.span().unwrap_or(end), error.message())
+        })?;
+        let root = Block::open(&source, &schema::ROOT, 0..0, document.get_ref())?;
+        read(&source, &root)
+    }
+
+    /// Reads a particle file into a scene with default settings: plastic in the file's colors under a
+    /// white environment, with a camera that frames all particles.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or its format is not one that [`particles::read`] supports.
+    pub fn from_particles(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
+        let title = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        Ok(Self::of_particles(particles::read(path, options)?, &title.unwrap_or_default()))
+    }
+
+    /// Makes the same scene of particles that were read before.
+    pub fn of_particles(particles: Particles, title: &str) -> Self {
+        Self::of_particles_with(particles, title, &TypeMaterial::Plastic.material(Rgb::ONE))
+    }
+
+    /// Makes the same scene with another material for particles without one. Those whose material comes
+    /// from a [`TypeStyle`](particles::TypeStyle), or from a file's column with names of
+    /// [`TypeMaterial`], keep it.
+    pub fn of_particles_with(mut particles: Particles, title: &str, usual: &Material) -> Self {
+        let named = |name: &str| NamedMaterial { name: name.to_owned(), material: usual.clone() };
+        let mut materials = Materials::default();
+        materials.row_or_add(named(PARTICLES));
+        let mut rows = Vec::new();
+        let mut unknown = Vec::new();
+        for (code, name) in particles.material_names.iter().enumerate() {
+            let own = particles.own_material(code as u32);
+            if own.is_none() && !name.is_empty() {
+                unknown.push(name.as_str());
+            }
+            let name = if name.is_empty() { PARTICLES } else { name };
+            rows.push(materials.row_or_add(own.unwrap_or_else(|| named(name))));
+        }
+        if !unknown.is_empty() {
+            let known = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
+            let reason = format!("unknown materials, replaced by the default (known are {known})");
+            particles.warnings.push(format!("{title}: {}", clipped(listed(&reason, &unknown))));
+        }
+        let mut spheres = Spheres::default();
+        spheres.append(particles.spheres, &rows);
+        Self {
+            title: title.to_owned(),
+            spheres,
+            materials: materials.into_rows(),
+            warnings: particles.warnings,
+            ..Self::default()
+        }
+    }
+}
+
+/// Estimates the bytes of memory for parsing a text.
+fn parse_bytes(text: &str) -> u64 {
+    let of_delimiter =
+        |(delimiter, bytes)| memchr_iter(delimiter, text.as_bytes()).count() as u64 * bytes;
+    DELIMITER_BYTES.into_iter().map(of_delimiter).sum::<u64>() + text.len() as u64 * TEXT_BYTES
+}
+
+/// Reads all sections, each after those that it refers to.
+fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
+    let title = root.value("title").map_or(Ok(""), |value| value.text())?;
+    let settings = root.block("render", &schema::RENDER)?;
+    let camera = root.block("camera", &schema::CAMERA)?;
+    let look = root.block("look", &schema::LOOK)?;
+    let color_bar = root.block("color_bar", &schema::COLOR_BAR)?;
+    let mut scene = Scene {
+        title: title.to_owned(),
+        settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
+        camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
+        look: look.map_or(Ok(Look::default()), |block| look::read(&block))?,
+        color_bar: color_bar.map(|block| color_bar::read(&block)).transpose()?,
+        slices: slices::read(root)?,
+        lights: lights::read(root)?,
+        ..Scene::default()
+    };
+    let mut materials = materials::read(root)?;
+    spheres::read(source, root, (&mut scene, &mut materials))?;
+    scene.ground = materials::read_ground(root, &mut materials)?;
+    scene.materials = materials.into_rows();
+    let environment = root.block("environment", &schema::ENVIRONMENT)?;
+    scene.environment = match environment {
+        Some(block) => environment::read(source, &block)?,
+        None => default_environment(&scene.lights, &scene.materials, &scene.spheres),
+    };
+    Ok(scene)
+}
+
+/// Returns a white environment if there are no other lights, or else a black one.
+fn default_environment(
+    lights: &[Light],
+    materials: &[NamedMaterial],
+    spheres: &Spheres,
+) -> Environment {
+    let emits = |row: usize| {
+        let row = spheres.material_of(row) as usize;
+        matches!(materials.get(row), Some(NamedMaterial { material: Material::Emitter { .. }, .. }))
+    };
+    let dark = lights.is_empty() && !(0..spheres.len()).any(emits);
+    let color = if dark { Rgb::ONE } else { Rgb::ZERO };
+    Environment { map: EnvironmentMap::Constant(color), illuminates: true }
+}
+
+#[cfg(test)]
+mod tests;

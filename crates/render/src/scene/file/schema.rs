@@ -1,0 +1,246 @@
+//! Which keys a scene file may hold: the one list that the reader checks and the manual is tested
+//! against.
+
+/// A section, its keys, and the kinds each key has a meaning for.
+pub(super) struct Schema {
+    /// As a scene file writes it.
+    pub(super) section: &'static str,
+    /// The key that chooses among `kinds`; empty if the section has no kinds.
+    pub(super) selector: &'static str,
+    /// The values of the selector.
+    pub(super) kinds: &'static [&'static str],
+    /// What a missing selector means; `None` if it must be there.
+    pub(super) default_kind: Option<&'static str>,
+    /// Every key but the selector, with its kinds; none listed means all.
+    pub(super) keys: &'static [(&'static str, &'static [&'static str])],
+}
+
+impl Schema {
+    /// Every key of the section.
+    pub(super) fn names(&self) -> impl Iterator<Item = &'static str> + Clone {
+        let selector = Some(self.selector).filter(|name| !name.is_empty());
+        selector.into_iter().chain(self.keys.iter().map(|&(name, _)| name))
+    }
+}
+
+/// A section without kinds.
+const fn plain(
+    section: &'static str,
+    keys: &'static [(&'static str, &'static [&'static str])],
+) -> Schema {
+    Schema { section, selector: "", kinds: &[], default_kind: None, keys }
+}
+
+pub(super) const ROOT: Schema = plain(
+    "the scene",
+    &[
+        ("title", &[]),
+        ("render", &[]),
+        ("camera", &[]),
+        ("look", &[]),
+        ("color_bar", &[]),
+        ("environment", &[]),
+        ("ground", &[]),
+        ("slice", &[]),
+        ("light", &[]),
+        ("material", &[]),
+        ("sphere", &[]),
+        ("generate", &[]),
+        ("file", &[]),
+    ],
+);
+
+pub(super) const RENDER: Schema = Schema {
+    section: "[render]",
+    selector: "integrator",
+    kinds: &["path", "whitted", "ao"],
+    default_kind: Some("path"),
+    keys: &[
+        ("size", &[]),
+        ("spp", &[]),
+        ("until_error", &[]),
+        ("time", &[]),
+        ("depth", &[]),
+        ("seed", &[]),
+        ("shadow_samples", &["whitted"]),
+        ("ao_distance", &["ao"]),
+        ("sampler", &[]),
+        ("filter", &[]),
+        ("roulette", &[]),
+        ("light_choice", &[]),
+        ("caustics", &[]),
+        ("exposure", &[]),
+        ("tone", &[]),
+    ],
+};
+
+pub(super) const CAMERA: Schema = Schema {
+    section: "[camera]",
+    selector: "projection",
+    kinds: &["perspective", "orthographic"],
+    default_kind: Some("perspective"),
+    keys: &[
+        ("fov", &["perspective"]),
+        ("height", &["orthographic"]),
+        ("eye", &[]),
+        ("target", &[]),
+        ("fit", &[]),
+        ("direction", &[]),
+        ("margin", &[]),
+        ("up", &[]),
+        ("aperture", &[]),
+        ("focus", &[]),
+        ("near", &[]),
+    ],
+};
+
+pub(super) const LOOK: Schema =
+    plain("[look]", &[("background", &[]), ("depth_cue", &[]), ("outline", &[]), ("cell", &[])]);
+
+pub(super) const COLOR_BAR: Schema = plain(
+    "[color_bar]",
+    &[
+        ("range", &[]),
+        ("log", &[]),
+        ("map", &[]),
+        ("reversed", &[]),
+        ("label", &[]),
+        ("corner", &[]),
+    ],
+);
+
+pub(super) const ENVIRONMENT: Schema = Schema {
+    section: "[environment]",
+    selector: "kind",
+    kinds: &["constant", "gradient", "picture"],
+    default_kind: Some("constant"),
+    keys: &[
+        ("color", &["constant"]),
+        ("bottom", &["gradient"]),
+        ("top", &["gradient"]),
+        ("up", &["gradient", "picture"]),
+        ("file", &["picture"]),
+        ("rotation", &["picture"]),
+        ("scale", &["picture"]),
+        ("illuminates", &[]),
+    ],
+};
+
+pub(super) const GROUND: Schema =
+    plain("[ground]", &[("normal", &[]), ("height", &[]), ("material", &[])]);
+
+pub(super) const SLICE: Schema =
+    plain("[[slice]]", &[("normal", &[]), ("distance", &[]), ("mode", &[])]);
+
+pub(super) const LIGHT: Schema = Schema {
+    section: "[[light]]",
+    selector: "kind",
+    kinds: &["sun", "point"],
+    default_kind: None,
+    keys: &[
+        ("direction", &["sun"]),
+        ("irradiance", &["sun"]),
+        ("angular_radius", &["sun"]),
+        ("position", &["point"]),
+        ("intensity", &["point"]),
+        ("falloff", &["point"]),
+    ],
+};
+
+pub(super) const MATERIAL: Schema = Schema {
+    section: "[material.NAME]",
+    selector: "kind",
+    kinds: &["lambertian", "conductor", "dielectric", "plastic", "reflective", "emitter"],
+    default_kind: None,
+    keys: &[
+        ("color", &["lambertian", "conductor", "dielectric", "plastic", "reflective"]),
+        ("fresnel", &["conductor"]),
+        ("eta", &["conductor"]),
+        ("k", &["conductor"]),
+        ("roughness", &["conductor"]),
+        ("ior", &["dielectric", "plastic"]),
+        ("diffuse", &["reflective"]),
+        ("mirror", &["reflective"]),
+        ("radiance", &["emitter"]),
+        ("albedo", &["emitter"]),
+    ],
+};
+
+pub(super) const SPHERE: Schema =
+    plain("[[sphere]]", &[("center", &[]), ("radius", &[]), ("material", &[]), ("color", &[])]);
+
+pub(super) const GENERATE: Schema = Schema {
+    section: "[[generate]]",
+    selector: "kind",
+    kinds: &["grid", "field", "volume", "lattice", "sphereflake", "weekend"],
+    default_kind: None,
+    keys: &[
+        ("seed", &["field", "volume", "lattice", "weekend"]),
+        ("count", &["grid", "field", "volume", "lattice"]),
+        ("spacing", &["grid"]),
+        ("size", &["volume"]),
+        ("radius", &["grid", "field", "volume", "lattice", "sphereflake"]),
+        ("jitter", &["lattice"]),
+        ("level", &["sphereflake"]),
+        ("colors", &["field", "volume"]),
+        ("mix", &["field"]),
+        ("material", &["grid", "field", "volume", "lattice", "sphereflake"]),
+    ],
+};
+
+pub(super) const FILE: Schema = plain(
+    "[[file]]",
+    &[("path", &[]), ("format", &[]), ("material", &[]), ("radius", &[]), ("scale", &[])],
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [&Schema; 13] = [
+        &ROOT,
+        &RENDER,
+        &CAMERA,
+        &LOOK,
+        &COLOR_BAR,
+        &ENVIRONMENT,
+        &GROUND,
+        &SLICE,
+        &LIGHT,
+        &MATERIAL,
+        &SPHERE,
+        &GENERATE,
+        &FILE,
+    ];
+
+    #[test]
+    fn keys_speak_of_kinds_that_exist() {
+        for schema in ALL {
+            for (key, kinds) in schema.keys {
+                let known = kinds.iter().all(|kind| schema.kinds.contains(kind));
+                assert!(known, "{key} of {}", schema.section);
+            }
+        }
+    }
+
+    #[test]
+    fn the_manual_speaks_of_every_key_and_kind() {
+        let manual = include_str!("../../../../../scenes/README.md");
+        for schema in ALL {
+            let heading = match schema.section.strip_prefix('[') {
+                Some(_) => format!("\n## `{}`\n", schema.section),
+                None => "\n## Sections\n".to_owned(),
+            };
+            let section = manual.split_once(&heading).map_or("", |(_, rest)| {
+                rest.split_once("\n## ").map_or(rest, |(section, _)| section)
+            });
+            for word in schema.names().chain(schema.kinds.iter().copied()) {
+                let ends = ["`", "\"`", "]`", "]]`", ".NAME]`"].into_iter();
+                let mut quoted = ends.zip(["`", "`\"", "`[", "`[[", "`["]);
+                let found =
+                    quoted.any(|(end, start)| section.contains(&[start, word, end].concat()));
+                assert!(found, "`{word}` is missing under {} in scenes/README.md", schema.section);
+            }
+        }
+    }
+}

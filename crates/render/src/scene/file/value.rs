@@ -1,0 +1,256 @@
+//! Values of a scene file: checks of type and range, used by every section.
+
+use super::block::Source;
+use crate::scene::{BRIGHTEST, FileError, Rgb};
+use crate::{color, suggest};
+use glam::DVec3;
+use std::ops::Range;
+use std::str::FromStr;
+use toml::de::{DeTable, DeValue};
+
+/// The numbers that a key accepts. Infinity and NaN are never accepted.
+#[derive(Clone, Copy)]
+pub(super) enum Limits {
+    /// Every finite number.
+    Any,
+    /// More than 0.
+    Positive,
+    /// 0 or more.
+    NotNegative,
+    /// 0..=1.
+    Share,
+    /// A radiance: 0..=[`BRIGHTEST`].
+    Light,
+    /// At least the first, at most the second.
+    Within(f64, f64),
+    /// At least the first, less than the second.
+    Below(f64, f64),
+    /// More than the first, at most the second.
+    AboveTo(f64, f64),
+    /// Strictly between the two.
+    Between(f64, f64),
+}
+
+impl Limits {
+    fn contain(self, number: f64) -> bool {
+        number.is_finite()
+            && match self {
+                Self::Any => true,
+                Self::Positive => number > 0.0,
+                Self::NotNegative => number >= 0.0,
+                Self::Share => (0.0..=1.0).contains(&number),
+                Self::Light => (0.0..=f64::from(BRIGHTEST)).contains(&number),
+                Self::Within(low, high) => (low..=high).contains(&number),
+                Self::Below(low, high) => (low..high).contains(&number),
+                Self::AboveTo(low, high) => low < number && number <= high,
+                Self::Between(low, high) => low < number && number < high,
+            }
+    }
+
+    fn describe(self) -> String {
+        match self {
+            Self::Any => "a finite number".to_owned(),
+            Self::Positive => "finite and more than 0".to_owned(),
+            Self::NotNegative => "finite and 0 or more".to_owned(),
+            Self::Share => "from 0 to 1".to_owned(),
+            Self::Light => format!("from 0 to {BRIGHTEST:e}"),
+            Self::Within(low, high) => format!("from {low} to {high}"),
+            Self::Below(low, high) => format!("{low} or more and less than {high}"),
+            Self::AboveTo(low, high) => format!("more than {low} and at most {high}"),
+            Self::Between(low, high) => format!("more than {low} and less than {high}"),
+        }
+    }
+}
+
+/// A value, its key and its position.
+#[derive(Clone)]
+pub(super) struct Value<'a> {
+    pub(super) source: &'a Source<'a>,
+    pub(super) name: &'static str,
+    pub(super) span: Range<usize>,
+    pub(super) item: &'a DeValue<'a>,
+}
+
+impl<'a> Value<'a> {
+    /// Returns an error at this value.
+    pub(super) fn error(&self, message: impl Into<String>) -> FileError {
+        self.source.error(self.span.clone(), message)
+    }
+
+    /// Returns an error that says what the value must be.
+    pub(super) fn must_be(&self, expected: impl AsRef<str>) -> FileError {
+        let given = self.source.text.get(self.span.clone()).unwrap_or_default();
+        let given = match self.item {
+            DeValue::Table(_) => "a table".to_owned(),
+            _ if given.len() > 40 || given.contains('\n') => format!("a {}", self.item.type_str()),
+            _ => given.to_owned(),
+        };
+        self.error(format!("`{}` is {given}, but must be {}", self.name, expected.as_ref()))
+    }
+
+    /// Returns a number within limits.
+    pub(super) fn number(&self, limits: Limits) -> Result<f64, FileError> {
+        let number: f64 = self.parse().ok_or_else(|| self.must_be("a number"))?;
+        if limits.contain(number) { Ok(number) } else { Err(self.must_be(limits.describe())) }
+    }
+
+    /// Returns an integer within a range.
+    pub(super) fn whole(&self, low: u64, high: u64) -> Result<u64, FileError> {
+        let expected = || format!("an integer from {low} to {high}");
+        let DeValue::Integer(integer) = self.item else { return Err(self.must_be(expected())) };
+        u64::from_str_radix(integer.as_str(), integer.radix())
+            .ok()
+            .filter(|number| (low..=high).contains(number))
+            .ok_or_else(|| self.must_be(expected()))
+    }
+
+    /// Returns true or false.
+    pub(super) fn flag(&self) -> Result<bool, FileError> {
+        self.item.as_bool().ok_or_else(|| self.must_be("true or false"))
+    }
+
+    /// Returns a string.
+    pub(super) fn text(&self) -> Result<&'a str, FileError> {
+        self.item.as_str().ok_or_else(|| self.must_be("a string in quotes"))
+    }
+
+    /// Returns one of several words.
+    pub(super) fn choice(&self, words: &[&'static str]) -> Result<&'static str, FileError> {
+        let text = self.text()?;
+        words.iter().copied().find(|&word| word == text).ok_or_else(|| {
+            let help = suggest::help(text, words.iter().copied(), "possible values");
+            self.error(format!("unknown {} \"{text}\"", self.name)).with_help(help)
+        })
+    }
+
+    /// Returns `N` values.
+    pub(super) fn list<const N: usize>(&self) -> Result<[Self; N], FileError> {
+        let items = self.item.as_array().filter(|items| items.len() == N);
+        let items = items.ok_or_else(|| self.must_be(format!("a list of {N} numbers")))?;
+        let entry = |index: usize| {
+            let item: &'a toml::Spanned<DeValue<'a>> = &items[index];
+            Self { span: item.span(), item: item.get_ref(), ..self.clone() }
+        };
+        Ok(std::array::from_fn(entry))
+    }
+
+    /// Returns `N` numbers, each within limits.
+    pub(super) fn numbers<const N: usize>(&self, limits: Limits) -> Result<[f64; N], FileError> {
+        let mut numbers = [0.0; N];
+        for (number, value) in numbers.iter_mut().zip(self.list::<N>()?) {
+            *number = value.number(limits)?;
+        }
+        Ok(numbers)
+    }
+
+    /// Returns a point, or a vector of any length.
+    pub(super) fn point(&self) -> Result<DVec3, FileError> {
+        self.numbers(Limits::Any).map(DVec3::from_array)
+    }
+
+    /// Returns a nonzero vector, as written.
+    pub(super) fn vector(&self) -> Result<DVec3, FileError> {
+        let vector = self.point()?;
+        if vector == DVec3::ZERO { Err(self.must_be("a nonzero vector")) } else { Ok(vector) }
+    }
+
+    /// Returns a direction: a nonzero vector, normalized.
+    pub(super) fn direction(&self) -> Result<DVec3, FileError> {
+        self.vector().map(unit)
+    }
+
+    /// Returns a color: three linear values, one for gray, or `"#rrggbb"` or a CSS name in sRGB; each
+    /// value within limits.
+    pub(super) fn color(&self, limits: Limits) -> Result<Rgb, FileError> {
+        match self.item {
+            DeValue::Array(_) => {
+                let [red, green, blue] = self.list()?;
+                Ok(Rgb::new(red.single(limits)?, green.single(limits)?, blue.single(limits)?))
+            }
+            DeValue::String(text) => color::parse(text).ok_or_else(|| {
+                let error =
+                    self.must_be("\"#rrggbb\" or the name of a CSS color if it is a string");
+                match suggest::nearest(text, color::names()) {
+                    Some(name) => error.with_help(format!("did you mean \"{name}\"?")),
+                    None => error,
+                }
+            }),
+            DeValue::Integer(_) | DeValue::Float(_) => self.single(limits).map(Rgb::splat),
+            _ => {
+                Err(self
+                    .must_be("[red, green, blue], one number for gray, \"#rrggbb\" or a CSS color"))
+            }
+        }
+    }
+
+    /// Returns a number that is parsed in single precision, so that an `f32` survives writing and
+    /// reading.
+    pub(super) fn single(&self, limits: Limits) -> Result<f32, FileError> {
+        self.number(limits)?;
+        let number: f32 = self.parse().ok_or_else(|| self.must_be("a number"))?;
+        if limits.contain(f64::from(number)) {
+            Ok(number)
+        } else {
+            Err(self.must_be(format!("{} in single precision", limits.describe())))
+        }
+    }
+
+    /// Returns a table.
+    pub(super) fn table(&self) -> Result<&'a DeTable<'a>, FileError> {
+        self.item.as_table().ok_or_else(|| self.must_be("a table"))
+    }
+
+    fn parse<T: FromStr>(&self) -> Option<T> {
+        match self.item {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+            _ => None,
+        }
+    }
+}
+
+/// Normalizes a vector that is finite and not zero. One of length 1 up to rounding stays as it is, so
+/// that writing and reading a scene changes nothing.
+fn unit(vector: DVec3) -> DVec3 {
+    if (vector.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        return vector;
+    }
+    // Squares of components could overflow or vanish.
+    (vector / vector.abs().max_element()).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_vectors_are_fixed_points_at_any_scale() {
+        for vector in
+            [DVec3::new(1e-300, 2e-300, 0.0), DVec3::new(-1e300, 3e299, 1e300), DVec3::ONE]
+        {
+            let once = unit(vector);
+            assert!((once.length() - 1.0).abs() < 1e-15, "{vector}");
+            assert_eq!(unit(once), once);
+        }
+    }
+
+    #[test]
+    fn limits_hold_at_their_ends() {
+        let cases = [
+            (Limits::Positive, 0.0, false),
+            (Limits::NotNegative, 0.0, true),
+            (Limits::Share, 1.0, true),
+            (Limits::Share, 1.000_000_1, false),
+            (Limits::Below(0.0, 90.0), 90.0, false),
+            (Limits::AboveTo(0.0, 1.0), 1.0, true),
+            (Limits::AboveTo(0.0, 1.0), 0.0, false),
+            (Limits::Between(0.0, 180.0), 180.0, false),
+            (Limits::Within(-1.0, 1.0), -1.0, true),
+            (Limits::Any, f64::NAN, false),
+            (Limits::Any, f64::INFINITY, false),
+        ];
+        for (limits, number, inside) in cases {
+            assert_eq!(limits.contain(number), inside, "{number} {}", limits.describe());
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Materials, and the ground, which is the one surface that is not a sphere.
+
+use super::Rgb;
+use glam::DVec3;
+
+/// A material and its name in scene files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedMaterial {
+    /// Name, unique in its scene.
+    pub name: String,
+    /// The material.
+    pub material: Material,
+}
+
+/// A material of surfaces. A sphere's own color is a factor on `color` (`albedo` for an emitter).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Material {
+    /// Ideally diffuse.
+    Lambertian {
+        /// Albedo, 0..=1.
+        color: Rgb,
+    },
+    /// Metal: a smooth mirror, or rough by GGX.
+    Conductor {
+        /// Reflectance by angle.
+        fresnel: ConductorFresnel,
+        /// GGX alpha, 0..=1; 0 is a smooth mirror.
+        roughness: f64,
+    },
+    /// Smooth clear glass or liquid. Where several overlap, the smallest sphere wins.
+    Dielectric {
+        /// Index of refraction, more than 0; 1.5 is glass.
+        ior: f64,
+        /// Factor on transmitted and reflected light, 0..=1; white for clear glass.
+        color: Rgb,
+    },
+    /// Lambertian under a smooth dielectric coat, conserving energy.
+    Plastic {
+        /// Albedo of the base, 0..=1.
+        color: Rgb,
+        /// Index of refraction of the coat, more than 1.
+        ior: f64,
+    },
+    /// The paper's: a diffuse and a mirror fraction of one color. `diffuse + mirror <= 1`.
+    Reflective {
+        /// Factor on both fractions, 0..=1.
+        color: Rgb,
+        /// Diffuse fraction, 0..=1.
+        diffuse: f64,
+        /// Mirror fraction, 0..=1.
+        mirror: f64,
+    },
+    /// Emits light on both sides, and reflects light diffusely.
+    Emitter {
+        /// Emitted radiance, the same in all directions, 0 or more.
+        radiance: Rgb,
+        /// Albedo, 0..=1; black by default.
+        albedo: Rgb,
+    },
+}
+
+/// Reflectance of a metal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConductorFresnel {
+    /// Reflectance at normal incidence, 0..=1, and Schlick's curve up to 1 at grazing angles.
+    Schlick(Rgb),
+    /// The same reflectance, 0..=1, at every angle: the usual mirror of textbooks.
+    Constant(Rgb),
+    /// Complex index of refraction `eta + i k` per channel, for the exact Fresnel equations. Both are
+    /// more than 0.
+    Exact {
+        /// Real part.
+        eta: Rgb,
+        /// Imaginary part.
+        k: Rgb,
+    },
+}
+
+/// An infinite plane: the points `p` with `normal . p = height`. Both of its sides are visible.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ground {
+    /// Unit normal.
+    pub normal: DVec3,
+    /// Signed distance of the plane from the origin along `normal`.
+    pub height: f64,
+    /// A row of [`Scene::materials`](super::Scene::materials); neither dielectric nor emitter.
+    pub material: u32,
+}

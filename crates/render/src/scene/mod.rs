@@ -1,0 +1,70 @@
+//! Scenes: the user's description in double precision, validated, in the user's own units.
+//!
+//! A [`Scene`] comes from a [file](mod@file), from a [generator](generate), from a [particle
+//! file](particles) or from code; [`crate::World`] is built from it. Distances are in the scene's
+//! own unit, angles in degrees, colors linear RGB with the primaries of sRGB. [`write`](write())
+//! puts a scene into files that load as the same scene.
+
+mod camera;
+mod color_bar;
+pub mod file;
+mod footprint;
+pub mod generate;
+mod identity;
+mod light;
+mod look;
+mod material;
+pub mod particles;
+mod preset;
+mod slice;
+mod spheres;
+pub(crate) mod write;
+
+pub use crate::color::{Rgb, linear_from_srgb, srgb};
+pub use crate::settings::{
+    Filter, Integrator, InvalidSetting, LightChoice, Roulette, SamplerKind, Settings, Tone,
+};
+pub use camera::{Camera, Lens, Pose, Projection};
+pub use color_bar::{ColorBar, Corner};
+pub use file::included_files;
+pub use footprint::{ColorColumn, Footprint};
+pub use identity::Identity;
+pub(crate) use light::is_radiance;
+pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
+pub use look::{Background, Look};
+pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
+pub use preset::Preset;
+pub use slice::{Slice, SliceMode, SlicePlane, bounds};
+pub use spheres::Spheres;
+pub use spherule_particles::{FileError, Place};
+pub use write::{Header, write, write_as};
+
+/// A whole scene: objects, lights, camera and settings.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// One-line description of the scene; may be empty.
+    pub title: String,
+    /// The spheres, in columns.
+    pub spheres: Spheres,
+    /// Materials of spheres and ground; `Spheres::material` and `Ground::material` are rows of it.
+    pub materials: Vec<NamedMaterial>,
+    /// The infinite ground plane, if there is one.
+    pub ground: Option<Ground>,
+    /// Half spaces that are cut away.
+    pub slices: Vec<Slice>,
+    /// Lights that are not spheres.
+    pub lights: Vec<Light>,
+    /// Radiance of rays that hit nothing.
+    pub environment: Environment,
+    /// The camera.
+    pub camera: Camera,
+    /// Render settings.
+    pub settings: Settings,
+    /// Overlays and background.
+    pub look: Look,
+    /// Color bar in the picture.
+    pub color_bar: Option<ColorBar>,
+    /// Warnings for the user: one sentence each, such as how many rows of a particle file were dropped
+    /// and why.
+    pub warnings: Vec<String>,
+}

@@ -1,0 +1,188 @@
+//! Binding names to columns, and evaluating conditions on rows.
+
+use super::grammar::{Node, Tree};
+use super::words::{Sign, SpannedError};
+use crate::scene::particles::Codes;
+use crate::scene::particles::Particles;
+use crate::scene::particles::style::{Column, unknown};
+use crate::suggest;
+use rayon::prelude::*;
+use std::borrow::Cow;
+
+/// A condition, bound to columns.
+enum Truth<'p> {
+    Any(Vec<Self>),
+    All(Vec<Self>),
+    Not(Box<Self>),
+    Compare(Sign, Number<'p>, Number<'p>),
+    /// Result of the comparison for each text of a column.
+    Texts(Cow<'p, Codes>, Vec<bool>),
+}
+
+/// A numeric expression, bound to columns.
+enum Number<'p> {
+    Constant(f64),
+    Column(Cow<'p, [f64]>),
+    /// Number of each text of a column; NaN if it is not a number.
+    Texts(Cow<'p, Codes>, Vec<f64>),
+    Negative(Box<Self>),
+    Arithmetic(Box<Self>, Vec<(Sign, Self)>),
+}
+
+/// Evaluates the condition for each row.
+pub(super) fn rows(tree: &Tree, particles: &Particles) -> Result<Vec<bool>, SpannedError> {
+    let truth = truth(tree, particles)?;
+    Ok((0..particles.spheres.len()).into_par_iter().map(|row| truth.at(row)).collect())
+}
+
+impl Truth<'_> {
+    fn at(&self, row: usize) -> bool {
+        match self {
+            Self::Any(parts) => parts.iter().any(|part| part.at(row)),
+            Self::All(parts) => parts.iter().all(|part| part.at(row)),
+            Self::Not(inner) => !inner.at(row),
+            Self::Compare(sign, left, right) => compare(*sign, left.at(row), right.at(row)),
+            Self::Texts(codes, truths) => truths[codes.code(row) as usize],
+        }
+    }
+}
+
+fn compare(sign: Sign, left: f64, right: f64) -> bool {
+    match sign {
+        Sign::Equal => left == right,
+        Sign::NotEqual => left != right,
+        Sign::Less => left < right,
+        Sign::LessEqual => left <= right,
+        Sign::Greater => left > right,
+        _ => left >= right,
+    }
+}
+
+impl Number<'_> {
+    fn at(&self, row: usize) -> f64 {
+        match self {
+            Self::Constant(number) => *number,
+            Self::Column(values) => values[row],
+            Self::Texts(codes, numbers) => numbers[codes.code(row) as usize],
+            Self::Negative(inner) => -inner.at(row),
+            Self::Arithmetic(first, rest) => {
+                rest.iter().fold(first.at(row), |left, (sign, right)| {
+                    let right = right.at(row);
+                    match sign {
+                        Sign::Plus => left + right,
+                        Sign::Minus => left - right,
+                        Sign::Times => left * right,
+                        _ => left / right,
+                    }
+                })
+            }
+        }
+    }
+}
+
+/// Returns a message about the first text of the condition that no particle has.
+pub(super) fn absent(tree: &Tree, particles: &Particles) -> Option<String> {
+    match &tree.node {
+        Node::Any(parts) | Node::All(parts) => {
+            parts.iter().find_map(|part| absent(part, particles))
+        }
+        Node::Not(inner) => absent(inner, particles),
+        Node::Compare(_, sides) => {
+            let [left, right] = &**sides;
+            [(left, right), (right, left)].into_iter().find_map(|(column, other)| {
+                let (Node::Word(text) | Node::Text(text)) = &other.node else { return None };
+                let Some(Column::Texts { names, .. }) = column_of(column, particles) else {
+                    return None;
+                };
+                let known = names.iter().copied();
+                (!names.contains(&text.as_str())).then(|| {
+                    format!("no particle has `{text}`; {}", suggest::help(text, known, "there are"))
+                })
+            })
+        }
+        _ => None,
+    }
+}
+
+fn truth<'p>(tree: &Tree, particles: &'p Particles) -> Result<Truth<'p>, SpannedError> {
+    let all = |parts: &[Tree]| {
+        parts.iter().map(|part| truth(part, particles)).collect::<Result<_, SpannedError>>()
+    };
+    match &tree.node {
+        Node::Any(parts) => Ok(Truth::Any(all(parts)?)),
+        Node::All(parts) => Ok(Truth::All(all(parts)?)),
+        Node::Not(inner) => Ok(Truth::Not(Box::new(truth(inner, particles)?))),
+        Node::Compare(sign, sides) => comparison(*sign, sides, particles),
+        _ => Err((tree.span.clone(), "expected a comparison, as in `z > 10`".to_owned())),
+    }
+}
+
+fn comparison<'p>(
+    sign: Sign,
+    [left, right]: &[Tree; 2],
+    particles: &'p Particles,
+) -> Result<Truth<'p>, SpannedError> {
+    for (column, other) in [(left, right), (right, left)] {
+        let (Node::Word(text) | Node::Text(text)) = &other.node else { continue };
+        let Some(Column::Texts { names, codes }) = column_of(column, particles) else { continue };
+        if !matches!(sign, Sign::Equal | Sign::NotEqual) {
+            let span = left.span.start..right.span.end;
+            return Err((span, "texts can only be compared by `==` or `!=`".to_owned()));
+        }
+        // The case of a word is checked; a text in quotes is taken literally.
+        if matches!(other.node, Node::Word(_))
+            && let [one, ..] = suggest::other_case(text, names.iter().copied())[..]
+        {
+            let message = format!("no particle has `{text}` in this column; did you mean `{one}`?");
+            return Err((other.span.clone(), format!("{message} (or write '{text}' in quotes)")));
+        }
+        let truths = names.iter().map(|name| (name == text) == (sign == Sign::Equal));
+        return Ok(Truth::Texts(codes, truths.collect()));
+    }
+    Ok(Truth::Compare(sign, number(left, particles)?, number(right, particles)?))
+}
+
+/// Returns the column that a word names.
+fn column_of<'p>(tree: &Tree, particles: &'p Particles) -> Option<Column<'p>> {
+    match &tree.node {
+        Node::Word(name) | Node::Column(name) => Column::find(particles, name),
+        _ => None,
+    }
+}
+
+fn number<'p>(tree: &Tree, particles: &'p Particles) -> Result<Number<'p>, SpannedError> {
+    let wrong = |message: &str| Err((tree.span.clone(), message.to_owned()));
+    match &tree.node {
+        Node::Number(number) => Ok(Number::Constant(*number)),
+        Node::Word(name) | Node::Column(name) => {
+            column(name, particles).map_err(|message| (tree.span.clone(), message))
+        }
+        Node::Text(_) => wrong("only a column of texts can be compared with a text"),
+        Node::Negative(inner) => Ok(Number::Negative(Box::new(number(inner, particles)?))),
+        Node::Arithmetic(first, rest) => {
+            let first = number(first, particles)?;
+            let rest = rest.iter().map(|(sign, part)| Ok((*sign, number(part, particles)?)));
+            Ok(Number::Arithmetic(Box::new(first), rest.collect::<Result<_, SpannedError>>()?))
+        }
+        Node::Compare(..) | Node::Not(_) | Node::All(_) | Node::Any(_) => {
+            wrong("expected a number, but this is a condition")
+        }
+    }
+}
+
+fn column<'p>(name: &str, particles: &'p Particles) -> Result<Number<'p>, String> {
+    match Column::find(particles, name) {
+        Some(Column::Numbers(values)) => Ok(Number::Column(values)),
+        Some(Column::Texts { names, codes }) => {
+            let number = |name: &&str| name.parse().unwrap_or(f64::NAN);
+            let numbers: Vec<f64> = names.iter().map(number).collect();
+            if numbers.iter().all(|number| number.is_nan()) {
+                return Err(format!(
+                    "the column `{name}` holds texts: compare it with a word or a text in quotes"
+                ));
+            }
+            Ok(Number::Texts(codes, numbers))
+        }
+        None => Err(unknown(particles, name)),
+    }
+}

@@ -1,0 +1,189 @@
+//! Syntax trees of conditions, by recursive descent no deeper than [`MAX_DEPTH`].
+
+use super::words::{Sign, SpannedError, Word, Words};
+use std::ops::Range;
+
+/// Maximum nesting of parentheses and signs, since the stack is finite.
+const MAX_DEPTH: usize = 64;
+
+/// A part of a condition, and its bytes in the text.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tree {
+    pub(super) node: Node,
+    pub(super) span: Range<usize>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Node {
+    Number(f64),
+    Word(String),
+    Column(String),
+    Text(String),
+    Negative(Box<Tree>),
+    /// Operands in order, evaluated from left to right.
+    Arithmetic(Box<Tree>, Vec<(Sign, Tree)>),
+    Compare(Sign, Box<[Tree; 2]>),
+    Not(Box<Tree>),
+    All(Vec<Tree>),
+    Any(Vec<Tree>),
+}
+
+/// A parser: the words that are not parsed yet.
+struct Parser {
+    words: std::iter::Peekable<std::vec::IntoIter<(Word, Range<usize>)>>,
+    length: usize,
+    depth: usize,
+}
+
+const COMPARISONS: [Sign; 6] =
+    [Sign::Equal, Sign::NotEqual, Sign::Less, Sign::LessEqual, Sign::Greater, Sign::GreaterEqual];
+
+/// Parses all words.
+pub(super) fn parse((words, length): (Words, usize)) -> Result<Tree, SpannedError> {
+    let mut parser = Parser { words: words.into_iter().peekable(), length, depth: 0 };
+    let tree = parser.any()?;
+    match parser.words.next() {
+        None => Ok(tree),
+        Some((Word::Sign(Sign::Close), span)) => Err((span, "unmatched `)`".to_owned())),
+        Some((_, span)) => {
+            Err((span, "expected `and`, `or` or an operator before this".to_owned()))
+        }
+    }
+}
+
+impl Parser {
+    /// Takes the next word if it is one of these operators.
+    fn take(&mut self, signs: &[Sign]) -> Option<(Sign, Range<usize>)> {
+        match self.words.peek()? {
+            (Word::Sign(sign), span) if signs.contains(sign) => {
+                let found = (*sign, span.clone());
+                self.words.next();
+                Some(found)
+            }
+            _ => None,
+        }
+    }
+
+    fn deeper(&mut self, span: &Range<usize>) -> Result<(), SpannedError> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            return Err((span.clone(), format!("more than {MAX_DEPTH} levels of nesting")));
+        }
+        Ok(())
+    }
+
+    fn any(&mut self) -> Result<Tree, SpannedError> {
+        self.joined(Sign::Or, Node::Any, Self::all)
+    }
+
+    fn all(&mut self) -> Result<Tree, SpannedError> {
+        self.joined(Sign::And, Node::All, Self::not)
+    }
+
+    /// Parses parts with an operator between them; a single part is returned itself.
+    fn joined(
+        &mut self,
+        sign: Sign,
+        node: fn(Vec<Tree>) -> Node,
+        part: fn(&mut Self) -> Result<Tree, SpannedError>,
+    ) -> Result<Tree, SpannedError> {
+        let first = part(self)?;
+        let mut span = first.span.clone();
+        let mut parts = vec![first];
+        while self.take(&[sign]).is_some() {
+            let next = part(self)?;
+            span.end = next.span.end;
+            parts.push(next);
+        }
+        if parts.len() == 1 {
+            return Ok(parts.remove(0));
+        }
+        Ok(Tree { node: node(parts), span })
+    }
+
+    fn not(&mut self) -> Result<Tree, SpannedError> {
+        let Some((_, span)) = self.take(&[Sign::Not]) else { return self.comparison() };
+        self.deeper(&span)?;
+        let inner = self.not()?;
+        self.depth -= 1;
+        let span = span.start..inner.span.end;
+        Ok(Tree { node: Node::Not(Box::new(inner)), span })
+    }
+
+    fn comparison(&mut self) -> Result<Tree, SpannedError> {
+        let left = self.sum()?;
+        let Some((sign, _)) = self.take(&COMPARISONS) else { return Ok(left) };
+        let right = self.sum()?;
+        if let Some((_, span)) = self.take(&COMPARISONS) {
+            return Err((
+                span,
+                "comparisons cannot be chained: write `0 < z and z < 5`".to_owned(),
+            ));
+        }
+        let span = left.span.start..right.span.end;
+        Ok(Tree { node: Node::Compare(sign, Box::new([left, right])), span })
+    }
+
+    fn sum(&mut self) -> Result<Tree, SpannedError> {
+        self.chain(&[Sign::Plus, Sign::Minus], Self::product)
+    }
+
+    fn product(&mut self) -> Result<Tree, SpannedError> {
+        self.chain(&[Sign::Times, Sign::Divided], Self::operand)
+    }
+
+    fn chain(
+        &mut self,
+        signs: &[Sign],
+        part: fn(&mut Self) -> Result<Tree, SpannedError>,
+    ) -> Result<Tree, SpannedError> {
+        let first = part(self)?;
+        let mut span = first.span.clone();
+        let mut rest = Vec::new();
+        while let Some((sign, _)) = self.take(signs) {
+            let next = part(self)?;
+            span.end = next.span.end;
+            rest.push((sign, next));
+        }
+        if rest.is_empty() {
+            return Ok(first);
+        }
+        Ok(Tree { node: Node::Arithmetic(Box::new(first), rest), span })
+    }
+
+    fn operand(&mut self) -> Result<Tree, SpannedError> {
+        let Some((word, span)) = self.words.next() else {
+            return Err((self.length..self.length, "expected a number or a name here".to_owned()));
+        };
+        let node = match word {
+            Word::Number(number) => Node::Number(number),
+            Word::Bare(name) => Node::Word(name),
+            Word::Column(name) => Node::Column(name),
+            Word::Text(text) => Node::Text(text),
+            Word::Sign(Sign::Minus) => return self.negative(span),
+            Word::Sign(Sign::Open) => return self.parentheses(span),
+            Word::Sign(_) => {
+                return Err((span, "expected a number or a name before this".to_owned()));
+            }
+        };
+        Ok(Tree { node, span })
+    }
+
+    fn negative(&mut self, sign: Range<usize>) -> Result<Tree, SpannedError> {
+        self.deeper(&sign)?;
+        let inner = self.operand()?;
+        self.depth -= 1;
+        let span = sign.start..inner.span.end;
+        Ok(Tree { node: Node::Negative(Box::new(inner)), span })
+    }
+
+    fn parentheses(&mut self, open: Range<usize>) -> Result<Tree, SpannedError> {
+        self.deeper(&open)?;
+        let inner = self.any()?;
+        self.depth -= 1;
+        let Some((_, close)) = self.take(&[Sign::Close]) else {
+            return Err((open, "unclosed parenthesis".to_owned()));
+        };
+        Ok(Tree { span: open.start..close.end, ..inner })
+    }
+}

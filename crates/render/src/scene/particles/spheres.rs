@@ -1,0 +1,303 @@
+//! Conversion of particle frames to spheres: finds radii and colors, and drops invalid rows.
+
+use super::radii::{FoundRadii, half_spacing, radii};
+use super::style::{Column, ElementColors, ID, INDEX, TypeMaterial};
+use super::{Cell, LengthUnit, NumberColumn, ParticleFrame};
+use super::{Format, ReadOptions, Role};
+use super::{Kinds, TextColumn};
+use crate::color::category;
+use crate::memory;
+use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
+use spherule_particles::internals::retain;
+use spherule_particles::internals::{clipped, listed};
+use std::path::Path;
+
+/// The contents of a particle file, as spheres.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Particles {
+    /// The spheres; materials are rows of `material_names`.
+    pub spheres: Spheres,
+    /// Names of materials in the file; an empty name means none.
+    pub material_names: Vec<String>,
+    /// Types of the spheres, if the file has types.
+    pub kinds: Kinds,
+    /// Columns of numbers that were asked for, one row per sphere.
+    pub numbers: Vec<NumberColumn>,
+    /// Columns of texts that were asked for, one row per sphere.
+    pub texts: Vec<TextColumn>,
+    /// The cell of the simulation, scaled like positions.
+    pub cell: Option<Cell>,
+    /// Format of the file.
+    pub format: Format,
+    /// Names of all columns of the file that can be asked for, whether they were read or not.
+    pub columns: Vec<String>,
+    /// The columns that positions, radii, types, colors and materials were read from.
+    pub roles: Vec<(Role, String)>,
+    /// Chosen materials, by names in `material_names`; the others are defined by the scene.
+    pub materials: Vec<NamedMaterial>,
+    /// The file's title or comment; empty if it has none.
+    pub title: String,
+    /// Step of the simulation, if the file has it.
+    pub step: Option<i64>,
+    /// Time of the simulation in the file's own unit, if the file has it.
+    pub time: Option<f64>,
+    /// Unit of length in the file.
+    pub unit: LengthUnit,
+    /// Warnings about dropped rows and assumptions.
+    pub warnings: Vec<String>,
+}
+
+impl Particles {
+    /// Whether particles can be colored by a column of this name: one that was kept, one with a role,
+    /// or one that all particles have.
+    pub fn can_color_by(&self, name: &str) -> bool {
+        [ID, INDEX].contains(&name)
+            || Column::find(self, name).is_some_and(|column| column.has_values())
+    }
+
+    /// Returns the material of a row of `material_names`: one that was chosen, or one that the file
+    /// names by a word of [`TypeMaterial`].
+    pub(in crate::scene) fn own_material(&self, row: u32) -> Option<NamedMaterial> {
+        let name = &self.material_names[row as usize];
+        let chosen = self.materials.iter().find(|material| material.name == *name);
+        chosen.cloned().or_else(|| {
+            let spheres = &self.spheres;
+            let rows = (0..spheres.len()).filter(|&sphere| spheres.material_of(sphere) == row);
+            let color = common_color(spheres, rows);
+            let material = TypeMaterial::named(name)?.material(color);
+            Some(NamedMaterial { name: name.clone(), material })
+        })
+    }
+
+    /// Keeps the rows for which `keep` is true.
+    pub(super) fn retain(&mut self, keep: &[bool]) {
+        self.spheres.retain(keep);
+        self.numbers.iter_mut().for_each(|column| retain(&mut column.values, keep));
+        let texts = self.texts.iter_mut().map(|column| &mut column.codes);
+        texts.chain([&mut self.kinds.codes]).for_each(|codes| codes.retain(keep));
+    }
+}
+
+/// Returns the color that these spheres have in common, or white if they have several.
+pub(super) fn common_color(spheres: &Spheres, rows: impl Iterator<Item = usize>) -> Rgb {
+    let mut colors = rows.map(|row| spheres.color_of(row));
+    let first = colors.next().unwrap_or(Rgb::ONE);
+    if colors.all(|color| color == first) { first } else { Rgb::ONE }
+}
+
+/// Converts a frame to spheres; positions are moved, not copied.
+pub(super) fn spheres(
+    path: &Path,
+    mut frame: ParticleFrame,
+    options: &ReadOptions,
+) -> Result<Particles, FileError> {
+    options.check().map_err(|message| FileError::whole_file(path, message))?;
+    let mut warnings = Warnings { path, list: Vec::new() };
+    for warning in std::mem::take(&mut frame.warnings) {
+        warnings.add(&warning);
+    }
+    if frame.is_empty() && !options.allow_empty {
+        return Err(FileError::whole_file(path, "holds no particles"));
+    }
+    memory::check(bytes_to_add(&frame))
+        .map_err(|shortage| FileError::whole_file(path, format!("its spheres need {shortage}")))?;
+    if options.scale != 1.0 {
+        let columns = [&mut frame.x, &mut frame.y, &mut frame.z];
+        columns.into_iter().flatten().for_each(|value| *value *= options.scale);
+    }
+    let FoundRadii { radius, guessed } = radii(path, &mut frame, options, &mut warnings)?;
+    frame.radius = radius;
+    drop_rows(path, &mut frame, options, &mut warnings)?;
+    if guessed && !frame.is_empty() {
+        let radius = half_spacing([&frame.x, &frame.y, &frame.z]);
+        frame.radius.fill(radius * options.radius_scale);
+        warnings.add(&format!(
+            "no radii in the file, using half of the mean spacing: radius = {radius}"
+        ));
+    }
+    let color = colors(&mut frame);
+    let material = material_rows(&frame.materials);
+    let cell = frame.cell.map(|cell| Cell {
+        origin: cell.origin * options.scale,
+        vectors: cell.vectors.map(|vector| vector * options.scale),
+        ..cell
+    });
+    Ok(Particles {
+        spheres: Spheres {
+            x: frame.x,
+            y: frame.y,
+            z: frame.z,
+            radius: frame.radius,
+            material,
+            color,
+        },
+        material_names: material_names(frame.materials),
+        kinds: frame.kinds,
+        numbers: frame.numbers,
+        texts: frame.texts,
+        cell,
+        format: frame.format,
+        columns: frame.columns,
+        roles: frame.roles,
+        materials: Vec::new(),
+        title: frame.title,
+        step: frame.step,
+        time: frame.time,
+        unit: frame.unit,
+        warnings: warnings.list,
+    })
+}
+
+/// Returns the bytes of the columns that spheres have in addition to the frame's.
+fn bytes_to_add(frame: &ParticleFrame) -> u64 {
+    let radius = if frame.radius.is_empty() { size_of::<f64>() } else { 0 };
+    let kinds = &frame.kinds.table;
+    let by_kind = kinds.len() > 1 || kinds.iter().any(|kind| kind.element.is_some());
+    let color = if frame.color.is_empty() && by_kind { size_of::<Rgb>() } else { 0 };
+    let material = if frame.materials.names.len() > 1 { size_of::<u32>() } else { 0 };
+    (frame.len() * (radius + color + material)) as u64
+}
+
+/// Warnings, each with the file's name before it.
+pub(super) struct Warnings<'p> {
+    path: &'p Path,
+    list: Vec<String>,
+}
+
+impl Warnings<'_> {
+    pub(super) fn add(&mut self, message: &str) {
+        self.list.push(format!("{}: {}", self.path.display(), clipped(message)));
+    }
+
+    /// Warns of names with a common reason, which begins the sentence; of nothing if there are none.
+    pub(super) fn add_of(&mut self, reason: &str, names: &[&str]) {
+        if !names.is_empty() {
+            self.add(&listed(reason, names));
+        }
+    }
+}
+
+/// Drops invalid rows, and warns of their number.
+fn drop_rows(
+    path: &Path,
+    frame: &mut ParticleFrame,
+    options: &ReadOptions,
+    warnings: &mut Warnings,
+) -> Result<(), FileError> {
+    let virtual_kinds: Vec<bool> = frame.kinds.table.iter().map(|kind| kind.virtual_site).collect();
+    let any_virtual = virtual_kinds.contains(&true);
+    let is_virtual =
+        |row: usize| any_virtual && virtual_kinds[frame.kinds.codes.code(row) as usize];
+    let finite = |row: usize| frame.position(row).is_finite() && frame.radius[row].is_finite();
+    let (mut sites, mut not_finite, mut not_positive) = (0_u64, 0_u64, 0_u64);
+    let mut is_valid = |row: usize| {
+        let positive = frame.radius[row] > 0.0;
+        if is_virtual(row) {
+            sites += 1;
+        } else if !finite(row) {
+            not_finite += 1;
+        } else if positive {
+            return true;
+        } else {
+            not_positive += 1;
+        }
+        false
+    };
+    let count = frame.len();
+    let Some(first) = (0..count).find(|&row| !is_valid(row)) else { return Ok(()) };
+    let mut keep = vec![true; count];
+    keep[first] = false;
+    (first + 1..count).for_each(|row| keep[row] = is_valid(row));
+    let dropped = not_finite + not_positive;
+    let reasons = format!("{not_finite} not finite, {not_positive} with a radius of 0 or less");
+    if !keep.contains(&true) && !options.allow_empty {
+        let message = format!("none of its {count} rows is a sphere: {reasons}");
+        return Err(FileError::whole_file(path, message));
+    }
+    if sites > 0 {
+        warnings.add(&format!("{sites} sites of water models without an atom are not drawn"));
+    }
+    if dropped > 0 {
+        warnings.add(&format!("{dropped} of {count} rows were dropped: {reasons}"));
+    }
+    frame.retain(&keep);
+    frame.shrink();
+    Ok(())
+}
+
+/// Returns the file's colors, or those of elements or types; empty if all are white or unknown.
+fn colors(frame: &mut ParticleFrame) -> Vec<Rgb> {
+    if !frame.color.is_empty() {
+        let own = std::mem::take(&mut frame.color);
+        return if own.iter().all(|color| *color == Rgb::ONE) { Vec::new() } else { own };
+    }
+    let kinds = &frame.kinds;
+    let has_elements = kinds.table.iter().any(|kind| kind.element.is_some());
+    if !has_elements && kinds.table.len() < 2 {
+        return Vec::new();
+    }
+    let table = kinds.table.iter().enumerate();
+    let table: Vec<Rgb> = table
+        .map(
+            |(row, kind)| {
+                if has_elements { ElementColors::Jmol.of(kind.element) } else { category(row) }
+            },
+        )
+        .collect();
+    (0..kinds.codes.len()).map(|row| table[kinds.codes.code(row) as usize]).collect()
+}
+
+/// Returns the material of each sphere; empty if all have the first.
+fn material_rows(materials: &TextColumn) -> Vec<u32> {
+    let codes = &materials.codes;
+    let rows = 0..codes.len();
+    if rows.clone().all(|row| codes.code(row) == 0) {
+        return Vec::new();
+    }
+    rows.map(|row| codes.code(row)).collect()
+}
+
+fn material_names(materials: TextColumn) -> Vec<String> {
+    if materials.names.is_empty() { vec![String::new()] } else { materials.names }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::particles::Element;
+    use crate::scene::particles::Kind;
+
+    #[test]
+    fn additional_columns_of_spheres_take_bytes() {
+        let plain = ParticleFrame { x: vec![0.0; 10], ..ParticleFrame::default() };
+        let kind =
+            |name: &str, element| Kind { name: name.to_owned(), element, virtual_site: false };
+        let with = |change: &dyn Fn(&mut ParticleFrame)| {
+            let mut frame = plain.clone();
+            change(&mut frame);
+            bytes_to_add(&frame)
+        };
+        let carbon = Element::from_symbol("C");
+        let color = size_of::<Rgb>() as u64 * 10;
+        // Ten radii; colors by type or element; rows of materials.
+        assert_eq!(with(&|_| ()), 80);
+        assert_eq!(with(&|frame| frame.radius = vec![1.0; 10]), 0);
+        assert_eq!(with(&|frame| frame.kinds.table = vec![kind("a", None)]), 80);
+        assert_eq!(with(&|frame| frame.kinds.table = vec![kind("C", carbon)]), 80 + color);
+        let two = vec![kind("a", None), kind("b", None)];
+        assert_eq!(with(&|frame| frame.kinds.table.clone_from(&two)), 80 + color);
+        let own = |frame: &mut ParticleFrame| {
+            frame.kinds.table.clone_from(&two);
+            frame.color = vec![Rgb::ONE; 10];
+        };
+        assert_eq!(with(&own), 80);
+        let names = |count: usize| vec![String::new(); count];
+        assert_eq!(with(&|frame| frame.materials.names = names(1)), 80);
+        assert_eq!(with(&|frame| frame.materials.names = names(2)), 120);
+        let all = |frame: &mut ParticleFrame| {
+            frame.kinds.table.clone_from(&two);
+            frame.materials.names = names(2);
+        };
+        assert_eq!(with(&all), 120 + color);
+    }
+}

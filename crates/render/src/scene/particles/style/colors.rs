@@ -1,0 +1,192 @@
+//! Colors of elements and of columns.
+
+use super::columns::{self, Column};
+use crate::color::elements::{cpk, jmol};
+use crate::color::{Map, Range, RangeError, Rgb, Scale, Spacing, category};
+use crate::scene::FileError;
+use crate::scene::particles::Codes;
+use crate::scene::particles::{Element, LengthUnit, Particles};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// A color scheme of elements.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ElementColors {
+    /// Jmol's.
+    #[default]
+    Jmol,
+    /// After Corey, Pauling and Koltun, in the shades of `RasMol`.
+    Cpk,
+}
+
+impl ElementColors {
+    /// Returns the linear color of an element; gray if the element is unknown or has no color in the
+    /// scheme.
+    pub fn of(self, element: Option<Element>) -> Rgb {
+        let color = element.and_then(|element| match self {
+            Self::Jmol => jmol(element.number()),
+            Self::Cpk => cpk(element.number()),
+        });
+        color.unwrap_or(Rgb::splat(0.5))
+    }
+
+    pub(super) fn apply(self, path: &Path, particles: &mut Particles) -> Result<(), FileError> {
+        let kinds = &particles.kinds;
+        if kinds.table.iter().all(|kind| kind.element.is_none()) {
+            let message = "cannot color by element: no particle has an element";
+            let help = "name the column of elements, as in type=NAME, or color by a column";
+            return Err(FileError::whole_file(path, message).with_help(help));
+        }
+        let table: Vec<Rgb> = kinds.table.iter().map(|kind| self.of(kind.element)).collect();
+        particles.spheres.color = table_colors(&kinds.codes, &table);
+        Ok(())
+    }
+}
+
+/// Colors of particles by a column: numbers by a color map, texts by one color each, which repeat after
+/// [`CATEGORIES`](crate::color::CATEGORIES) texts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ColumnColors {
+    /// The column: one of the file, or `x`, `y`, `z`, `radius`, `type`, `element`, `id`.
+    pub column: String,
+    /// Color map for numbers; `None` is the default map.
+    pub map: Option<Map>,
+    /// True if the color map is reversed.
+    pub reversed: bool,
+    /// Numbers at the ends of the map; numbers beyond them are clamped. `None` is the column's range.
+    pub ends: Option<[f64; 2]>,
+    /// Spacing of numbers between the ends.
+    pub spacing: Spacing,
+}
+
+/// Meaning of the colors of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Legend {
+    /// Map from numbers to colors.
+    pub scale: Scale,
+    /// Label: the quantity, with its unit if it is known.
+    pub label: String,
+}
+
+impl ColumnColors {
+    pub(super) fn apply(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+        allow_empty: bool,
+    ) -> Result<Option<Legend>, FileError> {
+        let column = Column::find(particles, &self.column)
+            .ok_or_else(|| columns::missing(path, particles, &self.column))?;
+        let (colors, legend, missing) = match &column {
+            Column::Numbers(values) => match self.scale(values) {
+                Ok(scale) => {
+                    let legend = Legend { scale, label: self.label(particles.unit) };
+                    (scale.colors(values), Some(legend), missing(values))
+                }
+                Err(RangeError::Empty | RangeError::NonePositive) if allow_empty => {
+                    (Vec::new(), None, missing(values))
+                }
+                Err(error) => return Err(self.scale_error(path, error)),
+            },
+            Column::Texts { names, codes } => {
+                self.check_texts(path)?;
+                (table_colors(codes, &categories(names)), None, 0)
+            }
+        };
+        particles.spheres.color = colors;
+        if missing > 0 {
+            let (path, name) = (path.display(), &self.column);
+            let warning = format!(
+                "{path}: {missing} particles have no value of `{name}` and are drawn in gray"
+            );
+            particles.warnings.push(warning);
+        }
+        Ok(legend)
+    }
+
+    /// Whether the column holds numbers.
+    pub fn is_numeric(&self, particles: &Particles) -> bool {
+        matches!(Column::find(particles, &self.column), Some(Column::Numbers(_)))
+    }
+
+    /// Returns the error for a column without a range.
+    pub fn range_error(&self, path: &Path) -> FileError {
+        let error = match self.spacing {
+            Spacing::Linear => RangeError::Empty,
+            Spacing::Logarithmic => RangeError::NonePositive,
+        };
+        self.scale_error(path, error)
+    }
+
+    fn scale_error(&self, path: &Path, error: RangeError) -> FileError {
+        let message = format!("cannot color by the column `{}`: {error}", self.column);
+        FileError::whole_file(path, message)
+    }
+
+    /// Returns the legend if there are no particles: known if the ends of the map are given.
+    pub(super) fn legend_of_ends(&self, unit: LengthUnit) -> Option<Legend> {
+        let scale = self.ends.and_then(|_| self.scale(&[]).ok())?;
+        Some(Legend { scale, label: self.label(unit) })
+    }
+
+    fn scale(&self, values: &[f64]) -> Result<Scale, RangeError> {
+        let range = match self.ends {
+            Some([low, high]) => Range::new(low, high, self.spacing),
+            None => Range::of(values, self.spacing),
+        };
+        let scale = Scale::new(self.map.unwrap_or_default(), range?);
+        Ok(Scale { reversed: self.reversed, ..scale })
+    }
+
+    /// Checks that neither a map nor a range is given, which are for numbers.
+    fn check_texts(&self, path: &Path) -> Result<(), FileError> {
+        if self.map.is_none() && self.ends.is_none() && self.spacing == Spacing::Linear {
+            return Ok(());
+        }
+        let message = format!(
+            "the column `{}` holds texts, to which color map and range do not apply",
+            self.column
+        );
+        Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
+    }
+
+    /// Returns the name of the column, with the unit if it is a length.
+    fn label(&self, unit: LengthUnit) -> String {
+        let lengths = ["x", "y", "z", "radius", "diameter"];
+        let is_length = lengths.iter().any(|name| name.eq_ignore_ascii_case(&self.column));
+        if is_length && unit != LengthUnit::Unknown {
+            format!("{} ({})", self.column, unit.name())
+        } else {
+            self.column.clone()
+        }
+    }
+}
+
+fn missing(values: &[f64]) -> usize {
+    values.iter().filter(|value| value.is_nan()).count()
+}
+
+/// Returns the colors of texts: equal texts have equal colors.
+fn categories(names: &[&str]) -> Vec<Rgb> {
+    let mut indices = HashMap::new();
+    let mut index = |name| {
+        let next = indices.len();
+        *indices.entry(name).or_insert(next)
+    };
+    names.iter().map(|&name| category(index(name))).collect()
+}
+
+/// Returns the color of each row.
+fn table_colors(codes: &Codes, table: &[Rgb]) -> Vec<Rgb> {
+    (0..codes.len()).map(|row| table[codes.code(row) as usize]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_that_are_the_same_have_one_color() {
+        assert_eq!(categories(&["C", "N", "C", "O"]), [0, 1, 0, 2].map(category));
+    }
+}

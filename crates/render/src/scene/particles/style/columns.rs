@@ -1,0 +1,141 @@
+//! Columns by name: those of the file, and those that all particles have.
+
+use crate::scene::particles::Particles;
+use crate::scene::particles::Role;
+use crate::scene::particles::{Codes, Kind};
+use crate::scene::{FileError, Rgb};
+use spherule_particles::internals::aliases;
+use spherule_particles::internals::unknown_column;
+use std::borrow::Cow;
+use std::path::Path;
+
+/// Name of the column of particle numbers: the file's, or else the index, from 0.
+pub(in super::super) const ID: &str = "id";
+
+/// Name of the column of indices in the file, from 0.
+pub(in super::super) const INDEX: &str = "index";
+
+/// Names with a meaning in every file, in addition to [`ID`] and [`ELEMENT`].
+const COMMON: [(&str, Role); 5] = [
+    ("x", Role::X),
+    ("y", Role::Y),
+    ("z", Role::Z),
+    ("radius", Role::Radius),
+    ("type", Role::Kind),
+];
+
+/// Name of the column of elements, or of types that are not elements.
+const ELEMENT: &str = "element";
+
+/// The values of a column, one row per sphere.
+#[derive(Debug)]
+pub(in super::super) enum Column<'p> {
+    /// NaN for missing values.
+    Numbers(Cow<'p, [f64]>),
+    /// Each row is the index of its text in `names`.
+    Texts { names: Vec<&'p str>, codes: Cow<'p, Codes> },
+}
+
+impl<'p> Column<'p> {
+    /// Finds a column by name: one that was kept, one with a role, or one that all particles have.
+    /// Exact names are preferred to names in another case, and these to other names of the same
+    /// quantity.
+    pub(in super::super) fn find(particles: &'p Particles, name: &str) -> Option<Self> {
+        let any_case = |name: &str| Self::of(particles, |own| own.eq_ignore_ascii_case(name));
+        Self::of(particles, |own| own == name)
+            .or_else(|| any_case(name))
+            .or_else(|| aliases::of(name).find_map(any_case))
+    }
+
+    fn of(particles: &'p Particles, named: impl Fn(&str) -> bool) -> Option<Self> {
+        if let Some(column) = particles.numbers.iter().find(|column| named(&column.name)) {
+            return Some(Self::Numbers(Cow::Borrowed(&column.values)));
+        }
+        if let Some(column) = particles.texts.iter().find(|column| named(&column.name)) {
+            let names = column.names.iter().map(String::as_str).collect();
+            return Some(Self::Texts { names, codes: Cow::Borrowed(&column.codes) });
+        }
+        let role = particles.roles.iter().find(|(_, name)| named(name)).map(|(role, _)| *role);
+        let common = || COMMON.iter().find(|(name, _)| named(name)).map(|(_, role)| *role);
+        match role.or_else(common) {
+            Some(role) => Self::of_role(particles, role),
+            None if named(ELEMENT) => Self::of_kinds(particles, |kind| match kind.element {
+                Some(element) => element.symbol(),
+                None => &kind.name,
+            }),
+            None => None,
+        }
+    }
+
+    fn of_role(particles: &'p Particles, role: Role) -> Option<Self> {
+        let spheres = &particles.spheres;
+        let column = match role {
+            Role::X => &spheres.x,
+            Role::Y => &spheres.y,
+            Role::Z => &spheres.z,
+            Role::Radius => &spheres.radius,
+            Role::Diameter => {
+                let diameter = spheres.radius.iter().map(|radius| 2.0 * radius);
+                return Some(Self::Numbers(diameter.collect()));
+            }
+            Role::Kind => return Self::of_kinds(particles, |kind| &kind.name),
+            Role::Red => return Some(Self::of_channel(particles, |color| color.x)),
+            Role::Green => return Some(Self::of_channel(particles, |color| color.y)),
+            Role::Blue => return Some(Self::of_channel(particles, |color| color.z)),
+            Role::Material => return Some(Self::of_materials(particles)),
+        };
+        Some(Self::Numbers(Cow::Borrowed(column)))
+    }
+
+    fn of_kinds(particles: &'p Particles, name: impl Fn(&'p Kind) -> &'p str) -> Option<Self> {
+        let kinds = &particles.kinds;
+        let names = kinds.table.iter().map(name).collect();
+        let codes = Cow::Borrowed(&kinds.codes);
+        (!kinds.codes.is_empty()).then_some(Self::Texts { names, codes })
+    }
+
+    fn of_channel(particles: &'p Particles, channel: impl Fn(Rgb) -> f32) -> Self {
+        let spheres = &particles.spheres;
+        let values = (0..spheres.len()).map(|row| f64::from(channel(spheres.color_of(row))));
+        Self::Numbers(values.collect())
+    }
+
+    fn of_materials(particles: &'p Particles) -> Self {
+        let (spheres, names) = (&particles.spheres, &particles.material_names);
+        let codes = (0..spheres.len()).map(|row| spheres.material_of(row)).collect();
+        let names = names.iter().map(String::as_str).collect();
+        Self::Texts { names, codes: Cow::Owned(Codes::Words(codes)) }
+    }
+
+    /// Whether any row has a value.
+    pub(in super::super) fn has_values(&self) -> bool {
+        match self {
+            Self::Numbers(values) => values.iter().any(|value| value.is_finite()),
+            Self::Texts { codes, .. } => !codes.is_empty(),
+        }
+    }
+}
+
+/// Returns the names of all columns.
+fn names(particles: &Particles) -> Vec<&str> {
+    let mut names: Vec<&str> = particles.columns.iter().map(String::as_str).collect();
+    let has_kinds = !particles.kinds.codes.is_empty();
+    let common = COMMON.iter().filter(|(_, role)| has_kinds || *role != Role::Kind);
+    let common = common.map(|(name, _)| *name).chain([ID, INDEX]);
+    for name in common.chain(has_kinds.then_some(ELEMENT)) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Returns a message that no column has this name, with the names of those that exist.
+pub(in super::super) fn unknown(particles: &Particles, name: &str) -> String {
+    unknown_column(name, names(particles).into_iter())
+}
+
+/// Returns the error for a column that does not exist, with the names of those that do.
+pub(super) fn missing(path: &Path, particles: &Particles, name: &str) -> FileError {
+    FileError::whole_file(path, unknown(particles, name))
+}

@@ -1,0 +1,131 @@
+//! The style of particles: the user's choices of colors, radii, materials and selection.
+
+mod colors;
+mod columns;
+mod types;
+
+pub use colors::{ColumnColors, ElementColors, Legend};
+pub(super) use columns::{Column, ID, INDEX, unknown};
+pub use types::{TypeMaterial, TypeStyle};
+
+use super::NumberColumn;
+use super::select::Selection;
+use super::{Particles, SharedNames};
+use crate::scene::FileError;
+use spherule_particles::internals::aliases;
+use std::path::Path;
+
+/// Source of colors.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Coloring {
+    /// The file's colors; without them, Jmol's colors of elements; without elements, one color per
+    /// type.
+    #[default]
+    Usual,
+    /// Colors of elements, even if the file has colors.
+    Elements(ElementColors),
+    /// Colors by the numbers or texts of a column.
+    Column(ColumnColors),
+}
+
+/// The style of particles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticleStyle {
+    /// Selection of the particles that are drawn; `None` selects all. Ranges of colors are those of the
+    /// selected particles.
+    pub select: Option<Selection>,
+    /// Source of colors.
+    pub coloring: Coloring,
+    /// Styles of single types, which override all else; the last one for a type applies.
+    pub types: Vec<TypeStyle>,
+    /// True if a selection may be empty, a column may have no valid number, and a type may be missing,
+    /// as in some frames of a trajectory.
+    pub allow_empty: bool,
+}
+
+impl ParticleStyle {
+    /// Returns the columns that this style needs, with their aliases, for
+    /// [`Columns::wanted`](super::Columns::wanted).
+    pub fn columns(&self) -> Vec<String> {
+        let mut columns = self.typed_columns();
+        for at in 0..columns.len() {
+            let others = aliases::of(&columns[at]).map(str::to_owned).collect::<Vec<_>>();
+            columns.extend(others);
+        }
+        columns
+    }
+
+    /// Returns the columns that this style names.
+    fn typed_columns(&self) -> Vec<String> {
+        let mut columns = self.select.as_ref().map_or_else(Vec::new, Selection::columns);
+        if let Coloring::Column(colors) = &self.coloring {
+            columns.push(colors.column.clone());
+        }
+        columns
+    }
+
+    /// Applies the style to particles that were read from `path` with the columns of
+    /// [`ParticleStyle::columns`]. Returns the legend if colors stand for numbers.
+    ///
+    /// # Errors
+    ///
+    /// The file has no such column, type or element, the column has no range, or the selection is empty
+    /// or invalid.
+    pub fn apply(
+        &self,
+        path: &Path,
+        particles: &mut Particles,
+    ) -> Result<Option<Legend>, FileError> {
+        for style in &self.types {
+            style.check().map_err(|message| FileError::whole_file(path, message))?;
+        }
+        add_numbers(particles, &self.typed_columns());
+        if let Some(selection) = self.select.as_ref().filter(|_| !particles.spheres.is_empty()) {
+            selection.apply(path, particles, self.allow_empty)?;
+        }
+        if particles.spheres.is_empty() {
+            return Ok(match &self.coloring {
+                Coloring::Column(colors) => colors.legend_of_ends(particles.unit),
+                Coloring::Usual | Coloring::Elements(_) => None,
+            });
+        }
+        let legend = match &self.coloring {
+            Coloring::Usual => None,
+            Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None)?,
+            Coloring::Column(colors) => colors.apply(path, particles, self.allow_empty)?,
+        };
+        let table = &particles.kinds.table;
+        let known =
+            |style: &&TypeStyle| !self.allow_empty || style.check_known(path, table).is_ok();
+        let types: Vec<&TypeStyle> = self.types.iter().filter(known).collect();
+        types.iter().try_for_each(|style| style.apply(path, particles))?;
+        types.iter().try_for_each(|style| style.apply_material(path, particles))?;
+        Ok(legend)
+    }
+
+    /// Checks that every type with a style of its own is in one of the frames that share these names.
+    ///
+    /// # Errors
+    ///
+    /// There is no such type or element.
+    pub fn check_types(&self, path: &Path, names: &SharedNames) -> Result<(), FileError> {
+        self.types.iter().try_for_each(|style| style.check_known(path, names.kinds()))
+    }
+}
+
+/// Adds the columns of ids and indices, if they are asked for and missing, before rows are dropped.
+fn add_numbers(particles: &mut Particles, names: &[String]) {
+    for own in [ID, INDEX] {
+        let names_column = |name: &String| {
+            name.eq_ignore_ascii_case(own)
+                || aliases::of(own).any(|other| other.eq_ignore_ascii_case(name))
+        };
+        if names.iter().any(names_column) && Column::find(particles, own).is_none() {
+            let values = (0..particles.spheres.len()).map(|row| row as f64).collect();
+            particles.numbers.push(NumberColumn { name: own.to_owned(), values });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

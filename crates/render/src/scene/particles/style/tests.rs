@@ -1,0 +1,291 @@
+use super::*;
+use crate::color::elements::cpk;
+use crate::color::{Map, RangeError, Spacing, category, srgb};
+use crate::scene::particles::{Columns, LengthUnit, Radii, ReadOptions, read};
+use crate::scene::{Material, Rgb, Scene};
+
+const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n\
+                    0 9\n0 9\nITEM: ATOMS type x y z radius q mol\n1 1 2 0 .5 10 a\n\
+                    2 2 2 0 1 100 b\n2 3 2 0 2 1000 a\n";
+const WATER: &str = "3\nwater\nO 0 0 0\nH 1 0 0\nH 0 1 0\n";
+
+/// Applies a style to a file with this content.
+fn apply(content: &str, style: &ParticleStyle) -> Result<(Particles, Option<Legend>), FileError> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("particles");
+    std::fs::write(&path, content).expect("a file");
+    let columns = Columns { wanted: style.columns(), ..Columns::default() };
+    let mut particles = read(&path, &ReadOptions { columns, ..ReadOptions::default() })?;
+    let legend = style.apply(&path, &mut particles)?;
+    Ok((particles, legend))
+}
+
+fn by(column: &str) -> ColumnColors {
+    ColumnColors { column: column.to_owned(), ..ColumnColors::default() }
+}
+
+fn colored(colors: ColumnColors) -> ParticleStyle {
+    ParticleStyle { coloring: Coloring::Column(colors), ..ParticleStyle::default() }
+}
+
+#[test]
+fn numbers_have_the_colors_of_a_map() {
+    let at = |position: f64| Map::Viridis.at(position);
+    for (column, middle) in [("x", 0.5), ("RADIUS", 1.0 / 3.0), ("q", 10.0 / 110.0), ("id", 0.5)] {
+        let (particles, legend) = apply(DUMP, &colored(by(column))).expect("colors");
+        assert_eq!(particles.spheres.color, [at(0.0), at(middle), at(1.0)], "{column}");
+        assert_eq!(legend.expect("a legend").label, column);
+    }
+    let logarithmic = ColumnColors { spacing: Spacing::Logarithmic, ..by("q") };
+    let (particles, _) = apply(DUMP, &colored(logarithmic)).expect("colors");
+    assert!(particles.spheres.color[1].abs_diff_eq(at(0.5), 1e-6));
+    let reversed = ColumnColors { reversed: true, ..by("x") };
+    let (particles, legend) = apply(DUMP, &colored(reversed)).expect("colors");
+    assert_eq!(particles.spheres.color, [at(1.0), at(0.5), at(0.0)]);
+    assert!(legend.expect("a legend").scale.reversed);
+    let clipped = ColumnColors { ends: Some([50.0, 100.0]), map: Some(Map::Turbo), ..by("q") };
+    let (particles, _) = apply(DUMP, &colored(clipped)).expect("colors");
+    let at = |position: f64| Map::Turbo.at(position);
+    assert_eq!(particles.spheres.color, [at(0.0), at(1.0), at(1.0)]);
+}
+
+#[test]
+fn texts_have_colors_of_their_own() {
+    for (column, codes) in [("mol", [0, 1, 0]), ("type", [0, 1, 1]), ("element", [0, 1, 1])] {
+        let (particles, legend) = apply(DUMP, &colored(by(column))).expect("colors");
+        assert_eq!((particles.spheres.color, legend), (codes.map(category).into(), None));
+    }
+    let ranged = ColumnColors { ends: Some([0.0, 1.0]), ..by("mol") };
+    let error = apply(DUMP, &colored(ranged)).expect_err("no range");
+    assert!(error.message.contains("`mol` holds texts"), "{error}");
+}
+
+#[test]
+fn elements_have_the_colors_of_a_scheme() {
+    let style =
+        |scheme| ParticleStyle { coloring: Coloring::Elements(scheme), ..ParticleStyle::default() };
+    let (particles, _) = apply(WATER, &style(ElementColors::Cpk)).expect("colors");
+    assert_eq!(Some(particles.spheres.color[0]), cpk(8));
+    assert_eq!(ElementColors::Cpk.of(None), ElementColors::Jmol.of(None));
+    let error = apply(DUMP, &style(ElementColors::Cpk)).expect_err("no elements");
+    assert!(error.message.contains("no particle has an element"), "{error}");
+}
+
+#[test]
+fn missing_columns_and_values_are_reported() {
+    let error = apply(DUMP, &colored(by("speed"))).expect_err("no column");
+    let expected =
+        "no column is named `speed`; there are type, x, y, z, radius, q, mol, id, index, element";
+    assert_eq!(error.message, expected);
+    let dust = "x,y,z,q\n0,0,0,4\n1,1,1,\n2,2,2,8\n";
+    let (particles, _) = apply(dust, &colored(by("q"))).expect("colors");
+    assert_eq!(particles.spheres.color[1], srgb(0x80_80_80));
+    assert!(
+        particles.warnings.iter().any(|text| text.contains("1 particles have no value of `q`"))
+    );
+    let flat = ColumnColors { spacing: Spacing::Logarithmic, ..by("z") };
+    let error = apply(DUMP, &colored(flat)).expect_err("no range");
+    assert!(
+        error.message.contains("cannot color by the column `z`: none of the values"),
+        "{error}"
+    );
+}
+
+fn typed(styles: &[&str]) -> ParticleStyle {
+    let types = styles.iter().map(|style| style.parse().expect("a valid style")).collect();
+    ParticleStyle { types, ..ParticleStyle::default() }
+}
+
+#[test]
+fn maps_and_ranges_are_for_numbers() {
+    let (particles, _) = apply(DUMP, &ParticleStyle::default()).expect("spheres");
+    assert!(by("x").is_numeric(&particles) && !by("type").is_numeric(&particles));
+    assert!(!by("speed").is_numeric(&particles));
+    for colors in [
+        ColumnColors { map: Some(Map::Turbo), ..by("mol") },
+        ColumnColors { spacing: Spacing::Logarithmic, ..by("mol") },
+    ] {
+        let error = apply(DUMP, &colored(colors)).expect_err("texts");
+        assert!(error.message.contains("`mol` holds texts"), "{error}");
+    }
+    for (spacing, reason) in
+        [(Spacing::Linear, RangeError::Empty), (Spacing::Logarithmic, RangeError::NonePositive)]
+    {
+        let error = ColumnColors { spacing, ..by("q") }.range_error(Path::new("p"));
+        assert_eq!(error.message, format!("cannot color by the column `q`: {reason}"));
+    }
+}
+
+#[test]
+fn lengths_have_their_unit_in_the_legend() {
+    let label = |content: &str, column: &str| {
+        let (_, legend) = apply(content, &colored(by(column))).expect("colors");
+        legend.expect("a legend").label
+    };
+    let atoms = "2\nProperties=species:S:1:pos:R:3:q:R:1\nO 0 0 0 1\nH 1 2 0 2\n";
+    assert_eq!(label(atoms, "x"), "x (angstrom)");
+    assert_eq!(label(atoms, "RADIUS"), "RADIUS (angstrom)");
+    assert_eq!((label(atoms, "q"), label(DUMP, "x")), ("q".to_owned(), "x".to_owned()));
+}
+
+#[test]
+fn columns_without_a_number_have_no_colors_unless_that_is_allowed() {
+    let dust = "x,y,z,q\n0,0,0,-4\n1,1,1,\n";
+    let colors = ColumnColors { spacing: Spacing::Logarithmic, ..by("q") };
+    let (particles, _) = apply(dust, &colored(by("x"))).expect("colors");
+    assert!(particles.warnings.iter().all(|text| !text.contains("no value of")));
+    assert!(apply(dust, &colored(colors.clone())).is_err());
+    let style = ParticleStyle { allow_empty: true, ..colored(colors.clone()) };
+    let (particles, legend) = apply(dust, &style).expect("no colors");
+    assert_eq!((particles.spheres.color.len(), legend), (0, None));
+    let backwards = ColumnColors { ends: Some([2.0, 1.0]), ..by("x") };
+    let style = ParticleStyle { allow_empty: true, ..colored(backwards) };
+    assert!(apply(dust, &style).is_err(), "a range that ends before it begins");
+    // The ends of the map are known without particles.
+    let unit = LengthUnit::Nanometer;
+    assert_eq!(by("x").legend_of_ends(unit), None);
+    let legend = ColumnColors { ends: Some([1.0, 2.0]), ..by("x") }.legend_of_ends(unit);
+    assert_eq!(legend.expect("a legend").label, "x (nanometer)");
+}
+
+#[test]
+fn equal_styles_share_their_material() {
+    let style = typed(&["O:material=mirror", "H:material=glass", "H:material=glass"]);
+    let (particles, _) = apply(WATER, &style).expect("a valid style");
+    assert_eq!(particles.material_names, ["", "O: mirror", "H: glass"]);
+    assert_eq!(particles.spheres.material, [1, 2, 2]);
+    assert_eq!(particles.materials.len(), 2);
+}
+
+#[test]
+fn types_have_styles_of_their_own() {
+    let style = typed(&["H:radius=0.5,color=#ff0000", "O:material=glass", "H:radius=0.25"]);
+    let (particles, _) = apply(WATER, &style).expect("a valid style");
+    assert_eq!(particles.spheres.radius[1..], [0.25, 0.25]);
+    assert_eq!(particles.spheres.color[1..], [Rgb::X, Rgb::X]);
+    let scene = Scene::of_particles(particles, "water");
+    let material = |row| &scene.materials[scene.spheres.material_of(row) as usize].material;
+    assert!(matches!(material(0), Material::Dielectric { .. }));
+    assert!(matches!(material(1), Material::Plastic { .. }));
+}
+
+#[test]
+fn emitters_have_the_color_of_their_type() {
+    let radiance = |style: &[&str]| {
+        let (particles, _) = apply(WATER, &typed(style)).expect("a valid style");
+        match particles.materials.first().expect("a material").material {
+            Material::Emitter { radiance, .. } => radiance,
+            ref other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(radiance(&["H:color=#00ff00,material=emitter"]), Rgb::Y * 4.0);
+    assert_eq!(radiance(&["O:material=emitter"]), srgb(0xFF_0D_0D) * 4.0);
+    let (before, after) = ("H:material=emitter", "H:color=#00ff00");
+    assert_eq!(radiance(&[before, after]), Rgb::Y * 4.0);
+    let again = "H:material=emitter,color=#0000ff";
+    assert_eq!(radiance(&[before, after, again]), Rgb::Z * 4.0);
+}
+
+#[test]
+fn every_material_is_one_of_the_scene() {
+    for (name, material) in TypeMaterial::ALL {
+        assert_eq!(material.name(), name);
+        let style = typed(&[&format!("H:material={name}")]);
+        let (particles, _) = apply(WATER, &style).expect("a valid style");
+        let scene = Scene::of_particles(particles, "water");
+        assert!(crate::World::build(&scene).is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn materials_named_by_files_are_those_of_types() {
+    let made = "x,y,z,material,red,green,blue\n0,0,0,emitter,0,1,0\n1,0,0,GLASS,1,1,1\n\
+                2,0,0,oak,1,1,1\n3,0,0,,1,1,1\n";
+    let (particles, _) = apply(made, &ParticleStyle::default()).expect("spheres");
+    let usual = Material::Lambertian { color: Rgb::ONE };
+    let scene = Scene::of_particles_with(particles, "made", &usual);
+    let material = |row| &scene.materials[scene.spheres.material_of(row) as usize].material;
+    let light = Material::Emitter { radiance: Rgb::Y * 4.0, albedo: Rgb::ZERO };
+    assert_eq!(*material(0), light);
+    assert!(matches!(material(1), Material::Dielectric { .. }));
+    assert_eq!([material(2), material(3)], [&usual; 2]);
+    let unknown = |text: &&String| text.contains("unknown materials");
+    let warnings: Vec<&String> = scene.warnings.iter().filter(unknown).collect();
+    assert!(warnings.len() == 1 && warnings[0].ends_with(": oak"), "{warnings:?}");
+}
+
+#[test]
+fn unknown_types_are_reported_with_known_ones() {
+    let error = apply(WATER, &typed(&["N:radius=1"])).expect_err("no nitrogen");
+    assert_eq!(error.message, "no type is called `N`; there are O, H");
+    let error = apply(WATER, &typed(&["h:radius=1"])).expect_err("no such case");
+    assert_eq!(error.message, "no type is called `h`; did you mean `H`?");
+    let dust = "x,y,z\n0,0,0\n1,1,1\n";
+    let error = apply(dust, &typed(&["N:radius=1"])).expect_err("no types");
+    assert!(error.message.contains("the file has no types"), "{error}");
+    for (text, expected) in [
+        ("N", "expected a type and its style"),
+        ("N:", "expected a type and its style"),
+        ("N:radius=0", "`0` is not a valid radius"),
+        ("N:color=rde", "`rde` is not a valid color"),
+        ("N:color=steelbleu", "did you mean `steelblue`"),
+        ("N:material=wood", "materials are: lambertian, plastic"),
+        ("N:material=Glass", "did you mean `glass`"),
+        ("N:colour=red", "did you mean `color`"),
+        ("N:size=1", "`size` is not radius, color or material"),
+    ] {
+        let error = text.parse::<TypeStyle>().expect_err(text);
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+        let usual = || TypeStyle { name: "O".to_owned(), ..TypeStyle::default() };
+        let mut style = vec![("radius", TypeStyle { radius: Some(bad), ..usual() })];
+        if bad != 0.0 {
+            let color = Some(Rgb::new(0.5, bad as f32, 0.5));
+            style.push(("color", TypeStyle { color, ..usual() }));
+        }
+        for (name, style) in style {
+            let style = ParticleStyle { types: vec![style], ..ParticleStyle::default() };
+            let error = apply(WATER, &style).expect_err(name);
+            assert!(error.message.contains(&format!("`{name}`")), "{error}");
+        }
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("water");
+        std::fs::write(&path, WATER).expect("a file");
+        let usual = ReadOptions::default;
+        for (name, options) in [
+            ("scale", ReadOptions { scale: bad, ..usual() }),
+            ("radius_scale", ReadOptions { radius_scale: bad, ..usual() }),
+            ("radii", ReadOptions { radii: Radii::Constant(bad), ..usual() }),
+            ("radii", ReadOptions { radii: Radii::Missing(bad), ..usual() }),
+        ] {
+            let error = read(&path, &options).expect_err(name);
+            assert!(error.message.contains(&format!("`{name}`")), "{error}");
+        }
+    }
+}
+
+#[test]
+fn ranges_are_those_of_selected_particles() {
+    let select = Some("id > 0".parse().expect("a condition"));
+    let style = ParticleStyle { select, ..colored(by("id")) };
+    assert_eq!(style.columns()[..2], ["id", "id"]);
+    let (particles, legend) = apply(DUMP, &style).expect("colors");
+    let range = legend.expect("a legend").scale.range;
+    assert_eq!((range.low(), range.high()), (1.0, 2.0));
+    let at = |position: f64| Map::Viridis.at(position);
+    assert_eq!(particles.spheres.color, [at(0.0), at(1.0)]);
+}
+
+#[test]
+fn diameters_are_twice_the_radii() {
+    let ranged = ColumnColors { ends: Some([0.0, 2.0]), ..by("diameter") };
+    let (particles, _) =
+        apply(&DUMP.replace("radius", "diameter"), &colored(ranged)).expect("colors");
+    let at = |position: f64| Map::Viridis.at(position);
+    assert_eq!(particles.spheres.color, [at(0.25), at(0.5), at(1.0)]);
+}

@@ -1,0 +1,101 @@
+//! Ray tracing in a world: tests the ground, and then the tree of the visible spheres.
+
+mod clipped;
+mod ground;
+
+pub(crate) use self::ground::{intersect_ground, occlude_by_ground};
+pub use crate::bvh::{PacketWidth, Tracer, Traversal};
+
+use self::clipped::ClippedRays;
+use crate::bvh::Tree;
+use crate::ray::{Hits, MISS, Rays};
+use crate::world::World;
+
+/// A kind of ray query.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Query {
+    /// The first hit of each ray.
+    Closest,
+    /// Whether each ray hits anything.
+    Any,
+}
+
+/// Finds the first hit of each ray. On entry `hits.t` bounds the search, and `hits.sphere` is the hit
+/// at that bound, if any; on return both describe the hit.
+///
+/// Returns the number of decisions made by exact integer arithmetic.
+pub fn closest(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+    closest_ground(world, rays, hits);
+    trace(tracer, Query::Closest, world, rays, hits)
+}
+
+/// Finds the first hit of rays that hit no sphere.
+pub fn closest_ground(world: &World, rays: &Rays, hits: &mut Hits) {
+    if let Some(ground) = &world.ground {
+        intersect_ground(ground, rays, hits);
+    }
+}
+
+/// Finds whether each ray hits anything nearer than `hits.t`. On entry `hits.sphere` is [`MISS`] for
+/// each ray to trace; on return it is `MISS` where nothing is hit.
+///
+/// Returns the number of decisions made by exact integer arithmetic.
+pub fn occluded(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+    if let Some(ground) = &world.ground {
+        occlude_by_ground(ground, rays, hits);
+    }
+    trace(tracer, Query::Any, world, rays, hits)
+}
+
+/// Traces rays among the spheres that they can hit.
+fn trace(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+    if world.camera_visible.is_none() && world.cut.is_empty() {
+        let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
+        return query.trace(tracer, tree, rays, hits);
+    }
+    trace_sliced(tracer, query, world, rays, hits)
+}
+
+/// Traces rays where slices hide spheres from the camera, or cut them.
+#[cold]
+fn trace_sliced(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+    // Only camera rays start on no sphere, and they are never mixed with other rays.
+    let from_camera = rays.own.first() == Some(&MISS);
+    let Some(visible) = world.camera_visible.as_ref().filter(|_| from_camera) else {
+        let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
+        return trace_clipped(tracer, query, world, tree, rays, hits);
+    };
+    let tree = Tree { bvh: &visible.bvh, spheres: &visible.spheres };
+    let exact = trace_clipped(tracer, query, world, tree, rays, hits);
+    for hit in &mut hits.sphere[..rays.len()] {
+        *hit = visible.row.get(*hit as usize).copied().unwrap_or(*hit);
+    }
+    exact
+}
+
+/// Traces the parts of rays that are kept.
+fn trace_clipped(
+    tracer: Tracer,
+    query: Query,
+    world: &World,
+    tree: Tree,
+    rays: &Rays,
+    hits: &mut Hits,
+) -> u64 {
+    if world.cut.is_empty() {
+        return query.trace(tracer, tree, rays, hits);
+    }
+    let mut clipped = ClippedRays::new(world, tree, rays, hits);
+    let exact = query.trace(tracer, tree, &clipped.rays, &mut clipped.hits);
+    clipped.write_hits(hits);
+    exact
+}
+
+impl Query {
+    fn trace(self, tracer: Tracer, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
+        match self {
+            Self::Closest => tracer.closest(tree, rays, hits),
+            Self::Any => tracer.occluded(tree, rays, hits),
+        }
+    }
+}

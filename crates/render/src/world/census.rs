@@ -1,0 +1,201 @@
+//! The census of a world, which decides which stages of a render run.
+
+use super::World;
+use super::parts::OmittedSpheres;
+use crate::shade::MaterialKind;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Spheres that are nearer than this fraction of their coordinates count as touching.
+const TOUCH: f64 = 1e-5;
+
+/// The features of a world. Stages for absent features do not run.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is one independent fact of the census")]
+pub struct Features {
+    /// Spheres of each kind of material, in the order of [`MaterialKind::ALL`].
+    pub spheres_by_kind: [u64; MaterialKind::COUNT],
+    /// Spheres too small for single precision relative to the largest coordinate, omitted.
+    pub vanished: u64,
+    /// Spheres that coincide with an earlier one, among many about one center, omitted.
+    pub hidden: u64,
+    /// Spheres that slices remove completely.
+    pub cut_away: u64,
+    /// Planes that cut spheres.
+    pub cuts: u64,
+    /// Whether the camera may be inside a sphere that is cut; determined only if there are cuts.
+    pub around_camera: bool,
+    /// Spheres that are hidden from the camera.
+    pub unseen: u64,
+    /// The ground's kind of material; `None` if there is no ground, and rays are not tested against it.
+    pub ground_kind: Option<MaterialKind>,
+    /// Whether spheres have their own colors.
+    pub colors: bool,
+    /// Whether there are lights to sample: otherwise there are no shadow rays.
+    pub lights: bool,
+    /// Whether rays start on a lens.
+    pub lens: bool,
+    /// Whether rays that leave the scene find any light.
+    pub environment: bool,
+    /// Glass spheres in which a camera ray may start; if there are none, every ray starts outside.
+    pub glass_at_camera: Vec<u32>,
+    /// Whether a ray may be in more than one glass sphere at a time, because some may touch, overlap or
+    /// contain each other.
+    pub nested_glass: bool,
+}
+
+impl Features {
+    /// Counts the features of a world; `omitted` spheres of its scene are not in the world.
+    pub(super) fn census(world: &World, omitted: OmittedSpheres) -> Self {
+        let mut spheres_by_kind = [0; MaterialKind::COUNT];
+        for row in 0..world.spheres.len() {
+            spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
+        }
+        Self {
+            spheres_by_kind,
+            vanished: omitted.vanished,
+            cut_away: omitted.cut_away,
+            cuts: world.cut.len() as u64,
+            around_camera: false,
+            unseen: world
+                .camera_visible
+                .as_ref()
+                .map_or(0, |visible| world.spheres.len() - visible.spheres.len())
+                as u64,
+            hidden: omitted.hidden,
+            ground_kind: world.ground.map(|ground| ground.material.kind()),
+            colors: world.appearance.color.is_some(),
+            lights: !world.lights.is_empty(),
+            lens: false,
+            environment: !world.environment.is_black(),
+            glass_at_camera: Vec::new(),
+            nested_glass: nested_glass(world),
+        }
+        .with_camera_of(world)
+    }
+
+    /// Updates the features that depend on the camera.
+    pub(super) fn with_camera_of(self, world: &World) -> Self {
+        Self {
+            lens: world.camera.has_lens(),
+            around_camera: around_camera(world),
+            glass_at_camera: glass_at_camera(world),
+            ..self
+        }
+    }
+
+    /// Whether anything has this kind of material.
+    pub fn has(&self, kind: MaterialKind) -> bool {
+        self.spheres_by_kind[kind as usize] > 0 || self.ground_kind == Some(kind)
+    }
+
+    /// Returns descriptions of the work that the render omits.
+    pub fn skipped(&self) -> Vec<String> {
+        let mut skipped = Vec::new();
+        let mut skip = |absent: bool, what: &str| {
+            if absent {
+                skipped.push(what.to_owned());
+            }
+        };
+        skip(self.cuts == 0, "no flat cuts: no ray clipping");
+        skip(self.ground_kind.is_none(), "no ground: no plane test");
+        skip(!self.lights, "no lights to sample: no shadow rays");
+        skip(!self.lens, "no lens: no lens samples");
+        skip(!self.colors, "no colors of single spheres: no color column");
+        skip(!self.environment, "black environment: no environment lookup");
+        skip(
+            self.glass_at_camera.is_empty(),
+            "no glass around the camera: every ray starts outside",
+        );
+        skip(!self.nested_glass, "no touching or nested glass: no interior lists");
+        for kind in MaterialKind::ALL {
+            skip(!self.has(kind), &format!("no {}: its shading stage does not run", kind.name()));
+        }
+        skipped
+    }
+}
+
+/// Whether a cut sphere overlaps the sphere that contains the camera rays' origins.
+fn around_camera(world: &World) -> bool {
+    let (at, reach) = world.camera.origins();
+    let around = |row: usize| {
+        let (center, radius) = world.spheres.exact(row);
+        let near = center.distance(at) <= (radius + reach) * (1.0 + 1e-6);
+        near && world.cut.divides(center, radius)
+    };
+    !world.cut.is_empty() && (0..world.spheres.len()).into_par_iter().any(around)
+}
+
+/// Maximum number of glass spheres that are tested in pairs; more count as touching.
+const MAX_TESTED: usize = 1024;
+
+/// Whether glass spheres may touch, with a tolerance far above the rounding of surface points.
+fn nested_glass(world: &World) -> bool {
+    let is_glass =
+        |row: &usize| world.appearance.material.row(*row).kind() == MaterialKind::Dielectric;
+    if world.materials.dielectric.is_empty() {
+        return false;
+    }
+    let rows = (0..world.spheres.len()).filter(is_glass).take(MAX_TESTED + 1);
+    let glass: Vec<_> = rows.map(|row| world.spheres.exact(row)).collect();
+    let apart = |(i, (center, radius)): (usize, &(DVec3, f64))| {
+        glass[..i].iter().all(|(other, other_radius)| {
+            let reach = radius + other_radius;
+            let size = center.length() + other.length() + reach;
+            center.distance(*other) > reach + size * TOUCH
+        })
+    };
+    glass.len() > MAX_TESTED || !glass.iter().enumerate().all(apart)
+}
+
+/// Returns the glass spheres that overlap the sphere that contains the camera rays' origins.
+fn glass_at_camera(world: &World) -> Vec<u32> {
+    if world.materials.dielectric.is_empty() {
+        return Vec::new();
+    }
+    let (center, reach) = world.camera.origins();
+    let is_glass =
+        |row: &u32| world.appearance.material.row(*row as usize).kind() == MaterialKind::Dielectric;
+    let near = |row: &u32| {
+        let (at, radius) = world.spheres.exact(*row as usize);
+        at.distance(center) <= (radius + reach) * (1.0 + 1e-6)
+    };
+    let rows = (0..world.spheres.len() as u32).into_par_iter();
+    let rows: Vec<u32> = rows.filter(|row| is_glass(row) && near(row)).collect();
+    let mut rows = world.spheres.first_of_equals(rows.into_iter());
+    rows.retain(is_glass);
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, NamedMaterial, Rgb, Scene};
+
+    /// Whether glass may be nested, for glass spheres along an axis, and one of another material in the
+    /// first.
+    fn nested(spheres: &[(f64, f64)]) -> bool {
+        let mut scene = Scene::default();
+        let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
+        let solid = Material::Lambertian { color: Rgb::ONE };
+        scene.materials = [("glass", glass), ("solid", solid)]
+            .map(|(name, material)| NamedMaterial { name: name.into(), material })
+            .into();
+        for (index, &(x, radius)) in spheres.iter().chain(&[(0.0, 0.1)]).enumerate() {
+            let material = u32::from(index == spheres.len());
+            scene.spheres.push(DVec3::X * x, radius, material, Rgb::ONE);
+        }
+        World::build(&scene).unwrap().features.nested_glass
+    }
+
+    #[test]
+    fn glass_is_nested_where_it_touches_glass() {
+        assert!(!nested(&[(0.0, 1.0)]));
+        assert!(!nested(&[(0.0, 1.0), (2.1, 1.0), (-3.0, 1.5)]));
+        assert!(nested(&[(0.0, 1.0), (2.0, 1.0)]), "touching");
+        assert!(nested(&[(0.0, 1.0), (5.0, 0.1), (0.3, 0.2)]), "inside");
+        assert!(nested(&[(0.0, 1.0), (-1.5, 1.0)]), "overlapping");
+        // A gap below the rounding of points.
+        assert!(nested(&[(0.0, 1.0), (1e6, 1e-3), (1e6 + 3e-3, 1e-3)]));
+    }
+}

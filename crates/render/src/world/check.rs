@@ -1,0 +1,484 @@
+//! Checks of scenes that come from code; scenes from files passed the same checks when they were read,
+//! with line and column.
+
+use super::fit::{self, Placement};
+use super::{Transform, WorldError, spheres};
+use crate::image::Image;
+use crate::memory;
+use crate::scene::particles::Cell;
+use crate::scene::{
+    BRIGHTEST, Background, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Lens,
+    Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Slice, is_radiance,
+};
+use glam::DVec3;
+
+/// Tolerance of a unit vector's squared length.
+const UNIT: f64 = 1e-6;
+
+/// Checks what does not depend on the number of spheres.
+pub(super) fn check_view(scene: &Scene) -> Result<(), WorldError> {
+    scene.settings.check()?;
+    camera(&scene.camera)
+}
+
+pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
+    check_view(scene)?;
+    scene.materials.iter().try_for_each(material)?;
+    scene.lights.iter().try_for_each(light)?;
+    scene.slices.iter().try_for_each(slice)?;
+    environment(&scene.environment)?;
+    scene.ground.as_ref().map_or(Ok(()), |plane| ground(plane, &scene.materials))?;
+    look(&scene.look)?;
+    let invalid = scene.spheres.color.iter().position(|&color| !is_fraction(color));
+    invalid.map_or(Ok(()), |row| {
+        let color = scene.spheres.color[row];
+        albedo(&format!("the color of sphere {row}"), color)
+    })
+}
+
+fn require(holds: bool, message: impl FnOnce() -> String) -> Result<(), WorldError> {
+    if holds { Ok(()) } else { Err(WorldError::Invalid(message())) }
+}
+
+/// Checks a number whose condition is `holds`, which must be false for NaN.
+fn check_number(holds: bool, name: &str, value: f64, range: &str) -> Result<(), WorldError> {
+    require(holds, || format!("{name} is {value}, but must be {range}"))
+}
+
+fn at_least_0(name: &str, value: f64) -> Result<(), WorldError> {
+    check_number((0.0..f64::INFINITY).contains(&value), name, value, "finite and 0 or more")
+}
+
+fn more_than_0(name: &str, value: f64) -> Result<(), WorldError> {
+    check_number(value > 0.0 && value < f64::INFINITY, name, value, "finite and more than 0")
+}
+
+fn unit(name: &str, vector: DVec3) -> Result<(), WorldError> {
+    let holds = (vector.length_squared() - 1.0).abs() <= UNIT;
+    require(holds, || format!("{name} is {vector}, but must have length 1"))
+}
+
+fn is_fraction(color: Rgb) -> bool {
+    (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]))
+}
+
+fn is_valid_radiance(color: Rgb) -> bool {
+    (0..3).all(|channel| (0.0..=BRIGHTEST).contains(&color[channel]))
+}
+
+fn albedo(name: &str, color: Rgb) -> Result<(), WorldError> {
+    require(is_fraction(color), || format!("{name} is {color}, but must be 0 to 1 in each channel"))
+}
+
+/// Checks the real or imaginary part of an index of refraction.
+fn index(name: &str, color: Rgb) -> Result<(), WorldError> {
+    let holds = color.is_finite() && color.min_element() > 0.0;
+    require(holds, || format!("{name} is {color}, but must be finite and more than 0"))
+}
+
+fn radiance(name: &str, color: Rgb) -> Result<(), WorldError> {
+    require(is_valid_radiance(color), || {
+        format!("{name} is {color}, but must be 0 to {BRIGHTEST:e}")
+    })
+}
+
+fn finite(name: &str, vector: DVec3) -> Result<(), WorldError> {
+    require(vector.is_finite(), || format!("{name} is {vector}, but must be finite"))
+}
+
+fn direction(name: &str, vector: DVec3) -> Result<(), WorldError> {
+    let holds = vector.is_finite() && vector != DVec3::ZERO;
+    require(holds, || format!("{name} is {vector}, but must be finite and not zero"))
+}
+
+// Structs are destructured without `..`, so that fields that are added later are not forgotten.
+
+fn camera(camera: &Camera) -> Result<(), WorldError> {
+    let Camera { projection, pose, up, lens, near } = camera;
+    match *projection {
+        Projection::Perspective { fov } => {
+            let holds = fov > 0.0 && fov < 180.0;
+            check_number(holds, "the camera's `fov`", fov, "between 0 and 180 degrees")?;
+        }
+        Projection::Orthographic { height } => {
+            height.map_or(Ok(()), |height| more_than_0("the camera's `height`", height))?;
+        }
+    }
+    match *pose {
+        Pose::LookAt { eye, target } => {
+            finite("the camera's `eye`", eye)?;
+            finite("the camera's `target`", target)?;
+        }
+        Pose::Fit { direction: toward, margin } => {
+            direction("the camera's `direction`", toward)?;
+            let holds = (0.0..1.0).contains(&margin);
+            check_number(holds, "the camera's `margin`", margin, "0 or more, less than 1")?;
+        }
+    }
+    if let Some(Lens { aperture, focus }) = *lens {
+        at_least_0("the camera's `aperture`", aperture)?;
+        focus.map_or(Ok(()), |focus| more_than_0("the camera's `focus`", focus))?;
+    }
+    direction("the camera's `up`", *up)?;
+    at_least_0("the camera's `near`", *near)
+}
+
+fn look(look: &Look) -> Result<(), WorldError> {
+    let Look { background, depth_cue: _, outline: _, cell } = look;
+    match *background {
+        Background::Color(color) => radiance("the look's `background`", color)?,
+        Background::Sky | Background::Transparent => (),
+    }
+    let Some(Cell { origin, vectors, periodic: _ }) = *cell else { return Ok(()) };
+    finite("the origin of the look's `cell`", origin)?;
+    vectors.into_iter().try_for_each(|edge| finite("an edge of the look's `cell`", edge))
+}
+
+fn material(named: &NamedMaterial) -> Result<(), WorldError> {
+    let NamedMaterial { name, material } = named;
+    let field = |field: &str| format!("`{field}` of the material \"{name}\"");
+    let fraction = |name: &str, value: f64| {
+        check_number((0.0..=1.0).contains(&value), &field(name), value, "0 to 1")
+    };
+    match *material {
+        Material::Lambertian { color } => albedo(&field("color"), color),
+        Material::Conductor { fresnel, roughness } => {
+            fraction("roughness", roughness)?;
+            match fresnel {
+                ConductorFresnel::Schlick(color) | ConductorFresnel::Constant(color) => {
+                    albedo(&field("color"), color)
+                }
+                ConductorFresnel::Exact { eta, k } => [("eta", eta), ("k", k)]
+                    .into_iter()
+                    .try_for_each(|(name, value)| index(&field(name), value)),
+            }
+        }
+        Material::Dielectric { ior, color } => {
+            more_than_0(&field("ior"), ior)?;
+            albedo(&field("color"), color)
+        }
+        Material::Plastic { color, ior } => {
+            let holds = ior > 1.0 && ior.is_finite();
+            check_number(holds, &field("ior"), ior, "finite and more than 1")?;
+            albedo(&field("color"), color)
+        }
+        Material::Reflective { color, diffuse, mirror } => {
+            albedo(&field("color"), color)?;
+            fraction("diffuse", diffuse)?;
+            fraction("mirror", mirror)?;
+            fraction("diffuse + mirror", diffuse + mirror)
+        }
+        Material::Emitter { radiance: emitted, albedo: reflected } => {
+            radiance(&field("radiance"), emitted)?;
+            albedo(&field("albedo"), reflected)
+        }
+    }
+}
+
+fn light(light: &Light) -> Result<(), WorldError> {
+    match *light {
+        Light::Sun { direction, irradiance, angular_radius } => {
+            unit("the `direction` of a sun", direction)?;
+            radiance("the `irradiance` of a sun", irradiance)?;
+            let holds = (0.0..90.0).contains(&angular_radius);
+            check_number(
+                holds,
+                "the `angular_radius` of a sun",
+                angular_radius,
+                "0 or more, less than 90",
+            )
+        }
+        Light::Point { position, intensity, .. } => {
+            require(position.is_finite(), || {
+                format!("the `position` of a point light is {position}, but must be finite")
+            })?;
+            let valid = intensity.is_finite() && intensity.min_element() >= 0.0;
+            require(valid, || {
+                format!("the `intensity` of a point light is {intensity}, but must be 0 or more")
+            })
+        }
+    }
+}
+
+fn slice(slice: &Slice) -> Result<(), WorldError> {
+    let Slice { normal, distance, mode: _ } = *slice;
+    unit("the `normal` of a slice", normal)?;
+    check_number(distance.is_finite(), "the `distance` of a slice", distance, "finite")
+}
+
+fn environment(environment: &Environment) -> Result<(), WorldError> {
+    let Environment { map, illuminates: _ } = environment;
+    match map {
+        EnvironmentMap::Constant(color) => radiance("the environment's `color`", *color),
+        EnvironmentMap::Gradient { bottom, top, up } => {
+            radiance("the environment's `bottom`", *bottom)?;
+            radiance("the environment's `top`", *top)?;
+            unit("the environment's `up`", *up)
+        }
+        EnvironmentMap::Picture { image, up, rotation, scale } => {
+            at_least_0("the environment's `scale`", f64::from(*scale))?;
+            picture(image, *scale)?;
+            unit("the environment's `up`", *up)?;
+            check_number(rotation.is_finite(), "the environment's `rotation`", *rotation, "finite")
+        }
+    }
+}
+
+fn picture(image: &Image, scale: f32) -> Result<(), WorldError> {
+    let pixels = u64::from(image.width) * u64::from(image.height);
+    let shape = pixels > 0 && pixels == image.pixels.len() as u64;
+    let valid = |value: &f32| is_radiance(*value, scale);
+    require(shape && image.pixels.iter().flatten().all(valid), || {
+        format!(
+            "the environment's picture must have width x height radiances that, times its scale, \
+             are 0 to {BRIGHTEST:e}"
+        )
+    })
+}
+
+/// Checks the ground, whose material's row exists.
+fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError> {
+    let Ground { normal, height, material } = *ground;
+    unit("the ground's `normal`", normal)?;
+    check_number(height.is_finite(), "the ground's `height`", height, "finite")?;
+    let material = materials.get(material as usize).map(|named| &named.material);
+    let solid = !matches!(material, Some(Material::Dielectric { .. } | Material::Emitter { .. }));
+    require(solid, || "the ground cannot be glass or an emitter; use a sphere".to_owned())
+}
+
+/// Checks the scene and that `bytes` of memory are available, and computes coordinates and camera.
+pub(super) fn place(scene: &Scene, bytes: u64) -> Result<(Transform, Placement), WorldError> {
+    memory::check(bytes).map_err(|shortage| WorldError::Memory(scene.spheres.len(), shortage))?;
+    check_environment_memory(scene)?;
+    spheres::validate(scene)?;
+    check(scene)?;
+    let pose = fit::pose(scene)?;
+    Ok((Transform::of(&scene.spheres, &pose), pose))
+}
+
+/// Checks that memory suffices for the light of the environment.
+pub(super) fn check_environment_memory(scene: &Scene) -> Result<(), WorldError> {
+    let bytes = super::Environment::bytes(&scene.environment);
+    memory::check(bytes).map_err(WorldError::Environment)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::World;
+    use crate::scene::SliceMode;
+    use crate::scene::generate::default_scene;
+    use std::sync::Arc;
+
+    /// Values that most fields refuse.
+    const BAD: [f64; 4] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e300];
+
+    /// Checks that every bad value of a field is refused and named.
+    fn refuse(name: &str, set: impl Fn(&mut Scene, f64)) {
+        let mut scene = default_scene(0);
+        set(&mut scene, 0.5);
+        World::build(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
+        for bad in BAD {
+            let mut scene = default_scene(0);
+            set(&mut scene, bad);
+            let error = World::build(&scene).expect_err(name).to_string();
+            assert!(error.contains(name), "{name} {bad}: {error}");
+        }
+    }
+
+    /// Checks the same for a field that accepts negative numbers of any size.
+    fn refuse_infinite(name: &str, set: impl Fn(&mut Scene, f64)) {
+        for bad in &BAD[..3] {
+            let mut scene = default_scene(0);
+            set(&mut scene, *bad);
+            let error = World::build(&scene).expect_err(name).to_string();
+            assert!(error.contains(name), "{name} {bad}: {error}");
+        }
+    }
+
+    fn made_of(scene: &mut Scene, material: Material) {
+        scene.materials.push(NamedMaterial { name: "own".to_owned(), material });
+    }
+
+    #[test]
+    fn cameras_out_of_range_are_refused() {
+        let look_at = |eye, target| Pose::LookAt { eye, target };
+        refuse("`fov`", |scene, fov| {
+            scene.camera.projection = Projection::Perspective { fov };
+        });
+        refuse("`height`", |scene, height| {
+            scene.camera.projection = Projection::Orthographic { height: Some(height) };
+        });
+        refuse("`margin`", |scene, margin| {
+            scene.camera.pose = Pose::Fit { direction: DVec3::NEG_Z, margin };
+        });
+        refuse("`near`", |scene, near| scene.camera.near = near);
+        refuse("`aperture`", |scene, aperture| {
+            scene.camera.lens = Some(Lens { aperture, focus: None });
+        });
+        refuse("`focus`", |scene, focus| {
+            scene.camera.lens = Some(Lens { aperture: 0.1, focus: Some(focus) });
+        });
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let with = |value: f64| DVec3::ONE + axis.map(|on| if on > 0.0 { value } else { 0.0 });
+            refuse_infinite("`eye`", |scene, value| {
+                scene.camera.pose = look_at(with(value), DVec3::ZERO);
+            });
+            refuse_infinite("`target`", |scene, value| {
+                scene.camera.pose = look_at(DVec3::ZERO, with(value));
+            });
+            refuse_infinite("`direction`", |scene, value| {
+                scene.camera.pose = Pose::Fit { direction: with(value), margin: 0.0 };
+            });
+            refuse_infinite("`up`", |scene, value| scene.camera.up = with(value));
+        }
+    }
+
+    #[test]
+    fn materials_out_of_range_are_refused() {
+        for channel in 0..3 {
+            let gray = |value: f64| {
+                let mut color = Rgb::splat(0.25);
+                color[channel] = value as f32;
+                color
+            };
+            refuse("`color`", |scene, value| {
+                made_of(scene, Material::Lambertian { color: gray(value) });
+            });
+            refuse("`color`", |scene, value| {
+                let fresnel = ConductorFresnel::Schlick(gray(value));
+                made_of(scene, Material::Conductor { fresnel, roughness: 0.0 });
+            });
+            refuse("`eta`", |scene, value| {
+                let fresnel = ConductorFresnel::Exact { eta: gray(value), k: Rgb::ONE };
+                made_of(scene, Material::Conductor { fresnel, roughness: 0.0 });
+            });
+            refuse("`k`", |scene, value| {
+                let fresnel = ConductorFresnel::Exact { eta: Rgb::ONE, k: gray(value) };
+                made_of(scene, Material::Conductor { fresnel, roughness: 0.0 });
+            });
+            refuse("`color`", |scene, value| {
+                made_of(scene, Material::Dielectric { ior: 1.5, color: gray(value) });
+            });
+            refuse("`radiance`", |scene, value| {
+                let radiance = gray(value);
+                made_of(scene, Material::Emitter { radiance, albedo: Rgb::ZERO });
+            });
+            refuse("`albedo`", |scene, value| {
+                let albedo = gray(value);
+                made_of(scene, Material::Emitter { radiance: Rgb::ONE, albedo });
+            });
+            refuse("color of sphere 7", |scene, value| {
+                scene.spheres.color.resize(scene.spheres.len(), Rgb::ONE);
+                scene.spheres.color[7] = gray(value);
+            });
+        }
+        refuse("`roughness`", |scene, roughness| {
+            let fresnel = ConductorFresnel::Constant(Rgb::ONE);
+            made_of(scene, Material::Conductor { fresnel, roughness });
+        });
+        refuse("`ior`", |scene, ior| {
+            made_of(scene, Material::Dielectric { ior, color: Rgb::ONE });
+        });
+        refuse("`ior`", |scene, ior| {
+            made_of(scene, Material::Plastic { ior: ior + 1.0, color: Rgb::ONE });
+        });
+        for (name, factors) in [("`diffuse`", [1.0, 0.0]), ("`mirror`", [0.0, 1.0])] {
+            refuse(name, |scene, value| {
+                let [diffuse, mirror] =
+                    factors.map(|factor: f64| if factor > 0.0 { value } else { 0.25 });
+                made_of(scene, Material::Reflective { color: Rgb::ONE, diffuse, mirror });
+            });
+        }
+        refuse("sphere 3", |scene, value| scene.spheres.radius[3] = value);
+        refuse_infinite("sphere 3", |scene, value| scene.spheres.y[3] = value);
+    }
+
+    #[test]
+    fn light_out_of_range_is_refused() {
+        let sun = |direction, irradiance, angular_radius| Light::Sun {
+            direction,
+            irradiance: Rgb::splat(irradiance),
+            angular_radius,
+        };
+        refuse("`angular_radius`", |scene, value| {
+            scene.lights = vec![sun(DVec3::Y, 1.0, value)];
+        });
+        refuse("`irradiance`", |scene, value| {
+            scene.lights = vec![sun(DVec3::Y, value as f32, 1.0)];
+        });
+        refuse_infinite("`direction`", |scene, value| {
+            scene.lights = vec![sun(DVec3::new(0.0, 1.0, value), 1.0, 1.0)];
+        });
+        refuse("`intensity`", |scene, value| {
+            let intensity = Rgb::new(1.0, 1.0, value as f32);
+            let light = Light::Point { position: DVec3::splat(50.0), intensity, falloff: true };
+            scene.lights = vec![light];
+        });
+        refuse_infinite("`position`", |scene, value| {
+            let position = DVec3::new(0.0, value, 0.0);
+            scene.lights = vec![Light::Point { position, intensity: Rgb::ONE, falloff: false }];
+        });
+        let sky = |scene: &mut Scene, map| {
+            scene.environment = Environment { map, illuminates: true };
+        };
+        refuse("`color`", |scene, value| {
+            sky(scene, EnvironmentMap::Constant(Rgb::splat(value as f32)));
+        });
+        for (name, ends) in [("`bottom`", [true, false]), ("`top`", [false, true])] {
+            refuse(name, |scene, value| {
+                let [bottom, top] =
+                    ends.map(|end| Rgb::splat(if end { value as f32 } else { 1.0 }));
+                sky(scene, EnvironmentMap::Gradient { bottom, top, up: DVec3::Y });
+            });
+        }
+        let image = || Arc::new(Image { width: 2, height: 1, pixels: vec![[0.5; 3]; 2] });
+        let picture = |rotation: f64, scale: f64| EnvironmentMap::Picture {
+            image: image(),
+            up: DVec3::Y,
+            rotation,
+            scale: scale as f32,
+        };
+        refuse("`scale`", |scene, value| sky(scene, picture(0.0, value)));
+        refuse_infinite("`rotation`", |scene, value| sky(scene, picture(value, 1.0)));
+    }
+
+    #[test]
+    fn grounds_slices_and_looks_out_of_range_are_refused() {
+        let ground = |normal, height, material| Some(Ground { normal, height, material });
+        refuse_infinite("`height`", |scene, value| scene.ground = ground(DVec3::Y, value, 0));
+        refuse_infinite("`normal`", |scene, value| {
+            scene.ground = ground(DVec3::new(value, 1.0, 0.0), 0.0, 0);
+        });
+        let mut scene = default_scene(0);
+        scene.ground = ground(DVec3::Y, 0.0, 99);
+        let error = World::build(&scene).expect_err("no such material").to_string();
+        assert!(error.contains("material 99"), "{error}");
+        let slice = |normal, distance| Slice { normal, distance, mode: SliceMode::Remove };
+        refuse_infinite("`distance`", |scene, value| scene.slices = vec![slice(DVec3::Y, value)]);
+        refuse_infinite("`normal`", |scene, value| {
+            scene.slices = vec![slice(DVec3::new(0.0, value, 1.0), 0.0)];
+        });
+        refuse("`background`", |scene, value| {
+            scene.look.background = Background::Color(Rgb::new(0.5, 0.5, value as f32));
+        });
+        for row in 0..4 {
+            refuse_infinite("`cell`", |scene, value| {
+                let mut edges = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+                edges[row].y = value;
+                let [origin, a, b, c] = edges;
+                let cell = Cell { origin, vectors: [a, b, c], periodic: [true; 3] };
+                scene.look.cell = Some(cell);
+            });
+        }
+        for name in ["until_error", "exposure"] {
+            let mut scene = default_scene(0);
+            match name {
+                "exposure" => scene.settings.exposure = f64::NAN,
+                _ => scene.settings.until_error = Some(f64::NAN),
+            }
+            let error = World::build(&scene).expect_err(name).to_string();
+            assert!(error.contains(name), "{error}");
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! Placement of the camera: as given, or fitted to all spheres.
+
+use super::WorldError;
+use crate::scene::{Pose, Projection, Scene, Spheres};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The camera in the user's coordinates.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Placement {
+    /// Origin of rays.
+    pub eye: DVec3,
+    /// Unit axes of the picture: to the right, up, and into the scene.
+    pub axes: Axes,
+    /// Half the picture's height: the tangent of an angle in perspective, a length in parallel
+    /// projection.
+    pub half_height: f64,
+    /// Half the picture's width, likewise.
+    pub half_width: f64,
+    /// Distance of the target or of the spheres' middle: the default focal distance.
+    pub distance: f64,
+    /// Maximum distance of ray origins from the eye: half the picture in parallel projection, and the
+    /// lens.
+    pub reach: f64,
+}
+
+/// Unit axes of the picture.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct Axes {
+    pub right: DVec3,
+    pub up: DVec3,
+    pub forward: DVec3,
+}
+
+impl Axes {
+    /// Creates the axes; `forward` need not be of unit length. If `up` is parallel to it, the
+    /// coordinate axis along which it is smallest replaces `up`.
+    fn new(forward: DVec3, up: DVec3) -> Option<Self> {
+        let forward = unit(forward)?;
+        let up = unit(up)?;
+        let right = forward.cross(up);
+        // Closer than this to parallel, the picture's rotation would be noise.
+        let right = if right.length() > 1e-9 { right } else { forward.cross(least_axis(forward)) };
+        let right = right.normalize();
+        Some(Self { right, up: right.cross(forward), forward })
+    }
+
+    /// Returns the coordinates of `p` along right, up and forward.
+    fn coordinates(&self, p: DVec3) -> DVec3 {
+        DVec3::new(self.right.dot(p), self.up.dot(p), self.forward.dot(p))
+    }
+
+    fn point(&self, coordinates: DVec3) -> DVec3 {
+        self.right * coordinates.x + self.up * coordinates.y + self.forward * coordinates.z
+    }
+}
+
+/// Normalizes a vector, even if the square of its length would overflow or underflow.
+fn unit(v: DVec3) -> Option<DVec3> {
+    let largest = v.abs().max_element();
+    (largest > 0.0 && largest < f64::INFINITY).then(|| (v / largest).normalize())
+}
+
+fn least_axis(v: DVec3) -> DVec3 {
+    let v = v.abs();
+    if v.z <= v.x && v.z <= v.y {
+        DVec3::Z
+    } else if v.y <= v.x {
+        DVec3::Y
+    } else {
+        DVec3::X
+    }
+}
+
+/// Places the scene's camera.
+pub(super) fn pose(scene: &Scene) -> Result<Placement, WorldError> {
+    let placement = match scene.camera.pose {
+        Pose::LookAt { eye, target } => look_at(scene, eye, target)?,
+        Pose::Fit { direction, margin } => fit(scene, direction, margin)?,
+    };
+    let extent = placement.eye.abs().max_element() + placement.reach + placement.distance;
+    if extent.is_finite() && placement.half_height > 0.0 && placement.half_height.is_finite() {
+        return Ok(placement);
+    }
+    Err(camera_error(placement.eye, "its distances overflow; scale the scene down"))
+}
+
+/// Whether there is nothing to frame.
+fn is_empty(scene: &Scene) -> bool {
+    scene.shown().next().is_none()
+}
+
+fn camera_error(eye: DVec3, why: &'static str) -> WorldError {
+    WorldError::Camera { eye: eye.to_array(), why }
+}
+
+fn aspect(scene: &Scene) -> f64 {
+    f64::from(scene.settings.width) / f64::from(scene.settings.height)
+}
+
+fn lens_radius(scene: &Scene) -> f64 {
+    scene.camera.lens.map_or(0.0, |lens| lens.aperture / 2.0)
+}
+
+fn look_at(scene: &Scene, eye: DVec3, target: DVec3) -> Result<Placement, WorldError> {
+    let axes = Axes::new(target - eye, scene.camera.up).ok_or_else(|| {
+        camera_error(eye, "`eye` and `target` are the same point; move one of them")
+    })?;
+    let distance = (target - eye).dot(axes.forward);
+    let aspect = aspect(scene);
+    let placed = |half_height: f64, reach: f64| Placement {
+        eye,
+        axes,
+        half_height,
+        half_width: half_height * aspect,
+        distance,
+        reach: reach + lens_radius(scene) + scene.camera.near,
+    };
+    Ok(match scene.camera.projection {
+        Projection::Perspective { fov } => placed((fov.to_radians() / 2.0).tan(), 0.0),
+        Projection::Orthographic { height } => {
+            let half = match height {
+                Some(height) => height / 2.0,
+                None if is_empty(scene) => return Err(WorldError::NothingToFit),
+                // The height that all spheres need around the target.
+                None => {
+                    let box3 = ViewBox::of(scene, &axes);
+                    let at = axes.coordinates(eye);
+                    let reach = (box3.high - at).max(at - box3.low);
+                    reach.y.max(reach.x / aspect)
+                }
+            };
+            placed(half, half * (1.0 + aspect))
+        }
+    })
+}
+
+fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldError> {
+    if is_empty(scene) {
+        return Err(WorldError::NothingToFit);
+    }
+    let axes = Axes::new(direction, scene.camera.up)
+        .ok_or_else(|| camera_error(DVec3::ZERO, "its `direction` is zero; give it a length"))?;
+    let extent = ViewBox::of(scene, &axes);
+    let used = 1.0 - margin;
+    let aspect = aspect(scene);
+    let lens = lens_radius(scene) + scene.camera.near;
+    let middle = (extent.low + extent.high) / 2.0;
+    Ok(match scene.camera.projection {
+        Projection::Perspective { fov } => {
+            let half_height = (fov.to_radians() / 2.0).tan();
+            let half_width = half_height * aspect;
+            let tangents = (half_width * used, half_height * used);
+            let at = nearest_eye(scene, &axes, tangents);
+            let eye = axes.point(at);
+            let distance = (middle.z - at.z).max(0.0);
+            Placement { eye, axes, half_height, half_width, distance, reach: lens }
+        }
+        Projection::Orthographic { height } => {
+            let size = (extent.high - extent.low) / 2.0;
+            let half_height =
+                height.map_or(size.y.max(size.x / aspect) / used, |height| height / 2.0);
+            let depth = size.z.max(half_height);
+            let eye = axes.point(DVec3::new(middle.x, middle.y, extent.low.z - depth));
+            Placement {
+                eye,
+                axes,
+                half_height,
+                half_width: half_height * aspect,
+                distance: middle.z - extent.low.z + depth,
+                reach: lens + half_height * (1.0 + aspect),
+            }
+        }
+    })
+}
+
+/// Bounds of the spheres along the picture's axes.
+struct ViewBox {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl ViewBox {
+    fn of(scene: &Scene, axes: &Axes) -> Self {
+        let spheres = &scene.spheres;
+        let mut bounds = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        for i in scene.shown() {
+            let center = axes.coordinates(center(spheres, i));
+            bounds.low = bounds.low.min(center - spheres.radius[i]);
+            bounds.high = bounds.high.max(center + spheres.radius[i]);
+        }
+        bounds
+    }
+}
+
+/// Returns the foremost eye, along right, up and forward, from which every sphere is between the planes
+/// of the frustum with these tangents of half the picture's width and height.
+///
+/// A sphere is inside a plane through the eye with inward unit normal `n` if `n . eye <= n . center -
+/// radius`: the minimum of the right side over all spheres bounds the eye. The two planes of an axis
+/// give its coordinate, and each pair gives how far forward it may go.
+fn nearest_eye(scene: &Scene, axes: &Axes, tangents: (f64, f64)) -> DVec3 {
+    let spheres = &scene.spheres;
+    let sides = Sides::new(tangents);
+    let mut slack = [f64::INFINITY; 4];
+    for i in scene.shown() {
+        let planes = sides.slack(axes.coordinates(center(spheres, i)), spheres.radius[i]);
+        for (slack, plane) in slack.iter_mut().zip(planes) {
+            *slack = slack.min(plane);
+        }
+    }
+    let Sides { cos_x, sin_x, cos_y, sin_y } = sides;
+    DVec3::new(
+        (slack[0] - slack[1]) / (2.0 * cos_x),
+        (slack[2] - slack[3]) / (2.0 * cos_y),
+        ((slack[0] + slack[1]) / (2.0 * sin_x)).min((slack[2] + slack[3]) / (2.0 * sin_y)),
+    )
+}
+
+/// Normals of the four planes of a frustum at the sides of the picture.
+#[derive(Clone, Copy, Debug)]
+struct Sides {
+    cos_x: f64,
+    sin_x: f64,
+    cos_y: f64,
+    sin_y: f64,
+}
+
+impl Sides {
+    /// Creates the normals from the tangents of half the picture's width and height.
+    fn new((tan_x, tan_y): (f64, f64)) -> Self {
+        let normal = |tangent: f64| (tangent.atan().cos(), tangent.atan().sin());
+        let ((cos_x, sin_x), (cos_y, sin_y)) = (normal(tan_x), normal(tan_y));
+        Self { cos_x, sin_x, cos_y, sin_y }
+    }
+
+    /// Returns the largest offset of each plane for which a sphere is inside of it; `c` is its center
+    /// along right, up and forward.
+    fn slack(&self, c: DVec3, r: f64) -> [f64; 4] {
+        let Self { cos_x, sin_x, cos_y, sin_y } = self;
+        [
+            cos_x * c.x + sin_x * c.z - r,
+            -cos_x * c.x + sin_x * c.z - r,
+            cos_y * c.y + sin_y * c.z - r,
+            -cos_y * c.y + sin_y * c.z - r,
+        ]
+    }
+}
+
+/// Number of limits by which a sphere can determine the fitted camera.
+pub(super) const LIMITS: usize = 11;
+
+/// Axes and planes by which spheres determine the fitted camera: a sphere does if one of its values of
+/// [`Limits::of`] is the minimum.
+#[derive(Clone, Debug)]
+pub(super) struct Limits {
+    axes: Axes,
+    sides: Sides,
+    vertical: DVec3,
+}
+
+impl Limits {
+    /// Creates the limits for the camera of a scene; `None` if the camera is not fitted or has no
+    /// direction.
+    pub(super) fn new(scene: &Scene) -> Option<Self> {
+        let Pose::Fit { direction, margin } = scene.camera.pose else { return None };
+        let tangent = match scene.camera.projection {
+            Projection::Perspective { fov } => (fov.to_radians() / 2.0).tan(),
+            Projection::Orthographic { .. } => 1.0,
+        };
+        let used = 1.0 - margin;
+        let sides = Sides::new((tangent * aspect(scene) * used, tangent * used));
+        let vertical = scene.camera.up.normalize_or(DVec3::Y);
+        Some(Self { axes: Axes::new(direction, scene.camera.up)?, sides, vertical })
+    }
+
+    /// Returns a sphere's limits: of all spheres, only those with a minimum limit matter. The limits
+    /// are the ends of the box along the picture's axes, the planes of the frustum, and the lowest
+    /// point.
+    pub(super) fn of(&self, center: DVec3, radius: f64) -> [f64; LIMITS] {
+        let c = self.axes.coordinates(center);
+        let (low, high) = (c - radius, -(c + radius));
+        let [left, right, bottom, top] = self.sides.slack(c, radius);
+        let lowest = self.vertical.dot(center) - radius;
+        [low.x, low.y, low.z, high.x, high.y, high.z, left, right, bottom, top, lowest]
+    }
+}
+
+fn center(spheres: &Spheres, i: usize) -> DVec3 {
+    DVec3::new(spheres.x[i], spheres.y[i], spheres.z[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, Rgb};
+
+    fn spheres() -> Spheres {
+        let mut spheres = Spheres::default();
+        for i in 0..50 {
+            let i = f64::from(i);
+            spheres.x.push((i * 12.9898).sin() * 3.0 + 1.0);
+            spheres.y.push((i * 78.233).sin());
+            spheres.z.push((i * 37.719).cos() * 5.0 - 40.0);
+            spheres.radius.push(0.1 + 0.3 * (i * 4.1).cos().abs());
+        }
+        spheres
+    }
+
+    #[test]
+    fn a_fitted_perspective_touches_the_edges_and_shows_all() {
+        let mut scene = Scene { spheres: spheres(), ..Scene::default() };
+        scene.camera.pose = Pose::Fit { direction: DVec3::new(0.3, -0.5, -1.0), margin: 0.0 };
+        let placed = pose(&scene).unwrap();
+        let mut largest: f64 = 0.0;
+        for i in 0..scene.spheres.len() {
+            let c = placed.axes.coordinates(center(&scene.spheres, i) - placed.eye);
+            // Extent of the sphere's outline on each axis, as the tangent of an angle.
+            let edge = |along: f64, half: f64| {
+                let distance = along.hypot(c.z);
+                let angle = along.abs().atan2(c.z) + (scene.spheres.radius[i] / distance).asin();
+                angle.tan() / half
+            };
+            largest = largest.max(edge(c.x, placed.half_width)).max(edge(c.y, placed.half_height));
+        }
+        assert!((largest - 1.0).abs() < 1e-9, "{largest}");
+    }
+
+    #[test]
+    fn up_parallel_to_the_view_gets_another_axis() {
+        let axes = Axes::new(DVec3::new(0.0, -2.0, 0.0), DVec3::Y).unwrap();
+        assert!(axes.right.is_normalized() && axes.up.is_normalized());
+        assert_eq!(axes.right.dot(axes.forward), 0.0);
+    }
+
+    #[test]
+    fn nothing_to_fit_and_an_eye_on_its_target_are_errors() {
+        assert!(matches!(pose(&Scene::default()), Err(WorldError::NothingToFit)));
+        let eye = DVec3::new(1.0, 2.0, 3.0);
+        let camera = Camera { pose: Pose::LookAt { eye, target: eye }, ..Camera::default() };
+        assert!(matches!(
+            pose(&Scene { camera, ..Scene::default() }),
+            Err(WorldError::Camera { .. })
+        ));
+    }
+
+    #[test]
+    fn parallel_views_frame_what_is_wide() {
+        let placed = |pose: Pose| {
+            let mut scene = Scene::default();
+            for x in [-3.0, 5.0] {
+                scene.spheres.push(DVec3::new(x, 0.0, -10.0), 1.0, 0, Rgb::ONE);
+            }
+            (scene.settings.width, scene.settings.height) = (200, 100);
+            let projection = Projection::Orthographic { height: None };
+            scene.camera = Camera { projection, pose, up: DVec3::Y, ..Camera::default() };
+            super::pose(&scene).unwrap()
+        };
+        // The far end is 6 to the side of the eye.
+        let looking = placed(Pose::LookAt { eye: DVec3::ZERO, target: DVec3::NEG_Z });
+        assert_eq!((looking.half_width, looking.half_height), (6.0, 3.0));
+        let framed = placed(Pose::Fit { direction: DVec3::NEG_Z, margin: 0.0 });
+        assert_eq!((framed.half_width, framed.half_height), (5.0, 2.5));
+        let middle = DVec3::new(1.0, 0.0, -10.0);
+        assert_eq!(framed.eye + framed.axes.forward * framed.distance, middle);
+    }
+}

@@ -1,0 +1,296 @@
+//! Lights that can be sampled: emissive spheres, points, suns and a picture of the sky.
+
+mod build;
+mod point;
+mod row;
+mod sampler;
+mod sphere_light;
+mod sun;
+mod tree;
+
+pub use point::Point;
+pub use row::{LightRow, ROW, ReceiverRow};
+pub use sphere_light::Disc;
+pub use sun::Sun;
+pub use tree::Receiver;
+
+use super::appearance::Appearance;
+use super::environment::{Environment, Picture};
+use super::{Cut, Transform, World};
+use crate::ray::MISS;
+use crate::scene::{self, LightChoice, Rgb, Scene};
+use crate::shade::{MaterialKind, Materials};
+use crate::spheres::Spheres;
+use glam::Vec3;
+use sampler::LightSampler;
+use sphere_light::view_sphere;
+
+/// The lights. Unless the settings say otherwise, each is chosen in proportion to its estimated
+/// unoccluded contribution at the receiver.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    /// Rows of emissive spheres, in the order of [`Spheres::key`]: samples do not depend on the tree.
+    pub emitters: Vec<u32>,
+    /// Radiance of each emissive sphere.
+    radiance: Vec<Rgb>,
+    /// Point lights.
+    pub points: Vec<Point>,
+    /// Suns.
+    pub suns: Vec<Sun>,
+    /// Whether the environment is sampled as well, as the last light.
+    pub sky: bool,
+    sampler: LightSampler,
+    by: LightChoice,
+    /// [`Transform::extent`].
+    unit: f64,
+    /// Distance from its center, in radii, within which an emissive sphere is close.
+    reach: f64,
+}
+
+/// A light sample: light that arrives from a direction, if it is not occluded.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit vector toward the light.
+    pub direction: Vec3,
+    /// Distance of the light; infinite for suns and sky.
+    pub t: f64,
+    /// Row of the light if it is a sphere, which does not occlude itself; otherwise [`MISS`].
+    pub target: u32,
+    /// Radiance over density: the factor on the surface's BSDF.
+    pub weight: Rgb,
+    /// Density by solid angle, without the choice of the light; `None` if the light has no extent.
+    pub pdf: Option<f32>,
+    /// Whether the light is an emissive sphere that is so near, or one of so many, that a diffuse
+    /// surface should find it by BSDF samples too.
+    pub close: bool,
+}
+
+/// A light as seen from a point, which can be sampled any number of times.
+pub enum LightView<'a> {
+    /// An emissive sphere.
+    Disc(Disc),
+    /// A light without extent.
+    Delta(LightSample),
+    /// A light at infinity.
+    Sun(&'a Sun),
+    /// The environment's picture.
+    Sky(&'a Picture),
+}
+
+/// A light in the order of the light sampler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Light {
+    Emitter(usize),
+    Point(usize),
+    Sun(usize),
+    Sky,
+}
+
+impl Lights {
+    pub(super) fn build(
+        scene: &Scene,
+        (transform, cut): (&Transform, &Cut),
+        (spheres, appearance): (&Spheres, &Appearance),
+        materials: &Materials,
+        environment: &Environment,
+    ) -> Self {
+        let (emitters, radiance) = emitters((spheres, cut), appearance, materials);
+        let (mut points, mut suns) = (Vec::new(), Vec::new());
+        for light in &scene.lights {
+            match *light {
+                scene::Light::Point { position, intensity, falloff } => points.push(Point {
+                    position: transform.point(position),
+                    intensity,
+                    falloff: falloff.then_some(transform.scale),
+                }),
+                scene::Light::Sun { direction, irradiance, angular_radius } => {
+                    suns.push(Sun::new(direction, irradiance, angular_radius));
+                }
+            }
+        }
+        let sky = environment.illuminates && environment.picture().is_some();
+        let (sampler, by) = (LightSampler::None, scene.settings.light_choice);
+        let unit = transform.extent();
+        let mut lights =
+            Self { emitters, radiance, points, suns, sky, by, sampler, reach: 0.0, unit };
+        lights.sampler = LightSampler::new(&lights.light_bounds(spheres, environment), by, unit);
+        lights.reach = lights.close_within();
+        lights
+    }
+
+    /// Returns the lights that are not spheres.
+    pub(super) fn without_spheres(&self, environment: &Environment) -> Self {
+        if self.emitters.is_empty() {
+            return self.clone();
+        }
+        let (emitters, radiance) = (Vec::new(), Vec::new());
+        let mut lights = Self { emitters, radiance, sampler: LightSampler::None, ..self.clone() };
+        let light_bounds = lights.light_bounds(&Spheres::default(), environment);
+        lights.sampler = LightSampler::new(&light_bounds, self.by, self.unit);
+        lights
+    }
+
+    /// Returns the number of lights.
+    pub fn len(&self) -> usize {
+        self.emitters.len() + self.points.len() + self.suns.len() + usize::from(self.sky)
+    }
+
+    /// Whether there is no light to sample, and so no shadow ray.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether light `index` has no extent, so that one shadow ray suffices.
+    pub fn is_delta(&self, index: usize) -> bool {
+        match self.light(index) {
+            Light::Point(_) => true,
+            Light::Sun(i) => self.suns[i].disc.is_none(),
+            Light::Emitter(_) | Light::Sky => false,
+        }
+    }
+
+    /// Returns the sun if it is the only light: it needs no choice, and is the same from everywhere.
+    pub fn single_sun(&self) -> Option<&Sun> {
+        if self.len() == 1 { self.suns.first() } else { None }
+    }
+
+    fn light(&self, index: usize) -> Light {
+        let (emitters, points) = (self.emitters.len(), self.points.len());
+        if index < emitters {
+            Light::Emitter(index)
+        } else if index < emitters + points {
+            Light::Point(index - emitters)
+        } else if index < emitters + points + self.suns.len() {
+            Light::Sun(index - emitters - points)
+        } else {
+            Light::Sky
+        }
+    }
+
+    /// Returns light `index` as seen from a point on the surface of sphere `own`; `None` if the point
+    /// is in or on the light: BSDF samples find such light.
+    #[inline]
+    pub fn view<'a>(
+        &'a self,
+        world: &'a World,
+        index: usize,
+        (origin, own): (Vec3, u32),
+    ) -> Option<LightView<'a>> {
+        match self.light(index) {
+            Light::Emitter(i) if self.emitters[i] == own => None,
+            Light::Emitter(i) => {
+                let row = self.emitters[i] as usize;
+                let from = (origin, self.reach);
+                Disc::new(&world.spheres, row, self.radiance[i], from).map(LightView::Disc)
+            }
+            Light::Point(i) => self.points[i].sample(origin).map(LightView::Delta),
+            Light::Sun(i) => Some(LightView::Sun(&self.suns[i])),
+            Light::Sky => world.environment.picture().map(LightView::Sky),
+        }
+    }
+
+    /// Samples light `index` once, like [`Lights::view`], but on a shorter path where there is one.
+    #[inline(always)]
+    pub fn sample(
+        &self,
+        world: &World,
+        index: usize,
+        from: (Vec3, u32),
+        u: [f32; 2],
+    ) -> Option<LightSample> {
+        match self.light(index) {
+            Light::Sun(i) => Some(self.suns[i].sample(u)),
+            _ => self.view(world, index, from)?.sample(u),
+        }
+    }
+
+    /// Returns the density with which `choose` and `sample` find emissive sphere `row`; 0 from in or on
+    /// it, infinite if it is not close to a `diffuse` surface: then light samples alone count.
+    pub fn emitter_pdf(&self, spheres: &Spheres, row: u32, at: &Receiver, diffuse: bool) -> f32 {
+        let key = spheres.key(row as usize);
+        let found = self.emitters.binary_search_by_key(&key, |&other| spheres.key(other as usize));
+        let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != at.own) else {
+            return 0.0;
+        };
+        match view_sphere(spheres, row as usize, (at.point, self.reach)) {
+            Some((seen, _)) if diffuse && !seen.close => f32::INFINITY,
+            Some((_, cone)) => self.probability(at, index) * cone.pdf(),
+            None => 0.0,
+        }
+    }
+
+    /// Returns the density with which the environment's picture is sampled in unit direction `toward`.
+    pub fn sky_pdf(&self, environment: &Environment, toward: Vec3, at: &Receiver) -> f32 {
+        match environment.picture() {
+            Some(picture) if self.sky => self.probability(at, self.len() - 1) * picture.pdf(toward),
+            _ => 0.0,
+        }
+    }
+
+    /// Whether a sun has a visible disc.
+    pub fn suns_have_discs(&self) -> bool {
+        self.suns.iter().any(|sun| sun.disc.is_some())
+    }
+
+    /// Returns each sun that is visible in unit direction `toward`, with its radiance.
+    pub fn suns_toward(&self, toward: Vec3) -> impl Iterator<Item = (usize, Rgb)> {
+        self.suns.iter().enumerate().filter_map(move |(i, sun)| {
+            let cone = sun.disc.as_ref()?;
+            // 1 - cos by the chord, without cancellation.
+            let height = (toward - sun.direction).length_squared() / 2.0;
+            (height <= cone.height()).then_some((i, sun.radiance))
+        })
+    }
+
+    /// Returns the density with which a direction toward sun `sun` is sampled.
+    pub fn sun_pdf(&self, sun: usize, at: &Receiver) -> f32 {
+        let index = self.emitters.len() + self.points.len() + sun;
+        self.suns[sun].disc.map_or(0.0, |cone| self.probability(at, index) * cone.pdf())
+    }
+}
+
+/// Returns rows and radiance of the emissive spheres that are not cut; only BSDF samples find the light
+/// of the others.
+fn emitters(
+    (spheres, cut): (&Spheres, &Cut),
+    appearance: &Appearance,
+    materials: &Materials,
+) -> (Vec<u32>, Vec<Rgb>) {
+    if materials.emitter.is_empty() {
+        return Default::default();
+    }
+    let is_uncut = |row: u32| {
+        let (center, radius) = spheres.exact(row as usize);
+        !cut.divides(center, radius)
+    };
+    let radiance = |row: u32| {
+        let id = appearance.material.row(row as usize);
+        (id.kind() == MaterialKind::Emitter).then(|| materials.emitter[id.row()].radiance)
+    };
+    let emits = |row: u32| Some((row, radiance(row).filter(|&radiance| radiance != Rgb::ZERO)?));
+    let emitters = (0..spheres.len() as u32).filter(|&row| emits(row).is_some() && is_uncut(row));
+    spheres.first_of_equals(emitters).into_iter().filter_map(emits).unzip()
+}
+
+impl LightView<'_> {
+    /// Samples the light with two random numbers in [0, 1); `None` if the sample has no light.
+    #[inline]
+    pub fn sample(&self, u: [f32; 2]) -> Option<LightSample> {
+        match self {
+            Self::Disc(disc) => Some(disc.sample(u)),
+            Self::Delta(sample) => Some(*sample),
+            Self::Sun(sun) => Some(sun.sample(u)),
+            Self::Sky(picture) => picture.sample(u).map(|sample| LightSample {
+                direction: sample.direction,
+                t: f64::INFINITY,
+                target: MISS,
+                weight: sample.radiance / sample.pdf,
+                pdf: Some(sample.pdf),
+                close: true,
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

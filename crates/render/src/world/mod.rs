@@ -1,0 +1,296 @@
+//! The world: a scene as kernels read it, in columns and tables, and a census of its features.
+//!
+//! [`World::build`] moves a [`Scene`] to the origin by a multiple of a power of two, scales it by an
+//! exact power of two so that its largest coordinate is about 1 ([`Transform`]), stores it in single
+//! precision, builds the tree and permutes the spheres' columns so that a leaf is a contiguous range.
+//! All errors of a scene are found here or before; rendering cannot fail.
+
+mod appearance;
+mod camera;
+mod camera_visible;
+mod caustics;
+mod census;
+mod check;
+mod cut;
+mod environment;
+mod fit;
+pub mod framing;
+mod ground;
+mod lights;
+mod parts;
+mod spheres;
+mod transform;
+mod visibility;
+
+pub use appearance::{Appearance, Colors, Column};
+pub use camera::Camera;
+pub use camera_visible::CameraVisible;
+pub use caustics::CausticCasters;
+pub(crate) use caustics::{CausticHit, CausticPath, CausticQuery, CausticSample};
+pub use census::Features;
+pub use cut::{Cut, Span};
+pub use environment::{Environment, Picture, Radiance, SkySample};
+pub(crate) use fit::Placement;
+pub use ground::Ground;
+pub use lights::{
+    Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
+};
+pub(crate) use parts::{OmittedSpheres, Parts};
+pub use transform::Transform;
+pub use visibility::Visibility;
+
+use crate::bvh::Bvh;
+use crate::bvh::builders::Builder;
+use crate::memory::Shortage;
+use crate::ray::GROUND;
+use crate::scene::{self, Footprint, Rgb, Scene};
+use crate::settings::{InvalidSetting, Settings};
+use crate::shade::{MaterialId, Materials};
+use crate::spheres::Spheres;
+use std::borrow::Cow;
+
+/// Approximate number of rays per sample, with bounces and shadow rays, for choosing the tree builder.
+const RAYS_PER_SAMPLE: u64 = 4;
+
+/// All data that a render reads, immutable.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// Transform from the user's coordinates to the world's.
+    pub transform: Transform,
+    /// The camera in the user's coordinates.
+    pub(crate) placement: Placement,
+    /// The spheres, in the order of the tree's leaves.
+    pub spheres: Spheres,
+    /// Materials and colors of the spheres.
+    pub appearance: Appearance,
+    /// The tree over them.
+    pub bvh: Bvh,
+    /// Planes at which spheres are cut.
+    pub cut: Cut,
+    /// The spheres that the camera sees, if slices hide some from it.
+    pub camera_visible: Option<CameraVisible>,
+    /// The ground plane, if there is one.
+    pub ground: Option<Ground>,
+    /// One table for each kind of material.
+    pub materials: Materials,
+    /// Lights that can be sampled.
+    pub lights: Lights,
+    /// Pairs of specular sphere and emitter whose caustics are sampled.
+    pub caustic_casters: CausticCasters,
+    /// The environment: radiance of rays that hit nothing.
+    pub environment: Environment,
+    /// The camera.
+    pub camera: Camera,
+    /// Features of the world, which decide which stages run.
+    pub features: Features,
+}
+
+/// Reasons why a scene cannot be rendered.
+#[derive(Debug, thiserror::Error)]
+pub enum WorldError {
+    /// Rows are 32-bit numbers, a few of which are reserved.
+    #[error("too many spheres: {0}, but at most {max} fit; render a part of them", max = Spheres::MAX)]
+    TooManySpheres(usize),
+    /// Not enough memory for the columns and the construction of the tree.
+    #[error("{0} spheres need {1}; render fewer of them")]
+    Memory(usize, Shortage),
+    /// Not enough memory for the light distribution of an environment map.
+    #[error("the environment's picture needs {0}; use a smaller one")]
+    Environment(Shortage),
+    /// A glass sphere is cut; caps are opaque.
+    #[error(
+        "a slice cuts sphere {0}, which is of glass, but flat caps are opaque; use the mode remove or hide, or another material"
+    )]
+    Glass(u32),
+    /// A fitted camera without spheres.
+    #[error(
+        "the camera has nothing to frame: the scene has no spheres, or slices cut all of them away; give it spheres, or give the camera `eye` and `target`"
+    )]
+    NothingToFit,
+    /// The camera is closer to its target than double precision resolves, or similar.
+    #[error("the camera at {eye:?} sees nothing: {why}")]
+    Camera {
+        /// Position in the scene's coordinates.
+        eye: [f64; 3],
+        /// The reason, and how to fix it.
+        why: &'static str,
+    },
+    /// A setting is out of range.
+    #[error(transparent)]
+    Setting(#[from] InvalidSetting),
+    /// A row of a column is invalid; scenes from files are checked before.
+    #[error("{0}")]
+    Invalid(String),
+}
+
+impl World {
+    /// Builds the world, with the tree builder that suits its settings.
+    ///
+    /// Spheres that vanish in single precision relative to the largest coordinate (a radius below about
+    /// 1e-45 of it) are omitted; [`Features::vanished`] counts them.
+    ///
+    /// # Errors
+    /// Too many spheres, or too many for the available memory; a camera that frames nothing,
+    /// or rows that no scene file can contain: columns of different lengths, values that are not
+    /// finite, materials that do not exist.
+    pub fn build(scene: &Scene) -> Result<Self, WorldError> {
+        let Settings { width, height, spp, .. } = scene.settings;
+        let samples = u64::from(width) * u64::from(height) * u64::from(spp);
+        Self::build_with(scene, Self::builder(scene.spheres.len(), samples))
+    }
+
+    /// Returns the tree builder that suits a render of this many spheres and samples, summed over all
+    /// pixels.
+    pub fn builder(spheres: usize, samples: u64) -> Builder {
+        Builder::for_rays(spheres, samples.saturating_mul(RAYS_PER_SAMPLE))
+    }
+
+    /// Builds the world with a certain tree builder, which does not change the picture.
+    ///
+    /// # Errors
+    /// Those of [`World::build`].
+    pub fn build_with(scene: &Scene, builder: Builder) -> Result<Self, WorldError> {
+        let at = check::place(scene, Self::bytes_for(scene))?;
+        Self::assemble(scene, Cow::Borrowed(&scene.spheres), &at, builder)
+    }
+
+    /// Builds the world of a scene whose spheres are not needed afterwards: their memory is freed
+    /// during construction, which halves the peak.
+    ///
+    /// # Errors
+    /// Those of [`World::build`]; after all except [`WorldError::Glass`] the scene still has its
+    /// spheres.
+    pub fn build_taking(scene: &mut Scene, builder: Builder) -> Result<Self, WorldError> {
+        let at = check::place(scene, Self::additional_bytes(scene))?;
+        let spheres = std::mem::take(&mut scene.spheres);
+        Self::assemble(scene, Cow::Owned(spheres), &at, builder)
+    }
+
+    /// Returns the peak bytes that [`World::build_taking`] allocates in addition to those of the scene.
+    pub fn additional_bytes(scene: &Scene) -> u64 {
+        let footprint = Footprint::of(scene);
+        footprint.peak().saturating_sub(footprint.scene())
+    }
+
+    /// Returns the peak bytes that [`World::build_with`] allocates in addition to those of the scene.
+    fn bytes_for(scene: &Scene) -> u64 {
+        let footprint = Footprint::of(scene);
+        let kept = footprint.scene();
+        footprint.peak_keeping(kept).saturating_sub(kept)
+    }
+
+    /// Builds the world from transformed coordinates and placed camera.
+    fn assemble(
+        scene: &Scene,
+        from: Cow<scene::Spheres>,
+        at: &(Transform, Placement),
+        builder: Builder,
+    ) -> Result<Self, WorldError> {
+        Ok(Self::complete(scene, Parts::build(scene, from, at, builder)?))
+    }
+
+    /// Completes the spheres and their tree by all that follows from them and from the rest of the
+    /// scene.
+    pub(crate) fn complete(scene: &Scene, parts: Parts) -> Self {
+        let Parts { transform, placement, spheres, bvh, appearance, camera_visible, omitted } =
+            parts;
+        let materials = Materials::build(&scene.materials);
+        let cut = Cut::build(&scene.slices, &transform);
+        let camera = Camera::build(scene, &placement, &transform);
+        let environment = Environment::build(&scene.environment);
+        let ground =
+            scene.ground.as_ref().map(|ground| Ground::build(ground, &transform, &materials));
+        let lights = Lights::build(
+            scene,
+            (&transform, &cut),
+            (&spheres, &appearance),
+            &materials,
+            &environment,
+        );
+        let mut world = Self {
+            transform,
+            placement,
+            spheres,
+            appearance,
+            bvh,
+            cut,
+            camera_visible,
+            ground,
+            materials,
+            lights,
+            caustic_casters: CausticCasters::default(),
+            environment,
+            camera,
+            features: Features::default(),
+        };
+        world.features = Features::census(&world, omitted);
+        world.caustic_casters = CausticCasters::find(&world);
+        world
+    }
+
+    /// Returns the same world without its spheres, and without the light of emissive spheres.
+    pub fn without_spheres(&self) -> Self {
+        let mut features = self.features.clone();
+        features.glass_at_camera.clear();
+        Self {
+            transform: self.transform,
+            placement: self.placement,
+            spheres: Spheres::default(),
+            appearance: Appearance::NONE,
+            bvh: Bvh::default(),
+            cut: Cut::default(),
+            camera_visible: None,
+            ground: self.ground,
+            materials: self.materials.clone(),
+            lights: self.lights.without_spheres(&self.environment),
+            caustic_casters: CausticCasters::default(),
+            environment: self.environment.clone(),
+            camera: self.camera,
+            features,
+        }
+    }
+
+    /// Replaces the camera by that of `scene`, with its picture size; the rest of the scene must be as
+    /// the world was built. Pictures are equal to the last bit to those of a world that is built anew,
+    /// in a small fraction of the time.
+    ///
+    /// Returns false, and changes nothing, if the camera is so far away that the world must be built
+    /// anew.
+    ///
+    /// # Errors
+    /// The camera sees nothing, or has values out of range.
+    pub fn set_camera(&mut self, scene: &Scene) -> Result<bool, WorldError> {
+        check::check_view(scene)?;
+        let pose = fit::pose(scene)?;
+        if !self.transform.suits(&pose) {
+            return Ok(false);
+        }
+        self.camera = Camera::build(scene, &pose, &self.transform);
+        self.placement = pose;
+        self.features = std::mem::take(&mut self.features).with_camera_of(self);
+        Ok(true)
+    }
+
+    /// Returns the material at a hit: a sphere's row or [`GROUND`].
+    #[inline(always)]
+    pub fn material(&self, hit: u32) -> MaterialId {
+        match &self.ground {
+            Some(ground) if hit == GROUND => ground.material,
+            _ => self.appearance.material.row(hit as usize),
+        }
+    }
+
+    /// Returns the factor on the material's color at a hit.
+    #[inline(always)]
+    pub fn color(&self, hit: u32) -> Rgb {
+        match &self.appearance.color {
+            Some(colors) if hit != GROUND => colors.row(hit as usize),
+            _ => Rgb::ONE,
+        }
+    }
+
+    /// Returns the characteristic color at a hit: [`Materials::albedo`] times the sphere's own color.
+    pub fn albedo(&self, hit: u32) -> Rgb {
+        self.materials.albedo(self.material(hit)) * self.color(hit)
+    }
+}
