@@ -2,9 +2,11 @@
 
 mod field;
 mod picture;
+mod settings;
 
 pub(super) use field::{FieldArgs, Kind, ParameterArgs};
 pub(super) use picture::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
+pub(super) use settings::option_name;
 
 use super::appearance::AppearanceArgs;
 use super::checkpoint::CheckpointArgs;

@@ -4,84 +4,23 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use spherule_measure::stress::{REGIMES, Regime};
 use spherule_render::image::{Depth, Format, PpmEncoding};
 use spherule_render::layers::Layer;
-use spherule_render::scene::{Filter, Integrator, LightChoice, SamplerKind, Tone};
+pub(super) use spherule_render::settings::Names;
 use spherule_render::split::Split;
 use spherule_render::trace::{PacketWidth, Traversal};
-use std::mem::discriminant;
 
-/// Names of values with their help, in the order in which they are listed; names without help are not
-/// listed. Of a value with parameters only the kind counts.
-pub(super) struct Names<T: 'static>(pub(super) &'static [(&'static str, T, &'static str)]);
-
-impl<T: Clone + Send + Sync> Names<T> {
-    /// Returns a parser of the names.
-    pub(super) fn parser(&self) -> impl TypedValueParser<Value = T> + use<T> {
-        let table = self.0;
-        let names = table
-            .iter()
-            .map(|(name, _, help)| PossibleValue::new(*name).help(*help).hide(help.is_empty()));
-        PossibleValuesParser::new(names).try_map(|name| {
-            let row = table.iter().find(|row| row.0 == name);
-            row.map(|row| row.1.clone()).ok_or("not one of the names")
-        })
-    }
-
-    /// Returns the name of a value.
-    pub(super) fn name(&self, value: &T) -> &'static str {
-        let row = self.0.iter().find(|row| discriminant(&row.1) == discriminant(value));
-        row.map_or("", |row| row.0)
-    }
+/// Returns a parser of names.
+pub(super) fn parser<T: Clone + Send + Sync>(
+    names: &Names<T>,
+) -> impl TypedValueParser<Value = T> + use<T> {
+    let table = names.0;
+    let names = table
+        .iter()
+        .map(|(name, _, help)| PossibleValue::new(*name).help(*help).hide(help.is_empty()));
+    PossibleValuesParser::new(names).try_map(|name| {
+        let row = table.iter().find(|row| row.0 == name);
+        row.map(|row| row.1.clone()).ok_or("not one of the names")
+    })
 }
-
-/// Default number of shadow rays to each light.
-const SHADOW_SAMPLES: u32 = 16;
-
-/// Integrators, with their default parameters.
-pub(super) const INTEGRATORS: Names<Integrator> = Names(&[
-    ("path", Integrator::Path, "Path tracing with direct light sampling: full global illumination"),
-    (
-        "whitted",
-        Integrator::Whitted { shadow_samples: SHADOW_SAMPLES },
-        "Whitted ray tracing: direct light, mirrors and glass only",
-    ),
-    (
-        "ao",
-        Integrator::Ao { distance: f64::INFINITY },
-        "Ambient occlusion: shows shape, ignores lights and \
-                                                        materials",
-    ),
-]);
-
-/// Samplers.
-pub(super) const SAMPLERS: Names<SamplerKind> = Names(&[
-    ("sobol", SamplerKind::Sobol, "Owen-scrambled Sobol points: least noise"),
-    ("stratified", SamplerKind::Stratified, "Jittered strata"),
-    ("independent", SamplerKind::Independent, "Independent random numbers"),
-]);
-
-/// Strategies that select the light of a direct lighting sample.
-pub(super) const LIGHT_CHOICES: Names<LightChoice> = Names(&[
-    (
-        "tree",
-        LightChoice::Tree,
-        "Light tree: by the estimated contribution at the shading point; least noise",
-    ),
-    ("power", LightChoice::Power, "By power, the same everywhere"),
-    ("uniform", LightChoice::Uniform, "All lights with equal probability"),
-]);
-
-/// Pixel filters.
-pub(super) const FILTERS: Names<Filter> = Names(&[
-    ("box", Filter::Box, "The square of the pixel"),
-    ("gaussian", Filter::Gaussian, "Gaussian with a standard deviation of half a pixel"),
-    ("blackman-harris", Filter::BlackmanHarris, "Blackman-Harris window, 4 pixels wide"),
-]);
-
-/// Tone curves.
-pub(super) const TONES: Names<Tone> = Names(&[
-    ("linear", Tone::Linear, "Clip at 1"),
-    ("filmic", Tone::Filmic, "Filmic curve that compresses highlights"),
-]);
 
 /// Returns a parser of the formats that can be written.
 pub(super) fn formats() -> impl TypedValueParser<Value = Format> {

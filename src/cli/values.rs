@@ -1,7 +1,8 @@
 //! Parsers of option values. Errors state the valid range; clap adds the option's name and value.
 
 use spherule_render::film::Region;
-use spherule_render::scene::{Roulette, Settings};
+use spherule_render::scene::Settings;
+use spherule_render::settings::{Kind, Value};
 use spherule_render::suggest;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
@@ -27,17 +28,6 @@ pub(super) const RAYS: RangeInclusive<u64> = 1..=1 << 52;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OrNone<T>(pub(super) Option<T>);
 
-/// Maximum number of bounces of a path; `None` for no limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct DepthLimit(pub(super) Option<u32>);
-
-/// Width and height in pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Size {
-    pub(super) width: u32,
-    pub(super) height: u32,
-}
-
 /// One radius, or a minimum and a maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Radii {
@@ -45,10 +35,51 @@ pub(super) struct Radii {
     pub(super) greatest: f64,
 }
 
+/// A value of a render setting. Names of choices are checked by clap.
+pub(super) fn setting(kind: &Kind, text: &str) -> Result<Value, String> {
+    let (words, number) = match *kind {
+        Kind::Size => return size(text),
+        Kind::Error => return error(text).map(|OrNone(error)| number_or_none(error)),
+        Kind::Time => {
+            let seconds = |OrNone(time): OrNone<Duration>| time.map(|time| time.as_secs_f64());
+            return time(text).map(seconds).map(number_or_none);
+        }
+        Kind::Whole { words, .. } => (words, number(text).map(Value::Whole)),
+        Kind::Number { words, .. } => (words, number(text).map(Value::Number)),
+        Kind::Choice(_) | Kind::Flag => (&[] as &[_], None),
+    };
+    let value = word(text, words).or(number);
+    value.filter(|value| kind.contains(*value)).ok_or_else(|| {
+        let list = words.iter().fold(String::new(), |list, word| list + word + ", or ");
+        let near = suggest::question(text, words.iter().copied());
+        format!("give {list}{}{near}", range(kind))
+    })
+}
+
+/// The range of numbers of a setting, in words.
+fn range(kind: &Kind) -> String {
+    match *kind {
+        Kind::Whole { range: [least, greatest], .. } => {
+            format!("an integer from {least} to {greatest}")
+        }
+        Kind::Number { limits, .. } => format!("a number {}", limits.describe()),
+        _ => kind.describe(),
+    }
+}
+
+/// Returns the one of some words that a text is.
+fn word(text: &str, words: &[&'static str]) -> Option<Value> {
+    words.iter().copied().find(|word| *word == text).map(Value::Word)
+}
+
+fn number_or_none(number: Option<f64>) -> Value {
+    number.map_or(Value::None, Value::Number)
+}
+
 /// `WxH`.
-pub(super) fn size(text: &str) -> Result<Size, String> {
-    let valid = |size: &Size| PIXELS.contains(&size.width) && PIXELS.contains(&size.height);
-    pair(text).map(|(width, height)| Size { width, height }).filter(valid).ok_or_else(|| {
+fn size(text: &str) -> Result<Value, String> {
+    let size = pair(text).map(|(width, height)| Value::Size([width, height]));
+    size.filter(|size| Kind::Size.contains(*size)).ok_or_else(|| {
         let (least, most) = (PIXELS.start(), PIXELS.end());
         format!("give width and height, {least} to {most} pixels each, as in 1280x720")
     })
@@ -70,36 +101,8 @@ pub(super) fn region(text: &str) -> Result<Region, String> {
     })
 }
 
-/// `N` or `unlimited`.
-pub(super) fn depth(text: &str) -> Result<DepthLimit, String> {
-    if text == "unlimited" {
-        return Ok(DepthLimit(None));
-    }
-    let near = || suggest::question(text, ["unlimited"]);
-    let limit =
-        number(text).ok_or_else(|| format!("give 0 to {}, or unlimited{}", u32::MAX, near()))?;
-    Ok(DepthLimit(Some(limit)))
-}
-
-/// `none`, `throughput` or a probability.
-pub(super) fn roulette(text: &str) -> Result<Roulette, String> {
-    match text {
-        "none" => Ok(Roulette::None),
-        "throughput" => Ok(Roulette::Throughput),
-        _ => number(text)
-            .filter(|probability| *probability > 0.0 && *probability <= 1.0)
-            .map(Roulette::Fixed)
-            .ok_or_else(|| {
-                let near = suggest::question(text, ["none", "throughput"]);
-                format!(
-                    "give none, throughput, or a probability greater than 0 and at most 1{near}"
-                )
-            }),
-    }
-}
-
 /// `1%`, `0.01` or `none`.
-pub(super) fn error(text: &str) -> Result<OrNone<f64>, String> {
+fn error(text: &str) -> Result<OrNone<f64>, String> {
     if text == "none" {
         return Ok(OrNone(None));
     }
@@ -127,20 +130,6 @@ pub(super) fn time(text: &str) -> Result<OrNone<Duration>, String> {
             "give a time of at least 1ms with a unit, as in 60s, 500ms, 5m or 1h 30m, or none"
                 .to_owned()
         })
-}
-
-/// Stops of exposure.
-pub(super) fn exposure(text: &str) -> Result<f64, String> {
-    number(text)
-        .filter(|stops| Settings::EXPOSURES.contains(stops))
-        .ok_or_else(|| "give a number of stops from -100 to 100, as in -1.5".to_owned())
-}
-
-/// More than 0, or `inf`.
-pub(super) fn distance(text: &str) -> Result<f64, String> {
-    number(text)
-        .filter(|distance| *distance > 0.0)
-        .ok_or_else(|| "give a distance greater than 0, or inf for no limit".to_owned())
 }
 
 /// Any finite number; the generators check the range of each parameter.
@@ -177,56 +166,68 @@ fn number<T: FromStr>(text: &str) -> Option<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spherule_render::settings::Setting;
+
+    /// Parses a value of the setting with this name.
+    fn set(name: &str, text: &str) -> Result<Value, String> {
+        setting(&Setting::named(name).unwrap().kind, text)
+    }
 
     #[test]
     fn sizes_and_regions_are_read() {
-        assert_eq!(size("1280x720"), Ok(Size { width: 1280, height: 720 }));
-        assert_eq!(size("65535X1"), Ok(Size { width: 65_535, height: 1 }));
+        assert_eq!(set("size", "1280x720"), Ok(Value::Size([1280, 720])));
+        assert_eq!(set("size", "65535X1"), Ok(Value::Size([65_535, 1])));
         let expected = Region { x: 3, y: 4, width: 5, height: 6 };
         assert_eq!(region("3,4,5x6"), Ok(expected));
         assert_eq!(region("3, 4, 5x6"), Ok(expected));
     }
 
     #[test]
-    fn what_is_out_of_range_is_refused() {
-        for text in ["0x5", "5x0", "70000x1", "5", "x", "-1x5", "1.5x2", "99999999999x1", ""] {
-            assert!(size(text).is_err(), "{text}");
+    fn values_out_of_range_are_refused() {
+        let cases: [(&str, &[&str]); 9] = [
+            ("size", &["0x5", "5x0", "70000x1", "5", "x", "-1x5", "1.5x2", "99999999999x1", ""]),
+            ("spp", &["0", "-1", "1.5", "16777217", "many"]),
+            ("roulette", &["0", "1.01", "-0.5", "NaN", "inf", "some"]),
+            ("exposure", &["NaN", "inf", "101", "-101", "bright"]),
+            ("ao_distance", &["0", "-1", "NaN", "-inf"]),
+            ("until_error", &["0", "0%", "-1%", "101%", "NaN", "inf", "1 %%", "%", "small", ""]),
+            ("time", &["60", "0s", "-1s", "1 fortnight", "100y", "s", ""]),
+            ("depth", &["-1", "4294967296", "none"]),
+            ("seed", &["-1", "18446744073709551616"]),
+        ];
+        for (name, texts) in cases {
+            for text in texts {
+                assert!(set(name, text).is_err(), "{name} {text}");
+            }
         }
         for text in ["1,2", "1,2,0x5", "-1,2,3x4", "1,2,3x4,5", "1,2,3"] {
             assert!(region(text).is_err(), "{text}");
         }
-        for text in ["0", "1.01", "-0.5", "NaN", "inf", "some"] {
-            assert!(roulette(text).is_err(), "{text}");
-        }
-        for text in ["NaN", "inf", "101", "-101", "bright"] {
-            assert!(exposure(text).is_err(), "{text}");
-        }
-        for text in ["0", "-1", "NaN"] {
-            assert!(distance(text).is_err(), "{text}");
-        }
-        for text in ["0", "0%", "-1%", "101%", "NaN", "inf", "1 %%", "%", "small", ""] {
-            assert!(error(text).is_err(), "{text}");
-        }
-        for text in ["60", "0s", "-1s", "1 fortnight", "100y", "s", ""] {
-            assert!(time(text).is_err(), "{text}");
-        }
-        assert!(depth("-1").is_err() && depth("4294967296").is_err() && depth("none").is_err());
         assert!(radii("0.1,").is_err() && radii("inf").is_err());
         assert!(mix("1,2").is_err() && mix("1,2,3,4").is_err());
+        assert!(set("roulette", "throughputs").unwrap_err().contains("throughput"));
     }
 
     #[test]
     fn the_ends_of_ranges_belong_to_them() {
-        assert_eq!(roulette("1"), Ok(Roulette::Fixed(1.0)));
-        assert_eq!(error("100%"), Ok(OrNone(Some(1.0))));
-        assert_eq!(error("2.5 %"), Ok(OrNone(Some(0.025))));
-        assert_eq!(error("0.01"), Ok(OrNone(Some(0.01))));
-        assert_eq!(time("1h 30m"), Ok(OrNone(Some(Duration::from_secs(5400)))));
-        assert_eq!((error("none"), time("none")), (Ok(OrNone(None)), Ok(OrNone(None))));
-        assert_eq!(exposure("-100"), Ok(-100.0));
-        assert_eq!(distance("inf"), Ok(f64::INFINITY));
-        assert_eq!(depth("0"), Ok(DepthLimit(Some(0))));
-        assert_eq!(depth("unlimited"), Ok(DepthLimit(None)));
+        let cases = [
+            ("roulette", "1", Value::Number(1.0)),
+            ("roulette", "none", Value::Word("none")),
+            ("until_error", "100%", Value::Number(1.0)),
+            ("until_error", "2.5 %", Value::Number(0.025)),
+            ("until_error", "0.01", Value::Number(0.01)),
+            ("until_error", "none", Value::None),
+            ("time", "1h 30m", Value::Number(5400.0)),
+            ("time", "none", Value::None),
+            ("exposure", "-100", Value::Number(-100.0)),
+            ("ao_distance", "inf", Value::Word("inf")),
+            ("depth", "0", Value::Whole(0)),
+            ("depth", "unlimited", Value::Word("unlimited")),
+            ("seed", "18446744073709551615", Value::Whole(u64::MAX)),
+        ];
+        for (name, text, value) in cases {
+            assert_eq!(set(name, text), Ok(value), "{name} {text}");
+        }
         assert_eq!(radii("2"), Ok(Radii { least: 2.0, greatest: 2.0 }));
         assert_eq!(mix("1,0,2"), Ok([1.0, 0.0, 2.0]));
     }

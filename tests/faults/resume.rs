@@ -104,7 +104,7 @@ fn other_scenes_and_settings_are_refused_by_name() {
         assert!(folder.read("c") == kept, "{args:?}");
     };
     refused(&["--seed", "4"], "seed is 4, but was 0");
-    refused(&["--size", "90x60"], "width is 90, but was 80");
+    refused(&["--size", "90x60"], "size is [90, 60], but was [80, 60]");
     refused(&["--spp", "5"], "spp is 5, but 100000 was asked for");
     refused(&["--until-error", "1%"], "without until_error");
     refused(&["--region", "0,0,8x8"], "the region is 0,0,8x8");

@@ -1,72 +1,82 @@
-//! How the picture is made.
+//! Render settings: size, samples, stop conditions, algorithms, exposure.
+//!
+//! [`Settings`] are their values; [`SETTINGS`] is a table with a row for each.
+
+mod limits;
+mod table;
+
+pub use limits::Limits;
+pub use table::{
+    INTEGRATORS, Kind, Names, Need, Role, SAMPLERS, SETTINGS, Scope, Setting, TONES, Value, manual,
+};
 
 use serde::{Deserialize, Serialize};
-use std::fmt::Debug;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-/// How the picture is made.
+/// Render settings of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Pixels, [`Settings::PIXELS`].
     pub width: u32,
     /// Pixels, [`Settings::PIXELS`].
     pub height: u32,
-    /// Samples per pixel, [`Settings::SAMPLES`]; with a target, `until_error` or `time`, the most.
+    /// Samples per pixel, [`Settings::SAMPLES`]; with `until_error` or `time`, the maximum.
     pub spp: u32,
-    /// Ends the render when the picture's error is below this, more than 0 and at most 1: the root
-    /// of the mean squared error of linear radiance, by the mean radiance.
+    /// Error that stops the render, more than 0 and at most 1: the root of the mean squared error of
+    /// linear radiance, divided by the mean radiance.
     pub until_error: Option<f64>,
-    /// Ends the render when this time is over, [`Settings::TIMES`].
+    /// Time that stops the render, [`Settings::TIMES`].
     pub time: Option<Duration>,
-    /// Most scatterings on a path: 0 sees only what emits. `None`: no limit but
+    /// Maximum number of bounces of a path: 0 sees only emitted light. `None`: no limit but
     /// [`Settings::HARD_DEPTH`].
     pub depth: Option<u32>,
     /// Seed of every random number.
     pub seed: u64,
-    /// How light is gathered.
+    /// Rendering algorithm.
     pub integrator: Integrator,
-    /// Where samples lie.
+    /// Generator of sample points.
     pub sampler: SamplerKind,
-    /// How samples become pixels.
+    /// Pixel filter.
     pub filter: Filter,
-    /// How paths end before `depth`.
+    /// Russian roulette, which ends paths before `depth`.
     pub roulette: Roulette,
-    /// How a path chooses the light that it looks for.
+    /// Light selection for direct lighting.
     pub light_choice: LightChoice,
-    /// Whether diffuse surfaces look for the light of lamps by way of mirrors and glass where that is
-    /// known in closed form.
+    /// Whether diffuse surfaces sample lights through mirrors and glass, where the path is known in
+    /// closed form.
     pub caustics: bool,
-    /// Stops, [`Settings::EXPOSURES`]: radiance is multiplied by 2 to this power when it becomes a
-    /// picture of 8 or 16 bits.
+    /// Exposure in stops, [`Settings::EXPOSURES`]: radiance is multiplied by 2 to this power in images
+    /// of 8 or 16 bits.
     pub exposure: f64,
-    /// From radiance to a displayable value, before the sRGB curve.
+    /// Tone curve, applied before the sRGB curve.
     pub tone: Tone,
 }
 
-/// How light is gathered.
+/// The rendering algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Integrator {
     /// Path tracing with next-event estimation and multiple importance sampling.
     Path,
-    /// Direct light with stratified shadow samples, mirror and glass bounces: the paper's.
+    /// Direct light with stratified shadow samples, and mirror and glass bounces: Whitted, "An Improved
+    /// Illumination Model for Shaded Display", CACM 1980.
     Whitted {
-        /// Shadow samples per light and hit, [`Settings::SAMPLES`].
+        /// Shadow rays to each light at each hit, [`Settings::SAMPLES`].
         shadow_samples: u32,
     },
-    /// Ambient occlusion: the cosine-weighted share of directions that see the sky.
+    /// Ambient occlusion: the cosine-weighted fraction of directions that see the sky.
     Ao {
-        /// What is farther does not occlude; more than 0, `f64::INFINITY` for no limit.
+        /// Maximum distance of occluders; more than 0, `f64::INFINITY` for no limit.
         distance: f64,
     },
 }
 
-/// Where samples lie.
+/// A generator of sample points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SamplerKind {
     /// Owen-scrambled Sobol points.
     Sobol,
-    /// One jittered sample in each of `spp` strata, shuffled between dimensions: the paper's.
+    /// One jittered sample in each of `spp` strata, shuffled between dimensions.
     Stratified,
     /// Independent random numbers.
     Independent,
@@ -89,31 +99,31 @@ pub enum Filter {
 pub enum Roulette {
     /// Paths end by depth only.
     None,
-    /// From the fourth scattering on, a path whose largest throughput is little goes on with a
-    /// probability in proportion to it: less than a quarter under a sky, than a half without.
+    /// From the fourth bounce on, a path whose largest throughput is below a threshold survives with a
+    /// probability in proportion to it. The threshold is a quarter under a sky, and a half without.
     Throughput,
-    /// Every bounce survives with this probability, more than 0, at most 1: the paper's.
+    /// A path survives each bounce with this probability, more than 0 and at most 1.
     Fixed(f64),
 }
 
-/// How a path chooses the light that it looks for.
+/// A strategy that selects the light of a direct lighting sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LightChoice {
-    /// By what each would give where it is looked for, if nothing stood between.
+    /// By the estimated contribution of each light at the shading point, without occlusion.
     #[default]
     Tree,
     /// By power, the same everywhere.
     Power,
-    /// All alike.
+    /// With equal probability.
     Uniform,
 }
 
-/// From linear radiance to display-linear 0..=1.
+/// A tone curve, from linear radiance to display-linear 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tone {
-    /// Clip at 1.
+    /// Clips at 1.
     Linear,
-    /// A filmic curve that rolls highlights off.
+    /// A filmic curve that compresses highlights.
     Filmic,
 }
 
@@ -121,113 +131,44 @@ pub enum Tone {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` is {value}, but must be {range}")]
 pub struct InvalidSetting {
-    /// The setting, by the name that scene files have for it.
+    /// Name of the setting in scene files.
     pub name: &'static str,
     /// Its value.
     pub value: String,
-    /// The values that it can have.
+    /// The values that it may have.
     pub range: String,
 }
 
-impl InvalidSetting {
-    /// Accepts a value if it is in its range.
-    fn check(
-        name: &'static str,
-        value: &impl Debug,
-        holds: bool,
-        range: impl Into<String>,
-    ) -> Result<(), Self> {
-        let invalid = || Self { name, value: format!("{value:?}"), range: range.into() };
-        if holds { Ok(()) } else { Err(invalid()) }
-    }
-
-    fn check_range<T: Debug + PartialOrd>(
-        name: &'static str,
-        value: &T,
-        range: &RangeInclusive<T>,
-    ) -> Result<(), Self> {
-        let text = format!("{:?} to {:?}", range.start(), range.end());
-        Self::check(name, value, range.contains(value), text)
-    }
-}
-
 impl Settings {
-    /// Pixels of a picture, each way.
+    /// Width and height of an image in pixels.
     pub const PIXELS: RangeInclusive<u32> = 1..=65_535;
 
-    /// Samples of a pixel, or of a light: above, sums in single precision would stall.
+    /// Samples per pixel or per light: above, sums in single precision would stall.
     pub const SAMPLES: RangeInclusive<u32> = 1..=1 << 24;
 
-    /// Limits of time: up to some thirty years.
+    /// Time limits: up to some thirty years.
     pub const TIMES: RangeInclusive<Duration> =
         Duration::from_millis(1)..=Duration::from_secs(1_000_000_000);
 
-    /// Stops of exposure.
+    /// Exposure in stops.
     pub const EXPOSURES: RangeInclusive<f64> = -100.0..=100.0;
 
     /// Checks that every value is in its range.
     ///
     /// # Errors
-    /// The first one that is not.
+    /// The first value that is not.
     pub fn check(&self) -> Result<(), InvalidSetting> {
-        // All fields are named, so that none is forgotten that is added later.
-        let Self {
-            width,
-            height,
-            spp,
-            until_error,
-            time,
-            depth: _,
-            seed: _,
-            integrator,
-            sampler: SamplerKind::Sobol | SamplerKind::Stratified | SamplerKind::Independent,
-            filter: Filter::Box | Filter::Gaussian | Filter::BlackmanHarris,
-            roulette,
-            light_choice: LightChoice::Tree | LightChoice::Power | LightChoice::Uniform,
-            caustics: _,
-            exposure,
-            tone: Tone::Linear | Tone::Filmic,
-        } = self;
-        InvalidSetting::check_range("width", width, &Self::PIXELS)?;
-        InvalidSetting::check_range("height", height, &Self::PIXELS)?;
-        InvalidSetting::check_range("spp", spp, &Self::SAMPLES)?;
-        if let Some(error) = until_error {
-            let holds = *error > 0.0 && *error <= 1.0;
-            let range = "more than 0 and at most 1";
-            InvalidSetting::check("until_error", error, holds, range)?;
-        }
-        if let Some(time) = time {
-            InvalidSetting::check_range("time", time, &Self::TIMES)?;
-        }
-        match integrator {
-            Integrator::Path => (),
-            Integrator::Whitted { shadow_samples } => {
-                InvalidSetting::check_range("shadow_samples", shadow_samples, &Self::SAMPLES)?;
-            }
-            Integrator::Ao { distance } => {
-                let range = "more than 0, or infinite";
-                InvalidSetting::check("ao_distance", distance, *distance > 0.0, range)?;
-            }
-        }
-        match roulette {
-            Roulette::None | Roulette::Throughput => (),
-            Roulette::Fixed(probability) => {
-                let holds = *probability > 0.0 && *probability <= 1.0;
-                let range = "more than 0 and at most 1";
-                InvalidSetting::check("roulette", probability, holds, range)?;
-            }
-        }
-        InvalidSetting::check_range("exposure", exposure, &Self::EXPOSURES)
+        SETTINGS.iter().try_for_each(|setting| setting.check(self))
     }
 
-    /// The most scatterings of a path whose depth is not limited. Paths cut here are counted, and
+    /// Maximum number of bounces of a path whose depth is not limited. Paths that end here are counted and
     /// reported.
     pub const HARD_DEPTH: u32 = 4096;
 
-    /// The most samples of a pixel with a target, where nobody says how many.
+    /// Default maximum number of samples per pixel of a render that an error or a time stops.
     pub const HARD_SAMPLES: u32 = 1 << 16;
 
-    /// Whether a target decides on samples.
+    /// Whether an error or a time stops the render.
     pub fn has_target(&self) -> bool {
         self.until_error.is_some() || self.time.is_some()
     }
@@ -347,8 +288,8 @@ mod tests {
     fn errors_name_the_setting() {
         let usual = Settings::default;
         let cases = [
-            ("width", Settings { width: 0, ..usual() }),
-            ("height", Settings { height: 65_536, ..usual() }),
+            ("size", Settings { width: 0, ..usual() }),
+            ("size", Settings { height: 65_536, ..usual() }),
             ("spp", Settings { spp: 0, ..usual() }),
             ("spp", Settings { spp: u32::MAX, ..usual() }),
             ("until_error", Settings { until_error: Some(f64::NAN), ..usual() }),

@@ -3,7 +3,7 @@
 mod environment;
 
 use super::Failure;
-use super::names::SPLITS;
+use super::names::{self, SPLITS};
 use spherule_render::split::{Part, Split};
 use std::num::NonZeroU32;
 
@@ -23,7 +23,7 @@ pub(super) struct PartArgs {
     #[arg(long, value_name = "K/N|from-env[/N]", value_parser = choice)]
     part: Option<Choice>,
     /// Split the image by samples or by tiles [default: tiles, or samples if each part has 16 or more per pixel]
-    #[arg(long, requires = "part", value_parser = SPLITS.parser())]
+    #[arg(long, requires = "part", value_parser = names::parser(&SPLITS))]
     pub(super) split: Option<Split>,
 }
 

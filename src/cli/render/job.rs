@@ -77,7 +77,7 @@ pub(in crate::cli) struct Job<'a> {
 impl<'a> Job<'a> {
     /// Creates the job from the arguments.
     pub(in crate::cli) fn new(args: &'a RenderArgs) -> Result<Self, Failure> {
-        let seed = args.picture.seed.unwrap_or(0);
+        let seed = args.picture.settings.seed().unwrap_or(0);
         // An explicit format applies to images, whatever their names.
         let video =
             Container::of_suffix(&args.output).filter(|_| args.encoding.output_format.is_none());

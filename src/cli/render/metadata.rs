@@ -113,12 +113,14 @@ impl Subject<'_> {
 
     /// Returns the encoding options without metadata.
     fn encoding(&self, typed: &EncodingArgs, format: Format) -> WriteOptions {
+        let mut settings = self.settings.clone();
+        typed.display.apply(&mut settings);
         WriteOptions {
             depth: typed.bits.filter(|_| format.has_sixteen_bits()).unwrap_or_default(),
             quality: typed.quality.unwrap_or(QUALITY),
             ppm: typed.ppm.unwrap_or_default(),
-            exposure: typed.exposure.unwrap_or(self.settings.exposure),
-            tone: typed.tone.unwrap_or(self.settings.tone),
+            exposure: settings.exposure,
+            tone: settings.tone,
             metadata: Metadata::new(),
         }
     }

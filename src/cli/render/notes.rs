@@ -1,9 +1,11 @@
 //! Notes about options that have no effect.
 
 use super::job::Job;
+use crate::cli::args::option_name;
 use spherule_render::World;
 use spherule_render::image::{Depth, Format};
-use spherule_render::scene::{Integrator, Roulette, Settings, Tone};
+use spherule_render::scene::{Integrator, Settings, Tone};
+use spherule_render::settings::{INTEGRATORS, Need, Scope, Setting, Value};
 use spherule_render::trace::Traversal;
 
 /// The bounce at which Russian roulette by throughput starts, from 1.
@@ -17,33 +19,18 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
             notes.push(format!("{name} has no effect: {why}"));
         }
     };
-    let picture = job.picture;
-    let whitted = matches!(settings.integrator, Integrator::Whitted { .. });
+    let picture = &job.picture.settings;
+    for setting in picture.given() {
+        let name = format!("--{}", option_name(setting));
+        let reason = idle_reason(setting, settings, world);
+        note(true, reason.is_some(), &name, reason.as_deref().unwrap_or_default());
+    }
     let ao = matches!(settings.integrator, Integrator::Ao { .. });
-    let shadow_samples = picture.shadow_samples.is_some();
-    note(shadow_samples, !whitted, "--shadow-samples", "it applies only to the integrator whitted");
-    let dark = whitted && !world.features.lights;
-    note(shadow_samples, dark, "--shadow-samples", "the scene has no lights to sample");
-    note(
-        picture.ao_distance.is_some(),
-        !ao,
-        "--ao-distance",
-        "it applies only to the integrator ao",
-    );
-    let one_bounce = "the integrator ao traces no paths";
     let materials = job.looks.types.iter().any(|look| look.material.is_some());
     let matte = "the integrator ao ignores materials";
     note(materials, ao, "--type with a material", matte);
-    note(picture.depth.is_some(), ao, "--depth", one_bounce);
-    note(picture.roulette.is_some(), ao, "--roulette", one_bounce);
-    let chosen = picture.light_choice.is_some();
-    note(chosen, ao || whitted, "--light-choice", "it applies only to the integrator path");
-    let lone = world.lights.len() < 2;
-    note(chosen, lone, "--light-choice", "the scene has fewer than two lights");
-    let cast = !ao && !whitted && !world.caustic_casters.is_empty();
-    note(picture.no_caustics, !cast, "--no-caustics", "the scene has no caustics that are sampled");
     let short = settings.depth.is_some_and(|depth| depth < ROULETTE_BEGINS);
-    let late = !ao && short && picture.roulette == Some(Roulette::Throughput);
+    let late = !ao && short && picture.value("roulette") == Some(Value::Word("throughput"));
     note(late, true, "--roulette throughput", "it starts at the fourth bounce, beyond --depth");
     let alone = matches!(job.speed.traversal, Traversal::Single | Traversal::Stream);
     note(
@@ -70,12 +57,34 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     notes
 }
 
+/// Returns the reason why a setting has no effect, if it has none.
+fn idle_reason(setting: &Setting, settings: &Settings, world: &World) -> Option<String> {
+    let integrator = INTEGRATORS.name(&settings.integrator);
+    if let Scope::Only(users) | Scope::ParameterOf(users) = setting.scope
+        && !users.contains(&integrator)
+    {
+        return Some(format!("it applies only to the integrator {}", users.join(" and ")));
+    }
+    let path = settings.integrator == Integrator::Path;
+    let (is_met, reason) = match setting.need {
+        Need::Nothing => return None,
+        Need::Bounces => (integrator != "ao", "the integrator ao traces no paths"),
+        Need::Light => (world.features.lights, "the scene has no lights to sample"),
+        Need::Lights => (world.lights.len() >= 2, "the scene has fewer than two lights"),
+        Need::Caustics => {
+            let sampled = path && !world.caustic_casters.is_empty();
+            (sampled, "the scene has no caustics that are sampled")
+        }
+    };
+    (!is_met).then(|| reason.to_owned())
+}
+
 /// Returns whether the command or the scene sets an exposure.
 fn exposed(job: &Job, settings: &Settings) -> bool {
-    job.encoding.exposure.is_some() || settings.exposure != 0.0
+    job.encoding.display.value("exposure").is_some() || settings.exposure != 0.0
 }
 
 /// Returns whether the command or the scene sets a tone curve.
 fn toned(job: &Job, settings: &Settings) -> bool {
-    job.encoding.tone.is_some() || settings.tone != Tone::Linear
+    job.encoding.display.value("tone").is_some() || settings.tone != Tone::Linear
 }

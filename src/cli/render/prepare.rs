@@ -76,10 +76,10 @@ impl Staged {
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
         check_alpha(&scene.look, job.format)?;
-        job.picture.replace(&mut scene.settings);
+        job.picture.settings.apply(&mut scene.settings);
         if job.part.is_some() {
             // The image is written elsewhere, with the settings of the part.
-            job.encoding.replace(&mut scene.settings);
+            job.encoding.display.apply(&mut scene.settings);
         }
         Ok(Self { scene, cuts, legend, load })
     }
@@ -127,9 +127,9 @@ impl PlacedScene {
         let load = start.elapsed();
         check_region(job, &scene)?;
         check_alpha(&scene.look, job.format)?;
-        job.picture.replace(&mut scene.settings);
+        job.picture.settings.apply(&mut scene.settings);
         if job.part.is_some() {
-            job.encoding.replace(&mut scene.settings);
+            job.encoding.display.apply(&mut scene.settings);
         }
         let region = job.region(&scene.settings)?;
         if job.part.is_none() {

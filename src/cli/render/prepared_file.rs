@@ -24,7 +24,7 @@ pub(super) fn write(job: &Job, file: &Path) -> Result<ExitCode, Failure> {
     let identity = placed.identity.take().unwrap_or_else(|| Identity::of(&placed.scene));
     let mut built = placed.build(job)?;
     built.report(job, &mut Notices::default());
-    job.encoding.replace(&mut built.scene.settings);
+    job.encoding.display.apply(&mut built.scene.settings);
     built.scene.title.clone_from(&built.title);
     let Prepared { scene, world, builder, legend, .. } = &built;
     let looks = metadata::looks(job, None, legend.as_ref(), None);

@@ -5,9 +5,8 @@ use super::events::{Action, Command};
 use super::help;
 use super::viewer::{LookChanges, Viewer, WIDER};
 use glam::DVec2;
-use spherule_render::scene::{
-    Background, Camera, Integrator, Pose, Preset, Rgb, SamplerKind, Settings,
-};
+use spherule_render::scene::{Background, Camera, Pose, Preset, Rgb, Settings};
+use spherule_render::settings::{INTEGRATORS, Names, SAMPLERS};
 
 /// Angles of commands, in degrees.
 const TURN: f64 = 15.0;
@@ -25,18 +24,6 @@ const BACKGROUNDS: [(&str, Background); 4] = [
     ("white", Background::Color(Rgb::ONE)),
     ("black", Background::Color(Rgb::ZERO)),
     ("transparent", Background::Transparent),
-];
-
-const INTEGRATORS: [(&str, Integrator); 3] = [
-    ("path", Integrator::Path),
-    ("whitted", Integrator::Whitted { shadow_samples: 16 }),
-    ("ao", Integrator::Ao { distance: f64::INFINITY }),
-];
-
-const SAMPLERS: [(&str, SamplerKind); 3] = [
-    ("sobol", SamplerKind::Sobol),
-    ("stratified", SamplerKind::Stratified),
-    ("independent", SamplerKind::Independent),
 ];
 
 /// Maximum number of samples per pixel.
@@ -137,19 +124,14 @@ impl Viewer {
     }
 
     fn next_integrator(&mut self) {
-        let same = |row: &(&str, Integrator)| {
-            std::mem::discriminant(&row.1) == std::mem::discriminant(&self.settings.integrator)
-        };
-        let now = INTEGRATORS.iter().position(same).unwrap_or(0);
-        let (name, integrator) = INTEGRATORS[(now + 1) % INTEGRATORS.len()];
+        let (name, integrator) = next(&INTEGRATORS, &self.settings.integrator);
         self.settings.integrator = integrator;
         self.show_message(format!("integrator {name}"));
         self.change();
     }
 
     fn next_sampler(&mut self) {
-        let now = SAMPLERS.iter().position(|row| row.1 == self.settings.sampler).unwrap_or(0);
-        let (name, sampler) = SAMPLERS[(now + 1) % SAMPLERS.len()];
+        let (name, sampler) = next(&SAMPLERS, &self.settings.sampler);
         self.settings.sampler = sampler;
         self.show_message(format!("sampler {name}"));
         self.change();
@@ -235,6 +217,14 @@ impl Viewer {
         self.content.hidden.push(name);
         Some(Action::Load)
     }
+}
+
+/// Returns the value after this one, and its name.
+fn next<T: Clone>(names: &Names<T>, now: &T) -> (&'static str, T) {
+    let name = names.name(now);
+    let row = names.0.iter().position(|row| row.0 == name).map_or(0, |row| row + 1);
+    let (name, value, _) = &names.0[row % names.0.len()];
+    (name, value.clone())
 }
 
 /// Returns the next or previous value; `None` is between the last and the first.

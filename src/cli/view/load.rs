@@ -240,7 +240,7 @@ impl Loader {
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
         scene.color_bar = color_bar(job, legend.as_ref()).or(scene.color_bar);
-        job.picture.replace(&mut scene.settings);
+        job.picture.settings.apply(&mut scene.settings);
         job.views.frame(&mut scene, None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         let up = scene.camera.up;

@@ -35,7 +35,7 @@ impl Session {
 
     /// Shows the first scene.
     pub(super) fn begin(&mut self, stage: LoadedScene, job: &Job) {
-        let samples = job.picture.spp.unwrap_or(SAMPLES);
+        let samples = job.picture.settings.spp().unwrap_or(SAMPLES);
         begin(&mut self.viewer, &stage, samples);
         stage.warnings.iter().for_each(output::warn);
         self.renderer = Some(Renderer::new(stage, job.tracer, builder(job, &self.viewer)));

@@ -87,15 +87,15 @@ struct Clock {
 pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     let events = event_loop()?;
     let proxy = events.create_proxy();
-    let (output, sized) = (job.output.clone(), job.picture.size);
-    let samples = job.picture.spp.unwrap_or(session::SAMPLES);
+    let (output, sized) = (job.output.clone(), job.picture.settings.size());
+    let samples = job.picture.settings.spp().unwrap_or(session::SAMPLES);
     let told = proxy.clone();
     let name = job.source.name().into_owned();
     let job = Arc::new(job);
     let workers = Workers::start(&job, move |message| told.send_event(message).is_ok())?;
     let mut settings = Settings { width: 1280, height: 720, ..Settings::default() };
     if let Some(size) = sized {
-        (settings.width, settings.height) = (size.width, size.height);
+        [settings.width, settings.height] = size;
     }
     let camera = spherule_render::scene::Camera::default();
     let mut app = App {

@@ -9,7 +9,7 @@ use self::camera::View;
 pub(super) use self::camera::corners;
 pub(super) use self::overlay::{Canvas, draw_over, settings_of_layers};
 pub(super) use self::style::{StyleArgs, scene_of_particles};
-use super::names::Names;
+use super::names::{self, Names};
 use super::settings::List;
 use clap::value_parser;
 use serde_json::json;
@@ -52,7 +52,7 @@ pub(super) struct ViewArgs {
     #[arg(long, value_name = "SIDE", allow_hyphen_values = true, value_parser = camera::view)]
     view: Option<View>,
     /// Camera projection
-    #[arg(long, value_parser = PROJECTIONS.parser())]
+    #[arg(long, value_parser = names::parser(&PROJECTIONS))]
     projection: Option<Projection>,
     /// Margin around the particles as a fraction of the image, 0 to 0.9, when the camera shows everything
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = camera::margin)]

@@ -70,7 +70,7 @@ fn cameras_that_see_nothing() {
 #[test]
 fn settings_out_of_range() {
     for (width, height) in [(0, 4), (4, 0), (65_536, 1)] {
-        assert_refused(if width == 4 { "`height`" } else { "`width`" }, |scene| {
+        assert_refused("`size`", |scene| {
             (scene.settings.width, scene.settings.height) = (width, height);
         });
     }

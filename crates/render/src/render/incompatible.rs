@@ -2,8 +2,7 @@
 
 use super::{ResumableRender, Status, target};
 use crate::film::Region;
-use crate::scene::{InvalidSetting, SamplerKind, Settings};
-use std::fmt::Debug;
+use crate::settings::{InvalidSetting, Role, SETTINGS, SamplerKind, Settings};
 use std::time::Duration;
 
 /// The reason why a render cannot be resumed with other settings.
@@ -66,7 +65,8 @@ pub enum IncompatibleSettings {
 
 /// Checks that a render with the settings `then` can be resumed with the settings `now`.
 pub(super) fn check(then: &Settings, now: &Settings) -> Result<(), IncompatibleSettings> {
-    if let Some((name, then, now)) = first_difference(&samples(then), &samples(now)) {
+    let [of_then, of_now] = [then, now].map(|settings| samples(settings).collect::<Vec<_>>());
+    if let Some((name, then, now)) = first_difference(&of_then, &of_now) {
         return Err(IncompatibleSettings::Setting { name, then, now });
     }
     same_target("until_error", then.until_error.is_some(), now.until_error.is_some())?;
@@ -101,32 +101,26 @@ fn of_all_parts(
     region: Region,
     statistics: bool,
 ) -> Vec<(&'static str, String)> {
-    let rest: [(&'static str, &dyn Debug); 5] = [
-        ("spp", &settings.spp),
-        ("exposure", &settings.exposure),
-        ("tone", &settings.tone),
-        ("region", &region),
-        ("whether statistics are kept", &statistics),
+    let rest = with_roles(settings, |role, name| role == Role::Display || name == "spp");
+    let render = [
+        ("region", format!("{region:?}")),
+        ("whether statistics are kept", statistics.to_string()),
     ];
-    let rest = rest.map(|(name, value)| (name, format!("{value:?}")));
-    samples(settings).into_iter().chain(rest).collect()
+    samples(settings).chain(rest).chain(render).collect()
 }
 
 /// Returns the settings on which every sample depends, by name.
-fn samples(settings: &Settings) -> Vec<(&'static str, String)> {
-    let all: [(&'static str, &dyn Debug); 10] = [
-        ("width", &settings.width),
-        ("height", &settings.height),
-        ("depth", &settings.depth),
-        ("seed", &settings.seed),
-        ("integrator", &settings.integrator),
-        ("sampler", &settings.sampler),
-        ("filter", &settings.filter),
-        ("roulette", &settings.roulette),
-        ("light_choice", &settings.light_choice),
-        ("caustics", &settings.caustics),
-    ];
-    all.map(|(name, value)| (name, format!("{value:?}"))).into()
+fn samples(settings: &Settings) -> impl Iterator<Item = (&'static str, String)> {
+    with_roles(settings, |role, _| role == Role::Samples)
+}
+
+/// Returns names and values of settings, by their roles and names.
+fn with_roles(
+    settings: &Settings,
+    is_wanted: impl Fn(Role, &str) -> bool,
+) -> impl Iterator<Item = (&'static str, String)> {
+    let wanted = SETTINGS.iter().filter(move |setting| is_wanted(setting.role, setting.name));
+    wanted.map(|setting| (setting.name, setting.get(settings).to_string()))
 }
 
 fn first_difference(

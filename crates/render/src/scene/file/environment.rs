@@ -1,15 +1,14 @@
 //! `[environment]`: radiance of rays that leave the scene.
 
 use super::block::{Block, Source};
-use super::value::{Limits, Value};
+use super::value::{LIGHT, Limits, Value};
 use crate::image::Image;
 use crate::scene::{BRIGHTEST, Environment, EnvironmentMap, FileError, Rgb, is_radiance};
 use glam::DVec3;
 use std::sync::Arc;
 
 pub(super) fn read(source: &Source, block: &Block) -> Result<Environment, FileError> {
-    let color =
-        |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(Limits::Light));
+    let color = |key, usual| block.value(key).map_or(Ok(usual), |value: Value| value.color(LIGHT));
     let up = || block.value("up").map_or(Ok(DVec3::Y), |value| value.direction());
     let map = match block.kind()? {
         "gradient" => EnvironmentMap::Gradient {

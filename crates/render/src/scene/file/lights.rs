@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::schema;
-use super::value::Limits;
+use super::value::{LIGHT, Limits};
 use crate::scene::{FileError, Light};
 
 /// Degrees: the sun's radius seen from the earth.
@@ -22,7 +22,7 @@ fn sun(block: &Block) -> Result<Light, FileError> {
     let angular_radius = block.value("angular_radius");
     Ok(Light::Sun {
         direction: direction.direction()?,
-        irradiance: irradiance.color(Limits::Light)?,
+        irradiance: irradiance.color(LIGHT)?,
         angular_radius: angular_radius
             .map_or(Ok(SUN), |value| value.number(Limits::Below(0.0, 90.0)))?,
     })

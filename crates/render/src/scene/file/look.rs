@@ -1,7 +1,7 @@
 //! `[look]`: background and overlays.
 
 use super::block::Block;
-use super::value::{Limits, Value};
+use super::value::{LIGHT, Value};
 use crate::scene::particles::Cell;
 use crate::scene::{Background, FileError, Look};
 use crate::{color, suggest};
@@ -36,6 +36,6 @@ fn read_background(value: &Value) -> Result<Background, FileError> {
                 None => error,
             })
         }
-        _ => value.color(Limits::Light).map(Background::Color),
+        _ => value.color(LIGHT).map(Background::Color),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::schema;
-use super::value::{Limits, Value};
+use super::value::{LIGHT, Limits, Value};
 use crate::scene::{ConductorFresnel, FileError, Ground, Material, NamedMaterial, Rgb};
 use crate::suggest;
 use glam::DVec3;
@@ -135,7 +135,7 @@ fn material(block: &Block) -> Result<Material, FileError> {
         },
         "emitter" => {
             let radiance = block.need("radiance", "radiance = [r, g, b], or a number for white")?;
-            let radiance = radiance.color(Limits::Light)?;
+            let radiance = radiance.color(LIGHT)?;
             Material::Emitter { radiance, albedo: color("albedo", Rgb::ZERO)? }
         }
         _ => reflective(block, color("color", GRAY)?)?,

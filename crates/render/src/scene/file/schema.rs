@@ -1,6 +1,8 @@
 //! Which keys a scene file may hold: the one list that the reader checks and the manual is tested
 //! against.
 
+use crate::settings::{INTEGRATORS, SETTINGS, Scope};
+
 /// A section, its keys, and the kinds each key has a meaning for.
 pub(super) struct Schema {
     /// As a scene file writes it.
@@ -50,29 +52,43 @@ pub(super) const ROOT: Schema = plain(
     ],
 );
 
+/// The keys of [`SETTINGS`].
 pub(super) const RENDER: Schema = Schema {
     section: "[render]",
-    selector: "integrator",
-    kinds: &["path", "whitted", "ao"],
-    default_kind: Some("path"),
-    keys: &[
-        ("size", &[]),
-        ("spp", &[]),
-        ("until_error", &[]),
-        ("time", &[]),
-        ("depth", &[]),
-        ("seed", &[]),
-        ("shadow_samples", &["whitted"]),
-        ("ao_distance", &["ao"]),
-        ("sampler", &[]),
-        ("filter", &[]),
-        ("roulette", &[]),
-        ("light_choice", &[]),
-        ("caustics", &[]),
-        ("exposure", &[]),
-        ("tone", &[]),
-    ],
+    selector: SELECTOR,
+    kinds: &integrators(),
+    default_kind: Some(INTEGRATORS.0[0].0),
+    keys: &render_keys(),
 };
+
+/// The setting that chooses among kinds.
+const SELECTOR: &str = "integrator";
+
+/// Returns the names of integrators.
+const fn integrators() -> [&'static str; INTEGRATORS.0.len()] {
+    let mut names = [""; INTEGRATORS.0.len()];
+    let mut row = 0;
+    while row < names.len() {
+        names[row] = INTEGRATORS.0[row].0;
+        row += 1;
+    }
+    names
+}
+
+/// Returns the settings and their integrators; the selector, which is no key of its own, is among them.
+const fn render_keys() -> [(&'static str, &'static [&'static str]); SETTINGS.len()] {
+    let mut keys: [(&str, &[&str]); SETTINGS.len()] = [("", &[]); SETTINGS.len()];
+    let mut row = 0;
+    while row < keys.len() {
+        let setting = &SETTINGS[row];
+        keys[row] = match setting.scope {
+            Scope::ParameterOf(integrators) => (setting.name, integrators),
+            Scope::All | Scope::Only(_) => (setting.name, &[]),
+        };
+        row += 1;
+    }
+    keys
+}
 
 pub(super) const CAMERA: Schema = Schema {
     section: "[camera]",

@@ -2,65 +2,15 @@
 
 use super::block::Source;
 use crate::scene::{BRIGHTEST, FileError, Rgb};
+pub(super) use crate::settings::Limits;
 use crate::{color, suggest};
 use glam::DVec3;
 use std::ops::Range;
 use std::str::FromStr;
 use toml::de::{DeTable, DeValue};
 
-/// The numbers that a key accepts. Infinity and NaN are never accepted.
-#[derive(Clone, Copy)]
-pub(super) enum Limits {
-    /// Every finite number.
-    Any,
-    /// More than 0.
-    Positive,
-    /// 0 or more.
-    NotNegative,
-    /// 0..=1.
-    Share,
-    /// A radiance: 0..=[`BRIGHTEST`].
-    Light,
-    /// At least the first, at most the second.
-    Within(f64, f64),
-    /// At least the first, less than the second.
-    Below(f64, f64),
-    /// More than the first, at most the second.
-    AboveTo(f64, f64),
-    /// Strictly between the two.
-    Between(f64, f64),
-}
-
-impl Limits {
-    fn contain(self, number: f64) -> bool {
-        number.is_finite()
-            && match self {
-                Self::Any => true,
-                Self::Positive => number > 0.0,
-                Self::NotNegative => number >= 0.0,
-                Self::Share => (0.0..=1.0).contains(&number),
-                Self::Light => (0.0..=f64::from(BRIGHTEST)).contains(&number),
-                Self::Within(low, high) => (low..=high).contains(&number),
-                Self::Below(low, high) => (low..high).contains(&number),
-                Self::AboveTo(low, high) => low < number && number <= high,
-                Self::Between(low, high) => low < number && number < high,
-            }
-    }
-
-    fn describe(self) -> String {
-        match self {
-            Self::Any => "a finite number".to_owned(),
-            Self::Positive => "finite and more than 0".to_owned(),
-            Self::NotNegative => "finite and 0 or more".to_owned(),
-            Self::Share => "from 0 to 1".to_owned(),
-            Self::Light => format!("from 0 to {BRIGHTEST:e}"),
-            Self::Within(low, high) => format!("from {low} to {high}"),
-            Self::Below(low, high) => format!("{low} or more and less than {high}"),
-            Self::AboveTo(low, high) => format!("more than {low} and at most {high}"),
-            Self::Between(low, high) => format!("more than {low} and less than {high}"),
-        }
-    }
-}
+/// Limits of a radiance.
+pub(super) const LIGHT: Limits = Limits::Within(0.0, BRIGHTEST as f64);
 
 /// A value, its key and its position.
 #[derive(Clone)]
@@ -231,26 +181,6 @@ mod tests {
             let once = unit(vector);
             assert!((once.length() - 1.0).abs() < 1e-15, "{vector}");
             assert_eq!(unit(once), once);
-        }
-    }
-
-    #[test]
-    fn limits_hold_at_their_ends() {
-        let cases = [
-            (Limits::Positive, 0.0, false),
-            (Limits::NotNegative, 0.0, true),
-            (Limits::Share, 1.0, true),
-            (Limits::Share, 1.000_000_1, false),
-            (Limits::Below(0.0, 90.0), 90.0, false),
-            (Limits::AboveTo(0.0, 1.0), 1.0, true),
-            (Limits::AboveTo(0.0, 1.0), 0.0, false),
-            (Limits::Between(0.0, 180.0), 180.0, false),
-            (Limits::Within(-1.0, 1.0), -1.0, true),
-            (Limits::Any, f64::NAN, false),
-            (Limits::Any, f64::INFINITY, false),
-        ];
-        for (limits, number, inside) in cases {
-            assert_eq!(limits.contain(number), inside, "{number} {}", limits.describe());
         }
     }
 }

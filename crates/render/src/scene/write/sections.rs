@@ -2,60 +2,20 @@
 
 use crate::color::{Scale, Spacing};
 use crate::scene::{
-    Background, Camera, ColorBar, ConductorFresnel, Environment, EnvironmentMap, Filter,
-    Integrator, Lens, Light, LightChoice, Look, Material, Pose, Projection, Rgb, Roulette,
-    SamplerKind, Settings, Slice, Tone,
+    Background, Camera, ColorBar, ConductorFresnel, Environment, EnvironmentMap, Lens, Light, Look,
+    Material, Pose, Projection, Rgb, Slice,
 };
+use crate::settings::{SETTINGS, Setting, Settings, Value};
 use glam::DVec3;
 
 pub(super) fn render(settings: &Settings) -> String {
-    let Settings { width, height, spp, seed, exposure, .. } = settings;
-    let depth = settings.depth.map_or("\"unlimited\"".to_owned(), |depth| depth.to_string());
-    let integrator = match settings.integrator {
-        Integrator::Path => "\"path\"".to_owned(),
-        Integrator::Whitted { shadow_samples } => {
-            format!("\"whitted\"\nshadow_samples = {shadow_samples}")
-        }
-        Integrator::Ao { distance } if distance.is_finite() => {
-            format!("\"ao\"\nao_distance = {distance:?}")
-        }
-        Integrator::Ao { .. } => "\"ao\"".to_owned(),
+    let line = |setting: &Setting| match setting.get(settings) {
+        // Scene files have no infinite numbers: without the key there is no limit.
+        Value::None | Value::Word("inf") => String::new(),
+        Value::Word(word) => format!("{} = \"{word}\"\n", setting.name),
+        value => format!("{} = {value}\n", setting.name),
     };
-    let sampler = match settings.sampler {
-        SamplerKind::Sobol => "sobol",
-        SamplerKind::Stratified => "stratified",
-        SamplerKind::Independent => "independent",
-    };
-    let filter = match settings.filter {
-        Filter::Box => "box",
-        Filter::Gaussian => "gaussian",
-        Filter::BlackmanHarris => "blackman-harris",
-    };
-    let roulette = match settings.roulette {
-        Roulette::None => "\"none\"".to_owned(),
-        Roulette::Throughput => "\"throughput\"".to_owned(),
-        Roulette::Fixed(probability) => format!("{probability:?}"),
-    };
-    let light_choice = match settings.light_choice {
-        LightChoice::Tree => "tree",
-        LightChoice::Power => "power",
-        LightChoice::Uniform => "uniform",
-    };
-    let caustics = settings.caustics;
-    let tone = match settings.tone {
-        Tone::Linear => "linear",
-        Tone::Filmic => "filmic",
-    };
-    let line = |key: &str, value: Option<f64>| {
-        value.map_or(String::new(), |value| format!("{key} = {value:?}\n"))
-    };
-    let error = line("until_error", settings.until_error);
-    let time = line("time", settings.time.map(|time| time.as_secs_f64()));
-    format!(
-        "[render]\nsize = [{width}, {height}]\nspp = {spp}\n{error}{time}depth = {depth}\nseed = {seed}\n\
-         integrator = {integrator}\nsampler = \"{sampler}\"\nfilter = \"{filter}\"\n\
-         roulette = {roulette}\nlight_choice = \"{light_choice}\"\ncaustics = {caustics}\nexposure = {exposure:?}\ntone = \"{tone}\"\n\n"
-    )
+    format!("[render]\n{}\n", SETTINGS.iter().map(line).collect::<String>())
 }
 
 pub(in crate::scene) fn camera(camera: &Camera) -> String {
