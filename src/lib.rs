@@ -1,28 +1,23 @@
-//! Spherule renders scenes made of spheres: random sphere fields, particle simulations, molecules.
+//! Renders scenes made of spheres: random sphere fields, particle simulations, molecules.
 //!
-//! Three things set it apart. **Visibility is exact**: which sphere a ray hits first is decided by
-//! the numbers as they are stored, without an epsilon, at any scale ([`intersect`]). **There is one
-//! picture**: the same scene, seed and settings give the same bytes at every lane width, thread
-//! count and tree ([`render`]). And **what a scene does not need is skipped**: a census of the
-//! world decides which stages run ([`world::Features`]).
+//! Three things set Spherule apart. **Visibility is exact**: which sphere a ray hits first is decided on
+//! the numbers as they are stored, without an epsilon, at any scale ([`query`]). **There is one image**:
+//! the same scene, seed and settings give the same bytes at every lane width, thread count and BVH
+//! ([`render`]). And **what a scene does not need is skipped**: a census of the world decides which stages
+//! run ([`world::Features`]).
 //!
-//! # The way of the data
+//! # Data flow
 //!
 //! ```text
 //! scene file, particle file, generator
-//!    -> Scene     what the user wrote, validated, f64                             scene
-//!    -> World     columns near the origin, f32; material tables; lights; census   world
-//!    -> Bvh       built beside the columns, which are permuted to its order       bvh
-//!    per tile, one task with one workspace of columns:                            render
-//!      generate -> intersect -> escape, emit -> shade, kind by kind -> occlude -> compact,
-//!      until no path is left                                                      integrator
-//!    -> Film      sums in f64, tile by tile; probes that tell their error         film, noise
-//!    -> Image     PNG, PPM, PFM, EXR                                              image
+//!    -> Scene    what the user wrote, validated, in double precision       scene
+//!    -> World    columns for the kernels, with a BVH                       world
+//!    -> Render   samples of all pixels, their error and statistics         render
+//!    -> Image    linear radiance, and files of it                          image
 //! ```
 //!
-//! An entity is a row, a component is a column, and a system is a function from columns to columns.
-//! Everything that the user can get wrong is found by the time there is a [`World`]; from there
-//! nothing fails.
+//! Everything that can be wrong with a scene is found by the time there is a [`World`]; after that, only
+//! settings out of range are refused.
 //!
 //! # Example
 //!
@@ -78,6 +73,109 @@
 #[doc = include_str!("../docs/library.md")]
 struct LibraryGuide;
 
+#[doc(no_inline)]
 pub use spherule_core as query;
+#[doc(no_inline)]
 pub use spherule_particles as particles;
-pub use spherule_render::*;
+
+pub use image::Image;
+pub use scene::Scene;
+pub use world::World;
+
+/// Colors for numbers, categories and elements.
+pub mod color {
+    #[doc(inline)]
+    pub use spherule_render::color::{
+        Map, Range, RangeError, Rgb, Scale, Spacing, Tick, category, linear_from_srgb, parse, srgb,
+        ticks,
+    };
+}
+
+/// Scenes: spheres, materials, lights, camera and settings, in double precision, in the user's units.
+pub mod scene {
+    #[doc(inline)]
+    pub use spherule_render::scene::{
+        Background, Camera, ColorBar, ConductorFresnel, Corner, Environment, EnvironmentMap,
+        FileError, Filter, Footprint, Ground, Header, Identity, Integrator, InvalidSetting, Lens,
+        Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset, Projection, Rgb,
+        Roulette, SamplerKind, Scene, Settings, Slice, SliceMode, SlicePlane, Spheres, Tone, write,
+        write_as,
+    };
+
+    /// Generators of spheres.
+    pub mod generate {
+        #[doc(inline)]
+        pub use spherule_render::scene::generate::{
+            Field, GenerateError, Generator, Grid, Group, Lattice, Sphereflake, Volume, Weekend,
+            default_scene,
+        };
+    }
+
+    /// Scenes of particle files: selections, periodic images, colors and radii by column.
+    pub mod particles {
+        #[doc(inline)]
+        pub use spherule_render::scene::particles::{
+            Coloring, ParticleStyle, Particles, PeriodicError, Selection, of_frame, read,
+        };
+    }
+}
+
+/// Worlds: scenes as the kernels read them.
+pub mod world {
+    #[doc(inline)]
+    pub use spherule_core::internals::bvh::builders::Builder;
+    #[doc(inline)]
+    pub use spherule_render::world::{Features, World, WorldError};
+}
+
+/// Renders: passes over tiles, tiles over threads; renders that can be stopped and resumed.
+pub mod render {
+    #[doc(inline)]
+    pub use spherule_render::film::{Region, RegionError};
+    #[doc(inline)]
+    pub use spherule_render::noise::Noise;
+    #[doc(inline)]
+    pub use spherule_render::render::{
+        Elisions, End, ImagePart, IncompatibleSettings, Options, Progress, Render, RenderError,
+        ResumableRender, Samples, Stage, Statistics, Status, Tasks, Totals, render,
+    };
+    #[doc(inline)]
+    pub use spherule_render::trace::{PacketWidth, Tracer, Traversal};
+}
+
+/// Files of unfinished renders.
+pub mod checkpoint {
+    #[doc(inline)]
+    pub use spherule_render::checkpoint::{
+        Caption, CheckpointError, Lock, LockError, Origin, inspect, read, write,
+    };
+}
+
+/// Files of scenes with their BVH, which start to render at once.
+pub mod prepared {
+    #[doc(inline)]
+    pub use spherule_render::prepared::{
+        PrepareError, PreparedError, PreparedScene, is_prepared, read, write,
+    };
+}
+
+/// Parts of a render, and their merge.
+pub mod split {
+    #[doc(inline)]
+    pub use spherule_render::split::{Merge, MergeError, Part, Split, SplitError, uncovered_parts};
+}
+
+/// Auxiliary channels for denoisers and compositing.
+pub mod layers {
+    #[doc(inline)]
+    pub use spherule_render::layers::{GROUND_PLANE, Layer, Layers, NOTHING, layers};
+}
+
+/// Images: linear RGB in memory, their files, and their comparison.
+pub mod image {
+    #[doc(inline)]
+    pub use spherule_render::image::{
+        Channel, CompareError, Comparison, Depth, Difference, Format, Image, ImageError, Metadata,
+        PpmEncoding, Values, WriteOptions, check_writable, compare, read_metadata,
+    };
+}

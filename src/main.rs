@@ -1,6 +1,6 @@
 //! The `spherule` program: renders scenes of spheres, and inspects scenes and images.
 //!
-//! The command line is parsed to `Args` and validated as a job, which calls the library's public interface.
+//! The command line is parsed to `Args` and validated as a job, which calls `spherule-render` and `spherule-measure`.
 
 mod cli;
 

@@ -11,7 +11,7 @@ use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::World;
 use spherule_render::film::Region;
-use spherule_render::scene::{EnvironmentMap, Projection, Scene, bounds};
+use spherule_render::scene::{Projection, Scene, bounds};
 use spherule_render::shade::MaterialKind;
 use std::process::ExitCode;
 
@@ -124,7 +124,7 @@ impl Info {
             materials: materials(scene),
             ground: scene.ground.is_some(),
             lights: LightInfo::new(world),
-            environment: environment(scene),
+            environment: scene.environment.map.kind(),
             camera: CameraInfo::new(scene, world),
             settings: settings::list(&scene.settings, Region { x: 0, y: 0, width, height }),
             memory: MemoryInfo::new(world),
@@ -245,12 +245,4 @@ fn materials(scene: &Scene) -> Vec<MaterialInfo> {
         MaterialInfo { name: named.name.clone(), kind, spheres }
     })
     .collect()
-}
-
-fn environment(scene: &Scene) -> &'static str {
-    match scene.environment.map {
-        EnvironmentMap::Constant(_) => "constant",
-        EnvironmentMap::Gradient { .. } => "gradient",
-        EnvironmentMap::Picture { .. } => "picture",
-    }
 }

@@ -1,6 +1,6 @@
 //! Names that programs of the field have for the same column.
 
-use super::schema;
+use super::options::Role;
 
 /// Names of one thing in PDB, GRO, mmCIF, LAMMPS and extended XYZ files, and in `MDAnalysis`, VMD,
 /// `PyMOL` and OVITO. Where a file has none of the name that is asked for, the first of the others
@@ -30,11 +30,37 @@ pub const GROUPS: [&[&str]; 22] = [
     &["zu", "unwrapped position.z"],
 ];
 
+/// Names that are a role in any case, those that go first in front.
+pub(crate) const USUAL: [(Role, &[&str]); 10] = [
+    (Role::X, &["x", "pos_x", "position_x", "position.x", "cartn_x", "points:0"]),
+    (Role::Y, &["y", "pos_y", "position_y", "position.y", "cartn_y", "points:1"]),
+    (Role::Z, &["z", "pos_z", "position_z", "position.z", "cartn_z", "points:2"]),
+    (Role::Radius, &["radius"]),
+    (Role::Diameter, &["diameter"]),
+    (
+        Role::Kind,
+        &["element", "species", "symbol", "type_symbol", "type", "typeid", "particle type"],
+    ),
+    (Role::Red, &["red", "color.r"]),
+    (Role::Green, &["green", "color.g"]),
+    (Role::Blue, &["blue", "color.b"]),
+    (Role::Material, &["material"]),
+];
+
+/// Returns the names of the role that a name tells, in any case; none for those of colors and
+/// materials, which are no columns of numbers or texts.
+fn names_of_role(name: &str) -> Option<&'static [&'static str]> {
+    let named = |names: &&[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(name));
+    let roles = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
+    let mut rows = USUAL.iter().filter(|(role, _)| roles.contains(role)).map(|(_, names)| *names);
+    rows.find(named)
+}
+
 /// Returns the other names of a column, in any case, the usual one first.
 pub fn of(name: &str) -> impl Iterator<Item = &'static str> {
     let same = |other: &&&str| other.eq_ignore_ascii_case(name);
     let group = GROUPS.iter().find(|group| group.iter().any(|own| same(&own)));
-    let names = group.copied().or_else(|| schema::names_of_role(name)).unwrap_or_default();
+    let names = group.copied().or_else(|| names_of_role(name)).unwrap_or_default();
     names.iter().copied().filter(move |other| !other.eq_ignore_ascii_case(name))
 }
 

@@ -1,7 +1,7 @@
 //! Builds a frame: columns that grow with the rows, never with a count that a file claims.
 
 use super::Format;
-use super::categories::{Codebook, Kind};
+use super::categories::{Codebook, Kind, add};
 use super::extra::Extra;
 use super::frame::ParticleFrame;
 use super::lines::Line;
@@ -259,12 +259,6 @@ impl Builder {
 /// The nearest share of a color; 0 for NaN.
 pub(crate) fn share(value: f64) -> f32 {
     if value > 0.0 { value.min(1.0) as f32 } else { 0.0 }
-}
-
-/// Appends a name; returns its place.
-pub(crate) fn add(names: &mut Vec<String>, name: &str) -> u32 {
-    names.push(name.to_owned());
-    names.len() as u32 - 1
 }
 
 #[cfg(test)]

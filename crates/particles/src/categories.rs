@@ -222,6 +222,12 @@ pub fn retain<T>(column: &mut Vec<T>, keep: &[bool]) {
     column.retain(|_| rows.next().copied().unwrap_or(true));
 }
 
+/// Appends a name, and returns its index.
+pub(crate) fn add(names: &mut Vec<String>, name: &str) -> u32 {
+    names.push(name.to_owned());
+    names.len() as u32 - 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

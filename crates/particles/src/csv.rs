@@ -2,15 +2,15 @@
 
 use super::builder::Builder;
 use super::frame::ParticleFrame;
+use super::frame_reader::FrameReader;
 use super::lines::{LONGEST, Line, Lines};
 use super::options::{Format, ReadOptions};
-use super::reader::FrameReader;
+use super::record::{Record, header_names, separator};
 use super::schema::{Schema, Slot};
 use super::source::Source;
-use super::{header, number};
+use super::{header, line, number};
 use crate::FileError;
 use crate::error::listed;
-use csv_core::{ReadRecordResult, ReaderBuilder};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -24,13 +24,6 @@ pub(crate) struct Csv {
     done: bool,
 }
 
-/// The fields of a line with quotes.
-#[derive(Default)]
-struct Record {
-    bytes: Vec<u8>,
-    ends: Vec<usize>,
-}
-
 impl Csv {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let lines = Lines::new(source);
@@ -41,7 +34,7 @@ impl Csv {
     /// The next line that is neither blank nor a comment.
     fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, FileError> {
         while let Some(line) = lines.next()? {
-            if !line.is_blank() && !header::is_comment(line.bytes) {
+            if !line.is_blank() && !line::is_comment(line.bytes) {
                 lines.back();
                 break;
             }
@@ -146,9 +139,7 @@ impl Row<'_> {
             return self.put(bytes.split(|&byte| byte == self.separator), builder);
         }
         record.read(bytes, self.separator);
-        let starts = [0].into_iter().chain(record.ends.iter().copied());
-        let fields = starts.zip(&record.ends).map(|(start, &end)| &record.bytes[start..end]);
-        self.put(fields, builder)
+        self.put(record.fields(), builder)
     }
 
     fn put<'f>(
@@ -185,41 +176,6 @@ impl Row<'_> {
     fn may_have_comma(&self, slot: Slot) -> bool {
         self.separator != b',' && !matches!(slot, Slot::Skip | Slot::Kind | Slot::Material)
     }
-}
-
-impl Record {
-    /// Takes a line apart; no field of it is longer than the line.
-    fn read(&mut self, line: &[u8], separator: u8) {
-        self.bytes.resize(line.len() + 1, 0);
-        self.ends.resize(line.len() + 2, 0);
-        let mut reader = ReaderBuilder::new().delimiter(separator).build();
-        let (mut input, mut written, mut ended) = (line, 0, 0);
-        loop {
-            let (result, used, bytes, ends) =
-                reader.read_record(input, &mut self.bytes[written..], &mut self.ends[ended..]);
-            (input, written, ended) = (&input[used..], written + bytes, ended + ends);
-            if result != ReadRecordResult::InputEmpty || used == 0 {
-                break;
-            }
-        }
-        self.ends.truncate(ended);
-    }
-}
-
-/// The names that a header has.
-pub(crate) fn header_names(line: &[u8]) -> Vec<String> {
-    let mut record = Record::default();
-    record.read(line, separator(line));
-    let starts = [0].into_iter().chain(record.ends.iter().copied());
-    let fields = starts.zip(&record.ends).map(|(start, &end)| &record.bytes[start..end]);
-    fields.map(|field| String::from_utf8_lossy(field.trim_ascii()).into_owned()).collect()
-}
-
-/// Returns the separator of columns: the most frequent candidate.
-fn separator(header: &[u8]) -> u8 {
-    let count = |separator: &u8| header.split(|byte| byte == separator).count();
-    // Of equals the last wins: a comma, where there is none of any.
-    [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
 }
 
 /// The bytes of a field in a line, without the blanks around it.

@@ -1,7 +1,6 @@
 //! Columns that are kept besides the usual ones: of numbers or of texts, as their first value tells.
 
-use super::builder::add;
-use super::categories::{Codebook, TextColumn};
+use super::categories::{Codebook, TextColumn, add};
 use super::frame::NumberColumn;
 use super::lines::Line;
 use super::number;

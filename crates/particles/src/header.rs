@@ -1,18 +1,13 @@
 //! Header lines of tables: names of columns before rows of numbers.
 
 use super::options::ReadOptions;
-use super::{csv, fields::Fields, number};
-
-/// Returns whether a line is a comment, as programs for rows of numbers write it.
-pub(crate) fn is_comment(line: &[u8]) -> bool {
-    line.starts_with(b"#") || line.starts_with(b"%")
-}
+use super::{fields::Fields, number, record};
 
 /// The names in a header, with commas, semicolons, tabs or blanks between them. A unit in brackets
 /// belongs to the name before it.
 pub(crate) fn names(line: &[u8]) -> Vec<String> {
     if is_separated(line) {
-        return csv::header_names(line);
+        return record::header_names(line);
     }
     let mut names: Vec<String> = Vec::new();
     let mut is_open = false;
@@ -43,7 +38,7 @@ pub(crate) fn is_header(names: &[String]) -> bool {
 /// more.
 pub(crate) fn is_row(names: &[String], separated: bool, row: &[u8]) -> bool {
     let fields: Vec<Vec<u8>> = if separated {
-        csv::header_names(row).into_iter().map(String::into_bytes).collect()
+        record::header_names(row).into_iter().map(String::into_bytes).collect()
     } else {
         Fields::blanks(row).map(<[u8]>::to_vec).collect()
     };

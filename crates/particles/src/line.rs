@@ -7,6 +7,11 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Returns whether a line is a comment, as programs for rows of numbers write it.
+pub(crate) fn is_comment(line: &[u8]) -> bool {
+    line.starts_with(b"#") || line.starts_with(b"%")
+}
+
 /// One line without its end.
 #[derive(Clone, Copy)]
 pub(crate) struct Line<'l> {

@@ -6,9 +6,9 @@
 use super::builder::Builder;
 use super::fields::Fields;
 use super::frame::ParticleFrame;
+use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
 use super::options::{Format, ReadOptions};
-use super::reader::FrameReader;
 use super::scalar::{Order, Scalar};
 use super::schema::{Schema, Slot};
 use super::source::Source;

@@ -1,28 +1,12 @@
 //! Frames of a file, one after another.
 
 use super::frame::ParticleFrame;
+use super::frame_reader::FrameReader;
 use super::options::{Format, FrameChoice, ReadOptions};
 use super::source::{Source, is_standard_input};
 use super::{cif, csv, gro, gsd, lammps, numpy, pdb, ply, sniff, text, xyz};
 use crate::FileError;
 use std::path::Path;
-
-/// A file that is being read, frame by frame.
-pub(crate) trait FrameReader {
-    /// The next frame, if there is one.
-    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError>;
-
-    /// Passes over the next frame, with as little work as the format allows; whether there was
-    /// one, all of it.
-    fn skip(&mut self) -> Result<bool, FileError> {
-        Ok(self.next()?.is_some())
-    }
-
-    /// Whether more seems to follow.
-    fn more(&mut self) -> Result<bool, FileError> {
-        Ok(false)
-    }
-}
 
 /// The frames of a file of particles, read one at a time. After an error there are no more.
 pub struct Frames {

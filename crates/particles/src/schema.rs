@@ -34,23 +34,6 @@ pub(crate) enum Naming {
     Names,
 }
 
-/// Names that are a role in any case, those that go first in front.
-const USUAL: [(Role, &[&str]); 10] = [
-    (Role::X, &["x", "pos_x", "position_x", "position.x", "cartn_x", "points:0"]),
-    (Role::Y, &["y", "pos_y", "position_y", "position.y", "cartn_y", "points:1"]),
-    (Role::Z, &["z", "pos_z", "position_z", "position.z", "cartn_z", "points:2"]),
-    (Role::Radius, &["radius"]),
-    (Role::Diameter, &["diameter"]),
-    (
-        Role::Kind,
-        &["element", "species", "symbol", "type_symbol", "type", "typeid", "particle type"],
-    ),
-    (Role::Red, &["red", "color.r"]),
-    (Role::Green, &["green", "color.g"]),
-    (Role::Blue, &["blue", "color.b"]),
-    (Role::Material, &["material"]),
-];
-
 /// The uses of all columns of a file.
 #[derive(Debug)]
 pub(crate) struct Schema {
@@ -94,7 +77,8 @@ impl Schema {
         let mut slots = vec![Slot::Skip; names.len()];
         let mut axes = [0; 3];
         for (axis, role) in [Role::X, Role::Y, Role::Z].into_iter().enumerate() {
-            let column = choice.find(role)?.ok_or_else(|| choice.missing(USUAL[axis].1[0]))?;
+            let column =
+                choice.find(role)?.ok_or_else(|| choice.missing(aliases::USUAL[axis].1[0]))?;
             slots[column] = Slot::Position(axis);
             axes[axis] = column;
         }
@@ -172,15 +156,6 @@ impl Schema {
     pub(crate) fn has_color(&self) -> bool {
         self.has_color
     }
-}
-
-/// Returns the names of the role that a name tells, in any case; none for those of colors and
-/// materials, which are no columns of numbers or texts.
-pub(crate) fn names_of_role(name: &str) -> Option<&'static [&'static str]> {
-    let named = |names: &&[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(name));
-    let roles = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
-    let mut rows = USUAL.iter().filter(|(role, _)| roles.contains(role)).map(|(_, names)| *names);
-    rows.find(named)
 }
 
 /// Says that a file has no column of a name: the nearest one that there is, or all of them.
@@ -264,7 +239,8 @@ impl Choice<'_> {
         if let Some(column) = known.and_then(|(_, name)| self.position(name)) {
             return Ok(Some(column));
         }
-        let usual = USUAL.iter().find(|(own, _)| *own == role).map_or(&[][..], |(_, names)| names);
+        let usual =
+            aliases::USUAL.iter().find(|(own, _)| *own == role).map_or(&[][..], |(_, names)| names);
         Ok(usual.iter().find_map(|name| self.position(name)))
     }
 

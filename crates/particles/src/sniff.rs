@@ -4,7 +4,7 @@ use super::fields::Fields;
 use super::foreign::{self, Foreign};
 use super::options::{Format, ReadOptions, Role};
 use super::source::Source;
-use super::{cif, gro, gsd, header, number, numpy, pdb, ply, units, utf16};
+use super::{cif, gro, gsd, header, line, number, numpy, pdb, ply, units, utf16};
 use crate::FileError;
 
 /// The formats that can be recognized.
@@ -90,7 +90,7 @@ fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
         return Ok(Format::Gro);
     }
     let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
-    let mut lines = lines.filter(|line| !line.is_empty() && !header::is_comment(line));
+    let mut lines = lines.filter(|line| !line.is_empty() && !line::is_comment(line));
     let Some(first) = lines.next() else { return Err("holds no particles".to_owned()) };
     // The first line that Excel writes into some CSV files.
     let is_excel = first.starts_with(b"sep=");

@@ -4,7 +4,7 @@
 //! What a file is packed with is told by how it begins, whatever its name says. All decoders are
 //! Rust, so that the program needs no library of the system.
 
-use super::header;
+use super::line;
 use super::progress::{CountedFile, ReadProgress};
 use super::utf16::{self, Utf16};
 use crate::FileError;
@@ -139,7 +139,7 @@ fn comments(text: &[u8]) -> usize {
     let lines = text.split_inclusive(|&byte| byte == b'\n');
     let is_comment = |line: &&[u8]| {
         let line = line.trim_ascii_start();
-        line.is_empty() || header::is_comment(line)
+        line.is_empty() || line::is_comment(line)
     };
     lines.take_while(is_comment).map(<[u8]>::len).sum()
 }

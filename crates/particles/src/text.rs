@@ -3,11 +3,11 @@
 use super::builder::Builder;
 use super::fields::Fields;
 use super::frame::ParticleFrame;
+use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
 use super::options::{Format, ReadOptions, Role};
-use super::reader::FrameReader;
 use super::schema::Schema;
-use super::{header, number, source::Source, units};
+use super::{header, line, number, source::Source, units};
 use crate::FileError;
 use crate::error::listed;
 use std::collections::HashMap;
@@ -131,7 +131,7 @@ impl Layout {
     fn of(head: &[u8]) -> Self {
         let lines = || {
             let lines = head.split(|&byte| byte == b'\n');
-            lines.filter(|line| !header::is_comment(line.trim_ascii_start()))
+            lines.filter(|line| !line::is_comment(line.trim_ascii_start()))
         };
         let decimal_commas = has_decimal_commas(lines());
         let rows: Vec<Vec<Vec<u8>>> = lines()
@@ -194,7 +194,7 @@ impl FrameReader for Rows {
         let path = self.lines.path().clone();
         while let Some(mut line) = self.lines.next()? {
             let text = line.bytes.trim_ascii();
-            let is_comment = header::is_comment(text);
+            let is_comment = line::is_comment(text);
             if builder.is_none() && names.is_none() {
                 let found = header::names(if is_comment { text[1..].trim_ascii() } else { text });
                 if header::is_header(&found) {

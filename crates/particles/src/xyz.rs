@@ -7,9 +7,9 @@
 use super::builder::Builder;
 use super::cell::Cell;
 use super::frame::{LengthUnit, ParticleFrame};
+use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
 use super::options::{Format, ReadOptions, Role, component_names};
-use super::reader::FrameReader;
 use super::schema::{Naming, Schema};
 use super::{number, source::Source};
 use crate::FileError;

@@ -55,6 +55,7 @@ pub struct Settings {
 
 /// The rendering algorithm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Integrator {
     /// Path tracing with next-event estimation and multiple importance sampling.
     Path,
@@ -73,6 +74,7 @@ pub enum Integrator {
 
 /// A generator of sample points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum SamplerKind {
     /// Owen-scrambled Sobol points.
     Sobol,
@@ -85,6 +87,7 @@ pub enum SamplerKind {
 /// The pixel reconstruction filter, applied by filter importance sampling: every sample has weight
 /// 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Filter {
     /// The pixel's own square.
     Box,
@@ -96,6 +99,7 @@ pub enum Filter {
 
 /// Russian roulette.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Roulette {
     /// Paths end by depth only.
     None,
@@ -108,6 +112,7 @@ pub enum Roulette {
 
 /// A strategy that selects the light of a direct lighting sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum LightChoice {
     /// By the estimated contribution of each light at the shading point, without occlusion.
     #[default]
@@ -120,6 +125,7 @@ pub enum LightChoice {
 
 /// A tone curve, from linear radiance to display-linear 0..=1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Tone {
     /// Clips at 1.
     Linear,

@@ -6,7 +6,7 @@ use crate::cli::contents::spheres;
 use crate::cli::failure::Failure;
 use spherule_render::film::{Film, Region};
 use spherule_render::image::Format;
-use spherule_render::layers::{Layer, Layers};
+use spherule_render::layers::Layers;
 use spherule_render::memory::{self, Shortage, Size};
 use spherule_render::scene::{Footprint, Look, Scene};
 use std::fmt;
@@ -113,7 +113,7 @@ fn output(job: &Job, look: &Look, region: Region) -> u64 {
         (false, true) => MATTE,
     };
     let gathered = if traced || drawn > 0 { Layers::bytes(region) + pixels * drawn } else { 0 };
-    let channels: u64 = layers.iter().map(|layer| channels(*layer)).sum();
+    let channels: u64 = layers.iter().map(|layer| layer.channel_count() as u64).sum();
     let value = size_of::<f32>() as u64;
     let file = match job.format {
         // Channels, and the compressed file.
@@ -121,14 +121,6 @@ fn output(job: &Job, look: &Look, region: Region) -> u64 {
         _ => CODES,
     };
     gathered.max(pixels * (file + channels * value))
-}
-
-/// Number of channels of a layer.
-fn channels(layer: Layer) -> u64 {
-    match layer {
-        Layer::Albedo | Layer::Normal | Layer::Variance => 3,
-        Layer::Depth | Layer::Coverage | Layer::Id | Layer::Samples => 1,
-    }
 }
 
 impl fmt::Display for Estimate {

@@ -2,12 +2,12 @@
 
 use super::array::{Array, Turn};
 use super::schema;
-use crate::builder::{Builder, add, share};
-use crate::categories::{Codebook, Kind, TextColumn};
+use crate::builder::{Builder, share};
+use crate::categories::{Codebook, Kind, TextColumn, add};
 use crate::frame::{NumberColumn, ParticleFrame};
+use crate::frame_reader::FrameReader;
 use crate::options::{Format, Radii, ReadOptions, Role, component_names};
 use crate::progress::CountedFile;
-use crate::reader::FrameReader;
 use crate::schema::Schema;
 use crate::source::Source;
 use crate::{FileError, Rgb};

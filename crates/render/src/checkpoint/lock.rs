@@ -24,6 +24,7 @@ pub struct Lock {
 
 /// Reasons why a lock could not be taken.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LockError {
     /// Another process holds it.
     #[error(

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// Reasons why a checkpoint cannot be resumed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CheckpointError {
     /// The file does not exist or cannot be read.
     #[error("{}: cannot be read: {}", .0.display(), .1)]

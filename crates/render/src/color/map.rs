@@ -5,6 +5,7 @@ use super::{Rgb, srgb};
 
 /// A published color map. All except [`Map::Turbo`] are perceptually uniform.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Map {
     /// Dark blue over green to yellow.
     #[default]

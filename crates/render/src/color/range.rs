@@ -22,6 +22,7 @@ pub struct Range {
 
 /// Reasons why a range is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RangeError {
     /// An end is not finite, or the low end is above the high end.
     #[error("invalid range from {low} to {high}; give two finite numbers, the lower one first")]

@@ -36,6 +36,7 @@ pub struct Region {
 
 /// An error of a region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RegionError {
     /// The region has no pixels, or more than a picture can have along an axis.
     #[error(

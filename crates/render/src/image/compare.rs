@@ -51,6 +51,7 @@ pub struct Difference {
 
 /// The reason why two pictures cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompareError {
     /// Their sizes differ.
     #[error(

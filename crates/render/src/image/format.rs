@@ -27,6 +27,7 @@ const MAGIC_LENGTH: u64 = 16;
 
 /// A picture file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Format {
     /// `OpenEXR`: linear floats.
     Exr,

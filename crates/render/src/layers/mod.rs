@@ -33,6 +33,7 @@ pub const GROUND_PLANE: u32 = GROUND;
 
 /// A layer: an auxiliary channel of the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Layer {
     /// [`Features::albedo`]: channels `albedo.R`, `albedo.G`, `albedo.B`.
     Albedo,
@@ -95,6 +96,14 @@ impl Layer {
         Self::Variance,
         Self::Samples,
     ];
+
+    /// Returns the number of channels.
+    pub fn channel_count(self) -> usize {
+        match self {
+            Self::Albedo | Self::Normal | Self::Variance => 3,
+            Self::Depth | Self::Coverage | Self::Id | Self::Samples => 1,
+        }
+    }
 
     /// Returns the name before the dot in its channels' names.
     pub fn name(self) -> &'static str {

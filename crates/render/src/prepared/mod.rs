@@ -78,6 +78,7 @@ impl PreparedScene {
 
 /// Reasons why a prepared scene cannot be rendered, or a scene cannot be prepared.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PrepareError {
     /// The camera was placed for another picture.
     #[error(

@@ -22,6 +22,7 @@ const MAX_HEADER: u64 = 1 << 26;
 
 /// Reasons why a file is not a valid prepared scene.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PreparedError {
     /// The file does not exist or cannot be read.
     #[error("{}: cannot be read: {}", .0.display(), .1)]

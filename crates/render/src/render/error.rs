@@ -7,6 +7,7 @@ use crate::world::World;
 
 /// A reason why a render cannot start.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// A setting is out of range.
     #[error(transparent)]

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 /// The reason why a render cannot be resumed with other settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IncompatibleSettings {
     /// A setting is out of its range.
     #[error(transparent)]

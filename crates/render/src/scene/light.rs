@@ -15,6 +15,7 @@ pub(crate) fn is_radiance(value: f32, scale: f32) -> bool {
 
 /// A light that is not a sphere of the scene.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Light {
     /// A disc at infinity.
     Sun {
@@ -49,6 +50,7 @@ pub struct Environment {
 
 /// Radiance of the environment by direction.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum EnvironmentMap {
     /// The same everywhere; black for none.
     Constant(Rgb),
@@ -72,6 +74,17 @@ pub enum EnvironmentMap {
         /// Factor on the picture's values.
         scale: f32,
     },
+}
+
+impl EnvironmentMap {
+    /// Returns the name of the kind in scene files.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Constant(_) => "constant",
+            Self::Gradient { .. } => "gradient",
+            Self::Picture { .. } => "picture",
+        }
+    }
 }
 
 impl Default for Environment {

@@ -25,6 +25,7 @@ pub struct Look {
 
 /// The background that the camera sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Background {
     /// The environment.
     #[default]

@@ -14,6 +14,7 @@ pub struct NamedMaterial {
 
 /// A material of surfaces. A sphere's own color is a factor on `color` (`albedo` for an emitter).
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Material {
     /// Ideally diffuse.
     Lambertian {
@@ -61,6 +62,7 @@ pub enum Material {
 
 /// Reflectance of a metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ConductorFresnel {
     /// Reflectance at normal incidence, 0..=1, and Schlick's curve up to 1 at grazing angles.
     Schlick(Rgb),

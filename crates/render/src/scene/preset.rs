@@ -17,6 +17,7 @@ const GROUND: f32 = 0.9;
 
 /// A preset of the look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Preset {
     /// Matte, lit uniformly: ambient occlusion shows the shape.
     Chalk,

@@ -21,6 +21,7 @@ pub struct Merge {
 
 /// Reasons why parts cannot be merged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MergeError {
     /// There are no parts.
     #[error("no parts to merge; name at least one")]

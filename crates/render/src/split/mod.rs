@@ -35,6 +35,7 @@ pub struct Part {
 
 /// Reasons why a render cannot be split as requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SplitError {
     /// There are more parts than samples.
     #[error("{count} parts are more than the {samples} samples of a pixel; {suggestion}", suggestion = suggestion(*.samples, *.tiles, *.count))]
@@ -136,7 +137,9 @@ impl FromStr for Part {
             let (number, count) = text.split_once('/')?;
             Self::new(number.parse().ok()?, count.parse().ok()?)
         };
-        read().ok_or_else(|| "expected K/N, a part from 1 to N and the number N of parts, as in 3/8".to_owned())
+        read().ok_or_else(|| {
+            "expected K/N, a part from 1 to N and the number N of parts, as in 3/8".to_owned()
+        })
     }
 }
 

@@ -56,30 +56,42 @@ const RAYS_PER_SAMPLE: u64 = 4;
 #[derive(Clone, Debug)]
 pub struct World {
     /// Transform from the user's coordinates to the world's.
+    #[doc(hidden)]
     pub transform: Transform,
     /// The camera in the user's coordinates.
     pub(crate) placement: Placement,
     /// The spheres, in the order of the tree's leaves.
+    #[doc(hidden)]
     pub spheres: Spheres,
     /// Materials and colors of the spheres.
+    #[doc(hidden)]
     pub appearance: Appearance,
     /// The tree over them.
+    #[doc(hidden)]
     pub bvh: Bvh,
     /// Planes at which spheres are cut.
+    #[doc(hidden)]
     pub cut: Cut,
     /// The spheres that the camera sees, if slices hide some from it.
+    #[doc(hidden)]
     pub camera_visible: Option<CameraVisible>,
     /// The ground plane, if there is one.
+    #[doc(hidden)]
     pub ground: Option<Ground>,
     /// One table for each kind of material.
+    #[doc(hidden)]
     pub materials: Materials,
     /// Lights that can be sampled.
+    #[doc(hidden)]
     pub lights: Lights,
     /// Pairs of specular sphere and emitter whose caustics are sampled.
+    #[doc(hidden)]
     pub caustic_casters: CausticCasters,
     /// The environment: radiance of rays that hit nothing.
+    #[doc(hidden)]
     pub environment: Environment,
     /// The camera.
+    #[doc(hidden)]
     pub camera: Camera,
     /// Features of the world, which decide which stages run.
     pub features: Features,
@@ -87,6 +99,7 @@ pub struct World {
 
 /// Reasons why a scene cannot be rendered.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum WorldError {
     /// Rows are 32-bit numbers, a few of which are reserved.
     #[error("too many spheres: {0}, but at most {max} fit; render a part of them", max = Spheres::MAX)]

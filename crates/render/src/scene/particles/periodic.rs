@@ -12,6 +12,7 @@ const EDGES: [&str; 3] = ["a", "b", "c"];
 
 /// Reasons why particles cannot be wrapped or replicated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PeriodicError {
     /// The file has no cell.
     #[error("cannot {0} particles: the file has no cell")]
