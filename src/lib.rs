@@ -133,11 +133,11 @@ pub mod render {
     #[doc(inline)]
     pub use spherule_render::film::{Region, RegionError};
     #[doc(inline)]
-    pub use spherule_render::noise::Noise;
+    pub use spherule_render::noise::{Noise, StopCondition};
     #[doc(inline)]
     pub use spherule_render::render::{
         Elisions, End, ImagePart, IncompatibleSettings, Options, Progress, Render, RenderError,
-        ResumableRender, Samples, Stage, Statistics, Status, Tasks, Totals, render,
+        ResumableRender, Samples, Statistics, Status, Tasks, Totals, render,
     };
     #[doc(inline)]
     pub use spherule_render::trace::{PacketWidth, Tracer, Traversal};

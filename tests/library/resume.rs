@@ -33,7 +33,7 @@ fn run_for(unfinished: &mut ResumableRender, world: &World, tasks: u64, threads:
         cancel.fetch_or(last, Ordering::Relaxed);
     };
     // Options that never change the image.
-    let widths = [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen];
+    let widths = PacketWidth::ALL;
     let tracer = Tracer { width: widths[tasks as usize % 4], ..Tracer::default() };
     let options =
         Options { progress: Some(&count), cancel: Some(&cancel), tracer, ..Options::default() };
@@ -142,7 +142,7 @@ fn two_targets(world: &World, settings: [&Settings; 2], after: u64) -> Render {
     run_for(&mut unfinished, world, after, 2);
     unfinished.extend(settings[1]).expect("it is more");
     run_in_pieces(&mut unfinished, world, 50);
-    assert_eq!(unfinished.stages().len(), 2);
+    assert_eq!(unfinished.stop_conditions().len(), 2);
     unfinished.render()
 }
 

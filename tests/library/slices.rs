@@ -202,9 +202,7 @@ fn pictures_are_the_same_whatever_finds_spheres() {
         let usual = render_scene(&scene).image;
         for traversal in [Traversal::Brute, Traversal::Single, Traversal::Stream, Traversal::Packet]
         {
-            for width in
-                [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen]
-            {
+            for width in PacketWidth::ALL {
                 let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
                 assert_eq!(
                     render_scene_with(&scene, &options).image,

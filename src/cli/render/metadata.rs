@@ -13,7 +13,8 @@ use serde_json::Value;
 use spherule_render::film::Region;
 use spherule_render::image::{Format, Metadata, QUALITY, WriteOptions};
 use spherule_render::layers::Layer;
-use spherule_render::render::{Render, Stage};
+use spherule_render::noise::StopCondition;
+use spherule_render::render::Render;
 use spherule_render::scene::particles::Legend;
 use spherule_render::scene::{Identity, Settings};
 
@@ -146,10 +147,10 @@ impl Subject<'_> {
         if self.settings.has_target() {
             metadata.push("rounds", render.samples.rounds.to_string());
         }
-        if let [earlier @ .., _] = &render.stages[..]
+        if let [earlier @ .., _] = &render.stop_conditions[..]
             && !earlier.is_empty()
         {
-            let words: Vec<String> = earlier.iter().map(stage).collect();
+            let words: Vec<String> = earlier.iter().map(target).collect();
             metadata.push("earlier targets", words.join("; "));
         }
         if self.settings.has_target() || !render.complete {
@@ -167,7 +168,7 @@ impl Subject<'_> {
 }
 
 /// Earlier targets of a resumed render.
-fn stage(stage: &Stage) -> String {
-    let error = stage.until_error.map(|error| format!("until_error {error}, "));
-    format!("{}spp {}", error.unwrap_or_default(), stage.spp)
+fn target(stop: &StopCondition) -> String {
+    let error = stop.until_error.map(|error| format!("until_error {error}, "));
+    format!("{}spp {}", error.unwrap_or_default(), stop.spp)
 }

@@ -215,7 +215,7 @@ fn speed_changes_nothing() {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         assert_eq!(pool.install(|| all_of(&scene)), usual, "{threads} threads");
     }
-    for width in [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen] {
+    for width in PacketWidth::ALL {
         for traversal in [Traversal::Auto, Traversal::Brute, Traversal::Packet, Traversal::Stream] {
             let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
             assert_eq!(with(&scene, &options), usual, "{traversal:?} {width:?}");

@@ -27,8 +27,6 @@ fn everything(integrator: Integrator) -> Scene {
 
 #[test]
 fn every_tracer_makes_the_same_picture() {
-    const WIDTHS: [PacketWidth; 4] =
-        [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen];
     const TRAVERSALS: [Traversal; 5] = [
         Traversal::Brute,
         Traversal::Single,
@@ -40,7 +38,7 @@ fn every_tracer_makes_the_same_picture() {
         let scene = everything(integrator);
         let picture = render_scene(&scene);
         for traversal in TRAVERSALS {
-            for width in WIDTHS {
+            for width in PacketWidth::ALL {
                 let tracer = Tracer { traversal, width };
                 let other = render_scene_with(&scene, &Options { tracer, ..Options::default() });
                 assert!(other.image == picture.image, "{integrator:?} {tracer:?}");

@@ -166,9 +166,7 @@ fn closed_spheres_are_black_whatever_finds_them() {
             Traversal::Packet,
             Traversal::Auto,
         ] {
-            for width in
-                [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen]
-            {
+            for width in PacketWidth::ALL {
                 let options = Options { tracer: Tracer { traversal, width }, ..Options::default() };
                 let image = render_scene_with(&scene, &options).image;
                 assert_every_pixel(&image, 0.0, &format!("{traversal:?} {width:?}"));

@@ -135,6 +135,11 @@ pub enum PacketWidth {
     Sixteen,
 }
 
+impl PacketWidth {
+    /// All widths.
+    pub const ALL: [Self; 4] = [Self::One, Self::Four, Self::Eight, Self::Sixteen];
+}
+
 /// Traversal and packet width. Hits do not depend on them; the default is the fastest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tracer {

@@ -203,8 +203,7 @@ fn every_traversal_is_exact() {
         // Not a multiple of any width.
         let (rays, bounds) = rays(&spheres, 403);
         let tree = Tree { bvh: &bvh, spheres: &spheres };
-        for width in [PacketWidth::One, PacketWidth::Four, PacketWidth::Eight, PacketWidth::Sixteen]
-        {
+        for width in PacketWidth::ALL {
             agrees(name, width, tree, &rays, &bounds);
         }
     }

@@ -37,6 +37,9 @@
 
 mod estimate;
 mod plan;
+mod stop_condition;
 
 pub use estimate::{CONFIDENCE, Estimate, Noise, gain, mean_radiance, squared_error};
-pub use plan::{Goal, Slope, next_round, steering_variance, work};
+pub use plan::{Slope, next_round, steering_variance, work};
+pub(crate) use stop_condition::FIRST_SAMPLES;
+pub use stop_condition::StopCondition;

@@ -1,5 +1,6 @@
 //! Adaptive sampling: chooses the tiles that get more samples, as a function of the film.
 
+use super::StopCondition;
 use super::estimate::neighbors;
 use crate::film::{Film, Role, Tile};
 use serde::{Deserialize, Serialize};
@@ -14,21 +15,6 @@ const PRIOR_PIXELS: f64 = 128.0;
 /// Minimum and maximum work of a round, as fractions of the work before it: the minimum limits the
 /// number of decisions.
 const WORK: (f64, f64) = (1.0 / 16.0, 0.5);
-
-/// Number of tiles below which steps are small under a time limit, and the divisor of such a step.
-const FEW_TILES: usize = 64;
-const SMALL_STEP: u32 = 16;
-
-/// Limits of adaptive sampling.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Goal {
-    /// Minimum number of samples for probes to be reliable.
-    pub first: u32,
-    /// Maximum number of samples of a pixel.
-    pub most: u32,
-    /// Whether a time limit ends the render: then it starts with single samples.
-    pub timed: bool,
-}
 
 /// The rate at which variance falls with samples, learned from tiles whose samples were doubled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,21 +43,6 @@ impl Slope {
     }
 }
 
-impl Goal {
-    /// Returns the number of samples of a tile after its next step, in a film of `tiles` tiles.
-    pub fn next(&self, samples: u32, tiles: usize) -> u32 {
-        let next = match samples {
-            _ if samples < self.first && self.timed => (2 * samples).clamp(1, self.first),
-            _ if samples < self.first => self.first,
-            _ if self.timed && tiles < FEW_TILES => {
-                samples + (samples / SMALL_STEP).next_multiple_of(self.first.max(SMALL_STEP))
-            }
-            _ => samples.saturating_mul(2),
-        };
-        next.min(self.most)
-    }
-}
-
 /// Returns the sum of the variances of a tile's pixels, by the steering probes.
 pub fn steering_variance(tile: &Tile) -> f64 {
     tile.probes.readings(Role::Steer).map(|reading| reading.weight * reading.squared).sum()
@@ -82,19 +53,19 @@ pub fn steering_variance(tile: &Tile) -> f64 {
 ///
 /// `wanted` is the factor by which the picture's squared error must fall, less than 1; 0 if there is no
 /// error target.
-pub fn next_round(film: &Film, goal: &Goal, slope: Slope, wanted: f64) -> Vec<u32> {
+pub fn next_round(film: &Film, stop: &StopCondition, slope: Slope, wanted: f64) -> Vec<u32> {
     let least = film.tiles.iter().filter(|tile| tile.probes.streams() > 0);
     let least = least.map(|tile| tile.samples).min().unwrap_or(0);
     let mut open: Vec<u32> = (0..film.tiles.len() as u32)
-        .filter(|&tile| is_open(&film.tiles[tile as usize], goal))
+        .filter(|&tile| is_open(&film.tiles[tile as usize], stop))
         .collect();
-    if least < goal.first {
+    if least < stop.first_samples() {
         // Uniform; if time is short, the remaining tiles are scattered over the picture.
         open.retain(|&tile| film.tiles[tile as usize].samples == least);
         open.sort_by_key(|&tile| crate::sampling::mix(u64::from(tile)));
         return open;
     }
-    let tiles = Benefit::of(film, goal, slope.exponent());
+    let tiles = Benefit::of(film, stop, slope.exponent());
     open.sort_by(|&a, &b| tiles[b as usize].rate().total_cmp(&tiles[a as usize].rate()));
     let total: f64 = tiles.iter().map(|tile| tile.variance).sum();
     let spent: f64 = film.tiles.iter().map(work).sum();
@@ -113,8 +84,8 @@ pub fn next_round(film: &Film, goal: &Goal, slope: Slope, wanted: f64) -> Vec<u3
 }
 
 /// Whether a tile can have more samples, and needs them.
-fn is_open(tile: &Tile, goal: &Goal) -> bool {
-    tile.probes.streams() > 0 && tile.samples < goal.most
+fn is_open(tile: &Tile, stop: &StopCondition) -> bool {
+    tile.probes.streams() > 0 && tile.samples < stop.spp
 }
 
 /// Returns the rays that a tile has taken, by those of its probes: independent of the picture's own.
@@ -141,7 +112,7 @@ struct Benefit {
 impl Benefit {
     /// Computes the benefit of each tile, also by probes of its neighbors, whose noise is scaled to the
     /// tile's own number of samples.
-    fn of(film: &Film, goal: &Goal, exponent: f64) -> Vec<Self> {
+    fn of(film: &Film, stop: &StopCondition, exponent: f64) -> Vec<Self> {
         let count = film.tiles.len();
         // Noise and pixels of each tile, as for one sample.
         let power = |samples: u32| f64::from(samples.max(1)).powf(exponent);
@@ -167,7 +138,7 @@ impl Benefit {
                 .map(|(at, weight)| (weight * rows[at].0, weight * rows[at].1))
                 .fold((PRIOR_PIXELS * mean, PRIOR_PIXELS), sum);
             let variance = pooled.0 / pooled.1 * rows[index].1 / power(tile.samples);
-            let next = goal.next(tile.samples, count);
+            let next = stop.next_samples(tile.samples, count);
             let gained = variance * (1.0 - power(tile.samples) / power(next));
             let steps = f64::from(next.saturating_sub(tile.samples));
             Self { variance, gained, work: steps * per_sample(tile) }
@@ -185,25 +156,6 @@ mod tests {
     use super::*;
     use crate::film::{Density, Region};
     use crate::scene::Rgb;
-
-    fn steps(goal: Goal, tiles: usize) -> Vec<u32> {
-        let step = |&samples: &u32| {
-            Some(goal.next(samples, tiles)).filter(|next| samples < goal.most && *next > samples)
-        };
-        std::iter::successors(Some(0), step).collect()
-    }
-
-    #[test]
-    fn samples_double_up_to_the_limit() {
-        let goal = Goal { first: 16, most: 100, timed: false };
-        assert_eq!(steps(goal, 1000), [0, 16, 32, 64, 100]);
-        let timed = Goal { timed: true, ..goal };
-        assert_eq!(steps(timed, 1000), [0, 1, 2, 4, 8, 16, 32, 64, 100]);
-        assert_eq!(steps(timed, 3), [0, 1, 2, 4, 8, 16, 32, 48, 64, 80, 96, 100]);
-        assert_eq!(steps(Goal { first: 3, most: 3, timed: true }, 9), [0, 1, 2, 3]);
-        let odd = Goal { first: 12, ..timed };
-        assert_eq!(steps(odd, 1000), [0, 1, 2, 4, 8, 12, 24, 48, 96, 100]);
-    }
 
     #[test]
     fn slopes_follow_new_values() {
@@ -236,13 +188,13 @@ mod tests {
 
     #[test]
     fn noisy_tiles_come_first_and_others_last() {
-        let goal = Goal { first: 16, most: 64, timed: false };
+        let stop = StopCondition { until_error: None, time: None, spp: 64 };
         let film = film(1);
-        let some = next_round(&film, &goal, Slope::default(), 0.9);
+        let some = next_round(&film, &stop, Slope::default(), 0.9);
         assert_eq!(some, [1]);
-        let all = next_round(&film, &goal, Slope::default(), 0.0);
+        let all = next_round(&film, &stop, Slope::default(), 0.0);
         assert!(all.len() >= 2 && all[0] == 1 && !all.contains(&3), "{all:?}");
-        let done = Goal { most: 16, ..goal };
+        let done = StopCondition { spp: 16, ..stop };
         assert!(next_round(&film, &done, Slope::default(), 0.0).is_empty());
     }
 

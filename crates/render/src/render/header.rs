@@ -3,10 +3,9 @@
 use super::part::ImagePart;
 use super::state::{State, Step};
 use super::status::Status;
-use super::target::Stage;
 use super::{End, ResumableRender, Totals};
 use crate::film::{Film, Region, TILE, TileHeader};
-use crate::noise::Slope;
+use crate::noise::{Slope, StopCondition};
 use crate::scene::Settings;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -21,7 +20,7 @@ const MAX_TIME: Duration = Duration::from_secs(1 << 40);
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct RenderHeader {
     settings: Settings,
-    stages: Vec<Stage>,
+    stop_conditions: Vec<StopCondition>,
     met: usize,
     pub(crate) statistics: bool,
     totals: Totals,
@@ -43,7 +42,7 @@ impl RenderHeader {
         let state = &render.state;
         Self {
             settings: render.settings.clone(),
-            stages: render.stages.clone(),
+            stop_conditions: render.stop_conditions.clone(),
             met: render.met,
             statistics: render.statistics,
             totals: render.totals,
@@ -71,8 +70,8 @@ impl RenderHeader {
         let part = part.filter(|part| !self.settings.has_target() || *part == whole);
         let tiles = part.map(|part| part.tiles.len());
         require(tiles == Some(self.tiles.len()), "a wrong number of tiles")?;
-        let stages = self.stages.iter().map(|stage| stage.spp);
-        let most = stages.chain([self.part.samples.len() as u32]).max().unwrap_or(0);
+        let spp = self.stop_conditions.iter().map(|stop| stop.spp);
+        let most = spp.chain([self.part.samples.len() as u32]).max().unwrap_or(0);
         let valid = |tile: &TileHeader| {
             tile.samples.max(tile.probe_samples) <= most && tile.probe_rays <= MAX_COUNT
         };
@@ -87,9 +86,9 @@ impl RenderHeader {
         let steps = self.plan.iter().all(|step| exists(step.tile) && step.samples <= most);
         let doubled = self.doubled.iter().all(|tile| exists(*tile));
         require(steps && doubled && self.begun <= self.plan.len(), "a plan for missing tiles")?;
-        let last = self.stages.last().copied();
-        let expected = self.settings.has_target().then(|| Stage::of(&self.settings));
-        require(last == expected && self.met <= self.stages.len(), "inconsistent targets")
+        let last = self.stop_conditions.last().copied();
+        let expected = self.settings.has_target().then(|| StopCondition::of(&self.settings));
+        require(last == expected && self.met <= self.stop_conditions.len(), "inconsistent targets")
     }
 
     /// Returns the progress of a render whose header has passed [`RenderHeader::check`].
@@ -137,7 +136,7 @@ impl RenderHeader {
         };
         ResumableRender {
             settings: self.settings,
-            stages: self.stages,
+            stop_conditions: self.stop_conditions,
             met: self.met,
             statistics: self.statistics,
             part: self.part,

@@ -1,6 +1,7 @@
 //! Settings with which a render cannot be resumed.
 
-use super::{ResumableRender, Status, target};
+use super::resumable::strata;
+use super::{ResumableRender, Status};
 use crate::film::Region;
 use crate::settings::{InvalidSetting, Role, SETTINGS, SamplerKind, Settings};
 use std::time::Duration;
@@ -23,7 +24,7 @@ pub enum IncompatibleSettings {
         now: String,
     },
     /// A target was added or removed.
-    #[error("the render began {} {name}, and goes on so; {}", if *.then { "with" } else { "without" }, if *.then { "give it again, or leave it as it was" } else { "leave it out" })]
+    #[error("the render began {} {name}; {}", if *.then { "with" } else { "without" }, if *.then { "do not turn it off" } else { "leave it out" })]
     Target {
         /// By the name that scene files use.
         name: &'static str,
@@ -154,7 +155,7 @@ fn no_less(then: &Settings, now: &Settings) -> Result<(), IncompatibleSettings> 
         return less("time", seconds(then), seconds(now));
     }
     let stratified = now.sampler == SamplerKind::Stratified;
-    if stratified && target::strata(then) != target::strata(now) {
+    if stratified && strata(then) != strata(now) {
         return Err(IncompatibleSettings::Strata { then: then.spp, now: now.spp });
     }
     Ok(())

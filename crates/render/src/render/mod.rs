@@ -5,6 +5,7 @@
 //! stopped and resumed without changing the picture: see [`ResumableRender`].
 
 mod adapt;
+mod end;
 mod error;
 mod header;
 mod incompatible;
@@ -14,12 +15,12 @@ mod resumable;
 mod schedule;
 mod state;
 mod status;
-mod target;
 mod tasks;
 mod uniform;
 mod watch;
 
 pub use crate::integrator::elisions::Elisions;
+pub use end::End;
 pub use error::RenderError;
 pub(crate) use error::check;
 pub(crate) use header::RenderHeader;
@@ -29,7 +30,6 @@ pub use part::ImagePart;
 pub(crate) use pass::view;
 pub use resumable::ResumableRender;
 pub use status::Status;
-pub use target::{End, Stage};
 pub use tasks::Tasks;
 pub use watch::Totals;
 
@@ -38,7 +38,7 @@ use crate::film::Region;
 use crate::image::Image;
 use crate::integrator::clock::Times;
 use crate::integrator::counters::Counters;
-use crate::noise::Noise;
+use crate::noise::{Noise, StopCondition};
 use crate::scene::Settings;
 use crate::trace::Tracer;
 use crate::world::World;
@@ -99,8 +99,8 @@ pub struct Render {
     pub elapsed: Duration,
     /// Reason why it ended.
     pub end: End,
-    /// Targets in the order in which they are reached: several if the render was extended.
-    pub stages: Vec<Stage>,
+    /// Stop conditions in the order in which they are met: several if the render was extended.
+    pub stop_conditions: Vec<StopCondition>,
     /// Whether all samples were taken: otherwise the render was cancelled.
     pub complete: bool,
 }

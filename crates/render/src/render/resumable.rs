@@ -1,8 +1,8 @@
 //! Renders that can be stopped, saved and resumed.
 
+use super::end::End;
 use super::part::ImagePart;
 use super::state::State;
-use super::target::{self, End, Stage, Target};
 use super::watch::{Totals, Watch};
 use super::{
     IncompatibleSettings, Options, Render, RenderError, Samples, Statistics, adapt, error,
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::film::{Film, Region};
 use crate::integrator::Job;
-use crate::noise;
+use crate::noise::{self, FIRST_SAMPLES, StopCondition};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::trace::Traversal;
@@ -38,8 +38,8 @@ use rayon::prelude::*;
 #[derive(Clone, Debug)]
 pub struct ResumableRender {
     pub(super) settings: Settings,
-    /// Targets, in the order in which they are reached.
-    pub(super) stages: Vec<Stage>,
+    /// Stop conditions with an error or a time, in the order in which they are met.
+    pub(super) stop_conditions: Vec<StopCondition>,
     /// Number of targets that were reached.
     pub(super) met: usize,
     /// Whether sums of squares are kept.
@@ -90,9 +90,10 @@ impl ResumableRender {
             let measured = settings.has_target() || statistics;
             if measured { State::new(job, film) } else { State::unmeasured(film) }
         });
-        let stages = if settings.has_target() { vec![Stage::of(settings)] } else { Vec::new() };
+        let stop_conditions =
+            if settings.has_target() { vec![StopCondition::of(settings)] } else { Vec::new() };
         let (settings, totals, end) = (settings.clone(), Totals::default(), End::Cancelled);
-        Ok(Self { settings, stages, met: 0, statistics, part, state, totals, end })
+        Ok(Self { settings, stop_conditions, met: 0, statistics, part, state, totals, end })
     }
 
     /// Adds the samples of another part of the same image. Returns false if the two are incompatible;
@@ -121,7 +122,7 @@ impl ResumableRender {
         let settings = self.settings.clone();
         self.end = with_job(world, &settings, options, |job| {
             if settings.has_target() {
-                self.reach_targets(job, &watch)
+                self.meet_stop_conditions(job, &watch)
             } else {
                 uniform::run(job, self.part.samples.clone(), &mut self.state, &watch)
             }
@@ -130,12 +131,11 @@ impl ResumableRender {
         self.end
     }
 
-    /// Reaches the remaining targets.
-    fn reach_targets(&mut self, job: &Job, watch: &Watch) -> End {
+    /// Renders until the remaining stop conditions are met.
+    fn meet_stop_conditions(&mut self, job: &Job, watch: &Watch) -> End {
         let mut end = self.end;
-        while let Some(&stage) = self.stages.get(self.met) {
-            let target = Target::new(stage, self.settings.time);
-            end = adapt::run(job, &mut self.state, &target, watch);
+        while let Some(stop) = self.stop_conditions.get(self.met) {
+            end = adapt::run(job, &mut self.state, stop, watch);
             if matches!(end, End::Cancelled | End::Time) {
                 return end;
             }
@@ -155,9 +155,11 @@ impl ResumableRender {
         if settings.spp != self.settings.spp && !self.is_whole() {
             return Err(IncompatibleSettings::Part { then: self.settings.spp, now: settings.spp });
         }
-        let stage = Stage::of(settings);
-        if settings.has_target() && self.stages.last() != Some(&stage) {
-            self.stages.push(stage);
+        // The time limit is that of the whole render.
+        self.stop_conditions.iter_mut().for_each(|stop| stop.time = settings.time);
+        let stop = StopCondition::of(settings);
+        if settings.has_target() && self.stop_conditions.last() != Some(&stop) {
+            self.stop_conditions.push(stop);
         }
         if settings.spp != self.settings.spp {
             self.part = ImagePart::whole(self.region(), settings.spp);
@@ -185,7 +187,7 @@ impl ResumableRender {
             tasks,
             elapsed,
             end: self.end,
-            stages: self.stages.clone(),
+            stop_conditions: self.stop_conditions.clone(),
             complete: self.is_complete(),
         }
     }
@@ -223,9 +225,9 @@ impl ResumableRender {
         &self.settings
     }
 
-    /// Returns the targets in order; the last is that of the settings.
-    pub fn stages(&self) -> &[Stage] {
-        &self.stages
+    /// Returns the stop conditions in order; the last is that of the settings.
+    pub fn stop_conditions(&self) -> &[StopCondition] {
+        &self.stop_conditions
     }
 
     /// Returns the region of the picture, in pixels.
@@ -261,7 +263,7 @@ fn with_job<T>(
     options: &Options,
     work: impl FnOnce(&Job) -> T,
 ) -> T {
-    let sampler = Sampler::new(settings.sampler, settings.seed, target::strata(settings));
+    let sampler = Sampler::new(settings.sampler, settings.seed, strata(settings));
     let filter = PixelFilter::new(settings.filter);
     let settings = in_world_units(world, settings);
     work(&Job {
@@ -283,4 +285,10 @@ fn in_world_units(world: &World, settings: &Settings) -> Settings {
         other => other,
     };
     Settings { integrator, ..settings.clone() }
+}
+
+/// Returns the number of strata of stratified samples, the size of well-distributed sets: only complete
+/// sets are better than independent samples.
+pub(super) fn strata(settings: &Settings) -> u32 {
+    if settings.has_target() { FIRST_SAMPLES.min(settings.spp) } else { settings.spp }
 }

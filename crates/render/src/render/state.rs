@@ -1,10 +1,9 @@
 //! State of a render: film, plan of steps, and noise.
 
 use super::pass;
-use super::target::Target;
 use crate::film::{Density, Film, Tile};
 use crate::integrator::Job;
-use crate::noise::{self, Estimate, Noise, Slope};
+use crate::noise::{self, Estimate, Noise, Slope, StopCondition};
 use serde::{Deserialize, Serialize};
 
 /// The state that decides all further work: a render that resumes from a saved state makes the same
@@ -72,16 +71,16 @@ impl State {
     }
 
     /// Ends a round and plans the next; returns false if no pixel can get more samples.
-    pub(super) fn next_round(&mut self, target: &Target, noise: Option<Noise>) -> bool {
+    pub(super) fn next_round(&mut self, stop: &StopCondition, noise: Option<Noise>) -> bool {
         if self.variance > 0.0 {
             self.slope.learn(self.variance, self.steering_variance(&self.doubled));
         }
-        let plan = noise::next_round(&self.film, &target.goal, self.slope, target.wanted(noise));
+        let plan = noise::next_round(&self.film, stop, self.slope, stop.wanted(noise));
         let tiles = &self.film.tiles;
         let samples = |tile: u32| tiles[tile as usize].samples;
-        let next = |tile: u32| target.goal.next(samples(tile), tiles.len());
+        let next = |tile: u32| stop.next_samples(samples(tile), tiles.len());
         let doubles = |&tile: &u32| {
-            samples(tile) >= target.goal.first && next(tile) == samples(tile).saturating_mul(2)
+            samples(tile) >= stop.first_samples() && next(tile) == samples(tile).saturating_mul(2)
         };
         let doubled: Vec<u32> = plan.iter().copied().filter(doubles).collect();
         self.plan = plan.into_iter().map(|tile| Step { tile, samples: next(tile) }).collect();

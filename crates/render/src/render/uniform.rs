@@ -1,9 +1,9 @@
 //! Renders with the same number of samples for every pixel.
 
+use super::end::End;
 use super::pass::{PASS, TileView, probe_pass};
 use super::schedule::{Schedule, Task};
 use super::state::State;
-use super::target::End;
 use super::watch::Watch;
 use crate::film::{Film, Tile};
 use crate::integrator::Job;
