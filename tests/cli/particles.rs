@@ -88,9 +88,9 @@ fn settings_without_effect_are_refused() {
     for (args, code, message) in [
         (&["info", "a.toml", "--frame", "1"][..], 2, "[[file]]"),
         (&["render", "--radii", "vdw"], 2, "particle file"),
-        (&["info", "run.dump", "--radii", "thick"], 2, "write vdw, covalent"),
+        (&["info", "run.dump", "--radii", "thick"], 2, "expected vdw, covalent"),
         (&["info", "run.dump", "--frame", "second"], 2, "give first, last"),
-        (&["info", "run.dump", "--columns", "width=size"], 2, "no role of a column"),
+        (&["info", "run.dump", "--columns", "width=size"], 2, "unknown column role"),
         (&["info", "run.dump", "--format", "png"], 2, "formats are: xyzr"),
         (&["info", "run.dump", "--frame", "2"], 1, "has no frame 2"),
         (&["info", "run.dump", "--radii", "vdw"], 1, "no particle has an element"),

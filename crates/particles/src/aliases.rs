@@ -1,10 +1,10 @@
-//! Names that programs of the field have for the same column.
+//! Synonyms of column names in common programs.
 
 use super::options::Role;
 
-/// Names of one thing in PDB, GRO, mmCIF, LAMMPS and extended XYZ files, and in `MDAnalysis`, VMD,
-/// `PyMOL` and OVITO. Where a file has none of the name that is asked for, the first of the others
-/// in its group that it has is meant.
+/// Groups of synonyms in PDB, GRO, mmCIF, LAMMPS and extended XYZ files, and in `MDAnalysis`, VMD,
+/// `PyMOL` and OVITO. If a file has no column of the requested name, the first synonym in the file is
+/// used.
 pub const GROUPS: [&[&str]; 22] = [
     &["id", "serial", "particle identifier", "number", "atom_id", "atomid"],
     &["name", "atom_name", "atomname", "label_atom_id", "auth_atom_id"],
@@ -30,7 +30,7 @@ pub const GROUPS: [&[&str]; 22] = [
     &["zu", "unwrapped position.z"],
 ];
 
-/// Names that are a role in any case, those that go first in front.
+/// Names that imply a role, ignoring case, in order of precedence.
 pub(crate) const USUAL: [(Role, &[&str]); 10] = [
     (Role::X, &["x", "pos_x", "position_x", "position.x", "cartn_x", "points:0"]),
     (Role::Y, &["y", "pos_y", "position_y", "position.y", "cartn_y", "points:1"]),
@@ -47,8 +47,8 @@ pub(crate) const USUAL: [(Role, &[&str]); 10] = [
     (Role::Material, &["material"]),
 ];
 
-/// Returns the names of the role that a name tells, in any case; none for those of colors and
-/// materials, which are no columns of numbers or texts.
+/// Returns the names of the role that a name implies, ignoring case; none for colors and materials,
+/// which are not columns of numbers or texts.
 fn names_of_role(name: &str) -> Option<&'static [&'static str]> {
     let named = |names: &&[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(name));
     let roles = [Role::X, Role::Y, Role::Z, Role::Radius, Role::Diameter, Role::Kind];
@@ -56,7 +56,7 @@ fn names_of_role(name: &str) -> Option<&'static [&'static str]> {
     rows.find(named)
 }
 
-/// Returns the other names of a column, in any case, the usual one first.
+/// Returns the synonyms of a column name, ignoring case, the usual one first.
 pub fn of(name: &str) -> impl Iterator<Item = &'static str> {
     let same = |other: &&&str| other.eq_ignore_ascii_case(name);
     let group = GROUPS.iter().find(|group| group.iter().any(|own| same(&own)));
@@ -64,7 +64,7 @@ pub fn of(name: &str) -> impl Iterator<Item = &'static str> {
     names.iter().copied().filter(move |other| !other.eq_ignore_ascii_case(name))
 }
 
-/// Returns every name that may be typed for a column of a file that has these.
+/// Returns every valid name for the columns of a file.
 pub fn typed<'n>(columns: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
     let mut names: Vec<&'n str> = Vec::new();
     for name in columns {

@@ -1,5 +1,5 @@
-//! Alternate locations of atoms in PDB and mmCIF: of each residue the conformer with the greatest
-//! occupancy is drawn, or of equals the one that is listed first.
+//! Alternate locations of atoms in PDB and mmCIF: the conformer of each residue with the greatest
+//! occupancy is drawn; the first in the list wins ties.
 
 use super::frame::ParticleFrame;
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ pub(crate) struct Alternates {
     residues: HashMap<Vec<u8>, Vec<Alternate>>,
 }
 
-/// Names of an atom at an alternate location.
+/// Identifiers of an atom at an alternate location.
 #[derive(Clone, Copy)]
 pub(crate) struct AlternateAtom<'a> {
     /// The indicator of the location, such as `B`.
@@ -19,7 +19,7 @@ pub(crate) struct AlternateAtom<'a> {
     pub(crate) residue: [&'a [u8]; 3],
     pub(crate) residue_name: &'a [u8],
     pub(crate) name: &'a [u8],
-    /// 1 where it is not given.
+    /// 1 if missing.
     pub(crate) occupancy: f64,
 }
 
@@ -32,7 +32,7 @@ struct Alternate {
 }
 
 impl Alternates {
-    /// Takes the atom of a row.
+    /// Adds the atom of a row.
     pub(crate) fn add(&mut self, row: usize, atom: AlternateAtom) {
         let alternate = Alternate {
             row,
@@ -44,7 +44,7 @@ impl Alternates {
         self.residues.entry(atom.residue.join(&0)).or_default().push(alternate);
     }
 
-    /// Leaves out the atoms of all conformers but the main ones.
+    /// Removes the atoms of all conformers but the main ones.
     pub(crate) fn choose(self, frame: &mut ParticleFrame) {
         let mut keep = vec![true; if self.residues.is_empty() { 0 } else { frame.len() }];
         for atoms in self.residues.values() {
@@ -66,7 +66,7 @@ impl Alternates {
     }
 }
 
-/// The atoms of a residue's main conformer, and those that only others have.
+/// Returns the atoms of a residue's main conformer, and those that only others have.
 fn main_atoms(atoms: &[Alternate]) -> impl Iterator<Item = &Alternate> {
     let mut conformers: Vec<(&[u8], f64, f64)> = Vec::new();
     for atom in atoms {
@@ -75,13 +75,13 @@ fn main_atoms(atoms: &[Alternate]) -> impl Iterator<Item = &Alternate> {
             None => conformers.push((&atom.location, atom.occupancy, 1.0)),
         }
     }
-    // Stable: of equals, the first that is listed.
+    // A stable sort: the first in the list wins ties.
     conformers.sort_by(|one, other| (other.1 / other.2).total_cmp(&(one.1 / one.2)));
     let rank = move |atom: &Alternate| {
         conformers.iter().position(|(location, ..)| *location == atom.location)
     };
     let main = atoms.iter().min_by_key(|atom| rank(atom)).map(|atom| &atom.residue_name);
-    // Conformers may be of different residues: then none of the others has a part in the main one.
+    // Conformers may be different residues: then atoms of the others don't belong to the main one.
     let mut chosen: HashMap<&[u8], &Alternate> = HashMap::new();
     for atom in atoms.iter().filter(|atom| Some(&atom.residue_name) == main) {
         let best = chosen.entry(&atom.name).or_insert(atom);

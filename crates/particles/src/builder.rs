@@ -1,11 +1,11 @@
-//! Builds a frame: columns that grow with the rows, never with a count that a file claims.
+//! Builds a frame: columns grow with the rows that are read, never by a count in the file.
 
 use super::Format;
 use super::categories::{Codebook, Kind, add};
 use super::extra::Extra;
 use super::frame::ParticleFrame;
 use super::lines::Line;
-use super::naming::{forget_elements, kind};
+use super::naming::{drop_uncertain_elements, kind};
 use super::schema::{Schema, Slot};
 use crate::memory;
 use crate::{FileError, MAX_PARTICLES, Rgb};
@@ -13,13 +13,13 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Rows that are read before anyone asks whether there is memory for more.
-const FIRST_ROOM: usize = 1 << 16;
+/// Number of rows that are read before the first check of available memory.
+const FIRST_CHECK: usize = 1 << 16;
 
-/// Bytes of columns that may be copied when they grow; allocators extend larger ones where they are.
-const COPIED: u64 = 1 << 27;
+/// Bytes of columns that may be copied when they grow; allocators extend larger ones in place.
+const MAX_COPIED: u64 = 1 << 27;
 
-/// A frame that is being read.
+/// A frame under construction.
 pub(crate) struct Builder {
     path: Arc<Path>,
     pub(crate) frame: ParticleFrame,
@@ -30,9 +30,9 @@ pub(crate) struct Builder {
     kind_rows: HashMap<Kind, u32>,
     materials: Codebook,
     extras: Vec<Extra>,
-    /// The number of rows at which to ask for memory again.
-    room: usize,
-    /// Number of rows beyond which only columns are kept that were asked for by name.
+    /// Number of rows at which to check available memory again.
+    next_check: usize,
+    /// Number of rows beyond which only columns that were requested by name are kept.
     most_rows: usize,
     needed_columns: usize,
 }
@@ -55,7 +55,7 @@ impl Builder {
             materials: Codebook::default(),
             extras: schema.extras.iter().map(|name| Extra::new(name)).collect(),
             schema: schema.clone(),
-            room: FIRST_ROOM.min(most_rows),
+            next_check: FIRST_CHECK.min(most_rows),
             most_rows,
             needed_columns: schema.needed_columns(),
         }
@@ -65,12 +65,12 @@ impl Builder {
         &self.schema
     }
 
-    /// Says of columns that may be kept whether they are texts or numbers.
+    /// Declares which extra columns are texts and which are numbers.
     pub(crate) fn declare(&mut self, texts: &[&str], numbers: &[&str]) {
         self.extras.iter_mut().for_each(|extra| extra.declare(texts, numbers));
     }
 
-    /// Reads a row by the schema; fields beyond it may follow.
+    /// Reads a row by the schema; surplus fields are ignored.
     #[inline]
     pub(crate) fn row<'l>(
         &mut self,
@@ -82,7 +82,7 @@ impl Builder {
                 if column < self.needed_columns {
                     return Err(self.too_short(line, column));
                 }
-                // What follows was not asked for: rows may end before it.
+                // The remaining columns were not requested: rows may end before them.
                 self.put(self.schema.slots[column], line, b"")?;
                 continue;
             };
@@ -97,7 +97,7 @@ impl Builder {
         line.whole(message)
     }
 
-    /// Takes a field.
+    /// Parses a field into its column.
     #[inline]
     pub(crate) fn put(&mut self, slot: Slot, line: &Line, field: &[u8]) -> Result<(), FileError> {
         match slot {
@@ -119,19 +119,19 @@ impl Builder {
         Ok(())
     }
 
-    /// Takes a number that is no text; what is no share of a color becomes one.
+    /// Adds a number from a binary file; color channels are clamped to 0..=1.
     pub(crate) fn put_number(&mut self, slot: Slot, value: f64) {
         match slot {
             Slot::Skip | Slot::Material => (),
             Slot::Position(axis) => self.position[axis] = value,
             Slot::Radius(factor) => self.frame.radius.push(value * factor),
             Slot::Kind => self.kind(value.to_string().as_bytes()),
-            Slot::Color(channel) => self.color[channel] = share(value),
+            Slot::Color(channel) => self.color[channel] = clamp_channel(value),
             Slot::Extra(extra) => self.extras[extra].put_number(value),
         }
     }
 
-    /// Takes a text that is no number, where no number is needed.
+    /// Adds a text to a column that doesn't need a number.
     pub(crate) fn put_text(&mut self, slot: Slot, text: &str) {
         match slot {
             Slot::Skip | Slot::Position(_) | Slot::Radius(_) | Slot::Color(_) => (),
@@ -141,7 +141,7 @@ impl Builder {
         }
     }
 
-    /// Takes the row that the last fields make up.
+    /// Completes the row of the last fields.
     #[inline]
     pub(crate) fn end_row(&mut self) -> Result<(), FileError> {
         let [x, y, z] = self.position;
@@ -152,11 +152,11 @@ impl Builder {
         Ok(())
     }
 
-    /// Appends a position alone.
+    /// Appends a position.
     #[inline]
     pub(crate) fn push(&mut self, [x, y, z]: [f64; 3]) -> Result<(), FileError> {
-        if self.frame.x.len() == self.room {
-            self.check_room()?;
+        if self.frame.x.len() == self.next_check {
+            self.check_memory()?;
         }
         self.frame.x.push(x);
         self.frame.y.push(y);
@@ -171,7 +171,7 @@ impl Builder {
         self.kind_of(name, |name| kind(name, naming));
     }
 
-    /// Appends a type that `make` knows from a key, if it is a new one.
+    /// Appends a type by its key; `make` creates the type of a new key.
     #[inline]
     pub(crate) fn kind_of(&mut self, key: &[u8], make: impl FnOnce(&str) -> Kind) {
         let (rows, table) = (&mut self.kind_rows, &mut self.frame.kinds.table);
@@ -202,24 +202,24 @@ impl Builder {
         column.codes.push(code);
     }
 
-    /// Finds out whether there is memory for some more rows. Where the columns double, which their
-    /// lengths are powers of two for, address space for as many as there are is needed at once.
-    fn check_room(&mut self) -> Result<(), FileError> {
-        let rows = self.room;
+    /// Checks that there is memory for another batch of rows. Columns double their capacity at powers of
+    /// two, which needs address space for as many rows again at once.
+    fn check_memory(&mut self) -> Result<(), FileError> {
+        let rows = self.next_check;
         if rows == self.most_rows {
             self.extras[self.schema.asked..].fill_with(|| Extra::LeftOut);
         }
-        let next = (rows + rows / 8).min((rows + 1).next_power_of_two()).max(FIRST_ROOM);
-        self.room = if rows < self.most_rows { next.min(self.most_rows) } else { next };
-        let (count, more) = (rows as u64, (self.room - rows) as u64);
+        let next = (rows + rows / 8).min((rows + 1).next_power_of_two()).max(FIRST_CHECK);
+        self.next_check = if rows < self.most_rows { next.min(self.most_rows) } else { next };
+        let (count, more) = (rows as u64, (self.next_check - rows) as u64);
         if count >= MAX_PARTICLES {
             let message = format!("holds more than {MAX_PARTICLES} particles");
             return Err(FileError::whole_file(&self.path, message));
         }
         let bytes = self.row_bytes();
         let grown = if rows.is_power_of_two() { count * bytes } else { 0 };
-        // The columns as they are stay reserved until their copies are there, where they are copied.
-        let reserve = grown + grown.min(COPIED);
+        // Columns that are copied stay reserved until the copy is complete.
+        let reserve = grown + grown.min(MAX_COPIED);
         memory::check_growth(more * bytes, reserve).map_err(|shortage| {
             let message =
                 format!("holds more than {count} particles; more of them need {shortage}");
@@ -227,12 +227,12 @@ impl Builder {
         })
     }
 
-    /// Number of other columns that are kept.
+    /// Returns the number of extra columns that are kept.
     fn kept_extras(&self) -> usize {
         self.extras.iter().filter(|extra| !matches!(extra, Extra::LeftOut)).count()
     }
 
-    /// Bytes of a row in all columns, by the rows that there are.
+    /// Returns the bytes per row in all columns, from the rows read so far.
     fn row_bytes(&self) -> u64 {
         let frame = &self.frame;
         let column = |bytes: usize, there: bool| if there { bytes } else { 0 };
@@ -247,7 +247,7 @@ impl Builder {
 
     /// Returns the frame.
     pub(crate) fn finish(mut self) -> ParticleFrame {
-        forget_elements(&mut self.frame.kinds, self.schema.naming);
+        drop_uncertain_elements(&mut self.frame.kinds, self.schema.naming);
         for extra in self.extras {
             extra.finish(&mut self.frame.numbers, &mut self.frame.texts);
         }
@@ -256,8 +256,8 @@ impl Builder {
     }
 }
 
-/// The nearest share of a color; 0 for NaN.
-pub(crate) fn share(value: f64) -> f32 {
+/// Clamps a color channel to 0..=1; returns 0 for NaN.
+pub(crate) fn clamp_channel(value: f64) -> f32 {
     if value > 0.0 { value.min(1.0) as f32 } else { 0.0 }
 }
 
@@ -283,7 +283,7 @@ mod tests {
         }
     }
 
-    /// Bytes that the columns of a frame take.
+    /// Returns the bytes of a frame's columns.
     fn bytes(frame: &ParticleFrame) -> u64 {
         let numbers = frame.numbers.iter().map(|column| column.values.len()).sum::<usize>();
         let codes = frame.kinds.codes.len() * frame.kinds.codes.width();
@@ -304,29 +304,32 @@ mod tests {
     #[test]
     fn memory_is_asked_for_in_steps_of_an_eighth_that_end_where_columns_double() {
         let mut builder = builder("");
-        let mut rooms = Vec::new();
-        let mut before = builder.room;
-        assert_eq!(before, FIRST_ROOM);
+        let mut checks = Vec::new();
+        let mut before = builder.next_check;
+        assert_eq!(before, FIRST_CHECK);
         while before < 1 << 20 {
-            builder.check_room().expect("memory");
-            rooms.push(builder.room);
-            assert!(builder.room > before && builder.room <= before + before / 8, "{before}");
-            assert!(builder.room <= (before + 1).next_power_of_two());
-            before = builder.room;
+            builder.check_memory().expect("memory");
+            checks.push(builder.next_check);
+            assert!(
+                builder.next_check > before && builder.next_check <= before + before / 8,
+                "{before}"
+            );
+            assert!(builder.next_check <= (before + 1).next_power_of_two());
+            before = builder.next_check;
         }
         for power in 17..=20 {
-            assert!(rooms.contains(&(1 << power)), "{rooms:?}");
+            assert!(checks.contains(&(1 << power)), "{checks:?}");
         }
     }
 
     #[test]
     fn more_particles_than_a_scene_holds_are_refused() {
         let mut builder = builder("");
-        builder.room = MAX_PARTICLES as usize;
-        let error = builder.check_room().expect_err("too many");
+        builder.next_check = MAX_PARTICLES as usize;
+        let error = builder.check_memory().expect_err("too many");
         assert!(error.message.contains("more than"), "{error}");
-        builder.room = MAX_PARTICLES as usize - 1;
-        let message = builder.check_room().err().map_or_else(String::new, |error| error.message);
+        builder.next_check = MAX_PARTICLES as usize - 1;
+        let message = builder.check_memory().err().map_or_else(String::new, |error| error.message);
         assert!(!message.ends_with("particles"), "{message}");
     }
 }

@@ -1,9 +1,9 @@
-//! Columns of names: few names, and for each row a code in as few bytes as tell them apart.
+//! Categorical columns: a table of names, and a code for each row in the narrowest type.
 
 use super::element::Element;
 use std::collections::HashMap;
 
-/// Row numbers of a table of names, in the narrowest type that holds them.
+/// Indices into a table of names, in the narrowest type that holds them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Codes {
     /// Up to 256 names.
@@ -21,7 +21,7 @@ impl Default for Codes {
 }
 
 impl Codes {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         match self {
             Self::Bytes(codes) => codes.len(),
@@ -30,12 +30,12 @@ impl Codes {
         }
     }
 
-    /// Whether it has no rows.
+    /// Returns whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Bytes of a code.
+    /// Returns the size of a code in bytes.
     pub fn width(&self) -> usize {
         match self {
             Self::Bytes(_) => 1,
@@ -44,7 +44,7 @@ impl Codes {
         }
     }
 
-    /// The code of row `row`, which is less than [`Codes::len`].
+    /// Returns the code of row `row`, which must be less than [`Codes::len`].
     #[inline]
     pub fn code(&self, row: usize) -> u32 {
         match self {
@@ -54,7 +54,7 @@ impl Codes {
         }
     }
 
-    /// Appends a row; the column widens when a code needs it.
+    /// Appends a row; the column widens if the code needs it.
     #[inline]
     pub(crate) fn push(&mut self, code: u32) {
         match self {
@@ -77,13 +77,13 @@ impl Codes {
         };
     }
 
-    /// Replaces each code by its entry in `places`.
+    /// Replaces each code by `places[code]`.
     pub(crate) fn renumber(&mut self, places: &[u32]) {
         let old = std::mem::take(self);
         (0..old.len()).for_each(|row| self.push(places[old.code(row) as usize]));
     }
 
-    /// Keeps the rows that `keep` is true for.
+    /// Keeps the rows for which `keep` is true.
     pub fn retain(&mut self, keep: &[bool]) {
         match self {
             Self::Bytes(codes) => retain(codes, keep),
@@ -92,7 +92,7 @@ impl Codes {
         }
     }
 
-    /// Has row `rows[i]` in the place of row `i`, for each of `rows`.
+    /// Gathers rows: row `i` becomes the former row `rows[i]`.
     pub(crate) fn pick(&mut self, rows: &[u32]) {
         match self {
             Self::Bytes(codes) => pick(codes, rows),
@@ -102,7 +102,7 @@ impl Codes {
     }
 }
 
-/// Has row `rows[i]` of a column in the place of row `i`; columns without rows stay so.
+/// Gathers rows of a column: row `i` becomes the former row `rows[i]`. Empty columns stay empty.
 pub(crate) fn pick<T: Copy>(column: &mut Vec<T>, rows: &[u32]) {
     if !column.is_empty() {
         *column = rows.iter().map(|&row| column[row as usize]).collect();
@@ -112,26 +112,26 @@ pub(crate) fn pick<T: Copy>(column: &mut Vec<T>, rows: &[u32]) {
 /// A type of particles: its name and element.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Kind {
-    /// As the file calls it: a symbol, the name of an atom, a type's name or number.
+    /// Name in the file: a symbol, an atom name, or a type's name or number.
     pub name: String,
-    /// The element, where the file tells it or the name does.
+    /// The element, if the file declares it or the name implies it.
     pub element: Option<Element>,
-    /// Whether it is no atom but a site of a model of water that has a charge or a mass (`MW`, `M`,
-    /// `EP`, `LP`), which is not drawn.
+    /// True for a virtual site of a water model, with a charge or mass but no atom (`MW`, `M`, `EP`,
+    /// `LP`), which is not drawn.
     pub virtual_site: bool,
 }
 
-/// Types of particles: row `i` of `codes` is the place of particle `i`'s type in `table`.
+/// Types of particles: row `i` of `codes` is the index of particle `i`'s type in `table`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Kinds {
-    /// The types, in the order in which they come first.
+    /// The types, in order of first occurrence.
     pub table: Vec<Kind>,
     /// The type of each particle; empty if the file has no types.
     pub codes: Codes,
 }
 
 impl Kinds {
-    /// Has other types in the place of those of the table; types that become equal are one.
+    /// Replaces the types in the table, and merges types that become equal.
     pub(crate) fn rename(&mut self, kind: impl Fn(&str) -> Kind) {
         let mut places = HashMap::new();
         let old = std::mem::take(self);
@@ -146,31 +146,31 @@ impl Kinds {
         (0..old.codes.len()).for_each(|row| self.codes.push(codes[old.codes.code(row) as usize]));
     }
 
-    /// The type of a particle; `None` if the file has no types.
+    /// Returns the type of a particle; `None` if the file has no types.
     pub fn kind(&self, row: usize) -> Option<&Kind> {
         if self.codes.is_empty() { None } else { self.table.get(self.codes.code(row) as usize) }
     }
 }
 
-/// A column of texts: row `i` of `codes` is the place of particle `i`'s text in `names`.
+/// A column of texts: row `i` of `codes` is the index of particle `i`'s text in `names`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextColumn {
     /// The column's name.
     pub name: String,
-    /// The different texts, in the order in which they come first.
+    /// The distinct texts, in order of first occurrence.
     pub names: Vec<String>,
     /// The text of each particle.
     pub codes: Codes,
 }
 
 impl TextColumn {
-    /// The text of a particle, whose row is less than the number of codes.
+    /// Returns the text of a particle; `row` must be less than the number of codes.
     pub fn text(&self, row: usize) -> &str {
         &self.names[self.codes.code(row) as usize]
     }
 }
 
-/// How many names that came lately are found without a hash of theirs.
+/// Number of entries in the direct-mapped cache of recent names.
 const RECENT: usize = 64;
 
 /// Finds the code of a name.
@@ -188,7 +188,7 @@ impl Default for Codebook {
 }
 
 impl Codebook {
-    /// The code of a name; `add` gives one to a name that is new.
+    /// Returns the code of a name; `add` returns the code of a new name.
     #[inline]
     pub(crate) fn code(&mut self, name: &[u8], add: impl FnOnce(&str) -> u32) -> u32 {
         if name.len() > 15 {
@@ -222,7 +222,7 @@ pub fn retain<T>(column: &mut Vec<T>, keep: &[bool]) {
     column.retain(|_| rows.next().copied().unwrap_or(true));
 }
 
-/// Appends a name, and returns its index.
+/// Appends a name and returns its index.
 pub(crate) fn add(names: &mut Vec<String>, name: &str) -> u32 {
     names.push(name.to_owned());
     names.len() as u32 - 1

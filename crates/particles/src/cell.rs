@@ -1,9 +1,8 @@
-//! The periodic cell, its edges and corners, and fractional coordinates: 0 at the start of an edge, 1 at
-//! its end.
+//! The periodic cell, its edges and corners, and fractional coordinates.
 
 use glam::{DMat3, DVec3};
 
-/// Ends of the twelve edges of a parallelepiped, as numbers of corners.
+/// Ends of the twelve edges of a parallelepiped, as corner indices.
 const OUTLINE: [[usize; 2]; 12] = [
     [0, 1],
     [2, 3],
@@ -22,11 +21,11 @@ const OUTLINE: [[usize; 2]; 12] = [
 /// The periodic cell of a simulation: a parallelepiped, orthogonal or triclinic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// The corner that the vectors begin at.
+    /// The corner at which the edges a, b and c begin.
     pub origin: DVec3,
     /// The edges a, b and c.
     pub vectors: [DVec3; 3],
-    /// Whether the simulation repeats along each edge.
+    /// True for each edge along which the simulation is periodic.
     pub periodic: [bool; 3],
 }
 
@@ -37,12 +36,11 @@ impl Cell {
         self.origin + a * fractional[0] + b * fractional[1] + c * fractional[2]
     }
 
-    /// A cell of edges `a`, `b` and `c` long with angles in degrees between them, the first edge
-    /// along x and the second in the plane of x and y, as crystallography has it; `None` if there
-    /// is no such cell.
+    /// Returns a cell with edges of these lengths and angles in degrees, in the crystallographic
+    /// convention: the first edge along x, the second in the x-y plane. `None` if there is no such cell.
     pub(crate) fn of_lengths(lengths: [f64; 3], angles: [f64; 3]) -> Option<Self> {
         let [a, b, c] = lengths;
-        // Right angles exactly.
+        // Right angles are exact.
         let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { angle.to_radians().cos() };
         let [alpha, beta, gamma] = angles.map(cosine);
         let sine = (1.0 - gamma * gamma).sqrt();
@@ -57,7 +55,7 @@ impl Cell {
         cell.checked()
     }
 
-    /// The cell, if it is finite and has a volume.
+    /// Returns the cell if it is finite and has a volume.
     pub(crate) fn checked(self) -> Option<Self> {
         let [a, b, c] = self.vectors;
         let finite = [a, b, c, self.origin].iter().all(|vector| vector.is_finite());

@@ -1,4 +1,4 @@
-//! CSV with a header.
+//! Reads CSV with a header.
 
 use super::builder::Builder;
 use super::frame::ParticleFrame;
@@ -14,12 +14,12 @@ use crate::error::listed;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// CSV with a header.
+/// Reader of CSV with a header.
 pub(crate) struct Csv {
     lines: Lines,
     options: ReadOptions,
     record: Record,
-    /// A row of several lines.
+    /// Buffer for a row of several lines.
     row: Vec<u8>,
     done: bool,
 }
@@ -31,7 +31,7 @@ impl Csv {
         Self { lines, options: options.clone(), record, row, done: false }
     }
 
-    /// The next line that is neither blank nor a comment.
+    /// Returns the next line that is neither blank nor a comment.
     fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, FileError> {
         while let Some(line) = lines.next()? {
             if !line.is_blank() && !line::is_comment(line.bytes) {
@@ -44,7 +44,7 @@ impl Csv {
 }
 
 impl Csv {
-    /// Takes the line that came last, and those that follow until its quotes are closed.
+    /// Joins the last line with the following ones until its quotes are closed.
     fn whole_row(&mut self) -> Result<(), FileError> {
         self.lines.back();
         self.row.clear();
@@ -70,7 +70,7 @@ impl Csv {
     }
 }
 
-/// Whether a line opens a quote that it does not close, or closes one that it does not open.
+/// Returns whether a line has an odd number of quotes, so that it opens or closes a quoted field.
 fn is_open(row: &[u8]) -> bool {
     memchr::memchr_iter(b'"', row).count() % 2 == 1
 }
@@ -80,7 +80,7 @@ impl FrameReader for Csv {
         if std::mem::replace(&mut self.done, true) {
             return Ok(None);
         }
-        // Excel's own first line, which says what stands between the columns.
+        // Excel's first line, which declares the separator.
         if Self::line(&mut self.lines)?.is_some_and(|line| !line.bytes.starts_with(b"sep=")) {
             self.lines.back();
         }
@@ -124,7 +124,7 @@ impl FrameReader for Csv {
     }
 }
 
-/// A row that is being read.
+/// A row under construction.
 struct Row<'r> {
     line: Line<'r>,
     separator: u8,
@@ -132,7 +132,7 @@ struct Row<'r> {
 }
 
 impl Row<'_> {
-    /// Reads the row; whether it has decimal commas.
+    /// Reads the row. Returns whether it has decimal commas.
     fn read(&self, record: &mut Record, builder: &mut Builder) -> Result<bool, FileError> {
         let bytes = self.line.bytes;
         if memchr::memchr(b'"', bytes).is_none() {
@@ -172,13 +172,13 @@ impl Row<'_> {
         Ok(has_commas)
     }
 
-    /// Returns whether a field may have a comma for its decimal point.
+    /// Returns whether a field may have a decimal comma.
     fn may_have_comma(&self, slot: Slot) -> bool {
         self.separator != b',' && !matches!(slot, Slot::Skip | Slot::Kind | Slot::Material)
     }
 }
 
-/// The bytes of a field in a line, without the blanks around it.
+/// Returns the byte range of a field in a line, without surrounding blanks.
 fn span(line: &[u8], separator: u8, column: usize) -> Range<usize> {
     let mut quoted = false;
     let ends = line.iter().enumerate().filter(|&(_, &byte)| {

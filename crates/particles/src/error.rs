@@ -1,10 +1,10 @@
-//! Errors in files: the file, the place in it, and what to write instead.
+//! Errors in files: the file, the position in it, and advice.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Most characters of a message, and of a help.
+/// Maximum number of characters of a message or a help.
 const LONGEST: usize = 600;
 
 /// An error in a file of particles, or in a scene file. Prints as `path:line:column: message` and, on a
@@ -18,13 +18,13 @@ pub struct FileError {
     pub message: String,
     /// Advice: what to write instead, if known.
     pub help: Option<String>,
-    /// The place in the file; `None` if the error concerns the whole file.
+    /// The position in the file; `None` if the error concerns the whole file.
     pub place: Option<Box<Place>>,
     /// True if the file ends before what it announces: it is cut off, or still being written.
     pub cut_off: bool,
 }
 
-/// A place in a file, with the text around it so that it can be shown.
+/// A position in a file, with the surrounding text for display.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// Line, from 1.
@@ -40,13 +40,13 @@ pub struct Place {
 }
 
 impl FileError {
-    /// An error that concerns a whole file.
+    /// Returns an error that concerns a whole file.
     pub fn whole_file(path: &Path, message: impl Into<String>) -> Self {
         let message = clipped(message);
         Self { path: path.to_path_buf(), message, help: None, place: None, cut_off: false }
     }
 
-    /// An error at the bytes `span` of `text`, which begins with line `first_line` of the file.
+    /// Returns an error at the bytes `span` of `text`, which begins at line `first_line` of the file.
     pub fn at(
         path: &Path,
         text: &str,
@@ -64,12 +64,12 @@ impl FileError {
         Self { help: Some(clipped(help)), ..self }
     }
 
-    /// Line of the fault, from 1; `None` if the whole file is meant.
+    /// Returns the line of the fault, from 1; `None` if the error concerns the whole file.
     pub fn line(&self) -> Option<usize> {
         self.place.as_ref().map(|place| place.line)
     }
 
-    /// Column of the fault in characters, from 1; `None` if the whole file is meant.
+    /// Returns the column of the fault in characters, from 1; `None` if the error concerns the whole file.
     pub fn column(&self) -> Option<usize> {
         self.place.as_ref().map(|place| place.column)
     }
@@ -86,7 +86,7 @@ impl FileError {
     }
 }
 
-/// The text, or its beginning: what a damaged file calls a name can be all of it.
+/// Truncates a text to the maximum length: a name in a damaged file may be as long as the file.
 pub fn clipped(text: impl Into<String>) -> String {
     let mut text = text.into();
     if let Some((end, _)) = text.char_indices().nth(LONGEST) {
@@ -96,10 +96,10 @@ pub fn clipped(text: impl Into<String>) -> String {
     text
 }
 
-/// Most names that a warning lists.
+/// Maximum number of names in a warning.
 pub(crate) const LISTED: usize = 5;
 
-/// Returns a sentence with the first of many names.
+/// Returns a message with the first few names.
 pub fn listed(reason: &str, names: &[&str]) -> String {
     let more = if names.len() > LISTED { ", ..." } else { "" };
     format!("{reason}: {}{more}", names[..names.len().min(LISTED)].join(", "))

@@ -1,4 +1,4 @@
-//! Columns that are kept besides the usual ones: of numbers or of texts, as their first value tells.
+//! Extra columns, of numbers or texts depending on their first value.
 
 use super::categories::{Codebook, TextColumn, add};
 use super::frame::NumberColumn;
@@ -6,27 +6,26 @@ use super::lines::Line;
 use super::number;
 use crate::FileError;
 
-/// Fields that stand for a value that is missing.
+/// Fields that mean a missing value.
 const MISSING: [&[u8]; 3] = [b"", b".", b"?"];
 
-/// A column that is kept.
+/// An extra column.
 pub(crate) enum Extra {
-    /// Before a value tells whether they are numbers: its name, and which of [`MISSING`] each field
-    /// was.
+    /// No value yet: its name, and the index in [`MISSING`] of each field so far.
     Unknown(String, Vec<u8>),
     Number(NumberColumn),
     Text(TextColumn, Box<Codebook>),
-    /// Not kept after all.
+    /// Dropped.
     LeftOut,
 }
 
 impl Extra {
-    /// A column of which nothing is known yet.
+    /// Creates a column of unknown type.
     pub(crate) fn new(name: &str) -> Self {
         Self::Unknown(name.to_owned(), Vec::new())
     }
 
-    /// Says that the columns of these names are texts or numbers, if nothing is known yet.
+    /// Sets the type of a column in one of these lists, if it is unknown.
     pub(crate) fn declare(&mut self, texts: &[&str], numbers: &[&str]) {
         let Self::Unknown(name, _) = self else { return };
         if texts.contains(&name.as_str()) {
@@ -36,7 +35,7 @@ impl Extra {
         }
     }
 
-    /// Takes a field.
+    /// Appends a field.
     pub(crate) fn put(&mut self, line: &Line, field: &[u8]) -> Result<(), FileError> {
         let missing = MISSING.iter().position(|token| *token == field);
         if let Self::Unknown(_, tokens) = self {
@@ -58,7 +57,7 @@ impl Extra {
         Ok(())
     }
 
-    /// Takes a number; nothing if it is a column of texts.
+    /// Appends a number; ignored if it is a column of texts.
     pub(crate) fn put_number(&mut self, value: f64) {
         if matches!(self, Self::Unknown(..)) {
             self.become_number();
@@ -68,7 +67,7 @@ impl Extra {
         }
     }
 
-    /// Takes a text; nothing if it is a column of numbers.
+    /// Appends a text; ignored if it is a column of numbers.
     pub(crate) fn put_text(&mut self, text: &str) {
         if matches!(self, Self::Unknown(..)) {
             self.become_text();
@@ -94,7 +93,7 @@ impl Extra {
         *self = Self::Text(column, book);
     }
 
-    /// Puts the column where it belongs. One without a value is one of texts if it has rows.
+    /// Moves the column to `numbers` or `texts`. A column without values becomes texts if it has rows.
     pub(crate) fn finish(mut self, numbers: &mut Vec<NumberColumn>, texts: &mut Vec<TextColumn>) {
         match &self {
             Self::Unknown(_, tokens) if tokens.is_empty() => self.become_number(),

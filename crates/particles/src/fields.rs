@@ -1,6 +1,6 @@
-//! Lines cut into fields.
+//! Splits lines into fields.
 
-/// The separators of fields.
+/// Set of separator bytes.
 type Separators = [bool; 256];
 
 const BLANKS: Separators = set(b" \t\r\x0B\x0C");
@@ -16,7 +16,7 @@ const fn set(bytes: &[u8]) -> Separators {
     table
 }
 
-/// The fields of a line, none of them empty.
+/// Iterator over the non-empty fields of a line.
 #[derive(Clone)]
 pub(crate) struct Fields<'l> {
     rest: &'l [u8],
@@ -24,13 +24,13 @@ pub(crate) struct Fields<'l> {
 }
 
 impl<'l> Fields<'l> {
-    /// Returns the fields between blanks.
+    /// Returns the blank-separated fields.
     #[inline]
     pub(crate) fn blanks(line: &'l [u8]) -> Self {
         Self { rest: line, separators: &BLANKS }
     }
 
-    /// Returns the fields between blanks, commas and semicolons, before a `#`.
+    /// Returns the fields separated by blanks, commas or semicolons, up to a `#`.
     #[inline]
     pub(crate) fn marks(line: &'l [u8]) -> Self {
         let end = memchr::memchr(b'#', line).unwrap_or(line.len());

@@ -1,20 +1,19 @@
-//! Files of other formats, which are recognized and named but not read, with a command that makes
-//! something of them that is.
+//! Detects unsupported formats, and suggests a command that converts them to a supported one.
 
 use super::{fields::Fields, number};
 use std::path::Path;
 
-/// Kind of a file that is not read, and what to do with it.
+/// An unsupported format, with advice.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Foreign {
-    /// A name after "is".
+    /// Name with an article, to follow "is".
     pub(crate) name: String,
-    /// Advice on what to type.
+    /// A command to type.
     pub(crate) help: String,
 }
 
-/// Ways to something that is read; `{file}` stands for the file, `{stem}` for its name without a
-/// suffix.
+/// Conversions to supported formats; `{file}` is replaced by the file, `{stem}` by its name without
+/// extension.
 const WITH_TOPOLOGY: &str = "convert it together with the file that names its atoms: python3 -c \"import MDAnalysis; \
      MDAnalysis.Universe('TOPOLOGY', '{file}').atoms.write('{stem}.xyz', frames='all')\"";
 const TRAJECTORY: &str = "convert it: gmx trjconv -f {file} -s topol.tpr -o {stem}.gro; or, without the file that names \
@@ -38,7 +37,7 @@ const RESTART: &str = "have LAMMPS write it as text: lmp -restart2data {file} {s
 const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}";
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 
-/// Bytes by which binary files are known: place, bytes, name, way.
+/// Magic numbers of binary files: offset, bytes, name, conversion.
 const MAGICS: [(usize, &[u8], &str, &str); 26] = [
     (0, b"# vtk DataFile", "a VTK file", MESH),
     (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
@@ -103,7 +102,7 @@ const MAGICS: [(usize, &[u8], &str, &str); 26] = [
     ),
 ];
 
-/// Words that text files begin with, in any case: words, name, way.
+/// First words of text files, in any case: words, name, conversion.
 const WORDS: [(&str, &str, &str); 18] = [
     ("%version", "a topology of Amber", TOPOLOGY),
     ("title =", "a Tecplot file", MESH),
@@ -177,10 +176,10 @@ const WORDS: [(&str, &str, &str); 18] = [
     ),
 ];
 
-/// Lines that are looked at to tell text files.
+/// Number of lines from which text formats are detected.
 const LINES: usize = 64;
 
-/// A command with the names of a file in it.
+/// Inserts the file's name into a command.
 fn filled(way: &str, path: &Path) -> String {
     let is_plain = |name: &str| {
         name.chars().all(|letter| letter.is_ascii_alphanumeric() || "._/+-".contains(letter))
@@ -196,7 +195,7 @@ fn foreign(name: &str, way: &str, path: &Path) -> Foreign {
     Foreign { name: name.to_owned(), help: filled(&way, path) }
 }
 
-/// Returns the kind of a binary file that begins so, if it is known.
+/// Returns the format of a binary file with this head, if it is known.
 pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
     let begins =
         |place: usize, bytes: &[u8]| head.get(place..).is_some_and(|rest| rest.starts_with(bytes));
@@ -210,14 +209,14 @@ pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
     let word = |at: usize| head.get(at..at + 4)?.try_into().ok();
     let big = |at: usize| word(at).map_or(0, u32::from_be_bytes);
     let little = |at: usize| word(at).map_or(0, u32::from_le_bytes);
-    // The number of atoms comes twice.
+    // The number of atoms is stored twice.
     if matches!(big(0), 1995 | 2023) && big(4) > 0 && big(4) == big(52) {
         return Some(foreign("an XTC trajectory of GROMACS", TRAJECTORY, path));
     }
     if big(0) == 1993 && big(4) == 13 {
         return Some(foreign("a TRR trajectory of GROMACS", TRAJECTORY, path));
     }
-    // A record of Fortran between its lengths, of four or eight bytes in either order.
+    // A Fortran record between its lengths, of four or eight bytes in either byte order.
     let is_dcd = |at: usize| begins(at, b"CORD") || begins(at, b"VELD");
     let marks = [(big(0), 4), (little(0), 4), (big(4), 8), (little(0), 8)];
     if marks.iter().any(|&(length, at)| length == 84 && is_dcd(at)) {
@@ -233,14 +232,14 @@ pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
         .then(|| foreign("a TNG trajectory of GROMACS", TRAJECTORY, path))
 }
 
-/// Returns the kind of a ZIP archive that is a document.
+/// Returns the format of a ZIP archive that is a document.
 fn archive(head: &[u8], path: &Path) -> Option<Foreign> {
     let has = |text: &[u8]| memchr::memmem::find(head, text).is_some();
     let is_sheet = has(b"[Content_Types].xml") || has(b"opendocument.spreadsheet");
     is_sheet.then(|| foreign("a workbook of a spreadsheet", SHEET, path))
 }
 
-/// Returns the kind of a text file that begins so, if it is known.
+/// Returns the format of a text file with this head, if it is known.
 pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
     let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
     let lines: Vec<&[u8]> =

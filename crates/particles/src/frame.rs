@@ -7,8 +7,8 @@ use crate::categories::retain;
 use crate::cell::Cell;
 use glam::DVec3;
 
-/// The particles of one frame, and what the file says of them all. Row `i` of every column belongs
-/// to particle `i`; numbers are in the file's own units, and nothing is dropped.
+/// The particles of one frame, with the frame's metadata. Row `i` of every column belongs to
+/// particle `i`. Numbers are in the file's units, and nothing is dropped.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleFrame {
     /// Positions, x.
@@ -17,35 +17,35 @@ pub struct ParticleFrame {
     pub y: Vec<f64>,
     /// Positions, z.
     pub z: Vec<f64>,
-    /// Radii, also of files that have diameters; empty if the file has neither.
+    /// Radii, computed from diameters if the file has those; empty if it has neither.
     pub radius: Vec<f64>,
     /// Types, with elements where they are known.
     pub kinds: Kinds,
     /// Linear colors, each channel 0 to 1; empty if the file has none.
     pub color: Vec<Rgb>,
-    /// Names of materials; no codes if the file has none. An empty name stands for no material.
+    /// Material names; no codes if the file has none. An empty name means no material.
     pub materials: TextColumn,
-    /// The columns of numbers that were asked for, and are no role.
+    /// Requested columns of numbers that have no role.
     pub numbers: Vec<NumberColumn>,
-    /// The columns of texts that were asked for, and are no role.
+    /// Requested columns of texts that have no role.
     pub texts: Vec<TextColumn>,
-    /// Names of all columns of the file that can be asked for, read or not.
+    /// Names of all columns of the file that can be requested, whether read or not.
     pub columns: Vec<String>,
-    /// The columns that positions, radii, types, colors and materials were read from.
+    /// Columns from which positions, radii, types, colors and materials were read.
     pub roles: Vec<(Role, String)>,
-    /// The cell of the simulation, if the file has one.
+    /// The simulation cell, if the file has one.
     pub cell: Option<Cell>,
     /// The file's title or comment; empty if it has none.
     pub title: String,
-    /// The step of the simulation, if the file tells it.
+    /// The simulation step, if the file has one.
     pub step: Option<i64>,
-    /// The time of the simulation in the file's own unit, if the file tells it.
+    /// The simulation time in the file's unit, if the file has one.
     pub time: Option<f64>,
     /// Unit of lengths.
     pub unit: LengthUnit,
     /// Format of the file.
     pub format: Format,
-    /// Assumptions and omissions: one sentence each.
+    /// Assumptions and omissions of the reader, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -54,14 +54,14 @@ pub struct ParticleFrame {
 pub struct NumberColumn {
     /// The name in the file.
     pub name: String,
-    /// One for each particle; NaN where the file has none.
+    /// Values of the particles; NaN where the file has none.
     pub values: Vec<f64>,
 }
 
 /// Unit of lengths in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LengthUnit {
-    /// The file does not say, or lengths are reduced.
+    /// Unknown unit, or reduced units.
     #[default]
     Unknown,
     /// 1e-10 m.
@@ -79,7 +79,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// An angstrom in this unit; 1 where the unit is unknown.
+    /// Returns the length of an angstrom in this unit; 1 if the unit is unknown.
     pub fn per_angstrom(self) -> f64 {
         match self {
             Self::Unknown | Self::Angstrom => 1.0,
@@ -92,7 +92,7 @@ impl LengthUnit {
         }
     }
 
-    /// The unit's name.
+    /// Returns the unit's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Unknown => "unknown",
@@ -107,22 +107,22 @@ impl LengthUnit {
 }
 
 impl ParticleFrame {
-    /// Number of particles.
+    /// Returns the number of particles.
     pub fn len(&self) -> usize {
         self.x.len()
     }
 
-    /// Whether it has no particles.
+    /// Returns whether the frame has no particles.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
     }
 
-    /// Position of particle `row`, which is less than [`ParticleFrame::len`].
+    /// Returns the position of particle `row`, which must be less than [`ParticleFrame::len`].
     pub fn position(&self, row: usize) -> DVec3 {
         DVec3::new(self.x[row], self.y[row], self.z[row])
     }
 
-    /// Keeps the rows that `keep` is true for.
+    /// Keeps the rows for which `keep` is true.
     pub fn retain(&mut self, keep: &[bool]) {
         let values = self.numbers.iter_mut().map(|column| &mut column.values);
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];
@@ -133,7 +133,7 @@ impl ParticleFrame {
         codes.for_each(|codes| codes.retain(keep));
     }
 
-    /// Has row `rows[i]` in the place of row `i`, for each of `rows`.
+    /// Gathers rows: row `i` becomes the former row `rows[i]`.
     pub(crate) fn pick(&mut self, rows: &[u32]) {
         let values = self.numbers.iter_mut().map(|column| &mut column.values);
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];
@@ -144,7 +144,7 @@ impl ParticleFrame {
         codes.for_each(|codes| codes.pick(rows));
     }
 
-    /// Gives back the memory that columns have beyond their rows.
+    /// Frees the unused capacity of columns.
     pub fn shrink(&mut self) {
         let values = self.numbers.iter_mut().map(|column| &mut column.values);
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];

@@ -1,20 +1,20 @@
-//! The interface of readers: frames of a file, one after another.
+//! The trait of readers: they return the frames of a file one after another.
 
 use super::frame::ParticleFrame;
 use crate::FileError;
 
-/// A file that is being read, frame by frame.
+/// Reader of a file's frames.
 pub(crate) trait FrameReader {
-    /// The next frame, if there is one.
+    /// Returns the next frame, if there is one.
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError>;
 
-    /// Passes over the next frame, with as little work as the format allows; whether there was
-    /// one, all of it.
+    /// Skips the next frame with as little work as the format allows. Returns whether there was a
+    /// complete one.
     fn skip(&mut self) -> Result<bool, FileError> {
         Ok(self.next()?.is_some())
     }
 
-    /// Whether more seems to follow.
+    /// Returns whether another frame seems to follow.
     fn more(&mut self) -> Result<bool, FileError> {
         Ok(false)
     }

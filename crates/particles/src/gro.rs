@@ -1,4 +1,4 @@
-//! GRO of GROMACS: fixed columns, lengths in nanometers
+//! Reads GRO of GROMACS: fixed columns, lengths in nanometers
 //! (manual.gromacs.org/current/reference-manual/file-formats.html).
 
 use super::builder::Builder;
@@ -17,24 +17,24 @@ use memchr::memchr_iter;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Names of the columns, in their order.
+/// Names of the columns, in order.
 const NAMES: [&str; 10] =
     ["residue_number", "residue", "name", "number", "x", "y", "z", "vx", "vy", "vz"];
 
-/// Columns that a file may have after those of positions.
+/// Optional columns after positions.
 const VELOCITIES: [&str; 3] = ["vx", "vy", "vz"];
 
-/// The first of them, among all columns.
+/// Index of the first velocity column.
 const VELOCITY: usize = 7;
 
-/// The byte of a row at which positions begin.
+/// Offset of positions in a row, in bytes.
 const POSITION: usize = 20;
 
-/// Reads frames of a GRO file.
+/// Reader of the frames of a GRO file.
 pub(crate) struct Gro {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
-    /// A velocity that the file must have.
+    /// A velocity that was requested by name.
     needed: Option<String>,
 }
 
@@ -48,7 +48,7 @@ impl Gro {
         Self { lines: Lines::new(source), schema: schema.map(named), needed }
     }
 
-    /// Title and number of atoms; `None` at the end.
+    /// Reads the title and the number of atoms; returns `None` at the end of the file.
     fn head(&mut self) -> Result<Option<(String, u64)>, FileError> {
         let Some(title) = self.lines.next()? else { return Ok(None) };
         let title = title.text().trim().to_owned();
@@ -59,7 +59,7 @@ impl Gro {
         }
     }
 
-    /// Reads the atoms; returns whether any has a velocity.
+    /// Reads the atoms. Returns whether any has a velocity.
     fn atoms(&mut self, builder: &mut Builder, count: u64) -> Result<bool, FileError> {
         let schema = builder.schema().clone();
         let others: Vec<(usize, Slot)> = schema.used_columns().collect();
@@ -92,7 +92,7 @@ impl Gro {
         Ok(has_velocities)
     }
 
-    /// Takes velocities out of a frame that has none.
+    /// Removes the velocity columns from a frame without velocities.
     fn without_velocities(&self, mut frame: ParticleFrame) -> Result<ParticleFrame, FileError> {
         frame.columns.retain(|name| !VELOCITIES.contains(&name.as_str()));
         frame.numbers.retain(|column| !VELOCITIES.contains(&column.name.as_str()));
@@ -107,7 +107,7 @@ impl Gro {
     }
 }
 
-/// Bytes that each number of a position takes: what is from one decimal point to the next.
+/// Returns the width of each coordinate in bytes: the distance between decimal points.
 fn width(line: &Line) -> Result<usize, FileError> {
     let positions = line.bytes.get(POSITION..).unwrap_or_default();
     let mut points = memchr_iter(b'.', positions);
@@ -118,7 +118,7 @@ fn width(line: &Line) -> Result<usize, FileError> {
     })
 }
 
-/// The bytes that a column takes.
+/// Returns the byte range of a column.
 fn columns(column: usize, width: usize) -> Range<usize> {
     match column {
         0..4 => 5 * column..5 * column + 5,
@@ -126,13 +126,13 @@ fn columns(column: usize, width: usize) -> Range<usize> {
     }
 }
 
-/// As many of these bytes as a line has, without blanks around them.
+/// Returns a byte range of a line, clamped to its length and trimmed.
 fn part<'l>(line: &Line<'l>, range: Range<usize>) -> &'l [u8] {
     let end = range.end.min(line.bytes.len());
     line.bytes.get(range.start..end).unwrap_or_default().trim_ascii()
 }
 
-/// The content of a column that every row must have.
+/// Returns the content of a required column.
 fn field<'l>(line: &Line<'l>, column: usize, width: usize) -> Result<&'l [u8], FileError> {
     let range = columns(column, width);
     let field = part(line, range.clone());
@@ -144,7 +144,7 @@ fn field<'l>(line: &Line<'l>, column: usize, width: usize) -> Result<&'l [u8], F
     Ok(field)
 }
 
-/// A type from the name of a residue and that of an atom, five letters each.
+/// Returns the type for the names of a residue and an atom, five letters each.
 fn kind(key: &str) -> Kind {
     let (residue, name) = key.split_at_checked(5).unwrap_or((key, ""));
     let (residue, name) = (residue.trim(), name.trim());
@@ -153,7 +153,7 @@ fn kind(key: &str) -> Kind {
     Kind { name: name.to_owned(), element, virtual_site }
 }
 
-/// The box: its lengths, and then, if it is tilted, the other components of its edges.
+/// Parses the box: its lengths, then, if it is tilted, the other components of its edges.
 fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
     let mut values = [0.0; 9];
     let mut fields = line.fields();
@@ -212,7 +212,7 @@ impl FrameReader for Gro {
     }
 }
 
-/// Whether these are the second and third line of a GRO file.
+/// Returns whether these are the second and third line of a GRO file.
 pub(crate) fn is_gro(second: &[u8], third: &[u8]) -> bool {
     let count = number::whole(second).is_some();
     let residue = third.get(..5).is_some_and(|field| number::whole(field).is_some());

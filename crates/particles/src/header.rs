@@ -3,7 +3,7 @@
 use super::options::ReadOptions;
 use super::{fields::Fields, number, record};
 
-/// The names in a header, with commas, semicolons, tabs or blanks between them. A unit in brackets
+/// Returns the names in a header, separated by commas, semicolons, tabs or blanks. A unit in brackets
 /// belongs to the name before it.
 pub(crate) fn names(line: &[u8]) -> Vec<String> {
     if is_separated(line) {
@@ -23,19 +23,18 @@ pub(crate) fn names(line: &[u8]) -> Vec<String> {
     names
 }
 
-/// Returns whether something other than blanks stands between the names.
+/// Returns whether the names have separators other than blanks.
 pub(crate) fn is_separated(line: &[u8]) -> bool {
     line.iter().any(|byte| b",;\t".contains(byte))
 }
 
-/// Returns whether a line has three names or more, and no number: the header of a table.
+/// Returns whether a line is the header of a table: three names or more, and no number.
 pub(crate) fn is_header(names: &[String]) -> bool {
     let is_name = |name: &String| !name.is_empty() && number::parse(name.as_bytes()).is_none();
     names.len() >= 3 && names.iter().all(is_name)
 }
 
-/// Returns whether a row may stand below a header: it has as many fields, and three numbers or
-/// more.
+/// Returns whether a row fits a header: it has the same number of fields, and three numbers or more.
 pub(crate) fn is_row(names: &[String], separated: bool, row: &[u8]) -> bool {
     let fields: Vec<Vec<u8>> = if separated {
         record::header_names(row).into_iter().map(String::into_bytes).collect()
@@ -46,7 +45,7 @@ pub(crate) fn is_row(names: &[String], separated: bool, row: &[u8]) -> bool {
     fields.len() == names.len() && numbers.count() >= 3
 }
 
-/// Returns advice on what to type so that columns of other names than usual are read.
+/// Returns the help for columns with unusual names: an option to type.
 pub(crate) fn columns_help(names: &[String], options: &ReadOptions) -> String {
     let typed = |name: &String| !name.contains([',', '=']) && !name.is_empty();
     let taken = |name: &&String| !options.columns.roles.iter().any(|(_, own)| own == *name);
@@ -59,7 +58,7 @@ pub(crate) fn columns_help(names: &[String], options: &ReadOptions) -> String {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "_=,.:-".contains(letter);
     let columns = if columns.chars().all(is_plain) { columns } else { format!("'{columns}'") };
     format!(
-        "say which columns are what, as in --columns {columns}; roles are x, y, z, radius, diameter, type and others"
+        "assign roles to the columns, as in --columns {columns}; roles are x, y, z, radius, diameter, type and others"
     )
 }
 

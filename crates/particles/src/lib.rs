@@ -1,19 +1,19 @@
-//! Readers for files of particles: a file goes in, and columns, a periodic cell and frames come out.
+//! Readers of particle files: they return frames, each with its columns and periodic cell.
 //!
 //! ```text
-//! file or standard input -> unpacked, by how it begins                  source
-//!    -> format, by how the content begins                               sniff
-//!    -> lines -> fields -> roles, by the names of columns               lines, fields, schema
-//!    -> ParticleFrame, frame by frame, in columns, in the file's units  one file per format
+//! file or standard input -> decompressed, by magic number               source
+//!    -> format, detected from the first bytes                           sniff
+//!    -> lines -> fields -> roles, by column names                       lines, fields, schema
+//!    -> one ParticleFrame per frame, in columns, in the file's units    one file per format
 //! ```
 //!
 //! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
-//! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, packed
-//! with gzip, bzip2, xz or zstd or not.
+//! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content. Files may
+//! be compressed with gzip, bzip2, xz or zstd.
 //!
-//! Every reader streams: it keeps columns, never the file, and trusts no count in the file. Anything
-//! that should be a number and is not is an error with its line. To add a format, add it to [`Format`],
-//! a sign by which `sniff` recognizes it, and a `FrameReader`.
+//! Every reader streams: it stores columns, never the file, and doesn't allocate by counts in the file.
+//! A malformed number is an error with its line. To add a format, add it to [`Format`], its detection to
+//! `sniff`, and a `FrameReader`.
 //!
 //! ```
 //! use spherule_particles::{ReadOptions, read_frame};
@@ -89,25 +89,25 @@ pub use shared_names::SharedNames;
 /// A linear RGB triple with the primaries of sRGB.
 pub type Rgb = glam::Vec3;
 
-/// Maximum number of particles in a frame: the last few numbers of 32 bits have other meanings.
+/// Maximum number of particles in a frame: the last few 32-bit indices are reserved.
 pub const MAX_PARTICLES: u64 = (1 << 32) - 17;
 
 /// Items for the renderer. Anything here may change in any release.
 #[doc(hidden)]
 pub mod internals {
-    /// Names of columns that stand for each other.
+    /// Column names that are synonyms.
     pub mod aliases {
         pub use crate::aliases::*;
     }
     pub use crate::categories::retain;
     pub use crate::error::{clipped, listed};
-    /// The memory that is left.
+    /// Available memory.
     pub mod memory {
         pub use crate::memory::*;
     }
     pub use crate::schema::unknown_column;
     pub use crate::srgb::{linear_from_srgb, srgb};
-    /// Words that misspelled ones may stand for.
+    /// Suggestions for misspelled words.
     pub mod suggest {
         pub use crate::suggest::*;
     }

@@ -1,4 +1,4 @@
-//! One line of a text file, and the numbers in it.
+//! A line of a text file, and its numbers.
 
 use super::{fields::Fields, number};
 use crate::FileError;
@@ -7,12 +7,12 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Returns whether a line is a comment, as programs for rows of numbers write it.
+/// Returns whether a line is a comment of a numeric table.
 pub(crate) fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"#") || line.starts_with(b"%")
 }
 
-/// One line without its end.
+/// A line without its line ending.
 #[derive(Clone, Copy)]
 pub(crate) struct Line<'l> {
     path: &'l Arc<Path>,
@@ -29,12 +29,12 @@ impl<'l> Line<'l> {
         self.path
     }
 
-    /// Line of the file, from 1.
+    /// Returns the line's number in the file, from 1.
     pub(crate) fn number_in_file(&self) -> usize {
         self.number
     }
 
-    /// An error at these bytes of the line.
+    /// Returns an error at these bytes of the line.
     pub(crate) fn error(&self, span: Range<usize>, message: impl Into<String>) -> FileError {
         let length =
             |end: usize| String::from_utf8_lossy(&self.bytes[..end.min(self.bytes.len())]).len();
@@ -42,7 +42,7 @@ impl<'l> Line<'l> {
         FileError::at(self.path, &self.text(), self.number, span, message)
     }
 
-    /// An error at a part of the line; at all of it, if the field is a copy.
+    /// Returns an error at a field of the line; at the whole line if the field is a copy.
     pub(crate) fn error_at(&self, field: &[u8], message: impl Into<String>) -> FileError {
         let start = (field.as_ptr() as usize).wrapping_sub(self.bytes.as_ptr() as usize);
         if start > self.bytes.len() {
@@ -51,33 +51,33 @@ impl<'l> Line<'l> {
         self.error(start..start + field.len(), message)
     }
 
-    /// An error that concerns the whole line.
+    /// Returns an error that concerns the whole line.
     pub(crate) fn whole(&self, message: impl Into<String>) -> FileError {
         self.error(0..self.bytes.len(), message)
     }
 
-    /// The line as text; what is not UTF-8 becomes replacement characters.
+    /// Returns the line as text; invalid UTF-8 becomes replacement characters.
     pub(crate) fn text(&self) -> Cow<'l, str> {
         String::from_utf8_lossy(self.bytes)
     }
 
-    /// Returns the fields between blanks.
+    /// Returns the blank-separated fields.
     pub(crate) fn fields(&self) -> Fields<'l> {
         Fields::blanks(self.bytes)
     }
 
-    /// Whether the line is blank.
+    /// Returns whether the line is blank.
     pub(crate) fn is_blank(&self) -> bool {
         self.bytes.trim_ascii().is_empty()
     }
 
-    /// The number that a part of the line is.
+    /// Parses a field as a number.
     #[inline]
     pub(crate) fn number(&self, field: &[u8]) -> Result<f64, FileError> {
         number::parse(field).ok_or_else(|| self.not(field, "a number"))
     }
 
-    /// The whole number that a part of the line is.
+    /// Parses a field as a whole number.
     pub(crate) fn whole_number(&self, field: &[u8]) -> Result<u64, FileError> {
         number::whole(field).ok_or_else(|| self.not(field, "a whole number"))
     }
@@ -108,7 +108,7 @@ mod tests {
             (&text[3..5], 4, 3..5),
             (&text[6..], 7, 6..9),
             (&text[9..], 9, 9..9),
-            // A copy may stand anywhere in the line.
+            // The position of a copy in the line is unknown.
             (&copy[..], 1, 0..9),
         ] {
             let place = line.error_at(field, "wrong").place.expect("a place");

@@ -1,4 +1,4 @@
-//! The lines of a text file, cut from large blocks.
+//! Splits a text file into lines, in large blocks.
 
 pub(crate) use super::line::Line;
 use super::source::Source;
@@ -9,23 +9,23 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Longest line in bytes: a longer one is a sign that the file is not text.
+/// Maximum length of a line in bytes: a longer one indicates that the file is not text.
 pub(crate) const LONGEST: usize = 1 << 20;
 
-/// Bytes that are read at once; the rest of a line moves to the front before each read.
+/// Bytes per read; an incomplete line moves to the front of the buffer before each read.
 const BLOCK: usize = 1 << 18;
 
-/// A file's lines, one at a time.
+/// Reader of a file's lines.
 pub(crate) struct Lines {
     path: Arc<Path>,
     reader: Box<dyn Read + Send>,
-    /// `start..end` of the buffer is read and not yet consumed.
+    /// Bytes of the file; `start..end` is not yet consumed.
     buffer: Vec<u8>,
     start: usize,
     end: usize,
     ended: bool,
     number: usize,
-    /// The offset of the last line, and whether it ended with a carriage return.
+    /// Offset of the last line; `returned` is true if it ended with a carriage return.
     last: usize,
     returned: bool,
 }
@@ -50,7 +50,7 @@ impl Lines {
         }
     }
 
-    /// The next line, if there is one.
+    /// Returns the next line, if there is one.
     pub(crate) fn next(&mut self) -> Result<Option<Line<'_>>, FileError> {
         self.number += 1;
         let Some(mut range) = self.find()? else {
@@ -68,13 +68,13 @@ impl Lines {
         if self.returned { b"\r\n" } else { b"\n" }
     }
 
-    /// Gives the line that came last once more.
+    /// Steps back, so that [`Lines::next`] returns the last line again.
     pub(crate) fn back(&mut self) {
         self.start = self.last;
         self.number -= 1;
     }
 
-    /// Passes over blank lines; returns whether any other line follows, which is not passed.
+    /// Skips blank lines. Returns whether another line follows, which is not consumed.
     pub(crate) fn more(&mut self) -> Result<bool, FileError> {
         while let Some(line) = self.next()? {
             if !line.is_blank() {
@@ -85,13 +85,13 @@ impl Lines {
         Ok(false)
     }
 
-    /// What follows, a block or less, which is not passed.
+    /// Returns up to a block of the following bytes without consuming them.
     pub(crate) fn ahead(&mut self) -> Result<&[u8], FileError> {
         while self.end - self.start < BLOCK / 4 && self.fill()? {}
         Ok(&self.buffer[self.start..self.end])
     }
 
-    /// Passes over lines without a look at them; how many there were, of so many.
+    /// Skips up to `count` lines without parsing them. Returns the number of skipped lines.
     pub(crate) fn skip(&mut self, count: u64) -> Result<u64, FileError> {
         let mut passed = 0;
         while passed < count {
@@ -115,7 +115,7 @@ impl Lines {
         Ok(passed)
     }
 
-    /// The bytes of the next line, and past its end.
+    /// Returns the range of the next line in the buffer and moves past it.
     fn find(&mut self) -> Result<Option<Range<usize>>, FileError> {
         let mut looked = 0;
         loop {
@@ -134,7 +134,7 @@ impl Lines {
         }
     }
 
-    /// Reads more behind what is left; whether there is more.
+    /// Appends more bytes to the buffer. Returns whether there were any.
     fn fill(&mut self) -> Result<bool, FileError> {
         if self.ended {
             return Ok(false);
@@ -160,7 +160,7 @@ impl Lines {
         Ok(!self.ended)
     }
 
-    /// An error after the last line.
+    /// Returns an error after the last line.
     pub(crate) fn ended(&self, message: impl Into<String>) -> FileError {
         let error = FileError::at(&self.path, "", self.number, 0..0, message);
         FileError { cut_off: true, ..error }
@@ -182,10 +182,10 @@ mod tests {
     use super::*;
     use crate::ReadProgress;
 
-    /// Gives a few bytes at a time, as pipes do.
-    struct Drops(Vec<u8>, usize);
+    /// Reader that returns a few bytes at a time, as pipes do.
+    struct SmallReads(Vec<u8>, usize);
 
-    impl Read for Drops {
+    impl Read for SmallReads {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             let length = self.1.min(self.0.len()).min(buffer.len());
             buffer[..length].copy_from_slice(&self.0[..length]);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     fn lines(text: &str, drop: usize) -> Lines {
-        let reader = Box::new(Drops(text.as_bytes().to_vec(), drop));
+        let reader = Box::new(SmallReads(text.as_bytes().to_vec(), drop));
         let progress = ReadProgress::default();
         Lines::new(Source { path: Path::new("p").into(), head: Vec::new(), reader, progress })
     }
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(lines("a\nb", 1).ahead().expect("bytes"), b"a\nb");
     }
 
-    /// Gives these bytes, then errors of these kinds.
+    /// Reader that returns errors of these kinds, then these bytes.
     struct Fails(&'static [u8], Vec<io::ErrorKind>);
 
     impl Read for Fails {

@@ -1,15 +1,15 @@
-//! From names of types to elements.
+//! Derives elements from type names.
 
 use super::categories::{Kind, Kinds};
 use super::element::{Element, is_virtual_site};
 use super::number;
 use super::schema::Naming;
 
-/// Share of particles without an element from which on names are not taken for elements.
+/// Fraction of particles without an element above which names are not read as elements.
 const NO_SYMBOLS: f64 = 0.5;
 const NO_NAMES: f64 = 0.1;
 
-/// The type that a name stands for.
+/// Returns the type for a name.
 pub(crate) fn kind(name: &str, naming: Naming) -> Kind {
     let virtual_site = is_virtual_site(name, "");
     let is_number = number::whole(name.as_bytes()).is_some();
@@ -18,9 +18,9 @@ pub(crate) fn kind(name: &str, naming: Naming) -> Kind {
     Kind { name: name.to_owned(), element, virtual_site }
 }
 
-/// Takes the elements back where too many of the particles have none: then names that look like
-/// symbols are something else, such as beads of a coarse-grained model.
-pub(crate) fn forget_elements(kinds: &mut Kinds, naming: Naming) {
+/// Removes all elements if too many particles have none: then names that look like symbols are
+/// something else, such as beads of a coarse-grained model.
+pub(crate) fn drop_uncertain_elements(kinds: &mut Kinds, naming: Naming) {
     let limit = match naming {
         Naming::Symbols => NO_SYMBOLS,
         Naming::Types => 0.0,

@@ -1,9 +1,9 @@
-//! Numbers in text, however they are spelled.
+//! Parses numbers in text.
 
 use std::str;
 
-/// The number that a field is, whether or not blanks stand around it; `None` if it is none. Besides
-/// what Rust reads, exponents may begin with `d`, as Fortran writes them.
+/// Parses a number, ignoring surrounding blanks; returns `None` if it is invalid. In addition to
+/// Rust's syntax, exponents may begin with `d`, as in Fortran.
 pub(crate) fn parse(field: &[u8]) -> Option<f64> {
     fast_float2::parse(field).ok().or_else(|| rare(field))
 }
@@ -13,7 +13,7 @@ fn rare(field: &[u8]) -> Option<f64> {
     text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
 }
 
-/// A number with a comma for its decimal point, with a point; `None` if it is none.
+/// Replaces the decimal comma of a number by a point; returns `None` if it has none.
 pub(crate) fn with_point(field: &[u8]) -> Option<Vec<u8>> {
     let comma = memchr::memchr(b',', field)?;
     let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-eEdD".contains(byte);
@@ -26,12 +26,12 @@ pub(crate) fn with_point(field: &[u8]) -> Option<Vec<u8>> {
     parse(&text).map(|_| text)
 }
 
-/// The number that a field is, with a decimal point or a decimal comma.
+/// Parses a number with a decimal point or a decimal comma.
 pub(crate) fn parse_any_point(field: &[u8]) -> Option<f64> {
     parse(field).or_else(|| parse(&with_point(field.trim_ascii())?))
 }
 
-/// The whole number that a field is, if it is one without a sign.
+/// Parses a whole number without a sign.
 pub(crate) fn whole(field: &[u8]) -> Option<u64> {
     str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
 }

@@ -7,19 +7,19 @@ use std::str::FromStr;
 /// Format of a particle file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Format {
-    /// A row `x y z` or `x y z radius` for each particle, or either with an id before it, with
-    /// blanks, commas or semicolons between the numbers; `#` begins a comment.
+    /// A row `x y z` or `x y z radius` for each particle, optionally after an id; numbers are
+    /// separated by blanks, commas or semicolons, and `#` begins a comment.
     #[default]
     Xyzr,
-    /// A header that names columns, and a row for each particle; commas, semicolons or tabs between
-    /// them.
+    /// A header that names columns, and a row for each particle, separated by commas, semicolons or
+    /// tabs.
     Csv,
-    /// XYZ of chemistry: the number of atoms, a comment, and a row `symbol x y z` for each; with
-    /// `Lattice` and `Properties` in the comment it is extended XYZ.
+    /// XYZ of chemistry: the number of atoms, a comment, and a row `symbol x y z` for each atom.
+    /// With `Lattice` and `Properties` in the comment, it is extended XYZ.
     Xyz,
-    /// A dump of LAMMPS in text.
+    /// A LAMMPS dump in text.
     LammpsDump,
-    /// A data file of LAMMPS.
+    /// A LAMMPS data file.
     LammpsData,
     /// GRO of GROMACS.
     Gro,
@@ -27,20 +27,20 @@ pub enum Format {
     Pdb,
     /// mmCIF of the Protein Data Bank.
     MmCif,
-    /// CIF of a crystal: the atoms that differ, in shares of the cell's edges, and its symmetry.
+    /// CIF of a crystal: the atoms of the asymmetric unit in fractional coordinates, and the symmetry.
     Cif,
     /// GSD of HOOMD-blue.
     Gsd,
-    /// Points of PLY, in text or binary.
+    /// PLY point clouds, in text or binary.
     Ply,
-    /// An array of NumPy: rows `x y z` or `x y z radius`, or of a structured type.
+    /// A NumPy array: rows `x y z` or `x y z radius`, or of a structured type.
     Npy,
-    /// Arrays of NumPy in an archive: positions, radii, colors.
+    /// NumPy arrays in an archive: positions, radii, colors.
     Npz,
 }
 
 impl Format {
-    /// All formats, with the names that scene files and commands have for them.
+    /// All formats with their names in scene files and on the command line.
     pub const ALL: [(&'static str, Self); 13] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
@@ -57,7 +57,7 @@ impl Format {
         ("npz", Self::Npz),
     ];
 
-    /// The name in scene files and on the command line.
+    /// Returns the name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, format)| *format == self).map_or("", |(name, _)| name)
     }
@@ -66,9 +66,9 @@ impl Format {
 /// Choice of a frame in a file with several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameChoice {
-    /// This one; the first is 0, as in OVITO.
+    /// Frame with this index; the first is 0, as in OVITO.
     Index(u64),
-    /// The last.
+    /// The last frame.
     Last,
 }
 
@@ -81,14 +81,14 @@ impl Default for FrameChoice {
 impl FromStr for FrameChoice {
     type Err = String;
 
-    /// A number from 0, `first` or `last`.
+    /// Parses an index from 0, `first` or `last`.
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
             "first" => Ok(Self::Index(0)),
             "last" => Ok(Self::Last),
             number => number.parse().map(Self::Index).map_err(|_| {
                 let near = suggest::question(number, ["first", "last"]);
-                format!("`{number}` is no frame: write first, last or a number from 0{near}")
+                format!("invalid frame `{number}`: expected first, last or a number from 0{near}")
             }),
         }
     }
@@ -97,26 +97,26 @@ impl FromStr for FrameChoice {
 /// Source of radii.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Radii {
-    /// The file's; where it has none, van der Waals radii of elements; where it has no elements
-    /// either, half of the mean spacing.
+    /// Radii in the file; without them, van der Waals radii of elements; without elements, half of
+    /// the mean spacing.
     #[default]
     Auto,
-    /// The file's, and where it has none, this one, more than 0, in the scene's unit.
+    /// Radii in the file; without them, this positive radius in the scene's unit.
     Missing(f64),
-    /// This one for all, more than 0, in the scene's unit.
+    /// This positive radius for all particles, in the scene's unit.
     Constant(f64),
     /// Van der Waals radii of elements (Alvarez 2013).
     VanDerWaals,
     /// Covalent radii of elements (Cordero et al. 2008).
     Covalent,
-    /// The numbers of a column, in the file's unit of length.
+    /// Values of a column, in the file's unit of length.
     Column(String),
 }
 
 impl FromStr for Radii {
     type Err = String;
 
-    /// `vdw`, `covalent`, `column:NAME` or a number.
+    /// Parses `vdw`, `covalent`, `column:NAME` or a number.
     fn from_str(text: &str) -> Result<Self, String> {
         match (text, text.strip_prefix("column:")) {
             ("vdw", _) => Ok(Self::VanDerWaals),
@@ -128,8 +128,8 @@ impl FromStr for Radii {
                 radius.filter(|&radius| radius > 0.0).map(Self::Constant).ok_or_else(|| {
                     let near = suggest::question(number, ["vdw", "covalent"]);
                     format!(
-                        "`{number}` are no radii: write vdw, covalent, column:NAME or a number of \
-                         more than 0{near}"
+                        "invalid radii `{number}`: expected vdw, covalent, column:NAME or a \
+                         positive number{near}"
                     )
                 })
             }
@@ -140,30 +140,30 @@ impl FromStr for Radii {
 /// The role of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The position's x.
+    /// x coordinate of the position.
     X,
-    /// The position's y.
+    /// y coordinate of the position.
     Y,
-    /// The position's z.
+    /// z coordinate of the position.
     Z,
     /// The radius.
     Radius,
-    /// Twice the radius.
+    /// The diameter.
     Diameter,
     /// The type or element.
     Kind,
-    /// The color's red.
+    /// Red channel of the color.
     Red,
-    /// The color's green.
+    /// Green channel of the color.
     Green,
-    /// The color's blue.
+    /// Blue channel of the color.
     Blue,
     /// The name of a material.
     Material,
 }
 
 impl Role {
-    /// All roles, with the names that commands have for them.
+    /// All roles with their names on the command line.
     pub const ALL: [(&'static str, Self); 10] = [
         ("x", Self::X),
         ("y", Self::Y),
@@ -178,26 +178,25 @@ impl Role {
     ];
 }
 
-/// Which columns of a file are read, by their names in it; columns without a name are called by
-/// their numbers, from 1.
+/// Selection of the columns to read, by their names in the file. Unnamed columns are numbered from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
-    /// Roles of columns that override those of their names.
+    /// Roles of columns, which override those that their names imply.
     pub roles: Vec<(Role, String)>,
-    /// Columns to be kept as [`ParticleFrame::numbers`](super::ParticleFrame::numbers) or
-    /// [`texts`](super::ParticleFrame::texts).
+    /// Columns to keep as [`ParticleFrame::numbers`](super::ParticleFrame::numbers) or
+    /// [`texts`](super::ParticleFrame::texts). A missing one is an error.
     pub kept: Vec<String>,
-    /// Columns to be kept likewise where the file has them.
+    /// Columns to keep if the file has them.
     pub wanted: Vec<String>,
-    /// Keeps all other columns too, as long as they hold no more than this many values in all.
-    /// Those that are neither numbers nor texts throughout are left out.
+    /// If set, keeps all other columns too, as long as they hold at most this many values in total.
+    /// Columns that mix numbers and texts are dropped.
     pub rest: Option<usize>,
 }
 
 impl FromStr for Columns {
     type Err = String;
 
-    /// Entries with commas between them: `role=name`, or a name alone for a column to be kept.
+    /// Parses comma-separated entries: `role=name`, or just a name for a column to keep.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut columns = Self::default();
         for entry in text.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
@@ -209,7 +208,7 @@ impl FromStr for Columns {
             let &(_, role) = found.ok_or_else(|| {
                 let names = Role::ALL.map(|(name, _)| name);
                 let help = suggest::help(role.trim(), names.into_iter(), "roles are");
-                format!("`{role}` is no role of a column; {help}")
+                format!("unknown column role `{role}`; {help}")
             })?;
             columns.roles.push((role, name.trim().to_owned()));
         }
@@ -220,7 +219,7 @@ impl FromStr for Columns {
 /// Options for reading a particle file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadOptions {
-    /// `None`: told from the content.
+    /// Format of the file; `None`: detected from the content.
     pub format: Option<Format>,
     /// Roles of columns, and columns to keep.
     pub columns: Columns,
@@ -228,25 +227,24 @@ pub struct ReadOptions {
     pub frame: FrameChoice,
     /// Source of radii.
     pub radii: Radii,
-    /// Factor on all radii, more than 0.
+    /// Positive factor on all radii.
     pub radius_scale: f64,
-    /// Factor on the file's positions and radii, more than 0.
+    /// Positive factor on positions and radii of the file.
     pub scale: f64,
-    /// The atom style of a LAMMPS data file, such as `full`; `None`: what the file says, or else
-    /// what its columns look like.
+    /// The atom style of a LAMMPS data file, such as `full`; `None`: as the file declares it, or else
+    /// inferred from the columns.
     pub atom_style: Option<String>,
-    /// True if a frame without any sphere is valid, as among the frames of a trajectory, and not an
-    /// error.
+    /// True if a frame without spheres is valid, as in a trajectory, and not an error.
     pub allow_empty: bool,
-    /// Counts the bytes that are read.
+    /// Counter of the bytes read.
     pub progress: ReadProgress,
 }
 
 impl ReadOptions {
-    /// Checks that every number is in its range.
+    /// Checks that every number is in range.
     ///
     /// # Errors
-    /// A message that names the first that is not, and says what it must be.
+    /// A message that names the first number out of range and the valid range.
     pub fn check(&self) -> Result<(), String> {
         let Self {
             format: _,
@@ -289,8 +287,8 @@ impl Default for ReadOptions {
     }
 }
 
-/// Names of the columns of a property or array that has several: `velocity_x`, `_y` and `_z` of
-/// three, or else `stress_1`, `stress_2` and so on.
+/// Returns the column names of a property or array with several components: `velocity_x`, `_y` and
+/// `_z` for three components, otherwise `stress_1`, `stress_2` and so on.
 pub(crate) fn component_names(name: &str, count: usize) -> Vec<String> {
     match count {
         1 => vec![name.to_owned()],

@@ -1,9 +1,9 @@
-//! PDB: fixed columns, lengths in angstrom (wwPDB, "Protein Data Bank Contents Guide", version
+//! Reads PDB: fixed columns, lengths in angstrom (wwPDB, "Protein Data Bank Contents Guide", version
 //! 3.30).
 //!
-//! The crate `pdbtbx` builds a tree of models, chains and residues and refuses what simulations
-//! write (serial numbers in hexadecimal, hybrid-36 or asterisks), so this is our own: numbers that
-//! need not be read are not.
+//! The crate `pdbtbx` isn't used: it builds a tree of models, chains and residues, and rejects files of
+//! simulations (serial numbers in hexadecimal, hybrid-36 or asterisks). This reader doesn't parse
+//! numbers that aren't needed.
 
 use super::alternates::{AlternateAtom, Alternates};
 use super::builder::Builder;
@@ -22,7 +22,7 @@ use crate::FileError;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Names of the columns, and the bytes they take.
+/// Names of the columns, with their byte ranges.
 const COLUMNS: [(&str, usize, usize); 15] = [
     ("number", 6, 11),
     ("name", 12, 16),
@@ -41,7 +41,7 @@ const COLUMNS: [(&str, usize, usize); 15] = [
     ("charge", 78, 80),
 ];
 
-/// Those of them that are texts, also where they look like numbers.
+/// Columns of texts, even if the texts look like numbers.
 const TEXTS: [&str; 10] = [
     "number",
     "name",
@@ -55,24 +55,24 @@ const TEXTS: [&str; 10] = [
     "charge",
 ];
 
-/// The first words of records by which a PDB file is recognized.
+/// Record names that identify a PDB file.
 const RECORDS: [&[u8]; 18] = [
     b"HEADER", b"OBSLTE", b"TITLE ", b"COMPND", b"SOURCE", b"KEYWDS", b"EXPDTA", b"AUTHOR",
     b"REMARK", b"CRYST1", b"ORIGX1", b"SCALE1", b"MODEL ", b"ATOM  ", b"HETATM", b"SPLIT ",
     b"CAVEAT", b"NUMMDL",
 ];
 
-/// Reads the models of a PDB file, one frame each.
+/// Reader of the models of a PDB file, one frame each.
 pub(crate) struct Pdb {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
     cell: Option<Cell>,
-    /// Whether each `CRYST1` follows its model: it does where the first model has none before it.
+    /// True if each `CRYST1` follows its model, as it does if none precedes the first model.
     cell_follows: bool,
     title: String,
 }
 
-/// The meaning of a record to a reader of atoms.
+/// Record type.
 enum Record {
     Atom,
     Cell,
@@ -117,14 +117,14 @@ impl FrameReader for Pdb {
         let mut builder = Builder::new(self.lines.path(), Format::Pdb, &schema);
         builder.declare(&TEXTS, &["occupancy", "b_factor"]);
         let others: Vec<(usize, Slot)> = schema.used_columns().collect();
-        // Unless the user names a column, the type comes from several.
+        // The type is derived from several columns unless the user names one.
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
         let mut alternates = Alternates::default();
         let mut bonds = HashSet::new();
         let (mut atoms, mut ended) = (false, false);
         while let Some(line) = self.lines.next()? {
             let record = Record::of(line.bytes);
-            // Bonds follow the last model, and a cell may follow its own; anything else belongs to
+            // Bonds follow the last model, and a cell may follow its model; other records belong to
             // the next frame.
             let belongs = match record {
                 Record::Bond | Record::EndModel | Record::End => true,
@@ -209,7 +209,7 @@ impl FrameReader for Pdb {
     }
 }
 
-/// The same columns, of which that of elements is not the type: types are atom names, and know their
+/// Returns the schema without the element column as type: types are atom names, which determine the
 /// elements.
 fn of_atom_names(mut schema: Schema) -> Schema {
     schema.slots.iter_mut().filter(|slot| **slot == Slot::Kind).for_each(|slot| *slot = Slot::Skip);
@@ -218,8 +218,8 @@ fn of_atom_names(mut schema: Schema) -> Schema {
     Schema { naming: Naming::Names, ..schema }
 }
 
-/// Adds the bonds of a `CONECT` record, by the serial numbers of both atoms as they stand: each is
-/// listed from both ends, and double ones twice.
+/// Adds the bonds of a `CONECT` record, by the unparsed serial numbers of both atoms. Records list each
+/// bond from both ends, and double bonds twice.
 fn add_bonds(bonds: &mut HashSet<[[u8; 5]; 2]>, line: &[u8]) {
     let serial = |start: usize| {
         let mut serial = [b' '; 5];
@@ -238,7 +238,7 @@ fn add_title(title: &mut String, line: &[u8]) {
     title.push_str(&String::from_utf8_lossy(bytes(line, 10, 80)));
 }
 
-/// These bytes of a line, as many of them as there are, without blanks around them.
+/// Returns a byte range of a line, clamped to its length and trimmed.
 fn bytes(line: &[u8], start: usize, end: usize) -> &[u8] {
     line.get(start..end.min(line.len())).unwrap_or_default().trim_ascii()
 }
@@ -261,7 +261,7 @@ fn position(line: &Line) -> Result<[f64; 3], FileError> {
     Ok([number(7)?, number(8)?, number(9)?])
 }
 
-/// The names of an atom at an alternate location.
+/// Returns the identifiers of an atom at an alternate location.
 fn alternate(line: &[u8]) -> AlternateAtom<'_> {
     AlternateAtom {
         location: field(line, 2),
@@ -272,7 +272,7 @@ fn alternate(line: &[u8]) -> AlternateAtom<'_> {
     }
 }
 
-/// The fields that define the type of an atom: name, residue and element, as they stand.
+/// Returns the unparsed fields that define the type of an atom: name, residue and element.
 fn key(line: &[u8]) -> [u8; 10] {
     let mut key = [b' '; 10];
     for (to, from) in (12..16).chain(17..21).chain(76..78).enumerate() {
@@ -290,7 +290,7 @@ fn kind(key: &str) -> Kind {
     Kind { name: name.trim().to_owned(), element, virtual_site }
 }
 
-/// The cell of `CRYST1`; one of edges of 1 stands for none.
+/// Parses the cell of `CRYST1`; a unit cell with edges of 1 means none.
 fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
     let number = |start: usize, end: usize| {
         let field = bytes(line.bytes, start, end);
@@ -301,7 +301,7 @@ fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
     Ok(Cell::of_lengths(lengths, angles).filter(|_| lengths != [1.0; 3]))
 }
 
-/// Whether a file that begins with this line is PDB.
+/// Returns whether a file that begins with this line is PDB.
 pub(crate) fn is_pdb(first: &[u8]) -> bool {
     let mut padded = [b' '; 6];
     let length = first.len().min(6);

@@ -1,7 +1,7 @@
-//! Points of PLY, in text and in binary (Turk, "The PLY Polygon File Format", 1994).
+//! Reads PLY point clouds, in text and binary (Turk, "The PLY Polygon File Format", 1994).
 //!
-//! The crates `ply-rs` and `ply-rs-bw` keep a map of values for each vertex, so this is our own:
-//! the vertices are read into columns, and what follows them is not read.
+//! The crates `ply-rs` and `ply-rs-bw` aren't used: they store a map of values for each vertex. This
+//! reader stores the vertices in columns, and ignores the elements after them.
 
 use super::builder::Builder;
 use super::fields::Fields;
@@ -19,7 +19,7 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads the vertices of a PLY file.
+/// Reader of the vertices of a PLY file.
 pub(crate) struct Ply {
     source: Option<Source>,
     options: ReadOptions,
@@ -33,16 +33,16 @@ impl Ply {
 
 /// The header.
 struct Header {
-    /// The order of bytes; `None` for text.
+    /// Byte order; `None` for text.
     order: Option<Order>,
     elements: Vec<Element>,
     title: String,
     lines: u64,
-    /// Offset of the numbers.
+    /// Offset of the data.
     end: usize,
 }
 
-/// Things of one kind.
+/// Declaration of an element.
 struct Element {
     name: String,
     count: u64,
@@ -52,7 +52,7 @@ struct Element {
 struct Property {
     name: String,
     scalar: Scalar,
-    /// The type of the number of items, for lists.
+    /// Type of the number of items; `None` unless the property is a list.
     list: Option<Scalar>,
 }
 
@@ -181,7 +181,7 @@ impl FrameReader for Ply {
     }
 }
 
-/// The color that a number of this type stands for: bytes are sRGB, other numbers linear.
+/// Returns a linear color channel: bytes are sRGB, other numbers are linear.
 fn channel(scalar: Scalar, value: f64) -> f64 {
     if scalar == Scalar::U8 {
         return f64::from(linear_from_srgb((value / 255.0).clamp(0.0, 1.0) as f32));
@@ -215,7 +215,7 @@ fn text(lines: &mut Lines, vertex: &Element, builder: &mut Builder) -> Result<()
     Ok(())
 }
 
-/// The elements after the header of a binary file.
+/// Reader of the elements of a binary file.
 struct Binary<'p, R> {
     reader: R,
     order: Order,
@@ -231,9 +231,9 @@ impl<R: BufRead> Binary<'_, R> {
         FileError::whole_file(self.path, format!("cannot be read: {error}"))
     }
 
-    /// Passes over an element, whose lists may be of any length.
+    /// Skips an element; its lists may have different lengths.
     fn skip(&mut self, element: &Element) -> Result<(), FileError> {
-        // Without properties there is nothing in the file, however many there are.
+        // Elements without properties have no bytes in the file, whatever their count.
         let count = if element.properties.is_empty() { 0 } else { element.count };
         for _ in 0..count {
             for property in &element.properties {
@@ -283,7 +283,7 @@ impl<R: BufRead> Binary<'_, R> {
     }
 }
 
-/// Whether a file that begins so is PLY.
+/// Returns whether a file with this head is PLY.
 pub(crate) fn is_ply(head: &[u8]) -> bool {
     head.starts_with(b"ply\n") || head.starts_with(b"ply\r\n")
 }

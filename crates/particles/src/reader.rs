@@ -1,4 +1,4 @@
-//! Frames of a file, one after another.
+//! Reads the frames of a file, one after another.
 
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
@@ -15,11 +15,11 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Opens a file, or standard input for the path `-`, whatever frame the options choose.
+    /// Opens a file, or standard input for the path `-`. [`ReadOptions::frame`] is ignored.
     ///
     /// # Errors
     ///
-    /// The file cannot be read, or is in no format known here.
+    /// The file cannot be read, or its format is unknown.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
         let source = Source::open(path, &options.progress)?;
         let format = sniff::format(&source, options)?;
@@ -41,11 +41,11 @@ impl Frames {
         Ok(Self { reader, failed: false })
     }
 
-    /// Passes over the next frame, with as little work as the format allows; whether there was one.
+    /// Skips the next frame with as little work as the format allows. Returns whether there was one.
     ///
     /// # Errors
     ///
-    /// The file cannot be read, or holds something that is not a particle, as far as it is looked at.
+    /// The file cannot be read, or the part that was parsed is malformed.
     pub fn skip_frame(&mut self) -> Result<bool, FileError> {
         let skipped = if self.failed { Ok(false) } else { self.reader.skip() };
         self.failed |= skipped.is_err();
@@ -66,21 +66,21 @@ impl Iterator for Frames {
     }
 }
 
-/// The next frame, with warnings of what is in its columns and not drawn.
+/// Returns the next frame, with warnings about columns that are not drawn.
 fn next_frame(reader: &mut dyn FrameReader) -> Result<Option<ParticleFrame>, FileError> {
     let mut frame = reader.next()?;
     frame.iter_mut().for_each(ParticleFrame::add_undrawn_columns);
     Ok(frame)
 }
 
-/// Reads the frame that the options choose, as it is: nothing is scaled or dropped. Frames before
-/// it are passed over with little work; for the last one, a file is gone through twice, and a frame
-/// that is cut off is not counted.
+/// Reads the frame that the options select, unmodified: nothing is scaled or dropped. Earlier frames
+/// are skipped with little work. For the last frame, a file is read twice, and a truncated frame is
+/// not counted.
 ///
 /// # Errors
 ///
-/// The file cannot be read, is cut off, has no such frame, or holds something that is not a
-/// particle: the error names the line and the column.
+/// The file cannot be read, is truncated, has no such frame, or is malformed: the error names the
+/// line and the column.
 pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, FileError> {
     let index = match options.frame {
         FrameChoice::Index(index) => index,
@@ -90,7 +90,7 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
     let mut frames = Frames::open(path, options)?;
     for before in 0..index {
         if !frames.reader.skip()? {
-            let message = format!("has no frame {index}, but {before}, and the first is 0");
+            let message = format!("has no frame {index}, only {before} (the first is 0)");
             return Err(FileError::whole_file(path, message));
         }
     }
@@ -99,7 +99,7 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
         (Some(frame), _) => frame,
         (None, 0) => return Err(FileError::whole_file(path, "holds no particles")),
         (None, count) => {
-            let message = format!("has no frame {index}, but {count}, and the first is 0");
+            let message = format!("has no frame {index}, only {count} (the first is 0)");
             return Err(FileError::whole_file(path, message));
         }
     };
@@ -111,7 +111,7 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
     Ok(frame)
 }
 
-/// The last frame of what can be read but once.
+/// Returns the last frame of a stream, which can be read only once.
 fn last_of_stream(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, FileError> {
     let mut last = None;
     for frame in Frames::open(path, options)? {
@@ -120,22 +120,22 @@ fn last_of_stream(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
     last.ok_or_else(|| FileError::whole_file(path, "holds no particles"))
 }
 
-/// Frames of a file, counted with as little work as the format allows.
+/// Number of frames in a file, counted with as little work as the format allows.
 #[derive(Clone, Debug)]
 pub struct FrameCount {
-    /// Frames that are not cut off, as far as they were counted.
+    /// Number of complete frames, up to the maximum that was asked for.
     pub whole: u64,
-    /// Why nothing after them can be read, if that is not simply because the file ends there. A last
-    /// frame that is cut off may be missing here too: reading it tells.
+    /// Error after these frames; `None` if the file ends there. Skipping may miss a truncated last frame;
+    /// reading it reports the error.
     pub rest: Option<FileError>,
 }
 
 impl FrameCount {
-    /// Counts the frames of a file, up to `most` of them.
+    /// Counts the frames of a file, at most `most` of them.
     ///
     /// # Errors
     ///
-    /// The file cannot be read, or is in no format known here.
+    /// The file cannot be read, or its format is unknown.
     pub fn of(path: &Path, options: &ReadOptions, most: u64) -> Result<Self, FileError> {
         let mut frames = Frames::open(path, options)?;
         let mut whole = 0;
@@ -150,11 +150,11 @@ impl FrameCount {
     }
 }
 
-/// Number of complete frames in a file.
+/// Returns the number of complete frames in a file.
 ///
 /// # Errors
 ///
-/// The file cannot be read, or is in no format known here.
+/// The file cannot be read, or its format is unknown.
 pub fn count_frames(path: &Path, options: &ReadOptions) -> Result<u64, FileError> {
     let mut frames = Frames::open(path, options)?;
     let mut count = 0;

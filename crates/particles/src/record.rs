@@ -1,8 +1,8 @@
-//! Records of separated values: a line, and its fields without quotes.
+//! Splits rows of separated values into unquoted fields.
 
 use csv_core::{ReadRecordResult, ReaderBuilder};
 
-/// The fields of a line with quotes.
+/// Fields of a line, without quotes.
 #[derive(Default)]
 pub(crate) struct Record {
     bytes: Vec<u8>,
@@ -44,6 +44,6 @@ pub(crate) fn header_names(line: &[u8]) -> Vec<String> {
 /// Returns the separator of columns: the most frequent candidate.
 pub(crate) fn separator(header: &[u8]) -> u8 {
     let count = |separator: &u8| header.split(|byte| byte == separator).count();
-    // Of equals the last wins: a comma, where there is none of any.
+    // The last wins ties: a comma if there is no separator.
     [b'\t', b';', b','].into_iter().max_by_key(count).unwrap_or(b',')
 }

@@ -1,6 +1,6 @@
 //! Numbers in binary files.
 
-/// A type of numbers.
+/// A numeric type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scalar {
     I8,
@@ -18,14 +18,14 @@ pub(crate) enum Scalar {
 /// Byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
-    /// The least.
+    /// Least significant byte first.
     Little,
-    /// The greatest.
+    /// Most significant byte first.
     Big,
 }
 
 impl Scalar {
-    /// Bytes that a number takes.
+    /// Returns the size of a number in bytes.
     pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -35,8 +35,8 @@ impl Scalar {
         }
     }
 
-    /// The number that bytes begin with; NaN if they are too few. Whole numbers beyond 2^53 are
-    /// rounded.
+    /// Reads the number at the beginning of `bytes`; returns NaN if there are too few. Whole numbers
+    /// beyond 2^53 are rounded.
     #[inline]
     pub(crate) fn read(self, bytes: &[u8], order: Order) -> f64 {
         let mut word = [0; 8];

@@ -9,65 +9,64 @@ use crate::suggest;
 /// The use of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Slot {
-    /// Nothing.
+    /// Unused.
     Skip,
-    /// x, y or z, by 0, 1 or 2.
+    /// Coordinate x, y or z, as index 0, 1 or 2.
     Position(usize),
-    /// A length, and the factor that makes it a radius.
+    /// A length, with the factor that converts it to a radius.
     Radius(f64),
     Kind,
-    /// Red, green or blue, by 0, 1 or 2.
+    /// Channel red, green or blue, as index 0, 1 or 2.
     Color(usize),
     Material,
     /// One of [`Schema::extras`].
     Extra(usize),
 }
 
-/// The rule by which names of types become elements.
+/// Rule for converting type names to elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Naming {
-    /// Symbols, or atomic numbers.
+    /// Element symbols or atomic numbers.
     Symbols,
-    /// Symbols if all of them are; numbers are none.
+    /// Element symbols if all names are; numbers are not elements.
     Types,
-    /// Names of atoms in molecules.
+    /// Atom names in molecules.
     Names,
 }
 
 /// The uses of all columns of a file.
 #[derive(Debug)]
 pub(crate) struct Schema {
-    /// One for each column, up to the last that is for something.
+    /// Uses of the columns, up to the last used one.
     pub(crate) slots: Vec<Slot>,
     pub(crate) names: Vec<String>,
-    /// Names of columns to be kept.
+    /// Names of extra columns to keep.
     pub(crate) extras: Vec<String>,
-    /// Number of columns to be kept that were asked for by name, which come first; the others may
-    /// be left out.
+    /// Number of extra columns that were requested by name. They come first; the others may be dropped.
     pub(crate) asked: usize,
-    /// Number of values that columns may hold which were not asked for by name.
+    /// Maximum number of values in extra columns that were not requested by name.
     pub(crate) rest: usize,
     pub(crate) naming: Naming,
     pub(crate) has_color: bool,
-    /// Names of the columns that are for nothing.
+    /// Names of the unused columns.
     pub(crate) unused: Vec<String>,
-    /// The column that each role is read from.
+    /// Roles with the names of their columns.
     pub(crate) roles: Vec<(Role, String)>,
-    /// The unit of positions, if their names tell it.
+    /// The unit of positions, if their names contain it.
     pub(crate) unit: LengthUnit,
 }
 
 impl Schema {
-    /// Tells columns by their names, in any case, unless the options say more.
+    /// Assigns roles to columns by their names, ignoring case; the options take precedence.
     ///
     /// # Errors
     ///
-    /// Names the missing columns.
+    /// A message that names the missing columns.
     pub(crate) fn new(names: Vec<String>, options: &ReadOptions) -> Result<Self, String> {
         Self::with_roles(names, options, &[])
     }
 
-    /// Finds roles as [`Schema::new`] does, with roles that the format defines.
+    /// Assigns roles as [`Schema::new`] does, with additional names that the format defines.
     pub(crate) fn with_roles(
         names: Vec<String>,
         options: &ReadOptions,
@@ -101,7 +100,7 @@ impl Schema {
         };
         let radius = choice.find(Role::Radius)?;
         let has_radius = take(radius, length(radius, 1.0)?);
-        // `r` beside `g` and `b` is red.
+        // `r` together with `g` and `b` is red.
         let radius = choice.position("r");
         let has_radius = has_radius || take(radius, length(radius, 1.0)?);
         let diameter = choice.find(Role::Diameter)?.filter(|_| !has_radius);
@@ -125,13 +124,13 @@ impl Schema {
         Ok(Self { slots, names, extras, asked, rest, naming, has_color, unused, roles, unit })
     }
 
-    /// Columns with a use other than position, with their indices.
+    /// Returns the columns with a use other than position, with their indices.
     pub(crate) fn used_columns(&self) -> impl Iterator<Item = (usize, Slot)> {
         let slots = self.slots.iter().copied().enumerate();
         slots.filter(|(_, slot)| !matches!(slot, Slot::Skip | Slot::Position(_)))
     }
 
-    /// Names by which columns can be asked for: each once, and none that is empty.
+    /// Returns the names by which columns can be requested: unique and not empty.
     pub(crate) fn listed(&self) -> Vec<String> {
         let mut listed: Vec<String> = Vec::new();
         for name in self.names.iter().filter(|name| !name.is_empty()) {
@@ -142,7 +141,7 @@ impl Schema {
         listed
     }
 
-    /// Number of columns that every row must have.
+    /// Returns the number of columns that every row must have.
     pub(crate) fn needed_columns(&self) -> usize {
         let needed = |slot: &Slot| match slot {
             Slot::Skip => false,
@@ -152,13 +151,13 @@ impl Schema {
         self.slots.iter().rposition(needed).map_or(0, |last| last + 1)
     }
 
-    /// Whether rows have colors.
+    /// Returns whether rows have colors.
     pub(crate) fn has_color(&self) -> bool {
         self.has_color
     }
 }
 
-/// Says that a file has no column of a name: the nearest one that there is, or all of them.
+/// Returns the message for a missing column, with the nearest name or a list of all columns.
 pub fn unknown_column<'n>(name: &str, columns: impl Iterator<Item = &'n str> + Clone) -> String {
     let mut typed = aliases::typed(columns.clone());
     typed.retain(|other| !other.eq_ignore_ascii_case(name));
@@ -182,7 +181,7 @@ fn unused(names: &[String], slots: &[Slot]) -> Vec<String> {
     columns.map(|(name, _)| name.clone()).collect()
 }
 
-/// The roles of columns; lengths that are no positions are those of `size`.
+/// Returns the roles of columns; `size` is the role of a column with radii or diameters.
 fn roles(names: &[String], slots: &[Slot], size: Role) -> Vec<(Role, String)> {
     let role = |slot: &Slot| match *slot {
         Slot::Position(axis) => Some([Role::X, Role::Y, Role::Z][axis]),
@@ -196,7 +195,7 @@ fn roles(names: &[String], slots: &[Slot], size: Role) -> Vec<(Role, String)> {
     columns.filter_map(|(name, slot)| Some((role(slot)?, name.clone()))).collect()
 }
 
-/// The columns of a file, and the options by which roles are assigned.
+/// Assignment of roles to the columns of a file.
 struct Choice<'c> {
     names: &'c [String],
     options: &'c ReadOptions,
@@ -204,8 +203,8 @@ struct Choice<'c> {
 }
 
 impl Choice<'_> {
-    /// The column with a name, the same letter by letter if there is one; or else the only one that
-    /// has it before a unit.
+    /// Returns the column with a name: an exact match, a match ignoring case, or else the only column
+    /// with this name before a unit.
     fn position(&self, wanted: &str) -> Option<usize> {
         let same = self.names.iter().position(|name| name == wanted);
         let any_case = || self.names.iter().position(|name| name.eq_ignore_ascii_case(wanted));
@@ -217,7 +216,7 @@ impl Choice<'_> {
         same.or_else(any_case).or_else(with_unit)
     }
 
-    /// The column with a name that a user typed, or with another name of the same thing.
+    /// Returns the column with a name that the user typed, or with a synonym of it.
     fn need(&self, wanted: &str) -> Result<usize, String> {
         let other = || aliases::of(wanted).find_map(|name| self.position(name));
         self.position(wanted).or_else(other).ok_or_else(|| self.missing(wanted))
@@ -227,7 +226,7 @@ impl Choice<'_> {
         unknown_column(wanted, self.names.iter().map(String::as_str))
     }
 
-    /// The column of a role: what the user says, what the format knows, or what names tell.
+    /// Returns the column of a role: from the options, the format or the usual names, in this order.
     fn find(&self, role: Role) -> Result<Option<usize>, String> {
         if let (Role::Radius, Radii::Column(name)) = (role, &self.options.radii) {
             return self.need(name).map(Some);
@@ -244,7 +243,7 @@ impl Choice<'_> {
         Ok(usual.iter().find_map(|name| self.position(name)))
     }
 
-    /// The columns of colors, if all three are there.
+    /// Returns the color columns, if all three exist.
     fn colors(&self) -> Result<Option<[usize; 3]>, String> {
         let [red, green, blue] =
             [self.find(Role::Red)?, self.find(Role::Green)?, self.find(Role::Blue)?];
@@ -256,8 +255,8 @@ impl Choice<'_> {
         Ok(long.or_else(short))
     }
 
-    /// Names of the columns that were asked for, whose slots become theirs; columns that have a role
-    /// are kept in it.
+    /// Returns the names of the requested extra columns and assigns their slots; columns with a role
+    /// keep it.
     fn asked(&self, slots: &mut [Slot]) -> Result<Vec<String>, String> {
         let mut extras = Vec::new();
         let columns = &self.options.columns;
@@ -273,7 +272,7 @@ impl Choice<'_> {
         Ok(extras)
     }
 
-    /// Adds all other columns that have a name of their own.
+    /// Adds all other columns with a unique name.
     fn add_rest(&self, slots: &mut [Slot], extras: &mut Vec<String>) {
         for (column, name) in self.names.iter().enumerate() {
             let own = !name.is_empty() && self.position(name) == Some(column);

@@ -1,26 +1,26 @@
-//! Names of types and texts that all frames of a file share.
+//! Common tables of types and texts for all frames of a file.
 
 use super::categories::{Codes, Kind, Kinds};
 use super::frame::ParticleFrame;
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// The types and texts of several frames of a file, in the order in which they first come.
+/// Types and texts of several frames of a file, in order of first occurrence.
 ///
-/// A frame lists its own in the order of its rows, which may change from frame to frame, and colors
-/// of categories follow that order. Frames that share their names have the same colors for them.
+/// A frame lists its names in the order of its rows, which may differ between frames, and category
+/// colors follow that order. A common table gives the same name the same color in all frames.
 #[derive(Clone, Debug, Default)]
 pub struct SharedNames {
     kinds: Table<Kind>,
-    /// Types that have an element, by their names.
+    /// Types with an element, by name.
     elements: HashMap<String, Kind>,
     materials: Table<String>,
-    /// By the names of columns.
+    /// Tables of text columns, by column name.
     texts: HashMap<String, Table<String>>,
 }
 
 impl SharedNames {
-    /// Adds the names of a frame, and has the frame list all names so far, in their common order.
+    /// Adds the names of a frame, and replaces the frame's tables by the common ones.
     pub fn share(&mut self, frame: &mut ParticleFrame) {
         self.share_elements(&mut frame.kinds);
         self.kinds.share(&mut frame.kinds.table, &mut frame.kinds.codes);
@@ -31,13 +31,13 @@ impl SharedNames {
         }
     }
 
-    /// Types of all frames so far.
+    /// Returns the types of all frames so far.
     pub fn kinds(&self) -> &[Kind] {
         &self.kinds.names
     }
 
-    /// Gives types the elements that they have in another frame: whether names are taken for elements
-    /// depends on all names of a frame.
+    /// Sets elements of types that have one in another frame: whether names are read as elements depends
+    /// on all names of a frame.
     fn share_elements(&mut self, kinds: &mut Kinds) {
         for kind in &mut kinds.table {
             if kind.element.is_some() {
@@ -49,7 +49,7 @@ impl SharedNames {
     }
 }
 
-/// Names by their places, and places by their names.
+/// Names in order of index, and indices by name.
 #[derive(Clone, Debug)]
 struct Table<T> {
     names: Vec<T>,
@@ -63,7 +63,7 @@ impl<T> Default for Table<T> {
 }
 
 impl<T: Clone + Eq + Hash> Table<T> {
-    /// Replaces a frame's own names by those of the table.
+    /// Replaces a frame's names by those of the table.
     fn share(&mut self, own: &mut Vec<T>, codes: &mut Codes) {
         if codes.is_empty() {
             return;

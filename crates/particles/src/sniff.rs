@@ -1,4 +1,4 @@
-//! Recognizes the format of a file by its first bytes and lines.
+//! Detects the format of a file from its first bytes and lines.
 
 use super::fields::Fields;
 use super::foreign::{self, Foreign};
@@ -7,20 +7,20 @@ use super::source::Source;
 use super::{cif, gro, gsd, header, line, number, numpy, pdb, ply, units, utf16};
 use crate::FileError;
 
-/// The formats that can be recognized.
+/// Help that lists the formats that can be detected.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
                      of crystals, GSD, PLY and arrays of NumPy; of others, name the format, as in --format xyz, \
                      or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
-/// Lines within which a data file of LAMMPS tells its number of atoms.
+/// Maximum number of lines before the number of atoms in a LAMMPS data file.
 const DATA_HEADER: usize = 40;
 
-/// The format that was asked for, or else the one the file seems to have.
+/// Returns the format in the options, or else the detected one.
 pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, FileError> {
     let fault = |message: String| FileError::whole_file(&source.path, message);
     let refuse = |Foreign { name, help }: Foreign| {
-        fault(format!("is {name}, which is not read here")).with_help(help)
+        fault(format!("is {name}, which is not supported")).with_help(help)
     };
     let head = &source.head[..];
     if let Some(foreign) = foreign::binary(head, &source.path) {
@@ -54,17 +54,18 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
     if let Some(format) = options.format {
         return Ok(format);
     }
-    let told = told(head, options);
-    // Titles of these files may say anything.
+    let detected = detect(head, options);
+    // Titles of these files may be any text, also signatures of other formats.
     let is_titled = |format: &Format| matches!(format, Format::Gro | Format::LammpsData);
-    if let Some(&format) = told.as_ref().ok().filter(|format| is_titled(format)) {
+    if let Some(&format) = detected.as_ref().ok().filter(|format| is_titled(format)) {
         return Ok(format);
     }
-    let pqr =
-        || foreign::pqr(head, &source.path).filter(|_| matches!(told, Err(_) | Ok(Format::Pdb)));
+    let pqr = || {
+        foreign::pqr(head, &source.path).filter(|_| matches!(detected, Err(_) | Ok(Format::Pdb)))
+    };
     match foreign::text(head, &source.path).or_else(pqr) {
         Some(foreign) => Err(refuse(foreign)),
-        None => told.map_err(|message| fault(message).with_help(KNOWN)),
+        None => detected.map_err(|message| fault(message).with_help(KNOWN)),
     }
 }
 
@@ -81,7 +82,7 @@ fn binary(head: &[u8]) -> Option<Format> {
     ply::is_ply(head).then_some(Format::Ply)
 }
 
-fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
+fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
     let head = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
     let mut raw = head.split(|&byte| byte == b'\n').skip(1);
     if let (Some(second), Some(third)) = (raw.next(), raw.next())
@@ -96,14 +97,14 @@ fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
     let is_excel = first.starts_with(b"sep=");
     let first = if is_excel { lines.next().unwrap_or_default() } else { first };
     let second = lines.clone().next();
-    if let Some(format) = told_by_words(first, lines) {
+    if let Some(format) = detect_keyword(first, lines) {
         let crystal = format == Format::MmCif && cif::is_crystal(head);
         return Ok(if crystal { Format::Cif } else { format });
     }
     if number::whole(first).is_some() {
         return Ok(Format::Xyz);
     }
-    // Two, because a title may begin with a number.
+    // Two numbers, because a title may begin with one.
     if Fields::marks(first).take(2).all(|field| number::parse(field).is_some()) {
         return Ok(Format::Xyzr);
     }
@@ -123,11 +124,11 @@ fn told(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
         return Ok(if separated { Format::Csv } else { Format::Xyzr });
     }
     let shown: String = String::from_utf8_lossy(first).chars().take(40).collect();
-    Err(format!("is in no format known here: it begins with `{}`", shown.escape_debug()))
+    Err(format!("has an unknown format: it begins with `{}`", shown.escape_debug()))
 }
 
-/// Formats that have words of their own.
-fn told_by_words<'l>(first: &[u8], lines: impl Iterator<Item = &'l [u8]>) -> Option<Format> {
+/// Returns the format of a file that begins with a format's keyword.
+fn detect_keyword<'l>(first: &[u8], lines: impl Iterator<Item = &'l [u8]>) -> Option<Format> {
     if first.starts_with(b"ITEM:") {
         return Some(Format::LammpsDump);
     }
@@ -142,7 +143,7 @@ fn told_by_words<'l>(first: &[u8], lines: impl Iterator<Item = &'l [u8]>) -> Opt
         words.next().is_some_and(|count| number::whole(count).is_some())
             && words.next() == Some(b"atoms")
     };
-    // The first line of a data file may say anything.
+    // The first line of a data file may be any text.
     let data = is_count(first) || { lines }.take(DATA_HEADER).any(is_count);
     data.then_some(Format::LammpsData)
 }
@@ -151,37 +152,40 @@ fn told_by_words<'l>(first: &[u8], lines: impl Iterator<Item = &'l [u8]>) -> Opt
 mod tests {
     use super::*;
 
-    fn told(head: &str) -> Result<Format, String> {
-        super::told(head.as_bytes(), &ReadOptions::default())
+    fn detect(head: &str) -> Result<Format, String> {
+        super::detect(head.as_bytes(), &ReadOptions::default())
     }
 
     #[test]
     fn content_tells_the_format() {
-        assert_eq!(told("60\nfullerene\nC 0 0 0\n"), Ok(Format::Xyz));
-        assert_eq!(told("# rows\n\n1 2 3 .5\n"), Ok(Format::Xyzr));
-        assert_eq!(told("\u{FEFF}-1,2e5;nan\r\n"), Ok(Format::Xyzr));
-        assert_eq!(told("id,X,Y,Z\n1,2,3,4\n"), Ok(Format::Csv));
-        assert_eq!(told("\"x\";\"y\";\"z\"\n"), Ok(Format::Csv));
-        assert_eq!(told("x\ty\tz\n"), Ok(Format::Csv));
-        assert_eq!(told("sep=;\nx;y;z\n1;2;3\n"), Ok(Format::Csv));
-        assert_eq!(told("X (m), Y (m), Z (m)\n"), Ok(Format::Csv));
-        assert_eq!(told("x y z radius\n1 2 3 4\n"), Ok(Format::Xyzr));
-        assert_eq!(told("px py pz\n1 2,5 3\n"), Ok(Format::Xyzr));
-        assert_eq!(told("px;py;pz;name\n1;2,5;3;a\n"), Ok(Format::Csv));
-        assert!(told("four words of text\n1 2 3\n").is_err());
-        assert!(told(" \n# nothing\n").is_err_and(|message| message == "holds no particles"));
-        assert_eq!(told("ITEM: TIMESTEP\n0\n"), Ok(Format::LammpsDump));
-        assert_eq!(told("# LAMMPS\n\n 17 atoms\n"), Ok(Format::LammpsData));
-        assert_eq!(told("LAMMPS data file\n\n17 atoms\n\n1 atom types\n"), Ok(Format::LammpsData));
+        assert_eq!(detect("60\nfullerene\nC 0 0 0\n"), Ok(Format::Xyz));
+        assert_eq!(detect("# rows\n\n1 2 3 .5\n"), Ok(Format::Xyzr));
+        assert_eq!(detect("\u{FEFF}-1,2e5;nan\r\n"), Ok(Format::Xyzr));
+        assert_eq!(detect("id,X,Y,Z\n1,2,3,4\n"), Ok(Format::Csv));
+        assert_eq!(detect("\"x\";\"y\";\"z\"\n"), Ok(Format::Csv));
+        assert_eq!(detect("x\ty\tz\n"), Ok(Format::Csv));
+        assert_eq!(detect("sep=;\nx;y;z\n1;2;3\n"), Ok(Format::Csv));
+        assert_eq!(detect("X (m), Y (m), Z (m)\n"), Ok(Format::Csv));
+        assert_eq!(detect("x y z radius\n1 2 3 4\n"), Ok(Format::Xyzr));
+        assert_eq!(detect("px py pz\n1 2,5 3\n"), Ok(Format::Xyzr));
+        assert_eq!(detect("px;py;pz;name\n1;2,5;3;a\n"), Ok(Format::Csv));
+        assert!(detect("four words of text\n1 2 3\n").is_err());
+        assert!(detect(" \n# nothing\n").is_err_and(|message| message == "holds no particles"));
+        assert_eq!(detect("ITEM: TIMESTEP\n0\n"), Ok(Format::LammpsDump));
+        assert_eq!(detect("# LAMMPS\n\n 17 atoms\n"), Ok(Format::LammpsData));
+        assert_eq!(
+            detect("LAMMPS data file\n\n17 atoms\n\n1 atom types\n"),
+            Ok(Format::LammpsData)
+        );
         let atom = "    1MET      N    1   5.202   4.356   3.155\n";
-        assert_eq!(told(&format!("12\n1\n{atom}")), Ok(Format::Gro));
-        assert_eq!(told(&format!("\n 1\n{atom}")), Ok(Format::Gro));
-        assert_eq!(told("12\n1\nC 1.0 2.0 3.0\n"), Ok(Format::Xyz));
-        assert_eq!(told("REMARK  made by hand\n"), Ok(Format::Pdb));
-        assert_eq!(told("ATOM      1  N   MET"), Ok(Format::Pdb));
-        assert_eq!(told("# comment\ndata_3KPR\n"), Ok(Format::MmCif));
-        assert_eq!(told("data_x\n_cell_length_a 4\n"), Ok(Format::Cif));
-        assert!(told("BEGIN_SCENE\n").is_err());
-        assert!(told("50 pct water\n").is_err());
+        assert_eq!(detect(&format!("12\n1\n{atom}")), Ok(Format::Gro));
+        assert_eq!(detect(&format!("\n 1\n{atom}")), Ok(Format::Gro));
+        assert_eq!(detect("12\n1\nC 1.0 2.0 3.0\n"), Ok(Format::Xyz));
+        assert_eq!(detect("REMARK  made by hand\n"), Ok(Format::Pdb));
+        assert_eq!(detect("ATOM      1  N   MET"), Ok(Format::Pdb));
+        assert_eq!(detect("# comment\ndata_3KPR\n"), Ok(Format::MmCif));
+        assert_eq!(detect("data_x\n_cell_length_a 4\n"), Ok(Format::Cif));
+        assert!(detect("BEGIN_SCENE\n").is_err());
+        assert!(detect("50 pct water\n").is_err());
     }
 }

@@ -1,8 +1,8 @@
-//! Source of bytes: a file or standard input, unpacked if it is packed, and in UTF-8 if it is in
-//! UTF-16.
+//! Source of bytes: a file or standard input, decompressed, and converted from UTF-16 to UTF-8 if
+//! needed.
 //!
-//! What a file is packed with is told by how it begins, whatever its name says. All decoders are
-//! Rust, so that the program needs no library of the system.
+//! The compression format is detected by magic number; the file name is ignored. All decoders are
+//! written in Rust, so the program needs no system library.
 
 use super::line;
 use super::progress::{CountedFile, ReadProgress};
@@ -17,26 +17,26 @@ use std::io::{self, BufRead, BufReader, Chain, Cursor, Read, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Number of bytes at the beginning of a file that its format is told by.
+/// Number of bytes at the beginning of a file from which its format is detected.
 pub(crate) const HEAD: usize = 1 << 16;
 
-/// Maximum length of a preamble of comments that is read to find what follows it.
+/// Maximum length of leading comments that are read to find the first data.
 const PREAMBLE: usize = 1 << 24;
 
-/// Maximum memory that an xz file may ask for, in KiB: four times as much as `xz -9` takes.
+/// Maximum memory for decoding an xz file, in KiB: four times that of `xz -9`.
 const XZ_MEMORY: u32 = 1 << 18;
 
-/// Magic numbers of packed files.
-const PACKINGS: [(&[u8], Packing); 4] = [
-    (&[0x1F, 0x8B], Packing::Gzip),
-    (b"BZh", Packing::Bzip2),
-    (&[0x28, 0xB5, 0x2F, 0xFD], Packing::Zstd),
-    (&[0xFD, b'7', b'z', b'X', b'Z', 0], Packing::Xz),
+/// Magic numbers of compressed files.
+const MAGICS: [(&[u8], Compression); 4] = [
+    (&[0x1F, 0x8B], Compression::Gzip),
+    (b"BZh", Compression::Bzip2),
+    (&[0x28, 0xB5, 0x2F, 0xFD], Compression::Zstd),
+    (&[0xFD, b'7', b'z', b'X', b'Z', 0], Compression::Xz),
 ];
 
 /// A compression format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Packing {
+enum Compression {
     Gzip,
     Bzip2,
     Xz,
@@ -48,12 +48,12 @@ pub(crate) struct Source {
     pub(crate) path: Arc<Path>,
     /// The first [`HEAD`] bytes, or all if there are fewer; more after a long preamble.
     pub(crate) head: Vec<u8>,
-    /// Reader of what follows the head.
+    /// Reader of the bytes after the head.
     pub(crate) reader: Box<dyn Read + Send>,
     pub(crate) progress: ReadProgress,
 }
 
-/// Returns whether this path stands for standard input.
+/// Returns whether this path means standard input.
 pub(crate) fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
@@ -72,25 +72,26 @@ impl Source {
         };
         let head = head(&mut raw).map_err(|error| fault(&error))?;
         let mut source = Self { path: path.clone(), head, reader: raw, progress: progress.clone() };
-        if let Some(packing) = Packing::of(&source.head) {
-            source =
-                source.through(|packed| packing.unpack(packed)).map_err(|error| fault(&error))?;
-            if let Some(inner) = Packing::of(&source.head) {
+        if let Some(compression) = Compression::of(&source.head) {
+            source = source
+                .decoded(|compressed| compression.decoder(compressed))
+                .map_err(|error| fault(&error))?;
+            if let Some(inner) = Compression::of(&source.head) {
                 let message =
-                    format!("is packed twice ({}, then {})", inner.name(), packing.name());
-                return Err(FileError::whole_file(&path, message).with_help("unpack it once"));
+                    format!("is compressed twice ({}, then {})", inner.name(), compression.name());
+                return Err(FileError::whole_file(&path, message).with_help("decompress it once"));
             }
         }
         if let Some(unit) = utf16::mark(&source.head) {
             let decode = |units| -> Box<dyn Read + Send> { Box::new(Utf16::new(units, unit)) };
-            source = source.through(decode).map_err(|error| fault(&error))?;
+            source = source.decoded(decode).map_err(|error| fault(&error))?;
         }
         source.read_preamble().map_err(|error| fault(&error))?;
         Ok(source)
     }
 
-    /// Returns the source of the bytes that a decoder makes of these.
-    fn through(
+    /// Returns the source of the decoded bytes.
+    fn decoded(
         self,
         decode: impl FnOnce(Chain<Cursor<Vec<u8>>, Box<dyn Read + Send>>) -> Box<dyn Read + Send>,
     ) -> io::Result<Self> {
@@ -98,8 +99,7 @@ impl Source {
         Ok(Self { path: self.path, head: head(&mut reader)?, reader, progress: self.progress })
     }
 
-    /// Lengthens the head where there is little else in it than comments, so that it shows what
-    /// follows them.
+    /// Extends a head that is mostly comments until it contains data.
     fn read_preamble(&mut self) -> io::Result<()> {
         let mut length = HEAD;
         while self.head.len() >= length
@@ -112,8 +112,7 @@ impl Source {
         Ok(())
     }
 
-    /// Returns all of it as a file, for readers that seek: the file itself, or a temporary copy of what was
-    /// packed or came through a pipe.
+    /// Returns a seekable file: the file itself, or a temporary copy if it was compressed or a pipe.
     pub(crate) fn into_file(mut self) -> Result<CountedFile, FileError> {
         let fault = |error: io::Error| {
             FileError::whole_file(&self.path, format!("cannot be read: {error}"))
@@ -133,7 +132,7 @@ impl Source {
     }
 }
 
-/// Bytes of the comments and blank lines that a text begins with.
+/// Returns the length of leading comments and blank lines in bytes.
 fn comments(text: &[u8]) -> usize {
     let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
     let lines = text.split_inclusive(|&byte| byte == b'\n');
@@ -150,9 +149,12 @@ fn head(reader: &mut impl Read) -> io::Result<Vec<u8>> {
     Ok(head)
 }
 
-impl Packing {
+impl Compression {
     fn of(head: &[u8]) -> Option<Self> {
-        PACKINGS.iter().find(|(magic, _)| head.starts_with(magic)).map(|&(_, packing)| packing)
+        MAGICS
+            .iter()
+            .find(|(magic, _)| head.starts_with(magic))
+            .map(|&(_, compression)| compression)
     }
 
     fn name(self) -> &'static str {
@@ -164,49 +166,51 @@ impl Packing {
         }
     }
 
-    fn unpack(self, packed: impl Read + Send + 'static) -> Box<dyn Read + Send> {
-        let packed = BufReader::with_capacity(HEAD, packed);
+    fn decoder(self, compressed: impl Read + Send + 'static) -> Box<dyn Read + Send> {
+        let compressed = BufReader::with_capacity(HEAD, compressed);
         let reader: Box<dyn Read + Send> = match self {
-            Self::Gzip => Box::new(MultiGzDecoder::new(packed)),
-            Self::Bzip2 => Box::new(bzip2::read::MultiBzDecoder::new(packed)),
-            Self::Xz => Box::new(XzReader::new_mem_limit(packed, true, XZ_MEMORY)),
-            Self::Zstd => Box::new(Zstd { packed, decoder: FrameDecoder::new(), inside: false }),
+            Self::Gzip => Box::new(MultiGzDecoder::new(compressed)),
+            Self::Bzip2 => Box::new(bzip2::read::MultiBzDecoder::new(compressed)),
+            Self::Xz => Box::new(XzReader::new_mem_limit(compressed, true, XZ_MEMORY)),
+            Self::Zstd => {
+                Box::new(Zstd { compressed, decoder: FrameDecoder::new(), inside: false })
+            }
         };
-        Box::new(Unpacked { reader, packing: self })
+        Box::new(Decompressed { reader, compression: self })
     }
 }
 
 /// A decoder whose errors name the compression format.
-struct Unpacked {
+struct Decompressed {
     reader: Box<dyn Read + Send>,
-    packing: Packing,
+    compression: Compression,
 }
 
-impl Read for Unpacked {
+impl Read for Decompressed {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.reader.read(buffer).map_err(|error| match error.kind() {
             io::ErrorKind::Interrupted => error,
             kind => {
-                let name = self.packing.name();
+                let name = self.compression.name();
                 io::Error::new(kind, format!("the {name} data is damaged or cut off ({error})"))
             }
         })
     }
 }
 
-/// All frames of a zstd file, one after another: the decoder reads one.
+/// Decoder of all frames of a zstd file; `FrameDecoder` reads only one.
 struct Zstd<R: BufRead> {
-    packed: R,
+    compressed: R,
     decoder: FrameDecoder,
     /// True if the decoder is within a frame.
     inside: bool,
 }
 
 impl<R: BufRead> Zstd<R> {
-    /// Begins the next frame, if there is one.
-    fn begin(&mut self) -> io::Result<bool> {
-        while !self.packed.fill_buf()?.is_empty() {
-            match self.decoder.init(&mut self.packed) {
+    /// Starts the next frame. Returns whether there is one.
+    fn start_frame(&mut self) -> io::Result<bool> {
+        while !self.compressed.fill_buf()?.is_empty() {
+            match self.decoder.init(&mut self.compressed) {
                 Ok(()) => {
                     self.inside = true;
                     return Ok(true);
@@ -215,7 +219,7 @@ impl<R: BufRead> Zstd<R> {
                     length,
                     ..
                 })) => {
-                    let mut skipped = self.packed.by_ref().take(u64::from(length));
+                    let mut skipped = self.compressed.by_ref().take(u64::from(length));
                     io::copy(&mut skipped, &mut io::sink())?;
                 }
                 Err(error) => return Err(io::Error::new(io::ErrorKind::InvalidData, error)),
@@ -230,12 +234,12 @@ impl<R: BufRead> Read for Zstd<R> {
         loop {
             while self.inside && self.decoder.can_collect() == 0 && !self.decoder.is_finished() {
                 let one = BlockDecodingStrategy::UptoBlocks(1);
-                self.decoder.decode_blocks(&mut self.packed, one).map_err(io::Error::other)?;
+                self.decoder.decode_blocks(&mut self.compressed, one).map_err(io::Error::other)?;
             }
             if self.inside && self.decoder.can_collect() > 0 {
                 return self.decoder.read(buffer);
             }
-            if !self.begin()? {
+            if !self.start_frame()? {
                 return Ok(0);
             }
         }
@@ -246,7 +250,7 @@ impl<R: BufRead> Read for Zstd<R> {
 mod tests {
     use super::*;
 
-    /// The length of the head of these bytes, once it shows what follows comments.
+    /// Returns the length of the head after its extension past comments.
     fn head_of(content: impl Read + Send + 'static) -> usize {
         let mut reader: Box<dyn Read + Send> = Box::new(content);
         let head = head(&mut reader).expect("memory");

@@ -1,21 +1,19 @@
-//! The word that a misspelled one may stand for: one rule for the command line, scene files,
-//! selections and scripts.
+//! Suggestions for misspelled words on the command line and in scene files, selections and scripts.
 
-/// Longest word, in bytes, that is compared with others: that takes the product of their lengths.
+/// Maximum length of compared words in bytes: the time is the product of their lengths.
 const COMPARED: usize = 64;
-/// Most words that a message lists.
+/// Maximum number of words in a message.
 const LISTED: usize = 32;
 
-/// Returns the known word nearest to `word`, if one is near: one that differs in case only, or by
-/// few letters.
+/// Returns the known word nearest to `word`, if one differs only in case or by few letters.
 pub fn nearest<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
     if word.is_empty() || word.len() > COMPARED {
         return None;
     }
     let lower = word.to_lowercase();
     let near = known.into_iter().filter(|candidate| candidate.len() <= COMPARED);
-    // Two edits in five letters: a swap, a slip or two, but not another word. Words of one letter
-    // are all near each other.
+    // Two edits in five letters allow a swap or two typos, but not another word. Words of one
+    // letter are all near each other.
     let near = near.filter_map(|candidate| {
         let edits = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
         let length = candidate.chars().count();
@@ -25,7 +23,7 @@ pub fn nearest<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Opti
     near.min_by_key(|(edits, _)| *edits).map(|(_, candidate)| candidate)
 }
 
-/// Returns the known words that differ from `word` in case only; none if `word` is known itself.
+/// Returns the known words that differ from `word` only in case; none if `word` is known itself.
 pub fn other_case<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Vec<&'w str> {
     let mut found = Vec::new();
     for candidate in known {
@@ -44,8 +42,8 @@ pub fn question<'w>(word: &str, known: impl IntoIterator<Item = &'w str>) -> Str
     nearest(word, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"))
 }
 
-/// Returns a question for the nearest of the known words, if one is near, or else a list of them,
-/// which are `what`.
+/// Returns a question for the nearest of the known words, if one is near, or else a list of them with
+/// the introduction `what`.
 pub fn help<'w>(word: &str, known: impl Iterator<Item = &'w str> + Clone, what: &str) -> String {
     match nearest(word, known.clone()) {
         Some(candidate) => format!("did you mean `{candidate}`?"),
@@ -53,7 +51,7 @@ pub fn help<'w>(word: &str, known: impl Iterator<Item = &'w str> + Clone, what: 
     }
 }
 
-/// Returns the first of some words, with commas between them.
+/// Returns the first words, separated by commas.
 pub fn list<'w>(known: impl Iterator<Item = &'w str>) -> String {
     let mut words: Vec<&str> = known.take(LISTED + 1).collect();
     if words.len() > LISTED {

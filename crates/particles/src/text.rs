@@ -1,4 +1,4 @@
-//! Rows of numbers, without a header or below one whose names have blanks between them.
+//! Reads rows of numbers, without a header or with one of blank-separated names.
 
 use super::builder::Builder;
 use super::fields::Fields;
@@ -13,25 +13,25 @@ use crate::error::listed;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Rows by which columns of ids and decimal commas are told.
+/// Number of rows from which columns of ids and decimal commas are detected.
 const ROWS: usize = 200;
 
-/// Roles of the columns that have no names.
+/// Roles of columns without names.
 const ROLES: [Role; 4] = [Role::X, Role::Y, Role::Z, Role::Radius];
 
-/// Rows of `x y z` or `x y z radius`, or either with an id before it; or columns that a header
-/// names, which may be in a comment, as `numpy.savetxt` writes it.
+/// Reader of rows of `x y z` or `x y z radius`, optionally after an id; or of columns named by a
+/// header, which may be in a comment, as `numpy.savetxt` writes it.
 pub(crate) struct Rows {
     lines: Lines,
     options: ReadOptions,
     layout: Layout,
-    /// A row with points instead of decimal commas.
+    /// Buffer for a row with points instead of decimal commas.
     row: Vec<u8>,
     done: bool,
 }
 
-/// Comments that may be headers: of as many names as there are columns, the last that names
-/// positions, or else the last.
+/// Comments that may be headers, by number of names: the last one that names positions, or else the
+/// last one.
 #[derive(Default)]
 struct Comments(HashMap<usize, Vec<String>>);
 
@@ -48,7 +48,7 @@ impl Comments {
     }
 }
 
-/// Roles of the columns of rows without a header.
+/// Layout of rows without a header.
 #[derive(Debug, PartialEq)]
 struct Layout {
     columns: usize,
@@ -68,7 +68,7 @@ impl Rows {
 }
 
 impl Layout {
-    /// The columns that a header names.
+    /// Returns the schema for the columns of a header.
     fn named(
         &mut self,
         line: &Line,
@@ -87,7 +87,7 @@ impl Layout {
         Ok(schema)
     }
 
-    /// The columns of a first row, by a `comment` above it that may name them.
+    /// Returns the schema for the first row; the `comment` above it may name its columns.
     fn schema(
         &mut self,
         line: &Line,
@@ -95,7 +95,7 @@ impl Layout {
         options: &ReadOptions,
     ) -> Result<Schema, FileError> {
         if let Some(names) = comment {
-            // A comment without x, y or z is just that, and roles may go by numbers.
+            // A comment without x, y or z is no header, and roles may refer to column numbers.
             let may_be_other = (axes(names) == 0 || !options.columns.roles.is_empty())
                 && self.has_usual_columns(options);
             match self.named(line, names, options) {
@@ -111,7 +111,7 @@ impl Layout {
         if !self.has_usual_columns(options) {
             let message =
                 format!("{} columns, but a row is `x y z` or `x y z radius`", self.columns);
-            let help = "say which columns are what, as in --columns x=1,y=2,z=3,radius=4, or put a \
+            let help = "assign roles to the columns, as in --columns x=1,y=2,z=3,radius=4, or put a \
                         line that names the columns before the rows; write decimal points, not commas";
             return Err(line.whole(message).with_help(help));
         }
@@ -120,14 +120,14 @@ impl Layout {
         Schema::with_roles(names.clone(), options, &known).map_err(|error| line.whole(error))
     }
 
-    /// Returns whether columns can be told without names, or the options say what they are.
+    /// Returns whether the columns are known without names, or assigned by the options.
     fn has_usual_columns(&self, options: &ReadOptions) -> bool {
         let columns = self.columns.saturating_sub(usize::from(self.has_ids));
         (3..=4).contains(&columns) || !options.columns.roles.is_empty()
     }
 
-    /// The columns of the first row, and whether what they begin with are ids: whole numbers, all
-    /// different, beside positions that are not all whole.
+    /// Returns the columns of the first row, and whether the first is an id: distinct whole numbers, while
+    /// the positions are not all whole.
     fn of(head: &[u8]) -> Self {
         let lines = || {
             let lines = head.split(|&byte| byte == b'\n');
@@ -152,15 +152,15 @@ impl Layout {
     }
 }
 
-/// Returns the number of x, y and z that are among names, be it with units.
+/// Returns how many of x, y and z are among the names, with or without units.
 fn axes(names: &[String]) -> usize {
     let has =
         |axis: &&str| names.iter().any(|name| units::split(name).0.eq_ignore_ascii_case(axis));
     ["x", "y", "z"].iter().filter(|axis| has(axis)).count()
 }
 
-/// Returns whether the commas of rows are decimal points: something else stands between their
-/// fields, of which three or more are numbers, and those with a comma have digits around it.
+/// Returns whether rows have decimal commas: other separators between fields, three or more numbers,
+/// and digits around each comma.
 fn has_decimal_commas<'l>(lines: impl Iterator<Item = &'l [u8]>) -> bool {
     let mut any = false;
     let content = lines.map(|line| &line[..memchr::memchr(b'#', line).unwrap_or(line.len())]);
@@ -180,7 +180,7 @@ fn has_decimal_commas<'l>(lines: impl Iterator<Item = &'l [u8]>) -> bool {
     any
 }
 
-/// A row with points instead of decimal commas, if it has any.
+/// Returns a row with points instead of decimal commas, if it has any.
 fn with_points(row: &[u8], decimal_commas: bool) -> Vec<u8> {
     let point = |&byte: &u8| if decimal_commas && byte == b',' { b'.' } else { byte };
     row.iter().map(point).collect()
@@ -236,7 +236,7 @@ impl FrameReader for Rows {
         let once = !std::mem::replace(&mut self.done, true);
         Ok(builder.filter(|_| once).map(|mut builder| {
             if self.layout.has_ids {
-                builder.frame.warnings.push("the first column is taken for ids".to_owned());
+                builder.frame.warnings.push("the first column is read as ids".to_owned());
             }
             if self.layout.decimal_commas {
                 builder.frame.warnings.push("commas are read as decimal points".to_owned());

@@ -1,15 +1,15 @@
-//! Things in a file that a picture of spheres does not show, said once for each kind of thing.
+//! Warnings about contents of a file that are not drawn as spheres, one for each kind.
 
 use super::frame::ParticleFrame;
 use crate::error::listed;
 
-/// A kind of thing that is not drawn.
+/// A kind of content that is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Undrawn {
     Bonds,
     Faces,
     Edges,
-    /// Ellipsoids, polyhedra, rods and other shapes that particles have.
+    /// Ellipsoids, polyhedra, rods and other shapes of particles.
     Shapes,
     Orientations,
     /// Ellipsoids of thermal displacement.
@@ -45,7 +45,7 @@ impl Undrawn {
 }
 
 impl ParticleFrame {
-    /// Says that things of the file are not drawn, if there are any.
+    /// Adds a warning that contents of the file are not drawn, if there are any.
     pub(crate) fn add_undrawn(&mut self, kind: Undrawn, count: u64) {
         if count > 0 {
             let text = kind.text(count);
@@ -55,14 +55,14 @@ impl ParticleFrame {
         }
     }
 
-    /// Says which arrays of the file are not used.
+    /// Adds a warning that lists the unused arrays of the file.
     pub(crate) fn add_unused_arrays(&mut self, names: &[&str]) {
         if !names.is_empty() {
             self.warnings.push(listed("arrays that are not used", names));
         }
     }
 
-    /// Says of shapes and orientations in columns that they are not drawn.
+    /// Adds a warning about columns of shapes and orientations, which are not drawn.
     pub(crate) fn add_undrawn_columns(&mut self) {
         let count = self.len() as u64;
         for (kind, names) in

@@ -1,4 +1,4 @@
-//! Units that names of columns have, as in `x (m)`, `radius [nm]` and `z / um`.
+//! Units in column names, as in `x (m)`, `radius [nm]` and `z / um`.
 
 use super::frame::LengthUnit;
 
@@ -25,7 +25,7 @@ const LENGTHS: [(&str, f64); 19] = [
     ("Mpc", 3.085_677_581_491_367e22),
 ];
 
-/// A name without its unit, and the unit.
+/// Splits a column name into the bare name and the unit.
 pub(crate) fn split(name: &str) -> (&str, Option<&str>) {
     for (open, close) in [('(', ')'), ('[', ']')] {
         let inner = name.strip_suffix(close).and_then(|name| name.rsplit_once(open));
@@ -45,8 +45,8 @@ fn meters(unit: &str) -> Option<f64> {
     LENGTHS.iter().find(|(own, _)| *own == unit).map(|(_, meters)| *meters)
 }
 
-/// The factor that makes lengths of the first column those of the second, by the units in their
-/// names; 1 where one has none.
+/// Returns the conversion factor from lengths of the first column to those of the second, by the units
+/// in their names; 1 if one has none.
 pub(crate) fn factor(name: &str, other: &str) -> Result<f64, String> {
     let ((_, Some(unit)), (_, Some(wanted))) = (split(name), split(other)) else { return Ok(1.0) };
     if unit == wanted {
@@ -61,7 +61,7 @@ pub(crate) fn factor(name: &str, other: &str) -> Result<f64, String> {
     })
 }
 
-/// The unit of length in a column's name.
+/// Returns the unit of length in a column's name.
 pub(crate) fn length(name: &str) -> LengthUnit {
     let meters = split(name).1.and_then(meters).unwrap_or(0.0);
     let known = [

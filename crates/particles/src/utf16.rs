@@ -1,27 +1,27 @@
-//! Text in UTF-16, which spreadsheets and Windows write, as UTF-8.
+//! Converts UTF-16, which spreadsheets and Windows write, to UTF-8.
 
 use std::io::{self, Read};
 
-/// Bytes that are read at once.
+/// Bytes per read.
 const BLOCK: usize = 1 << 16;
 
-/// Reads UTF-16 and gives UTF-8, without the byte order mark. Halves of surrogate pairs become
+/// Reader that converts UTF-16 to UTF-8, without the byte order mark. Unpaired surrogates become
 /// replacement characters.
 pub(crate) struct Utf16<R> {
     inner: R,
     unit: fn([u8; 2]) -> u16,
-    /// Bytes that no character was made of yet: half a unit, or the first half of a pair.
+    /// Undecoded bytes: half a code unit, or the first half of a surrogate pair.
     rest: Vec<u8>,
     text: Vec<u8>,
-    /// Number of bytes of `text` that were given.
+    /// Number of bytes of `text` that were returned.
     given: usize,
     ended: bool,
 }
 
-/// The order of the bytes of UTF-16 that begins with a byte order mark.
+/// Returns the conversion of bytes to code units for UTF-16 with a byte order mark.
 pub(crate) fn mark(head: &[u8]) -> Option<fn([u8; 2]) -> u16> {
     match head {
-        // UTF-32 begins so too.
+        // UTF-32 has the same first bytes.
         [0xFF, 0xFE, 0, 0, ..] => None,
         [0xFF, 0xFE, ..] => Some(u16::from_le_bytes),
         [0xFE, 0xFF, ..] => Some(u16::from_be_bytes),
@@ -29,32 +29,31 @@ pub(crate) fn mark(head: &[u8]) -> Option<fn([u8; 2]) -> u16> {
     }
 }
 
-/// The name of an encoding with wide characters that has no byte order mark for UTF-16, for text
-/// that seems to be in one.
+/// Returns the name of the encoding of a text that seems to be UTF-32, or UTF-16 without a byte order
+/// mark.
 pub(crate) fn unmarked(head: &[u8]) -> Option<&'static str> {
     if head.starts_with(&[0xFF, 0xFE, 0, 0]) || head.starts_with(&[0, 0, 0xFE, 0xFF]) {
         return Some("UTF-32");
     }
     let pairs = head.as_chunks::<2>().0;
     let is_text = |byte: u8| matches!(byte, b' '..=b'~' | b'\t' | b'\r' | b'\n');
-    let share = |wide: fn(&[u8; 2]) -> (u8, u8)| {
+    let mostly_ascii = |wide: fn(&[u8; 2]) -> (u8, u8)| {
         let text = pairs.iter().map(wide).filter(|&(low, high)| high == 0 && is_text(low));
         text.count() * 10 >= pairs.len() * 9 && pairs.len() > 2
     };
-    if share(|&[low, high]| (low, high)) {
+    if mostly_ascii(|&[low, high]| (low, high)) {
         return Some("UTF-16LE");
     }
-    share(|&[high, low]| (low, high)).then_some("UTF-16BE")
+    mostly_ascii(|&[high, low]| (low, high)).then_some("UTF-16BE")
 }
 
 impl<R: Read> Utf16<R> {
-    /// Creates a reader of a text that begins with a byte order mark, which told how bytes become a
-    /// `unit`.
+    /// Creates a reader of text with a byte order mark; `unit` converts bytes to code units.
     pub(crate) fn new(inner: R, unit: fn([u8; 2]) -> u16) -> Self {
         Self { inner, unit, rest: Vec::new(), text: Vec::new(), given: 0, ended: false }
     }
 
-    /// Makes the next characters.
+    /// Decodes the next characters.
     fn fill(&mut self) -> io::Result<()> {
         let mut bytes = std::mem::take(&mut self.rest);
         let before = bytes.len();
@@ -94,10 +93,10 @@ impl<R: Read> Read for Utf16<R> {
 mod tests {
     use super::*;
 
-    /// Gives a byte at a time.
-    struct Drops<'b>(&'b [u8]);
+    /// Reader that returns a byte at a time.
+    struct SmallReads<'b>(&'b [u8]);
 
-    impl Read for Drops<'_> {
+    impl Read for SmallReads<'_> {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             let length = buffer.len().min(1);
             self.0.read(&mut buffer[..length])
@@ -118,7 +117,7 @@ mod tests {
             Utf16::new(&file[..], unit).read_to_string(&mut read).expect("text");
             assert!(read == text);
             read.clear();
-            Utf16::new(Drops(&file[..999]), unit).read_to_string(&mut read).expect("text");
+            Utf16::new(SmallReads(&file[..999]), unit).read_to_string(&mut read).expect("text");
             assert!(text.starts_with(read.trim_end_matches(['?', '\u{FFFD}'])) && read.len() > 400);
             let name = if big { "UTF-16BE" } else { "UTF-16LE" };
             let plain: Vec<u8> = "1 2 3\n".repeat(9).encode_utf16().flat_map(bytes).collect();
@@ -137,7 +136,7 @@ mod tests {
             let mut read = String::new();
             Utf16::new(&file[..], u16::from_le_bytes).read_to_string(&mut read).expect("text");
             assert!(read == text, "{before}");
-            // A byte too many is half a unit.
+            // A surplus byte is half a code unit.
             file.push(b'd');
             read.clear();
             Utf16::new(&file[..], u16::from_le_bytes).read_to_string(&mut read).expect("text");

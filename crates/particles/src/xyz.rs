@@ -1,8 +1,8 @@
-//! XYZ of chemistry and extended XYZ: atoms by their symbols, positions in angstrom.
+//! Reads XYZ of chemistry and extended XYZ: element symbols, and positions in angstrom.
 //!
-//! The crate `extxyz` keeps a map of values for each atom, so this is our own. The comment of
-//! extended XYZ is as the format's authors describe it (github.com/libAtoms/extxyz): pairs
-//! `key=value`, of which `Lattice`, `Origin`, `pbc` and `Properties` mean something here.
+//! The crate `extxyz` isn't used: it stores a map of values for each atom. The comment of extended XYZ
+//! has pairs `key=value` (github.com/libAtoms/extxyz); `Lattice`, `Origin`, `pbc` and `Properties` are
+//! read.
 
 use super::builder::Builder;
 use super::cell::Cell;
@@ -16,10 +16,10 @@ use crate::FileError;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Most columns that `Properties` may name.
+/// Maximum number of columns in `Properties`.
 const COLUMNS: usize = 10_000;
 
-/// Roles of extended XYZ's columns that their names do not tell.
+/// Roles of extended XYZ's columns with unusual names.
 const KNOWN: [(Role, &str); 6] = [
     (Role::X, "pos_x"),
     (Role::Y, "pos_y"),
@@ -29,7 +29,7 @@ const KNOWN: [(Role, &str); 6] = [
     (Role::Blue, "color_z"),
 ];
 
-/// Reads frames of XYZ.
+/// Reader of the frames of XYZ.
 pub(crate) struct Xyz {
     lines: Lines,
     options: ReadOptions,
@@ -40,7 +40,7 @@ impl Xyz {
         Self { lines: Lines::new(source), options: options.clone() }
     }
 
-    /// The number of atoms, after blank lines and comments; `None` if there is nothing else.
+    /// Reads the number of atoms after blank lines and comments; returns `None` at the end of the file.
     fn count(&mut self) -> Result<Option<u64>, FileError> {
         while let Some(line) = self.lines.next()? {
             if !line.is_blank() && !line.bytes.starts_with(b"#") {
@@ -55,7 +55,7 @@ impl Xyz {
         Ok(None)
     }
 
-    /// Reads the comment, and the columns of the `count` rows that follow.
+    /// Reads the comment, and returns the columns of the `count` following rows.
     fn head(&mut self, count: u64) -> Result<(Comment, Arc<Schema>), FileError> {
         let comment = match self.lines.next()? {
             Some(line) => Comment::new(&line, &self.options)?,
@@ -115,7 +115,7 @@ impl FrameReader for Xyz {
     }
 }
 
-/// Columns of plain XYZ: a symbol and a position, or, in three columns, a position alone.
+/// Returns the columns of plain XYZ: a symbol and a position, or only a position in three columns.
 fn plain(line: &Line, options: &ReadOptions) -> Result<Schema, FileError> {
     let columns = line.fields().count();
     let first = line.fields().next().unwrap_or_default();
@@ -136,7 +136,7 @@ struct Comment {
     step: Option<i64>,
     time: Option<f64>,
     schema: Option<Arc<Schema>>,
-    /// Whether numbers are types, as LAMMPS writes them, not elements.
+    /// True if numbers are types, as LAMMPS writes them, not elements.
     has_types: bool,
 }
 
@@ -182,10 +182,10 @@ fn schema(line: &Line, names: Vec<String>, options: &ReadOptions) -> Result<Sche
     })
 }
 
-/// The names of the columns that `Properties` lists: `name:type:count`, and so on.
+/// Returns the names of the columns in `Properties`: `name:type:count`, and so on.
 fn columns(line: &Line, value: &str) -> Result<Vec<String>, FileError> {
     let fault = || {
-        let message = format!("`{value}` are no properties");
+        let message = format!("invalid Properties `{value}`");
         line.whole(message).with_help("properties are name:type:count, such as pos:R:3")
     };
     let parts: Vec<&str> = value.split(':').collect();
@@ -217,14 +217,14 @@ fn numbers<const COUNT: usize>(
     numbers.ok_or_else(|| line.whole(format!("{key} is `{value}`, but must be {COUNT} numbers")))
 }
 
-/// `T T F` and the like.
+/// Parses boundary conditions such as `T T F`.
 fn periodic(value: &str) -> [bool; 3] {
     let letters = |letter: char| letter.is_whitespace() || ",[]".contains(letter);
     let mut fields = value.split(letters).filter(|field| !field.is_empty());
     [(); 3].map(|()| !fields.next().is_some_and(|field| field.starts_with(['F', 'f', '0'])))
 }
 
-/// All `key=value` of a comment; values may be in quotes, and then hold blanks.
+/// Returns all `key=value` pairs of a comment; quoted values may contain blanks.
 fn pairs(text: &str) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     let mut letters = text.chars().peekable();
@@ -239,7 +239,7 @@ fn pairs(text: &str) -> Vec<(String, String)> {
     pairs
 }
 
-/// What stands before a letter that ends it, or within quotes, brackets or braces.
+/// Reads a word up to a terminating character, or a quoted or bracketed one.
 fn word(letters: &mut std::iter::Peekable<std::str::Chars>, ends: impl Fn(char) -> bool) -> String {
     let pairs = [('"', '"'), ('\'', '\''), ('{', '}'), ('[', ']')];
     let close = letters.peek().and_then(|open| pairs.iter().find(|(own, _)| own == open));

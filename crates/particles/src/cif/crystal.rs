@@ -1,4 +1,4 @@
-//! CIF of crystals: a cell, the atoms of the asymmetric unit, and the symmetry that repeats them
+//! CIF of crystals: a cell, the atoms of the asymmetric unit, and the symmetry operations
 //! (CIF core dictionary, <https://www.iucr.org/resources/cif/dictionaries/cif_core>).
 
 use super::declared::{Contents, Declared, Resolved};
@@ -27,17 +27,17 @@ use std::sync::Arc;
 /// Bytes of an atom as a sphere: four numbers in double precision, a material and a color.
 const ATOM_BYTES: u64 = (4 * size_of::<f64>() + size_of::<u32>() + size_of::<Rgb>()) as u64;
 
-/// Prefixes of the columns of atoms; newer files have a point at the end.
+/// Prefix of the columns of atoms; newer files have a point at the end.
 const SITE: &str = "_atom_site_";
 
-/// Shares of the edges.
-const SHARES: [(Role, &str); 3] =
+/// Columns of fractional coordinates.
+const FRACTIONAL: [(Role, &str); 3] =
     [(Role::X, "fract_x"), (Role::Y, "fract_y"), (Role::Z, "fract_z")];
 
 /// Columns of numbers, some of which may be unknown.
 const NUMBERS: [&str; 3] = ["occupancy", "U_iso_or_equiv", "B_iso_or_equiv"];
 
-/// Tags of symmetry operations: of now, of old files and of magnetic CIF.
+/// Tags of symmetry operations: current ones, and those of old files and magnetic CIF.
 const OPERATIONS: [&str; 4] = [
     "_space_group_symop_operation_xyz",
     "_symmetry_equiv_pos_as_xyz",
@@ -45,7 +45,7 @@ const OPERATIONS: [&str; 4] = [
     "_space_group_symop_magn_centering_xyz",
 ];
 
-/// Tags of Hermann-Mauguin symbols, of Hall symbols and of the numbers of space groups.
+/// Tags of Hermann-Mauguin symbols; those of Hall symbols and space group numbers follow.
 const SYMBOLS: [&str; 4] = [
     "_space_group_name_h-m_alt",
     "_symmetry_space_group_name_h-m",
@@ -55,7 +55,7 @@ const SYMBOLS: [&str; 4] = [
 const HALL: [&str; 2] = ["_space_group_name_hall", "_symmetry_space_group_name_hall"];
 const NUMBERS_OF_GROUPS: [&str; 2] = ["_space_group_it_number", "_symmetry_int_tables_number"];
 
-/// Tags that serve as a title, the best last.
+/// Tags that serve as a title, in order of increasing preference.
 const TITLES: [&str; 4] = [
     "_chemical_formula_sum",
     "_chemical_name_systematic",
@@ -81,7 +81,7 @@ struct Block {
     displacements: u64,
 }
 
-/// The listed atoms.
+/// Atoms of the asymmetric unit, as listed.
 struct Atoms {
     /// Positions are fractional coordinates.
     frame: ParticleFrame,
@@ -93,7 +93,7 @@ impl Default for Block {
         Self {
             title: (0, String::new()),
             lengths: [0.0; 3],
-            // What they are where a file does not say.
+            // The default without tags for them.
             angles: [90.0; 3],
             symmetry: Declared::default(),
             atoms: None,
@@ -108,7 +108,7 @@ impl Crystal {
         Self { tokens: Tokens::new(Lines::new(source)), options: options.clone() }
     }
 
-    /// A tag and its value.
+    /// Reads a tag and its value.
     fn item(&mut self, tag: &str, block: &mut Block) -> Result<(), FileError> {
         let Some(Token::Value(value)) = self.tokens.next()? else {
             self.tokens.back();
@@ -117,7 +117,7 @@ impl Crystal {
         let text = String::from_utf8_lossy(value).trim().to_owned();
         let known = !matches!(&text[..], "" | "?" | ".");
         let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag == *letter);
-        let number = || self.tokens.line().number(certain(text.as_bytes()));
+        let number = || self.tokens.line().number(strip_uncertainty(text.as_bytes()));
         if let Some(edge) = axis(["_cell_length_a", "_cell_length_b", "_cell_length_c"]) {
             block.lengths[edge] = number()?;
         } else if let Some(angle) =
@@ -134,7 +134,7 @@ impl Crystal {
         Ok(())
     }
 
-    /// Takes what a tag says of the symmetry, if it is of that.
+    /// Stores the value of a symmetry tag; ignores other tags.
     fn symmetry(&self, tag: &str, text: String, symmetry: &mut Declared) -> Result<(), FileError> {
         if SYMBOLS.contains(&tag) {
             symmetry.symbols.push(text);
@@ -150,22 +150,22 @@ impl Crystal {
             if list.len() > MOST {
                 let message = format!("more than {MOST} symmetry operations");
                 let error = self.tokens.error(message);
-                return Err(error.with_help("no space group has so many"));
+                return Err(error.with_help("no space group has more"));
             }
         }
         Ok(())
     }
 
     fn operation(&self, text: &str) -> Result<Operation, FileError> {
-        // Magnetic CIF has the reversal of time as a fourth part.
+        // Magnetic CIF has time reversal as a fourth component.
         let place = text.strip_suffix(",+1").or_else(|| text.strip_suffix(",-1")).unwrap_or(text);
         Operation::parse(place).ok_or_else(|| {
-            let error = self.tokens.error(format!("`{text}` is no symmetry operation"));
+            let error = self.tokens.error(format!("`{text}` is not a symmetry operation"));
             error.with_help("operations are written as in -x, y+1/2, z")
         })
     }
 
-    /// A loop: operations, atoms, or what is passed over.
+    /// Reads a loop of operations or atoms, or skips another loop.
     fn list(&mut self, block: &mut Block) -> Result<(), FileError> {
         let mut tags = Vec::new();
         while let Some(Token::Tag(tag)) = self.tokens.next()? {
@@ -173,7 +173,7 @@ impl Crystal {
         }
         self.tokens.back();
         let tags_now: Vec<String> = tags.iter().map(|tag| plain(tag)).collect();
-        let is_site = |tag: &String| *tag == format!("{SITE}{}", SHARES[0].1);
+        let is_site = |tag: &String| *tag == format!("{SITE}{}", FRACTIONAL[0].1);
         let is_symmetry = |tag: &&String| {
             let tags = OPERATIONS.iter().chain(&SYMBOLS).chain(&HALL).chain(&NUMBERS_OF_GROUPS);
             tags.into_iter().any(|own| own == *tag)
@@ -212,10 +212,10 @@ impl Crystal {
         let names: Vec<String> = names.collect();
         let has_symbols = names.iter().any(|name| name == "type_symbol");
         let label = (!has_symbols).then_some((Role::Kind, "label"));
-        let known: Vec<(Role, &str)> = SHARES.into_iter().chain(label).collect();
-        let places = SHARES.map(|(_, share)| names.iter().position(|name| name == share));
+        let known: Vec<(Role, &str)> = FRACTIONAL.into_iter().chain(label).collect();
+        let places = FRACTIONAL.map(|(_, tag)| names.iter().position(|name| name == tag));
         if let Some(axis) = places.iter().position(Option::is_none) {
-            let message = format!("no {SITE}{} in this loop of atoms", SHARES[axis].1);
+            let message = format!("no {SITE}{} in this loop of atoms", FRACTIONAL[axis].1);
             return Err(self.tokens.error(message));
         }
         let mut occupancies = Occupancies::new(&names);
@@ -229,7 +229,7 @@ impl Crystal {
             if places.iter().flatten().any(unknown) {
                 nowhere += 1;
             } else {
-                builder.row(&self.tokens.line(), rows.fields().map(certain))?;
+                builder.row(&self.tokens.line(), rows.fields().map(strip_uncertainty))?;
                 occupancies.read(&rows);
             }
         }
@@ -246,7 +246,7 @@ impl Crystal {
         Ok(Atoms { frame, occupancies })
     }
 
-    /// The frame of a block; `None` if it has no atoms.
+    /// Returns the frame of a block; `None` if it has no atoms.
     fn frame(&self, mut block: Block) -> Result<Option<ParticleFrame>, FileError> {
         let Some(Atoms { frame: mut atoms, mut occupancies }) = block.atoms.take() else {
             return Ok(None);
@@ -257,7 +257,7 @@ impl Crystal {
             let message = format!("there is no cell with edges {lengths:?} and angles {angles:?}");
             fault(message).with_help("a crystal needs _cell_length_a, _b and _c, and its angles")
         })?;
-        leave_out_lesser_groups(&mut atoms, &mut occupancies);
+        keep_main_groups(&mut atoms, &mut occupancies);
         let positions: Vec<DVec3> = (0..atoms.len()).map(|row| atoms.position(row)).collect();
         let contents = Contents { cell: &cell, positions: &positions };
         let Resolved { operations, warnings } = block.symmetry.resolve(contents);
@@ -292,8 +292,8 @@ impl FrameReader for Crystal {
     }
 }
 
-/// Leaves out the atoms of all disorder groups but the main ones.
-fn leave_out_lesser_groups(atoms: &mut ParticleFrame, occupancies: &mut Occupancies) {
+/// Removes the atoms of all disorder groups but the main ones.
+fn keep_main_groups(atoms: &mut ParticleFrame, occupancies: &mut Occupancies) {
     let keep = occupancies.main_groups();
     let lesser = keep.iter().filter(|keep| !**keep).count();
     if lesser > 0 {
@@ -301,25 +301,25 @@ fn leave_out_lesser_groups(atoms: &mut ParticleFrame, occupancies: &mut Occupanc
         occupancies.retain(&keep);
         atoms.warnings.push(format!(
             "{} left out: of each disorder, the group with the greatest occupancy is drawn",
-            counted(lesser, "listed atom is", "listed atoms are"),
+            count_text(lesser, "listed atom is", "listed atoms are"),
         ));
     }
     let about = occupancies.about_symmetry();
     if about > 0 {
         atoms.warnings.push(format!(
             "{} disordered about a symmetry element: all images are drawn, though they overlap",
-            counted(about, "listed atom is", "listed atoms are"),
+            count_text(about, "listed atom is", "listed atoms are"),
         ));
     }
 }
 
-/// Positions in fractional coordinates, and the rows of the listed atoms that they are images of.
+/// Images of the listed atoms in fractional coordinates, with the rows of their atoms.
 struct Images {
     rows: Vec<u32>,
     places: Vec<DVec3>,
 }
 
-/// All images of the listed positions; where there is no symmetry, the positions as they are.
+/// Returns all symmetry images of the listed positions; without symmetry, the positions themselves.
 fn repeat(positions: &[DVec3], operations: &[Operation], cell: &Cell) -> Images {
     let (mut rows, mut places) = (Vec::new(), Vec::new());
     for (row, position) in positions.iter().enumerate() {
@@ -334,10 +334,10 @@ fn repeat(positions: &[DVec3], operations: &[Operation], cell: &Cell) -> Images 
     Images { rows, places }
 }
 
-/// Puts an atom at each image, and of those that share a site the one with the greatest occupancy.
+/// Places an atom at each image; at shared sites, only the atom with the greatest occupancy.
 fn place(atoms: &mut ParticleFrame, images: &Images, occupancies: &Occupancies, cell: &Cell) {
     let Images { rows, places } = images;
-    let shared = occupancies.share(Positions { rows, places, cell });
+    let shared = occupancies.select_on_sites(Positions { rows, places, cell });
     atoms.pick(rows);
     for (row, place) in places.iter().enumerate() {
         [atoms.x[row], atoms.y[row], atoms.z[row]] = cell.cartesian(place.to_array()).to_array();
@@ -348,36 +348,36 @@ fn place(atoms: &mut ParticleFrame, images: &Images, occupancies: &Occupancies, 
         atoms.warnings.push(format!(
             "{} shared by several atoms: the one with the greatest occupancy is drawn, and {} left \
              out",
-            counted(shared.sites, "site is", "sites are"),
-            counted(others, "other is", "others are"),
+            count_text(shared.sites, "site is", "sites are"),
+            count_text(others, "other is", "others are"),
         ));
     }
 }
 
-fn counted(count: usize, one: &str, many: &str) -> String {
+fn count_text(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-/// The element that a label begins with, as `O1A` with oxygen.
+/// Returns the element at the beginning of a label: oxygen for `O1A`.
 fn element(label: &str) -> Option<Element> {
     let end = label.find(|letter: char| !letter.is_ascii_alphabetic()).unwrap_or(label.len());
     (1..=end.min(2)).rev().find_map(|letters| Element::from_symbol(&label[..letters]))
 }
 
-/// A tag in the spelling of old files.
+/// Normalizes a tag to the spelling of old files.
 fn plain(tag: &str) -> String {
     tag.replace('.', "_").to_ascii_lowercase()
 }
 
-/// A number without what says how certain it is: `0.123` of `0.123(4)`.
-pub(super) fn certain(field: &[u8]) -> &[u8] {
+/// Strips the standard uncertainty from a number: `0.123` from `0.123(4)`.
+pub(super) fn strip_uncertainty(field: &[u8]) -> &[u8] {
     let open = field.strip_suffix(b")").and_then(|inner| memchr::memrchr(b'(', inner));
     open.map(|end| &field[..end]).filter(|value| number::parse(value).is_some()).unwrap_or(field)
 }
 
-/// Whether a CIF file that begins so is that of a crystal.
+/// Returns whether a CIF file with this head is that of a crystal.
 pub(in super::super) fn is_crystal(head: &[u8]) -> bool {
     let has = |tag: &str| memmem::find(head, tag.as_bytes()).is_some();
-    let shares = has("_atom_site_fract_x") || has("_atom_site.fract_x");
-    !has("_atom_site.Cartn_x") && (shares || has("_cell_length_a"))
+    let fractional = has("_atom_site_fract_x") || has("_atom_site.fract_x");
+    !has("_atom_site.Cartn_x") && (fractional || has("_cell_length_a"))
 }

@@ -1,5 +1,5 @@
-//! The symmetry that a block declares, in up to four ways, and the operations to draw with: the
-//! listed ones, or else those of the Hall symbol, of the Hermann-Mauguin symbol or of the number.
+//! Symmetry operations of a crystal from its declared symmetry. A block may declare symmetry in four
+//! ways; in order of precedence: listed operations, Hall symbol, Hermann-Mauguin symbol, number.
 
 use super::hall;
 use super::space_group::{Setting, Symbol};
@@ -7,31 +7,30 @@ use super::symmetry::{Operation, SAME, distance, images};
 use crate::cell::Cell;
 use glam::{DMat3, DVec3};
 
-/// Difference between a cell and its images under symmetry, relative to its edges, above which the
-/// cell does not have the symmetry.
+/// Maximum difference between a cell with a symmetry and its images under it, relative to its edges.
 const MISFIT: f64 = 0.03;
 
-/// Differences of this size are rounding of the cell's edges and angles.
+/// Differences of misfit up to this are due to rounding of the cell's edges and angles.
 const EQUAL_MISFIT: f64 = 1e-3;
 
-/// Distances in angstrom that are equal but for rounding.
+/// Difference between equal distances due to rounding, in angstrom.
 const EQUAL_DISTANCE: f64 = 0.01;
 
-/// Number of listed positions that are looked at to tell origins apart.
+/// Maximum number of listed positions that are used to distinguish origins.
 const POSITIONS: usize = 60;
 
-/// Symmetry as a block declares it.
+/// Symmetry declarations of a block.
 #[derive(Default)]
 pub(super) struct Declared {
     pub(super) operations: Vec<Operation>,
-    /// Translations that magnetic CIF lists apart from the operations.
+    /// Centering translations, which magnetic CIF lists separately.
     pub(super) centerings: Vec<Operation>,
     pub(super) hall: Option<String>,
     pub(super) symbols: Vec<String>,
     pub(super) number: Option<u32>,
 }
 
-/// The operations to draw with, and what is to be said of them.
+/// Symmetry operations to apply, with warnings about them.
 pub(super) struct Resolved {
     pub(super) operations: Vec<Operation>,
     pub(super) warnings: Vec<String>,
@@ -44,7 +43,7 @@ pub(super) struct Contents<'c> {
     pub(super) positions: &'c [DVec3],
 }
 
-/// A setting that a symbol or number may stand for.
+/// A setting that a symbol or number may mean.
 struct Candidate {
     setting: Setting,
     operations: Vec<Operation>,
@@ -52,12 +51,12 @@ struct Candidate {
 }
 
 impl Declared {
-    /// The operations of the strongest declaration that is understood. The weaker ones are compared
-    /// with it.
+    /// Returns the operations of the valid declaration with the highest precedence, and compares the
+    /// others with it.
     pub(super) fn resolve(&self, contents: Contents) -> Resolved {
         let mut warnings = Vec::new();
-        let Some((source, operations)) = self.strongest(contents, &mut warnings) else {
-            warnings.push(self.unknown());
+        let Some((source, operations)) = self.preferred(contents, &mut warnings) else {
+            warnings.push(self.unknown_text());
             return Resolved { operations: Vec::new(), warnings };
         };
         if misfit(&operations, contents.cell) > MISFIT {
@@ -70,8 +69,8 @@ impl Declared {
         Resolved { operations, warnings }
     }
 
-    /// The source of the operations, and the operations; `None` if nothing is known of them.
-    fn strongest(
+    /// Returns the source of the operations and the operations; `None` if there is no valid declaration.
+    fn preferred(
         &self,
         contents: Contents,
         warnings: &mut Vec<String>,
@@ -84,7 +83,7 @@ impl Declared {
             if let Some(operations) = hall::operations(hall) {
                 return Some((hall_source(hall), operations));
             }
-            warnings.push(format!("the Hall symbol `{hall}` is not understood"));
+            warnings.push(format!("the Hall symbol `{hall}` is invalid"));
         }
         for text in &self.symbols {
             let symbol = Symbol::new(text);
@@ -103,12 +102,13 @@ impl Declared {
         let name = chosen.setting.axes_name();
         warnings.extend(self.symbols.first().map(|symbol| unknown_symbol(symbol)));
         if settings.iter().any(|other| other.axes_name() != name) {
-            warnings.push(format!("{source} leaves the axes open: those of {name} are taken"));
+            warnings
+                .push(format!("{source} does not determine the axes: those of {name} are used"));
         }
         Some((source, chosen.operations))
     }
 
-    /// The listed operations with all centerings, the identity first or where it is listed.
+    /// Returns the listed operations with all centerings; adds the identity first if it isn't listed.
     fn listed(&self) -> Vec<Operation> {
         let mut group: Vec<Operation> = Vec::new();
         let mut add = |operation: Operation| {
@@ -128,16 +128,16 @@ impl Declared {
         group
     }
 
-    /// Declarations that do not go with the operations that are used.
+    /// Returns the declarations that contradict the operations in use.
     fn contradictions(&self, used: &[Operation]) -> Vec<String> {
         let hall = self.hall.as_deref().and_then(|hall| {
             let other = hall::operations(hall)?;
-            (!are_alike(used, &other)).then(|| hall_source(hall))
+            (!have_same_rotations(used, &other)).then(|| hall_source(hall))
         });
         let symbols = self.symbols.iter().filter(|text| {
             let settings = Setting::of_symbol(&Symbol::new(text));
             !settings.is_empty()
-                && !settings.iter().any(|setting| are_alike(used, &setting.operations()))
+                && !settings.iter().any(|setting| have_same_rotations(used, &setting.operations()))
         });
         let number = self.number.filter(|&number| {
             let settings = Setting::of_number(number);
@@ -149,10 +149,10 @@ impl Declared {
         hall.into_iter().chain(symbols).chain(number.map(number_source)).collect()
     }
 
-    fn unknown(&self) -> String {
+    fn unknown_text(&self) -> String {
         let drawn = "only the listed atoms are drawn";
         let named = self.symbols.first().map(|symbol| unknown_symbol(symbol));
-        let numbered = || Some(format!("there is no space group of the number {}", self.number?));
+        let numbered = || Some(format!("there is no space group number {}", self.number?));
         let hall = || self.hall.as_ref().map(|_| "names no other symmetry".to_owned());
         let nothing = || "names no space group and lists no symmetry operations".to_owned();
         format!("{}: {drawn}", named.or_else(numbered).or_else(hall).unwrap_or_else(nothing))
@@ -175,7 +175,8 @@ fn unknown_symbol(symbol: &str) -> String {
     format!("the space group `{symbol}` is not known, and its operations are not listed")
 }
 
-/// The setting that fits the cell best and, where the origin is open, keeps atoms farthest apart.
+/// Returns the setting that fits the cell best; if the origin is ambiguous, the setting with the
+/// greatest distance between atoms.
 fn choose(
     source: &str,
     settings: &[Setting],
@@ -193,7 +194,7 @@ fn choose(
             candidates.iter().filter(|one| choice.is_none_or(|own| own == one.setting.choice));
         named.map(|one| one.misfit).reduce(f64::min)
     };
-    // Axes that the symbol names but the cell does not have are not taken.
+    // The cell overrides the axes in the symbol.
     let chosen = choice.filter(|choice| {
         let named = least(&candidates, Some(choice));
         named.is_some_and(|named| {
@@ -211,19 +212,19 @@ fn choose(
         candidates.iter().map(|one| Packing::new(&one.operations, contents)).collect();
     let widest = packings.iter().map(|one| one.spacing).fold(0.0, f64::max);
     let wide = (0..packings.len()).filter(|&at| packings[at].spacing >= widest - EQUAL_DISTANCE);
-    // Of equals the last: origins at inversion centers are the second of two.
+    // The last wins ties: origins at inversion centers are the second choice.
     let index = wide.rev().min_by_key(|&at| packings[at].atoms)?;
     let chosen = candidates.swap_remove(index);
     if open {
         let name = chosen.setting.name();
         warnings.push(format!(
-            "{source} leaves the origin open: {name} is taken, by the distances of atoms"
+            "{source} does not determine the origin: {name} is used, by the distances of atoms"
         ));
     }
     Some(chosen)
 }
 
-/// The greatest relative change of the cell's edges and angles by an operation.
+/// Returns the maximum relative change of the cell's edges and angles by an operation.
 fn misfit(operations: &[Operation], cell: &Cell) -> f64 {
     let [a, b, c] = cell.vectors;
     let edges = DMat3::from_cols(a, b, c);
@@ -242,10 +243,10 @@ fn misfit(operations: &[Operation], cell: &Cell) -> f64 {
     misfit
 }
 
-/// Measure of how the listed positions and their images fill the cell: with the right origin, atoms
-/// are farther apart and, as special positions are taken, fewer.
+/// Distance and number of atoms for a choice of origin. With the right origin, atoms are farther
+/// apart, and fewer because they are at special positions.
 struct Packing {
-    /// The least distance in angstrom.
+    /// Minimum distance in angstrom.
     spacing: f64,
     atoms: usize,
 }
@@ -265,7 +266,7 @@ impl Packing {
                 packing.atoms += 1;
                 let others = sites.iter().enumerate();
                 let away = others.map(|(other, place)| (other, distance(image, *place, cell)));
-                // The images of a site are apart, but for the site itself.
+                // Images of a site are distinct from each other, so only the site itself is skipped.
                 let away = away.filter(|&(other, away)| other != index || away > SAME);
                 packing.spacing = away.fold(packing.spacing, |least, (_, away)| least.min(away));
             }
@@ -274,8 +275,8 @@ impl Packing {
     }
 }
 
-/// Returns whether two groups have the same rotations and as many translations.
-fn are_alike(one: &[Operation], other: &[Operation]) -> bool {
+/// Returns whether two groups have the same rotations and equally many translations.
+fn have_same_rotations(one: &[Operation], other: &[Operation]) -> bool {
     let has = |group: &[Operation], operation: &Operation| {
         group.iter().any(|own| own.matrix == operation.matrix)
     };
@@ -284,8 +285,8 @@ fn are_alike(one: &[Operation], other: &[Operation]) -> bool {
         && other.iter().all(|operation| has(one, operation))
 }
 
-/// The traces of all rotations of a group, sorted, each once however the cell is centered: they tell
-/// crystal classes apart whatever the axes are.
+/// Returns the sorted traces of a group's rotations, each once regardless of centering. They
+/// distinguish crystal classes for any choice of axes.
 fn class(group: &[Operation]) -> Vec<i32> {
     let mut matrices: Vec<DMat3> = Vec::new();
     for operation in group {
@@ -325,7 +326,7 @@ mod tests {
         Declared { number: Some(number), ..Declared::default() }
     }
 
-    /// The number of operations to draw with, and what is said of them.
+    /// Returns the number of operations and the warnings.
     fn resolved(declared: &Declared, cell: &Cell, positions: &[DVec3]) -> (usize, String) {
         let resolved = declared.resolve(Contents { cell, positions });
         (resolved.operations.len(), resolved.warnings.join("; "))
@@ -359,7 +360,7 @@ mod tests {
             // To the image at 0.9, 0.8 and 0.7.
             ("-P 1", &[first], 8.0 * 0.6, 2),
             ("P 1", &[DVec3::ZERO, DVec3::X * 0.5], 4.0, 2),
-            // Places that are the same but for rounding are one.
+            // Positions that differ only by rounding are merged.
             ("P 1", &[DVec3::ZERO, near], f64::INFINITY, 1),
             // The image of one is beside the other.
             ("-P 1", &[first, near - first], 0.04, 4),
@@ -383,8 +384,8 @@ mod tests {
             ("P 2", "P 1", false),
             ("C 1", "P 2", false),
         ] {
-            assert_eq!(are_alike(&group(one), &group(other)), expected, "{one} {other}");
-            assert_eq!(are_alike(&group(other), &group(one)), expected, "{other} {one}");
+            assert_eq!(have_same_rotations(&group(one), &group(other)), expected, "{one} {other}");
+            assert_eq!(have_same_rotations(&group(other), &group(one)), expected, "{other} {one}");
         }
     }
 
@@ -409,17 +410,17 @@ mod tests {
         for (places, choice) in [
             (&[DVec3::ZERO][..], "F d -3 m:1"),
             (&[DVec3::splat(0.125)], "F d -3 m:2"),
-            // Of equals the last.
+            // The last wins ties.
             (&[], "F d -3 m:2"),
         ] {
-            let (count, told) = resolved(&diamond, &cube(5.43), places);
+            let (count, warning) = resolved(&diamond, &cube(5.43), places);
             let expected = format!(
-                "the space group's symbol `F d -3 m` leaves the origin open: {choice} is taken, by \
+                "the space group's symbol `F d -3 m` does not determine the origin: {choice} is used, by \
                  the distances of atoms"
             );
-            assert_eq!((count, told), (192, expected));
+            assert_eq!((count, warning), (192, expected));
         }
-        // An origin that is named is not open, wherever atoms are.
+        // A named origin is not ambiguous, wherever atoms are.
         let named = resolved(&of_symbol("F d -3 m :1"), &cube(5.43), &[DVec3::splat(0.125)]);
         assert_eq!(named, (192, String::new()));
         let first =
@@ -431,12 +432,12 @@ mod tests {
     fn axes_that_the_cell_does_not_have_are_not_taken() {
         let hexagonal = cell([4.0, 4.0, 10.0], [90.0, 90.0, 120.0]);
         let rhombohedral = cell([5.0; 3], [70.0; 3]);
-        // Somewhat hexagonal, and not at all rhombohedral.
+        // Roughly hexagonal, and far from rhombohedral.
         let neither = cell([4.0, 4.5, 10.0], [90.0, 90.0, 120.0]);
         let misfit = |symbol: &str| {
             format!("the cell does not have the symmetry of the space group's symbol `{symbol}`")
         };
-        for (symbol, cell, count, told) in [
+        for (symbol, cell, count, warning) in [
             ("R -3 m", &hexagonal, 36, String::new()),
             ("R -3 m", &rhombohedral, 12, String::new()),
             ("R -3 m :H", &hexagonal, 36, String::new()),
@@ -448,22 +449,22 @@ mod tests {
             // Edges are measured.
             ("P m -3 m", &cell([8.0, 8.02, 8.0], [90.0; 3]), 48, String::new()),
         ] {
-            assert_eq!(resolved(&of_symbol(symbol), cell, &[]), (count, told), "{symbol}");
+            assert_eq!(resolved(&of_symbol(symbol), cell, &[]), (count, warning), "{symbol}");
         }
     }
 
     #[test]
     fn numbers_leave_axes_open_where_there_are_several() {
         let monoclinic = cell([4.0, 5.0, 6.0], [90.0, 100.0, 90.0]);
-        let (count, told) = resolved(&of_number(14), &monoclinic, &[]);
-        let expected = "the space group's number 14 leaves the axes open: those of P 1 21/c 1 are \
-                        taken";
-        assert_eq!((count, told.as_str()), (4, expected));
+        let (count, warning) = resolved(&of_number(14), &monoclinic, &[]);
+        let expected = "the space group's number 14 does not determine the axes: those of P 1 21/c 1 are \
+                        used";
+        assert_eq!((count, warning.as_str()), (4, expected));
         assert_eq!(resolved(&of_number(2), &monoclinic, &[]), (2, String::new()));
         let both = Declared { number: Some(2), ..of_symbol("P 7 q") };
-        let told = resolved(&both, &monoclinic, &[]).1;
+        let warning = resolved(&both, &monoclinic, &[]).1;
         let expected = "the space group `P 7 q` is not known, and its operations are not listed";
-        assert_eq!(told, expected);
+        assert_eq!(warning, expected);
     }
 
     #[test]
@@ -495,13 +496,13 @@ mod tests {
         let nothing = "only the listed atoms are drawn";
         let listed = |others: Declared| Declared { operations: group("P 2"), ..others };
         let hall = |hall: &str| Declared { hall: Some(hall.to_owned()), ..Declared::default() };
-        for (declared, count, told) in [
+        for (declared, count, warning) in [
             (
                 Declared::default(),
                 0,
                 format!("names no space group and lists no symmetry operations: {nothing}"),
             ),
-            (of_number(231), 0, format!("there is no space group of the number 231: {nothing}")),
+            (of_number(231), 0, format!("there is no space group number 231: {nothing}")),
             (
                 of_symbol("P 7 q"),
                 0,
@@ -510,10 +511,10 @@ mod tests {
             (
                 hall("P 9"),
                 0,
-                format!("the Hall symbol `P 9` is not understood; names no other symmetry: {nothing}"),
+                format!("the Hall symbol `P 9` is invalid; names no other symmetry: {nothing}"),
             ),
             (hall("P 2y"), 2, String::new()),
-            // Of one class is enough for a number, and what is not known contradicts nothing.
+            // A number needs only the same crystal class, and an unknown symbol contradicts nothing.
             (listed(of_number(4)), 2, String::new()),
             (listed(of_number(231)), 2, String::new()),
             (listed(of_symbol("P 7 q")), 2, String::new()),
@@ -537,7 +538,7 @@ mod tests {
                     .to_owned(),
             ),
         ] {
-            assert_eq!(resolved(&declared, &cube(8.0), &[]), (count, told));
+            assert_eq!(resolved(&declared, &cube(8.0), &[]), (count, warning));
         }
     }
 }

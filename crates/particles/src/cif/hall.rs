@@ -5,10 +5,10 @@
 use super::symmetry::Operation;
 use glam::{DMat3, DVec3};
 
-/// Number of operations of the largest space groups, which center the faces of a cubic cell.
+/// Number of operations of the largest space groups, which are cubic with face centering.
 pub(super) const MOST: usize = 192;
 
-/// Lattices and their translations besides those of the cell.
+/// Lattice symbols and their centering translations.
 const LATTICES: [(u8, &[[f64; 3]]); 11] = [
     (b'P', &[]),
     (b'A', &[[0.0, 0.5, 0.5]]),
@@ -26,24 +26,24 @@ const LATTICES: [(u8, &[[f64; 3]]); 11] = [
 /// The direction of a rotation axis.
 #[derive(Clone, Copy, PartialEq)]
 enum Axis {
-    /// One of the cell's edges, by its number.
+    /// A cell edge, by index.
     Edge(usize),
-    /// The difference of the two edges across the axis before, `'`.
+    /// Difference of the two edges perpendicular to the preceding axis, `'`.
     Difference(usize),
-    /// Their sum, `"`.
+    /// Sum of these edges, `"`.
     Sum(usize),
-    /// The body diagonal, `*`.
+    /// Body diagonal, `*`.
     Diagonal,
 }
 
-/// The rotation that a token of a symbol stands for.
+/// Rotation part of a token.
 #[derive(Clone, Copy)]
 struct Rotation {
     order: u8,
     axis: Axis,
 }
 
-/// All symmetry operations of a Hall symbol, the identity first; `None` if it is no such symbol.
+/// Returns all symmetry operations of a Hall symbol, the identity first; `None` if it is invalid.
 pub(super) fn operations(symbol: &str) -> Option<Vec<Operation>> {
     let symbol = symbol.replace('_', " ");
     let (symbol, basis) = match symbol.split_once('(') {
@@ -81,7 +81,7 @@ pub(super) fn operations(symbol: &str) -> Option<Vec<Operation>> {
     group(&generators)
 }
 
-/// The operation of a token such as `-4bd`, `21` or `2"c`, which is the symbol's `position`th.
+/// Returns the operation of a token such as `-4bd`, `21` or `2"c` at index `position` of the symbol.
 fn generator(
     token: &[u8],
     position: usize,
@@ -125,7 +125,7 @@ fn generator(
     Some((Operation { matrix, shift }.rounded(), Rotation { order, axis }))
 }
 
-/// The axis of a rotation that names none.
+/// Returns the default axis of a rotation.
 fn usual_axis(order: u8, position: usize, before: Option<Rotation>) -> Axis {
     match (order, position, before.map(|rotation| rotation.order)) {
         (2, 1, Some(2 | 4)) => Axis::Edge(0),
@@ -135,9 +135,9 @@ fn usual_axis(order: u8, position: usize, before: Option<Rotation>) -> Axis {
     }
 }
 
-/// The matrix of a rotation; `None` where the axis does not go with its order.
+/// Returns the matrix of a rotation; `None` if the axis isn't valid for its order.
 fn matrix(order: u8, axis: Axis) -> Option<DMat3> {
-    // Rows of the matrix for the axis z, over x and y.
+    // First two rows of the matrix for axis z.
     let (edge, [[a, b], [c, d]], along) = match (axis, order) {
         (_, 1) => return Some(DMat3::IDENTITY),
         (Axis::Diagonal, 3) => return Some(DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X)),
@@ -149,7 +149,7 @@ fn matrix(order: u8, axis: Axis) -> Option<DMat3> {
         (Axis::Sum(edge), 2) => (edge, [[0.0, 1.0], [1.0, 0.0]], -1.0),
         _ => return None,
     };
-    // The two edges across the axis follow it cyclically.
+    // The two perpendicular edges follow the axis cyclically.
     let [first, second] = [(edge + 1) % 3, (edge + 2) % 3];
     let mut columns = [DVec3::ZERO; 3];
     columns[first][first] = a;
@@ -160,7 +160,8 @@ fn matrix(order: u8, axis: Axis) -> Option<DMat3> {
     Some(DMat3::from_cols_array_2d(&columns.map(|column| column.to_array())))
 }
 
-/// The change of basis at a symbol's end: a shift in twelfths, `0 0 1`, or an operation, `x-y,x+y,z`.
+/// Parses the change of basis at a symbol's end: a shift in twelfths, `0 0 1`, or an operation,
+/// `x-y,x+y,z`.
 fn change_of_basis(text: &str) -> Option<Operation> {
     if text.contains(',') {
         return Operation::parse(text);
@@ -171,8 +172,8 @@ fn change_of_basis(text: &str) -> Option<Operation> {
     shifts.next().is_none().then_some(Operation { shift, ..Operation::IDENTITY })
 }
 
-/// The group that operations generate, the identity first; `None` if it is larger than any space
-/// group, as that of a wrong symbol is.
+/// Returns the group that operations generate, the identity first; `None` if it is larger than any
+/// space group, as for an invalid symbol.
 fn group(generators: &[Operation]) -> Option<Vec<Operation>> {
     let mut group = vec![Operation::IDENTITY];
     let mut next = 0;
@@ -200,7 +201,8 @@ mod tests {
     const EXPECTED: &str = include_str!("../../../../tests/data/particles/space_groups.csv");
     const POSITION: DVec3 = DVec3::new(0.0613, 0.1327, 0.2719);
 
-    /// The structure factor of a point of weight 1: it depends on every rotation and translation.
+    /// Returns the structure factor of a point of weight 1, which depends on every rotation and
+    /// translation.
     fn structure_factor(operations: &[Operation], index: DVec3) -> [f64; 2] {
         let phases = operations
             .iter()
@@ -257,7 +259,7 @@ mod tests {
             let second = Operation::parse(second).expect(second);
             assert!(group[1].same(&second), "{symbol}: {:?}", group[1]);
         }
-        // Screws turn by less than once.
+        // The subscript of a screw axis is less than its order.
         for wrong in ["P 22", "P 33", "P 45", "P 31'", "P 4*", "P 2 (1 2)", "P 2 (1 2 3 4)", "PP"] {
             assert_eq!(operations(wrong), None, "{wrong}");
         }
@@ -273,7 +275,7 @@ mod tests {
         for wrong in
             ["", "-", "P", "X 1", "P 5", "P 2q", "P 2(", "P 3x 4y", "P 21*", "P 4' 3", "(x,y,z)"]
         {
-            // A lattice alone is one.
+            // A lattice symbol alone is valid.
             assert_eq!(order(wrong), if wrong == "P" { Some(1) } else { None }, "{wrong}");
         }
     }

@@ -1,4 +1,4 @@
-//! mmCIF: the loop `_atom_site` of a file of the Protein Data Bank, lengths in angstrom.
+//! Reads mmCIF: the loop `_atom_site` of Protein Data Bank files, lengths in angstrom.
 
 use super::rows::Rows;
 use super::tokens::{Token, Tokens};
@@ -37,15 +37,15 @@ pub(in super::super) struct MmCif {
 /// The loop that is being read.
 struct Sites {
     schema: Arc<Schema>,
-    /// Column of the model's number.
+    /// Column of the model number.
     model: Option<usize>,
     alternates: AlternateColumns,
     rows: Rows,
-    /// Whether the row belongs to the next frame.
+    /// True if the current row belongs to the next frame.
     pending: bool,
 }
 
-/// Columns that tell atoms at alternate locations, where the file has them.
+/// Columns that identify atoms at alternate locations, if the file has them.
 struct AlternateColumns {
     location: Option<usize>,
     residue: [Option<usize>; 3],
@@ -63,7 +63,7 @@ impl AlternateColumns {
         };
         Self {
             location: column(["label_alt_id", "label_alt_id"]),
-            // Waters have numbers of their own only in the authors' numbering.
+            // Waters have distinct numbers only in the authors' numbering.
             residue: [
                 column(["auth_asym_id", "label_asym_id"]),
                 column(["auth_seq_id", "label_seq_id"]),
@@ -75,7 +75,7 @@ impl AlternateColumns {
         }
     }
 
-    /// The names of a row's atom, if it is at an alternate location.
+    /// Returns the identifiers of a row's atom, if it is at an alternate location.
     fn atom<'r>(&self, rows: &'r Rows) -> Option<AlternateAtom<'r>> {
         let field = |column: Option<usize>| column.map_or(&b""[..], |column| rows.field(column));
         let location = field(self.location);
@@ -121,7 +121,7 @@ impl MmCif {
         Ok(None)
     }
 
-    /// A tag and its value.
+    /// Reads a tag and its value.
     fn item(&mut self, tag: &str) -> Result<(), FileError> {
         let Some(Token::Value(value)) = self.tokens.next()? else {
             self.tokens.back();
@@ -143,7 +143,7 @@ impl MmCif {
         Ok(())
     }
 
-    /// The tags of a loop; `None` if it is not of atoms.
+    /// Reads the tags of a loop; returns `None` if it doesn't list atoms.
     fn open(&mut self) -> Result<Option<Sites>, FileError> {
         let mut tags = Vec::new();
         while let Some(Token::Tag(tag)) = self.tokens.next()? {
@@ -155,7 +155,7 @@ impl MmCif {
         };
         if !tags.first().is_some_and(is_site) {
             if tags.iter().any(|tag| tag.starts_with("_atom_site_fract")) {
-                let help = "this is a crystal in shares of its cell: say that its format is cif";
+                let help = "this is a crystal in fractional coordinates: read it with --format cif";
                 return Err(self.tokens.error("no _atom_site.Cartn_x").with_help(help));
             }
             if tags.iter().any(|tag| tag.starts_with("_struct_conn.")) {
@@ -178,7 +178,7 @@ impl MmCif {
         Ok(Some(Sites { schema: Arc::new(schema), model, alternates, rows, pending: false }))
     }
 
-    /// Passes over the atoms of the next model, or puts them into a builder. Whether there are any.
+    /// Reads the atoms of the next model into a builder, or skips them. Returns whether there are any.
     fn model(
         &mut self,
         mut taken: Option<(&mut Builder, &mut Alternates)>,
@@ -204,7 +204,7 @@ impl MmCif {
         Ok(model.is_some())
     }
 
-    /// Whether the reader is in a loop of atoms.
+    /// Returns whether the reader is in a loop of atoms.
     fn is_open(&mut self) -> Result<bool, FileError> {
         if self.sites.is_none() {
             self.sites = self.find()?;

@@ -1,8 +1,8 @@
-//! CIF: molecules of the Protein Data Bank ([`MmCif`]), and crystals ([`Crystal`]).
+//! Readers of CIF: molecules of the Protein Data Bank ([`MmCif`]), and crystals ([`Crystal`]).
 //!
-//! The crate `pdbtbx` builds a tree of models, chains and residues, many times as large as columns
-//! are, so this is our own, on the syntax of CIF (Hall, Allen and Brown, "The crystallographic
-//! information file (CIF)", Acta Crystallographica A47, 1991).
+//! The crate `pdbtbx` isn't used: it builds a tree of models, chains and residues, many times as large
+//! as columns. The syntax is that of Hall, Allen and Brown, "The crystallographic information file
+//! (CIF)", Acta Crystallographica A47, 1991.
 
 mod crystal;
 mod declared;

@@ -1,7 +1,7 @@
-//! Atoms that exclude each other: several elements that share a site, and disorder groups. Of those
-//! the one with the greatest occupancy is drawn, or of equals the one that is listed first.
+//! Atoms that exclude each other: several elements on one site, and disorder groups. The one with the
+//! greatest occupancy is drawn; the first in the list wins ties.
 
-use super::crystal::certain;
+use super::crystal::strip_uncertainty;
 use super::rows::Rows;
 use super::symmetry::{SAME, distance};
 use crate::cell::Cell;
@@ -9,14 +9,14 @@ use crate::number;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Distance in angstrom below which two atoms whose occupancies add up to 1 at most are one site:
-/// no two atoms are so near to each other.
+/// Distance in angstrom below which two atoms share a site if their occupancies add up to 1 at most:
+/// distinct atoms are never this close.
 const SPLIT: f64 = 0.5;
 
-/// Sum of the occupancies of a site, with what rounding adds.
+/// Maximum sum of the occupancies of a site, including rounding.
 const FULL: f64 = 1.02;
 
-/// Occupancy of an atom of which it is unknown: less than any that is known.
+/// Value for an unknown occupancy: less than any known one.
 const UNKNOWN: f64 = -1.0;
 
 /// Columns of occupancies and disorder.
@@ -29,14 +29,14 @@ pub(super) struct Occupancies {
     groups: Vec<Group>,
 }
 
-/// The disorder group of an atom; both are empty if it belongs to none.
+/// Disorder group of an atom; both fields are empty if it has none.
 #[derive(Clone, Default, PartialEq, Eq)]
 struct Group {
     assembly: String,
     name: String,
 }
 
-/// Positions in fractional coordinates, each with the row of its listed atom.
+/// Positions in fractional coordinates, with the rows of their listed atoms.
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'p> {
     pub(super) rows: &'p [u32],
@@ -44,10 +44,10 @@ pub(super) struct Positions<'p> {
     pub(super) cell: &'p Cell,
 }
 
-/// The positions that are drawn of those that share a site.
+/// Selection of one position for each shared site.
 pub(super) struct Shared {
     pub(super) keep: Vec<bool>,
-    /// Number of them that stand for others too.
+    /// Number of sites that several positions share.
     pub(super) sites: usize,
 }
 
@@ -57,14 +57,14 @@ impl Occupancies {
         Self { columns, values: Vec::new(), groups: Vec::new() }
     }
 
-    /// Takes the row of an atom.
+    /// Reads the row of an atom.
     pub(super) fn read(&mut self, rows: &Rows) {
         let [occupancy, assembly, group] =
             self.columns.map(|column| column.map(|at| rows.field(at)));
         self.values.push(match occupancy {
-            // A point stands for the usual value.
+            // A point means the default value.
             None | Some(b".") => 1.0,
-            Some(field) => number::parse(certain(field)).unwrap_or(UNKNOWN),
+            Some(field) => number::parse(strip_uncertainty(field)).unwrap_or(UNKNOWN),
         });
         let text = |field: Option<&[u8]>| match field {
             None | Some(b"." | b"?") => String::new(),
@@ -75,7 +75,7 @@ impl Occupancies {
         self.groups.push(Group { assembly, name });
     }
 
-    /// Forgets the atoms that are not kept.
+    /// Removes the atoms that are not kept.
     pub(super) fn retain(&mut self, keep: &[bool]) {
         let mut kept = keep.iter();
         self.values.retain(|_| *kept.next().unwrap_or(&true));
@@ -83,8 +83,8 @@ impl Occupancies {
         self.groups.retain(|_| *kept.next().unwrap_or(&true));
     }
 
-    /// Returns the number of atoms that are disordered about an element of symmetry, and so overlap
-    /// with their images.
+    /// Returns the number of atoms that are disordered about a symmetry element, and so overlap their
+    /// images.
     pub(super) fn about_symmetry(&self) -> usize {
         self.groups.iter().filter(|group| group.name.starts_with('-')).count()
     }
@@ -114,8 +114,8 @@ impl Occupancies {
         keep
     }
 
-    /// Takes the atoms of an assembly apart where it is several disorders of two groups each: their
-    /// occupancies add up to 1.
+    /// Splits the atoms of an assembly into independent disorders of two groups each, whose occupancies
+    /// add up to 1.
     fn independent(&self, rows: &[usize]) -> Vec<Vec<usize>> {
         let mut pairs: HashMap<i64, Vec<usize>> = HashMap::new();
         for &row in rows {
@@ -134,7 +134,7 @@ impl Occupancies {
         pairs
     }
 
-    /// The name of the group with the greatest mean occupancy.
+    /// Returns the name of the group with the greatest mean occupancy.
     fn main_group(&self, rows: &[usize]) -> String {
         let mut groups: Vec<(&str, f64, f64)> = Vec::new();
         for &row in rows {
@@ -149,12 +149,12 @@ impl Occupancies {
         main.map_or(String::new(), |(name, _)| name.to_owned())
     }
 
-    /// Chooses the atom with the greatest occupancy of each site that atoms share.
-    pub(super) fn share(&self, positions: Positions) -> Shared {
+    /// Selects the atom with the greatest occupancy on each shared site.
+    pub(super) fn select_on_sites(&self, positions: Positions) -> Shared {
         let count = positions.places.len();
         let value = |index: u32| self.values[positions.rows[index as usize] as usize];
         let mut order: Vec<u32> = (0..count as u32).collect();
-        // Stable: of equals, the first that is listed.
+        // A stable sort: the first in the list wins ties.
         order.sort_by(|one, other| value(*other).total_cmp(&value(*one)));
         let mut grid = Grid::new(positions.cell);
         let mut keep = vec![false; count];
@@ -179,7 +179,8 @@ impl Occupancies {
     }
 }
 
-/// Positions by boxes of a periodic cell, none of them narrower than [`SPLIT`] unless the cell is.
+/// Uniform grid of positions in a periodic cell; boxes are at least [`SPLIT`] wide unless the cell is
+/// narrower.
 struct Grid {
     counts: [i64; 3],
     boxes: HashMap<[i64; 3], Vec<u32>>,
@@ -205,7 +206,7 @@ impl Grid {
         self.boxes.entry(self.key(place)).or_default().push(index);
     }
 
-    /// The positions in the box of a place and those around it.
+    /// Returns the positions in the box around `place` and in adjacent boxes.
     fn near(&self, place: DVec3) -> impl Iterator<Item = u32> {
         let key = self.key(place);
         let around = |axis: usize| {

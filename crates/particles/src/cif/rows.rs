@@ -3,21 +3,21 @@
 use super::tokens::{Token, Tokens};
 use crate::FileError;
 
-/// The rows of a loop, one at a time.
+/// Reader of the rows of a loop.
 pub(super) struct Rows {
     columns: usize,
-    /// The values of the row, one after another, and where each ends.
+    /// Values of the current row, concatenated, and their end offsets.
     bytes: Vec<u8>,
     ends: Vec<usize>,
 }
 
 impl Rows {
-    /// Of a loop of so many columns, at least one.
+    /// Creates a reader of rows with `columns` values, at least one.
     pub(super) fn new(columns: usize) -> Self {
         Self { columns, bytes: Vec::new(), ends: Vec::new() }
     }
 
-    /// Reads a row; whether there is one more.
+    /// Reads the next row. Returns whether there was one.
     pub(super) fn read(&mut self, tokens: &mut Tokens) -> Result<bool, FileError> {
         self.bytes.clear();
         self.ends.clear();
@@ -38,13 +38,13 @@ impl Rows {
         Ok(true)
     }
 
-    /// A value of the row.
+    /// Returns a value of the row.
     pub(super) fn field(&self, column: usize) -> &[u8] {
         let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.bytes[start..self.ends[column]]
     }
 
-    /// All values of the row.
+    /// Returns all values of the row.
     pub(super) fn fields(&self) -> impl Iterator<Item = &[u8]> {
         (0..self.ends.len()).map(|column| self.field(column))
     }

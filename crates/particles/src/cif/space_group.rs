@@ -1,35 +1,35 @@
-//! Space groups in their settings: choices of axes and origin, by Hermann-Mauguin symbol or number
+//! Table of space group settings (choices of axes and origin) by Hermann-Mauguin symbol or number
 //! (International Tables for Crystallography A).
 
 use super::hall;
 use super::symmetry::Operation;
 
-/// Settings of International Tables in the order of their numbers, and after a blank line others that
-/// are in use. A line for each: the number with a choice of origin (1 or 2) or of hexagonal or
-/// rhombohedral axes (H or R), the Hall symbol, and Hermann-Mauguin symbols. The crate `moyo` knows
-/// them too, but takes `nalgebra` and 25 other crates to find symmetry in atoms, which is not needed.
+/// Settings of International Tables in numerical order, then, after a blank line, other common ones.
+/// Each line has the number with a choice of origin (1 or 2) or of hexagonal or rhombohedral axes (H or
+/// R), the Hall symbol, and Hermann-Mauguin symbols. The crate `moyo` has them too, but depends on
+/// `nalgebra` and 25 other crates to detect symmetry in atoms, which is not needed.
 const TABLE: &str = include_str!("space_groups.txt");
 
 /// A setting of a space group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Setting {
     pub(super) number: u32,
-    /// The choice of origin or axes: `1`, `2`, `H`, `R` or nothing.
+    /// Choice of origin or axes: `1`, `2`, `H`, `R` or empty.
     pub(super) choice: &'static str,
     hall: &'static str,
     names: &'static str,
 }
 
-/// A Hermann-Mauguin symbol without what is written in many ways.
+/// A Hermann-Mauguin symbol in normalized spelling.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Symbol {
     key: String,
-    /// The choice of origin or axes that it names, in upper case.
+    /// Choice of origin or axes in the symbol, in upper case.
     pub(super) choice: Option<String>,
 }
 
 impl Setting {
-    /// All settings, the usual one of each group first.
+    /// Returns all settings, the standard one of each group first.
     pub(super) fn all() -> impl Iterator<Item = Self> {
         Self::parse(TABLE)
     }
@@ -44,40 +44,40 @@ impl Setting {
         })
     }
 
-    /// The settings of a group in International Tables, by its number.
+    /// Returns the settings of a group in International Tables, by its number.
     pub(super) fn of_number(number: u32) -> Vec<Self> {
         let usual = TABLE.split("\n\n").next().unwrap_or(TABLE);
         Self::parse(usual).filter(|setting| setting.number == number).collect()
     }
 
-    /// The settings that a symbol may stand for, whatever choice it names.
+    /// Returns the settings that a symbol may mean, ignoring its choice of origin or axes.
     pub(super) fn of_symbol(symbol: &Symbol) -> Vec<Self> {
         Self::all().filter(|setting| setting.is_named(&symbol.key)).collect()
     }
 
-    /// The symbol without the choice of origin.
+    /// Returns the symbol without the choice of origin or axes.
     pub(super) fn axes_name(&self) -> &'static str {
         self.names.split(", ").next().unwrap_or(self.names)
     }
 
-    /// The symbol with the choice of origin, as in `R -3 c:H`.
+    /// Returns the symbol with the choice of origin or axes, as in `R -3 c:H`.
     pub(super) fn name(&self) -> String {
         let colon = if self.choice.is_empty() { "" } else { ":" };
         format!("{}{colon}{}", self.axes_name(), self.choice)
     }
 
-    /// Its symmetry operations, the identity first.
+    /// Returns its symmetry operations, the identity first.
     pub(super) fn operations(&self) -> Vec<Operation> {
         hall::operations(self.hall).unwrap_or_default()
     }
 
     fn is_named(&self, key: &str) -> bool {
         self.names.split(", ").any(|name| {
-            let full = squashed(name);
+            let full = normalized(name);
             let axes = name.split(' ').filter(|axis| *axis != "1");
             full == key
-                // Monoclinic symbols without the axes that have no symmetry: P 21/c.
-                || (3..=15).contains(&self.number) && squashed(&axes.collect::<String>()) == key
+                // Short monoclinic symbols without the axes that have no symmetry: P 21/c.
+                || (3..=15).contains(&self.number) && normalized(&axes.collect::<String>()) == key
                 // Cubic symbols before 1935: F d 3 m.
                 || self.number >= 195 && full.replace("-3", "3") == key
         })
@@ -85,7 +85,7 @@ impl Setting {
 }
 
 impl Symbol {
-    /// Takes a symbol apart, as `R -3 c :H`, `Fd-3m (origin choice 2)`, `P2(1)/c` or `F d -3 m Z`.
+    /// Parses a symbol such as `R -3 c :H`, `Fd-3m (origin choice 2)`, `P2(1)/c` or `F d -3 m Z`.
     pub(super) fn new(text: &str) -> Self {
         let text = text.to_ascii_lowercase();
         if let Some((name, choice)) = text.split_once(':') {
@@ -101,8 +101,8 @@ impl Symbol {
             let choice = ["1", "2"].into_iter().find(|choice| origin.contains(choice));
             return Self::of(name, choice);
         }
-        // Endings that databases write; no symbol ends so itself.
-        let key = squashed(&text);
+        // Suffixes of databases; no symbol has them itself.
+        let key = normalized(&text);
         let endings = [("hr", "h"), ("h", "h"), ("r", "r"), ("o1", "1"), ("o2", "2"), ("s", "1")];
         for (ending, choice) in endings.into_iter().chain([("z", "2")]) {
             if let Some(name) = key.strip_suffix(ending).filter(|name| name.len() > 1) {
@@ -113,12 +113,12 @@ impl Symbol {
     }
 
     fn of(name: &str, choice: Option<&str>) -> Self {
-        Self { key: squashed(name), choice: choice.map(str::to_ascii_uppercase) }
+        Self { key: normalized(name), choice: choice.map(str::to_ascii_uppercase) }
     }
 }
 
-/// A symbol without blanks, underscores and parentheses, in lower case.
-fn squashed(symbol: &str) -> String {
+/// Removes blanks, underscores and parentheses from a symbol, and makes it lower case.
+fn normalized(symbol: &str) -> String {
     let kept = symbol.chars().filter(|letter| !letter.is_whitespace() && !"_()".contains(*letter));
     kept.map(|letter| letter.to_ascii_lowercase()).collect()
 }

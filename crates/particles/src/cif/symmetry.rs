@@ -1,14 +1,14 @@
-//! Symmetry operations, as CIF writes them: `-x+y, y+1/2, z`.
+//! Symmetry operations in the notation of CIF: `-x+y, y+1/2, z`.
 
 use crate::cell::Cell;
 use crate::number;
 use glam::{DMat3, DVec3};
 
-/// Distance in angstrom below which images of an atom are one: coordinates of special positions are
-/// written with few digits.
+/// Distance in angstrom below which images of an atom coincide: coordinates of special positions have
+/// few digits.
 pub(super) const SAME: f64 = 0.1;
 
-/// So near below 1, a share of an edge is 0 but for rounding.
+/// Fractional coordinates this close below 1 are 0 up to rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Translations of symmetry operations are multiples of this fraction of an edge.
@@ -24,7 +24,7 @@ pub(super) struct Operation {
 impl Operation {
     pub(super) const IDENTITY: Self = Self { matrix: DMat3::IDENTITY, shift: DVec3::ZERO };
 
-    /// Parses an operation; `None` if it does not map a lattice to itself.
+    /// Parses an operation; returns `None` if it doesn't map a lattice to itself.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
         let mut rows = text.split(',').map(row);
@@ -34,18 +34,18 @@ impl Operation {
         kept.then_some(Self { matrix, shift: DVec3::new(x.1, y.1, z.1) })
     }
 
-    /// The operation that does `first` and then this one.
+    /// Returns the composition of `first` and then this operation.
     pub(super) fn after(&self, first: &Self) -> Self {
         Self { matrix: self.matrix * first.matrix, shift: self.matrix * first.shift + self.shift }
     }
 
-    /// The operation that undoes this one.
+    /// Returns the inverse operation.
     pub(super) fn inverse(&self) -> Self {
         let matrix = self.matrix.inverse();
         Self { matrix, shift: -(matrix * self.shift) }
     }
 
-    /// The operation without rounding errors, and with its translation in the cell.
+    /// Returns the operation without rounding errors, and with its translation in the cell.
     pub(super) fn rounded(&self) -> Self {
         let columns = self.matrix.to_cols_array().map(f64::round);
         let shift = (self.shift * TRANSLATION_STEPS).round();
@@ -53,14 +53,14 @@ impl Operation {
         Self { matrix: DMat3::from_cols_array(&columns), shift: shift / TRANSLATION_STEPS }
     }
 
-    /// Returns whether two operations differ by a translation of the lattice at most.
+    /// Returns whether two operations are equal up to a lattice translation.
     pub(super) fn same(&self, other: &Self) -> bool {
         let away = self.shift - other.shift;
         // Translations may be written with few digits, such as 0.333.
         self.matrix == other.matrix && (away - away.round()).abs().max_element() < 0.01
     }
 
-    /// The image of a position, in the cell.
+    /// Returns the image of a position, wrapped into the cell.
     pub(super) fn image(&self, place: DVec3) -> DVec3 {
         let image = self.matrix * place + self.shift;
         let share = |value: f64| {
@@ -71,7 +71,7 @@ impl Operation {
     }
 }
 
-/// The factors on x, y and z, each -1, 0 or 1, and what is added.
+/// Parses a component: the factors of x, y and z, each -1, 0 or 1, and the translation.
 fn row(text: &str) -> Option<(DVec3, f64)> {
     let (mut factors, mut shift) = (DVec3::ZERO, 0.0);
     let mut rest = text;
@@ -94,7 +94,7 @@ fn row(text: &str) -> Option<(DVec3, f64)> {
     (usual && shift.is_finite()).then_some((factors, shift))
 }
 
-/// `1/2`, or a number.
+/// Parses a fraction such as `1/2`, or a number.
 fn fraction(text: &str) -> Option<f64> {
     let number = |text: &str| number::parse(text.as_bytes());
     match text.split_once('/') {
@@ -103,13 +103,13 @@ fn fraction(text: &str) -> Option<f64> {
     }
 }
 
-/// Length of the step between two points in fractional coordinates, or between lattice images of them.
+/// Returns the minimum-image distance between two points in fractional coordinates.
 pub(super) fn distance(one: DVec3, other: DVec3, cell: &Cell) -> f64 {
     let away = one - other;
     (cell.cartesian((away - away.round()).to_array()) - cell.origin).length()
 }
 
-/// All symmetry-equivalent positions in the cell, each once, in fractional coordinates.
+/// Returns all symmetry-equivalent positions in the cell, each once, in fractional coordinates.
 pub(super) fn images(place: DVec3, operations: &[Operation], cell: &Cell) -> Vec<DVec3> {
     let mut images: Vec<DVec3> = Vec::new();
     for operation in operations {
@@ -161,7 +161,7 @@ mod tests {
         let cell = Cell::of_lengths([4.0, 4.0, 6.0], [90.0, 90.0, 120.0]).expect("a cell");
         let three = ["x,y,z", "-y,x-y,z", "-x+y,-x,z"].map(|text| Operation::parse(text).unwrap());
         assert_eq!(images(DVec3::new(0.1, 0.2, 0.3), &three, &cell).len(), 3);
-        // On the axis, also where it is written with few digits.
+        // On the axis, even if written with few digits.
         let axis = images(DVec3::new(0.3333, 0.6667, -1e-12), &three, &cell);
         assert_eq!(axis, [DVec3::new(0.3333, 0.6667, 0.0)]);
     }

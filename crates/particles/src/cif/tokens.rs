@@ -1,19 +1,19 @@
-//! The words of a CIF file.
+//! Tokenizer of CIF files.
 
 use crate::FileError;
 use crate::lines::{Line, Lines};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Longest text of several lines, in bytes.
+/// Maximum length of a text field of several lines, in bytes.
 const LONGEST: usize = 1 << 26;
 
-/// A word of a CIF file.
+/// A token of a CIF file.
 #[derive(Debug, PartialEq)]
 pub(super) enum Token<'t> {
     /// `loop_`.
     Loop,
-    /// `data_`, `save_` and other words that begin or end a block.
+    /// `data_`, `save_` and other keywords that begin or end a block.
     Block,
     /// The name of an item, in any case.
     Tag(&'t str),
@@ -21,18 +21,18 @@ pub(super) enum Token<'t> {
     Value(&'t [u8]),
 }
 
-/// Cuts a file into words.
+/// Splits a file into tokens.
 pub(super) struct Tokens {
     lines: Lines,
     number: usize,
-    /// The line that is being cut, and how far it is.
+    /// The current line, and the position in it.
     line: Vec<u8>,
     at: usize,
-    /// The last word, and whether it stood without quotes.
+    /// The last token, and whether it was unquoted.
     word: Vec<u8>,
     bare: bool,
     ended: bool,
-    /// Whether the last word is to come again.
+    /// True if the last token is returned again.
     again: bool,
 }
 
@@ -50,7 +50,7 @@ impl Tokens {
         }
     }
 
-    /// The next word, if there is one.
+    /// Returns the next token, if there is one.
     pub(super) fn next(&mut self) -> Result<Option<Token<'_>>, FileError> {
         if !std::mem::take(&mut self.again) {
             self.ended = !self.advance()?;
@@ -58,17 +58,17 @@ impl Tokens {
         Ok(if self.ended { None } else { Some(self.token()) })
     }
 
-    /// Gives the last word once more.
+    /// Steps back, so that [`Tokens::next`] returns the last token again.
     pub(super) fn back(&mut self) {
         self.again = true;
     }
 
-    /// The line that the last word is of.
+    /// Returns the line of the last token.
     pub(super) fn line(&self) -> Line<'_> {
         Line::new(self.lines.path(), self.number, &self.line)
     }
 
-    /// An error at the last word's line.
+    /// Returns an error at the last token's line.
     pub(super) fn error(&self, message: impl Into<String>) -> FileError {
         self.line().whole(message)
     }
@@ -95,7 +95,7 @@ impl Tokens {
         }
     }
 
-    /// Finds the next word; whether there is one.
+    /// Moves to the next token. Returns whether there is one.
     fn advance(&mut self) -> Result<bool, FileError> {
         loop {
             while self.line.get(self.at).is_some_and(|byte| is_blank(*byte)) {
@@ -133,7 +133,7 @@ impl Tokens {
         Ok(true)
     }
 
-    /// A quoted word: it ends with a quote before a blank.
+    /// Reads a quoted value: it ends with a quote before a blank.
     fn quoted(&mut self, quote: u8) -> Result<(), FileError> {
         let start = self.at + 1;
         let mut ends = memchr::memchr_iter(quote, &self.line[start..]);
@@ -149,7 +149,7 @@ impl Tokens {
         Ok(())
     }
 
-    /// A text of several lines: from a `;` that begins a line to the next one.
+    /// Reads a text field of several lines: from a `;` that begins a line to the next one.
     fn text(&mut self) -> Result<(), FileError> {
         let first = self.number;
         self.word.clear();

@@ -1,4 +1,4 @@
-//! The chemical elements: how files name them, how large they are and how heavy.
+//! Chemical elements: symbols, labels, radii and masses.
 
 mod names;
 mod tables;
@@ -10,31 +10,31 @@ use tables::{COVALENT, MASSES, SYMBOLS, VAN_DER_WAALS};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Element(u8);
 
-/// How far a mass may be from that of its element: files round, and some say 1 for hydrogen.
+/// Tolerance of masses in daltons: files round them, and some have 1 for hydrogen.
 const MASS_TOLERANCE: f64 = 0.06;
 
 impl Element {
-    /// The element with this atomic number, 1 to 118.
+    /// Returns the element with this atomic number, 1 to 118.
     pub fn from_number(number: u64) -> Option<Self> {
         (1..=SYMBOLS.len() as u64).contains(&number).then_some(Self(number as u8))
     }
 
-    /// The element with this symbol, in any case; deuterium and tritium are hydrogen.
+    /// Returns the element with this symbol, ignoring case; deuterium and tritium are hydrogen.
     pub fn from_symbol(symbol: &str) -> Option<Self> {
         let symbol = if ["D", "T", "d", "t"].contains(&symbol) { "H" } else { symbol };
         let row = SYMBOLS.iter().position(|own| own.eq_ignore_ascii_case(symbol))?;
         Self::from_number(row as u64 + 1)
     }
 
-    /// The element with this mass, if one has it within 0.06 daltons.
+    /// Returns the element with this mass to within 0.06 daltons.
     pub fn from_mass(mass: f64) -> Option<Self> {
         let distance = |row: &usize| (MASSES[*row] - mass).abs();
         let row = (0..MASSES.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         (distance(&row) <= MASS_TOLERANCE).then(|| Self::from_number(row as u64 + 1)).flatten()
     }
 
-    /// The element that a file calls so: a symbol in any case, alone or with a number or a charge
-    /// after it, or an atomic number.
+    /// Returns the element of a label: an atomic number, or a symbol in any case, optionally followed by a
+    /// number or a charge.
     pub fn from_label(label: &str) -> Option<Self> {
         match label.parse() {
             Ok(number) => Self::from_number(number),
@@ -44,12 +44,12 @@ impl Element {
         }
     }
 
-    /// Atomic number, 1 to 118.
+    /// Returns the atomic number, 1 to 118.
     pub fn number(self) -> u8 {
         self.0
     }
 
-    /// Symbol, such as `Fe`.
+    /// Returns the symbol, such as `Fe`.
     pub fn symbol(self) -> &'static str {
         SYMBOLS[self.row()]
     }

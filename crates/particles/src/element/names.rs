@@ -1,8 +1,8 @@
-//! Elements from the names of atoms in molecules, where a file has no column for them.
+//! Derives elements from atom names in molecules, for files without a column of elements.
 
 use super::Element;
 
-/// Residues whose atoms' names begin with the element: amino acids, nucleotides and water.
+/// Residues whose atom names begin with the element: amino acids, nucleotides and water.
 const STANDARD: [&str; 52] = [
     "ALA", "ARG", "ASN", "ASP", "ASH", "CYS", "CYX", "CYM", "GLN", "GLU", "GLH", "GLY", "HIS",
     "HID", "HIE", "HIP", "HSD", "HSE", "HSP", "ILE", "LEU", "LYS", "LYN", "MET", "PHE", "PRO",
@@ -10,16 +10,16 @@ const STANDARD: [&str; 52] = [
     "ADE", "CYT", "GUA", "THY", "URA", "SOL", "HOH", "WAT", "TIP3", "TIP4", "SPC",
 ];
 
-/// Residues of water whose models have sites without an atom.
+/// Water residues whose models have virtual sites.
 const WATER: [&str; 16] = [
     "SOL", "HOH", "WAT", "H2O", "TIP", "TIP4", "TIP5", "TP4", "TP5", "T4P", "T5P", "T4E", "TP4E",
     "OPC", "SPC", "TIP3",
 ];
 
-/// Residues that are one bead of water or ion in coarse-grained models, where `W` is not tungsten.
+/// Residues of coarse-grained models that are one bead of water or ion: `W` is not tungsten.
 const BEADS: [&str; 5] = ["W", "WF", "PW", "WN", "ION"];
 
-/// Names that CHARMM gives to ions.
+/// Ion names of CHARMM.
 const IONS: [(&str, &str); 8] = [
     ("SOD", "Na"),
     ("CLA", "Cl"),
@@ -31,15 +31,15 @@ const IONS: [(&str, &str); 8] = [
     ("BAR", "Ba"),
 ];
 
-/// Elements of two letters that names of atoms outside of [`STANDARD`] residues begin with, though
-/// the first letter alone is an element too.
+/// Two-letter elements in atom names outside of [`STANDARD`] residues, although their first letter is
+/// an element too.
 const LONG: [&str; 7] = ["CL", "BR", "SI", "SE", "FE", "CU", "PT"];
 
-/// Elements of one letter that names of atoms begin with.
+/// One-letter elements in atom names.
 const SHORT: &str = "HCNOPSFIBKD";
 
-/// Whether this is a site of a water model that has a charge or a mass, but is no atom: `MW`, `M`,
-/// `EP` or `LP`, with a number or without.
+/// Returns whether this is a virtual site of a water model, with a charge or mass but no atom: `MW`,
+/// `M`, `EP` or `LP`, with or without a number.
 pub(in super::super) fn is_virtual_site(name: &str, residue: &str) -> bool {
     let stem = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     match stem {
@@ -49,7 +49,7 @@ pub(in super::super) fn is_virtual_site(name: &str, residue: &str) -> bool {
     }
 }
 
-/// The element of the atom `name` of a residue; `None` if the name does not tell.
+/// Returns the element of the atom `name` of a residue; `None` if it cannot be derived.
 pub(in super::super) fn of_atom_name(name: &str, residue: &str) -> Option<Element> {
     let letters = letters(name);
     if is_one_of(residue, &BEADS) && self::letters(residue) == letters {
@@ -58,12 +58,12 @@ pub(in super::super) fn of_atom_name(name: &str, residue: &str) -> Option<Elemen
     ion(letters, residue).or_else(|| by_first_letters(letters, residue))
 }
 
-/// The element of an atom whose name stands in four columns, the first of which is blank for
-/// elements of one letter (PDB); `aligned` is those columns as they are.
+/// Returns the element of an atom name in four columns, the first of which is blank for one-letter
+/// elements (PDB); `aligned` is the untrimmed name.
 pub(in super::super) fn of_aligned_name(aligned: &str, residue: &str) -> Option<Element> {
     let name = aligned.trim();
     let symbol = aligned.get(..2).unwrap_or_default();
-    // `HG11` fills its columns, and is no mercury.
+    // `HG11` fills all columns, but is not mercury.
     let full = name.len() == 4 && name.starts_with('H');
     if !full && !is_one_of(residue, &STANDARD) {
         return Element::from_symbol(symbol).or_else(|| of_atom_name(name, residue));
@@ -77,7 +77,7 @@ fn letters(name: &str) -> &str {
     &name[..end]
 }
 
-/// An ion is a residue of its own, with the same name.
+/// Returns the element of an ion: a residue with the same name as its atom.
 fn ion(name: &str, residue: &str) -> Option<Element> {
     if let Some((_, symbol)) = IONS.iter().find(|(ion, _)| *ion == name) {
         return Element::from_symbol(symbol);

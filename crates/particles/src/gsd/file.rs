@@ -1,4 +1,4 @@
-//! The container: named chunks of numbers, found by an index (gsd.readthedocs.io, "File layer").
+//! The GSD container: named chunks of numbers with an index (gsd.readthedocs.io, "File layer").
 
 use crate::FileError;
 use crate::progress::CountedFile;
@@ -8,14 +8,14 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The first bytes of a file.
+/// Magic number of a file.
 pub(in super::super) const MAGIC: [u8; 8] = 0x65DF_65DF_65DF_65DF_u64.to_le_bytes();
 
-/// Bytes of the header and of an entry of the index.
+/// Bytes of the header; bytes of an index entry follow.
 const HEADER: u64 = 256;
 const ENTRY: u64 = 32;
 
-/// Bytes that the names of a file may take.
+/// Maximum number of bytes for the names of a file.
 const NAMES: u64 = 1 << 24;
 
 /// An open file.
@@ -37,7 +37,7 @@ struct Chunk {
     kind: u8,
 }
 
-/// Rows that are read at a time.
+/// Number of rows per read.
 const ROWS: u64 = 1 << 14;
 
 fn word(bytes: &[u8], at: usize) -> u64 {
@@ -61,14 +61,15 @@ impl File {
             header[112..176].iter().copied().take_while(|&byte| byte > 0).collect();
         if schema != b"hoomd" {
             let message = format!("holds `{}`, not particles", String::from_utf8_lossy(&schema));
-            return Err(FileError::whole_file(path, message).with_help("the schema is to be hoomd"));
+            return Err(FileError::whole_file(path, message)
+                .with_help("only the schema hoomd is supported"));
         }
         file.read_names(word(&header, 24), word(&header, 32), version)?;
         file.read_index(word(&header, 8), word(&header, 16))?;
         Ok(file)
     }
 
-    /// Names stand in fields of 64 bytes or, from version 2 on, one after another.
+    /// Reads the names, which are in fields of 64 bytes or, since version 2, null-terminated.
     fn read_names(&mut self, location: u64, fields: u64, version: u64) -> Result<(), FileError> {
         let length = fields.saturating_mul(64).min(NAMES);
         let bytes = self.bytes(location, length)?;
@@ -90,7 +91,7 @@ impl File {
         for entry in bytes.chunks_exact(ENTRY as usize) {
             let last = word(entry, 24);
             let (frame, location) = (word(entry, 0), word(entry, 16));
-            // Entries that are not used yet are zero.
+            // Unused entries are zero.
             if location > 0 {
                 let chunk = Chunk {
                     rows: word(entry, 8),
@@ -101,27 +102,27 @@ impl File {
                 self.chunks.insert((frame, (last >> 32) as u16), chunk);
             }
         }
-        // Every frame has a chunk of its own, if only that of its step.
+        // Every frame has at least one chunk: its step.
         let (frames, chunks) = (self.frames(), self.chunks.len() as u64);
         if frames > chunks {
             let message = format!("has an index of {frames} frames, but of {chunks} chunks");
             let error = FileError::whole_file(&self.path, message);
-            return Err(error.with_help("the index is damaged: copy the file anew"));
+            return Err(error.with_help("the index is damaged: copy the file again"));
         }
         Ok(())
     }
 
-    /// Number of frames.
+    /// Returns the number of frames.
     pub(super) fn frames(&self) -> u64 {
         self.chunks.last_key_value().map_or(0, |(&(frame, _), _)| frame.saturating_add(1))
     }
 
-    /// Names of all chunks.
+    /// Returns the names of all chunks.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.names.keys().map(String::as_str)
     }
 
-    /// The numbers of a chunk, row by row, if the frame has it.
+    /// Returns the numbers of a chunk, row by row, if the frame has it.
     pub(super) fn numbers(
         &mut self,
         frame: u64,
@@ -137,8 +138,8 @@ impl File {
         Ok(Some(values))
     }
 
-    /// Columns of a chunk, if the frame has it: the numbers at each of some places of its rows. No other
-    /// copy of them is made.
+    /// Returns columns of a chunk, selected by index, if the frame has it. Makes no other copy of the
+    /// numbers.
     pub(super) fn columns(
         &mut self,
         frame: u64,
@@ -164,7 +165,7 @@ impl File {
         Ok(Some(columns))
     }
 
-    /// Calls a function with the bytes of a chunk, some whole rows at a time.
+    /// Calls a function with the bytes of a chunk, in blocks of whole rows.
     fn each_block(
         &mut self,
         chunk: Chunk,
@@ -173,7 +174,7 @@ impl File {
     ) -> Result<(), FileError> {
         let row = chunk.width.saturating_mul(size as u64);
         self.check_range(chunk.location, chunk.rows.saturating_mul(row))?;
-        // A row of nothing has no block.
+        // Empty rows have no block.
         let rows = if row == 0 { 0 } else { chunk.rows };
         for first in (0..rows).step_by(ROWS as usize) {
             let count = ROWS.min(rows - first);
@@ -182,7 +183,7 @@ impl File {
         Ok(())
     }
 
-    /// The kind of a chunk's numbers.
+    /// Returns the type of a chunk's numbers.
     fn scalar(&self, chunk: Chunk, frame: u64, name: &str) -> Result<Scalar, FileError> {
         Ok(match chunk.kind {
             1 => Scalar::U8,
@@ -202,7 +203,7 @@ impl File {
         })
     }
 
-    /// The texts of a chunk, one in each row, if the frame has it.
+    /// Returns the texts of a chunk, one per row, if the frame has it.
     pub(super) fn texts(
         &mut self,
         frame: u64,
@@ -218,7 +219,7 @@ impl File {
         Ok(Some(rows.map(text).collect()))
     }
 
-    /// Rows and numbers in a row of a chunk, if the frame has it.
+    /// Returns the number of rows of a chunk and of numbers per row, if the frame has it.
     pub(super) fn size(&self, frame: u64, name: &str) -> Option<(u64, u64)> {
         self.chunk(frame, name).map(|chunk| (chunk.rows, chunk.width))
     }
@@ -234,17 +235,17 @@ impl File {
         self.chunks.get(&(frame, id)).copied()
     }
 
-    /// Refuses bytes that the file does not have.
+    /// Returns an error if a range is not within the file.
     fn check_range(&self, location: u64, length: u64) -> Result<(), FileError> {
         if location.checked_add(length).is_some_and(|end| end <= self.length) {
             return Ok(());
         }
         let message = format!("is cut off: {length} bytes from {location} on are not there");
         let error = FileError::whole_file(&self.path, message);
-        Err(error.with_help("copy it anew, after the simulation has ended"))
+        Err(error.with_help("copy it again, after the simulation has ended"))
     }
 
-    /// Bytes of the file, which are looked for before memory is taken for them.
+    /// Reads bytes of the file; checks that they exist before allocating memory.
     fn bytes(&mut self, location: u64, length: u64) -> Result<Vec<u8>, FileError> {
         self.check_range(location, length)?;
         let mut bytes = vec![0; length as usize];

@@ -1,7 +1,7 @@
-//! GSD of HOOMD-blue, schema `hoomd` (gsd.readthedocs.io): lengths are reduced, and every particle
-//! has a diameter.
+//! Reads GSD of HOOMD-blue, schema `hoomd` (gsd.readthedocs.io): lengths are in reduced units, and
+//! every particle has a diameter.
 //!
-//! The crate `hoomd-gsd` asks for a newer compiler than this one does, so this is our own.
+//! The crate `hoomd-gsd` isn't used: it requires a newer compiler.
 
 mod file;
 
@@ -22,25 +22,25 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Chunks of particles that are no columns of numbers, or are [`COLUMNS`] under other names.
+/// Chunks of particles that are not columns of numbers, or are in [`COLUMNS`] under other names.
 const KNOWN: [&str; 7] = ["N", "types", "typeid", "position", "velocity", "diameter", "mass"];
 
-/// Names of columns that are always there.
+/// Names of columns that always exist.
 const COLUMNS: [&str; 10] = ["x", "y", "z", "diameter", "type", "mass", "charge", "vx", "vy", "vz"];
 
-/// Most numbers that each particle has in a chunk whose numbers are columns.
+/// Maximum number of values per particle in a chunk that is kept as columns.
 const WIDEST: u64 = 64;
 
 /// A column of a chunk.
-struct Part {
+struct ChunkColumn {
     name: String,
     chunk: String,
-    /// The place of its number in a row, and how many numbers rows have.
+    /// Index in a row, and number of values per row.
     at: usize,
     width: u64,
 }
 
-/// Reads frames of a GSD file.
+/// Reader of the frames of a GSD file.
 pub(super) struct Gsd {
     path: Arc<Path>,
     file: File,
@@ -55,9 +55,8 @@ impl Gsd {
         Ok(Self { path, file, options: options.clone(), next: 0 })
     }
 
-    /// Columns of a chunk of particles in a frame, the numbers at each of some places of its rows, of
-    /// which there are as many as particles, of `width` numbers each; `None` if neither the frame nor the
-    /// first one has it.
+    /// Returns columns of a chunk with one row of `width` numbers per particle, selected by index; `None`
+    /// if neither the frame nor the first one has the chunk.
     fn particles(
         &mut self,
         name: &str,
@@ -66,7 +65,7 @@ impl Gsd {
         places: &[usize],
     ) -> Result<Option<Vec<Vec<f64>>>, FileError> {
         let own = self.file.size(self.next, name).map(|size| (self.next, size));
-        // What does not change stands in the first frame alone.
+        // Constant chunks are only in the first frame.
         let first = || self.file.size(0, name).filter(|size| size.0 == count).map(|size| (0, size));
         let Some((frame, size)) = own.or_else(first) else { return Ok(None) };
         if size != (count, width) {
@@ -79,12 +78,12 @@ impl Gsd {
         self.file.columns(frame, name, places)
     }
 
-    /// Reads a chunk with one number for each particle.
+    /// Reads a chunk with one number per particle.
     fn values(&mut self, name: &str, count: u64) -> Result<Option<Vec<f64>>, FileError> {
         Ok(self.particles(name, count, 1, &[0])?.and_then(|mut columns| columns.pop()))
     }
 
-    /// Numbers that concern a whole frame, which may stand in the first frame alone.
+    /// Returns numbers of the whole frame, which may be only in the first frame.
     fn whole(&mut self, name: &str) -> Result<Option<Vec<f64>>, FileError> {
         let own = self.file.numbers(self.next, name)?;
         match own {
@@ -93,7 +92,7 @@ impl Gsd {
         }
     }
 
-    /// A column by its name: one of [`COLUMNS`], or a chunk with one number for each particle.
+    /// Returns a column by its name: one of [`COLUMNS`], or a chunk with one number per particle.
     fn column(&mut self, name: &str, count: u64) -> Result<Vec<f64>, FileError> {
         let usual = match name {
             "diameter" | "mass" => Some(1.0),
@@ -119,8 +118,8 @@ impl Gsd {
         }
     }
 
-    /// The columns of chunks with a row for each particle, besides [`COLUMNS`], by name.
-    fn more_columns(&self, count: u64) -> Vec<Part> {
+    /// Returns the columns of other chunks with one row per particle, by name.
+    fn more_columns(&self, count: u64) -> Vec<ChunkColumn> {
         let mut parts = Vec::new();
         for chunk in self.file.names() {
             let known = |name: &str| KNOWN.contains(&name) || COLUMNS.contains(&name);
@@ -136,15 +135,15 @@ impl Gsd {
                 continue;
             };
             for (at, name) in component_names(name, width as usize).into_iter().enumerate() {
-                parts.push(Part { name, chunk: chunk.to_owned(), at, width });
+                parts.push(ChunkColumn { name, chunk: chunk.to_owned(), at, width });
             }
         }
         parts.sort_by(|a, b| (&a.chunk, a.at).cmp(&(&b.chunk, b.at)));
         parts
     }
 
-    /// The columns that the options ask for.
-    fn kept(&mut self, count: u64, parts: &[Part]) -> Result<Vec<NumberColumn>, FileError> {
+    /// Returns the columns that the options request.
+    fn kept(&mut self, count: u64, parts: &[ChunkColumn]) -> Result<Vec<NumberColumn>, FileError> {
         let part = |name: &String| parts.iter().find(|part| part.name == *name);
         let of_role = |name: &String| ["x", "y", "z", "type"].contains(&name.as_str());
         let is_there = |name: &&String| {
@@ -154,7 +153,7 @@ impl Gsd {
             !of_role(name) && (plain || part(name).is_some())
         };
         let columns = &self.options.columns;
-        // Positions and types are kept in their role.
+        // Positions and types keep their role.
         let aliased = columns.kept.iter().map(|name| {
             let others = || aliases::of(name).map(str::to_owned);
             let other = || others().find(|other| is_there(&other)).unwrap_or_else(|| name.clone());
@@ -171,7 +170,7 @@ impl Gsd {
         }
         let mut column = |name: String| {
             let values = match part(&name).filter(|part| part.width > 1) {
-                Some(Part { chunk, at, width, .. }) => {
+                Some(ChunkColumn { chunk, at, width, .. }) => {
                     let columns = self.particles(chunk, count, *width, &[*at])?;
                     columns.and_then(|mut columns| columns.pop()).unwrap_or_default()
                 }
@@ -180,7 +179,7 @@ impl Gsd {
             Ok(NumberColumn { name, values })
         };
         let mut kept = names.into_iter().map(&mut column).collect::<Result<Vec<_>, FileError>>()?;
-        // Not asked for by name, so that a damaged one is no error.
+        // Not requested by name, so a damaged one is no error.
         kept.extend(rest.into_iter().filter_map(|name| column(name).ok()));
         Ok(kept)
     }
@@ -195,7 +194,7 @@ impl Gsd {
         let count = frame.len() as u64;
         let codes = self.values("particles/typeid", count)?;
         let unknown = types.len() as f64;
-        // Names of types are no elements: `C` is the third.
+        // Type names are not elements: `C` is the third type.
         let kind = |name| Kind { name, element: None, virtual_site: false };
         frame.kinds.table = types.into_iter().map(kind).collect();
         for row in 0..frame.len() {
@@ -229,7 +228,7 @@ impl Gsd {
         FileError::whole_file(&self.path, message)
     }
 
-    /// Says what the frame has besides spheres.
+    /// Adds warnings about shapes other than spheres.
     fn add_undrawn(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
         let bonds = self.whole("bonds/N")?.and_then(|count| count.first().copied());
         frame.add_undrawn(Undrawn::Bonds, bonds.unwrap_or(0.0) as u64);
@@ -277,13 +276,14 @@ impl Gsd {
     }
 }
 
-/// Returns whether the description of a type's shape, in JSON, is of another shape than a sphere.
+/// Returns whether the JSON description of a type's shape is not a sphere.
 fn is_shape(text: &str) -> bool {
     let kind = text.split_once("\"type\"").map(|(_, kind)| kind.trim_start_matches([':', ' ']));
     kind.is_some_and(|kind| !kind.starts_with("\"Sphere\""))
 }
 
-/// A box of HOOMD-blue, around the origin: lengths along the axes, and tilts as factors on them.
+/// Returns the cell of a HOOMD-blue box, centered at the origin: lengths along the axes, and tilt
+/// factors.
 pub(super) fn cell(edges: &[f64]) -> Option<Cell> {
     let &[x, y, z, xy, xz, yz] = edges else { return None };
     let a = DVec3::new(x, 0.0, 0.0);

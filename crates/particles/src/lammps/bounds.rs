@@ -1,9 +1,9 @@
-//! Boxes as LAMMPS writes them (<https://docs.lammps.org/Howto_triclinic.html>).
+//! Simulation boxes of LAMMPS (<https://docs.lammps.org/Howto_triclinic.html>).
 
 use crate::cell::Cell;
 use glam::DVec3;
 
-/// A box from its least and greatest corner and its tilts `xy xz yz`.
+/// Returns the cell of a box with lower and upper corners and tilt factors `xy xz yz`.
 pub(super) fn tilted(low: [f64; 3], high: [f64; 3], tilt: [f64; 3]) -> Cell {
     let [xy, xz, yz] = tilt;
     let vectors = [
@@ -14,7 +14,7 @@ pub(super) fn tilted(low: [f64; 3], high: [f64; 3], tilt: [f64; 3]) -> Cell {
     Cell { origin: DVec3::from_array(low), vectors, periodic: [true; 3] }
 }
 
-/// Returns the cell of a dump's bounds, which are those of the tilted box along the axes.
+/// Returns the cell of a dump's bounds, which enclose the tilted box.
 pub(super) fn tilted_from_bounds(low: [f64; 3], high: [f64; 3], tilt: [f64; 3]) -> Cell {
     let [xy, xz, yz] = tilt;
     let [x_low, y_low, z_low] = low;

@@ -12,7 +12,7 @@ use crate::fields::Fields;
 use crate::frame::{LengthUnit, ParticleFrame};
 use crate::frame_reader::FrameReader;
 use crate::lines::{Line, Lines};
-use crate::naming::{forget_elements, kind};
+use crate::naming::{drop_uncertain_elements, kind};
 use crate::number;
 use crate::options::{Format, ReadOptions, Role};
 use crate::schema::{Naming, Schema};
@@ -21,7 +21,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Reads the one frame of a data file.
+/// Reader of the single frame of a data file.
 pub(in super::super) struct Data {
     lines: Lines,
     options: ReadOptions,
@@ -33,11 +33,11 @@ pub(in super::super) struct Data {
 struct Head {
     title: String,
     atoms: u64,
-    /// Number of atom types; 0 if the header does not say.
+    /// Number of atom types; 0 if the header has none.
     types: u64,
-    /// Names of types, by their numbers.
+    /// Type labels, by type number.
     labels: HashMap<String, String>,
-    /// Numbers of bonds, ellipsoids and the like.
+    /// Counts of bonds, ellipsoids and the like.
     counts: HashMap<&'static str, u64>,
     low: [f64; 3],
     high: [f64; 3],
@@ -45,7 +45,7 @@ struct Head {
     /// Vectors and origin of a general triclinic box.
     general: [Option<DVec3>; 4],
     has_box: bool,
-    /// Masses of types, by the types' names.
+    /// Masses of types, by type name.
     masses: HashMap<String, f64>,
 }
 
@@ -54,7 +54,7 @@ impl Data {
         Self { lines: Lines::new(source), options: options.clone(), done: false }
     }
 
-    /// The next line that is no comment and not blank.
+    /// Returns the next line that is neither blank nor a comment.
     fn line(lines: &mut Lines) -> Result<Option<Line<'_>>, FileError> {
         while let Some(line) = lines.next()? {
             if content(line.bytes).is_some() {
@@ -65,15 +65,15 @@ impl Data {
         lines.next()
     }
 
-    /// Whether the next line begins a section, or the file ends.
+    /// Returns whether the next line begins a section, or the file ends.
     fn at_section(&mut self) -> Result<bool, FileError> {
         let section = Self::line(&mut self.lines)?.is_none_or(|line| is_section(line.bytes));
         self.lines.back();
         Ok(section)
     }
 
-    /// Passes over the rows of a section, and counts them. A body takes several: its id and how many
-    /// whole and other numbers follow, and these numbers.
+    /// Skips the rows of a section and counts them. A body has several rows: its id and the numbers of
+    /// integers and floating-point numbers, and then these numbers.
     fn pass(&mut self, bodies: bool) -> Result<u64, FileError> {
         let (mut count, mut numbers) = (0, 0);
         while !self.at_section()? {
@@ -104,7 +104,7 @@ impl Data {
         })
     }
 
-    /// Takes the first two fields of each row of a section.
+    /// Calls a function with the first two fields of each row of a section.
     fn pairs(
         &mut self,
         mut take: impl FnMut(&Line, String, &[u8]) -> Result<(), FileError>,
@@ -119,7 +119,7 @@ impl Data {
         Ok(())
     }
 
-    /// Reads the section `Atoms`, after whose name there may be a `comment`.
+    /// Reads the section `Atoms`; `comment` follows its name and may be empty.
     fn atoms(&mut self, head: &Head, comment: &str) -> Result<ParticleFrame, FileError> {
         let (layout, warning) = self.layout(head, comment)?;
         let known = [(Role::Kind, "type")];
@@ -147,7 +147,7 @@ impl Data {
         Ok(frame)
     }
 
-    /// The columns of the rows that follow, and a warning if they may be others.
+    /// Returns the columns of the following rows, and a warning if they are ambiguous.
     fn layout(
         &mut self,
         head: &Head,
@@ -204,7 +204,7 @@ impl Data {
         }
     }
 
-    /// The fields of rows that follow, as many as a block has; they come again.
+    /// Returns the fields of up to a block of following rows without consuming them.
     fn peek(&mut self) -> Result<Vec<Vec<String>>, FileError> {
         let text = self.lines.ahead()?;
         let complete = memchr::memrchr(b'\n', text).map_or(text, |newline| &text[..newline]);
@@ -215,13 +215,13 @@ impl Data {
     }
 }
 
-/// A line without its comment; `None` if there is nothing else.
+/// Returns a line without its comment; `None` if nothing else is left.
 fn content(line: &[u8]) -> Option<&[u8]> {
     let end = memchr::memchr(b'#', line).unwrap_or(line.len());
     Some(line[..end].trim_ascii()).filter(|content| !content.is_empty())
 }
 
-/// Whether a line is the name of a section: a word, where others begin with a number or a label.
+/// Returns whether a line is the name of a section: a word, while rows begin with a number or a label.
 fn is_section(line: &[u8]) -> bool {
     let content = content(line).unwrap_or_default();
     content.first().is_some_and(u8::is_ascii_uppercase)
@@ -262,7 +262,9 @@ impl FrameReader for Data {
             }
         }
         let mut frame = frame.ok_or_else(|| {
-            self.lines.ended("no section `Atoms`").with_help("the file is cut off, or no data file")
+            self.lines
+                .ended("no section `Atoms`")
+                .with_help("the file is cut off, or not a data file")
         })?;
         velocities.complete(&mut frame, &self.lines)?;
         for (kind, count) in undrawn {
@@ -273,7 +275,7 @@ impl FrameReader for Data {
 }
 
 impl Head {
-    /// A line of the header: numbers, and what they are.
+    /// Reads a line of the header: numbers and a keyword.
     fn read(&mut self, line: &Line) -> Result<(), FileError> {
         let words: Vec<&[u8]> = line.fields().take_while(|word| !word.starts_with(b"#")).collect();
         let first = words.iter().position(|word| number::parse(word).is_none());
@@ -307,7 +309,7 @@ impl Head {
         Ok(())
     }
 
-    /// Returns the properties that rows of atoms must agree with.
+    /// Returns the properties that rows of atoms must be consistent with.
     fn facts(&self) -> Facts<'_> {
         Facts {
             types: self.types,
@@ -317,7 +319,7 @@ impl Head {
         }
     }
 
-    /// A warning of the first type that the header does not know.
+    /// Returns a warning about the first type that the header doesn't define.
     fn unknown_type(&self, frame: &ParticleFrame) -> Option<String> {
         let mut numbers =
             frame.kinds.table.iter().filter_map(|kind| number::whole(kind.name.as_bytes()));
@@ -330,7 +332,7 @@ impl Head {
         ))
     }
 
-    /// The name of a type, by its number or name.
+    /// Returns the label of a type, by its number or label.
     fn label<'h>(&'h self, kind: &'h str) -> &'h str {
         self.labels.get(kind).map_or(kind, String::as_str)
     }
@@ -343,8 +345,8 @@ impl Head {
         self.has_box.then(|| tilted(self.low, self.high, self.tilt)).and_then(Cell::checked)
     }
 
-    /// Whether the masses are those of elements: all of them, and not all that of hydrogen, which
-    /// is the usual mass of particles that are no atoms.
+    /// Returns whether all masses are those of elements, and not all are 1, which is the usual mass of
+    /// particles that aren't atoms.
     fn has_elements(&self) -> bool {
         !self.masses.is_empty()
             && self.masses.values().all(|&mass| Element::from_mass(mass).is_some())
@@ -356,7 +358,7 @@ impl Head {
         frame.unit = unit(units.and_then(|units| units.split([',', ' ']).next()).unwrap_or(""));
         if !self.labels.is_empty() {
             frame.kinds.rename(|name| kind(self.label(name), Naming::Types));
-            forget_elements(&mut frame.kinds, Naming::Types);
+            drop_uncertain_elements(&mut frame.kinds, Naming::Types);
         }
         if self.has_elements() {
             let masses = self.masses.iter().map(|(name, mass)| (self.label(name), *mass));

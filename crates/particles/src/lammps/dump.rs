@@ -14,8 +14,8 @@ use crate::source::Source;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Names of positions: in the box, unwrapped, and both as shares of the box's edges; those that go
-/// first in front.
+/// Names of position columns, in order of precedence: wrapped, unwrapped, and both in fractional
+/// coordinates (`true`).
 const POSITIONS: [([&str; 3], bool); 4] = [
     (["x", "y", "z"], false),
     (["xs", "ys", "zs"], true),
@@ -23,14 +23,14 @@ const POSITIONS: [([&str; 3], bool); 4] = [
     (["xsu", "ysu", "zsu"], true),
 ];
 
-/// Columns of dumps that do not name them.
+/// Columns of dumps without column names.
 const UNNAMED: [&str; 5] = ["id", "type", "xs", "ys", "zs"];
 
-/// Reads frames of a dump.
+/// Reader of the frames of a dump.
 pub(in super::super) struct Dump {
     lines: Lines,
     options: ReadOptions,
-    /// The units of the frames before: only the first need name them.
+    /// Units of the earlier frames: only the first must declare them.
     units: LengthUnit,
 }
 
@@ -50,7 +50,7 @@ impl Dump {
         Self { lines, options: options.clone(), units: LengthUnit::Unknown }
     }
 
-    /// Everything up to the names of the columns of atoms; `None` if there is nothing.
+    /// Reads a frame up to the column names of atoms; returns `None` at the end of the file.
     fn head(&mut self) -> Result<Option<Head>, FileError> {
         let mut head = Head::default();
         let mut any = false;
@@ -86,7 +86,7 @@ impl Dump {
             "TIME" => head.time = Some(line.number(value)?),
             "NUMBER OF ATOMS" => head.count = Some(line.whole_number(value)?),
             "UNITS" => self.units = unit(&String::from_utf8_lossy(value)),
-            // A section of a later version: its lines up to the next.
+            // A section of a later version: skip its lines up to the next section.
             _ => {
                 self.lines.back();
                 while self.lines.next()?.is_some_and(|line| !line.bytes.starts_with(b"ITEM:")) {}
@@ -130,7 +130,7 @@ impl Dump {
         self.lines.ended(message).with_help("the file is cut off; choose an earlier frame")
     }
 
-    /// The columns, and whether positions are shares of the box's edges.
+    /// Returns the columns, and whether positions are fractional coordinates.
     fn schema(&self, mut names: Vec<String>) -> Result<(Schema, bool), FileError> {
         if names.is_empty() {
             names = UNNAMED.map(str::to_owned).into();
@@ -153,7 +153,7 @@ impl Dump {
     }
 }
 
-/// Fills a row with the numbers that a line begins with.
+/// Fills `row` with the numbers at the beginning of a line.
 fn read_row(line: &Line, row: &mut [f64]) -> Result<(), FileError> {
     let count = row.len();
     let mut fields = line.fields();
@@ -186,8 +186,8 @@ impl FrameReader for Dump {
         let mut frame = builder.finish();
         if scaled {
             let Some(cell) = head.cell else {
-                let error = self.lines.ended("positions in shares of a box that has no volume");
-                return Err(error.with_help("dump `x y z`, or mend ITEM: BOX BOUNDS"));
+                let error = self.lines.ended("fractional positions, but the box has no volume");
+                return Err(error.with_help("dump `x y z`, or correct ITEM: BOX BOUNDS"));
             };
             unscale(&mut frame, &cell);
         }
@@ -208,7 +208,7 @@ impl FrameReader for Dump {
     }
 }
 
-/// Makes places of shares of the box's edges.
+/// Converts fractional to Cartesian coordinates.
 fn unscale(frame: &mut ParticleFrame, cell: &Cell) {
     for row in 0..frame.len() {
         let point = cell.cartesian(frame.position(row).to_array());

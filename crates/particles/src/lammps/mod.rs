@@ -1,4 +1,4 @@
-//! Files of LAMMPS: dumps and data files.
+//! Readers of LAMMPS files: dumps and data files.
 
 mod bounds;
 mod data;
@@ -12,7 +12,7 @@ pub(super) use dump::Dump;
 use super::frame::LengthUnit;
 use super::undrawn::Undrawn;
 
-/// The things that a section of a data file lists in its rows and that are not drawn.
+/// Returns the kind of object that a section of a data file lists, if it is not drawn.
 fn undrawn(section: &str) -> Option<Undrawn> {
     match section {
         "Bonds" => Some(Undrawn::Bonds),
@@ -21,7 +21,7 @@ fn undrawn(section: &str) -> Option<Undrawn> {
     }
 }
 
-/// The unit of length of a style of units.
+/// Returns the unit of length of a LAMMPS unit style.
 fn unit(units: &str) -> LengthUnit {
     match units {
         "real" | "metal" => LengthUnit::Angstrom,

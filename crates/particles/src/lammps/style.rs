@@ -6,16 +6,15 @@ use crate::number;
 use glam::{DMat3, DVec3};
 use std::collections::{HashMap, HashSet};
 
-/// Atom styles and their columns; of several styles that fit, the first is the most usual. A style
-/// comes twice where LAMMPS reads and writes other columns than its manual lists: those that it
-/// reads are first.
+/// Atom styles and their columns, the most common first. A style is listed twice if LAMMPS reads and
+/// writes other columns than its manual documents: those that it reads come first.
 const STYLES: [(&str, &str); 36] = [
     ("atomic", "id type x y z"),
     ("full", "id mol type q x y z"),
     ("molecular", "id mol type x y z"),
     ("bond", "id mol type x y z"),
     ("angle", "id mol type x y z"),
-    // Before styles that fit any nine numbers: it fits unit vectors only.
+    // Precedes styles that fit any nine numbers, because it fits only unit vectors.
     ("spin", "id type x y z spx spy spz sp"),
     ("charge", "id type q x y z"),
     ("sphere", "id type diameter density x y z"),
@@ -45,24 +44,23 @@ const STYLES: [(&str, &str); 36] = [
     ("wavepacket", "id type q espin eradius etag cs_re cs_im x y z"),
     ("apip", "id type x y z"),
     ("oxdna", "id type x y z"),
-    // Concentrations of any number of species follow.
+    // Any number of concentrations follows.
     ("tdpd", "id type x y z"),
     // The columns of its sub-styles follow.
     ("hybrid", "id type x y z"),
 ];
 
-/// Columns that every style has; `hybrid` begins with them.
+/// Columns of every style; `hybrid` begins with them.
 const COMMON: [&str; 5] = ["id", "type", "x", "y", "z"];
 
-/// Columns of different names for one property, which `hybrid` has once: the name of the property
-/// in LAMMPS comes first.
+/// Synonymous columns, which `hybrid` lists once; the first name is that of the property in LAMMPS.
 const SYNONYMS: [&[&str]; 3] = [
     &["rmass", "density", "mass"],
     &["radius", "diameter", "kradius", "mradius"],
     &["esph", "energy"],
 ];
 
-/// Things of which a header has the number, and the styles that have them.
+/// Objects that a header counts, with the styles that have them.
 const OWNERS: [(&str, &[&str]); 8] = [
     (
         "bonds",
@@ -77,13 +75,13 @@ const OWNERS: [(&str, &[&str]); 8] = [
     ("bodies", &["body"]),
 ];
 
-/// Columns of image flags, which may follow those of any style.
+/// Number of image flags, which may follow the columns of any style.
 const IMAGES: usize = 3;
 
-/// Styles that a message lists at most.
+/// Maximum number of styles in a message.
 const LISTED: usize = 5;
 
-/// Names of all atom styles, in the order of the alphabet.
+/// Returns the names of all atom styles in alphabetical order.
 pub(super) fn names() -> Vec<&'static str> {
     let mut names: Vec<&str> = STYLES.map(|(name, _)| name).into();
     names.sort_unstable();
@@ -91,14 +89,14 @@ pub(super) fn names() -> Vec<&'static str> {
     names
 }
 
-/// Columns that rows of `Atoms` may have.
+/// Possible columns of the section `Atoms`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
     /// The atom style.
     pub(super) style: String,
     /// Names of the columns.
     pub(super) columns: Vec<String>,
-    /// True if columns of unknown number and meaning follow.
+    /// True if an unknown number of other columns follows.
     open: bool,
 }
 
@@ -108,8 +106,8 @@ impl Layout {
         Self { style: style.to_owned(), columns, open: ["tdpd", "hybrid"].contains(&style) }
     }
 
-    /// The layouts that an atom style may have, the most likely one first; none if there is no such
-    /// style. `hybrid` is followed by its sub-styles.
+    /// Returns the possible layouts of an atom style, the most likely first; none if the style is
+    /// unknown. `hybrid` is followed by its sub-styles.
     pub(super) fn of_style(style: &str) -> Vec<Self> {
         let style = style.to_ascii_lowercase();
         let mut words = style.split_whitespace().map(without_accelerator);
@@ -129,19 +127,19 @@ fn table(style: &str) -> impl Iterator<Item = Layout> {
     own.map(|(name, columns)| Layout::new(name, columns))
 }
 
-/// A style without the name of the package that speeds it up.
+/// Strips the suffix of an accelerator package from a style.
 fn without_accelerator(style: &str) -> &str {
     let suffixes = ["/kk", "/omp", "/intel", "/gpu", "/cuda"];
     suffixes.iter().find_map(|suffix| style.strip_suffix(suffix)).unwrap_or(style)
 }
 
-/// Layouts of a hybrid style: LAMMPS lists a property of several sub-styles once; before 2020, it
-/// listed the property for each of them.
+/// Returns the layouts of a hybrid style: LAMMPS lists a property of several sub-styles once; before
+/// 2020, it listed the property for each of them.
 fn hybrid(words: &[&str]) -> Vec<Layout> {
     let subs: Vec<Layout> = words.iter().filter_map(|word| table(word).next()).collect();
     let style = ["hybrid"].into_iter().chain(subs.iter().map(|sub| &sub.style[..]));
     let style = style.collect::<Vec<_>>().join(" ");
-    // A word that is no style may be an argument of one, or a style that is not known here.
+    // An unknown word may be an argument of a style, or an unsupported style.
     let open = subs.len() < words.len() || subs.is_empty() || subs.iter().any(|sub| sub.open);
     let layout = |repeats: bool| {
         let mut layout =
@@ -167,35 +165,35 @@ fn hybrid(words: &[&str]) -> Vec<Layout> {
     if once == each { vec![once] } else { vec![once, each] }
 }
 
-/// Returns the name that LAMMPS has for the property in a column.
+/// Returns the name in LAMMPS of the property in a column.
 fn property(column: &str) -> &str {
     SYNONYMS.iter().find(|names| names.contains(&column)).map_or(column, |names| names[0])
 }
 
-/// Properties of the rows below, as the header declares them.
+/// Properties of the rows, as declared in the header.
 #[derive(Default)]
 pub(super) struct Facts<'h> {
-    /// Number of atom types; 0 if the header does not say.
+    /// Number of atom types; 0 if the header has none.
     pub(super) types: u64,
     /// Names of the types.
     pub(super) labels: HashSet<&'h str>,
-    /// Numbers of bonds, ellipsoids and the like, by their names in the header.
+    /// Counts of bonds, ellipsoids and the like, by their names in the header.
     pub(super) counts: HashMap<&'static str, u64>,
     pub(super) cell: Option<Cell>,
 }
 
-/// Names of the things that a header counts.
+/// Returns the names of the objects that a header counts.
 pub(super) fn counted() -> impl Iterator<Item = &'static str> {
     OWNERS.iter().map(|(name, _)| *name)
 }
 
-/// Some rows of `Atoms`, and what is true of all values of a column.
+/// Sample of the rows of `Atoms`, with a summary of each column.
 pub(super) struct Sample {
     rows: Vec<Vec<String>>,
     columns: Vec<Summary>,
 }
 
-/// Properties that all values of a column have.
+/// Common properties of all values of a column.
 #[derive(Clone, Copy)]
 struct Summary {
     finite: bool,
@@ -218,7 +216,7 @@ impl Summary {
         summary
     }
 
-    /// Returns whether all are whole numbers of at least `least`.
+    /// Returns whether all values are whole numbers of at least `least`.
     fn is_whole(self, least: f64) -> bool {
         self.integral && self.least >= least
     }
@@ -236,7 +234,7 @@ impl Sample {
         self.rows.is_empty()
     }
 
-    /// Columns of every row.
+    /// Returns the number of columns of every row.
     pub(super) fn width(&self) -> usize {
         self.columns.len()
     }
@@ -261,17 +259,17 @@ impl Sample {
     }
 }
 
-/// A layout that was chosen, and why it may be the wrong one.
+/// The chosen layout, with reasons why it may be wrong.
 pub(super) struct Chosen {
     pub(super) layout: Layout,
-    /// A reason against it, for a layout that was named.
+    /// A reason against a layout that was named.
     pub(super) misfit: Option<String>,
-    /// Other styles that fit as well, and would be drawn otherwise.
+    /// Other styles that fit equally well but would place different spheres.
     pub(super) others: Vec<&'static str>,
 }
 
 impl Chosen {
-    /// A warning that the layout is a guess.
+    /// Returns a warning that the layout is a guess.
     pub(super) fn warning(&self) -> String {
         let style = &self.layout.style;
         if self.others.is_empty() {
@@ -288,7 +286,7 @@ impl Chosen {
 }
 
 impl Facts<'_> {
-    /// The layout of a style that fits best; `None` if there is no such style.
+    /// Returns the best layout of a style; `None` if the style is unknown.
     pub(super) fn named(&self, style: &str, sample: &Sample) -> Option<Chosen> {
         let layouts = Layout::of_style(style);
         let fits = |layout: &&Layout| self.misfit(layout, sample, true).is_none();
@@ -297,7 +295,7 @@ impl Facts<'_> {
         Some(Chosen { layout, misfit, others: Vec::new() })
     }
 
-    /// The most usual of the styles that rows fit best, if they fit any.
+    /// Returns the most common of the styles that fit best, if any fits.
     pub(super) fn guess(&self, sample: &Sample) -> Option<Chosen> {
         let all = STYLES.iter().map(|(style, columns)| (*style, Layout::new(style, columns)));
         let fits = |layout: &Layout| self.misfit(layout, sample, false).is_none();
@@ -313,7 +311,7 @@ impl Facts<'_> {
         let mut best = fitting.into_iter().filter(|(_, layout)| likelihood(layout) == best);
         let (_, layout) = best.next()?;
         let mut others: Vec<&str> = best
-            .filter(|(_, other)| !drawn_alike(&layout, other, sample))
+            .filter(|(_, other)| !place_same_spheres(&layout, other, sample))
             .map(|(name, _)| name)
             .collect();
         others.dedup();
@@ -321,8 +319,8 @@ impl Facts<'_> {
         Some(Chosen { layout, misfit: None, others })
     }
 
-    /// A reason why rows cannot have a layout, if there is one. Of a layout that was `named`, no
-    /// more is asked than what LAMMPS asks.
+    /// Returns a reason why rows cannot have a layout, if there is one. A `named` layout need only
+    /// meet the requirements of LAMMPS.
     fn misfit(&self, layout: &Layout, sample: &Sample, named: bool) -> Option<String> {
         let (width, columns) = (sample.width(), layout.columns.len());
         let images = || sample.columns[columns..].iter().all(|column| column.integral);
@@ -366,7 +364,7 @@ impl Facts<'_> {
         self.counts.get(thing).copied().unwrap_or(0)
     }
 
-    /// Returns whether values may be in a column of this name, other than that of types.
+    /// Returns whether values are valid in the column `name`, which is not that of types.
     fn may_be(&self, name: &str, column: Summary) -> bool {
         let flag =
             |things: &str| column.is_whole(0.0) && column.greatest <= 1.0 && self.count(things) > 0;
@@ -390,13 +388,13 @@ impl Facts<'_> {
         }
     }
 
-    /// A value of a column that is no type of the header's.
+    /// Returns the message for a value that is not a type in the header, if there is one.
     fn type_fault(&self, at: usize, sample: &Sample, named: bool) -> Option<String> {
         let is_type = |value: &&String| {
             let number = number::whole(value.as_bytes());
             number.is_some_and(|number| self.has_type(number))
                 || self.labels.contains(value.as_str())
-                // Labels may be defined in the script of the simulation.
+                // Labels may be defined in the simulation's input script.
                 || named && self.labels.is_empty() && value.starts_with(|first: char| first.is_alphabetic())
         };
         let value = sample.rows.iter().map(|row| &row[at]).find(|value| !is_type(value))?;
@@ -404,13 +402,13 @@ impl Facts<'_> {
         Some(format!("a type would be {value}, but the header has {types} atom types"))
     }
 
-    /// Returns whether a number is that of a type.
+    /// Returns whether a number is a valid type.
     pub(super) fn has_type(&self, number: u64) -> bool {
         (1..=if self.types > 0 { self.types } else { u64::MAX }).contains(&number)
     }
 
-    /// The share of positions in the box, in tenths, and whether they are other than whole numbers:
-    /// positions mostly are.
+    /// Returns the fraction of positions in the box, in tenths, and whether most are not whole numbers,
+    /// as positions usually are.
     fn likelihood(&self, layout: &Layout, sample: &Sample) -> (usize, bool) {
         let Some(x) = layout.position("x") else { return (0, false) };
         let Some(columns) = sample.columns.get(x..x + 3) else { return (0, false) };
@@ -429,8 +427,8 @@ impl Facts<'_> {
     }
 }
 
-/// Returns whether two layouts that fit place the same spheres of the same types.
-fn drawn_alike(first: &Layout, second: &Layout, sample: &Sample) -> bool {
+/// Returns whether two layouts give the same positions and types.
+fn place_same_spheres(first: &Layout, second: &Layout, sample: &Sample) -> bool {
     let same_column = |name: &str| match (first.position(name), second.position(name)) {
         (Some(first), Some(second)) => sample.same(first, second),
         (first, second) => first == second,
@@ -499,7 +497,7 @@ mod tests {
         // A unit vector and its length, or a charge before a position with image flags.
         assert_eq!(guess(&in_box, &["1 2 0.5 1.5 2.5 0 0 -1 2.2"])[0], "spin");
         assert_eq!(guess(&in_box, &["1 2 0.5 1.5 2.5 9.5 0 0 -1"]), ["charge"]);
-        // Of what fits no style, positions alone are read, if they are in the box.
+        // Rows that fit no style: only positions are read, if they are in the box.
         let unknown = [
             "1 1 0.5 1.5 2.5 7.5 0 0 0 0 0 0 0 0 0 0.5",
             "2 2 3.5 4.5 5.5 8 0 0 0 0 0 0 0 0 0 0.5",
@@ -528,7 +526,7 @@ mod tests {
         assert!(columns("granite").is_empty() && columns("").is_empty());
     }
 
-    /// Why these rows do not fit a style that the file names; empty if they do.
+    /// Returns why rows don't fit a style that the file names; empty if they do.
     fn misfit(facts: &Facts, style: &str, rows: &[&str]) -> String {
         facts.named(style, &sample(rows)).expect("a style").misfit.unwrap_or_default()
     }
@@ -552,7 +550,7 @@ mod tests {
             ("tdpd", &["1 1 0.5 1.5 2.5 0 0 0.5"], ""),
             ("atomic", &["1 1 0.5 far 2.5"], "column 4 cannot be `y`"),
             ("atomic", &["1.5 1 0.5 1.5 2.5"], "column 1 cannot be `id`"),
-            // Some rows may go on.
+            // Some rows may have surplus columns.
             ("atomic", &["1 1 0.5 1.5 2.5 7", "2 1 3 4 5.5 7 8 9"], ""),
             (
                 "atomic",
@@ -590,7 +588,7 @@ mod tests {
                 }
             }
         }
-        // Nothing is an ellipsoid where the header counts none.
+        // No atom is an ellipsoid if the header counts none.
         assert!(!Facts::default().may_be("ellipsoidflag", summary("0 1")));
     }
 

@@ -1,4 +1,4 @@
-//! The section `Velocities` of a data file: rows in an order of their own, told by ids
+//! The section `Velocities` of a data file: rows in arbitrary order, identified by ids
 //! (<https://docs.lammps.org/read_data.html>).
 
 use crate::FileError;
@@ -7,22 +7,22 @@ use crate::lines::{Line, Lines};
 use crate::options::ReadOptions;
 use std::collections::HashMap;
 
-/// Names of its columns, after that of ids; what follows them in some atom styles is not read.
+/// Names of its columns after the id; further columns of some atom styles are ignored.
 const NAMES: [&str; 3] = ["vx", "vy", "vz"];
 
-/// The column of atoms that tells which is which.
+/// Column of atoms that identifies them.
 const ID: &str = "id";
 
-/// The columns of the section that were asked for.
+/// The requested columns of the section.
 #[derive(Default)]
 pub(super) struct Velocities {
-    /// Columns to be kept: names as they were asked for, and the axis of each.
+    /// Columns to keep: names as requested, with their axes.
     asked: Vec<(String, usize)>,
-    /// The first of those that must be there.
+    /// The first required column.
     needed: Option<String>,
-    /// Whether ids are kept for this section alone.
+    /// True if ids are kept only for this section.
     lends_ids: bool,
-    /// Most atoms for which the section is read; where it is not asked for by name there is a limit.
+    /// Maximum number of atoms for which the section is read; limited unless it is requested by name.
     most: u64,
     /// True if the file has the section.
     found: bool,
@@ -34,7 +34,7 @@ fn axis(name: &str) -> Option<usize> {
 }
 
 impl Velocities {
-    /// Takes from the options what atoms do not have, and has ids kept if they are needed.
+    /// Moves the section's columns out of the options, and requests ids if they are needed.
     pub(super) fn take(options: &mut ReadOptions) -> Self {
         let columns = &mut options.columns;
         let all = columns.kept.iter().chain(&columns.wanted);
@@ -66,13 +66,13 @@ impl Velocities {
         Self { asked, needed, lends_ids, most, found: false, values: None }
     }
 
-    /// Takes note of the section in a file of so many atoms; returns whether it is worth reading.
+    /// Records that the file has the section and `atoms` atoms. Returns whether to read the section.
     pub(super) fn find(&mut self, atoms: u64) -> bool {
         self.found = true;
         !self.asked.is_empty() && atoms <= self.most
     }
 
-    /// Reads a row of the section. A faulty one is an error only if velocities were asked for by name.
+    /// Reads a row of the section. A malformed one is an error only if velocities were requested by name.
     pub(super) fn row(&mut self, line: &Line) -> Result<(), FileError> {
         let read = self.read(line);
         if read.is_err() && self.most < u64::MAX {
@@ -95,7 +95,7 @@ impl Velocities {
         Ok(())
     }
 
-    /// Gives atoms what was asked for.
+    /// Adds the requested columns to the atoms.
     pub(super) fn complete(
         self,
         frame: &mut ParticleFrame,

@@ -1,19 +1,18 @@
-//! Memory limits of control groups: containers and cluster jobs have less memory than their machine.
+//! Memory limits of control groups: containers and cluster jobs may use only part of the machine's memory.
 //!
-//! A process is in a group of one of two versions, and that in others: each has a limit, and the least
-//! of what they leave counts (Linux, "Documentation/admin-guide/cgroup-v2.rst" and "cgroup-v1/memory").
+//! Groups are nested and of version 1 or 2. Each may have a limit; the one that leaves the least memory
+//! counts (Linux, "Documentation/admin-guide/cgroup-v2.rst" and "cgroup-v1/memory").
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A version of control groups: names of its files.
+/// File names of a version of control groups.
 struct Version {
-    /// As the list of a process's groups has it.
+    /// Controller name in the list of a process's groups.
     controller: &'static str,
     limit: &'static str,
     used: &'static str,
-    /// Keys of `memory.stat`: what is cached of files, of which shared memory is the part that
-    /// cannot be given up.
+    /// Keys of `memory.stat`: file cache, and shared memory, the part of it that cannot be reclaimed.
     cached: &'static str,
     shared: &'static str,
 }
@@ -34,8 +33,8 @@ const SECOND: Version = Version {
     shared: "shmem",
 };
 
-/// Bytes that this process can still take within the limits of its control groups; `None` if there are
-/// none. `root` is where the file system begins.
+/// Returns the bytes that this process can still allocate within the limits of its control groups;
+/// `None` if there are no limits. `root` is the root of the file system.
 pub(super) fn left(root: &Path) -> Option<u64> {
     let mounts = fs::read_to_string(root.join("proc/self/mountinfo")).ok()?;
     let groups = fs::read_to_string(root.join("proc/self/cgroup")).ok()?;
@@ -43,17 +42,17 @@ pub(super) fn left(root: &Path) -> Option<u64> {
     mounts.filter_map(|mount| mount.left(root, mount.group(&groups)?)).min()
 }
 
-/// Mount points of control groups.
+/// Mount point of control groups.
 struct Mount {
     version: &'static Version,
-    /// The group that the folder shows.
+    /// Group that is mounted at `folder`.
     top: PathBuf,
     folder: PathBuf,
 }
 
 impl Mount {
-    /// From a line of `mountinfo`: what is mounted is the fourth field, where to the fifth; the kind
-    /// comes after a dash, and what the kind takes as options ends the line.
+    /// Parses a line of `mountinfo`: the fourth field is the mounted root, the fifth the mount point.
+    /// The file system type follows a dash, and its options end the line.
     fn read(line: &str) -> Option<Self> {
         let (place, kind) = line.split_once(" - ")?;
         let mut place = place.split(' ').skip(3);
@@ -67,8 +66,8 @@ impl Mount {
         Some(Self { version, top, folder })
     }
 
-    /// The group of this process, from the lines of `/proc/self/cgroup`: a number, controllers, the
-    /// group.
+    /// Returns the group of this process from the lines of `/proc/self/cgroup`: a number, controllers,
+    /// the group.
     fn group<'a>(&self, lines: &'a str) -> Option<&'a Path> {
         lines.lines().find_map(|line| {
             let mut fields = line.splitn(3, ':').skip(1);
@@ -78,11 +77,11 @@ impl Mount {
         })
     }
 
-    /// What the group and those around it leave, as far as they are to be seen.
+    /// Returns the memory left by the group and its visible ancestors.
     fn left(&self, root: &Path, group: &Path) -> Option<u64> {
         let relative = |path: &Path| path.strip_prefix("/").unwrap_or(path).to_owned();
         let top = root.join(relative(&self.folder));
-        // Within a container, the group may have the name that it has outside.
+        // Within a container, the group may have its name on the host.
         let inside = group.strip_prefix(&self.top).map_or_else(|_| PathBuf::new(), relative);
         inside.ancestors().filter_map(|part| self.version.left(&top.join(part))).min()
     }
@@ -139,7 +138,7 @@ mod tests {
             ("sys/fs/cgroup/unified/slurm/memory.max", "9000\n"),
             ("sys/fs/cgroup/unified/slurm/memory.current", "1000\n"),
         ]);
-        // Of 1100 that are used, 800 are files that can be read again.
+        // 800 of 1100 used bytes are file cache that can be reclaimed.
         assert_eq!(left(root.path()), Some(4700));
     }
 

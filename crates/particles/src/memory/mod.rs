@@ -1,9 +1,9 @@
-//! Checks that there is memory for what a file or a command line asks for, before it is allocated.
+//! Checks that enough memory is available before a large allocation.
 //!
-//! Systems promise more memory than they have, and end programs that believe them. So whatever may
-//! take gigabytes, spheres in their columns, the world with its tree, the sums of a film, pictures,
-//! is held against what the system, its control groups and the user leave, and refused in words if it
-//! is more.
+//! Operating systems overcommit memory and kill programs that use it. So everything that may take
+//! gigabytes (columns of spheres, the world with its tree, the film's sums, images) is first compared
+//! with the memory that the system, its control groups and the user leave. If it doesn't fit, the user
+//! gets an error message.
 
 mod group;
 mod process;
@@ -14,28 +14,28 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use sysinfo::{MemoryRefreshKind, ProcessRefreshKind, ProcessesToUpdate, System};
 
-/// Less than this is taken without a question: every machine has it, and asking takes longer.
+/// Allocations up to this size are not checked: every machine has it, and the check takes longer.
 const SMALL: u64 = 1 << 26;
 
-/// Bytes that this process may take in all.
+/// Maximum number of bytes that this process may use.
 static LIMIT: AtomicU64 = AtomicU64::new(u64::MAX);
 
-/// More memory is needed than there is.
+/// Error: not enough memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{} of memory, where {}", Size(*.need), Told(*.left))]
+#[error("{} of memory, where {}", Size(*.need), Available(*.left))]
 pub struct Shortage {
     /// Bytes that are needed.
     pub need: u64,
-    /// Memory left; `None` if the system does not tell, but refused the allocation.
+    /// Available memory; `None` if it is unknown but the allocation failed.
     pub left: Option<Left>,
 }
 
-/// Memory that can be taken.
+/// Available memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
-    /// In bytes.
+    /// Amount in bytes.
     pub bytes: u64,
-    /// Why not more.
+    /// The limit that it comes from.
     pub bound: Bound,
 }
 
@@ -55,19 +55,19 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// Whether memory counts as soon as it is reserved, before anything is written to it.
+    /// Returns whether reserved memory counts, not only written pages.
     fn counts_reserved(self) -> bool {
         matches!(self, Self::AddressSpace | Self::Data)
     }
 }
 
-/// Bounds what this process takes in all to so many bytes, as far as it asks before it takes them:
-/// whatever grows with the input does.
+/// Limits the memory of this process to `bytes`. Allocations that grow with the input are checked
+/// against it.
 pub fn limit_to(bytes: u64) {
     LIMIT.store(bytes, Ordering::Relaxed);
 }
 
-/// Returns the memory that this process can allocate without swapping; `None` if the system does not tell.
+/// Returns the memory that this process can allocate without swapping; `None` if it is unknown.
 pub fn left() -> Option<Left> {
     bounds().min_by_key(|left| left.bytes)
 }
@@ -87,12 +87,12 @@ fn bounds() -> impl Iterator<Item = Left> {
     left.chain(process::left())
 }
 
-/// Bytes that this process has in memory; 0 if the system does not tell.
+/// Returns the resident memory of this process in bytes; 0 if it is unknown.
 pub fn resident() -> u64 {
     taken(&mut System::new())
 }
 
-/// Bytes that this process has in memory; 0 if the system does not tell.
+/// Returns the resident memory of this process in bytes; 0 if it is unknown.
 fn taken(system: &mut System) -> u64 {
     let Ok(process) = sysinfo::get_current_pid() else { return 0 };
     let memory = ProcessRefreshKind::nothing().with_memory().without_tasks();
@@ -100,25 +100,25 @@ fn taken(system: &mut System) -> u64 {
     system.process(process).map_or(0, sysinfo::Process::memory)
 }
 
-/// Bytes of memory that this process has held at most until now; `None` if the system does not tell.
+/// Returns the peak memory of this process in bytes; `None` if it is unknown.
 pub fn peak() -> Option<u64> {
     // Linux calls it the high-water mark.
     process::status("VmHWM:")
 }
 
-/// Finds out whether `need` more bytes can be had.
+/// Checks that `need` more bytes are available.
 ///
 /// # Errors
-/// There are fewer.
+/// Fewer bytes are available.
 pub fn check(need: u64) -> Result<(), Shortage> {
     check_growth(need, need)
 }
 
-/// Finds out whether `need` more bytes can be had of columns that grow, and reserve `reserve` more at
-/// once when they do.
+/// Checks that `need` more bytes are available for growing columns, which reserve `reserve` more bytes
+/// at once when they are reallocated.
 ///
 /// # Errors
-/// There are fewer.
+/// Fewer bytes are available.
 pub(crate) fn check_growth(need: u64, reserve: u64) -> Result<(), Shortage> {
     let limited = LIMIT.load(Ordering::Relaxed) < u64::MAX || process::is_limited();
     if need.max(reserve) <= SMALL && !limited {
@@ -137,10 +137,10 @@ pub(crate) fn check_growth(need: u64, reserve: u64) -> Result<(), Shortage> {
     Err(Shortage { need: reserve, left })
 }
 
-/// Everything that a reader gives, up to a limit in bytes.
+/// Reads a reader to its end, up to a limit in bytes.
 ///
 /// # Errors
-/// There is more than that, or it cannot be read.
+/// There are more bytes than that, or they cannot be read.
 pub fn read_at_most(reader: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     reader.take(limit + 1).read_to_end(&mut bytes)?;
@@ -151,14 +151,14 @@ pub fn read_at_most(reader: impl Read, limit: u64) -> io::Result<Vec<u8>> {
     Err(io::Error::new(io::ErrorKind::FileTooLarge, message))
 }
 
-/// Whether an allocation of so many bytes would succeed: systems that promise no more than they have
-/// show it in nothing else.
+/// Returns whether an allocation of `need` bytes would succeed: systems without overcommitment report
+/// their limit in no other way.
 fn reservable(need: u64) -> bool {
     let probe = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
     usize::try_from(need).is_ok_and(probe)
 }
 
-/// Bytes, for people.
+/// A human-readable number of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size(pub u64);
 
@@ -173,9 +173,9 @@ impl fmt::Display for Size {
     }
 }
 
-struct Told(Option<Left>);
+struct Available(Option<Left>);
 
-impl fmt::Display for Told {
+impl fmt::Display for Available {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(left) = self.0 else { return formatter.write_str("less is left") };
         let of = match left.bound {
@@ -210,7 +210,7 @@ mod tests {
     #[cfg(target_os = "linux")]
     fn what_is_left_is_the_bound() {
         let left = left().expect("Linux tells").bytes;
-        // Other processes may take or free some in between.
+        // Other processes may allocate or free some in between.
         assert!(check(left / 2).is_ok());
         assert!(check(left.saturating_mul(2)).is_err());
     }
@@ -233,22 +233,22 @@ mod tests {
 
     #[test]
     fn shortages_tell_both_amounts() {
-        let told = |bytes, bound| {
+        let message = |bytes, bound| {
             let left = Some(Left { bytes, bound });
             Shortage { need: 192_000_000_000, left }.to_string()
         };
-        let machine = told(22_460_000_000, Bound::Machine);
+        let machine = message(22_460_000_000, Bound::Machine);
         assert_eq!(machine, "192.0 GB of memory, where 22.5 GB are left");
-        let group = told(22_460_000_000, Bound::ControlGroup);
+        let group = message(22_460_000_000, Bound::ControlGroup);
         assert_eq!(group, machine.clone() + " in the control group");
-        assert_eq!(told(22_460_000_000, Bound::Limit), machine + " of the memory limit");
+        assert_eq!(message(22_460_000_000, Bound::Limit), machine + " of the memory limit");
         assert_eq!(
-            told(0, Bound::Limit),
+            message(0, Bound::Limit),
             "192.0 GB of memory, where none is left of the memory limit"
         );
-        let space = told(22_460_000_000, Bound::AddressSpace);
+        let space = message(22_460_000_000, Bound::AddressSpace);
         assert!(space.ends_with("22.5 GB are left of the limit of virtual memory (ulimit -v)"));
-        assert!(told(1, Bound::Data).contains("(ulimit -d)"));
+        assert!(message(1, Bound::Data).contains("(ulimit -d)"));
         let unknown = Shortage { need: 1_500_000, left: None };
         assert_eq!(unknown.to_string(), "1.5 MB of memory, where less is left");
     }

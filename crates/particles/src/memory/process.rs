@@ -1,12 +1,12 @@
-//! Limits that a shell or a job gives to a process: `ulimit -v` and `ulimit -d`.
+//! Limits that a shell or a job sets for a process: `ulimit -v` and `ulimit -d`.
 //!
-//! They count what is reserved, the stacks of threads among it, and not what is written to. An allocation
-//! beyond them ends the program, so they have to be known before.
+//! They count reserved memory, including the stacks of threads, whether or not it is written to. An
+//! allocation beyond them aborts the program, so they are checked before.
 
 use super::{Bound, Left};
 use std::fs;
 
-/// A number of bytes of `/proc/self/status`, by its key with the colon; `None` where there is none.
+/// Returns a number of bytes in `/proc/self/status` by its key, with the colon; `None` if it is missing.
 pub(super) fn status(key: &str) -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix(key))?;
@@ -14,12 +14,12 @@ pub(super) fn status(key: &str) -> Option<u64> {
     Some(kibibytes << 10)
 }
 
-/// Whether the process has any such limit.
+/// Returns whether the process has any such limit.
 pub(super) fn is_limited() -> bool {
     limits().next().is_some()
 }
 
-/// Bytes that each of the limits leaves.
+/// Returns the bytes that each limit leaves.
 pub(super) fn left() -> impl Iterator<Item = Left> {
     limits().filter_map(|(bound, limit)| {
         let key = if bound == Bound::Data { "VmData:" } else { "VmSize:" };
@@ -27,7 +27,7 @@ pub(super) fn left() -> impl Iterator<Item = Left> {
     })
 }
 
-/// The limits that there are, in bytes.
+/// Returns the limits that are set, in bytes.
 #[cfg(target_os = "linux")]
 fn limits() -> impl Iterator<Item = (Bound, u64)> {
     use rustix::process::{Resource, getrlimit};
@@ -36,7 +36,7 @@ fn limits() -> impl Iterator<Item = (Bound, u64)> {
         .filter_map(|(bound, resource)| Some((bound, getrlimit(resource).current?)))
 }
 
-/// Elsewhere nobody tells how much of them is used.
+/// Returns nothing: other systems don't report how much of a limit is used.
 #[cfg(not(target_os = "linux"))]
 fn limits() -> impl Iterator<Item = (Bound, u64)> {
     std::iter::empty()

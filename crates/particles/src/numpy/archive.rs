@@ -1,8 +1,8 @@
-//! Several arrays in a ZIP archive, as `numpy.savez` writes them.
+//! Reads NPZ: several arrays in a ZIP archive, as `numpy.savez` writes them.
 
-use super::array::{Array, Turn};
+use super::array::{Array, Transpose};
 use super::schema;
-use crate::builder::{Builder, share};
+use crate::builder::{Builder, clamp_channel};
 use crate::categories::{Codebook, Kind, TextColumn, add};
 use crate::frame::{NumberColumn, ParticleFrame};
 use crate::frame_reader::FrameReader;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-/// Names of arrays of positions; the first that is there is taken.
+/// Names of arrays of positions, in order of precedence.
 const POSITIONS: [&str; 9] =
     ["position", "positions", "pos", "xyz", "points", "coordinates", "coords", "centers", "arr_0"];
 /// Names of arrays of one coordinate, by axis.
@@ -35,21 +35,21 @@ const COLORS: [&str; 2] = ["color", "colors"];
 /// Names of arrays of types.
 const TYPES: [&str; 7] = ["typeid", "type", "types", "element", "elements", "species", "symbols"];
 
-/// Maximum number of columns of an array whose columns are columns of particles.
+/// Maximum number of columns of an array that are kept as columns of particles.
 const WIDEST: usize = 64;
 
 /// A column of an array.
 #[derive(Clone)]
-struct Part {
+struct ArrayColumn {
     name: String,
     array: String,
-    /// Its place in a row.
+    /// Index in a row.
     at: usize,
     /// Number of columns of the array.
     width: usize,
 }
 
-/// Reads positions, radii and colors from arrays of one archive.
+/// Reader of the arrays of an archive.
 pub(in super::super) struct Npz {
     path: Arc<Path>,
     archive: ZipArchive<BufReader<CountedFile>>,
@@ -62,19 +62,20 @@ impl Npz {
         let path = source.path.clone();
         let file = BufReader::new(source.into_file()?);
         let archive = ZipArchive::new(file).map_err(|error| {
-            let error = FileError::whole_file(&path, format!("is no whole ZIP archive: {error}"));
+            let error =
+                FileError::whole_file(&path, format!("is not a complete ZIP archive: {error}"));
             error.with_help("the file is cut off")
         })?;
         Ok(Self { path, archive, options: options.clone(), done: false })
     }
 
-    /// Names of the arrays.
+    /// Returns the names of the arrays.
     pub(super) fn names(&self) -> Vec<String> {
         let names = self.archive.file_names();
         names.filter_map(|name| name.ok()?.strip_suffix(".npy").map(str::to_owned)).collect()
     }
 
-    /// The array of a role, or the first of the usual names that is there.
+    /// Returns the array of a role, or the first array with one of the usual names.
     fn find(&self, role: Role, usual: &[&str]) -> Option<String> {
         let names = self.names();
         let role = self.options.columns.roles.iter().find(|(own, _)| *own == role);
@@ -88,19 +89,19 @@ impl Npz {
     fn open(
         &mut self,
         name: &str,
-        turn: Turn,
+        transpose: Transpose,
     ) -> Result<Array<ZipFile<'_, BufReader<CountedFile>>>, FileError> {
         let names = self.names().join(", ");
         let file = self.archive.by_name(&format!("{name}.npy")).map_err(|error| {
             let message = format!("the array `{name}` cannot be read ({error}); there are {names}");
             FileError::whole_file(&self.path, message)
         })?;
-        Array::open(file, turn).map_err(|message| {
+        Array::open(file, transpose).map_err(|message| {
             FileError::whole_file(&self.path, format!("the array `{name}` {message}"))
         })
     }
 
-    /// Positions, and the name of their array.
+    /// Reads positions, and returns the name of their array.
     fn positions(&mut self) -> Result<(Builder, String), FileError> {
         let names = self.names();
         let roles = &self.options.columns.roles;
@@ -128,7 +129,7 @@ impl Npz {
             }
         };
         let path = self.path.clone();
-        let mut array = self.open(&name, Turn::ToPositions)?;
+        let mut array = self.open(&name, Transpose::ToPositions)?;
         let schema = schema(&array, &ReadOptions::default()).map_err(|message| {
             FileError::whole_file(&path, format!("the array `{name}` {message}"))
         })?;
@@ -158,25 +159,25 @@ impl Npz {
         Ok((builder, name))
     }
 
-    /// The columns of all arrays that have a row for each particle.
-    fn parts(&mut self, count: usize) -> Vec<Part> {
+    /// Returns the columns of all arrays that have a row for each particle.
+    fn parts(&mut self, count: usize) -> Vec<ArrayColumn> {
         let mut parts = Vec::new();
         for array in self.names() {
-            // An archive may hold anything else beside.
-            let Ok(open) = self.open(&array, Turn::ToRows(count as u64)) else { continue };
+            // An archive may hold other files.
+            let Ok(open) = self.open(&array, Transpose::ToRows(count as u64)) else { continue };
             let width = open.columns();
             let fits = open.count() == count as u64 && (1..=WIDEST).contains(&width);
             if fits && open.names().is_none() {
                 let names = component_names(&array, width).into_iter().enumerate();
                 drop(open);
-                let part = |(at, name)| Part { name, array: array.clone(), at, width };
+                let part = |(at, name)| ArrayColumn { name, array: array.clone(), at, width };
                 parts.extend(names.map(part));
             }
         }
         parts
     }
 
-    /// Reads the columns that the options ask for, where `used` are arrays that have a role.
+    /// Reads the columns that the options request; `used` are the arrays that have a role.
     fn keep(&mut self, frame: &mut ParticleFrame, used: &[String]) -> Result<(), FileError> {
         let parts = self.parts(frame.len());
         let columns = &self.options.columns;
@@ -184,10 +185,10 @@ impl Npz {
             let same = parts.iter().find(|part| part.name == *name);
             same.or_else(|| parts.iter().find(|part| part.name.eq_ignore_ascii_case(name))).cloned()
         };
-        // Reading an array that does not fit says why.
+        // Reading an array that does not fit returns the reason.
         let whole = |name: &String| {
             let (name, array) = (name.clone(), name.clone());
-            Part { name, array, at: 0, width: 1 }
+            ArrayColumn { name, array, at: 0, width: 1 }
         };
         let mut asked = Vec::new();
         for name in &columns.kept {
@@ -207,7 +208,7 @@ impl Npz {
         let has_room = |most| rest.len().saturating_mul(frame.len()) <= most;
         if columns.rest.is_some_and(has_room) {
             for part in rest {
-                // Not asked for by name, so that a damaged one is no error.
+                // Not requested by name, so a damaged one is no error.
                 let _ = self.read_part(frame, part);
             }
         }
@@ -216,8 +217,8 @@ impl Npz {
         Ok(())
     }
 
-    fn read_part(&mut self, frame: &mut ParticleFrame, part: Part) -> Result<(), FileError> {
-        let Part { name, array, at, width } = part;
+    fn read_part(&mut self, frame: &mut ParticleFrame, part: ArrayColumn) -> Result<(), FileError> {
+        let ArrayColumn { name, array, at, width } = part;
         if let Some(texts) = self.texts(&array, at, frame.len())? {
             frame.texts.push(TextColumn { name, ..texts });
             return Ok(());
@@ -230,7 +231,7 @@ impl Npz {
         Ok(())
     }
 
-    /// Positions from an array for each axis.
+    /// Reads positions from one array for each axis.
     fn axes(&mut self, names: [String; 3]) -> Result<(Builder, String), FileError> {
         let schema =
             Schema::new(["x", "y", "z"].map(str::to_owned).into(), &ReadOptions::default())
@@ -246,14 +247,14 @@ impl Npz {
         Ok((builder, x))
     }
 
-    /// Calls `take` with each number of an array that has one in each row.
+    /// Calls `take` with each number of a one-column array.
     fn coordinates(
         &mut self,
         name: &str,
         mut take: impl FnMut(f64) -> Result<(), FileError>,
     ) -> Result<(), FileError> {
         let path = self.path.clone();
-        let mut array = self.open(name, Turn::Never)?;
+        let mut array = self.open(name, Transpose::Never)?;
         let fault = if array.is_text(0) {
             "holds texts".to_owned()
         } else if array.columns() != 1 {
@@ -269,7 +270,7 @@ impl Npz {
     /// Returns the numbers of an array that has a row of `columns` numbers for each particle.
     fn rows(&mut self, name: &str, columns: usize, count: usize) -> Result<Vec<f64>, FileError> {
         let path = self.path.clone();
-        let mut array = self.open(name, Turn::ToRows(count as u64))?;
+        let mut array = self.open(name, Transpose::ToRows(count as u64))?;
         let fault = |found: &str| number_of(&path, name, found, count);
         if array.is_text(0) {
             let message = format!("the array `{name}` holds texts, but numbers are needed");
@@ -304,7 +305,7 @@ impl Npz {
         count: usize,
     ) -> Result<Option<TextColumn>, FileError> {
         let path = self.path.clone();
-        let mut array = self.open(name, Turn::Never)?;
+        let mut array = self.open(name, Transpose::Never)?;
         if !array.is_text(0) {
             return Ok(None);
         }
@@ -324,7 +325,7 @@ impl Npz {
         }
     }
 
-    /// Gives particles the types of an array.
+    /// Sets the types of particles from an array.
     fn kinds(&mut self, builder: &mut Builder) -> Result<(), FileError> {
         let count = builder.frame.len();
         let Some(name) = self.find(Role::Kind, &TYPES) else { return Ok(()) };
@@ -332,7 +333,7 @@ impl Npz {
         if let Some(texts) = self.texts(&name, 0, count)? {
             (0..count).for_each(|row| builder.kind(texts.text(row).as_bytes()));
         } else {
-            // Numbers of types are no elements.
+            // Type numbers are not elements.
             for kind in self.rows(&name, 1, count)? {
                 builder.kind_of(kind.to_string().as_bytes(), |name| Kind {
                     name: name.to_owned(),
@@ -346,17 +347,17 @@ impl Npz {
 }
 
 impl Npz {
-    /// Rows and columns of an array; `None` if it has more dimensions, or cannot be read.
-    pub(super) fn shape(&mut self, name: &str, turn: Turn) -> Option<[u64; 2]> {
-        let array = self.open(name, turn).ok()?;
+    /// Returns the rows and columns of an array; `None` if it has more dimensions or cannot be read.
+    pub(super) fn shape(&mut self, name: &str, transpose: Transpose) -> Option<[u64; 2]> {
+        let array = self.open(name, transpose).ok()?;
         (array.frames() <= 1).then(|| [array.count(), array.columns() as u64])
     }
 
-    /// All numbers of an array.
+    /// Returns all numbers of an array.
     pub(super) fn numbers(&mut self, name: &str) -> Result<Vec<f64>, FileError> {
         let path = self.path.clone();
         let mut values = Vec::new();
-        self.open(name, Turn::Never)?.rows(&path, |row| {
+        self.open(name, Transpose::Never)?.rows(&path, |row| {
             values.extend_from_slice(row.numbers);
             Ok(())
         })?;
@@ -364,7 +365,7 @@ impl Npz {
     }
 }
 
-/// The error for an array that does not have a row for each particle.
+/// Returns the error for an array that does not have a row for each particle.
 fn number_of(path: &Path, name: &str, found: &str, count: usize) -> FileError {
     let message = format!("the array `{name}` has {found}, but there are {count} particles");
     FileError::whole_file(path, message)
@@ -395,7 +396,9 @@ impl FrameReader for Npz {
         }
         if let Some(name) = self.find(Role::Red, &COLORS) {
             let values = self.rows(&name, 3, count)?;
-            let color = |row: &[f64]| Rgb::new(share(row[0]), share(row[1]), share(row[2]));
+            let color = |row: &[f64]| {
+                Rgb::new(clamp_channel(row[0]), clamp_channel(row[1]), clamp_channel(row[2]))
+            };
             frame.color = values.chunks_exact(3).map(color).collect();
             let roles = [Role::Red, Role::Green, Role::Blue];
             frame.roles.extend(roles.into_iter().zip(component_names(&name, 3)));

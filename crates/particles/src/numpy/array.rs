@@ -1,4 +1,4 @@
-//! One array (<https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>).
+//! Reads one array (<https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>).
 
 use super::MAGIC;
 use super::header::{Field, Item, ROW, after, fields, shape};
@@ -6,13 +6,13 @@ use crate::FileError;
 use std::io::{self, BufReader, Read};
 use std::path::Path;
 
-/// Longest header in bytes.
+/// Maximum length of a header in bytes.
 const HEADER: u32 = 1 << 16;
 
-/// Most columns of an array.
+/// Maximum number of columns of an array.
 const COLUMNS: usize = 10_000;
 
-/// An array whose numbers are about to be read.
+/// Reader of an array.
 pub(super) struct Array<R> {
     reader: BufReader<R>,
     fields: Vec<Field>,
@@ -22,18 +22,18 @@ pub(super) struct Array<R> {
     transposed: bool,
 }
 
-/// Condition for an array of two dimensions to be read as columns.
+/// Condition for transposing an array of two dimensions.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Turn {
-    /// It is rows.
+pub(super) enum Transpose {
+    /// Never.
     Never,
-    /// If its shape is (3, N) or (4, N), and it cannot be rows of a position.
+    /// If its shape is (3, N) or (4, N), and its rows cannot be positions.
     ToPositions,
-    /// If it has so many columns, and not as many rows.
+    /// If it has this number of columns, but not of rows.
     ToRows(u64),
 }
 
-impl Turn {
+impl Transpose {
     fn applies(self, rows: u64, columns: u64) -> bool {
         let is_position = |count: u64| (3..=4).contains(&count);
         match self {
@@ -47,13 +47,13 @@ impl Turn {
 /// A row of an array.
 #[derive(Clone, Copy)]
 pub(super) struct Row<'r> {
-    /// Its numbers; NaN where there is a text.
+    /// The numbers; NaN for texts.
     pub(super) numbers: &'r [f64],
     texts: &'r [Option<String>],
 }
 
 impl Row<'_> {
-    /// The text of a column; `None` if it holds numbers.
+    /// Returns the text of a column; `None` if it holds numbers.
     pub(super) fn text(&self, column: usize) -> Option<&str> {
         self.texts.get(column)?.as_deref()
     }
@@ -61,7 +61,7 @@ impl Row<'_> {
 
 impl<R: Read> Array<R> {
     /// Reads the header.
-    pub(super) fn open(reader: R, turn: Turn) -> Result<Self, String> {
+    pub(super) fn open(reader: R, transpose: Transpose) -> Result<Self, String> {
         let mut reader = BufReader::with_capacity(1 << 16, reader);
         let cut = |error: io::Error| format!("cannot be read: {error}");
         let mut start = [0; 8];
@@ -79,7 +79,7 @@ impl<R: Read> Array<R> {
         let mut header = vec![0; length as usize];
         reader.read_exact(&mut header).map_err(cut)?;
         let header = String::from_utf8_lossy(&header).into_owned();
-        let unclear = || format!("has a header that is not understood: {}", header.trim());
+        let unclear = || format!("has an invalid header: {}", header.trim());
         let (fields, structured) = fields(&header)?;
         let by_columns = after(&header, "fortran_order").ok_or_else(unclear)?.starts_with("True");
         let shape = after(&header, "shape").and_then(shape).ok_or_else(unclear)?;
@@ -88,9 +88,9 @@ impl<R: Read> Array<R> {
         if let [rows, columns] = array.shape[..]
             && !structured
             && !array.fields[0].kind.is_text()
-            && turn.applies(rows, columns)
+            && transpose.applies(rows, columns)
         {
-            // The same numbers in the same order.
+            // Both orders are equal here.
             array.shape.reverse();
             (array.by_columns, array.transposed) = (!by_columns, true);
         }
@@ -113,7 +113,7 @@ impl<R: Read> Array<R> {
         &self.fields[if self.structured { column } else { 0 }]
     }
 
-    /// A warning that rows are taken for columns, if they are.
+    /// Returns a warning if the array is transposed.
     pub(super) fn warning(&self) -> Option<String> {
         let columns = self.columns();
         self.transposed.then(|| {
@@ -124,17 +124,17 @@ impl<R: Read> Array<R> {
         })
     }
 
-    /// Whether a column holds texts.
+    /// Returns whether a column holds texts.
     pub(super) fn is_text(&self, column: usize) -> bool {
         column < self.columns() && self.field(column).kind.is_text()
     }
 
-    /// Names of the columns of a structured array.
+    /// Returns the names of the columns of a structured array.
     pub(super) fn names(&self) -> Option<Vec<String>> {
         self.structured.then(|| self.fields.iter().map(|field| field.name.clone()).collect())
     }
 
-    /// Numbers in a row.
+    /// Returns the number of columns.
     pub(super) fn columns(&self) -> usize {
         match self.shape[..] {
             _ if self.structured => self.fields.len(),
@@ -143,7 +143,7 @@ impl<R: Read> Array<R> {
         }
     }
 
-    /// Returns the number of frames, none of them empty.
+    /// Returns the number of frames; 0 if they are empty.
     pub(super) fn frames(&self) -> u64 {
         match self.shape[..] {
             _ if self.count() == 0 || self.columns() == 0 => 0,
@@ -153,7 +153,7 @@ impl<R: Read> Array<R> {
         }
     }
 
-    /// Rows of a frame.
+    /// Returns the number of rows of a frame.
     pub(super) fn count(&self) -> u64 {
         match self.shape[..] {
             [_, count] if self.structured => count,
@@ -184,7 +184,7 @@ impl<R: Read> Array<R> {
         }
         let kinds: Vec<Item> = (0..columns).map(|column| self.field(column).kind).collect();
         let mut bytes = vec![0; kinds.iter().map(|kind| kind.size()).sum()];
-        // Rows without a byte could be as many as the header likes.
+        // The file's length does not limit the number of empty rows.
         let count = if bytes.is_empty() { 0 } else { count };
         let mut numbers = vec![0.0; columns];
         let any_text = kinds.iter().any(|kind| kind.is_text());
@@ -205,7 +205,7 @@ impl<R: Read> Array<R> {
         Ok(())
     }
 
-    /// The next numbers of an array in Fortran's order.
+    /// Reads the next column of an array in Fortran order.
     fn column(&mut self, count: u64) -> io::Result<Vec<f64>> {
         let mut column = Vec::new();
         let Item::Number(scalar, order) = self.fields[0].kind else { return Ok(column) };
@@ -227,13 +227,13 @@ mod tests {
     use super::*;
     use std::io::Cursor;
 
-    /// The columns of an array whose header has so many bytes, or what is wrong with it.
+    /// Returns the number of columns of an array whose header has `length` bytes, or the error.
     fn columns(kind: &str, shape: &str, length: usize) -> Result<usize, String> {
         let header = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': {shape}, }}");
         let header = header.clone() + &" ".repeat(length.saturating_sub(header.len()));
         let size = (header.len() as u32).to_le_bytes();
         let bytes = [MAGIC, &[2, 0], &size, header.as_bytes()].concat();
-        Array::open(Cursor::new(bytes), Turn::Never).map(|array| array.columns())
+        Array::open(Cursor::new(bytes), Transpose::Never).map(|array| array.columns())
     }
 
     #[test]
@@ -251,18 +251,22 @@ mod tests {
 
     #[test]
     fn arrays_are_turned_where_their_shape_says_so() {
-        for (turn, rows, columns, expected) in [
-            (Turn::Never, 3, 9, false),
-            (Turn::ToPositions, 3, 9, true),
-            (Turn::ToPositions, 4, 2, true),
-            (Turn::ToPositions, 4, 3, false),
-            (Turn::ToPositions, 5, 9, false),
-            (Turn::ToRows(9), 3, 9, true),
-            (Turn::ToRows(9), 9, 9, false),
-            (Turn::ToRows(9), 9, 3, false),
-            (Turn::ToRows(9), 3, 8, false),
+        for (transpose, rows, columns, expected) in [
+            (Transpose::Never, 3, 9, false),
+            (Transpose::ToPositions, 3, 9, true),
+            (Transpose::ToPositions, 4, 2, true),
+            (Transpose::ToPositions, 4, 3, false),
+            (Transpose::ToPositions, 5, 9, false),
+            (Transpose::ToRows(9), 3, 9, true),
+            (Transpose::ToRows(9), 9, 9, false),
+            (Transpose::ToRows(9), 9, 3, false),
+            (Transpose::ToRows(9), 3, 8, false),
         ] {
-            assert_eq!(turn.applies(rows, columns), expected, "{turn:?} {rows} {columns}");
+            assert_eq!(
+                transpose.applies(rows, columns),
+                expected,
+                "{transpose:?} {rows} {columns}"
+            );
         }
     }
 }

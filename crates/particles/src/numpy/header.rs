@@ -1,11 +1,11 @@
-//! The header of an array: the type of its elements, its shape and order.
+//! Parses the header of an array: the type of its elements, its shape and order.
 
 use crate::scalar::{Order, Scalar};
 
-/// Longest row in bytes, where rows have texts.
+/// Maximum length of a row with texts, in bytes.
 pub(super) const ROW: usize = 1 << 24;
 
-/// A number or a text of each row, or of each element.
+/// A number or text in each row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
     pub(super) name: String,
@@ -35,7 +35,7 @@ impl Item {
         !matches!(self, Self::Number(..))
     }
 
-    /// The number; NaN for a text, which is put into `text`.
+    /// Returns the number; NaN for a text, which is written to `text`.
     pub(super) fn read(self, bytes: &[u8], text: Option<&mut String>) -> f64 {
         let Some(text) = text else {
             return match self {
@@ -57,20 +57,20 @@ impl Item {
     }
 }
 
-/// Returns the value after a key of a header.
+/// Returns the text after a key of a header.
 pub(super) fn after<'h>(header: &'h str, key: &str) -> Option<&'h str> {
     let rest = header.split_once(&format!("'{key}'"))?.1;
     Some(rest.trim_start().strip_prefix(':')?.trim_start())
 }
 
-/// `(5, 3)`.
+/// Parses a shape such as `(5, 3)`.
 pub(super) fn shape(text: &str) -> Option<Vec<u64>> {
     let inner = text.strip_prefix('(')?.split_once(')')?.0;
     let numbers = inner.split(',').map(|number| number.trim().trim_end_matches('L'));
     numbers.filter(|number| !number.is_empty()).map(|number| number.parse().ok()).collect()
 }
 
-/// The type of the numbers, or those of a structured array's columns.
+/// Returns the fields of a row; true if the array is structured.
 pub(super) fn fields(header: &str) -> Result<(Vec<Field>, bool), String> {
     let descr = after(header, "descr").unwrap_or_default();
     if !descr.starts_with('[') {
@@ -86,7 +86,7 @@ pub(super) fn fields(header: &str) -> Result<(Vec<Field>, bool), String> {
         };
         fields.push(field(name, kind)?);
     }
-    // Parentheses within a tuple are columns of vectors.
+    // Parentheses within a tuple are subarrays.
     if list.contains("((")
         || list.contains(", (") && list.matches('(').count() != list.matches("('").count()
     {
@@ -95,7 +95,7 @@ pub(super) fn fields(header: &str) -> Result<(Vec<Field>, bool), String> {
     Ok((fields, true))
 }
 
-/// `<f4` and the like.
+/// Parses a type such as `<f4`.
 fn field(name: &str, kind: &str) -> Result<Field, String> {
     let unknown = || {
         format!(

@@ -1,7 +1,7 @@
-//! Arrays of NumPy: one (NPY), or several in an archive (NPZ).
+//! Readers of NumPy arrays: one (NPY), or several in an archive (NPZ).
 //!
-//! The crate `npyz` reads one type of numbers at a time, and its parser of headers has no limit of
-//! depth, so the arrays are our own; archives are those of the crate `zip`.
+//! The crate `npyz` isn't used: it reads one type of numbers at a time, and its header parser has no
+//! depth limit. Archives are read with the crate `zip`.
 
 mod archive;
 mod array;
@@ -10,7 +10,7 @@ mod rest;
 
 pub(super) use archive::Npz;
 
-use self::array::{Array, Turn};
+use self::array::{Array, Transpose};
 use super::builder::Builder;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
@@ -22,16 +22,16 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The first bytes of an array.
+/// Magic number of an array.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// Reads an array: rows of `x y z` or `x y z radius`, or of a structured type with these names;
-/// with another dimension before these, each is a frame.
+/// Reader of an array: rows of `x y z` or `x y z radius`, or of a structured type with these names. A
+/// leading third dimension is that of frames.
 pub(super) struct Npy {
     array: Array<Box<dyn Read + Send>>,
     schema: Arc<Schema>,
     path: Arc<Path>,
-    /// Frames that are left.
+    /// Number of remaining frames.
     left: u64,
 }
 
@@ -41,8 +41,8 @@ impl Npy {
         let reader: Box<dyn Read + Send> = Box::new(Cursor::new(source.head).chain(source.reader));
         let fault = |message: String| FileError::whole_file(&path, message);
         let no_roles = options.columns.roles.is_empty();
-        let turn = if no_roles { Turn::ToPositions } else { Turn::Never };
-        let array = Array::open(reader, turn).map_err(|message| {
+        let transpose = if no_roles { Transpose::ToPositions } else { Transpose::Never };
+        let array = Array::open(reader, transpose).map_err(|message| {
             fault(message).with_help(
                 "make it an array of shape (count, 3): python3 -c \"import numpy; numpy.save('rows.npy', \
                  numpy.load('FILE').reshape(-1, 3).astype('f8'))\"",
@@ -54,7 +54,7 @@ impl Npy {
     }
 }
 
-/// Roles of the columns of an array.
+/// Returns the roles of an array's columns.
 fn schema<R: Read>(array: &Array<R>, options: &ReadOptions) -> Result<Schema, String> {
     let schema = columns(array, options)?;
     let is_number =

@@ -1,7 +1,7 @@
-//! Arrays of an archive that are not columns of particles: the cell, and what is not drawn.
+//! Arrays of an archive that are not columns of particles: the cell, and those that are not drawn.
 
 use super::archive::Npz;
-use super::array::Turn;
+use super::array::Transpose;
 use crate::FileError;
 use crate::cell::Cell;
 use crate::frame::ParticleFrame;
@@ -12,11 +12,11 @@ use glam::DVec3;
 /// Names of arrays that hold the cell.
 const CELLS: [&str; 4] = ["box", "cell", "lattice", "unit_cell"];
 
-/// Angles of a cell in degrees are greater than this, and tilts of one are less.
+/// Threshold to distinguish a cell's angles in degrees, which are greater, from tilts.
 const LEAST_ANGLE: f64 = 15.0;
 
 impl Npz {
-    /// Takes the cell from the arrays besides those that are `used`, and says what is not drawn.
+    /// Reads the cell from the arrays that are not `used`, and adds warnings about those not drawn.
     pub(super) fn read_rest(
         &mut self,
         frame: &mut ParticleFrame,
@@ -26,8 +26,8 @@ impl Npz {
         let mut unused = Vec::new();
         for name in self.names().into_iter().filter(|name| !used.contains(name)) {
             let is = |names: &[&str]| names.iter().any(|own| own.eq_ignore_ascii_case(&name));
-            let turn = if is(&CELLS) { Turn::Never } else { Turn::ToRows(count) };
-            let Some([rows, columns]) = self.shape(&name, turn) else {
+            let transpose = if is(&CELLS) { Transpose::Never } else { Transpose::ToRows(count) };
+            let Some([rows, columns]) = self.shape(&name, transpose) else {
                 unused.push(name);
                 continue;
             };
@@ -40,7 +40,7 @@ impl Npz {
             } else if is(&["bonds", "bond"]) && columns == 2 {
                 frame.add_undrawn(Undrawn::Bonds, rows);
             } else if rows != count {
-                // Others are columns.
+                // Other arrays are columns.
                 unused.push(name);
             }
         }
@@ -50,9 +50,8 @@ impl Npz {
     }
 }
 
-/// The cell of an array of this shape, in the layouts of HOOMD-blue (lengths and tilts, or a matrix of
-/// columns), of `MDAnalysis` (lengths and angles) and of ASE (a matrix of rows), or as least and greatest
-/// corners.
+/// Returns the cell of an array in the layout of HOOMD-blue (lengths and tilts, or a matrix of columns),
+/// `MDAnalysis` (lengths and angles) or ASE (a matrix of rows), or of a lower and an upper corner.
 fn cell(shape: [u64; 2], values: &[f64], frame: &ParticleFrame) -> Option<Cell> {
     let vector = |at: usize| DVec3::from_slice(&values[at..at + 3]);
     let diagonal =
@@ -84,7 +83,7 @@ fn cell(shape: [u64; 2], values: &[f64], frame: &ParticleFrame) -> Option<Cell> 
     }
 }
 
-/// The cell around the origin, or with a corner there: where more particles are in it.
+/// Places the cell with its center or a corner at the origin, whichever encloses more particles.
 fn placed(cell: Cell, frame: &ParticleFrame) -> Cell {
     let center: DVec3 = cell.vectors.iter().sum::<DVec3>() * 0.5;
     let around = Cell { origin: cell.origin - center, ..cell };

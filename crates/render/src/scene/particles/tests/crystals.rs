@@ -120,7 +120,7 @@ fn new_names_blocks_and_centering_are_read() {
 fn faulty_crystals_are_refused() {
     let many = "1 x,y,z\n".repeat(200);
     for (text, line, message) in [
-        (RUTILE.replace("7 y,x,-z", "7 y,x"), 21, "`y,x` is no symmetry operation"),
+        (RUTILE.replace("7 y,x,-z", "7 y,x"), 21, "`y,x` is not a symmetry operation"),
         (RUTILE.replace("1 x,y,z\n", &many), 207, "more than 192 symmetry operations"),
         (RUTILE.replace("4.594(3)", "4.5.94"), 7, "`4.5.94` is not a number"),
         (RUTILE.replace("Ti1 0 0 0", "Ti1 0 a 0"), 37, "`a` is not a number"),

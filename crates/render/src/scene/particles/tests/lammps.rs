@@ -82,7 +82,7 @@ fn faulty_dumps_are_refused() {
         (
             "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS xs ys zs\n0 0 0\n",
             4,
-            "positions in shares of a box that has no volume",
+            "fractional positions, but the box has no volume",
         ),
     ] {
         let (found, _, said) = fault(text);

@@ -90,7 +90,7 @@ fn archives_have_arrays_for_positions_radii_and_colors() {
     let wrong =
         npz(&[("position", position), ("radius", npy("<f4", "(1,)", false, &floats(&[1.0])))]);
     assert_eq!(fault(wrong).2, "the array `radius` has 1 numbers, but there are 2 particles");
-    assert!(fault(&several[..several.len() - 30]).2.starts_with("is no whole ZIP archive"));
+    assert!(fault(&several[..several.len() - 30]).2.starts_with("is not a complete ZIP archive"));
 }
 
 #[test]

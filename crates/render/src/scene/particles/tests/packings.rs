@@ -73,7 +73,7 @@ fn files_that_are_cut_off_or_packed_twice_are_refused() {
         }
     }
     let twice = fault(gzip(&bzip2(b"1 2 3\n"))).2;
-    assert_eq!(twice, "is packed twice (bzip2, then gzip)");
+    assert_eq!(twice, "is compressed twice (bzip2, then gzip)");
     let rows: Vec<String> = (0..100_000).map(|row| format!("{row} 2.5 3\n")).collect();
     let whole = gzip(rows.concat().as_bytes());
     let message = fault(&whole[..whole.len() / 2]).2;

@@ -43,7 +43,7 @@ fn faulty_rows_have_a_line_and_a_column() {
             "1\nProperties=id:I:1:pos:R:2\n1 0 0\n",
             (2, 1, "no column is named `x`; there are id, pos_1, pos_2"),
         ),
-        ("1\nProperties=pos:R\n0 0 0\n", (2, 1, "`pos:R` are no properties")),
+        ("1\nProperties=pos:R\n0 0 0\n", (2, 1, "invalid Properties `pos:R`")),
         (
             "1\nProperties=pos:R:99999999999\n0 0 0\n",
             (2, 1, "`pos:R:99999999999` makes more than 10000 columns"),
@@ -65,7 +65,7 @@ fn garbage_is_refused_with_a_reason() {
         (b"\x1F\x8B\x08rest", "the gzip data is damaged or cut off"),
         (b"BZh9rest", "the bzip2 data is damaged or cut off"),
         (b"abc\0def", "zero bytes"),
-        (b"BEGIN_SCENERY\n", "no format known"),
+        (b"BEGIN_SCENERY\n", "unknown format"),
         (b"1 2 3\n\xFF\xFE 2 3", "is not a number"),
     ];
     for (content, message) in cases {
@@ -181,7 +181,7 @@ proptest! {
 fn a_column_of_ids_is_distinguished_from_coordinates() {
     let read = particles("7 1.5 2 3\n2 2.5 1 0\n9 0.5 1 1\n");
     assert_eq!(read.spheres.x, [1.5, 2.5, 0.5]);
-    assert!(read.warnings.iter().any(|warning| warning.ends_with("is taken for ids")));
+    assert!(read.warnings.iter().any(|warning| warning.ends_with("is read as ids")));
     let with_radii = particles("1 1.5 2 3 0.5\n2 2.5 1 0 0.25\n");
     assert_eq!(with_radii.spheres.radius, [0.5, 0.25]);
     // Integer positions, and ids that occur twice.

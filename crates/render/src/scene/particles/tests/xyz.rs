@@ -39,7 +39,7 @@ fn frames_are_chosen_by_number() {
         assert_eq!(frame_with(text, &at_frame(choice)).expect("a frame").x[0], x, "{choice}");
     }
     let missing = frame_with(text, &at_frame("3")).expect_err("three frames");
-    assert_eq!(missing.message, "has no frame 3, but 3, and the first is 0");
+    assert_eq!(missing.message, "has no frame 3, only 3 (the first is 0)");
     let count = |text: &str| in_file(text, |path| count_frames(path, &ReadOptions::default()));
     assert_eq!(count(text).expect("a count"), 3);
     // Of a file whose last frame is cut off, the last complete frame is read.
@@ -62,7 +62,7 @@ fn counts_of_columns_that_no_file_has_are_refused() {
             assert_eq!((line, message.contains("10000 columns")), (2, true), "{message}");
         }
     }
-    assert!(fault("2\nProperties=pos:R:18446744073709551616\n").2.contains("no properties"));
+    assert!(fault("2\nProperties=pos:R:18446744073709551616\n").2.contains("invalid Properties"));
 }
 
 #[test]
