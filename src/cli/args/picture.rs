@@ -50,7 +50,7 @@ pub(in crate::cli) struct SpeedArgs {
     /// Number of threads [default: as the CPU affinity mask and the cgroup's quota allow]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(THREADS))]
     pub(in crate::cli) threads: Option<u16>,
-    /// How rays are traced
+    /// Traversal of the acceleration structure
     #[arg(long, default_value = "auto", value_parser = names::parser(&TRAVERSALS))]
     pub(in crate::cli) traversal: Traversal,
     /// Builder of the acceleration structure

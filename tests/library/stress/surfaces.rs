@@ -29,7 +29,7 @@ fn on_a_surface_the_direction_decides() {
     }
 }
 
-/// Of equal spheres, only the first one is visible, from outside, from inside, and through glass.
+/// The first of equal spheres is visible, from outside, from inside, and through glass, and no other.
 #[test]
 fn the_first_of_equal_spheres_wins() {
     let kinds = [lambertian(0.3), emitter(2.0, 0.1), glass(1.5), mirror()];

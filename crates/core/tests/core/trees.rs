@@ -35,7 +35,7 @@ fn cloud(count: usize) -> Vec<(Vec3, f32)> {
     many(count, |i| (point(i), 0.2 / (count as f32).cbrt()))
 }
 
-/// What breaks builders, none of it with crowds that coincide.
+/// Scenes that are hard for builders, without crowds of coincident spheres.
 fn scenes() -> Vec<(&'static str, Vec<(Vec3, f32)>)> {
     let halves = |i: usize| 0.5_f32.powi(i as i32);
     let mut scenes = vec![
@@ -137,7 +137,7 @@ fn trees_are_small() {
     }
 }
 
-/// What rays visit in a tree, weighed with the surface that they enter by: nodes and blocks.
+/// Returns the expected number of nodes and blocks that a ray visits, times the area of the box.
 fn weight(bvh: &Bvh) -> f64 {
     let size = bvh.bounds().map_or(Vec3::ZERO, |bounds| bounds.high - bounds.low);
     let area = size.x * size.y + size.y * size.z + size.z * size.x;
@@ -163,7 +163,7 @@ fn the_surface_area_heuristic_is_not_spoiled_by_giants() {
     }
 }
 
-/// Where spheres are unlike each other, the heuristic pays.
+/// The heuristic pays for spheres of different sizes.
 #[test]
 fn the_surface_area_heuristic_beats_the_median() {
     let place = |i| 0.2 * Vec3::new(normal(i, 1), normal(i, 2), normal(i, 3));

@@ -26,7 +26,7 @@ struct Start {
     sphere: usize,
     /// Outward unit normal.
     normal: DVec3,
-    /// Of unit length up to rounding.
+    /// A unit vector up to rounding.
     direction: Vec3,
     inward: bool,
 }

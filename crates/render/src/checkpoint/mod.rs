@@ -57,7 +57,7 @@ pub struct Origin {
     pub caption: Caption,
 }
 
-/// What belongs to a picture besides its pixels: what its file says, and layers.
+/// Data of a picture besides its pixels: metadata and layers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Caption {
     /// The scene's title; empty if there is none.

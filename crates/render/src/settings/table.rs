@@ -22,9 +22,9 @@ pub struct Setting {
     pub kind: Kind,
     /// The integrators that use it.
     pub scope: Scope,
-    /// What a scene needs for the setting to have an effect.
+    /// The scene content without which the setting has no effect.
     pub need: Need,
-    /// What depends on it.
+    /// The part of a render that depends on it.
     pub role: Role,
     get: fn(&Settings) -> Value,
     set: fn(&mut Settings, Value),
@@ -72,7 +72,7 @@ pub enum Scope {
     ParameterOf(&'static [&'static str]),
 }
 
-/// What a scene needs for a setting to have an effect.
+/// Scene content without which a setting has no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
     /// Nothing.
@@ -87,7 +87,7 @@ pub enum Need {
     Caustics,
 }
 
-/// What depends on a setting.
+/// The part of a render that depends on a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Every sample: a render cannot be resumed with another value.
@@ -417,7 +417,10 @@ impl Setting {
         (self.get)(settings)
     }
 
-    /// Sets the value, which must be of the setting's kind. A parameter of another integrator is ignored.
+    /// Sets the value. A parameter of another integrator is ignored.
+    ///
+    /// # Panics
+    /// The value is not of the setting's kind.
     pub fn set(&self, settings: &mut Settings, value: Value) {
         (self.set)(settings, value);
     }

@@ -10,7 +10,7 @@ use std::mem::offset_of;
 /// A row of the table of metals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
-    /// What it reflects.
+    /// Reflectance by angle.
     pub fresnel: ConductorFresnel,
     /// Factor on the color.
     pub tint: Rgb,

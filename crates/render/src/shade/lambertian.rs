@@ -19,7 +19,7 @@ pub struct Lambertian {
 pub struct Emitter {
     /// Emitted radiance.
     pub radiance: Rgb,
-    /// What it reflects diffusely.
+    /// Albedo of its diffuse surface.
     pub albedo: Rgb,
 }
 

@@ -27,7 +27,7 @@ pub enum MaterialKind {
 }
 
 impl MaterialKind {
-    /// How many there are.
+    /// Number of kinds.
     pub const COUNT: usize = 6;
 
     /// All of them, in order.
@@ -65,7 +65,7 @@ impl MaterialKind {
     }
 }
 
-/// Which material: the kind in the upper bits, the row of the kind's table in the lower ones.
+/// A material: its kind in the upper bits, and its row in the kind's table in the lower ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct MaterialId(u32);
 
@@ -81,13 +81,13 @@ impl MaterialId {
         Self((kind as u32) << Self::ROW_BITS | row as u32)
     }
 
-    /// Which table.
+    /// Returns the kind, which has a table of its own.
     #[inline(always)]
     pub fn kind(self) -> MaterialKind {
         MaterialKind::ALL[(self.0 >> Self::ROW_BITS) as usize]
     }
 
-    /// Which row of it.
+    /// Returns the row of the table.
     #[inline(always)]
     pub fn row(self) -> usize {
         (self.0 & ((1 << Self::ROW_BITS) - 1)) as usize

@@ -123,8 +123,8 @@ impl Precise {
 
 /// Builds the tree and permutes `spheres` so that every leaf is a block.
 ///
-/// Of spheres that coincide only the first in the user's order is ever hit. Where many coincide, so that
-/// a traversal would visit every leaf in their box, the others are left out.
+/// Only the first of coincident spheres, in the user's order, is ever hit. Where many coincide, so that a
+/// traversal would visit every leaf in their box, the others are omitted.
 pub fn build(spheres: &mut Spheres, builder: Builder) -> Bvh {
     let mut from = std::mem::take(spheres);
     let rows = (0..from.len()).into_par_iter().with_min_len(PARALLEL);

@@ -1,5 +1,5 @@
-//! Which keys a scene file may hold: the one list that the reader checks and the manual is tested
-//! against.
+//! The keys that a scene file may have: the list that the reader checks, and with which a test compares
+//! the manual.
 
 use crate::settings::{INTEGRATORS, SETTINGS, Scope};
 
@@ -11,7 +11,7 @@ pub(super) struct Schema {
     pub(super) selector: &'static str,
     /// The values of the selector.
     pub(super) kinds: &'static [&'static str],
-    /// What a missing selector means; `None` if it must be there.
+    /// The kind without a selector; `None` if the selector is required.
     pub(super) default_kind: Option<&'static str>,
     /// Every key but the selector, with its kinds; none listed means all.
     pub(super) keys: &'static [(&'static str, &'static [&'static str])],

@@ -23,16 +23,16 @@ use std::path::Path;
 /// when it is written again.
 const MARK: &str = "# Written by spherule, as are the files that it names\n";
 
-/// Of a scene, all that says how its picture is made, and not what is in it.
+/// The part of a scene that describes its picture, without its content.
 #[derive(Clone, Copy, Debug)]
 pub struct Header<'a> {
     /// As [`Scene::title`].
     pub title: &'a str,
-    /// Who looks.
+    /// The camera.
     pub camera: &'a Camera,
-    /// How the picture is made.
+    /// The render settings.
     pub settings: &'a Settings,
-    /// What is drawn over the picture.
+    /// Background, lines and effects that are drawn over the picture.
     pub look: &'a Look,
 }
 
@@ -98,7 +98,7 @@ fn failed(path: &Path, error: &dyn std::error::Error) -> FileError {
     FileError::whole_file(path, format!("cannot be written: {error}"))
 }
 
-/// What a scene from code may have, but not one from a file.
+/// Checks for contents that a scene built in code may have, but not one from a file.
 fn check(scene: &Scene) -> Result<(), String> {
     let mut names = HashSet::new();
     for NamedMaterial { name, .. } in &scene.materials {
