@@ -171,7 +171,7 @@ fn sealed(file: &[u8], [head, blocks]: &[Vec<u8>; 2]) -> Vec<u8> {
 }
 
 /// Performs all operations on a file's content.
-fn use_up(origin: &Origin, mut render: ResumableRender, scene: &Scene) {
+fn exercise(origin: &Origin, mut render: ResumableRender, scene: &Scene) {
     drop(render.render());
     assert!(read(&written(origin, &render)).is_ok(), "it can be kept");
     let mut merge = Merge::new(true);
@@ -227,18 +227,18 @@ proptest! {
             change.make(&mut parts[usize::from(in_blocks)]);
         }
         if let Ok((origin, render)) = read(&sealed(file, &parts)) {
-            use_up(&origin, render, &scene(None));
+            exercise(&origin, render, &scene(None));
         }
     }
 }
 
 #[test]
-fn files_are_what_forgers_take_them_for() {
+fn forgeries_with_unchanged_content_equal_the_file() {
     for file in files() {
         let forged = sealed(file, &divided(file));
         assert!(forged == *file);
         let (origin, render) = read(&forged).expect("a render");
         assert!(written(&origin, &render) == *file);
-        use_up(&origin, render, &scene(None));
+        exercise(&origin, render, &scene(None));
     }
 }

@@ -209,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bars_go_to_files_and_corners() {
+    fn color_bars_go_to_files_and_corners() {
         let corner = |top, left| Ok(BarPlace::Inside(Corner { top, left }));
         assert_eq!(bar("inside"), corner(false, false));
         assert_eq!(bar("inside:top-left"), corner(true, true));
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_two_numbers() {
+    fn color_ranges_are_two_numbers() {
         assert_eq!(ends("-1, 2.5"), Ok(Ends(Some([-1.0, 2.5]))));
         assert_eq!(ends("auto"), Ok(Ends(None)));
         for text in ["", "1", "2,1", "1,inf", "nan,1", "1,2,3", "a,b"] {

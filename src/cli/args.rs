@@ -41,7 +41,11 @@ pub(super) enum Command {
     #[command(allow_negative_numbers = true, after_help = examples::RENDER)]
     Render(Box<RenderArgs>),
     /// Open an interactive viewer for a scene or a particle file
-    #[command(allow_negative_numbers = true, after_help = view::examples())]
+    #[command(
+        allow_negative_numbers = true,
+        after_help = view::examples(),
+        mut_args(view::hide_refused)
+    )]
     View(Box<view::ViewerArgs>),
     /// Merge the parts of a render made on several machines
     #[command(allow_negative_numbers = true, after_help = examples::MERGE)]

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn strange_words_are_told_what_is_like_them() {
+    fn unknown_words_get_a_suggestion() {
         for (word, like) in
             [("rendr", "`render`"), ("Cargo.tmol", "`Cargo.toml`"), ("src/lib.r", "`src/lib.rs`")]
         {

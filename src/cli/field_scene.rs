@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_field_is_what_is_rendered_without_a_scene() {
+    fn the_field_is_the_default_scene() {
         let field = Field { mix: Some([0.68, 0.2, 0.12]), ..Field::default() };
         let scene = scene(&Generator::Field(field), 3).unwrap();
         assert_eq!(format!("{scene:?}"), format!("{:?}", default_scene(3)));

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn outputs_meet_neither_inputs_nor_each_other() {
+    fn outputs_differ_from_inputs_and_each_other() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         fs::write(path("sky.exr"), "").unwrap();

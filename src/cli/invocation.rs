@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_typed_can_be_typed_again() {
+    fn arguments_are_reproduced() {
         let lines: [&[&str]; 4] = [
             &[],
             &["a.toml", "--size", "40x24", "--cell", "-o", "b.exr", "--layers", "id,normal"],
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_later_counts() {
+    fn later_options_replace_earlier_ones() {
         let first = typed(&["a.toml", "--spp", "5", "--seed", "3", "--type", "A:radius=1"]);
         let later = typed(&["--spp", "9", "--type", "B:radius=2", "--cell"]);
         let both =
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_are_those_of_the_folder() {
+    fn relative_paths_follow_the_folder() {
         let line = typed(&["-", "--quiet", "--checkpoint", "c", "--spp", "2"]);
         let kept = line.stored(Path::new("a.png")).relative_to(Path::new("/somewhere"));
         let expected = ["--spp=2", "--output=/somewhere/a.png", "--", "-"];

@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_was_compiled_for_can_be_missing() {
+    fn only_features_compiled_for_can_be_missing() {
         let rows = [("a", true, true), ("b", true, false), ("c", false, false), ("d", false, true)];
         assert_eq!(missing(&rows), ["b"]);
     }

@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_neither_many_nor_early() {
+    fn lines_are_rare_and_not_early() {
         let start = Line::default();
         assert!(!start.is_due(&at(0.5, 1)) && !start.is_due(&at(0.05, 100)));
         assert!(start.is_due(&at(0.2, 3)));
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_tell_percent_time_left_and_speed() {
+    fn lines_show_percent_time_left_and_speed() {
         assert_eq!(text(&at(0.25, 10)), "25 %, 30s left, 3.0 Mrays/s");
         let noise = Some(Noise { error: 0.0123, bound: 0.013 });
         let text = text(&Progress { noise, ..at(0.25, 10) });

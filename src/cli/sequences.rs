@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rates_have_limits() {
+    fn frame_rates_have_limits() {
         assert_eq!((fps("30"), fps("29.97"), fps("0.5")), (Ok(30.0), Ok(29.97), Ok(0.5)));
         for text in ["", "0", "-1", "NaN", "inf", "1e9", "30000/1001"] {
             assert!(fps(text).is_err(), "{text}");

@@ -99,14 +99,14 @@ mod tests {
     }
 
     #[test]
-    fn suffixes_tell_scenes_from_particles() {
+    fn suffixes_distinguish_scenes_from_particles() {
         let toml = |name: &str| matches!(of_path(name), Source::Toml(_));
         assert!(toml("a/b.toml") && toml("B.TOML"));
         assert!(!toml("a.xyz") && !toml("toml") && !toml("a.toml.csv"));
     }
 
     #[test]
-    fn titles_tell_no_folders() {
+    fn titles_contain_no_folders() {
         let source = of_path("somewhere/private/a.toml");
         assert_eq!(source.title(&Scene::default()), "a.toml");
         let titled = Scene { title: "A scene".to_owned(), ..Scene::default() };

@@ -350,7 +350,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn missing_parts_are_known_by_names() {
+    fn missing_parts_follow_from_file_names() {
         let paths = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
         let some = paths(&["b/a.1-of-6.part", "b/a.4-of-6.part"]);
         assert_eq!(missing_parts(&some), [2, 3, 5, 6]);

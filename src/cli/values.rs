@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ends_of_ranges_belong_to_them() {
+    fn ranges_are_inclusive() {
         let cases = [
             ("roulette", "1", Value::Number(1.0)),
             ("roulette", "none", Value::Word("none")),

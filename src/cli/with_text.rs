@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_stay_as_they_were_typed() {
+    fn values_keep_their_text() {
         let typed: Vec<WithText<f64>> = ["1e2", "0.50"].map(|text| text.parse().unwrap()).into();
         assert_eq!((*typed[0], *typed[1]), (100.0, 0.5));
         let mut list = List::new();

@@ -63,7 +63,7 @@ fn the_builders_are_measured() {
 }
 
 #[test]
-fn everything_is_on_one_page() {
+fn all_reports_are_on_one_page() {
     let folder = Folder::new();
     quick(&folder, &["all"]);
     let names = check_files(&folder);
@@ -95,7 +95,7 @@ fn scenes_come_from_files_and_references_are_used_again() {
 }
 
 #[test]
-fn the_papers_tables_are_measured_at_the_scale_asked_for() {
+fn the_papers_tables_are_measured_at_the_requested_scale() {
     let folder = Folder::new();
     quick(&folder, &["paper", "--size", "24", "--spp", "2", "--threads", "2"]);
     let names = check_files(&folder);
@@ -111,7 +111,7 @@ fn the_papers_tables_are_measured_at_the_scale_asked_for() {
 }
 
 #[test]
-fn roulette_is_measured_on_the_scenes_asked_for() {
+fn roulette_is_measured_on_the_requested_scenes() {
     let folder = Folder::new();
     quick(&folder, &["roulette", "--scenes", "grid"]);
     let names = check_files(&folder);
@@ -149,7 +149,7 @@ fn only_earlier_reports_are_replaced() {
 }
 
 #[test]
-fn wrong_commands_harm_nothing() {
+fn invalid_commands_change_no_files() {
     let folder = Folder::new();
     folder.write("file", "old");
     let cases: &[(&str, i32, &[&str])] = &[

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::BufReader;
 
 /// Three spheres in a row, with a column of numbers.
-const BALLS: &str = "\
+const ATOMS: &str = "\
 3
 Properties=species:S:1:pos:R:3:q:R:1
 C 0 0 0 1
@@ -16,7 +16,7 @@ O 2 0 0 4
 
 fn folder() -> Folder {
     let folder = Folder::new();
-    folder.write("a.xyz", BALLS);
+    folder.write("a.xyz", ATOMS);
     folder
 }
 
@@ -43,9 +43,9 @@ fn transparent_pictures_have_no_sky_and_keep_shadows() {
     assert_eq!((plain[0], plain[12 * 40 + 20][3]), ([0; 4], 255));
     picture(&folder, &["--background", "transparent", "--preset", "studio", "-o", "b.png"]);
     let studio = codes(&folder, "b.png");
-    let faint = |pixel: &&[u8; 4]| pixel[..3] == [0; 3] && (10..250).contains(&pixel[3]);
-    let shadowy = |codes: &[[u8; 4]]| codes.iter().filter(faint).count();
-    assert!(shadowy(&studio) > shadowy(&plain) + 20, "shadows on the ground");
+    let is_translucent = |pixel: &&[u8; 4]| pixel[..3] == [0; 3] && (10..250).contains(&pixel[3]);
+    let count_translucent = |codes: &[[u8; 4]]| codes.iter().filter(is_translucent).count();
+    assert!(count_translucent(&studio) > count_translucent(&plain) + 20, "shadows on the ground");
     picture(&folder, &["--background", "transparent", "-o", "c.exr"]);
     let linear = Image::read(folder.path("c.exr")).expect("a picture");
     assert_eq!(linear.pixel(0, 0), Some([0.0; 3]));
@@ -57,7 +57,7 @@ fn transparent_pictures_have_no_sky_and_keep_shadows() {
 }
 
 #[test]
-fn color_bars_stand_in_their_corner() {
+fn color_bars_are_drawn_in_their_corner() {
     let folder = folder();
     let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
     let fixed = "render a.xyz --radii 0.5 --view z --color-by q --size 240x400 --spp 1 --quiet";
@@ -88,7 +88,7 @@ fn color_bars_stand_in_their_corner() {
 }
 
 #[test]
-fn files_say_what_particles_look_like() {
+fn metadata_has_the_appearance_of_particles() {
     let folder = folder();
     let looks = ["--color-by", "q", "--color-log", "--select", "q > 0.5", "--type", "O:radius=0.7"];
     picture(&folder, &[&looks[..], &["--slice", "z > 3", "-o", "a.png"]].concat());
@@ -116,7 +116,7 @@ fn files_say_what_particles_look_like() {
 }
 
 #[test]
-fn figures_that_cannot_be_are_refused() {
+fn invalid_figures_are_refused() {
     let folder = folder();
     for (args, message) in [
         (&["--background", "transparent", "-o", "a.ppm"][..], "an --output that ends in .png"),
@@ -126,8 +126,8 @@ fn figures_that_cannot_be_are_refused() {
         (&["--color-by", "species", "--color-bar", "inside"], "a numeric column"),
     ] {
         let output = folder.run(&[&SMALL[..], &["a.xyz"], args].concat());
-        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        assert!(said.contains(message), "{args:?}: {said}");
+        let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {stderr}");
+        assert!(stderr.contains(message), "{args:?}: {stderr}");
     }
 }

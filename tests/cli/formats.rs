@@ -54,7 +54,7 @@ fn every_format_holds_the_picture_and_its_settings() {
 }
 
 #[test]
-fn alpha_is_held_where_there_is_room() {
+fn alpha_is_stored_where_the_format_allows() {
     let folder = Folder::new();
     folder.write("a.xyz", XYZ);
     let clear = ["a.xyz", "--background", "transparent"];
@@ -121,7 +121,7 @@ fn standard_output_takes_a_picture_and_nothing_else() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn pictures_that_standard_output_does_not_take_are_an_error() {
+fn a_full_standard_output_is_an_error() {
     let folder = Folder::new();
     let full = File::options().write(true).open("/dev/full").expect("a device");
     let mut program = Command::new(env!("CARGO_BIN_EXE_spherule"));
@@ -132,7 +132,7 @@ fn pictures_that_standard_output_does_not_take_are_an_error() {
 }
 
 #[test]
-fn files_are_rendered_without_the_name_of_a_command() {
+fn files_are_rendered_without_a_subcommand() {
     let folder = Folder::new();
     folder.write("dump.xyz", XYZ);
     folder.write("info", XYZ);

@@ -62,7 +62,7 @@ fn parts_of_a_file_are_drawn() {
 }
 
 #[test]
-fn colors_stand_for_the_same_numbers_in_all_frames() {
+fn the_color_range_is_shared_by_all_frames() {
     let folder = folder();
     let colors = ["--color-by", "q", "--color-bar", "bar.svg"];
     run(&folder, &[&colors[..], &["--frame", "all", "-o", "b.png"]].concat());
@@ -89,8 +89,8 @@ fn ranges_are_those_of_the_frames_that_have_numbers() {
     folder.write("none.xyz", &[frame(["nan", "nan"]), frame(["-1", "inf"])].concat());
     for (options, range) in [("", "-2,5"), (" --color-log", "0.5,5")] {
         let line = format!("render a.xyz --frame all --color-by q {TINY} -o a.png{options}");
-        let told = said(&folder, 0, &line);
-        assert!(told.contains("2 particles have no value of `q`"), "{told}");
+        let output = stderr(&folder, 0, &line);
+        assert!(output.contains("2 particles have no value of `q`"), "{output}");
         for frame in 0..3 {
             let path = folder.path(&format!("a-000{frame}.png"));
             let metadata = read_metadata(path).expect("a picture");
@@ -98,8 +98,8 @@ fn ranges_are_those_of_the_frames_that_have_numbers() {
         }
     }
     let none = "render none.xyz --frame all --color-by q --color-log -o n.png";
-    let told = said(&folder, 1, none);
-    assert!(told.contains("cannot color by the column `q`"), "{told}");
+    let output = stderr(&folder, 1, none);
+    assert!(output.contains("cannot color by the column `q`"), "{output}");
     assert!(!names(&folder).iter().any(|name| name.starts_with('n')));
 }
 
@@ -120,21 +120,24 @@ fn types_have_one_color_in_all_frames() {
         let image = Image::read(folder.path(&format!("a-000{frame}.png"))).expect("a picture");
         image.pixel(x, 12).expect("a pixel")
     };
-    let alike = |a: [f32; 3], b: [f32; 3]| (0..3).all(|c| (a[c] - b[c]).abs() < 0.1);
+    let similar = |a: [f32; 3], b: [f32; 3]| (0..3).all(|c| (a[c] - b[c]).abs() < 0.1);
     let shown = TINY.replace("--spp 4", "--spp 64");
     for coloring in ["", " --color-by type", " --color-by chain"] {
         let line = format!("render a.xyz --frame all --radii 1 --view z {shown} -o a.png");
-        said(&folder, 0, &format!("{line}{coloring}"));
+        stderr(&folder, 0, &format!("{line}{coloring}"));
         let lefts = [0, 1, 2].map(|frame| middle(frame, 11));
         let rights = [0, 1, 2, 3].map(|frame| middle(frame, 28));
-        assert!(alike(lefts[0], lefts[1]) && alike(lefts[0], lefts[2]), "{coloring}: {lefts:?}");
-        assert!(alike(rights[0], rights[1]) && alike(rights[0], rights[3]), "{rights:?}");
-        assert!(!alike(rights[0], rights[2]) && !alike(lefts[0], rights[0]), "{rights:?}");
+        assert!(
+            similar(lefts[0], lefts[1]) && similar(lefts[0], lefts[2]),
+            "{coloring}: {lefts:?}"
+        );
+        assert!(similar(rights[0], rights[1]) && similar(rights[0], rights[3]), "{rights:?}");
+        assert!(!similar(rights[0], rights[2]) && !similar(lefts[0], rights[0]), "{rights:?}");
     }
     // A type may be missing in some of the frames, but not in all.
     let typed = "render a.xyz --frame all --radii 1 -o t.png --size 24x16 --spp 1 -q";
-    assert_eq!(said(&folder, 0, &format!("{typed} --type Q3:color=red")), "");
-    let unknown = said(&folder, 1, &format!("{typed} --type Q4:color=red"));
+    assert_eq!(stderr(&folder, 0, &format!("{typed} --type Q3:color=red")), "");
+    let unknown = stderr(&folder, 1, &format!("{typed} --type Q4:color=red"));
     assert!(unknown.contains("no type is called `Q4`"), "{unknown}");
 }
 
@@ -161,12 +164,12 @@ fn shown(folder: &Folder, name: &str) -> (bool, bool) {
 
 /// Runs the program, and returns its messages in one line.
 #[track_caller]
-fn said(folder: &Folder, code: i32, line: &str) -> String {
+fn stderr(folder: &Folder, code: i32, line: &str) -> String {
     let args: Vec<&str> = line.split(' ').collect();
     let output = folder.run(&args);
-    let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-    assert_eq!(output.status.code(), Some(code), "{line}: {said}");
-    said
+    let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(output.status.code(), Some(code), "{line}: {stderr}");
+    stderr
 }
 
 const TINY: &str = "--size 40x24 --spp 4 -q --background white --margin 0.2";
@@ -184,7 +187,7 @@ fn the_camera_frames_all_frames_that_are_drawn() {
         for view in ["", " --view x", " --projection orthographic", " --view auto"] {
             let line =
                 format!("render {file}.xyz --radii 4 --frame all {TINY} -o {file}.png{view}");
-            assert_eq!(said(&folder, 0, &line), "", "{line}");
+            assert_eq!(stderr(&folder, 0, &line), "", "{line}");
             for frame in 0..frames {
                 let name = format!("{file}-{frame:04}.png");
                 assert_eq!(shown(&folder, &name), (true, true), "{line} {frame}");
@@ -193,9 +196,9 @@ fn the_camera_frames_all_frames_that_are_drawn() {
     }
     // The camera frames only the frames of the range.
     let line = format!("render drift.xyz --radii 4 --frame 4-4 {TINY} -o one.png");
-    said(&folder, 0, &line);
+    stderr(&folder, 0, &line);
     let line = format!("render drift.xyz --radii 4 --frame 4 {TINY} -o single.png");
-    said(&folder, 0, &line);
+    stderr(&folder, 0, &line);
     let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
     assert_eq!(read("one-0004.png"), read("single.png"));
 }
@@ -207,29 +210,29 @@ fn frames_that_show_nothing_are_counted_once() {
         (&[[0.0, 0.0, 0.0], [3.0, 0.0, 0.0]], &[[0.0, 3.0, 8.0]]);
     folder.write("a.xyz", &trajectory(&[low, &[], high, low, high, high]));
     let line = format!("render a.xyz --frame all {TINY} -o a.png");
-    let all = said(&folder, 0, &line);
+    let all = stderr(&folder, 0, &line);
     assert!(all.contains("in 1 of 6 images: frames 1"), "{all}");
     for (condition, expected) in [
         ("--select z<5", "in 4 of 6 images: frames 1-2, 4-5"),
         ("--select z>5", "in 3 of 6 images: frames 0-1, 3"),
         ("--slice z>5", "in 4 of 6 images: frames 1-2, 4-5"),
     ] {
-        let some = said(&folder, 0, &format!("{line} {condition} --view iso"));
+        let some = stderr(&folder, 0, &format!("{line} {condition} --view iso"));
         assert!(some.contains(expected), "{condition}: {some}");
         assert_eq!(some.matches("warning").count(), 1, "{some}");
     }
     let (empty, full) = (shown(&folder, "a-0001.png").0, shown(&folder, "a-0000.png").0);
     assert!(!empty && full);
-    let none = said(&folder, 1, &format!("{line} --select z>50"));
+    let none = stderr(&folder, 1, &format!("{line} --select z>50"));
     assert!(none.contains("no sphere in 6 frames"), "{none}");
     // A frame without atoms is valid in plain XYZ too.
     folder.write("plain.xyz", "1\n\nC 0 0 0\n0\n\n1\n\nC 0 0 1\n");
-    let plain = said(&folder, 0, &format!("render plain.xyz --frame all {TINY} -o p.png"));
+    let plain = stderr(&folder, 0, &format!("render plain.xyz --frame all {TINY} -o p.png"));
     assert!(plain.contains("in 1 of 3 images: frames 1"), "{plain}");
 }
 
 #[test]
-fn single_pictures_without_spheres_say_so() {
+fn single_pictures_without_spheres_are_reported() {
     let folder = Folder::new();
     let spheres = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     let camera = |eye: &str| format!("[camera]\neye = {eye}\ntarget = [0, 0, 40]\n");
@@ -247,17 +250,17 @@ fn single_pictures_without_spheres_say_so() {
         ("tiny", "1 sphere in the image"),
         ("hidden", "hide"),
     ] {
-        let told = said(&folder, 0, &format!("render {file}.toml --size 24x24 --spp 2 -q"));
-        assert!(told.contains("no sphere") && told.contains(expected), "{file}: {told}");
+        let output = stderr(&folder, 0, &format!("render {file}.toml --size 24x24 --spp 2 -q"));
+        assert!(output.contains("no sphere") && output.contains(expected), "{file}: {output}");
     }
     let toward = "render toward.toml --size 24x24 --spp 2 -q";
-    assert_eq!(said(&folder, 0, toward), "");
-    let corner = said(&folder, 0, &format!("{toward} --region 0,0,2x2"));
+    assert_eq!(stderr(&folder, 0, toward), "");
+    let corner = stderr(&folder, 0, &format!("{toward} --region 0,0,2x2"));
     assert!(corner.contains("region 0,0,2x2"), "{corner}");
 }
 
 #[test]
-fn what_can_be_read_once_says_which_frames_leave_the_picture() {
+fn pipes_report_frames_outside_the_picture() {
     let folder = Folder::new();
     let frames: Vec<[f64; 3]> = (0..4).map(|i| [5.0 * f64::from(i), 0.0, 0.0]).collect();
     let frames: Vec<&[[f64; 3]]> = frames.iter().map(std::slice::from_ref).collect();
@@ -269,17 +272,17 @@ fn what_can_be_read_once_says_which_frames_leave_the_picture() {
         let output = program.write_stdin(input.clone()).output().expect("a program that runs");
         (output.status.code(), text(&output.stderr))
     };
-    let (code, told) = run("--frame all");
-    assert_eq!(code, Some(0), "{told}");
-    assert!(told.contains("in 3 of 4 images: frames 1-3"), "{told}");
-    let (code, told) = run("--frame 1-9");
-    assert_eq!(code, Some(1), "{told}");
-    assert!(told.contains("no frame 9") && told.contains("--frame 1-3"), "{told}");
+    let (code, output) = run("--frame all");
+    assert_eq!(code, Some(0), "{output}");
+    assert!(output.contains("in 3 of 4 images: frames 1-3"), "{output}");
+    let (code, output) = run("--frame 1-9");
+    assert_eq!(code, Some(1), "{output}");
+    assert!(output.contains("no frame 9") && output.contains("--frame 1-3"), "{output}");
     assert_eq!(names(&folder), ["a-0000.png", "a-0001.png", "a-0002.png", "a-0003.png"]);
 }
 
 #[test]
-fn ranges_that_are_not_there_are_refused_before_anything_is_drawn() {
+fn missing_frames_are_refused_before_rendering() {
     let folder = folder();
     folder.write("damaged.xyz", &format!("{}2\n\nC 0 0 0\nC 0 zero 0\n", moving(2)));
     folder.write("cut.xyz", &format!("{}2\n\nC 0 0 0\n", moving(3)));
@@ -298,13 +301,13 @@ fn ranges_that_are_not_there_are_refused_before_anything_is_drawn() {
         ("render --frame all", 2, "particle file"),
     ] {
         let size = if line.starts_with("render") { " --size 8x8 --spp 1" } else { "" };
-        let told = said(&folder, code, &format!("{line}{size}"));
-        assert!(told.contains(message), "{line}: {told}");
+        let output = stderr(&folder, code, &format!("{line}{size}"));
+        assert!(output.contains(message), "{line}: {output}");
     }
     assert_eq!(names(&folder), [""; 0]);
     // Complete frames are drawn, and truncated ones are reported.
-    let told = said(&folder, 0, &format!("render cut.xyz --frame all {TINY}"));
-    assert!(told.contains("the file ends after 1 of 2 atoms"), "{told}");
+    let output = stderr(&folder, 0, &format!("render cut.xyz --frame all {TINY}"));
+    assert!(output.contains("the file ends after 1 of 2 atoms"), "{output}");
     assert_eq!(names(&folder).len(), 3);
-    said(&folder, 0, &format!("render more.xyz --frame 0-2 {TINY}"));
+    stderr(&folder, 0, &format!("render more.xyz --frame 0-2 {TINY}"));
 }

@@ -53,7 +53,7 @@ fn folders_are_refused() {
 }
 
 #[test]
-fn files_without_content_hold_nothing() {
+fn empty_files_are_refused() {
     let folder = Folder::new();
     folder.write("empty.xyz", "");
     folder.write("empty.png", "");
@@ -71,7 +71,7 @@ fn files_without_content_hold_nothing() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn files_without_end_are_refused() {
+fn endless_files_are_refused() {
     let folder = Folder::new();
     symlink("/dev/zero", folder.path("zero.toml")).unwrap();
     refuse(&folder, "info zero.toml", "longer than 67.1 MB");
@@ -80,7 +80,7 @@ fn files_without_end_are_refused() {
 }
 
 #[test]
-fn scenes_have_a_greatest_length() {
+fn scene_files_have_a_maximum_length() {
     let folder = Folder::new();
     // A sparse file, which takes no disk space.
     File::create(folder.path("long.toml")).unwrap().set_len((1 << 26) + 1).unwrap();
@@ -88,7 +88,7 @@ fn scenes_have_a_greatest_length() {
 }
 
 #[test]
-fn refusals_are_short_where_lines_are_long() {
+fn errors_about_long_lines_are_short() {
     let folder = Folder::new();
     let long = "9 ".repeat(20_000);
     folder.write("rows.txt", &format!("{long}x\n"));
@@ -162,7 +162,7 @@ fn files_that_cannot_be_opened_are_refused() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn names_need_not_be_text() {
+fn file_names_need_not_be_utf8() {
     let folder = Folder::new();
     let [scene, rows, picture] =
         [&b"a\xff.toml"[..], b"b\xff.csv", b"c\xff.png"].map(OsStr::from_bytes);

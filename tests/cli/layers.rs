@@ -12,7 +12,7 @@ fn channels(folder: &Folder, name: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_picture_gets_the_layers_that_are_named() {
+fn the_picture_has_the_requested_layers() {
     let folder = Folder::new();
     folder.picture("plain.exr", &[]);
     assert_eq!(channels(&folder, "plain.exr"), ["B", "G", "R"]);
@@ -30,7 +30,7 @@ fn the_picture_gets_the_layers_that_are_named() {
 }
 
 #[test]
-fn wrong_layers_are_refused_in_words() {
+fn invalid_layers_are_refused_with_help() {
     let folder = Folder::new();
     for (line, words) in [
         ("render -o a.exr --layers albedo,shade", ["shade", "albedo, normal, depth"]),

@@ -49,7 +49,7 @@ fn colors_follow_elements_or_columns() {
 }
 
 #[test]
-fn what_is_said_of_types_goes_before_presets() {
+fn type_options_override_presets() {
     let materials = ["plastic", "metal", "glass", "mirror", "emitter"];
     for preset in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
         let look = |typed: &str| picture(&["--preset", preset, "--type", typed]);
@@ -68,7 +68,7 @@ fn what_is_said_of_types_goes_before_presets() {
 }
 
 #[test]
-fn materials_of_a_column_stay_under_presets() {
+fn material_columns_override_presets() {
     let folder = folder();
     folder.write("clay.csv", "x,y,z\n0,0,0\n3,0,0\n");
     folder.write("made.csv", "x,y,z,kind\n0,0,0,\n3,0,0,Glass\n");
@@ -79,9 +79,9 @@ fn materials_of_a_column_stay_under_presets() {
     }
     folder.write("odd.csv", "x,y,z,material\n0,0,0,oak\n3,0,0,glass\n");
     let output = folder.run(&["render", "odd.csv", "--size", "9x9", "--spp", "1"]);
-    let said = text(&output.stderr);
-    assert!(output.status.success() && said.contains("oak"), "{said}");
-    assert!(!said.contains("glass, oak") && !said.contains("oak, glass"), "{said}");
+    let stderr = text(&output.stderr);
+    assert!(output.status.success() && stderr.contains("oak"), "{stderr}");
+    assert!(!stderr.contains("glass, oak") && !stderr.contains("oak, glass"), "{stderr}");
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn color_bars_are_written_beside_the_picture() {
 }
 
 #[test]
-fn looks_that_cannot_be_are_refused() {
+fn invalid_looks_are_refused() {
     let folder = folder();
     for (args, code, message) in [
         (&["a.toml", "--colors", "cpk"][..], 2, "a scene"),
@@ -132,9 +132,9 @@ fn looks_that_cannot_be_are_refused() {
         (&["dust.csv", "--color-by", "note", "--color-log"], 1, "`note` holds texts"),
     ] {
         let output = folder.run(&[&["render", "--spp", "1", "-o", "x.ppm"], args].concat());
-        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(said.contains(message), "{args:?}: {said}");
+        let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {stderr}");
+        assert!(stderr.contains(message), "{args:?}: {stderr}");
         assert!(!folder.path("x.ppm").exists(), "{args:?}");
     }
 }

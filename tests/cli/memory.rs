@@ -52,11 +52,11 @@ fn estimates_are_right_for_every_generator() {
         "kind = \"volume\"\ncount = 500000\ncolors = true",
         "kind = \"lattice\"\ncount = 50",
         "kind = \"sphereflake\"\nlevel = 6",
-        "kind = \"volume\"\ncount = 200000\nmaterial = \"lamp\"",
+        "kind = \"volume\"\ncount = 200000\nmaterial = \"emitter\"",
     ];
-    let lamp = "[material.lamp]\nkind = \"emitter\"\nradiance = [1, 1, 1]\n";
+    let emitter = "[material.emitter]\nkind = \"emitter\"\nradiance = [1, 1, 1]\n";
     for kind in kinds {
-        folder.write("a.toml", &format!("{lamp}[camera]\nfit = true\n[[generate]]\n{kind}\n"));
+        folder.write("a.toml", &format!("{emitter}[camera]\nfit = true\n[[generate]]\n{kind}\n"));
         estimated(&folder, "a.toml", &["--builder", "auto"]);
     }
     for builder in ["morton", "median", "surface-area"] {
@@ -150,7 +150,7 @@ fn estimates_are_right_for_large_pictures() {
 }
 
 #[test]
-fn renders_are_refused_just_below_what_they_take() {
+fn renders_are_refused_just_below_their_estimate() {
     let folder = Folder::new();
     folder.write("a.toml", "[camera]\nfit = true\n[[generate]]\nkind = \"field\"\ncount = 707\n");
     let (_, peak) = bytes(&folder, "a.toml", &[]);

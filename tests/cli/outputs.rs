@@ -203,7 +203,7 @@ fn files_beside_a_scene_are_replaced_only_with_their_scene() {
 
 #[cfg(unix)]
 #[test]
-fn what_may_be_replaced_is() {
+fn replaceable_files_are_replaced() {
     let folder = with_inputs();
     folder.picture("old.png", &["--seed", "2"]);
     let lines = [

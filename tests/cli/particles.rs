@@ -28,7 +28,7 @@ ITEM: ATOMS id type x y z size
 ";
 
 #[test]
-fn files_say_what_is_in_them() {
+fn info_describes_files() {
     let folder = Folder::new();
     folder.write("run.dump", DUMP);
     let info = folder.json(&["info", "run.dump", "--frame", "last", "--json"]);
@@ -97,14 +97,14 @@ fn settings_without_effect_are_refused() {
         (&["info", "run.dump", "--radii", "column:q"], 1, "no column is named `q`"),
     ] {
         let output = folder.run(args);
-        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(said.contains(message), "{args:?}: {said}");
+        let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {stderr}");
+        assert!(stderr.contains(message), "{args:?}: {stderr}");
     }
 }
 
 #[test]
-fn elements_of_molecules_are_told_from_names_of_atoms() {
+fn elements_follow_from_names_of_atoms() {
     let folder = Folder::new();
     let row = |number: usize, name: &str, element: &str| {
         let x = 1.5 * number as f64;

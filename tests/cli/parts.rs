@@ -22,7 +22,7 @@ fn refused(output: &Output, code: i32, words: &[&str]) {
 }
 
 #[test]
-fn parts_become_the_file_of_the_whole() {
+fn merged_parts_equal_the_whole_file() {
     let folder = Folder::new();
     let all = ["-o", "a.exr", "--layers", "all", "--tone", "filmic"];
     let whole = folder.picture("whole.exr", &all[2..]);
@@ -60,13 +60,13 @@ fn pictures_of_parts_are_those_of_the_whole_in_every_format() {
         let merged = folder.read(name);
         assert!(merged == folder.picture(name, &["--exposure", "0.5"]), "{name}");
     }
-    let told = folder.json(&[&["merge", "--json", "-o", "b.png"], &parts[..]].concat());
-    assert_eq!((&told["parts"], &told["samples"]), (&4.into(), &(40 * 24 * 4).into()));
-    assert_eq!((&told["complete"], &told["missing"]), (&true.into(), &serde_json::json!([])));
+    let report = folder.json(&[&["merge", "--json", "-o", "b.png"], &parts[..]].concat());
+    assert_eq!((&report["parts"], &report["samples"]), (&4.into(), &(40 * 24 * 4).into()));
+    assert_eq!((&report["complete"], &report["missing"]), (&true.into(), &serde_json::json!([])));
 }
 
 #[test]
-fn environments_tell_parts() {
+fn the_environment_selects_parts() {
     let folder = Folder::new();
     let run = |task: &str, count: &str| {
         Command::new(env!("CARGO_BIN_EXE_spherule"))
@@ -91,7 +91,7 @@ fn environments_tell_parts() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_named() {
+fn mismatched_parts_are_named() {
     let folder = Folder::new();
     let render = |args: &[&str], parts: &[&str]| {
         render(&folder, &[args, &["--split", "samples"]].concat(), parts);
@@ -135,7 +135,7 @@ fn damaged_parts_are_refused() {
 }
 
 #[test]
-fn the_same_command_goes_on_with_a_part_and_another_one_does_not() {
+fn parts_resume_only_by_the_same_command() {
     let folder = Folder::new();
     let samples = ["-o", "a.png", "--split", "samples"];
     render(&folder, &samples, &["2/2"]);
@@ -153,7 +153,7 @@ fn the_same_command_goes_on_with_a_part_and_another_one_does_not() {
 }
 
 #[test]
-fn what_parts_cannot_do_is_said() {
+fn options_that_parts_do_not_support_are_refused() {
     let folder = Folder::new();
     folder.write("a.xyz", "1\n\nH 0 0 0\n");
     let cases: &[(&str, &[&str])] = &[

@@ -55,7 +55,7 @@ fn regions_are_parts_of_the_whole() {
 }
 
 #[test]
-fn options_do_what_they_are_called() {
+fn options_have_an_effect() {
     let folder = Folder::new();
     let usual = folder.picture("a.ppm", &[]);
     assert!(usual.starts_with(b"P6"));
@@ -84,7 +84,7 @@ fn options_do_what_they_are_called() {
 }
 
 #[test]
-fn files_tell_their_settings_and_no_secrets() {
+fn metadata_has_settings_and_no_secrets() {
     let folder = Folder::new();
     folder.write("scene.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
     let scene = folder.path("scene.toml");
@@ -133,7 +133,7 @@ fn the_default_field_is_the_default_scene() {
 }
 
 #[test]
-fn particles_are_rendered_by_any_other_name() {
+fn particle_files_are_rendered_under_any_suffix() {
     let folder = Folder::new();
     folder.write("dust.txt", "0 0 0 1\n2 0 0 0.5\n");
     assert_eq!(folder.json(&["info", "dust.txt", "--json"])["spheres"], 2);

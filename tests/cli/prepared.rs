@@ -37,7 +37,7 @@ fn pictures_of_prepared_scenes_are_those_of_the_scene() {
 }
 
 #[test]
-fn parts_of_prepared_scenes_go_with_those_of_the_scene() {
+fn parts_of_prepared_scenes_merge_with_those_of_the_scene() {
     let folder = Folder::new();
     folder.write(
         "a.toml",
@@ -66,7 +66,7 @@ fn checkpoints_of_prepared_scenes_are_resumed() {
 }
 
 #[test]
-fn what_a_prepared_scene_has_settled_is_not_changed() {
+fn options_that_prepared_scenes_fix_are_refused() {
     let folder = Folder::new();
     folder.write("a.xyz", PARTICLES);
     folder.succeed(&[&SMALL[..], &["a.xyz", "--prepare", "a.prepared"]].concat());

@@ -6,7 +6,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 
 #[test]
-fn readers_that_go_away_are_no_error() {
+fn closed_pipes_are_not_errors() {
     let folder = Folder::new();
     let small = [&SMALL[..5], &["--json"]].concat();
     for args in [&small[..], &["completions", "bash"], &["--help"], &["render", "--help"]] {
@@ -27,7 +27,7 @@ fn readers_that_go_away_are_no_error() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn interrupts_save_what_there_is() {
+fn interrupted_renders_are_saved() {
     use std::time::Duration;
     let folder = Folder::new();
     let mut child = Command::new(env!("CARGO_BIN_EXE_spherule"))

@@ -4,7 +4,7 @@ use crate::folder::{Folder, text};
 use std::fs;
 
 #[test]
-fn bad_input_is_refused_in_words() {
+fn bad_input_is_refused_with_help() {
     let folder = Folder::new();
     folder.write("key.toml", "[render]\nsppp = 3\n");
     folder.write("fov.toml", "[camera]\nfov = 180\n");

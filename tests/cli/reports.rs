@@ -22,7 +22,7 @@ fn statistics_are_one_json_object() {
 }
 
 #[test]
-fn a_render_says_how_right_it_is() {
+fn renders_report_their_error() {
     let folder = Folder::new();
     let small = ["render", "--size", "40x24", "--quiet", "--json"];
     let report = folder.json(&[&small[..], &["--until-error", "50%"]].concat());
@@ -43,7 +43,7 @@ fn a_render_says_how_right_it_is() {
 }
 
 #[test]
-fn settings_without_effect_are_said_so() {
+fn settings_without_effect_are_reported() {
     let folder = Folder::new();
     folder.write("dark.toml", "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n");
     let cases = [
@@ -76,7 +76,7 @@ fn settings_without_effect_are_said_so() {
 }
 
 #[test]
-fn comparisons_measure() {
+fn comparisons_report_errors() {
     let folder = Folder::new();
     let gray = |value: f32| Image::filled(4, 2, [value; 3]).unwrap();
     gray(0.75).write(folder.path("a.pfm"), &WriteOptions::default()).unwrap();

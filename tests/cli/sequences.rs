@@ -23,14 +23,14 @@ fn folder(frames: usize) -> Folder {
 #[track_caller]
 fn render(folder: &Folder, code: i32, args: &str) -> String {
     let line = format!("render a.xyz --size 32x24 --spp 2 {args}");
-    said(&folder.run(&line.split(' ').collect::<Vec<_>>()), code, &line)
+    stderr(&folder.run(&line.split(' ').collect::<Vec<_>>()), code, &line)
 }
 
 #[track_caller]
-fn said(output: &Output, code: i32, line: &str) -> String {
-    let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-    assert_eq!(output.status.code(), Some(code), "{line}: {said}");
-    said
+fn stderr(output: &Output, code: i32, line: &str) -> String {
+    let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(output.status.code(), Some(code), "{line}: {stderr}");
+    stderr
 }
 
 /// Returns the contents of all files with this suffix.
@@ -66,7 +66,7 @@ fn frames_are_spread_over_the_pictures_of_a_turn() {
         .current_dir(folder.root())
         .output()
         .expect("a program that runs");
-    assert!(said(&input, 2, "standard input").contains("--turntable"));
+    assert!(stderr(&input, 2, "standard input").contains("--turntable"));
 }
 
 #[test]
@@ -123,22 +123,22 @@ fn pictures_that_exist_are_kept_if_they_are_the_same() {
     for name in files(&folder, ".png").into_keys().filter(|name| name.starts_with('q')) {
         fs::remove_file(folder.path(&name)).expect("it is there");
     }
-    let mended = render(&folder, 0, &again);
-    assert!(files(&folder, ".png") == whole, "{mended}");
+    let repaired = render(&folder, 0, &again);
+    assert!(files(&folder, ".png") == whole, "{repaired}");
     for (name, why) in [
         ("p-0001.png", "cannot be read"),
         ("p-0002.png", "spp is 3 instead of 2"),
         ("p-0003.png", "frame is 2 instead of 3"),
         ("p-0004.png", "does not identify the scene"),
     ] {
-        assert!(mended.contains(&format!("{name}: already exists, but")), "{name}: {mended}");
-        assert!(mended.contains(why), "{why}: {mended}");
+        assert!(repaired.contains(&format!("{name}: already exists, but")), "{name}: {repaired}");
+        assert!(repaired.contains(why), "{why}: {repaired}");
     }
-    assert!(mended.contains("1 of 6 images already existed"));
+    assert!(repaired.contains("1 of 6 images already existed"));
 }
 
 #[test]
-fn other_scenes_and_settings_are_rendered_anew() {
+fn other_scenes_and_settings_are_rendered_again() {
     let folder = folder(4);
     render(&folder, 0, "--frame all -q -o p.exr");
     let again = "--frame all -o p.exr --skip-existing";
@@ -149,8 +149,8 @@ fn other_scenes_and_settings_are_rendered_anew() {
         ("--select element!=O", "select"),
         ("--background black", "background"),
     ] {
-        let told = render(&folder, 0, &format!("{again} {args}"));
-        assert!(told.contains(why) && !told.contains("already existed"), "{args}: {told}");
+        let message = render(&folder, 0, &format!("{again} {args}"));
+        assert!(message.contains(why) && !message.contains("already existed"), "{args}: {message}");
         // Restored.
         let back = render(&folder, 0, again);
         assert!(!back.contains("already existed"), "{args}: {back}");
@@ -158,12 +158,13 @@ fn other_scenes_and_settings_are_rendered_anew() {
     // Between the others, so that the camera does not change.
     let moved = trajectory(4).replace("O 3.5", "O 3.25");
     folder.write("a.xyz", &moved);
-    let told = render(&folder, 0, again);
+    let message = render(&folder, 0, again);
     assert!(
-        told.contains("p-0002.exr: already exists, but") && told.contains("different spheres"),
-        "{told}"
+        message.contains("p-0002.exr: already exists, but")
+            && message.contains("different spheres"),
+        "{message}"
     );
-    assert!(told.contains("3 of 4 images already existed"), "{told}");
+    assert!(message.contains("3 of 4 images already existed"), "{message}");
     assert!(render(&folder, 2, "--frame all -o p.pfm --skip-existing").contains(".exr"));
     // Single images too.
     render(&folder, 0, "-q -o one.png --skip-existing");
@@ -198,7 +199,7 @@ fn film(folder: &Folder, script: Option<&str>, args: &str) -> Output {
 const KEEPS: &str = "echo \"$@\" > called; cat > \"$last\"";
 
 #[test]
-fn films_are_piped_to_ffmpeg() {
+fn videos_are_piped_to_ffmpeg() {
     let folder = folder(3);
     let plain = "render a.xyz --frame all --size 31x24 --spp 2 -q -o p.ppm";
     folder.succeed(&plain.split(' ').collect::<Vec<_>>());
@@ -212,7 +213,7 @@ fn films_are_piped_to_ffmpeg() {
         [("f.mp4", "-f mp4"), ("f.mov", "-f mov"), ("f.webm", "-f webm"), ("f.gif", "-f gif")]
     {
         let output = film(&folder, Some(KEEPS), &format!("--frame all --fps 12.5 -o {name}"));
-        assert_eq!(said(&output, 0, name), "");
+        assert_eq!(stderr(&output, 0, name), "");
         assert!(folder.read(name) == expected, "{name}");
         let called = text(&folder.read("called"));
         assert!(called.contains("-video_size 32x24 -framerate 12.5 -i -"), "{called}");
@@ -220,14 +221,14 @@ fn films_are_piped_to_ffmpeg() {
         assert_eq!(called.contains("-pix_fmt yuv420p"), name != "f.gif", "{called}");
     }
     let turn = film(&folder, Some(KEEPS), "--turntable 5 -o turn.mp4");
-    said(&turn, 0, "a turn");
+    stderr(&turn, 0, "a turn");
     assert_eq!(folder.read("turn.mp4").len(), 5 * 32 * 24 * 3);
     assert!(text(&folder.read("called")).contains("-framerate 30 "));
     assert_eq!(fs::read_dir(folder.root()).expect("a folder").count(), 3 + 5 + 3);
 }
 
 #[test]
-fn films_that_fail_leave_what_was_there() {
+fn failed_videos_leave_the_old_file() {
     let folder = folder(3);
     folder.write("f.mp4", "an older film");
     for (script, expected) in [
@@ -237,24 +238,24 @@ fn films_that_fail_leave_what_was_there() {
         ("head -c 100 > \"$last\"; kill -9 $$", "ffmpeg failed"),
     ] {
         let output = film(&folder, Some(script), "--frame all -o f.mp4");
-        let told = said(&output, 1, script);
-        assert!(told.contains("f.mp4") && told.contains(expected), "{script}: {told}");
+        let message = stderr(&output, 1, script);
+        assert!(message.contains("f.mp4") && message.contains(expected), "{script}: {message}");
         assert_eq!(folder.read("f.mp4"), b"an older film", "{script}");
     }
-    let told = said(&film(&folder, None, "--frame all --fps 12 -o f.mp4"), 1, "no ffmpeg");
+    let message = stderr(&film(&folder, None, "--frame all --fps 12 -o f.mp4"), 1, "no ffmpeg");
     for word in [
         "apt install ffmpeg",
         "-framerate 12 -pattern_type glob -i 'f-*.png' -vf 'pad=",
         "-o f-%04d.png",
     ] {
-        assert!(told.contains(word), "{word}: {told}");
+        assert!(message.contains(word), "{word}: {message}");
     }
     let names = fs::read_dir(folder.root()).expect("a folder");
     assert_eq!(names.count(), 3, "the input, the film and the tools");
 }
 
 #[test]
-fn what_films_cannot_have_is_refused() {
+fn options_that_videos_do_not_support_are_refused() {
     let folder = folder(2);
     for (args, word) in [
         ("-o f.mp4", "--frame all or --turntable N"),
@@ -268,8 +269,8 @@ fn what_films_cannot_have_is_refused() {
         ("--frame all -o f.png --fps 20", "--fps"),
         ("--frame all -o f.mp4 --fps 0", "per second"),
     ] {
-        let told = said(&film(&folder, Some(KEEPS), args), 2, args);
-        assert!(told.contains(word), "{args}: {told}");
+        let message = stderr(&film(&folder, Some(KEEPS), args), 2, args);
+        assert!(message.contains(word), "{args}: {message}");
     }
     assert_eq!(fs::read_dir(folder.root()).expect("a folder").count(), 2);
 }

@@ -66,7 +66,7 @@ fn faces(planes: &[&str], red: impl Fn([u32; 3]) -> bool, args: &[&str]) -> [usi
 }
 
 #[test]
-fn cameras_that_nobody_placed_look_at_cuts() {
+fn default_cameras_look_at_cuts() {
     let modes: [&[&str]; 3] = [&[], &["--slice-mode", "caps"], &["--slice-mode", "hide"]];
     for axis in 0..3 {
         for (sign, layer) in [("<", 2), (">", 2)] {
@@ -87,15 +87,15 @@ fn cameras_that_nobody_placed_look_at_cuts() {
 }
 
 #[test]
-fn removal_is_selection() {
+fn removing_slices_equal_selections() {
     let folder = folder();
     let view = ["a.xyz", "--radii", "1", "--view", "z"];
     let slice = folder.picture("a.png", &[&view[..], &["--slice", "x>4"]].concat());
     let select = folder.picture("b.png", &[&view[..], &["--select", "x <= 4"]].concat());
     let image = |name: &str| Image::read(folder.path(name)).expect("a picture");
     assert_eq!(image("a.png"), image("b.png"));
-    let said = |bytes: &[u8]| text(bytes).contains("slice");
-    assert!(said(&slice) && !said(&select));
+    let mentions_slice = |bytes: &[u8]| text(bytes).contains("slice");
+    assert!(mentions_slice(&slice) && !mentions_slice(&select));
 }
 
 #[test]
@@ -105,10 +105,10 @@ fn scene_files_hold_slices() {
         "a.toml",
         "[[file]]\npath = \"a.xyz\"\nradius = 1.0\n[[slice]]\nnormal = [2, 0, 0]\ndistance = 5.5\nmode = \"caps\"\n",
     );
-    let said = folder.succeed(&["info", "a.toml"]);
-    assert!(said.contains("beyond 5.5 along [1.0, 0.0, 0.0]: caps"), "{said}");
-    assert!(said.contains("1 plane at which spheres end"), "{said}");
-    assert!(said.contains("slices without 2 spheres"), "{said}");
+    let info = folder.succeed(&["info", "a.toml"]);
+    assert!(info.contains("beyond 5.5 along [1.0, 0.0, 0.0]: caps"), "{info}");
+    assert!(info.contains("1 plane at which spheres end"), "{info}");
+    assert!(info.contains("slices without 2 spheres"), "{info}");
     let all = [&SMALL[..], &["a.toml", "--slice", "x<2", "--json", "-o", "b.png"]].concat();
     assert_eq!(folder.json(&all)["statistics"]["spheres"], 2);
     folder.write(
@@ -117,13 +117,13 @@ fn scene_files_hold_slices() {
     );
     folder.write("c.toml", "[[slice]]\nnormal = [0, 0, 1]\nmode = \"cap\"\n");
     for (name, message) in [("b.toml", "normal = [x, y, z]"), ("c.toml", "unknown mode")] {
-        let said = text(&folder.run(&["info", name]).stderr);
-        assert!(said.contains(message), "{said}");
+        let stderr = text(&folder.run(&["info", name]).stderr);
+        assert!(stderr.contains(message), "{stderr}");
     }
 }
 
 #[test]
-fn planes_that_make_no_sense_are_refused() {
+fn invalid_planes_are_refused() {
     let folder = folder();
     for (args, code, message) in [
         (&["--slice", "x>-1"][..], 1, "cut away all of its 5 spheres"),
@@ -138,8 +138,8 @@ fn planes_that_make_no_sense_are_refused() {
         ),
     ] {
         let output = folder.run(&[&SMALL[..], &["a.xyz", "--radii", "1"], args].concat());
-        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(output.status.code(), Some(code), "{args:?}: {said}");
-        assert!(said.contains(message), "{args:?}: {said}");
+        let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {stderr}");
+        assert!(stderr.contains(message), "{args:?}: {stderr}");
     }
 }

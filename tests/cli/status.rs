@@ -22,7 +22,7 @@ fn status(folder: &Folder, files: &[&str]) -> (Value, Option<i32>) {
 }
 
 #[test]
-fn what_is_done_and_what_is_missing_is_told() {
+fn finished_and_missing_work_is_reported() {
     let folder = Folder::new();
     render(&folder, &[], &["1/4", "4/4"]);
     let (report, code) = status(&folder, &["a.1-of-4.part", "a.4-of-4.part"]);
@@ -50,7 +50,7 @@ fn what_is_done_and_what_is_missing_is_told() {
 }
 
 #[test]
-fn files_of_no_use_are_named_with_the_reason() {
+fn unusable_files_are_named_with_the_reason() {
     let folder = Folder::new();
     render(&folder, &[], &["1/2", "1/4"]);
     render(&folder, &["--seed", "3"], &["2/2"]);
@@ -76,7 +76,7 @@ fn files_of_no_use_are_named_with_the_reason() {
 }
 
 #[test]
-fn files_that_are_not_there_are_missing() {
+fn absent_files_are_missing() {
     let folder = Folder::new();
     let (report, code) = status(&folder, &["a.*.part"]);
     assert_eq!((code, &report["files"][0]["state"]), (Some(3), &"missing".into()));
@@ -87,7 +87,7 @@ fn files_that_are_not_there_are_missing() {
 }
 
 #[test]
-fn parts_that_are_being_rendered_are_told_from_interrupted_ones() {
+fn running_parts_are_distinguished_from_interrupted_ones() {
     let folder = Folder::new();
     render(&folder, &[], &["1/3"]);
     let begun = Lock::take(&folder.path("a.2-of-3.part")).expect("nobody else has it");

@@ -28,7 +28,7 @@ fn view(folder: &Folder, args: &[&str], script: &str) -> String {
 
 /// Asserts that the scene `a.toml` renders to the bytes of the image `a.png`, also in a viewer.
 #[track_caller]
-fn assert_comes_back(folder: &Folder, samples: u32) {
+fn assert_saved_scene_renders(folder: &Folder, samples: u32) {
     folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.png"]);
     assert!(folder.read("a.png") == folder.read("b.png"), "rendered");
     view(folder, &["a.toml"], &format!("wait {samples}\nsave c.png"));
@@ -36,7 +36,7 @@ fn assert_comes_back(folder: &Folder, samples: u32) {
 }
 
 #[test]
-fn saved_scenes_render_to_what_was_seen() {
+fn saved_scenes_render_to_the_same_picture() {
     let folder = Folder::new();
     let motions = [
         "drag 10,10 40,20\nwheel 3 5,30\nkey e\nkey E\nkey e",
@@ -47,12 +47,12 @@ fn saved_scenes_render_to_what_was_seen() {
     for motion in motions {
         let script = format!("size 64x48\n{motion}\nwait 3\nsave a.png\nsave a.toml\n");
         view(&folder, &[], &script);
-        assert_comes_back(&folder, 3);
+        assert_saved_scene_renders(&folder, 3);
     }
 }
 
 #[test]
-fn what_is_hidden_cut_colored_and_lit_is_saved_so() {
+fn hidden_types_cuts_colors_and_lights_are_saved() {
     let folder = Folder::new();
     folder.write("salt.xyz", SALT);
     let salt = ["salt.xyz", "--radii", "1"];
@@ -61,7 +61,7 @@ fn what_is_hidden_cut_colored_and_lit_is_saved_so() {
     {
         let script = format!("size 64x48\n{key}\nwait 2\nsave a.png\nsave a.toml\n");
         view(&folder, &salt, &script);
-        assert_comes_back(&folder, 2);
+        assert_saved_scene_renders(&folder, 2);
         let picture = folder.read("a.png");
         assert!(!pictures.contains(&picture), "{key}");
         pictures.push(picture);
@@ -78,7 +78,7 @@ fn looks_by_key_keep_the_materials_of_types() {
     {
         let script = format!("size 64x48\n{keys}\nwait 2\nsave a.png\nsave a.toml\n");
         view(&folder, &[&salt, args].concat(), &script);
-        assert_comes_back(&folder, 2);
+        assert_saved_scene_renders(&folder, 2);
         let scene = text(&folder.read("a.toml"));
         assert_eq!(scene.matches("dielectric").count(), 1, "{keys} {scene}");
         assert!(scene.contains("lambertian") && scene.contains("\"path\""), "{scene}");
@@ -86,7 +86,7 @@ fn looks_by_key_keep_the_materials_of_types() {
 }
 
 #[test]
-fn what_is_drawn_over_pictures_is_seen_and_saved() {
+fn overlays_are_shown_and_saved() {
     let folder = Folder::new();
     let cell = SALT.replace("Properties", "Lattice=\"4 0 0 0 4 0 0 0 4\" pbc=\"T T T\" Properties");
     folder.write("salt.xyz", &cell);
@@ -106,7 +106,7 @@ fn what_is_drawn_over_pictures_is_seen_and_saved() {
         let script = format!("size 64x48\n{keys}\nwait 3\nsave a.png\nsave a.exr\nsave a.toml\n");
         let args: Vec<&str> = args.split_whitespace().collect();
         view(&folder, &[&["salt.xyz", "--radii", "1"], &args[..]].concat(), &script);
-        assert_comes_back(&folder, 3);
+        assert_saved_scene_renders(&folder, 3);
         folder.succeed(&["render", "a.toml", "--quiet", "-o", "b.exr"]);
         assert!(folder.read("a.exr") == folder.read("b.exr"), "{args:?}");
         let picture = folder.read("a.png");
@@ -116,7 +116,7 @@ fn what_is_drawn_over_pictures_is_seen_and_saved() {
 }
 
 #[test]
-fn windows_show_looks_as_pictures_of_them_do() {
+fn windows_show_looks_as_saved_pictures_do() {
     let folder = Folder::new();
     folder.write("salt.xyz", SALT);
     let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
@@ -181,7 +181,7 @@ fn turns_are_numbered_and_windows_are_drawn() {
 }
 
 #[test]
-fn times_of_motion_are_told() {
+fn frame_times_of_motion_are_reported() {
     let folder = Folder::new();
     folder.write("script.txt", "size 64x48\nadapt\ndrag 5,5 50,40 steps=20");
     let json = folder.json(&["view", "--headless-script", "script.txt", "--json"]);
@@ -189,7 +189,7 @@ fn times_of_motion_are_told() {
 }
 
 #[test]
-fn what_cannot_be_seen_is_refused() {
+fn options_that_the_viewer_does_not_support_are_refused() {
     let folder = Folder::new();
     folder.write("script.txt", "wait 1");
     for (args, message) in [
@@ -206,7 +206,33 @@ fn what_cannot_be_seen_is_refused() {
 }
 
 #[test]
-fn pictures_in_the_terminal_need_one() {
+fn help_does_not_list_options_that_the_viewer_refuses() {
+    let folder = Folder::new();
+    let lists = |help: &str, option: &str| {
+        help.lines().any(|line| line.trim_start().split(' ').next() == Some(option))
+    };
+    let (render, view) =
+        (folder.succeed(&["render", "--help"]), folder.succeed(&["view", "--help"]));
+    assert!(lists(&view, "--size") && lists(&view, "--color-by"), "{view}");
+    for option in [
+        "--output-format",
+        "--region",
+        "--layers",
+        "--part",
+        "--split",
+        "--turntable",
+        "--fps",
+        "--checkpoint",
+        "--checkpoint-every",
+        "--resume",
+        "--terminal",
+    ] {
+        assert!(lists(&render, option) && !lists(&view, option), "{option}: {view}");
+    }
+}
+
+#[test]
+fn terminal_pictures_need_a_terminal() {
     let folder = Folder::new();
     let output = folder.run(&["render", "--terminal", "--size", "8x8"]);
     assert_eq!(output.status.code(), Some(2));
@@ -266,7 +292,7 @@ fn the_viewer_opens_every_file_that_render_takes() {
             continue;
         }
         view(&folder, &[file], &script);
-        assert_comes_back(&folder, 1);
+        assert_saved_scene_renders(&folder, 1);
         opened.push(path.file_name().map(|name| name.to_string_lossy().into_owned()));
     }
     for name in [
@@ -400,7 +426,7 @@ fn color_bars_are_shown_and_saved() {
     let inside = [&inside[..], &["--size", "160x200"]].concat();
     let script = "wait 2\nsave a.png\nsave a.exr\nsave a.toml\n";
     view(&folder, &inside, script);
-    assert_comes_back(&folder, 2);
+    assert_saved_scene_renders(&folder, 2);
     let picture = folder.read("a.png");
     view(&folder, &by_charge, script);
     assert!(picture != folder.read("a.png"), "no bar");
@@ -424,7 +450,7 @@ fn color_bars_are_shown_and_saved() {
 }
 
 #[test]
-fn numbers_have_the_digits_that_they_are_worth() {
+fn numbers_have_significant_digits_only() {
     let folder = Folder::new();
     let third = format!("{:.17}", 1.0_f64 / 3.0);
     let tenth = f64::from(0.1_f32);
@@ -438,7 +464,7 @@ fn numbers_have_the_digits_that_they_are_worth() {
 
 /// The viewer keeps no copy of this many spheres: it generates them again for the saved scene.
 #[test]
-fn many_spheres_are_seen_and_saved() {
+fn many_spheres_are_shown_and_saved() {
     let folder = Folder::new();
     let scene = "[[generate]]\nkind = \"volume\"\ncount = 1048600\n";
     folder.write("many.toml", scene);

@@ -113,14 +113,14 @@ fn settings_without_effect_are_refused() {
         ("render clear.toml --part 1/2", 2, "a scene's [look]"),
     ] {
         let output = folder.run(&line.split(' ').collect::<Vec<_>>());
-        let said = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(output.status.code(), Some(code), "{line}: {said}");
-        assert!(said.contains(message), "{line}: {said}");
+        let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(output.status.code(), Some(code), "{line}: {stderr}");
+        assert!(stderr.contains(message), "{line}: {stderr}");
     }
 }
 
 #[test]
-fn looks_and_backgrounds_make_pictures_of_their_own() {
+fn looks_and_backgrounds_differ() {
     let folder = folder();
     let mut pictures = Vec::new();
     for look in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {

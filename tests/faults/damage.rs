@@ -5,7 +5,7 @@ use spherule_render::sampling::mix;
 use std::fs;
 
 #[test]
-fn damaged_checkpoints_are_refused_and_stay() {
+fn damaged_checkpoints_are_refused_and_left_unchanged() {
     let folder = Folder::new();
     folder.succeed(&[&SMALL[..], &["--checkpoint", "c"]].concat());
     let whole = folder.read("c");
@@ -14,8 +14,8 @@ fn damaged_checkpoints_are_refused_and_stay() {
         let output = folder.run(&["render", "--resume", "c", "-o", "b.png"]);
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{what}: {message}");
-        let told = ["is damaged", "is not a checkpoint", "version"];
-        assert!(told.iter().any(|told| message.contains(told)), "{what}: {message}");
+        let reasons = ["is damaged", "is not a checkpoint", "version"];
+        assert!(reasons.iter().any(|reason| message.contains(reason)), "{what}: {message}");
         assert!(folder.read("c") == bytes && !folder.path("b.png").exists(), "{what}");
     };
     for chance in 0..20 {

@@ -40,7 +40,7 @@ impl Chance {
 }
 
 #[test]
-fn killed_renders_come_to_the_same_bytes() {
+fn killed_renders_resume_to_the_same_bytes() {
     let mut chance = Chance(seed::seed("SPHERULE_FAULT_SEED"));
     let longer = Duration::from_secs(seed::number("SPHERULE_FAULT_SECONDS").unwrap_or(0));
     let (begin, mut kills) = (Instant::now(), 0);

@@ -51,7 +51,7 @@ pub(crate) fn wait_for(what: &str, mut holds: impl FnMut() -> bool) {
 
 /// Waits until a file exists and has been replaced once.
 #[track_caller]
-pub(crate) fn wait_for_news(path: &Path) {
+pub(crate) fn wait_for_change(path: &Path) {
     use std::os::unix::fs::MetadataExt;
     let number = || fs::metadata(path).map(|file| file.ino()).ok();
     wait_for("a checkpoint", || number().is_some());

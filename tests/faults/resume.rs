@@ -1,7 +1,7 @@
 //! Resuming without faults: what can resume, and errors.
 
 use crate::folder::{Folder, text};
-use crate::process::{end, signal, start, wait_for_news};
+use crate::process::{end, signal, start, wait_for_change};
 use std::fs;
 
 /// A particle file with columns and a cell.
@@ -39,14 +39,14 @@ const LOOKS: [&str; 17] = [
 fn interrupt(folder: &Folder, args: &[&str]) {
     let keep = ["--quiet", "--checkpoint", "c", "--checkpoint-every", "1ms"];
     let child = start(folder, &[args, &keep].concat());
-    wait_for_news(&folder.path("c"));
+    wait_for_change(&folder.path("c"));
     signal(&child, &["TERM"]);
     let (code, message) = end(child);
     assert_eq!(code, Some(143), "{message}");
 }
 
 #[test]
-fn nothing_need_be_said_again_wherever_it_goes_on() {
+fn checkpoints_resume_from_any_folder_without_options() {
     let folder = Folder::new();
     particles(&folder);
     let long = [&LOOKS[..], &["--spp", "100", "-o", "a.png"]].concat();
@@ -72,7 +72,7 @@ fn nothing_need_be_said_again_wherever_it_goes_on() {
 }
 
 #[test]
-fn more_is_added_to_what_was_over() {
+fn finished_renders_are_extended() {
     let folder = Folder::new();
     let small = ["render", "--size", "80x60", "--quiet"];
     folder.succeed(&[&small[..], &["--spp", "96", "-o", "straight.exr"]].concat());

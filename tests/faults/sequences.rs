@@ -1,7 +1,7 @@
 //! Sequences of images that are interrupted or killed, and resumed.
 
 use crate::folder::Folder;
-use crate::process::{LONG, end, names, signal, start, wait_for, wait_for_news};
+use crate::process::{LONG, end, names, signal, start, wait_for, wait_for_change};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::process::{Command, Stdio};
@@ -38,13 +38,13 @@ fn pictures(folder: &Folder) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn pictures_that_a_signal_interrupted_have_no_name() {
+fn interrupted_pictures_are_not_written() {
     for sequence in [&["--frame", "all"][..], &["--turntable", "3"]] {
         for (name, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
             let folder = folder();
             let args = [&LONG[..], &["a.xyz", "--checkpoint", "c"], sequence].concat();
             let child = start(&folder, &args);
-            wait_for_news(&folder.path("c"));
+            wait_for_change(&folder.path("c"));
             signal(&child, &[name]);
             let (found, message) = end(child);
             assert_eq!(found, Some(code), "{message}");
@@ -55,7 +55,7 @@ fn pictures_that_a_signal_interrupted_have_no_name() {
 }
 
 #[test]
-fn sequences_go_on_to_the_same_bytes() {
+fn sequences_resume_to_the_same_bytes() {
     for sequence in SEQUENCES {
         let straight = folder();
         straight.succeed(sequence);
@@ -81,7 +81,7 @@ fn sequences_go_on_to_the_same_bytes() {
 }
 
 #[test]
-fn parts_of_sequences_go_on_too() {
+fn parts_of_sequences_resume() {
     let straight = folder();
     straight.succeed(SEQUENCES[0]);
     let folder = folder();
@@ -96,7 +96,7 @@ fn parts_of_sequences_go_on_too() {
 }
 
 #[test]
-fn what_would_make_pictures_differ_is_refused() {
+fn options_that_would_change_pictures_are_refused() {
     let folder = folder();
     let keep = ["--checkpoint", "c"];
     folder.succeed(&[&SEQUENCES[0][..5], &["8x8", "--spp", "2", "-q"], &keep].concat());
@@ -115,7 +115,7 @@ fn what_would_make_pictures_differ_is_refused() {
 }
 
 #[test]
-fn films_that_are_interrupted_leave_nothing() {
+fn interrupted_videos_leave_nothing() {
     let folder = folder();
     fs::create_dir(folder.path("tools")).expect("a folder");
     let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\n\

@@ -1,16 +1,16 @@
 //! Signals, time limits, and locks of other processes.
 
 use crate::folder::{Folder, SMALL, text};
-use crate::process::{LONG, end, names, samples, shell, signal, start, wait_for, wait_for_news};
+use crate::process::{LONG, end, names, samples, shell, signal, start, wait_for, wait_for_change};
 use spherule_render::image::Image;
 use std::fs;
 
 #[test]
-fn signals_leave_picture_and_checkpoint_and_tell_which_they_were() {
+fn signals_leave_picture_and_checkpoint_and_set_the_exit_status() {
     for (name, code) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
         let folder = Folder::new();
         let child = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
-        wait_for_news(&folder.path("c"));
+        wait_for_change(&folder.path("c"));
         signal(&child, &[name]);
         let (found, message) = end(child);
         assert_eq!(found, Some(code), "{name}: {message}");
@@ -23,12 +23,12 @@ fn signals_leave_picture_and_checkpoint_and_tell_which_they_were() {
 }
 
 #[test]
-fn a_second_signal_ends_it_at_once_and_files_are_whole() {
+fn a_second_signal_ends_at_once_and_files_are_intact() {
     let folder = Folder::new();
     folder.picture("spherule.png", &[]);
     let old = folder.read("spherule.png");
     let child = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
-    wait_for_news(&folder.path("c"));
+    wait_for_change(&folder.path("c"));
     // Two equal signals may be merged.
     signal(&child, &["INT", "TERM"]);
     let (code, message) = end(child);
@@ -39,7 +39,7 @@ fn a_second_signal_ends_it_at_once_and_files_are_whole() {
 }
 
 #[test]
-fn time_ends_it_as_it_should_and_more_time_goes_on() {
+fn time_limits_end_renders_and_more_time_resumes_them() {
     let folder = Folder::new();
     let timed = ["render", "--size", "80x60", "--time", "300ms", "--checkpoint", "c"];
     let output = folder.run(&timed);
@@ -57,7 +57,7 @@ fn time_ends_it_as_it_should_and_more_time_goes_on() {
 fn one_process_at_a_time_writes_a_checkpoint() {
     let folder = Folder::new();
     let mut child = start(&folder, &[&LONG[..], &["--checkpoint", "c"]].concat());
-    wait_for_news(&folder.path("c"));
+    wait_for_change(&folder.path("c"));
     let others: [&[&str]; 2] =
         [&["render", "--resume", "c", "-o", "b.png"], &["render", "--checkpoint", "c"]];
     for other in others {
@@ -70,13 +70,13 @@ fn one_process_at_a_time_writes_a_checkpoint() {
     child.wait().expect("a program");
     // The system releases the locks of killed processes.
     let again = start(&folder, &["render", "--resume", "c", "--quiet"]);
-    wait_for_news(&folder.path("c"));
+    wait_for_change(&folder.path("c"));
     signal(&again, &["TERM"]);
     assert_eq!(end(again).0, Some(143));
 }
 
 #[test]
-fn disks_that_are_full_leave_what_was_there() {
+fn full_disks_leave_the_old_files() {
     let folder = Folder::new();
     let expected = folder.picture("straight.png", &[]);
     let keep = ["--checkpoint", "c", "--checkpoint-every", "none"];
@@ -108,7 +108,7 @@ fn folders_that_vanish_do_not_stop_a_render() {
     let folder = Folder::new();
     fs::create_dir(folder.path("kept")).expect("a folder");
     let child = start(&folder, &[&LONG[..], &["--checkpoint", "kept/c"]].concat());
-    wait_for_news(&folder.path("kept/c"));
+    wait_for_change(&folder.path("kept/c"));
     fs::rename(folder.path("kept"), folder.path("elsewhere")).expect("a folder");
     std::thread::sleep(std::time::Duration::from_millis(200));
     signal(&child, &["TERM"]);
@@ -120,7 +120,7 @@ fn folders_that_vanish_do_not_stop_a_render() {
 }
 
 #[test]
-fn places_that_take_no_checkpoint_are_told_before_the_render() {
+fn unusable_checkpoint_paths_are_refused_before_the_render() {
     let folder = Folder::new();
     folder.write("other", "something else");
     for place in ["/proc/c", "none/c", "other", ".", "/dev/null"] {
@@ -146,7 +146,7 @@ fn start_with_pipes(folder: &Folder, args: &[&str], input: &[u8]) -> std::proces
 }
 
 #[test]
-fn one_signal_ends_whoever_waits_for_a_pipe() {
+fn one_signal_ends_programs_that_wait_for_a_pipe() {
     // Frames are longer than the bytes that are read to detect the format.
     let frame =
         format!("4000\nProperties=species:S:1:pos:R:3\n{}", "H 0.125 0.25 0.375\n".repeat(4000));
@@ -186,7 +186,7 @@ fn end_in_time(mut child: std::process::Child) -> Option<i32> {
 }
 
 #[test]
-fn few_descriptors_leave_a_whole_picture_and_nothing_else() {
+fn few_file_descriptors_leave_a_whole_picture_and_nothing_else() {
     let folder = Folder::new();
     let old = folder.picture("a.png", &[]);
     let mut written = 0;

@@ -53,16 +53,16 @@ fn pictures() {
 }
 
 #[test]
-fn faults_are_told_and_overcome() {
+fn crashes_are_reported_and_survived() {
     let mut process = Process::new("faults", &[]);
-    for (input, told) in [
-        ("panic", "as told"),
+    for (input, expected) in [
+        ("panic", "as requested"),
         ("memory", "allocation of 1073741824"),
         ("stack", "stack"),
         ("end", ""),
     ] {
         let fault = process.run(input.as_bytes());
-        assert!(fault.as_ref().is_err_and(|fault| fault.contains(told)), "{input}: {fault:?}");
+        assert!(fault.as_ref().is_err_and(|fault| fault.contains(expected)), "{input}: {fault:?}");
         assert_eq!(process.run(b"nothing"), Ok(()), "after {input}");
     }
 }

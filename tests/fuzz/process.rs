@@ -13,7 +13,7 @@ use tempfile::TempDir;
 const TIME: Duration = Duration::from_secs(20);
 
 /// Maximum number of bytes of an ended process's messages that are reported.
-const TOLD: usize = 1000;
+const REPORTED: usize = 1000;
 
 /// A folder for a target's cases, and the process that runs them, if it was started.
 pub(crate) struct Process<'t> {
@@ -43,8 +43,8 @@ impl<'t> Process<'t> {
     pub(crate) fn run(&mut self, bytes: &[u8]) -> Result<(), String> {
         let path = self.folder.path().join("case");
         fs::write(&path, bytes).expect("a folder that takes files");
-        let said = self.said();
-        let running = self.running.get_or_insert_with(|| Running::start(self.target, &said));
+        let stderr = self.stderr();
+        let running = self.running.get_or_insert_with(|| Running::start(self.target, &stderr));
         let asked = writeln!(running.input, "{}", path.display());
         let answer = match asked {
             Ok(()) => running.answers.recv_timeout(TIME),
@@ -57,7 +57,7 @@ impl<'t> Process<'t> {
         }
         match answer {
             Err(RecvTimeoutError::Timeout) => Err(format!("takes more than {TIME:?}")),
-            _ => Err(format!("ends the process: {}", self.last_words())),
+            _ => Err(format!("ends the process: {}", self.last_messages())),
         }
     }
 
@@ -69,27 +69,27 @@ impl<'t> Process<'t> {
         path
     }
 
-    fn said(&self) -> PathBuf {
-        self.folder.path().join("said")
+    fn stderr(&self) -> PathBuf {
+        self.folder.path().join("stderr")
     }
 
-    fn last_words(&self) -> String {
-        let said = fs::read(self.said()).unwrap_or_default();
-        let told = String::from_utf8_lossy(&said[said.len().saturating_sub(TOLD)..]).into_owned();
-        told.trim().to_owned()
+    fn last_messages(&self) -> String {
+        let stderr = fs::read(self.stderr()).unwrap_or_default();
+        let end = String::from_utf8_lossy(&stderr[stderr.len().saturating_sub(REPORTED)..]);
+        end.trim().to_owned()
     }
 }
 
 impl Running {
-    /// Starts this program as a [`worker`], with standard error in the file `said`.
-    fn start(target: &str, said: &Path) -> Self {
+    /// Starts this program as a [`worker`], with standard error in the file `stderr`.
+    fn start(target: &str, stderr: &Path) -> Self {
         let mut child = Command::new(std::env::current_exe().expect("a program with a path"))
             .args(["worker::answers", "--exact", "--ignored", "--test-threads=1"])
             .env(worker::TARGET, target)
             .env("RUST_BACKTRACE", "0")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(File::create(said).expect("a folder that takes files"))
+            .stderr(File::create(stderr).expect("a folder that takes files"))
             .spawn()
             .expect("a program that runs");
         let input = child.stdin.take().expect("a pipe");

@@ -32,7 +32,7 @@ pub(crate) fn reduce(bytes: &[u8], mut fails: impl FnMut(&[u8]) -> bool) -> Vec<
 }
 
 #[test]
-fn what_is_not_needed_goes() {
+fn inputs_are_reduced_to_the_needed_bytes() {
     let ones = |bytes: &[u8]| bytes.split(|&byte| byte == 1).count() - 1;
     let needs = |bytes: &[u8]| bytes.contains(&7) && ones(bytes) > 1;
     let input: Vec<u8> = (0..100).chain(0..50).collect();

@@ -24,7 +24,7 @@ const LONGEST: usize = 5000;
 
 /// Reads a scene, and renders it if it is small.
 pub(crate) fn scene(path: &Path) {
-    look_at(told(Scene::load(path)));
+    look_at(checked(Scene::load(path)));
 }
 
 /// Reads particles in every format, and renders them in detected formats.
@@ -36,35 +36,35 @@ pub(crate) fn particles(path: &Path) {
     let all = Format::ALL.map(|(_, format)| options(Some(format), None, 1.0));
     let some = [options(None, Some(1e-300), 1e300), options(Some(Format::Xyzr), None, 1e-300)];
     for options in some.into_iter().chain(all) {
-        if let Some(particles) = told(read(path, &options)) {
+        if let Some(particles) = checked(read(path, &options)) {
             assert!(!particles.spheres.is_empty());
             check_spheres(&particles.spheres, particles.material_names.len());
         }
     }
     let last = ReadOptions { frame: FrameChoice::Last, ..ReadOptions::default() };
-    told(read(path, &last));
-    told(count_frames(path, &last));
-    look_at(told(Scene::from_particles(path, &ReadOptions::default())));
+    checked(read(path, &last));
+    checked(count_frames(path, &last));
+    look_at(checked(Scene::from_particles(path, &ReadOptions::default())));
 }
 
 /// Reads an image and its metadata, compares it, and renders a sphere under it.
 pub(crate) fn picture(path: &Path) {
-    told(read_metadata(path));
-    if let Some(image) = told(Image::read(path)) {
+    checked(read_metadata(path));
+    if let Some(image) = checked(Image::read(path)) {
         assert_eq!(image.pixels.len() as u64, u64::from(image.width) * u64::from(image.height));
         assert!(!image.pixels.is_empty());
-        told(compare(&image, &image));
+        checked(compare(&image, &image));
     }
     let text = "environment = { kind = \"picture\", file = \"case\" }\n\
                 sphere = [{ center = [0, 0, 0], radius = 1 }]";
     let folder = path.parent().unwrap_or(Path::new(""));
-    look_at(told(Scene::parse(text, "sky", folder)));
+    look_at(checked(Scene::parse(text, "sky", folder)));
 }
 
 /// Fails in the way that the input names, to test the fuzzer.
 pub(crate) fn fault(path: &Path) {
     match fs::read(path).expect("a case").as_slice() {
-        b"panic" => panic!("as told"),
+        b"panic" => panic!("as requested"),
         b"memory" => drop(black_box(vec![1_u8; 1 << 30])),
         b"stack" => drop(endless(0)),
         b"end" => std::process::exit(0),
@@ -79,7 +79,7 @@ fn endless(depth: u64) -> [u64; 64] {
 }
 
 /// Returns the value, or `None` after a check of the error's message.
-fn told<T, E: Error>(outcome: Result<T, E>) -> Option<T> {
+fn checked<T, E: Error>(outcome: Result<T, E>) -> Option<T> {
     outcome
         .map_err(|error| {
             let message = error.to_string();
@@ -103,7 +103,7 @@ fn look_at(scene: Option<Scene>) {
     if let Integrator::Whitted { shadow_samples } = &mut settings.integrator {
         *shadow_samples = (*shadow_samples).min(4);
     }
-    if let Some(world) = told(World::build(&scene)) {
+    if let Some(world) = checked(World::build(&scene)) {
         draw(&scene, &world);
     }
 }

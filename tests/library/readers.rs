@@ -52,7 +52,7 @@ fn near(one: DVec3, other: DVec3) -> bool {
 }
 
 #[test]
-fn all_files_have_answers() {
+fn all_files_have_expected_results() {
     let answers: BTreeSet<String> = answers().into_iter().map(|answer| answer.name).collect();
     let files = std::fs::read_dir(folder()).expect("a folder");
     let files = files.map(|file| file.expect("a file").file_name().into_string().expect("a name"));

@@ -78,7 +78,7 @@ fn with(scene: &Scene, change: impl FnOnce(&mut Settings)) -> Scene {
 }
 
 #[test]
-fn renders_go_on_to_the_bytes_of_those_that_never_stopped() {
+fn resumed_renders_equal_uninterrupted_ones() {
     let scene = still_life();
     let error = |settings: &mut Settings| (settings.until_error, settings.spp) = (Some(0.03), 4096);
     let time = |settings: &mut Settings| {
@@ -105,7 +105,7 @@ fn renders_go_on_to_the_bytes_of_those_that_never_stopped() {
 }
 
 #[test]
-fn regions_go_on_too() {
+fn regions_resume() {
     let region = Some(Region { x: 13, y: 15, width: 40, height: 33 });
     let options = Options { region, ..Options::default() };
     let straight = render_scene_with(&still_life(), &options);
@@ -113,7 +113,7 @@ fn regions_go_on_too() {
 }
 
 #[test]
-fn more_samples_make_the_picture_of_so_many_from_the_start() {
+fn added_samples_equal_samples_from_the_start() {
     for sampler in [SamplerKind::Sobol, SamplerKind::Independent] {
         let scene = with(&still_life(), |settings| settings.sampler = sampler);
         let options = Options { statistics: true, ..Options::default() };
@@ -147,7 +147,7 @@ fn two_targets(world: &World, settings: [&Settings; 2], after: u64) -> Render {
 }
 
 #[test]
-fn it_does_not_matter_when_a_smaller_error_is_asked_for() {
+fn a_smaller_error_may_be_requested_at_any_time() {
     let scene = with(&still_life(), |settings| settings.spp = 4096);
     let world = World::build(&scene).expect("the scene is sound");
     let error = |error| Settings { until_error: Some(error), ..scene.settings.clone() };
@@ -164,7 +164,7 @@ fn it_does_not_matter_when_a_smaller_error_is_asked_for() {
 }
 
 #[test]
-fn what_is_over_stays_as_it_is() {
+fn finished_renders_do_not_change() {
     let scene = with(&still_life(), |settings| settings.until_error = Some(0.05));
     for scene in [scene, still_life()] {
         let world = World::build(&scene).expect("the scene is sound");
@@ -180,7 +180,7 @@ fn what_is_over_stays_as_it_is() {
 }
 
 #[test]
-fn time_that_was_taken_counts() {
+fn elapsed_time_counts() {
     let scene = with(&still_life(), |settings| {
         (settings.time, settings.spp) = (Some(Duration::from_millis(150)), 1 << 16);
     });
@@ -198,7 +198,7 @@ fn time_that_was_taken_counts() {
 }
 
 #[test]
-fn other_settings_and_less_are_refused() {
+fn other_settings_and_lower_targets_are_refused() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     let refused = |then: &dyn Fn(&mut Settings), now: &dyn Fn(&mut Settings)| {

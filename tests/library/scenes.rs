@@ -38,7 +38,7 @@ fn every_scene_renders_and_shows_something() {
 }
 
 #[test]
-fn the_quartz_of_the_gallery_is_whole() {
+fn the_quartz_of_the_gallery_is_complete() {
     let path = folder().join("gallery/quartz.cif");
     let read = particles::read(&path, &ReadOptions::default()).expect("a crystal");
     let (spheres, cell) = (read.spheres, read.cell.expect("a cell"));

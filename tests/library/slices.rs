@@ -133,7 +133,7 @@ fn planes() -> Vec<Vec<Slice>> {
 }
 
 #[test]
-fn cut_spheres_are_hit_where_arithmetic_says() {
+fn hits_on_cut_spheres_agree_with_closed_forms() {
     let shift = |radius: f64, height: f64, x: f64| Shift {
         radius,
         height,
@@ -168,7 +168,7 @@ fn cut_spheres_are_hit_where_arithmetic_says() {
 }
 
 #[test]
-fn what_is_hit_before_a_distance_occludes() {
+fn any_hit_queries_agree_with_closest_hits() {
     for slices in planes() {
         let world = World::build(&crowd(slices)).expect("a sound scene");
         let rays = rays(&world, 3000);
@@ -189,7 +189,7 @@ fn what_is_hit_before_a_distance_occludes() {
 }
 
 #[test]
-fn pictures_are_the_same_whatever_finds_spheres() {
+fn pictures_are_the_same_for_every_traversal() {
     let mut scene = menagerie();
     let opaque = lambertian(0.6);
     for named in &mut scene.materials {
@@ -230,7 +230,7 @@ fn half(eye: DVec3) -> Scene {
 }
 
 #[test]
-fn half_a_ball_has_half_its_outline_and_a_round_cap() {
+fn half_a_sphere_has_half_its_outline_and_a_round_cap() {
     let area = |scene: &Scene| {
         let world = World::build(scene).expect("a sound scene");
         let found = layers(&world, &scene.settings, &Options::default(), &[Layer::Normal])
@@ -304,7 +304,7 @@ fn a_section_through_a_crystal_is_flat() {
 }
 
 #[test]
-fn what_is_hidden_keeps_its_shadow() {
+fn hidden_parts_keep_their_shadow() {
     let mut scene = noon();
     let radiance = |scene: &Scene, eye: DVec3, at: DVec3| {
         let mut scene = scene.clone();
@@ -328,7 +328,7 @@ fn what_is_hidden_keeps_its_shadow() {
 }
 
 #[test]
-fn removed_spheres_are_not_there() {
+fn removed_spheres_are_absent() {
     let mut cut = menagerie();
     cut.slices = vec![slice(DVec3::Z, 3.5, SliceMode::Remove)];
     let world = World::build(&cut).expect("a sound scene");
@@ -342,14 +342,14 @@ fn removed_spheres_are_not_there() {
 }
 
 #[test]
-fn half_a_lamp_lights_as_its_disk_does() {
+fn half_an_emitter_lights_as_its_disk() {
     let mut scene = dark();
     sphere(&mut scene, [0.0, 0.0, 2.0], 1.0, emitter(4.0, 0.0));
     ground(&mut scene, lambertian(0.5));
     scene.slices = vec![caps(DVec3::NEG_Z, -2.0)];
     // The disk at height 2 subtends an angle with a squared sine of 1/5.
     let estimate = probe(&mut scene, DVec3::ZERO, DVec3::new(6.0, 0.0, 2.0));
-    assert_expected(estimate, 0.5 * 4.0 / 5.0, "below half a lamp");
+    assert_expected(estimate, 0.5 * 4.0 / 5.0, "below half an emitter");
 }
 
 #[test]
@@ -369,7 +369,7 @@ fn glass_has_no_caps() {
 }
 
 #[test]
-fn cameras_frame_what_is_left() {
+fn cameras_frame_the_remaining_spheres() {
     let mut scene = furnace();
     for x in [0.0, 10.0] {
         sphere(&mut scene, [x, 0.0, 0.0], 1.0, lambertian(0.5));

@@ -97,7 +97,7 @@ fn assert_same(a: &Render, b: &Render, what: &str) {
 }
 
 #[test]
-fn parts_come_to_the_bytes_of_the_whole() {
+fn merged_parts_equal_the_whole() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     for options in [Options::default(), STATISTICS] {
@@ -121,7 +121,7 @@ fn parts_come_to_the_bytes_of_the_whole() {
 }
 
 #[test]
-fn regions_and_every_sampler_can_be_shared_out() {
+fn regions_and_every_sampler_can_be_split() {
     let mut scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     let region = Some(Region { x: 13, y: 15, width: 40, height: 33 });
@@ -170,7 +170,7 @@ fn layers_of_parts_are_those_of_the_whole() {
 }
 
 #[test]
-fn one_file_is_as_it_was() {
+fn merging_one_file_changes_nothing() {
     let mut scene = still_life();
     (scene.settings.until_error, scene.settings.spp) = (Some(0.2), 4096);
     let world = World::build(&scene).expect("the scene is sound");
@@ -182,7 +182,7 @@ fn one_file_is_as_it_was() {
 }
 
 #[test]
-fn what_is_there_twice_is_refused() {
+fn overlapping_parts_are_refused() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     let mut parts = parts(&world, &scene.settings, &Options::default(), Split::Samples, 7);
@@ -195,7 +195,7 @@ fn what_is_there_twice_is_refused() {
 }
 
 #[test]
-fn what_is_missing_is_named() {
+fn missing_parts_are_named() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     let first = ImagePart { samples: 0..35, tiles: 0..24 };
@@ -210,7 +210,7 @@ fn what_is_missing_is_named() {
 }
 
 #[test]
-fn what_there_is_has_the_right_weights() {
+fn incomplete_merges_have_the_right_weights() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     let take =
@@ -282,7 +282,7 @@ fn parts_of_other_renders_are_refused() {
 }
 
 #[test]
-fn parts_that_were_interrupted_are_refused_unless_that_may_be() {
+fn interrupted_parts_are_refused_unless_allowed() {
     let scene = still_life();
     let world = World::build(&scene).expect("the scene is sound");
     let cancel = AtomicBool::new(true);

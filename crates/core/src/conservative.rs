@@ -105,7 +105,7 @@ impl<L: Lanes> ConservativeRay<L> {
         self.direction
     }
 
-    /// By how much the origin may be off if it is a point of a surface, rounded: as
+    /// Maximum error of the origin if it is a rounded point of a surface: as
     /// [`ExactRay::origin_error`](crate::ray::ExactRay::origin_error), and no less.
     #[inline(always)]
     pub fn origin_error(&self) -> L {

@@ -110,7 +110,7 @@ impl Distance {
     }
 }
 
-/// Whether a point is inside a sphere, not on its surface; all numbers are finite.
+/// Returns whether a point is inside a sphere, not on its surface; all numbers are finite.
 pub fn is_inside(point: DVec3, center: DVec3, radius: f64) -> bool {
     let ray = ExactRay { origin: point, direction: DVec3::ZERO, origin_error: 0.0 };
     Encounter::new(&ray, center, radius).outside.sign() < 0

@@ -47,11 +47,12 @@ pub struct Root {
     pub t: f64,
     /// The true distance is no farther from `t` than this; 0 where `t` is so by definition.
     pub error: f64,
-    /// Whether it took arithmetic without rounding to decide that there is a hit.
+    /// True if it took arithmetic without rounding to decide that there is a hit.
     pub exact: bool,
 }
 
-/// Whether and where a ray hits a sphere; the answer is that of arithmetic without rounding.
+/// Decides whether and where a ray hits a sphere; the answer is that of arithmetic without
+/// rounding.
 ///
 /// Outside, that is the near root; inside, the far one; a tangent hits. Where the origin is on the
 /// surface the direction decides: a ray that leaves misses, a ray that enters hits the far side. On

@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_hold() {
+    fn numbers_stay_in_their_range() {
         let mut random = Random::new(2);
         for _ in 0..1000 {
             assert!((1e-3..=1e2).contains(&random.decades([-3.0, 2.0])));

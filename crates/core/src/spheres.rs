@@ -121,7 +121,7 @@ impl Spheres {
         self.id.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there is none.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
     }

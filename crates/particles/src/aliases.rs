@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_the_field_find_each_other() {
+    fn synonyms_find_each_other() {
         let finds = |name: &str, other: &str| of(name).any(|own| own == other);
         for (name, other) in [
             ("resname", "residue"),

@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn memory_is_asked_for_in_steps_of_an_eighth_that_end_where_columns_double() {
+    fn memory_is_checked_at_least_every_eighth_and_where_columns_double() {
         let mut builder = builder("");
         let mut checks = Vec::new();
         let mut before = builder.next_check;

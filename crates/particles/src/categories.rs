@@ -233,7 +233,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_take_as_few_bytes_as_they_need() {
+    fn codes_are_as_narrow_as_possible() {
         let mut codes = Codes::default();
         for code in [0, 255, 256, 3, 65_536, 7] {
             codes.push(code);

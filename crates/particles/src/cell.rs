@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_of_lengths_and_angles_have_them() {
+    fn cells_have_the_given_lengths_and_angles() {
         let cell = Cell::of_lengths([2.0, 3.0, 4.0], [80.0, 95.0, 120.0]).expect("a cell");
         let [a, b, c] = cell.vectors;
         for (first, second, angle) in [(b, c, 80.0_f64), (a, c, 95.0), (a, b, 120.0)] {

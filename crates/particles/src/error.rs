@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_are_never_as_long_as_files() {
+    fn long_messages_are_shortened() {
         let error = FileError::whole_file(Path::new("a"), "\u{e4}".repeat(1_000_000));
         let error = error.with_help("b".repeat(LONGEST));
         assert_eq!(error.message.chars().count(), LONGEST + 3);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn places_outside_the_text_are_its_end() {
+    fn positions_outside_the_text_are_at_its_end() {
         let error = FileError::at(Path::new("a"), "ab\n", 7, 90..95, "bad");
         assert_eq!((error.line(), error.column()), (Some(8), Some(1)));
         let inside_a_character = FileError::at(Path::new("a"), "ä", 1, 1..2, "bad");

@@ -180,52 +180,56 @@ const WORDS: [(&str, &str, &str); 18] = [
 const LINES: usize = 64;
 
 /// Inserts the file's name into a command.
-fn filled(way: &str, path: &Path) -> String {
+fn fill_in(command: &str, path: &Path) -> String {
     let is_plain = |name: &str| {
         name.chars().all(|letter| letter.is_ascii_alphanumeric() || "._/+-".contains(letter))
     };
     let file = path.to_str().filter(|name| is_plain(name) && *name != "-").unwrap_or("FILE");
     let stem = Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or("FILE");
-    way.replace("{file}", file).replace("{stem}", stem)
+    command.replace("{file}", file).replace("{stem}", stem)
 }
 
-fn foreign(name: &str, way: &str, path: &Path) -> Foreign {
+/// Returns a format with this name and conversion.
+fn foreign(name: &str, conversion: &str, path: &Path) -> Foreign {
     let kind = if name.contains("Parquet") { "parquet" } else { "feather" };
-    let way = way.replace("{kind}", kind).replace("{{", "{").replace("}}", "}");
-    Foreign { name: name.to_owned(), help: filled(&way, path) }
+    let command = conversion.replace("{kind}", kind).replace("{{", "{").replace("}}", "}");
+    Foreign { name: name.to_owned(), help: fill_in(&command, path) }
 }
 
 /// Returns the format of a binary file with this head, if it is known.
 pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
-    let begins =
-        |place: usize, bytes: &[u8]| head.get(place..).is_some_and(|rest| rest.starts_with(bytes));
-    let known = MAGICS.iter().find(|(place, bytes, ..)| begins(*place, bytes));
-    if let Some((_, _, name, way)) = known {
-        return Some(foreign(name, way, path));
+    let has = |offset: usize, bytes: &[u8]| {
+        head.get(offset..).is_some_and(|rest| rest.starts_with(bytes))
+    };
+    let known = MAGICS.iter().find(|(offset, bytes, ..)| has(*offset, bytes));
+    if let Some((_, _, name, conversion)) = known {
+        return Some(foreign(name, conversion, path));
     }
-    if begins(0, b"PK\x03\x04") {
+    if has(0, b"PK\x03\x04") {
         return archive(head, path);
     }
-    let word = |at: usize| head.get(at..at + 4)?.try_into().ok();
-    let big = |at: usize| word(at).map_or(0, u32::from_be_bytes);
-    let little = |at: usize| word(at).map_or(0, u32::from_le_bytes);
-    // The number of atoms is stored twice.
-    if matches!(big(0), 1995 | 2023) && big(4) > 0 && big(4) == big(52) {
+    let word = |offset: usize| head.get(offset..offset + 4)?.try_into().ok();
+    let big_endian = |offset: usize| word(offset).map_or(0, u32::from_be_bytes);
+    let little_endian = |offset: usize| word(offset).map_or(0, u32::from_le_bytes);
+    // XTC: the number of atoms is stored twice.
+    let atoms = big_endian(4);
+    if matches!(big_endian(0), 1995 | 2023) && atoms > 0 && atoms == big_endian(52) {
         return Some(foreign("an XTC trajectory of GROMACS", TRAJECTORY, path));
     }
-    if big(0) == 1993 && big(4) == 13 {
+    if big_endian(0) == 1993 && big_endian(4) == 13 {
         return Some(foreign("a TRR trajectory of GROMACS", TRAJECTORY, path));
     }
-    // A Fortran record between its lengths, of four or eight bytes in either byte order.
-    let is_dcd = |at: usize| begins(at, b"CORD") || begins(at, b"VELD");
-    let marks = [(big(0), 4), (little(0), 4), (big(4), 8), (little(0), 8)];
-    if marks.iter().any(|&(length, at)| length == 84 && is_dcd(at)) {
+    // DCD begins with the length of a Fortran record, in four or eight bytes and either byte order.
+    let is_dcd = |offset: usize| has(offset, b"CORD") || has(offset, b"VELD");
+    let records =
+        [(big_endian(0), 4), (little_endian(0), 4), (big_endian(4), 8), (little_endian(0), 8)];
+    if records.iter().any(|&(length, offset)| length == 84 && is_dcd(offset)) {
         return Some(foreign("a DCD trajectory", WITH_TOPOLOGY, path));
     }
     let is_gadget = |word: &dyn Fn(usize) -> u32| {
-        word(0) == 256 && word(260) == 256 || word(0) == 8 && begins(4, b"HEAD") && word(12) == 8
+        word(0) == 256 && word(260) == 256 || word(0) == 8 && has(4, b"HEAD") && word(12) == 8
     };
-    if is_gadget(&big) || is_gadget(&little) {
+    if is_gadget(&big_endian) || is_gadget(&little_endian) {
         return Some(foreign("a snapshot of Gadget", GADGET, path));
     }
     (head.get(..100)?.windows(6).any(|bytes| bytes == b"TRAJNG"))
@@ -246,22 +250,22 @@ pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
         head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end).take(LINES).collect();
     let content = head.trim_ascii_start();
     let first = content.split(|&byte| byte == b'\n').next()?.trim_ascii_end();
-    let begins = |words: &str| {
+    let starts_with = |words: &str| {
         let start = content.get(..words.len()).unwrap_or_default();
         start.eq_ignore_ascii_case(words.as_bytes())
     };
-    // Words of one's own end; the others go on.
-    let is_whole = |words: &str| {
-        !words.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_')
-            || first.len() == words.len()
+    // A keyword must be the whole line; other texts may be followed by more.
+    let is_complete = |words: &str| {
+        let is_keyword = words.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_');
+        !is_keyword || first.len() == words.len()
     };
-    let known = WORDS
-        .iter()
-        .find(|(words, ..)| begins(words) && (is_whole(words) || is_steps(words, first)));
-    if let Some((_, name, way)) = known {
-        return Some(foreign(name, way, path));
+    let known = WORDS.iter().find(|(words, ..)| {
+        starts_with(words) && (is_complete(words) || has_step_count(words, first))
+    });
+    if let Some((_, name, conversion)) = known {
+        return Some(foreign(name, conversion, path));
     }
-    if begins("<?xml") || begins("<") {
+    if starts_with("<?xml") || starts_with("<") {
         return Some(markup(head, path));
     }
     let structures: [(bool, &str, &str); 11] = [
@@ -293,18 +297,19 @@ pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
             "write its points: awk '$1==\"v\" {print $2, $3, $4}' {file} | spherule render - -o {stem}.png",
         ),
     ];
-    let (_, name, way) = structures.into_iter().find(|(is_there, ..)| *is_there)?;
-    Some(foreign(name, way, path))
+    let (_, name, conversion) = structures.into_iter().find(|(matches, ..)| *matches)?;
+    Some(foreign(name, conversion, path))
 }
 
-/// Returns whether a line is `ANIMSTEPS` or the like with a number.
-fn is_steps(words: &str, line: &[u8]) -> bool {
+/// Returns whether a line is a keyword of XSF with a number, as in `ANIMSTEPS 5`.
+fn has_step_count(keyword: &str, line: &[u8]) -> bool {
     let mut fields = Fields::blanks(line).skip(1);
-    ["animsteps", "atoms"].contains(&words)
+    ["animsteps", "atoms"].contains(&keyword)
         && fields.next().is_some_and(|count| number::whole(count).is_some())
         && fields.next().is_none()
 }
 
+/// Returns the format of an XML file with this head.
 fn markup(head: &[u8], path: &Path) -> Foreign {
     let has = |text: &[u8]| memchr::memmem::find(head, text).is_some();
     if has(b"<VTKFile") {
@@ -313,20 +318,23 @@ fn markup(head: &[u8], path: &Path) -> Foreign {
     if has(b"<cml") || has(b"xml-cml") {
         return foreign("a CML file", MOLECULES, path);
     }
-    let way = "write its positions as CSV: python3 -c \"import pandas; \
+    let conversion = "write its positions as CSV: python3 -c \"import pandas; \
                pandas.read_xml('{file}').to_csv('{stem}.csv', index=False)\"";
-    foreign("an XML file", way, path)
+    foreign("an XML file", conversion, path)
 }
 
+/// Returns whether any line starts with this text.
 fn has_line(head: &[u8], start: &[u8]) -> bool {
     head.starts_with(start)
         || memchr::memmem::find_iter(head, start).any(|at| head[at - 1] == b'\n')
 }
 
+/// Returns the fields of a line, if all are numbers.
 fn numbers(line: &[u8]) -> Option<Vec<f64>> {
     Fields::blanks(line).map(number::parse).collect()
 }
 
+/// Returns whether the first line is `PSF` with flags, and a section with a title follows.
 fn is_psf(first: &[u8], head: &[u8]) -> bool {
     let is_flag = |field: &[u8]| field.iter().all(u8::is_ascii_uppercase);
     first.starts_with(b"PSF")
@@ -334,7 +342,8 @@ fn is_psf(first: &[u8], head: &[u8]) -> bool {
         && memchr::memmem::find(head, b"!N").is_some()
 }
 
-/// The fourth line has the numbers of atoms and bonds, in three columns each, and the version.
+/// Returns whether the fourth line has the numbers of atoms and bonds, in three columns each, and the
+/// version.
 fn is_molfile(lines: &[&[u8]], head: &[u8]) -> bool {
     let Some(counts) = lines.get(3) else { return false };
     let is_count = |field: Option<&[u8]>| field.is_some_and(|field| number::whole(field).is_some());
@@ -344,7 +353,8 @@ fn is_molfile(lines: &[&[u8]], head: &[u8]) -> bool {
         && (version || has_line(head, b"M  END"))
 }
 
-/// A comment, a scale, three edges, names or numbers of atoms, and what positions are.
+/// Returns whether lines are a comment, a scale, three lattice vectors, element names and numbers of
+/// atoms or only these, and the kind of coordinates.
 fn is_poscar(lines: &[&[u8]]) -> bool {
     let has = |line: usize, count: usize| {
         lines.get(line).and_then(|line| numbers(line)).is_some_and(|numbers| numbers.len() == count)
@@ -353,23 +363,24 @@ fn is_poscar(lines: &[&[u8]]) -> bool {
         let mut fields = Fields::blanks(lines.get(line).copied().unwrap_or_default()).peekable();
         fields.peek().is_some() && fields.all(|field| number::whole(field).is_some())
     };
-    let positions = |line: usize| {
+    let coordinates = |line: usize| {
         let line = lines.get(line).copied().unwrap_or_default().trim_ascii_start();
         line.first().is_some_and(|letter| b"sSdDcCkK".contains(letter))
     };
     let scale = has(1, 1) || has(1, 3);
     scale
         && (2..5).all(|line| has(line, 3))
-        && (counts(5) && positions(6) || counts(6) && positions(7))
+        && (counts(5) && coordinates(6) || counts(6) && coordinates(7))
 }
 
-/// Two comments, then a number of atoms or of points and three numbers, four times, the first of which may
-/// be followed by another number. Rows of a table, five numbers each, are none.
+/// Returns whether lines are two comments, the number of atoms and the origin, three axes of the grid with
+/// their numbers of points, and an atom. The line of the origin may end with another number. Rows of a
+/// table with five numbers each do not match.
 fn is_cube(lines: &[&[u8]]) -> bool {
-    let is_grid = |line: &[u8], most: usize| {
+    let is_axis = |line: &[u8], max_fields: usize| {
         let fields: Vec<&[u8]> = Fields::blanks(line).collect();
         let count = fields.first().map(|count| count.strip_prefix(b"-").unwrap_or(count));
-        (4..=most).contains(&fields.len())
+        (4..=max_fields).contains(&fields.len())
             && count.is_some_and(|count| number::whole(count).is_some())
             && fields[1..].iter().all(|field| number::parse(field).is_some())
     };
@@ -377,12 +388,13 @@ fn is_cube(lines: &[&[u8]]) -> bool {
     // The first line of an XYZ file is a number.
     lines.len() > 6
         && number::whole(lines[0]).is_none()
-        && is_grid(lines[2], 5)
-        && lines[3..6].iter().all(|line| is_grid(line, 4))
+        && is_axis(lines[2], 5)
+        && lines[3..6].iter().all(|line| is_axis(line, 4))
         && is_atom(&lines[6])
 }
 
-/// A title of lines that begin with a star, a number of atoms, and rows of ten columns.
+/// Returns whether lines are a title, whose lines begin with `*`, the number of atoms, and rows of ten
+/// columns, of which the last may be missing.
 fn is_charmm(lines: &[&[u8]]) -> bool {
     let mut rest = lines.iter().skip_while(|line| line.starts_with(b"*"));
     let count = rest.next().and_then(|line| Fields::blanks(line).next());
@@ -391,58 +403,53 @@ fn is_charmm(lines: &[&[u8]]) -> bool {
         && rest.next().is_some_and(|row| Fields::blanks(row).count() >= 9)
 }
 
-/// A title, a number of atoms, and rows of six numbers of twelve columns with seven decimals.
+/// Returns whether lines are a title, the number of atoms, and rows of six numbers, which are twelve
+/// characters wide and have seven decimals.
 fn is_amber(lines: &[&[u8]]) -> bool {
     let count = lines.get(1).and_then(|line| Fields::blanks(line).next());
-    let is_row = |row: &&[u8]| {
-        let numbers = row.chunks(12).map(|field| field.len() == 12 && field[4] == b'.');
-        !row.is_empty()
-            && row.len() <= 72
-            && numbers.into_iter().all(|fits| fits)
-            && numbers_of(row)
+    let is_number = |field: &[u8]| {
+        field.len() == 12 && field[4] == b'.' && number::parse(field.trim_ascii()).is_some()
     };
+    let is_row = |row: &&[u8]| !row.is_empty() && row.len() <= 72 && row.chunks(12).all(is_number);
     count.is_some_and(|count| number::whole(count).is_some())
         && number::whole(lines[0]).is_none()
         && lines.get(2).is_some_and(is_row)
         && lines.get(3).is_none_or(|row| row.is_empty() || is_row(row))
 }
 
-fn numbers_of(row: &[u8]) -> bool {
-    row.chunks(12).all(|field| number::parse(field.trim_ascii()).is_some())
-}
-
+/// Returns whether the first line of a Wavefront OBJ file is a vertex or names a material library.
 fn is_mesh(first: &[u8]) -> bool {
     let vertex = first.strip_prefix(b"v ").and_then(numbers);
     vertex.is_some_and(|numbers| numbers.len() >= 3) || first.starts_with(b"mtllib ")
 }
 
-/// Recognizes a PQR file, which begins as PDB does but has charges and radii in columns that are
-/// not fixed.
+/// Returns the format of a PQR file. It resembles PDB, but has charges and radii in columns of any
+/// width.
 pub(crate) fn pqr(head: &[u8], path: &Path) -> Option<Foreign> {
-    let suffix = |wanted: &str| {
+    let has_suffix = |wanted: &str| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         name.split('.').skip(1).any(|part| part == wanted)
     };
-    if suffix("pdb") || suffix("ent") {
+    if has_suffix("pdb") || has_suffix("ent") {
         return None;
     }
     let is_atom = |line: &&[u8]| line.starts_with(b"ATOM") || line.starts_with(b"HETATM");
     let complete = &head[..memchr::memrchr(b'\n', head).unwrap_or(head.len())];
     let mut atoms = complete.split(|&byte| byte == b'\n').filter(is_atom).take(LINES).peekable();
     atoms.peek()?;
-    let way = "draw its radii: awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' {file} | \
+    let conversion = "draw its radii: awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' {file} | \
                spherule render - -o {stem}.png; or read it as PDB, without them: --format pdb";
-    let is_pqr = suffix("pqr") || atoms.all(is_pqr_atom);
-    is_pqr.then(|| foreign("a PQR file, with charges and radii", way, path))
+    let is_pqr = has_suffix("pqr") || atoms.all(is_pqr_atom);
+    is_pqr.then(|| foreign("a PQR file, with charges and radii", conversion, path))
 }
 
-/// Returns whether a row ends in five numbers, and has other columns than PDB.
+/// Returns whether a row ends with five decimal numbers that are not in the columns of PDB.
 fn is_pqr_atom(line: &[u8]) -> bool {
     let fields: Vec<&[u8]> = Fields::blanks(line).collect();
     let last = fields.len().checked_sub(5).map(|first| &fields[first..]).unwrap_or_default();
     let is_decimal = |field: &&[u8]| field.contains(&b'.') && number::parse(field).is_some();
     let numbers = last.len() == 5 && last.iter().all(is_decimal);
-    // Occupancy and temperature factor have two decimals at fixed places.
+    // In PDB, occupancy and temperature factor have two decimals in fixed columns.
     let two_decimals = |end: usize| line.get(end - 3) == Some(&b'.');
     numbers && !(two_decimals(60) && two_decimals(66) && line.get(38 - 4) == Some(&b'.'))
 }
@@ -459,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn binary_files_are_named_with_a_command() {
+    fn binary_formats_are_named_with_a_command() {
         let xtc =
             [&1995_u32.to_be_bytes()[..], &7_u32.to_be_bytes(), &[0; 44], &7_u32.to_be_bytes()]
                 .concat();
@@ -505,7 +512,7 @@ mod tests {
     }
 
     #[test]
-    fn text_files_are_named_with_a_command() {
+    fn text_formats_are_named_with_a_command() {
         let mol = "241\n  -OEChem-\n\n 12 12  0     0  0  0  0  0  0999 V2000\n    2.0    0.0    0.0 C\nM  END\n";
         let poscar =
             "Si2\n1.0\n0 2.7 2.7\n2.7 0 2.7\n2.7 2.7 0\nSi\n2\nDirect\n0 0 0\n0.25 0.25 0.25\n";
@@ -547,7 +554,7 @@ mod tests {
     }
 
     #[test]
-    fn files_that_are_read_are_not_foreign() {
+    fn supported_formats_are_not_foreign() {
         let pdb =
             "ATOM      1  N   ALA A   1      11.104   6.134  -6.504  1.00  0.00           N\n";
         let no_element = "ATOM      1  N   ALA     1      11.104   6.134  -6.504  1.00  0.00\n";
@@ -588,7 +595,7 @@ mod tests {
     }
 
     #[test]
-    fn binary_files_that_only_begin_alike_are_not_named() {
+    fn similar_binary_files_are_not_named() {
         let words = |words: &[u32], order: fn(u32) -> [u8; 4]| -> Vec<u8> {
             words.iter().flat_map(|word| order(*word)).chain([0; 300]).collect()
         };
@@ -613,7 +620,7 @@ mod tests {
     }
 
     #[test]
-    fn text_files_of_every_form_are_named() {
+    fn variants_of_text_formats_are_named() {
         let mol = |counts: &str, end: &str| format!("a\n  b\n\n{counts}\n    2.0 0.0 0.0 C\n{end}");
         for (content, word) in [
             (mol("  0  0  0     0  0            999 V3000", ""), "SDF"),
@@ -633,7 +640,7 @@ mod tests {
     }
 
     #[test]
-    fn text_files_that_only_begin_alike_are_not_named() {
+    fn similar_text_files_are_not_named() {
         let amber = "   1.0000000   2.0000000   3.0000000\n";
         for content in [
             "solid x y z\n1 2 3 4\n",

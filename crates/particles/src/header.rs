@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headers_are_cut_into_names() {
+    fn headers_are_split_into_names() {
         for (line, expected) in [
             ("x y z radius", &["x", "y", "z", "radius"][..]),
             ("x (m) y [um] z (a b)", &["x (m)", "y [um]", "z (a b)"]),
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn help_names_columns_that_are_free_and_can_be_typed() {
+    fn help_suggests_unused_columns_with_plain_names() {
         let names = ["a,b", "", "c=d", "px", "py", "pz", "q"].map(str::to_owned);
         let help = |roles: &str| {
             let columns = roles.parse().expect("columns");

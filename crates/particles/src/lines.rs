@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_the_same_however_blocks_fall() {
+    fn lines_do_not_depend_on_block_boundaries() {
         let text = "a\r\n\nbcd\n\u{e4}\nlast";
         for drop in 1..12 {
             let mut lines = lines(text, drop);
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn skipping_is_reading_without_a_look() {
+    fn skipping_equals_reading() {
         for drop in 1..8 {
             for count in 0..7 {
                 let mut lines = lines("1\n22\n333\n4444\n5", drop);
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_given_back_comes_again() {
+    fn returned_lines_are_read_again() {
         let mut lines = lines("one\ntwo\n", 3);
         for _ in 0..3 {
             assert_eq!(lines.next().expect("a line").map(|line| line.number_in_file()), Some(1));
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_without_end_are_faults() {
+    fn endless_lines_are_errors() {
         let mut lines = lines(&"1".repeat(LONGEST + BLOCK), BLOCK);
         let error = lines.next().err().expect("a fault");
         assert!(error.message.contains("longer than"), "{error}");
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_of_what_follows_is_seen_ahead() {
+    fn the_next_bytes_can_be_peeked() {
         let text = "1".repeat(60_000) + "\n" + &"2".repeat(200_000);
         let mut long = lines(&text, 70_000);
         assert!(long.ahead().expect("bytes").len() >= BLOCK / 4);
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn reads_go_on_after_a_signal_and_other_faults_are_told() {
+    fn interrupted_reads_are_repeated_and_other_errors_reported() {
         let mut lines = failing(&[io::ErrorKind::Interrupted; 3]);
         assert_eq!(lines.skip(9).expect("lines"), 2);
         for (kind, cut_off) in

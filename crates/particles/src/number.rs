@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_none() {
+    fn other_texts_are_not_numbers() {
         for text in ["", " ", "x", "1x", "1 2", "--1", "1e", "e5", "0x10", "1,5", "1_000", "***"] {
             assert_eq!(parse(text.as_bytes()), None, "{text}");
         }
@@ -91,7 +91,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn numbers_come_back_as_they_were(bits in any::<u64>()) {
+        fn numbers_survive_formatting(bits in any::<u64>()) {
             let number = f64::from_bits(bits);
             prop_assume!(!number.is_nan());
             for text in [format!("{number}"), format!("{number:e}"), format!("{number:E}")] {

@@ -25,7 +25,7 @@ impl PartialEq for ReadProgress {
 
 impl ReadProgress {
     /// Returns the fraction of the file that was read, 0..=1; `None` if its length is unknown.
-    pub fn share(&self) -> Option<f64> {
+    pub fn fraction(&self) -> Option<f64> {
         let total = self.0.total.load(Ordering::Relaxed);
         let read = self.0.read.load(Ordering::Relaxed);
         (total > 0).then(|| (read as f64 / total as f64).min(1.0))

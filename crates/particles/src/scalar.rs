@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_read_in_both_orders() {
+    fn numbers_are_read_in_both_byte_orders() {
         for (scalar, little, expected) in [
             (Scalar::I8, &[0xFE][..], -2.0),
             (Scalar::U8, &[0xFE], 254.0),

@@ -5,6 +5,7 @@ use super::frame::LengthUnit;
 use super::options::{Radii, ReadOptions, Role};
 use super::units;
 use crate::suggest;
+use std::collections::HashSet;
 
 /// The use of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,13 +133,9 @@ impl Schema {
 
     /// Returns the names by which columns can be requested: unique and not empty.
     pub(crate) fn listed(&self) -> Vec<String> {
-        let mut listed: Vec<String> = Vec::new();
-        for name in self.names.iter().filter(|name| !name.is_empty()) {
-            if !listed.contains(name) {
-                listed.push(name.clone());
-            }
-        }
-        listed
+        let mut listed = HashSet::new();
+        let names = self.names.iter().filter(|name| !name.is_empty() && listed.insert(*name));
+        names.cloned().collect()
     }
 
     /// Returns the number of columns that every row must have.
@@ -274,9 +271,10 @@ impl Choice<'_> {
 
     /// Adds all other columns with a unique name.
     fn add_rest(&self, slots: &mut [Slot], extras: &mut Vec<String>) {
+        let mut listed = HashSet::new();
         for (column, name) in self.names.iter().enumerate() {
-            let own = !name.is_empty() && self.position(name) == Some(column);
-            if own && slots[column] == Slot::Skip {
+            let is_first = !name.is_empty() && listed.insert(name);
+            if is_first && slots[column] == Slot::Skip {
                 slots[column] = Slot::Extra(extras.len());
                 extras.push(name.clone());
             }
@@ -300,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn names_tell_columns() {
+    fn names_determine_columns() {
         use Slot::{Color, Extra, Kind, Material, Position, Radius, Skip};
         let [x, y, z] = [0, 1, 2].map(Position);
         let [red, green, blue] = [0, 1, 2].map(Color);
@@ -315,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_told() {
+    fn missing_columns_are_reported() {
         let missing = schema("x,y", "").expect_err("no z");
         assert_eq!(missing, "no column is named `z`; there are x, y");
         assert!(schema("x,y,z", "q").is_err());
@@ -324,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_may_end_before_what_was_not_asked_for() {
+    fn rows_may_lack_columns_that_are_not_needed() {
         let needed = |names: &str, columns: &str, rest| {
             let columns = columns.parse().expect("columns");
             let options =
@@ -344,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_types_are_no_elements() {
+    fn numbers_of_types_are_not_elements() {
         let naming = |names| schema(names, "").map(|schema| schema.naming);
         assert_eq!(naming("x,y,z,type"), Ok(Naming::Types));
         assert_eq!(naming("x,y,z,species"), Ok(Naming::Symbols));

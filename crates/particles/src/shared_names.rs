@@ -21,13 +21,13 @@ pub struct SharedNames {
 
 impl SharedNames {
     /// Adds the names of a frame, and replaces the frame's tables by the common ones.
-    pub fn share(&mut self, frame: &mut ParticleFrame) {
-        self.share_elements(&mut frame.kinds);
-        self.kinds.share(&mut frame.kinds.table, &mut frame.kinds.codes);
-        self.materials.share(&mut frame.materials.names, &mut frame.materials.codes);
+    pub fn intern(&mut self, frame: &mut ParticleFrame) {
+        self.unify_elements(&mut frame.kinds);
+        self.kinds.intern(&mut frame.kinds.table, &mut frame.kinds.codes);
+        self.materials.intern(&mut frame.materials.names, &mut frame.materials.codes);
         for column in &mut frame.texts {
             let table = self.texts.entry(column.name.clone()).or_default();
-            table.share(&mut column.names, &mut column.codes);
+            table.intern(&mut column.names, &mut column.codes);
         }
     }
 
@@ -38,7 +38,7 @@ impl SharedNames {
 
     /// Sets elements of types that have one in another frame: whether names are read as elements depends
     /// on all names of a frame.
-    fn share_elements(&mut self, kinds: &mut Kinds) {
+    fn unify_elements(&mut self, kinds: &mut Kinds) {
         for kind in &mut kinds.table {
             if kind.element.is_some() {
                 self.elements.entry(kind.name.clone()).or_insert_with(|| kind.clone());
@@ -63,8 +63,8 @@ impl<T> Default for Table<T> {
 }
 
 impl<T: Clone + Eq + Hash> Table<T> {
-    /// Replaces a frame's names by those of the table.
-    fn share(&mut self, own: &mut Vec<T>, codes: &mut Codes) {
+    /// Adds a frame's names, and replaces them by those of the table.
+    fn intern(&mut self, own: &mut Vec<T>, codes: &mut Codes) {
         if codes.is_empty() {
             return;
         }
@@ -110,14 +110,14 @@ mod tests {
     }
 
     #[test]
-    fn names_keep_the_place_at_which_they_first_came() {
+    fn names_are_in_order_of_first_occurrence() {
         let mut names = SharedNames::default();
         let mut first = frame(&[("A", None), ("B", None)], &["x"]);
         let before = first.clone();
-        names.share(&mut first);
+        names.intern(&mut first);
         assert_eq!(first, before);
         let mut second = frame(&[("C", None), ("B", None)], &["y", "x"]);
-        names.share(&mut second);
+        names.intern(&mut second);
         let listed: Vec<&str> = second.kinds.table.iter().map(|kind| kind.name.as_str()).collect();
         assert_eq!(listed, ["A", "B", "C"]);
         assert_eq!(second.kinds.codes, Codes::Bytes(vec![2, 1]));
@@ -125,17 +125,17 @@ mod tests {
         assert_eq!(second.texts[0].codes, Codes::Bytes(vec![1, 0]));
         // Frames without particles have no types.
         let mut empty = frame(&[], &[]);
-        names.share(&mut empty);
+        names.intern(&mut empty);
         assert!(empty.kinds.table.is_empty() && empty.texts[0].names.is_empty());
     }
 
     #[test]
     fn elements_are_those_of_any_frame() {
         let mut names = SharedNames::default();
-        names.share(&mut frame(&[("X", None), ("C", None)], &[]));
-        names.share(&mut frame(&[("C", Some("C"))], &[]));
+        names.intern(&mut frame(&[("X", None), ("C", None)], &[]));
+        names.intern(&mut frame(&[("C", Some("C"))], &[]));
         let mut again = frame(&[("X", None), ("C", None)], &[]);
-        names.share(&mut again);
+        names.intern(&mut again);
         let kind = |row: usize| again.kinds.kind(row).expect("a type");
         assert_eq!((kind(0).name.as_str(), kind(0).element), ("X", None));
         assert_eq!((kind(1).name.as_str(), kind(1).element), ("C", Element::from_label("C")));

@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn heads_go_on_until_half_of_what_was_read_last_is_no_comment() {
+    fn heads_extend_until_half_of_the_last_block_is_no_comment() {
         for (comments, rows, expected) in [
             (100, 0, 100),
             (50_000, 0, 50_000),

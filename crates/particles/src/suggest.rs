@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slips_find_their_words() {
+    fn misspelled_words_are_found() {
         let known = ["chalk", "studio", "cloudy", "x", "Na", "residue_number"];
         for (word, expected) in [
             ("studo", Some("studio")),
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn case_alone_is_told_from_other_slips() {
+    fn other_case_is_distinguished_from_misspelling() {
         assert_eq!(other_case("na", ["Na", "NA", "Cl", "Na"]), ["Na", "NA"]);
         assert_eq!(other_case("Na", ["NA", "Na"]), [""; 0]);
         assert_eq!(other_case("n", ["Na"]), [""; 0]);

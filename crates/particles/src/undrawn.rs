@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_tell_shapes_and_orientations() {
+    fn shapes_and_orientations_are_recognized_by_columns() {
         for (columns, shapes, orientations) in [
             (&["id", "type", "x", "y", "z", "q", "shear", "qx"][..], false, false),
             (&["shapex", "shapey", "shapez"], true, false),
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn each_kind_is_said_once() {
+    fn each_kind_is_reported_once() {
         let mut frame = ParticleFrame::default();
         frame.add_undrawn(Undrawn::Bonds, 0);
         assert!(frame.warnings.is_empty());

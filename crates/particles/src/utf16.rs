@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn both_orders_of_bytes_are_read() {
+    fn both_byte_orders_are_read() {
         let text = "x;\u{3bc};\u{1F600}\n1,5;2\n".repeat(9000);
         for (bytes, big) in
             [(u16::to_le_bytes as fn(u16) -> [u8; 2], false), (u16::to_be_bytes, true)]
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn pairs_of_units_may_lie_across_blocks() {
+    fn surrogate_pairs_may_cross_blocks() {
         for before in (BLOCK / 2 - 3..BLOCK / 2 + 2).chain(BLOCK - 3..BLOCK + 2) {
             let text = format!("{}\u{1F600}\u{1F601}bc", "a".repeat(before));
             let mut file: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();

@@ -15,8 +15,20 @@ pub(crate) struct HashingWriter<'a> {
 }
 
 impl<'a> HashingWriter<'a> {
-    pub(crate) fn new(writer: &'a mut dyn Write) -> Self {
-        Self { writer, hasher: blake3::Hasher::new() }
+    /// Begins a file: writes its magic number, the version of its format, and its header after the
+    /// header's length.
+    pub(crate) fn begin(
+        writer: &'a mut dyn Write,
+        magic: &[u8],
+        format: u32,
+        header: &[u8],
+    ) -> io::Result<Self> {
+        let mut file = Self { writer, hasher: blake3::Hasher::new() };
+        file.write_all(magic)?;
+        file.write_all(&format.to_le_bytes())?;
+        file.write_all(&(header.len() as u64).to_le_bytes())?;
+        file.write_all(header)?;
+        Ok(file)
     }
 
     /// Writes the hash.

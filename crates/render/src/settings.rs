@@ -43,7 +43,7 @@ pub struct Settings {
     pub roulette: Roulette,
     /// Light selection for direct lighting.
     pub light_choice: LightChoice,
-    /// Whether diffuse surfaces sample lights through mirrors and glass, where the path is known in
+    /// True if diffuse surfaces sample lights through mirrors and glass, where the path is known in
     /// closed form.
     pub caustics: bool,
     /// Exposure in stops, [`Settings::EXPOSURES`]: radiance is multiplied by 2 to this power in images
@@ -174,7 +174,7 @@ impl Settings {
     /// Default maximum number of samples per pixel of a render that an error or a time stops.
     pub const HARD_SAMPLES: u32 = 1 << 16;
 
-    /// Whether an error or a time stops the render.
+    /// Returns whether an error or a time stops the render.
     pub fn has_target(&self) -> bool {
         self.until_error.is_some() || self.time.is_some()
     }

@@ -16,7 +16,7 @@ use crate::world::World;
 enum Query {
     /// The first hit of each ray.
     Closest,
-    /// Whether each ray hits anything.
+    /// Existence of a hit on each ray.
     Any,
 }
 

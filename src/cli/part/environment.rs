@@ -271,7 +271,7 @@ mod tests {
     const SLURM: &str = "SLURM_ARRAY_TASK_MIN=2 SLURM_ARRAY_TASK_MAX=10 SLURM_ARRAY_TASK_STEP=4";
 
     #[test]
-    fn every_dialect_is_understood() {
+    fn every_scheduler_is_understood() {
         for (variables, expected) in [
             ("SLURM_ARRAY_TASK_ID=6 SLURM_ARRAY_TASK_COUNT=3 SLURM_PROCID=0 SLURM_NTASKS=1", "2/3"),
             ("SLURM_ARRAY_TASK_ID=10", "3/3"),
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_tell_is_named() {
+    fn insufficient_variables_are_named() {
         refused("", None, &["SLURM_ARRAY_TASK_ID", "PARALLEL_SEQ", "--part K/N"]);
         refused("SLURM_ARRAY_TASK_ID=", None, &["no scheduler"]);
         refused("PMI_RANK=x PMI_SIZE=2", None, &["PMI_RANK is `x`"]);
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_no_task_has_are_refused() {
+    fn invalid_task_numbers_are_refused() {
         let at = |number: &str| format!("{SLURM} SLURM_ARRAY_TASK_ID={number}");
         for number in ["1", "3", "14", "-2", "99999999999"] {
             refused(&at(number), None, &[number, "from 2 to 10 in steps of 4"]);

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_are_said_or_asked_for() {
+    fn parts_are_given_or_read_from_the_environment() {
         assert_eq!(choice("3/8"), Ok(Choice::User(Part::new(3, 8).expect("there is one"))));
         assert_eq!(choice("from-env"), Ok(Choice::Environment(None)));
         assert_eq!(choice("from-env/64"), Ok(Choice::Environment(NonZeroU32::new(64))));

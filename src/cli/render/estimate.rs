@@ -29,7 +29,7 @@ const MATTE: u64 = 50;
 pub(crate) struct Estimate {
     region: Region,
     spheres: u64,
-    /// Whether layers are part of the image.
+    /// True if layers are part of the image.
     layered: bool,
     /// Bytes during the construction of columns and tree.
     build: u64,

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn layers_come_once_and_in_order() {
+    fn layers_are_unique_and_in_order() {
         assert_eq!(wanted(&[]), []);
         let typed = [Some(Layer::Id), Some(Layer::Albedo), Some(Layer::Id)];
         assert_eq!(wanted(&typed), [Layer::Albedo, Layer::Id]);

@@ -25,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_held_beside_spheres_counts_where_they_are_many() {
+    fn the_peak_per_sphere_is_shown_for_many_spheres() {
         let columns = "26.8 bytes per sphere, including the tree";
         assert_eq!(describe(10, 268, None), columns);
         assert_eq!(describe(10, 268, Some(1 << 20)), format!("{columns}; peak 1.00 MiB in total"));

@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_in_a_row_are_runs() {
+    fn consecutive_numbers_are_ranges() {
         assert_eq!(runs(&[3, 5, 6, 7, 9]), "3, 5-7, 9");
         assert_eq!(runs(&[4]), "4");
         let odd: Vec<u64> = (0..20).map(|i| 2 * i).collect();
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn warnings_that_differ_in_numbers_are_one() {
+    fn warnings_that_differ_in_numbers_are_merged() {
         let mut notices = Notices::default();
         for (picture, text) in
             [(0, "1 of 9 rows"), (1, "2 of 9 rows"), (1, "other"), (2, "3 of 9 rows")]

@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_go_before_the_suffix_or_to_their_place() {
+    fn numbers_precede_the_suffix_or_replace_the_placeholder() {
         for (path, expected) in [
             ("a/b.c.png", "a/b.c-007.png"),
             ("a/b", "a/b-007"),

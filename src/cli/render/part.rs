@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn every_tile_is_known_to_one_part() {
+    fn every_tile_belongs_to_one_part() {
         let region = Region { x: 0, y: 0, width: 33, height: 33 };
         let whole = ImagePart::whole(region, 4);
         for split in [None, Some(spherule_render::split::Split::Tiles)] {

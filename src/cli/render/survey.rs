@@ -58,7 +58,7 @@ impl Survey {
         mut frame: ParticleFrame,
         options: &ReadOptions,
     ) -> Result<Particles, FileError> {
-        self.names.share(&mut frame);
+        self.names.intern(&mut frame);
         of_frame(path, frame, options)
     }
 

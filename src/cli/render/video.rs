@@ -133,8 +133,9 @@ impl Video {
         let written = encoder.input.as_mut().map_or(Ok(()), |input| input.write_all(&bytes));
         if let Err(error) = written {
             // The encoder ended early; its messages say why.
-            let why =
-                encoder.end().map_or(error.to_string(), |(status, said)| failed(status, &said));
+            let why = encoder
+                .end()
+                .map_or(error.to_string(), |(status, messages)| failed(status, &messages));
             return Err(self.failure(&why));
         }
         self.pictures += 1;
@@ -146,9 +147,9 @@ impl Video {
         let Some(mut encoder) = self.encoder.take() else {
             return Err(self.failure("it has no images"));
         };
-        let (status, said) = encoder.end().map_err(|error| self.failure(&error.to_string()))?;
+        let (status, messages) = encoder.end().map_err(|error| self.failure(&error.to_string()))?;
         if !status.success() {
-            return Err(self.failure(&failed(status, &said)));
+            return Err(self.failure(&failed(status, &messages)));
         }
         if let Some(pending) = encoder.pending.take() {
             if pending.path().metadata().is_ok_and(|file| file.len() == 0) {
@@ -187,8 +188,8 @@ impl Encoder {
     fn end(&mut self) -> io::Result<(ExitStatus, String)> {
         drop(self.input.take());
         let status = self.child.wait()?;
-        let said = self.messages.take().and_then(|messages| messages.join().ok());
-        Ok((status, said.unwrap_or_default()))
+        let messages = self.messages.take().and_then(|messages| messages.join().ok());
+        Ok((status, messages.unwrap_or_default()))
     }
 }
 
@@ -211,8 +212,8 @@ fn listen(mut stderr: impl Read) -> String {
 }
 
 /// Returns the error message for a failure of the encoder, with the last lines of its messages.
-fn failed(status: ExitStatus, said: &str) -> String {
-    let lines: Vec<&str> = said.lines().filter(|line| !line.trim().is_empty()).collect();
+fn failed(status: ExitStatus, messages: &str) -> String {
+    let lines: Vec<&str> = messages.lines().filter(|line| !line.trim().is_empty()).collect();
     let last = &lines[lines.len().saturating_sub(SHOWN)..];
     let indented: Vec<String> = last.iter().map(|line| format!("\n  {line}")).collect();
     format!("{PROGRAM} failed ({status}){}", indented.concat())
@@ -257,7 +258,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn suffixes_tell_films_from_pictures() {
+    fn suffixes_distinguish_videos_from_images() {
         let of = |name: &str| Container::of_suffix(Path::new(name));
         assert_eq!((of("a.mp4"), of("a.MOV")), (Some(Container::Mp4), Some(Container::Mov)));
         assert_eq!((of("a.webm"), of("b/a.gif")), (Some(Container::Webm), Some(Container::Gif)));
@@ -275,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn last_words_are_shown() {
+    fn the_last_lines_are_shown() {
         let lines: Vec<String> = (0..20).map(|i| format!("line {i}\n\n")).collect();
         let text = failed(ExitStatus::default(), &lines.concat());
         assert!(text.contains("\n  line 19") && !text.contains("line 11"), "{text}");

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn the_verdict_names_the_regimes_at_fault() {
+    fn the_verdict_names_failing_regimes() {
         let regimes = REGIMES[..2].iter().collect();
         let mut report = stress::run(&Options { rays: 64, seed: 0, regimes }, &|_| ());
         assert_eq!(conclusion(&report), "0 wrong results in 80 rays and 28 bounds");

@@ -105,7 +105,7 @@ mod tests {
     use spherule_measure::stress::{Options, REGIMES, run};
 
     #[test]
-    fn columns_stand_below_their_headings() {
+    fn columns_are_aligned_with_their_headings() {
         let regimes = REGIMES.iter().collect();
         let text = text(&run(&Options { rays: 3300, seed: 0, regimes }, &|_| ()));
         let lines: Vec<_> = text.lines().collect();

@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_covers_all_is_itself_and_what_covers_nothing_is_squares() {
+    fn opaque_pixels_keep_their_color_and_transparent_ones_are_squares() {
         let mut image = Image::filled(48, 2, [1.0, 0.0, 0.5]).unwrap();
         image.pixels[0] = [0.0; 3];
         let mut alpha = vec![1.0; 96];

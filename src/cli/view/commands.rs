@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cycles_go_through_all_and_none() {
+    fn cycles_include_all_values_and_none() {
         let values = [1, 2, 3];
         let mut now = None;
         let seen: Vec<Option<i32>> = (0..5)

@@ -52,7 +52,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn cuts_keep_what_is_on_this_side_of_them() {
+    fn cuts_keep_one_side_of_the_plane() {
         assert_eq!(Content::default().condition(), None);
         let mut spheres = Spheres::default();
         for x in [-2.0, -1e-9, 0.5, 3.0] {

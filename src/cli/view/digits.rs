@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn values_keep_some_digits_however_small_they_are() {
+    fn small_values_keep_significant_digits() {
         assert_eq!(value(1.234_567e-8, 1e3), "1.235e-8");
         assert_eq!(value(-0.834_000_000_000_000_1, 2.0), "-0.834");
         assert_eq!(value(f64::NAN, 1.0), "NaN");

@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_stay_apart_at_every_size() {
+    fn letters_do_not_touch_at_any_size() {
         let all: Vec<char> =
             (' '..='~').filter(|c| c.is_ascii_graphic() && !['"', '%'].contains(c)).collect();
         for scale in SCALES {

@@ -101,7 +101,7 @@ mod tests {
     const WHOLE: (u32, u32) = (1280, 720);
 
     #[test]
-    fn sizes_follow_what_was_measured() {
+    fn sizes_follow_measured_times() {
         let mut frame_rate = FrameRate::measured();
         for _ in 0..20 {
             frame_rate.record_time(1_000_000, Duration::from_secs(1));
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn budgets_leave_room_for_what_else_happens() {
+    fn budgets_leave_time_for_other_work() {
         let mut frame_rate = FrameRate::measured();
         let budget = |frame_rate: FrameRate| match frame_rate {
             FrameRate::Measured { budget, .. } => budget,
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_at_rest_comes_to_the_whole_picture() {
+    fn a_still_camera_reaches_full_resolution() {
         let mut frame_rate = FrameRate::measured();
         frame_rate.record_time(0, Duration::from_secs(1));
         let mut size = frame_rate.moving(WHOLE);

@@ -82,7 +82,7 @@ impl Progress {
     fn loading(&self) -> Option<Loading> {
         let step = self.step.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
         let done = match step {
-            Step::Reading(_) => self.read.share(),
+            Step::Reading(_) => self.read.fraction(),
             Step::Building(_) => None,
         };
         Some(Loading { step, done })
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_are_told_with_their_share() {
+    fn steps_are_shown_with_their_progress() {
         let progress = Progress::default();
         assert_eq!(progress.loading(), None);
         progress.begin(Step::reading("some/where/big.csv"));

@@ -51,9 +51,30 @@ use super::appearance::BarPlace;
 use super::files::{Files, STREAM};
 use super::render::{Job, check_bar};
 use super::source::is_scene;
+use clap::Arg;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
+
+/// Options of `spherule render` that the viewer always refuses, and hides from its help.
+const REFUSED: [&str; 11] = [
+    "output_format",
+    "region",
+    "layers",
+    "part",
+    "split",
+    "turntable",
+    "fps",
+    "checkpoint",
+    "checkpoint_every",
+    "resume",
+    "terminal",
+];
+
+/// Hides an option from the viewer's help if the viewer refuses it.
+pub(super) fn hide_refused(option: Arg) -> Arg {
+    if REFUSED.contains(&option.get_id().as_str()) { option.hide(true) } else { option }
+}
 
 /// Returns the examples, keys and script commands at the end of `--help`.
 pub(super) fn examples() -> String {

@@ -59,9 +59,9 @@ impl Viewer {
     /// Estimates the noise by the difference to an image of half as many samples. For independent samples,
     /// this difference equals the error of the image; for well-distributed samples the error is smaller.
     fn measure(&mut self, picture: &Picture) {
-        let alike =
+        let comparable =
             |half: &&Picture| half.version == picture.version && half.size() == picture.size();
-        let half = self.half.as_ref().filter(alike);
+        let half = self.half.as_ref().filter(comparable);
         match half {
             None => self.noise = None,
             Some(half) if picture.samples == 2 * half.samples => {

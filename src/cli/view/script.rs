@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_told_with_their_line() {
+    fn errors_have_line_numbers() {
         for (text, line) in [
             ("wait 1\njump", "line 2"),
             ("key ctrl+alt+9", "line 1"),

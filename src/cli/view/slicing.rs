@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn the_arrow_points_to_the_side_that_goes() {
+    fn the_arrow_points_to_the_removed_side() {
         let pixels = drawn((60.0, 80.0), (60.0, 10.0));
         assert_eq!(pixels[45 * 120 + 60 + 30], LINE);
         assert_ne!(pixels[45 * 120 + 60 - 30], LINE);

@@ -89,10 +89,10 @@ pub(super) fn run(job: Job<'static>, json: bool) -> Result<(), Failure> {
     let proxy = events.create_proxy();
     let (output, sized) = (job.output.clone(), job.picture.settings.size());
     let samples = job.picture.settings.spp().unwrap_or(session::SAMPLES);
-    let told = proxy.clone();
+    let sender = proxy.clone();
     let name = job.source.name().into_owned();
     let job = Arc::new(job);
-    let workers = Workers::start(&job, move |message| told.send_event(message).is_ok())?;
+    let workers = Workers::start(&job, move |message| sender.send_event(message).is_ok())?;
     let mut settings = Settings { width: 1280, height: 720, ..Settings::default() };
     if let Some(size) = sized {
         [settings.width, settings.height] = size;

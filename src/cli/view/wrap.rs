@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_lost_that_has_room() {
+    fn text_that_fits_is_complete() {
         let mut font = SizedFont::new(1.0).expect("a font");
         let lines = wrap(&mut font, LONG, 150, 100);
         assert!(lines.len() > 2);
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn the_middle_goes_first() {
+    fn long_text_loses_its_middle() {
         let mut font = SizedFont::new(1.0).expect("a font");
         let line = wrap(&mut font, LONG, 200, 1).concat();
         assert!(line.starts_with("saved /a") && line.ends_with("more"), "{line}");

@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn margins_leave_something() {
+    fn margins_are_less_than_the_whole() {
         assert_eq!(margin("0.1"), Ok(0.1));
         assert!(margin("-0.1").is_err() && margin("1").is_err() && margin("NaN").is_err());
     }

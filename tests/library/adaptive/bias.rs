@@ -91,7 +91,7 @@ fn no_pixel_is_biased_by_stopping() {
 /// The same numbers detect bias if samples decide on their own number: here an image stops after its first 32
 /// samples if their own estimate of the error is small.
 #[test]
-fn bias_would_be_seen() {
+fn bias_would_be_detected() {
     let scene = scene();
     let (few, many) = (plain(&scene, 32, true), plain(&scene, 256, false));
     let mut early = 0;

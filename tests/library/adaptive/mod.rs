@@ -101,18 +101,21 @@ fn errors_are_below_their_bounds_as_often_as_claimed_and_nothing_is_biased() {
     for Case { name, scene, truth } in cases() {
         let target = scene.settings.until_error;
         let renders = each_seed(&scene, 60, false);
-        let (mut held, mut told, mut truly) = (0, 0.0, 0.0);
+        let (mut held, mut estimated, mut actual) = (0, 0.0, 0.0);
         for render in &renders {
             let noise = render.noise.expect("it was measured");
             assert_eq!(render.end, End::Error, "{name}");
             assert!(noise.error <= noise.bound && Some(noise.bound) <= target, "{name}");
             let error = true_error(render, &truth);
             held += usize::from(error <= noise.bound);
-            (told, truly) = (told + noise.error.powi(2), truly + error.powi(2));
+            (estimated, actual) = (estimated + noise.error.powi(2), actual + error.powi(2));
         }
         assert!(held >= HELD_OF_60, "{name}: {held} of 60");
         // Renders stop when the estimate is low, so it is slightly too low.
-        assert!(told < 1.3 * truly && truly < 2.0 * told, "{name}: {told} {truly}");
+        assert!(
+            estimated < 1.3 * actual && actual < 2.0 * estimated,
+            "{name}: {estimated} {actual}"
+        );
         let means = renders.iter().map(|render| mean(&render.image));
         assert_expected(Estimate::of(means), average(&truth), name);
     }
@@ -125,15 +128,15 @@ fn estimates_are_true_on_average() {
         (scene.settings.until_error, scene.settings.spp) = (None, 64);
         let renders = each_seed(&scene, 40, true);
         let of = |number: &dyn Fn(&Render) -> f64| Estimate::of(renders.iter().map(number));
-        let truly = of(&|render| true_error(render, &truth).powi(2));
-        let told = of(&|render| render.noise.map_or(0.0, |noise| noise.error.powi(2)));
-        assert_agree(told, truly, name);
+        let actual = of(&|render| true_error(render, &truth).powi(2));
+        let estimated = of(&|render| render.noise.map_or(0.0, |noise| noise.error.powi(2)));
+        assert_agree(estimated, actual, name);
         let scale = average(&truth).powi(2);
         let by_pixel =
             of(&|render| render.statistics.as_ref().map_or(0.0, |all| mean(&all.variance) / scale));
         // Ratios of sums are unbiased only in large images.
-        let error = by_pixel.error.hypot(0.05 * truly.mean);
-        assert_agree(Estimate { error, ..by_pixel }, truly, name);
+        let error = by_pixel.error.hypot(0.05 * actual.mean);
+        assert_agree(Estimate { error, ..by_pixel }, actual, name);
     }
 }
 

@@ -64,16 +64,16 @@ fn the_umbra_is_black_and_as_large_as_the_sphere() {
     assert!((area(&alpha) - disk - aslant).abs() < 0.02, "{}", area(&alpha));
     let umbra = pixel(&scene, DVec3::ZERO);
     assert_eq!((matte.shadow[umbra], alpha[umbra], after.pixels[umbra]), (1.0, 1.0, [0.0; 3]));
-    let ball = pixel(&scene, DVec3::new(0.0, 0.0, 4.0) - DVec3::Y * 0.2);
-    assert_eq!((matte.coverage[ball], after.pixels[ball]), (1.0, before.pixels[ball]));
-    assert!(after.pixels[ball][0] > 0.1);
+    let covered = pixel(&scene, DVec3::new(0.0, 0.0, 4.0) - DVec3::Y * 0.2);
+    assert_eq!((matte.coverage[covered], after.pixels[covered]), (1.0, before.pixels[covered]));
+    assert!(after.pixels[covered][0] > 0.1);
     let sunny = pixel(&scene, DVec3::new(3.5, -2.0, 0.0));
     assert_eq!((alpha[sunny], after.pixels[sunny]), (0.0, [0.0; 3]));
     assert!(before.pixels[sunny][0] > 0.1);
 }
 
 #[test]
-fn over_the_ground_that_was_taken_out_it_is_the_picture_again() {
+fn compositing_over_the_ground_restores_the_picture() {
     let mut scene = slanted();
     let bare = render_scene(&Scene {
         spheres: spherule_render::scene::Spheres::default(),
@@ -104,7 +104,7 @@ fn where_there_is_no_ground_coverage_is_alpha() {
 }
 
 #[test]
-fn light_is_no_shadow() {
+fn light_is_not_shadow() {
     let mut scene = slanted();
     sphere(&mut scene, [3.0, 0.0, 1.0], 0.5, emitter(2.0, 0.0));
     let (_, matte) = lifted(&scene);
@@ -114,7 +114,7 @@ fn light_is_no_shadow() {
 }
 
 #[test]
-fn what_is_drawn_over_is_opaque() {
+fn overlays_are_opaque() {
     let mut alpha = vec![0.0, 0.5, 1.0];
     let shares = [0.25, 0.5, 0.75];
     draw_alpha(&mut alpha, (3, 1), |image| {

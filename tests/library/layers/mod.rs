@@ -71,7 +71,7 @@ fn one_sphere_is_known_in_closed_form() {
 }
 
 #[test]
-fn near_cuts_off_what_is_before_it_and_moves_no_depth() {
+fn the_near_plane_clips_and_changes_no_depth() {
     let mut scene = dark();
     sphere(&mut scene, DVec3::ZERO, 2.0, glass(1.5));
     let eye = DVec3::new(0.0, -10.0, 0.0);
@@ -136,7 +136,7 @@ fn albedo_is_the_color_of_each_material() {
 
 /// A disc in orthographic projection: its area, and the means over it. Nothing outside contributes.
 #[test]
-fn edges_are_shares() {
+fn edges_are_weighted_by_coverage() {
     let mut scene = dark();
     sphere(&mut scene, DVec3::ZERO, 1.0, lambertian(0.5));
     look_parallel(&mut scene, DVec3::new(0.0, 0.0, 5.0), DVec3::ZERO, 4.0);
@@ -206,7 +206,7 @@ fn ids_are_those_of_brute_force_in_the_users_order() {
 }
 
 #[test]
-fn speed_changes_nothing() {
+fn speed_settings_change_nothing() {
     let mut scene = menagerie();
     (scene.settings.width, scene.settings.height, scene.settings.spp) = (52, 40, 20);
     let usual = all_of(&scene);
@@ -238,7 +238,7 @@ fn a_region_is_a_part_of_the_whole() {
 }
 
 #[test]
-fn ids_alone_are_the_same_ids() {
+fn a_single_id_layer_has_the_same_ids() {
     let scene = menagerie();
     let world = World::build(&scene).expect("the scene is sound");
     let ids = layers(&world, &scene.settings, &Options::default(), &[Layer::Id])

@@ -52,7 +52,7 @@ fn the_tree_never_changes_the_picture() {
 }
 
 #[test]
-fn few_spheres_are_right_in_trees_that_are_not_full() {
+fn few_spheres_equal_brute_force() {
     for count in (0..=9).chain(15..=17) {
         let scene = of_spheres((0..count).map(|i| {
             let angle = f64::from(i) * 2.4;

@@ -52,7 +52,7 @@ fn every_tracer_makes_the_same_picture() {
 
 /// Tiles without visible spheres are not traced; brute force traces all tiles.
 #[test]
-fn what_is_skipped_is_background() {
+fn skipped_tiles_are_background() {
     let projections =
         [Projection::Perspective { fov: 70.0 }, Projection::Orthographic { height: Some(9.0) }];
     let lenses = [None, Some(Lens { aperture: 0.4, focus: Some(5.0) })];

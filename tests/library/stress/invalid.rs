@@ -23,7 +23,7 @@ fn assert_refused(what: &str, spoil: impl FnOnce(&mut Scene)) {
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 #[test]
-fn spheres_that_are_none() {
+fn invalid_spheres() {
     for bad in BAD {
         assert_refused("sphere 0", |scene| scene.spheres.x[0] = bad);
         assert_refused("sphere 0", |scene| scene.spheres.radius[0] = bad);
@@ -37,7 +37,7 @@ fn spheres_that_are_none() {
 }
 
 #[test]
-fn cameras_that_see_nothing() {
+fn invalid_cameras() {
     for fov in [0.0, -40.0, 180.0, 200.0, f64::NAN] {
         let projection = Projection::Perspective { fov };
         assert_refused("`fov`", |scene| scene.camera.projection = projection);
@@ -122,7 +122,7 @@ fn lights_and_skies_that_are_not_finite_or_too_bright() {
 }
 
 #[test]
-fn materials_that_make_light() {
+fn materials_that_create_energy() {
     for albedo in [1.01, -0.1, f32::NAN] {
         assert_refused("material", |scene| sphere(scene, [3.0; 3], 1.0, lambertian(albedo)));
     }

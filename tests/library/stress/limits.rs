@@ -41,7 +41,7 @@ fn a_wide_picture_is_a_high_one_turned() {
 }
 
 #[test]
-fn depth_from_nothing_to_a_million() {
+fn depth_from_zero_to_a_million() {
     let mut scene = furnace();
     sphere(&mut scene, [0.0; 3], 1.0, lambertian(0.5));
     sphere(&mut scene, [2.0, 0.0, 0.0], 1.0, mirror());
@@ -140,7 +140,7 @@ fn a_light_that_covers_everything() {
 }
 
 #[test]
-fn no_lights_are_darkness() {
+fn scenes_without_lights_are_black() {
     for integrator in [Integrator::Path, Integrator::Whitted { shadow_samples: 4 }] {
         let mut scene = dark();
         sphere(&mut scene, [0.0; 3], 1.0, lambertian(0.5));
@@ -190,7 +190,7 @@ fn metal_of_any_roughness() {
 }
 
 #[test]
-fn a_cancelled_render_has_what_there_is() {
+fn a_cancelled_render_keeps_its_samples() {
     let scene = {
         let mut scene = furnace();
         (scene.settings.width, scene.settings.height, scene.settings.spp) = (64, 64, 64);

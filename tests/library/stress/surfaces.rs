@@ -60,7 +60,7 @@ fn the_first_of_equal_spheres_wins() {
 
 /// An emitter that coincides with an earlier sphere is not sampled as a light either.
 #[test]
-fn an_emitter_that_cannot_be_seen_does_not_shine() {
+fn an_emitter_inside_a_coincident_sphere_does_not_light() {
     let mut scene = dark();
     ground(&mut scene, lambertian(0.5));
     sphere(&mut scene, [0.0, 0.0, 2.0], 1.0, lambertian(0.5));
@@ -104,7 +104,7 @@ fn glass_in_glass_keeps_the_furnace() {
 /// Two touching white spheres, small and far from the rest of a scene, so that the gap next to the contact is
 /// about one unit in the last place of single precision: light leaves it as near the origin.
 #[test]
-fn contacts_do_not_swallow_light() {
+fn contacts_do_not_absorb_light() {
     const SIZE: f64 = 0.007_812_5;
     let gap = |contact: DVec3| {
         let mut scene = furnace();
@@ -125,7 +125,7 @@ fn contacts_do_not_swallow_light() {
 /// The inside of a sphere that touches another one inside it, seen along the gap between them: no light of
 /// the sky enters.
 #[test]
-fn closed_spheres_are_tight() {
+fn no_light_leaks_into_closed_spheres() {
     for offset in [0.0, 50.0] {
         let contact = DVec3::new(offset, 0.25 * offset, -0.75 * offset);
         for z in [1.0, 0.3, 0.1] {
@@ -143,7 +143,7 @@ fn closed_spheres_are_tight() {
 
 /// No path leaves a closed white sphere: paths are ended by the depth limit, and counted.
 #[test]
-fn a_closed_white_room_is_cut_by_the_hard_limit_and_says_so() {
+fn paths_in_a_closed_white_sphere_end_at_the_hard_limit() {
     for made_of in [lambertian(1.0), mirror()] {
         let mut scene = furnace();
         sphere(&mut scene, [0.0; 3], 1.0, made_of);

@@ -6,7 +6,7 @@ use spherule_render::image::Image;
 use spherule_render::scene::{Lens, Projection, Scene};
 
 /// Returns a sphere that emits 1 at (x, 0, -z), seen from the origin along -z with tangents up to `tangent`.
-fn lamp(radius: f64, z: f64, x: f64, tangent: f64) -> Scene {
+fn emissive_sphere(radius: f64, z: f64, x: f64, tangent: f64) -> Scene {
     let mut scene = dark();
     sphere(&mut scene, [x, 0.0, -z], radius, emitter(1.0, 0.0));
     look(&mut scene, DVec3::ZERO, DVec3::NEG_Z, 2.0 * tangent.atan().to_degrees());
@@ -39,7 +39,7 @@ fn a_pinhole_projects_a_sphere_to_an_ellipse() {
         (0.001, 10.0, 0.0, 2e-4, 3.141_592_685e-8, 0.0),
     ];
     for (radius, z, x, tangent, area, center) in truths {
-        let scene = lamp(radius, z, x, tangent);
+        let scene = emissive_sphere(radius, z, x, tangent);
         let [seen, shifted, _] = each_over_seeds(&scene, |image| moments(image, tangent));
         assert_expected(seen, area, &format!("area, {radius} {z} {x}"));
         assert_expected(shifted, area * center, &format!("center, {radius} {z} {x}"));
@@ -54,7 +54,7 @@ fn a_thin_lens_blurs_by_its_diameter() {
     for distance in [1.0, 4.0, 1000.0, 2.0] {
         // The same size in the image at all distances.
         let tangent = 0.04;
-        let mut scene = lamp(0.004 * distance, distance, 0.0, tangent);
+        let mut scene = emissive_sphere(0.004 * distance, distance, 0.0, tangent);
         let energy_and_variance = |image: &Image| {
             let [energy, _, second] = moments(image, tangent);
             [energy, second / energy]
@@ -74,8 +74,8 @@ fn a_thin_lens_blurs_by_its_diameter() {
 }
 
 #[test]
-fn an_aperture_of_nothing_is_a_pinhole() {
-    let mut scene = lamp(1.0, 3.0, 0.5, 1.0);
+fn a_zero_aperture_is_a_pinhole() {
+    let mut scene = emissive_sphere(1.0, 3.0, 0.5, 1.0);
     let pinhole = render_scene(&scene).image;
     scene.camera.lens = Some(Lens { aperture: 0.0, focus: None });
     assert_eq!(render_scene(&scene).image, pinhole);

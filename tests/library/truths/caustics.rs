@@ -51,7 +51,7 @@ fn assert_unbiased(scene: &Scene, what: &str) {
 }
 
 #[test]
-fn a_ball_of_each_kind() {
+fn one_specular_sphere_of_each_kind() {
     let kinds =
         [("mirror", mirror()), ("glass", glass(1.5)), ("red", red_glass()), ("coat", plastic())];
     for (what, kind) in kinds {
@@ -64,19 +64,19 @@ fn a_ball_of_each_kind() {
 }
 
 #[test]
-fn several_balls_and_lamps_and_what_is_in_between() {
+fn several_specular_spheres_emitters_and_occluders() {
     let mut scene = lit();
     sphere(&mut scene, [-1.3, 0.0, 1.0], 1.0, mirror());
     sphere(&mut scene, [0.8, 0.0, 0.7], 0.7, glass(1.4));
     sphere(&mut scene, [-3.0, 1.0, 3.0], 0.5, emitter(30.0, 0.0));
-    assert_unbiased(&scene, "two balls and two lamps");
+    assert_unbiased(&scene, "two spheres and two emitters");
     sphere(&mut scene, [0.9, 0.3, 2.4], 0.4, lambertian(0.5));
     sphere(&mut scene, [0.2, -1.0, 0.3], 0.3, lambertian(0.9));
     assert_unbiased(&scene, "something in between");
 }
 
 #[test]
-fn paths_are_as_long_as_they_may_be() {
+fn paths_reach_the_maximum_depth() {
     for depth in 2..5 {
         let mut scene = lit();
         sphere(&mut scene, [-1.0, 0.0, 1.0], 1.0, mirror());
@@ -90,7 +90,7 @@ fn paths_are_as_long_as_they_may_be() {
 
 /// Scenes to which caustic sampling does not apply.
 #[test]
-fn other_scenes_are_what_they_are_without() {
+fn other_scenes_do_not_change() {
     let mut rough = lit();
     sphere(&mut rough, [0.0, 0.0, 1.0], 1.0, metal(0.2));
     let mut nested = lit();

@@ -153,7 +153,7 @@ fn no_light_enters_a_furnished_room() {
 }
 
 #[test]
-fn closed_spheres_are_black_whatever_finds_them() {
+fn closed_spheres_are_black_for_every_traversal() {
     let mut scene = closed(plastic());
     Outside::Everything.add(&mut scene);
     let mut furnished = scene.clone();
@@ -193,7 +193,7 @@ fn glass_lets_no_light_through_a_closed_sphere() {
 /// Inside a closed sphere around a light, only that light and its reflections are visible, for any light
 /// outside.
 #[test]
-fn light_inside_lights_the_inside_alone() {
+fn light_inside_lights_only_the_inside() {
     let albedo = 0.5;
     let point = Light::Point { position: DVec3::ZERO, intensity: Rgb::splat(9.0), falloff: true };
     // Radiance by an irradiance of 9 / RADIUS^2 = 1, and its reflections between the walls.
@@ -278,7 +278,7 @@ fn no_light_enters_an_emitter() {
 /// A chord is shorter than `distance` if the cosine at the surface is less than distance / diameter, so a
 /// fraction of 1 - (distance / diameter)^2 of the directions is open.
 #[test]
-fn occlusion_inside_a_sphere_goes_by_its_chords() {
+fn occlusion_inside_a_sphere_depends_on_its_chords() {
     for factor in [0.1, 0.5, 0.9, 1.0, 1.5] {
         let mut scene = closed(lambertian(1.0));
         scene.settings.integrator = Integrator::Ao { distance: factor * 2.0 * RADIUS };

@@ -70,7 +70,7 @@ fn white_surfaces_are_invisible() {
 }
 
 #[test]
-fn white_plastic_and_rounds_of_roulette_are_white_on_average() {
+fn white_plastic_and_roulette_are_white_on_average() {
     let plastic = Material::Plastic { color: Rgb::ONE, ior: 1.5 };
     let mut scene = heap(&[plastic]);
     assert_expected(measure(&scene), 1.0, "plastic");
@@ -131,7 +131,7 @@ fn an_emitting_sphere_from_inside_is_the_whole_series() {
 }
 
 #[test]
-fn whitted_keeps_the_furnace_for_what_does_not_light_itself() {
+fn whitted_keeps_the_furnace_without_indirect_light() {
     let mut scene = furnace();
     scene.settings.integrator = Integrator::Whitted { shadow_samples: 4 };
     sphere(&mut scene, [-1.0, 0.0, 0.0], 0.9, mirror());

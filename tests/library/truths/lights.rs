@@ -165,7 +165,7 @@ fn path_and_whitted_agree_on_direct_light() {
 
 /// Many emitters, some of them close to surfaces: sampling one light at a time gives the sum over all lights.
 #[test]
-fn many_lights_are_those_of_all_together() {
+fn sampling_one_light_equals_the_sum_over_all() {
     let plastic = Material::Plastic { color: Rgb::splat(0.7), ior: 1.5 };
     for (count, made_of) in [(3, lambertian(0.6)), (100, lambertian(0.6)), (100, plastic)] {
         let mut scene = dark();
@@ -218,7 +218,7 @@ fn crowd() -> Scene {
 }
 
 #[test]
-fn whichever_way_lights_are_chosen_there_is_as_much_light() {
+fn every_light_choice_has_the_same_expectation() {
     for scene in [crowd(), menagerie()] {
         let by = |light_choice| {
             let settings = Settings { light_choice, ..scene.settings.clone() };

@@ -58,7 +58,7 @@ fn a_plane_under_and_through_a_sphere() {
 }
 
 #[test]
-fn two_spheres_that_touch() {
+fn two_touching_spheres() {
     let truths: [(f64, f64); 9] = [
         (5.0, 0.029_502_000_8),
         (10.0, 0.111_129_653_3),

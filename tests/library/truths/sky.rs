@@ -54,7 +54,7 @@ fn plane_under(map: EnvironmentMap) -> Scene {
 }
 
 #[test]
-fn a_plane_gets_what_the_picture_gives() {
+fn a_plane_is_lit_by_the_environment_map() {
     for smooth in [true, false] {
         let truth = truth(smooth);
         for rotation in [0.0, 77.0] {

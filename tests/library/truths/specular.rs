@@ -57,7 +57,7 @@ fn ggx_albedo(alpha: f64, theta: f64) -> f64 {
 }
 
 #[test]
-fn rough_metal_in_a_furnace_reflects_what_is_not_masked() {
+fn rough_metal_in_a_furnace_loses_only_masked_light() {
     for alpha in [0.2, 0.5, 1.0] {
         for degrees in [0.0_f64, 45.0, 75.0] {
             let normal = DVec3::new(0.0, 0.0, 1.0);

@@ -85,7 +85,7 @@ impl Beam {
 }
 
 impl Bvh {
-    /// Whether any ray in a beam may hit a sphere: never false if one does.
+    /// Returns whether any ray in a beam may hit a sphere: never false if one does.
     pub fn may_be_hit(&self, spheres: &Spheres, beam: &Beam) -> bool {
         let mut open = Vec::new();
         if !self.is_empty() {

@@ -1,7 +1,7 @@
 //! The order in which a ray visits the children of a node, from a table.
 //!
 //! Children are put into slots by where they are: bit `a` of a slot is set where the child is on the
-//! upper side of axis `a`, as far as eight children can be told apart so. A ray whose direction is
+//! upper side of axis `a`, as far as that distinguishes eight children. A ray whose direction is
 //! negative on the axes of `octant` then meets slot `s` about as the `s ^ octant`-th (Ylitie,
 //! Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG
 //! 2017). One look-up gives the permutation that puts the children that are hit one after another,
@@ -90,7 +90,7 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn what_is_hit_comes_once_and_the_nearest_last() {
+    fn hit_children_come_once_and_the_nearest_last() {
         for octant in 0..8 {
             for hit in 0..1 << WIDTH {
                 let order = farthest_first(octant, hit);

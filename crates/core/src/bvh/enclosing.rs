@@ -43,7 +43,7 @@ impl Bvh {
     }
 }
 
-/// Whether the box of child `i` contains a point.
+/// Returns whether the box of child `i` contains a point.
 fn contains(node: &Node, i: usize, point: Vec3) -> bool {
     (0..3).all(|axis| {
         let [low, high] = &node.planes[axis];
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_are_not_inside_and_the_next_number_is() {
+    fn points_on_the_surface_are_not_inside_and_the_next_float_is() {
         let mut spheres = Spheres::with_capacity(1);
         spheres.push(Vec3::X, 0.25, 0);
         let bvh = build(&mut spheres, Builder::default());
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn of_equal_depths_the_first_of_the_users_counts() {
+    fn ties_go_to_the_first_sphere_of_the_scene() {
         let mut spheres = Spheres::with_capacity(3);
         for (x, id) in [(0.5, 2), (-0.5, 1), (0.5, 0)] {
             spheres.push(Vec3::X * x, 1.0, id);

@@ -59,7 +59,7 @@ struct TraversalState<G> {
     group: G,
     /// The distance beyond which the group needs no answers, below 0 if it needs none.
     t_far: f32,
-    /// Whether `t_far` has decreased since the stack was culled.
+    /// True if `t_far` has decreased since the stack was culled.
     nearer: bool,
     /// Number of children on the stack, a sentinel included.
     top: u32,
@@ -92,8 +92,8 @@ struct Step {
 }
 
 impl<const IN_FLIGHT: usize> NextVisits<IN_FLIGHT> {
-    /// Whether steps are computed in lanes. With few traversals lanes would wait for children that were
-    /// written just before.
+    /// True if steps are computed in lanes. With few traversals lanes would wait for children that
+    /// were written just before.
     const IN_LANES: bool = IN_FLIGHT >= MAX_LANES;
 
     fn new() -> Self {

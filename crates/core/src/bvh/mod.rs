@@ -202,7 +202,7 @@ impl Bvh {
         self.nodes.len()
     }
 
-    /// Whether there is no sphere.
+    /// Returns whether there is no sphere.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }

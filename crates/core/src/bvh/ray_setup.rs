@@ -14,7 +14,7 @@ use crate::vec3::Vec3;
 #[derive(Clone, Copy)]
 pub(super) struct RayStart {
     pub(super) row: usize,
-    /// Whether few rays of its row of lanes are traced: then only this one is set up.
+    /// True if few rays of its row of lanes are traced: then only this one is set up.
     pub(super) few: bool,
 }
 

@@ -65,7 +65,7 @@ impl<'a, Q: Query> HitResolver<'a, Q> {
         }
     }
 
-    /// Whether the single-precision columns hold rays and spheres exactly.
+    /// Returns whether the single-precision columns hold rays and spheres exactly.
     #[inline(always)]
     pub(super) fn is_single_precision(&self) -> bool {
         self.rays.precise.is_empty() && self.spheres.precise.is_empty()
@@ -167,8 +167,8 @@ impl<Q: Query> HitResolver<'_, Q> {
         nearer
     }
 
-    /// Whether `sphere` is sphere `known` of the ray, or coincides with it. A sphere that coincides with
-    /// `known` comes later in the scene, or it would be known in its stead.
+    /// Returns whether `sphere` is sphere `known` of the ray, or coincides with it. A sphere that
+    /// coincides with `known` comes later in the scene, or it would be known instead.
     #[inline(always)]
     fn is_same(&self, sphere: usize, known: u32) -> bool {
         known == sphere as u32
@@ -176,8 +176,8 @@ impl<Q: Query> HitResolver<'_, Q> {
                 && self.spheres.exact(known as usize) == self.spheres.exact(sphere))
     }
 
-    /// Whether a ray whose origin is on the surface of a sphere, within rounding, starts on another
-    /// sphere that touches it from within.
+    /// Returns whether a ray whose origin is on the surface of a sphere, within rounding, starts on
+    /// another sphere that touches it from within.
     fn starts_within(&self, ray: &ExactRay, row: usize, center: DVec3, radius: f64) -> bool {
         let own = self.rays.own[row] as usize;
         if own >= self.spheres.len() {
@@ -187,7 +187,7 @@ impl<Q: Query> HitResolver<'_, Q> {
         own_radius < radius && (ray.origin - own_center).dot(ray.origin - center) > 0.0
     }
 
-    /// Whether a hit replaces the ray's hit so far.
+    /// Returns whether a hit replaces the ray's hit so far.
     #[inline(always)]
     fn is_nearer(
         &mut self,
@@ -247,8 +247,8 @@ impl<Q: Query> HitResolver<'_, Q> {
         (root.unwrap_or(number), Distance::Hit(center, radius))
     }
 
-    /// Whether `sphere` comes before `other` in the user's scene; the ground comes last, and a bound is
-    /// no hit.
+    /// Returns whether `sphere` comes before `other` in the user's scene; the ground comes last,
+    /// and a bound is no hit.
     fn precedes(&self, sphere: usize, other: u32) -> bool {
         other != MISS
             && self.spheres.id.get(other as usize).is_none_or(|&id| self.spheres.id[sphere] < id)

@@ -17,9 +17,9 @@ impl Bvh {
         self.nodes.iter().map(|&Node { planes, child }| NodeRow { planes, child })
     }
 
-    /// The tree of such rows over so many blocks. `None` if they are no tree, so that a walk would never
-    /// end or look for nodes and blocks that are not there; it is not asked whether boxes hold what is
-    /// below them.
+    /// Builds the tree of these rows over `blocks` blocks. Returns `None` if they are not a tree, so
+    /// that a traversal would never end or access missing nodes and blocks. Does not check that boxes
+    /// contain what is below them.
     pub fn from_rows(rows: &[NodeRow], blocks: usize) -> Option<Self> {
         let nodes = rows.iter().map(|&NodeRow { planes, child }| Node { planes, child });
         let nodes: Vec<Node> = nodes.collect();
@@ -27,8 +27,8 @@ impl Bvh {
     }
 }
 
-/// Whether every node but the first is the child of one that comes before it, every block is in one
-/// leaf, and no path is longer than [`DEPTH`].
+/// Returns whether every node but the first is the child of one that comes before it, every block
+/// is in one leaf, and no path is longer than [`DEPTH`].
 fn is_tree(nodes: &[Node], blocks: usize) -> bool {
     // 0 is for nodes that are nobody's child so far.
     let mut depth = vec![0_usize; nodes.len()];

@@ -112,7 +112,7 @@ impl SingleRay {
         }
     }
 
-    /// Whether single precision can tell that the sphere is hit before the search ends.
+    /// Returns whether single precision can tell that the sphere is hit before the search ends.
     #[inline(always)]
     fn certainly_hits<Q: Query>(&self, resolver: &HitResolver<Q>, sphere: usize) -> bool {
         let row = self.row as usize;

@@ -48,11 +48,11 @@ const MIN_ACTIVE: usize = 2;
 
 /// The answer that a traversal looks for.
 pub trait Query {
-    /// Whether any hit ends a ray's traversal.
+    /// True if any hit ends a ray's traversal.
     const ANY: bool;
-    /// Whether hits are decided exactly.
+    /// True if hits are decided exactly.
     const EXACT: bool = true;
-    /// Whether visits are counted.
+    /// True if visits are counted.
     const COUNTED: bool = false;
 }
 
@@ -483,7 +483,8 @@ impl<L: Lanes> Iterator for PacketStarts<'_, L> {
     }
 }
 
-/// Whether rays are set up one by one: setting up a row of lanes takes about as long as eight rays.
+/// Returns whether rays are set up one by one: setting up a row of lanes takes about as long as
+/// eight rays.
 fn is_few(count: usize) -> bool {
     2 * count < MAX_LANES
 }

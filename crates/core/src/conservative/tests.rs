@@ -129,7 +129,7 @@ fn no_hit_is_rejected() {
 }
 
 #[test]
-fn what_is_certain_is_true_and_bounded() {
+fn certain_hits_are_true_and_bounded() {
     let mut random = Random::new(2);
     let mut certain = 0;
     for _ in 0..400_000 {
@@ -154,7 +154,7 @@ fn what_is_certain_is_true_and_bounded() {
 }
 
 #[test]
-fn what_leaves_for_certain_starts_inside_and_is_bounded() {
+fn certain_exits_start_inside_and_are_bounded() {
     let mut random = Random::new(6);
     let mut certain = 0;
     for _ in 0..400_000 {
@@ -192,7 +192,7 @@ fn the_origins_error_is_no_less_than_that_of_the_decision() {
 }
 
 #[test]
-fn little_of_the_ordinary_is_left_open() {
+fn few_ordinary_rays_are_undecided() {
     const RAYS: i32 = 200_000;
     let mut random = Random::new(4);
     let (mut open, mut widest) = (0, 0.0_f32);
@@ -210,7 +210,7 @@ fn little_of_the_ordinary_is_left_open() {
 }
 
 #[test]
-fn every_width_says_the_same() {
+fn every_lane_width_agrees() {
     let mut random = Random::new(5);
     for _ in 0..1000 {
         let cases: [Case; 16] = std::array::from_fn(|_| case(&mut random));

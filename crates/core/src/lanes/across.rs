@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_are_read_by_nibbles() {
+    fn shuffles_take_one_nibble_per_lane() {
         let row: [u32; 8] = std::array::from_fn(|i| 10 + i as u32);
         assert_eq!(shuffle_numbers(&row, 0x7654_3210), row);
         assert_eq!(shuffle_numbers(&row, 0x0123_4567), [17, 16, 15, 14, 13, 12, 11, 10]);

@@ -71,7 +71,7 @@ pub trait Lanes:
     fn lt(self, other: Self) -> Self::Mask;
     /// `self <= other`; false for NaN.
     fn le(self, other: Self) -> Self::Mask;
-    /// Whether the sign bit is set: true for -0.
+    /// True where the sign bit is set, also for -0.
     fn is_negative(self) -> Self::Mask;
     /// The greatest lanes of four parts.
     fn greatest_four(self) -> F32x4;
@@ -81,7 +81,7 @@ pub trait Lanes:
         let [a, b, c, d] = self.greatest_four().to_array();
         Lanes::max(Lanes::max(a, b), Lanes::max(c, d))
     }
-    /// Whether all bits are the same: of numbers that are no floats.
+    /// True where all bits are equal, for lanes that hold other data than numbers.
     fn has_bits_of(self, other: Self) -> Self::Mask;
     /// `yes` where `mask` is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;

@@ -62,7 +62,7 @@ pub struct Tally {
 }
 
 impl RayColumns<'_> {
-    /// Whether all columns agree in length.
+    /// Checks that all columns agree in length.
     pub(super) fn check(&self, others: &[usize]) -> Result<(), QueryError> {
         let [count, ..] = self.origin.map(<[f32]>::len);
         same_length(count, &self.origin.map(<[f32]>::len))?;

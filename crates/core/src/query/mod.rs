@@ -30,7 +30,7 @@ pub struct SphereTree {
     invalid: usize,
 }
 
-/// Why a tree cannot be built, or columns cannot be traced.
+/// The reason why a tree cannot be built, or columns cannot be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QueryError {
     /// Columns differ in length.
@@ -114,7 +114,7 @@ impl SphereTree {
         self.spheres.len()
     }
 
-    /// Whether nothing can be hit.
+    /// Returns whether nothing can be hit.
     pub fn is_empty(&self) -> bool {
         self.spheres.is_empty()
     }
@@ -148,8 +148,8 @@ impl SphereTree {
         hit
     }
 
-    /// Whether a ray hits anything at a distance less than `t_max`, in units of the direction's
-    /// length.
+    /// Returns whether a ray hits anything at a distance less than `t_max`, in units of the
+    /// direction's length.
     pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> bool {
         let mut hit = false;
         self.run::<Any>(&one(&origin, &direction), |_| t_max, |_, _| hit = true);

@@ -27,7 +27,7 @@ impl ScaledRay {
         self.ray.origin.abs().max_element() > REACH
     }
 
-    /// Whether single precision holds the ray.
+    /// Returns whether single precision holds the ray.
     fn is_single(&self) -> bool {
         let single = |v: DVec3| v.as_vec3().as_dvec3() == v;
         single(self.ray.origin) && single(self.ray.direction)

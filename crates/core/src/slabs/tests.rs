@@ -12,8 +12,8 @@ struct Point {
     t: f32,
 }
 
-/// A ray from up to 2^20 away, some of them along axes, in planes or as good as that; and a
-/// distance, now and then 0.
+/// A ray from up to 2^20 away, some of them along axes, in planes or nearly so; and a
+/// distance, which is sometimes 0.
 fn point(random: &mut Random) -> Point {
     let origin = random.in_cube() * random.decades([-6.0, 6.0]);
     let direction = random.direction().to_array().map(|x| match random.index(8) {
@@ -22,7 +22,7 @@ fn point(random: &mut Random) -> Point {
         _ => x,
     });
     let direction = DVec3::from(direction).as_vec3();
-    // What counts is within a scene: the ray crosses the margin about a box no sooner.
+    // Distances are as in a scene: the ray crosses the margin about a box no sooner.
     let t = if random.index(16) == 0 { 0.0 } else { random.decades([-6.0, 6.0]) };
     Point { origin: origin.as_vec3(), direction, t: t as f32 }
 }
@@ -49,7 +49,7 @@ impl Point {
     fn box_about(&self, random: &mut Random) -> [[f32; 2]; 3] {
         std::array::from_fn(|axis| {
             let [low, high] = self.coordinate(axis);
-            // As all boxes are, where a ray along a side could be told from one beside it.
+            // As all boxes are, where a ray along a side could be distinguished from one beside it.
             let margin = if self.direction[axis].abs() < LEAST { MARGIN } else { 0.0 };
             let mut wider = || if random.coin() { 0.0 } else { random.decades([-7.0, 0.5]) as f32 };
             [low - wider() - margin, high + wider() + margin]
@@ -57,12 +57,12 @@ impl Point {
     }
 }
 
-/// Eight boxes as [`Slabs::enters`] wants them.
+/// Eight boxes in the layout of [`Slabs::enters`].
 fn planes(boxes: &[[[f32; 2]; 3]; 8]) -> Planes {
     [0, 1, 2].map(|axis| [0, 1].map(|side| boxes.map(|sides| sides[axis][side])))
 }
 
-/// Asserts that boxes about points at distances from 0 on are met, and not only beyond the points.
+/// Asserts that boxes about points at distances of 0 or more are hit no farther than the points.
 fn assert_met(slabs: &Slabs, points: &[Point; 8], random: &mut Random) {
     let boxes = points.map(|point| point.box_about(random));
     for (i, point) in points.iter().enumerate() {
@@ -88,14 +88,14 @@ fn no_box_with_a_point_on_a_packets_ray_is_missed() {
     for _ in 0..100_000 {
         let first = point(&mut random);
         let spread = random.decades([-6.0, 0.0]);
-        let points = [(); 8].map(|()| alike(&first, spread, &mut random));
+        let points = [(); 8].map(|()| nearby(&first, spread, &mut random));
         let slabs = between(&points);
         assert_met(&slabs, &points, &mut random);
     }
 }
 
 /// A ray from nearby, of the same signs on each axis.
-fn alike(first: &Point, spread: f64, random: &mut Random) -> Point {
+fn nearby(first: &Point, spread: f64, random: &mut Random) -> Point {
     let moved = random.in_cube() * spread * f64::from(first.origin.abs().max_element());
     let turned = (first.direction.as_dvec3() + random.in_cube() * spread).as_vec3();
     let t = first.t * random.between([0.5, 2.0]) as f32;
@@ -115,8 +115,8 @@ fn between(points: &[Point; 8]) -> Slabs {
     Slabs::between(bounds(|point| point.origin), bounds(|point| point.direction))
 }
 
-/// By how much a ray leaves a box later than it enters it or starts, in parts of the distances to
-/// the planes and of those that the origin is away: what rounding is relative to.
+/// Returns the distance from entering a box, or the start of the ray, to leaving it. Relative to the
+/// distances to the planes and of the origin, as rounding errors are.
 fn gap(point: &Point, sides: &[[f32; 2]; 3]) -> f64 {
     let (mut near, mut far, mut size) = (0.0_f64, f64::from(point.t), 0.0_f64);
     for (axis, sides) in sides.iter().enumerate() {
@@ -129,9 +129,9 @@ fn gap(point: &Point, sides: &[[f32; 2]; 3]) -> f64 {
 }
 
 #[test]
-fn other_boxes_are_told_as_double_precision_does() {
+fn slab_tests_agree_with_double_precision() {
     let mut random = Random::new(3);
-    let (mut met_boxes, mut doubtful) = (0, 0);
+    let (mut hits, mut undecided) = (0, 0);
     for _ in 0..20_000 {
         let ray = Point { t: random.decades([-1.0, 2.0]) as f32, ..point(&mut random) };
         // Toward the boxes, or none would be met.
@@ -146,18 +146,18 @@ fn other_boxes_are_told_as_double_precision_does() {
         for (i, sides) in boxes.iter().enumerate() {
             let gap = gap(&ray, sides);
             if gap.abs() < 1e-5 {
-                doubtful += 1;
+                undecided += 1;
             } else {
                 assert_eq!(met >> i & 1 == 1, gap > 0.0, "{ray:?}, {sides:?}: {gap}");
-                met_boxes += met >> i & 1;
+                hits += met >> i & 1;
             }
         }
     }
-    assert!(met_boxes > 10_000 && doubtful < 80_000, "{met_boxes} {doubtful}");
+    assert!(hits > 10_000 && undecided < 80_000, "{hits} {undecided}");
 }
 
 #[test]
-fn rays_in_lanes_are_as_they_are_one_by_one() {
+fn rays_in_lanes_equal_single_rays() {
     let mut random = Random::new(7);
     for _ in 0..500 {
         let rays: [Point; 16] = std::array::from_fn(|_| point(&mut random));

@@ -94,7 +94,7 @@ fn trees_hold_every_sphere_and_are_shallow() {
 }
 
 #[test]
-fn of_a_crowd_that_coincides_the_first_is_left() {
+fn the_first_of_coincident_spheres_is_kept() {
     for builder in Builder::ALL {
         let crowd = many(500, |_| (Vec3::splat(0.25), 0.5));
         assert_eq!(built(&crowd, builder).1, [0], "{builder:?}");

@@ -48,7 +48,7 @@ pub enum Effort {
     Full,
 }
 
-/// A callback that is told in a few words what is being measured.
+/// A callback that receives a short description of the current measurement.
 pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 
 impl Options {

@@ -59,7 +59,7 @@ pub struct Series {
     pub points: Vec<Point>,
     /// Line through the points.
     pub line: Line,
-    /// Whether each point has a marker.
+    /// True if each point has a marker.
     pub marked: bool,
     /// Index of color and marker; `None` for the series' own index.
     pub color: Option<usize>,

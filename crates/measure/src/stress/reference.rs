@@ -21,7 +21,7 @@ use std::cmp::Ordering;
 pub struct Decision {
     /// Row of the sphere; `None` for a miss.
     pub sphere: Option<usize>,
-    /// Whether integer arithmetic was necessary.
+    /// True if integer arithmetic was necessary.
     pub close: bool,
 }
 

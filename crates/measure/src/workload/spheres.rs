@@ -14,7 +14,7 @@ pub struct SphereScene {
     pub name: &'static str,
     /// Number of spheres.
     pub count: u64,
-    /// Whether they lie on a plane, seen from above.
+    /// True if they lie on a plane, seen from above.
     pub flat: bool,
     kind: Kind,
 }

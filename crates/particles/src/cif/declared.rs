@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_are_as_far_from_a_symmetry_as_it_changes_them() {
+    fn misfits_of_cells_are_relative_changes_by_symmetry() {
         let box_shaped = cell([4.0, 5.0, 6.0], [90.0; 3]);
         let sheared = cell([4.0, 5.0, 6.0], [90.0, 90.0, 100.0]);
         let hexagonal = cell([4.0, 4.0, 6.0], [90.0, 90.0, 120.0]);
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn packings_have_the_least_distance_and_the_number_of_atoms() {
+    fn packings_have_the_shortest_distance_and_the_number_of_atoms() {
         let first = DVec3::new(0.1, 0.2, 0.3);
         let near = DVec3::new(0.005, 0.0, 0.0);
         for (hall, positions, spacing, atoms) in [
@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_are_alike_by_their_rotations_and_centering() {
+    fn groups_are_compared_by_rotations_and_centering() {
         for (one, other, expected) in [
             ("P 1", "P 1", true),
             ("P 2", "P 2ac", true),
@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn classes_are_those_of_rotations() {
+    fn crystal_classes_follow_from_rotations() {
         for (hall, expected) in [
             ("C 1", &[13][..]),
             ("-P 1", &[-13, 13]),
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn origins_that_are_open_keep_atoms_apart() {
+    fn ambiguous_origins_are_chosen_by_distances() {
         let diamond = of_symbol("F d -3 m");
         for (places, choice) in [
             (&[DVec3::ZERO][..], "F d -3 m:1"),
@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_that_the_cell_does_not_have_are_not_taken() {
+    fn axes_must_fit_the_cell() {
         let hexagonal = cell([4.0, 4.0, 10.0], [90.0, 90.0, 120.0]);
         let rhombohedral = cell([5.0; 3], [70.0; 3]);
         // Roughly hexagonal, and far from rhombohedral.
@@ -454,7 +454,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_leave_axes_open_where_there_are_several() {
+    fn numbers_of_groups_may_leave_the_axes_ambiguous() {
         let monoclinic = cell([4.0, 5.0, 6.0], [90.0, 100.0, 90.0]);
         let (count, warning) = resolved(&of_number(14), &monoclinic, &[]);
         let expected = "the space group's number 14 does not determine the axes: those of P 1 21/c 1 are \
@@ -492,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn what_contradicts_and_what_is_unknown_is_told() {
+    fn contradictions_and_unknown_groups_are_reported() {
         let nothing = "only the listed atoms are drawn";
         let listed = |others: Declared| Declared { operations: group("P 2"), ..others };
         let hall = |hall: &str| Declared { hall: Some(hall.to_owned()), ..Declared::default() };

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_of_all_settings_are_those_of_another_program() {
+    fn groups_of_all_settings_agree_with_another_program() {
         let mut count = 0;
         for line in EXPECTED.lines().skip(1) {
             let columns: Vec<&str> = line.split(';').collect();
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_across_an_edge_go_by_the_rotation_before() {
+    fn diagonal_axes_follow_the_preceding_rotation() {
         for (symbol, second) in [
             ("P 2", "-x,-y,z"),
             ("P 2'", "-y,-x,-z"),

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn symbols_of_a_setting_are_those_of_no_other_group() {
+    fn symbols_of_settings_are_unique() {
         for setting in Setting::all() {
             for name in setting.names.split(", ") {
                 let same = Setting::of_symbol(&Symbol::new(name));

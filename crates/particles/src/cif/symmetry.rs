@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_operation_is_refused() {
+    fn invalid_operations_are_refused() {
         for text in [
             "",
             "x,y",
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn images_of_a_place_are_as_many_as_it_has() {
+    fn images_of_special_positions_are_merged() {
         let cell = Cell::of_lengths([4.0, 4.0, 6.0], [90.0, 90.0, 120.0]).expect("a cell");
         let three = ["x,y,z", "-y,x-y,z", "-x+y,-x,z"].map(|text| Operation::parse(text).unwrap());
         assert_eq!(images(DVec3::new(0.1, 0.2, 0.3), &three, &cell).len(), 3);

@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_cut_as_cif_has_it() {
+    fn tokens_follow_the_grammar_of_cif() {
         let text =
             "data_X #c\nLOOP_\n_a.b 'it''s' \"q # q\" x#y 'a' ''\n;one\n two\n; last\n;\n;\n";
         let expected = [
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_closed_is_told() {
+    fn unclosed_texts_are_reported() {
         assert_eq!(words("a 'b c"), Err("this quote is not closed".to_owned()));
         let message = "the text that begins at line 2 does not end";
         assert_eq!(words("a\n;b\nc"), Err(message.to_owned()));

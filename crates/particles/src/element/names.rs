@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_of_names_tell_carbon_from_calcium() {
+    fn alignment_of_names_distinguishes_carbon_from_calcium() {
         for (name, residue, expected) in [
             (" CA ", "GLY", "C"),
             (" CA ", "LIG", "C"),
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn sites_of_water_models_are_no_atoms() {
+    fn virtual_sites_of_water_models_are_not_atoms() {
         for (name, residue) in [("MW", "SOL"), ("M", "HOH"), ("EP", "WAT"), ("LP2", "TIP5")] {
             assert!(is_virtual_site(name, residue), "{name}");
         }

@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_of_a_tilted_box_hold_its_corners() {
+    fn bounds_of_a_tilted_box_contain_its_corners() {
         for tilt in [[0.5, -0.25, 0.75], [-0.5, -0.25, -0.125], [0.0; 3], [0.5, -0.75, 0.0]] {
             let (low, high) = ([1.0, 2.0, 3.0], [4.0, 6.0, 8.0]);
             let cell = tilted(low, high, tilt);

@@ -127,7 +127,7 @@ impl Data {
             .map_err(|message| self.lines.ended(message))?;
         let path = self.lines.path().clone();
         let mut builder = Builder::new(&path, Format::LammpsData, &Arc::new(schema));
-        let is_doubtful = warning.is_some();
+        let is_ambiguous = warning.is_some();
         builder.frame.warnings.extend(warning);
         for atom in 0..head.atoms {
             let Some(line) = Self::line(&mut self.lines)? else {
@@ -141,7 +141,7 @@ impl Data {
             builder.row(&line, line.fields())?;
         }
         let mut frame = builder.finish();
-        if !is_doubtful {
+        if !is_ambiguous {
             frame.warnings.extend(head.unknown_type(&frame));
         }
         Ok(frame)
@@ -382,7 +382,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sections_begin_with_a_capital_and_have_letters_alone() {
+    fn sections_begin_with_a_capital_and_have_only_letters() {
         for line in ["Atoms", " Atoms # full", "Atom Type Labels", "PairIJ Coeffs", "Types/kk"] {
             assert!(is_section(line.as_bytes()), "{line}");
         }

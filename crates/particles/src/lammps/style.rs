@@ -457,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_tell_styles() {
+    fn columns_determine_styles() {
         for (rows, types, expected) in [
             (&["1 1 0.5 1.5 2.5", "2 2 3 4 5.5"][..], 2, &["atomic"][..]),
             (&["1 1 0.5 1.5 2.5 0 0 -1"], 1, &["atomic"]),
@@ -483,7 +483,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_and_counts_of_the_header_tell_styles() {
+    fn boxes_and_counts_of_the_header_determine_styles() {
         let vectors = [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::Z * 10.0];
         let cell = Some(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] });
         let rows = ["1 1 1 1 50 0.5 1.5 2.5", "2 1 1 2 60 3.5 4 5.5"];
@@ -537,7 +537,7 @@ mod tests {
     }
 
     #[test]
-    fn named_styles_need_ids_types_and_positions_alone() {
+    fn named_styles_need_only_ids_types_and_positions() {
         let bonds = Facts { counts: [("bonds", 1)].into(), types: 1, ..Facts::default() };
         for (style, rows, expected) in [
             ("atomic", &["1 1 0.5 1.5 2.5"][..], ""),
@@ -565,7 +565,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_columns_tell_what_values_they_have() {
+    fn names_of_columns_constrain_their_values() {
         let things = ["ellipsoids", "lines", "triangles", "bodies"];
         let facts = Facts { counts: things.map(|thing| (thing, 1)).into(), ..Facts::default() };
         for (names, good, bad) in [
@@ -593,7 +593,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_summed_up() {
+    fn columns_are_summarized() {
         for (values, finite, integral, range) in [
             ("1 2.5 -3", true, false, (-3.0, 2.5)),
             ("2.5 1", true, false, (1.0, 2.5)),
@@ -673,13 +673,13 @@ mod tests {
     }
 
     #[test]
-    fn styles_that_are_drawn_alike_are_no_other_guesses() {
+    fn styles_with_equal_pictures_are_not_ambiguous() {
         // The molecule of one is the type of the other, and they are the same.
         assert_eq!(guess(&of_types(1), &["1 1 1 0.5 1.5 2.5"]), ["molecular"]);
     }
 
     #[test]
-    fn positions_alone_are_read_of_rows_that_fit_no_style() {
+    fn only_positions_are_read_from_rows_of_no_style() {
         let vectors = [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::Z * 10.0];
         let cell = Some(Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] });
         let in_box = Facts { types: 2, cell, counts: [("bonds", 1)].into(), ..Facts::default() };
@@ -694,7 +694,7 @@ mod tests {
     }
 
     #[test]
-    fn hybrid_styles_are_open_where_a_word_is_not_known() {
+    fn hybrid_styles_with_unknown_words_are_open() {
         let open = |style: &str| Layout::of_style(style).iter().all(|layout| layout.open);
         for style in ["hybrid", "hybrid tdpd 2 charge", "hybrid tdpd", "hybrid body nparticle 2 5"]
         {

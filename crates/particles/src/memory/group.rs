@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_version_counts_too() {
+    fn the_first_version_is_supported() {
         let memory = "sys/fs/cgroup/memory";
         let root = machine(&[
             ("proc/self/mountinfo", MOUNTS),
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn without_limits_there_is_none() {
+    fn groups_without_limits_have_none() {
         assert_eq!(left(machine(&[]).path()), None);
         let files =
             [("proc/self/mountinfo", MOUNTS), ("proc/self/cgroup", "0::/\nnonsense\n4:memory\n")];

@@ -197,7 +197,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn little_is_always_there_and_absurd_amounts_never() {
+    fn small_amounts_are_always_available_and_absurd_ones_never() {
         assert_eq!(check(0), Ok(()));
         assert_eq!(check(SMALL), Ok(()));
         for need in [1 << 60, u64::MAX] {
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn what_is_left_is_the_bound() {
+    fn remaining_memory_is_the_limit() {
         let left = left().expect("Linux tells").bytes;
         // Other processes may allocate or free some in between.
         assert!(check(left / 2).is_ok());
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn the_peak_grows_with_what_is_held() {
+    fn the_peak_grows_with_allocations() {
         let before = peak().expect("Linux tells");
         let held = vec![1_u8; before as usize + (1 << 20)];
         assert!(peak().is_some_and(|peak| peak >= held.len() as u64));
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn shortages_tell_both_amounts() {
+    fn shortages_state_both_amounts() {
         let message = |bytes, bound| {
             let left = Some(Left { bytes, bound });
             Shortage { need: 192_000_000_000, left }.to_string()
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn what_this_process_has_taken_is_known() {
+    fn the_memory_of_this_process_is_known() {
         let column = vec![1_u8; 1 << 27];
         let bytes = taken(&mut System::new());
         assert!(bytes > column.len() as u64 && bytes < 1 << 40, "{bytes}");

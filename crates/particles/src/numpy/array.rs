@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn headers_columns_and_rows_have_their_greatest_lengths() {
+    fn headers_columns_and_rows_have_limits() {
         assert_eq!(columns("'<f4'", "(5, 3)", 1 << 16), Ok(3));
         let long = columns("'<f4'", "(5, 3)", (1 << 16) + 1);
         assert_eq!(long, Err("has a header of 65537 bytes".to_owned()));
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn arrays_are_turned_where_their_shape_says_so() {
+    fn arrays_of_columns_are_transposed() {
         for (transpose, rows, columns, expected) in [
             (Transpose::Never, 3, 9, false),
             (Transpose::ToPositions, 3, 9, true),

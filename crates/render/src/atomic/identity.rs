@@ -98,8 +98,8 @@ fn is_character_device(_: &Metadata) -> bool {
     false
 }
 
-/// Whether a folder ignores case in names, according to its files; for an empty folder, the default of
-/// the system.
+/// Returns whether a folder ignores case in names, according to its files; for an empty folder, the
+/// default of the system.
 fn ignores_case(folder: &Path) -> bool {
     let swapped = |name: &str| -> String {
         let swap = |c: char| {

@@ -77,7 +77,8 @@ impl Lock {
     }
 }
 
-/// Whether another process holds the lock on a file. Changes nothing; false where there are no locks.
+/// Returns whether another process holds the lock on a file. Changes nothing; false where there are
+/// no locks.
 pub fn is_locked(path: &Path) -> bool {
     let open = lock_path(path).and_then(File::open);
     // A shared lock, released at once, is possible on files that are open for reading.
@@ -99,7 +100,7 @@ fn lock_path(path: &Path) -> io::Result<PathBuf> {
     Ok(name.into())
 }
 
-/// Whether an open file is the one at a path.
+/// Returns whether an open file is the one at a path.
 #[cfg(unix)]
 fn is_same_file(file: &File, path: &Path) -> io::Result<bool> {
     use std::os::unix::fs::MetadataExt;

@@ -1,4 +1,4 @@
-//! Files that hold an unfinished render: all that it takes to go on to the same bytes.
+//! Files that store an unfinished render, with everything needed to resume it to the same bytes.
 //!
 //! # Format
 //!
@@ -13,12 +13,12 @@
 //! | 4, ... | length and bytes of each block: the sums of 64 tiles, compressed |
 //! | 32 | BLAKE3 hash of all that comes before |
 //!
-//! Whatever byte is missing or another one, the hash tells, and the file is refused; nothing of it
-//! is believed before. A file that was made to deceive, hash and all, is refused too if it says
-//! what no render is, and takes no more memory than it is entitled to by its own length.
+//! If any byte is missing or changed, the hash does not match, and the file is refused before its
+//! content is used. A forged file with a valid hash is refused too if its content is not a valid
+//! render, and takes no more memory than its length justifies.
 //!
 //! A file is written beside the one that it replaces and takes its name in one step (see
-//! [`crate::atomic`]): whenever the program is killed, the old one is whole, or the new one.
+//! [`crate::atomic`]): whenever the program is killed, either the old file or the new one is complete.
 
 mod blocks;
 mod lock;
@@ -64,7 +64,7 @@ pub struct Caption {
     pub title: String,
     /// Looks of the scene: names and values.
     pub looks: Vec<(String, String)>,
-    /// Whether something is drawn over the picture that takes the scene: a cell, a background.
+    /// True if something is drawn over the picture that takes the scene: a cell, a background.
     pub drawn_over: bool,
     /// The layers that are wanted.
     pub layers: Vec<Layer>,

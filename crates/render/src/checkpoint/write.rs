@@ -20,11 +20,7 @@ pub fn write(path: &Path, origin: &Origin, render: &ResumableRender) -> io::Resu
     let head = postcard::to_stdvec(&(PROGRAM, origin, RenderHeader::of(render)));
     let head = head.map_err(io::Error::other)?;
     write_atomically(path, |writer| {
-        let mut file = HashingWriter::new(writer);
-        file.write_all(&MAGIC)?;
-        file.write_all(&FORMAT.to_le_bytes())?;
-        file.write_all(&(head.len() as u64).to_le_bytes())?;
-        file.write_all(&head)?;
+        let mut file = HashingWriter::begin(writer, &MAGIC, FORMAT, &head)?;
         for tiles in
             render.film().tiles.chunks(TILES * BLOCKS_PER_THREAD * rayon::current_num_threads())
         {

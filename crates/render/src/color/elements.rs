@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_none_beyond_the_tables() {
+    fn elements_beyond_the_tables_have_no_color() {
         assert_eq!((jmol(0), jmol(110), jmol(255)), (None, None, None));
         assert_eq!((cpk(0), cpk(19), cpk(92)), (None, None, None));
         assert!((1..=109).all(|number| jmol(number).is_some()));

@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_ends_are_the_ends() {
+    fn positions_beyond_the_ends_are_clamped() {
         for map in Map::ALL {
             assert_eq!(map.at(-0.1), map.at(0.0));
             assert_eq!(map.at(f64::INFINITY), map.at(1.0));

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 pub struct Scale {
     /// Color map.
     pub map: Map,
-    /// Whether the map is reversed.
+    /// True if the map is reversed.
     pub reversed: bool,
     /// Range of numbers.
     pub range: Range,

@@ -53,7 +53,7 @@ impl ExactSums {
         self.levels.first().map_or(0, Vec::len)
     }
 
-    /// Whether there are no sums.
+    /// Returns whether there are no sums.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

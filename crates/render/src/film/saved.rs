@@ -18,7 +18,7 @@ pub(crate) struct TileHeader {
 }
 
 impl TileHeader {
-    /// Whether the numbers of levels are in range.
+    /// Returns whether the numbers of levels are in range.
     pub(crate) fn is_valid(&self) -> bool {
         self.levels.iter().all(|&levels| (1..=LEVELS).contains(&usize::from(levels)))
     }

@@ -55,7 +55,7 @@ impl Tile {
         self.region.width * self.region.height
     }
 
-    /// Whether it has no pixels, which is never so.
+    /// Returns whether it has no pixels; no tile is empty.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -97,17 +97,17 @@ impl Format {
         list(Self::WRITTEN.into_iter().chain([Self::Radiance]).map(|format| format.to_string()))
     }
 
-    /// Whether files store radiance itself, not codes for a display.
+    /// Returns whether files store radiance itself, not codes for a display.
     pub fn is_linear(self) -> bool {
         matches!(self, Self::Exr | Self::Pfm | Self::Radiance)
     }
 
-    /// Whether files may have codes of 16 bits.
+    /// Returns whether files may have codes of 16 bits.
     pub fn has_sixteen_bits(self) -> bool {
         matches!(self, Self::Png | Self::Ppm | Self::Tiff)
     }
 
-    /// Whether files may have alpha.
+    /// Returns whether files may have alpha.
     pub fn has_alpha(self) -> bool {
         matches!(self, Self::Exr | Self::Png | Self::Tiff | Self::Webp)
     }
@@ -157,7 +157,7 @@ impl Format {
             .ok_or_else(|| ImageError::UnknownSuffix { path: path.to_owned() })
     }
 
-    /// Whether files of this format can store these channels.
+    /// Returns whether files of this format can store these channels.
     pub(super) fn supports(self, channels: &[Channel]) -> bool {
         match (self, channels) {
             (Self::Exr, _) | (_, []) => true,

@@ -34,7 +34,7 @@ impl Metadata {
         self.iter().find(|entry| entry.0 == key).map(|entry| entry.1)
     }
 
-    /// Whether there are no entries.
+    /// Returns whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }

@@ -66,7 +66,7 @@ pub(super) fn scatter(job: &Job, work: &mut Workspace, bounce: u32) {
     work.queues.put(MaterialKind::Dielectric, queue);
 }
 
-/// Whether any glass absorbs light.
+/// Returns whether any glass absorbs light.
 fn is_tinted(world: &World) -> bool {
     world.features.colors || world.materials.dielectric.iter().any(|glass| glass.color != Rgb::ONE)
 }

@@ -31,7 +31,7 @@ pub(super) fn outside_ior(world: &World, row: u32, inside: InteriorList<'_>) -> 
     }
 }
 
-/// Whether sphere `a` decides the medium where it overlaps sphere `b`.
+/// Returns whether sphere `a` decides the medium where it overlaps sphere `b`.
 fn precedes(world: &World, a: u32, b: u32) -> bool {
     let key = |row: u32| (world.spheres.radius(row as usize), world.spheres.id[row as usize]);
     key(a) < key(b)

@@ -20,7 +20,7 @@ pub struct MaterialQueue {
     columns: WordColumns<COLUMNS>,
     /// States of the paths.
     pub states: PathStates,
-    /// Whether the surface is hit from inside, a bit per row; always 0 for glass.
+    /// One bit per row, set if the surface is hit from inside; always 0 for glass.
     inside: [u16; ROWS / MAX_LANES],
 }
 

@@ -61,12 +61,12 @@ impl Job<'_> {
         self.settings.depth.unwrap_or(Settings::HARD_DEPTH)
     }
 
-    /// Whether points on the lens are sampled.
+    /// Returns whether points on the lens are sampled.
     pub fn has_lens(&self) -> bool {
         self.world.features.lens || !self.elisions.lens
     }
 
-    /// Whether lights are sampled.
+    /// Returns whether lights are sampled.
     pub fn has_lights(&self) -> bool {
         self.world.features.lights || !self.elisions.lights
     }

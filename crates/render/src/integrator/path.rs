@@ -10,7 +10,6 @@
 
 use super::Job;
 use super::caustics;
-use super::clock::Stage;
 use super::direct_light::sample_direct_light;
 use super::emission;
 use super::glass;
@@ -19,7 +18,6 @@ use super::material_table::gather_bsdfs;
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_active, roulette_threshold, survival_probability};
 use super::shading_row::{ShadingRow, SurfaceRow};
-use super::shadow_queue;
 use super::stages::{self, KindVisitor};
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask};
@@ -43,13 +41,9 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
             &mut Shade { job, work, bounce: Bounce { index: bounce, threshold } },
         );
         caustics::flush(job, work, bounce);
-        shadow_queue::trace_shadow_rays(job, work);
-        work.advance();
-        work.clock.end(Stage::Shade);
-        if work.is_empty() {
+        if !stages::end_bounce(job, work) {
             return;
         }
-        work.counters.bounce_rays += work.len() as u64;
     }
 }
 

@@ -9,7 +9,7 @@ use crate::vec3::Vec3;
 #[derive(Clone, Debug, Default)]
 pub struct PathStates {
     columns: WordColumns<COLUMNS>,
-    /// Whether normals of the last surfaces are stored.
+    /// True if normals of the last surfaces are stored.
     normals: bool,
 }
 

@@ -25,7 +25,7 @@ pub(super) fn survival_probability<L: Lanes>(
     }
 }
 
-/// Whether roulette may end paths at bounce `bounce`.
+/// Returns whether roulette may end paths at bounce `bounce`.
 pub(super) fn roulette_active(roulette: Roulette, bounce: u32) -> bool {
     match roulette {
         Roulette::None => false,

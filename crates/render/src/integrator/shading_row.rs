@@ -94,7 +94,7 @@ pub struct LocalSurface {
     pub basis: Basis,
     /// Local unit vector toward the origin of the ray.
     pub outgoing: glam::Vec3,
-    /// Whether the sphere is hit from inside.
+    /// True if the sphere is hit from inside.
     pub inside: bool,
 }
 

@@ -40,7 +40,7 @@ impl ShadowQueue {
         }
     }
 
-    /// Whether there is room for `count` more rays.
+    /// Returns whether there is room for `count` more rays.
     #[inline]
     pub fn has_room(&self, count: usize) -> bool {
         self.rays.len() + count <= SHADOW_QUEUE_SIZE

@@ -2,6 +2,7 @@
 
 use super::Job;
 use super::clock::Stage;
+use super::shadow_queue;
 use super::surface::compute_surfaces;
 use super::workspace::Workspace;
 use crate::film::View;
@@ -25,6 +26,16 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
     compute_surfaces(job.world, work);
     work.sort(job.world);
     work.clock.end(Stage::Surface);
+}
+
+/// Ends a bounce: traces its shadow rays, and makes the next rays the current ones. Returns whether any
+/// path is alive.
+pub fn end_bounce(job: &Job, work: &mut Workspace) -> bool {
+    shadow_queue::trace_shadow_rays(job, work);
+    work.advance();
+    work.clock.end(Stage::Shade);
+    work.counters.bounce_rays += work.len() as u64;
+    !work.is_empty()
 }
 
 /// A visitor of the kinds of materials.

@@ -22,7 +22,7 @@ pub struct Surface {
     pub normal: Normals,
     /// Normals on the sides that the rays come from, rounded.
     pub facing: Columns3,
-    /// Whether surfaces are hit from inside, a bit per row.
+    /// One bit per row, set if the surface is hit from inside.
     inside: Vec<u8>,
 }
 

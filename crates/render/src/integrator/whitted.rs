@@ -7,7 +7,6 @@
 //! choose one direction at random.
 
 use super::Job;
-use super::clock::Stage;
 use super::glass;
 use super::material_queues::MaterialQueue;
 use super::path_state::PathStateRow;
@@ -43,13 +42,9 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
         glass::scatter(job, work, bounce);
         let shade = Shade { job, bounce, samples, sky, threshold };
         stages::for_each_kind(job.world, &mut ShadeKinds { shade, work });
-        shadow_queue::trace_shadow_rays(job, work);
-        work.advance();
-        work.clock.end(Stage::Shade);
-        if work.is_empty() {
+        if !stages::end_bounce(job, work) {
             return;
         }
-        work.counters.bounce_rays += work.len() as u64;
     }
 }
 

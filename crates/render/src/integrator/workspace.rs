@@ -111,7 +111,7 @@ impl Workspace {
         self.rays.len()
     }
 
-    /// Whether no path is alive.
+    /// Returns whether no path is alive.
     pub fn is_empty(&self) -> bool {
         self.rays.is_empty()
     }
@@ -246,7 +246,7 @@ impl Paths {
         }
     }
 
-    /// Whether paths have interior lists.
+    /// Returns whether paths have interior lists.
     pub fn tracks_interiors(&self) -> bool {
         self.nesting > 0
     }

@@ -118,7 +118,7 @@ impl Layer {
         }
     }
 
-    /// Whether the render computes it: see [`Options::statistics`].
+    /// Returns whether the render computes it: see [`Options::statistics`].
     pub fn is_statistic(self) -> bool {
         matches!(self, Self::Variance | Self::Samples)
     }

@@ -30,7 +30,7 @@ pub(super) struct TileLayers {
     tile: Tile,
     sums: Vec<Sums>,
     samples: u32,
-    /// Whether the ids at the pixels' centers are known.
+    /// True if the ids at the pixels' centers are known.
     centered: bool,
 }
 
@@ -86,7 +86,7 @@ impl ProgressiveLayers {
     }
 }
 
-/// Whether the samples of `a` are among those of `b`.
+/// Returns whether the samples of `a` are among those of `b`.
 fn extends(a: &Settings, b: &Settings) -> bool {
     let strata = a.sampler != SamplerKind::Stratified || a.spp == b.spp;
     (a.sampler, a.seed, a.filter) == (b.sampler, b.seed, b.filter) && a.spp <= b.spp && strata

@@ -83,7 +83,7 @@ pub fn next_round(film: &Film, stop: &StopCondition, slope: Slope, wanted: f64) 
     open
 }
 
-/// Whether a tile can have more samples, and needs them.
+/// Returns whether a tile can have more samples, and needs them.
 fn is_open(tile: &Tile, stop: &StopCondition) -> bool {
     tile.probes.streams() > 0 && tile.samples < stop.spp
 }

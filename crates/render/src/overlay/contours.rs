@@ -45,7 +45,7 @@ impl Overlay<'_> {
     }
 }
 
-/// Whether a line between two pixels is drawn in the first.
+/// Returns whether a line between two pixels is drawn in the first.
 fn nearer(a: &Features, b: &Features) -> bool {
     a.depth <= b.depth
 }

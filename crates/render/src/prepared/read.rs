@@ -56,8 +56,8 @@ impl From<io::Error> for ReadError {
     }
 }
 
-/// Whether a file starts like a prepared scene. False for files that cannot be read; pipes are not
-/// read.
+/// Returns whether a file starts like a prepared scene. False for files that cannot be read; pipes
+/// are not read.
 pub fn is_prepared(path: &Path) -> bool {
     let mut magic = [0; MAGIC.len()];
     let read = |mut file: File| file.read_exact(&mut magic).is_ok();

@@ -45,7 +45,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         scene
     };
     let slice = |mode| Slice { normal: DVec3::X, distance: 0.3, mode };
-    let lamp = Material::Emitter { radiance: Rgb::splat(3.0), albedo: Rgb::ZERO };
+    let emitter = Material::Emitter { radiance: Rgb::splat(3.0), albedo: Rgb::ZERO };
     let image = Image { width: 4, height: 2, pixels: (0..8).map(|i| [i as f32; 3]).collect() };
     let map = EnvironmentMap::Picture {
         image: Arc::new(image),
@@ -67,9 +67,11 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         ("removed", with(&|scene| scene.slices.push(slice(SliceMode::Remove)))),
         ("vanished", with(&|scene| scene.spheres.radius[5] = 1e-60)),
         (
-            "lamps",
+            "emitters",
             with(&|scene| {
-                scene.materials.push(NamedMaterial { name: "lamp".into(), material: lamp.clone() });
+                scene
+                    .materials
+                    .push(NamedMaterial { name: "emitter".into(), material: emitter.clone() });
                 let row = scene.materials.len() as u32 - 1;
                 scene.spheres.material.iter_mut().step_by(9).for_each(|material| *material = row);
             }),
@@ -144,7 +146,7 @@ fn pictures_of_other_sizes_are_those_of_the_scene() {
 
 #[test]
 fn settings_of_lights_are_the_new_ones() {
-    let scene = scenes().into_iter().find(|(name, _)| *name == "lamps").expect("it is there").1;
+    let scene = scenes().into_iter().find(|(name, _)| *name == "emitters").expect("it is there").1;
     let saved = save(&scene, Builder::default());
     let mut changed = scene.clone();
     for choice in [LightChoice::Power, LightChoice::Tree] {

@@ -46,11 +46,7 @@ pub fn write(
     let head = postcard::to_stdvec(&(PROGRAM, ORDER.to_ne_bytes(), head));
     let head = head.map_err(io::Error::other)?;
     write_atomically(path, |writer| {
-        let mut file = HashingWriter::new(writer);
-        file.write_all(&MAGIC)?;
-        file.write_all(&FORMAT.to_le_bytes())?;
-        file.write_all(&(head.len() as u64).to_le_bytes())?;
-        file.write_all(&head)?;
+        let mut file = HashingWriter::begin(writer, &MAGIC, FORMAT, &head)?;
         write_columns(&mut file, scene, world)?;
         file.finish()
     })?;

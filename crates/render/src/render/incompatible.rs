@@ -28,7 +28,7 @@ pub enum IncompatibleSettings {
     Target {
         /// By the name that scene files use.
         name: &'static str,
-        /// Whether there was one.
+        /// True if the render began with it.
         then: bool,
     },
     /// A target asks for less than before.

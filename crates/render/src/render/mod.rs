@@ -59,7 +59,7 @@ pub struct Options<'a> {
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Set this to end the render early, with the samples so far.
     pub cancel: Option<&'a AtomicBool>,
-    /// Whether [`Render::statistics`] are computed, which needs probes and so takes time.
+    /// True if [`Render::statistics`] are computed, which needs probes and so takes time.
     pub statistics: bool,
     /// Work that may be omitted without changing the image; the default is all.
     pub elisions: Elisions,
@@ -101,7 +101,7 @@ pub struct Render {
     pub end: End,
     /// Stop conditions in the order in which they are met: several if the render was extended.
     pub stop_conditions: Vec<StopCondition>,
-    /// Whether all samples were taken: otherwise the render was cancelled.
+    /// True if all samples were taken: otherwise the render was cancelled.
     pub complete: bool,
 }
 

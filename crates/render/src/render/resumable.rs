@@ -42,7 +42,7 @@ pub struct ResumableRender {
     pub(super) stop_conditions: Vec<StopCondition>,
     /// Number of targets that were reached.
     pub(super) met: usize,
-    /// Whether sums of squares are kept.
+    /// True if sums of squares are kept.
     pub(super) statistics: bool,
     /// The part of the image to render.
     pub(super) part: ImagePart,
@@ -197,12 +197,12 @@ impl ResumableRender {
         &self.part
     }
 
-    /// Whether that part is the whole image.
+    /// Returns whether the part is the whole image.
     pub fn is_whole(&self) -> bool {
         self.part == ImagePart::whole(self.region(), self.settings.spp)
     }
 
-    /// Whether all targets or the time limit were reached.
+    /// Returns whether all targets or the time limit were reached.
     pub fn is_complete(&self) -> bool {
         self.end != End::Cancelled
     }
@@ -235,7 +235,7 @@ impl ResumableRender {
         self.state.film.region
     }
 
-    /// Whether [`Render::statistics`] are computed.
+    /// Returns whether [`Render::statistics`] are computed.
     pub fn statistics(&self) -> bool {
         self.statistics
     }

@@ -122,7 +122,7 @@ impl State {
 }
 
 impl Step {
-    /// Whether the tile and its probes have the samples of this step.
+    /// Returns whether the tile and its probes have the samples of this step.
     fn is_done(self, tile: &Tile) -> bool {
         let probed = tile.probes.streams() == 0 || tile.probes.samples >= self.samples;
         probed && tile.samples >= self.samples

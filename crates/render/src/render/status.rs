@@ -14,13 +14,13 @@ pub struct Status {
     pub region: Region,
     /// The samples and tiles of this file's part.
     pub part: ImagePart,
-    /// Whether sums of squares are kept.
+    /// True if sums of squares are kept.
     pub statistics: bool,
     /// Samples so far, of all pixels.
     pub samples: u64,
     /// Samples of the complete part; an upper limit if the render has a target.
     pub wanted: u64,
-    /// Whether the part is complete.
+    /// True if the part is complete.
     pub complete: bool,
     /// Rendering time, without reading the scene and building the tree.
     pub elapsed: Duration,

@@ -62,7 +62,7 @@ impl<'a> Watch<'a> {
         self.before + self.start.elapsed()
     }
 
-    /// Whether the render is to be cancelled.
+    /// Returns whether the render is to be cancelled.
     pub(super) fn cancelled(&self) -> bool {
         self.options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }

@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_entry_passes_the_draw_on() {
+    fn a_single_entry_returns_the_random_number_unchanged() {
         let distribution = Distribution::uniform(1).expect("there is one");
         for u in [0.0, 0.25, ONE_BELOW] {
             assert_eq!(distribution.sample(u), Choice { index: 0, pmf: 1.0, remainder: u });

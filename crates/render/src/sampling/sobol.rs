@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn dimensions_end() {
+    fn dimensions_are_limited() {
         let (sobol, zero) = (Sobol::new(), U32x16::splat(0));
         assert_eq!(sobol.draw4(shuffle(0, 0), NUM_DIMENSION_SETS_4D, 0), None);
         assert!(sobol.draw4_row(zero, NUM_DIMENSION_SETS_4D, zero).is_none());

@@ -48,7 +48,7 @@ pub struct Footprint {
     pub spheres: u64,
     /// Storage of colors of single spheres.
     pub colors: ColorColumn,
-    /// Whether spheres have different materials.
+    /// True if spheres have different materials.
     pub materials: bool,
     /// Spheres that emit light.
     pub emitters: u64,
@@ -192,8 +192,8 @@ mod tests {
     fn only_emissive_spheres_take_the_memory_of_lights() {
         let mut scene = Scene::default();
         let white = Material::Lambertian { color: Rgb::ONE };
-        let lamp = Material::Emitter { radiance: Rgb::ONE, albedo: Rgb::ZERO };
-        scene.materials = [("white", white), ("lamp", lamp)]
+        let emitter = Material::Emitter { radiance: Rgb::ONE, albedo: Rgb::ZERO };
+        scene.materials = [("white", white), ("emitter", emitter)]
             .map(|(name, material)| NamedMaterial { name: name.into(), material })
             .into();
         for index in 0..1000 {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// single precision.
 pub const BRIGHTEST: f32 = 1e30;
 
-/// Whether a value of a picture, finite and 0 or more, is a valid radiance after scaling.
+/// Returns whether a value of a picture, finite and 0 or more, is a valid radiance after scaling.
 pub(crate) fn is_radiance(value: f32, scale: f32) -> bool {
     value >= 0.0 && value * scale <= BRIGHTEST
 }
@@ -44,7 +44,7 @@ pub enum Light {
 pub struct Environment {
     /// Radiance by direction, at most [`BRIGHTEST`].
     pub map: EnvironmentMap,
-    /// Whether it lights the scene, or is only a backdrop for the camera, mirrors and glass.
+    /// True if it lights the scene; otherwise it is only a backdrop for the camera, mirrors and glass.
     pub illuminates: bool,
 }
 

@@ -15,9 +15,9 @@ const DARK: f32 = 0.2;
 pub struct Look {
     /// Replaces the environment where the camera sees it; the scene's lighting does not change.
     pub background: Background,
-    /// Whether far objects fade into the background, or into white if it has no color.
+    /// True if far objects fade into the background, or into white if it has no color.
     pub depth_cue: bool,
-    /// Whether lines are drawn at the silhouettes of spheres.
+    /// True if lines are drawn at the silhouettes of spheres.
     pub outline: bool,
     /// A cell whose edges are drawn, hidden behind nearer spheres; its periodicity does not matter.
     pub cell: Option<Cell>,
@@ -37,12 +37,12 @@ pub enum Background {
 }
 
 impl Look {
-    /// Whether nothing is drawn.
+    /// Returns whether nothing is drawn.
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether pictures have alpha.
+    /// Returns whether pictures have alpha.
     pub fn is_transparent(&self) -> bool {
         self.background == Background::Transparent
     }

@@ -38,7 +38,7 @@ impl Spheres {
         self.radius.len()
     }
 
-    /// Whether there are no spheres.
+    /// Returns whether there are no spheres.
     pub fn is_empty(&self) -> bool {
         self.radius.is_empty()
     }

@@ -22,7 +22,7 @@ pub enum Limits {
 }
 
 impl Limits {
-    /// Whether the number is accepted.
+    /// Returns whether the number is accepted.
     pub fn contain(self, number: f64) -> bool {
         number.is_finite()
             && match self {

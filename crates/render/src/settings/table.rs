@@ -440,7 +440,7 @@ impl Setting {
 }
 
 impl Kind {
-    /// Whether the value is in range.
+    /// Returns whether the value is in range.
     pub fn contains(&self, value: Value) -> bool {
         match (*self, value) {
             (_, Value::None) | (Self::Choice(_), Value::Word(_)) | (Self::Flag, Value::Flag(_)) => {
@@ -480,8 +480,7 @@ impl Kind {
                 format!("an integer from {least} to {greatest}{words}")
             }
             Self::Number { limits, words, .. } => {
-                // Scene files have no infinite numbers: the key is left out.
-                let words = if words == ["inf"] { String::new() } else { or(words) };
+                let words = or(words);
                 format!("{}{words}", limits.describe())
             }
             Self::Error => Limits::AboveTo(0.0, 1.0).describe(),
@@ -580,7 +579,7 @@ pub fn manual() -> String {
             all_parameters.integrator = Value::Word(integrator).named(&INTEGRATORS);
         }
         let default = match setting.get(&all_parameters) {
-            Value::None | Value::Word("inf") => "none".to_owned(),
+            Value::None => "none".to_owned(),
             Value::Word(word) => format!("`\"{word}\"`"),
             Value::Whole(16) if *name == "spp" => {
                 format!("16; {} if an error or a time stops the render", Settings::HARD_SAMPLES)
@@ -619,7 +618,7 @@ mod tests {
     }
 
     #[test]
-    fn every_row_sets_what_it_gets() {
+    fn every_row_reads_back_what_it_sets() {
         let names: HashSet<_> = SETTINGS.iter().map(|setting| setting.name).collect();
         assert_eq!(names.len(), SETTINGS.len());
         for setting in SETTINGS {

@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn rough_metal_samples_what_it_reflects() {
+    fn rough_metal_samples_match_its_albedo() {
         for roughness in [0.1, 0.5, 1.0] {
             let outgoing = Vec3::new(0.6, 0.0, 0.8);
             samples_match_density(&rough(roughness), outgoing);

@@ -35,7 +35,7 @@ pub struct Interface<D> {
 pub struct RefractedRay<D: Doubles> {
     /// Direction of the ray, a unit vector.
     pub direction: Vec3<D>,
-    /// Whether the ray is inside the sphere.
+    /// True where the ray is inside the sphere.
     pub inward: D::Mask,
 }
 
@@ -92,7 +92,7 @@ mod tests {
     use crate::shade::tests::numbers;
     use glam::DVec3;
 
-    fn meet(direction: DVec3, normal: DVec3, eta: f64, choice: f64) -> (DVec3, bool) {
+    fn refract_or_reflect(direction: DVec3, normal: DVec3, eta: f64, choice: f64) -> (DVec3, bool) {
         let (sent, through) = refract(direction.into(), normal.into(), eta, choice);
         (DVec3::new(sent.x, sent.y, sent.z), through)
     }
@@ -104,14 +104,14 @@ mod tests {
             let (sin, cos) = f64::to_radians(degrees).sin_cos();
             let direction = DVec3::new(sin, 0.0, -cos);
             // A choice of 1 reflects only by total internal reflection.
-            let (refracted, through) = meet(direction, normal, 1.0 / 1.5, 1.0);
+            let (refracted, through) = refract_or_reflect(direction, normal, 1.0 / 1.5, 1.0);
             assert!(through && refracted.y == 0.0 && refracted.z < 0.0);
             assert!((refracted.x * 1.5 - sin).abs() < 1e-14);
-            let (reflected, through) = meet(direction, normal, 1.0 / 1.5, 0.0);
+            let (reflected, through) = refract_or_reflect(direction, normal, 1.0 / 1.5, 0.0);
             assert!(!through && (reflected - DVec3::new(sin, 0.0, cos)).length() < 1e-14);
         }
         let grazing = DVec3::new(0.9, 0.0, -(1.0_f64 - 0.81).sqrt());
-        assert!(!meet(grazing, normal, 1.5, 0.999_999).1, "total reflection");
+        assert!(!refract_or_reflect(grazing, normal, 1.5, 0.999_999).1, "total reflection");
     }
 
     #[test]

@@ -71,7 +71,7 @@ mod tests {
 
     /// Computed from the equations with 50 digits.
     #[test]
-    fn glass_reflects_what_the_equations_say() {
+    fn glass_reflects_as_by_the_fresnel_equations() {
         let known = [
             (0.0, 0.04),
             (30.0, 0.041_522_626_0),
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_critical_angle_all_is_reflected() {
+    fn reflection_is_total_beyond_the_critical_angle() {
         let critical = (1.0 / 1.5_f64).asin();
         assert_eq!(dielectric((critical + 1e-3).cos(), 1.5), (1.0, 0.0));
         assert!(dielectric((critical - 1e-3).cos(), 1.5).0 < 1.0);

@@ -123,7 +123,7 @@ impl Materials {
         tables
     }
 
-    /// The color by which a material is told from others, each channel 0..=1: the diffuse color, a
+    /// The color that distinguishes a material from others, each channel 0..=1: the diffuse color, a
     /// metal's reflectance from above, what glass lets through, an emitter's radiance up to 1.
     pub fn albedo(&self, id: MaterialId) -> Rgb {
         match id.kind() {

@@ -25,12 +25,12 @@ use bytemuck::Pod;
 
 /// An opaque material.
 pub trait Material: Copy {
-    /// Whether the material is so diffuse that light samples alone are best for lights that are not
+    /// True if the material is so diffuse that light samples alone are best for lights that are not
     /// close.
     const DIFFUSE: bool;
 
-    /// Whether the material is a diffuse base with a mirror component, so that light samples find all
-    /// but mirrored light; otherwise the BSDF must be sampled.
+    /// True if the material is a diffuse base with a mirror component, so that light samples find
+    /// all but mirrored light; otherwise the BSDF must be sampled.
     const HAS_DIFFUSE_BASE: bool;
 
     /// The parameters of the BSDF, a `#[repr(C)]` struct of `f32` and [`Rgb`].

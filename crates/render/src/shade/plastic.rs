@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_white_base_loses_nothing() {
+    fn a_white_base_conserves_energy() {
         for outgoing in [Vec3::Z, Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.995, 0.0, 0.1).normalize()]
         {
             let (albedo, error) = albedo_by_sampling(&plastic(1.0), outgoing);

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_add_up() {
+    fn lobes_add_up() {
         let bsdf = Reflective { color: Rgb::splat(0.9), diffuse: 0.5, mirror: 0.3 };
         let outgoing = Vec3::new(0.6, 0.0, 0.8);
         samples_match_density(&bsdf, outgoing);

@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_within_others_leave_nothing_missing() {
+    fn contained_parts_leave_nothing_missing() {
         let whole = part(0..16, 0..10);
         let parts = [part(0..10, 0..10), part(2..4, 0..10), part(12..16, 0..10)];
         assert_eq!(uncovered_parts(&whole, &parts), [part(10..12, 0..10)]);

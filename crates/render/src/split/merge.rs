@@ -11,7 +11,7 @@ const MAX_LISTED: usize = 8;
 /// A merge of the parts of a render, in any order.
 #[derive(Debug, Default)]
 pub struct Merge {
-    /// Whether parts may be missing.
+    /// True if parts may be missing.
     partial: bool,
     scene: Option<Identity>,
     names: Vec<String>,

@@ -153,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_colors_take_a_byte_and_all_stay_what_they_are() {
+    fn few_colors_take_a_byte_and_all_are_preserved() {
         for (count, each) in [(1, 1), (256, 1), (257, 12)] {
             let own: Vec<Rgb> =
                 (0..1000).map(|row| Rgb::new(0.1, (row % count) as f32 / 300.0, 1.0)).collect();

@@ -53,12 +53,12 @@ impl Camera {
         }
     }
 
-    /// Whether rays start on a lens: otherwise the lens's two dimensions are not sampled.
+    /// Returns whether rays start on a lens: otherwise the lens's two dimensions are not sampled.
     pub fn has_lens(&self) -> bool {
         self.lens_radius > 0.0
     }
 
-    /// Whether rays are parallel, except for the lens.
+    /// Returns whether rays are parallel, except for the lens.
     pub fn is_orthographic(&self) -> bool {
         self.orthographic
     }

@@ -23,24 +23,24 @@ pub struct Features {
     pub cut_away: u64,
     /// Planes that cut spheres.
     pub cuts: u64,
-    /// Whether the camera may be inside a sphere that is cut; determined only if there are cuts.
+    /// True if the camera may be inside a sphere that is cut; determined only if there are cuts.
     pub around_camera: bool,
     /// Spheres that are hidden from the camera.
     pub unseen: u64,
     /// The ground's kind of material; `None` if there is no ground, and rays are not tested against it.
     pub ground_kind: Option<MaterialKind>,
-    /// Whether spheres have their own colors.
+    /// True if spheres have their own colors.
     pub colors: bool,
-    /// Whether there are lights to sample: otherwise there are no shadow rays.
+    /// True if there are lights to sample: otherwise there are no shadow rays.
     pub lights: bool,
-    /// Whether rays start on a lens.
+    /// True if rays start on a lens.
     pub lens: bool,
-    /// Whether rays that leave the scene find any light.
+    /// True if rays that leave the scene find any light.
     pub environment: bool,
     /// Glass spheres in which a camera ray may start; if there are none, every ray starts outside.
     pub glass_at_camera: Vec<u32>,
-    /// Whether a ray may be in more than one glass sphere at a time, because some may touch, overlap or
-    /// contain each other.
+    /// True if a ray may be in more than one glass sphere at a time, because some may touch,
+    /// overlap or contain each other.
     pub nested_glass: bool,
 }
 
@@ -84,7 +84,7 @@ impl Features {
         }
     }
 
-    /// Whether anything has this kind of material.
+    /// Returns whether anything has this kind of material.
     pub fn has(&self, kind: MaterialKind) -> bool {
         self.spheres_by_kind[kind as usize] > 0 || self.ground_kind == Some(kind)
     }
@@ -115,7 +115,7 @@ impl Features {
     }
 }
 
-/// Whether a cut sphere overlaps the sphere that contains the camera rays' origins.
+/// Returns whether a cut sphere overlaps the sphere that contains the camera rays' origins.
 fn around_camera(world: &World) -> bool {
     let (at, reach) = world.camera.origins();
     let around = |row: usize| {
@@ -129,7 +129,8 @@ fn around_camera(world: &World) -> bool {
 /// Maximum number of glass spheres that are tested in pairs; more count as touching.
 const MAX_TESTED: usize = 1024;
 
-/// Whether glass spheres may touch, with a tolerance far above the rounding of surface points.
+/// Returns whether glass spheres may touch, with a tolerance far above the rounding of surface
+/// points.
 fn nested_glass(world: &World) -> bool {
     let is_glass =
         |row: &usize| world.appearance.material.row(*row).kind() == MaterialKind::Dielectric;
@@ -172,8 +173,8 @@ mod tests {
     use super::*;
     use crate::scene::{Material, NamedMaterial, Rgb, Scene};
 
-    /// Whether glass may be nested, for glass spheres along an axis, and one of another material in the
-    /// first.
+    /// Returns whether glass may be nested, for glass spheres along an axis, and one of another
+    /// material in the first.
     fn nested(spheres: &[(f64, f64)]) -> bool {
         let mut scene = Scene::default();
         let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };

@@ -42,7 +42,7 @@ pub struct Span {
 impl Span {
     const WHOLE: Self = Self { from: 0.0, to: f64::INFINITY, entry: None, exit: None };
 
-    /// Whether nothing is kept.
+    /// Returns whether nothing is kept.
     pub fn is_empty(&self) -> bool {
         self.from >= self.to
     }
@@ -87,13 +87,13 @@ impl Cut {
         self.planes.len()
     }
 
-    /// Whether no sphere is cut.
+    /// Returns whether no sphere is cut.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.planes.is_empty()
     }
 
-    /// Whether a plane cuts a sphere.
+    /// Returns whether a plane cuts a sphere.
     pub fn divides(&self, center: DVec3, radius: f64) -> bool {
         self.planes.iter().any(|plane| (plane.normal.dot(center) - plane.height).abs() < radius)
     }

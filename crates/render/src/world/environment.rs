@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub struct Environment {
     /// Radiance by direction.
     pub radiance: Radiance,
-    /// Whether it lights diffuse surfaces: otherwise it is a backdrop for the camera, mirrors and
+    /// True if it lights diffuse surfaces: otherwise it is a backdrop for the camera, mirrors and
     /// glass.
     pub illuminates: bool,
 }
@@ -95,7 +95,7 @@ impl Environment {
         }
     }
 
-    /// Whether all directions are black.
+    /// Returns whether all directions are black.
     pub fn is_black(&self) -> bool {
         match &self.radiance {
             Radiance::Constant(color) => *color == Rgb::ZERO,

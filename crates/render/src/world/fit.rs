@@ -85,7 +85,7 @@ pub(super) fn pose(scene: &Scene) -> Result<Placement, WorldError> {
     Err(camera_error(placement.eye, "its distances overflow; scale the scene down"))
 }
 
-/// Whether there is nothing to frame.
+/// Returns whether there is nothing to frame.
 fn is_empty(scene: &Scene) -> bool {
     scene.shown().next().is_none()
 }

@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn points_are_framed_and_leave_no_spheres() {
+    fn points_are_framed_without_adding_spheres() {
         for projection in
             [Projection::Perspective { fov: 30.0 }, Projection::Orthographic { height: None }]
         {
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn every_picture_of_a_turn_shows_all_from_one_distance() {
+    fn every_image_of_a_turntable_shows_all_from_one_distance() {
         for projection in
             [Projection::Perspective { fov: 50.0 }, Projection::Orthographic { height: None }]
         {

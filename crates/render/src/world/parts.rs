@@ -79,7 +79,7 @@ impl Parts {
         Ok(free)
     }
 
-    /// Whether spheres and camera have finite coordinates.
+    /// Returns whether spheres and camera have finite coordinates.
     pub(crate) fn is_finite(&self) -> bool {
         let Placement { eye, axes, half_height, half_width, distance, reach } = self.placement;
         let vectors = [eye, axes.right, axes.up, axes.forward];

@@ -15,7 +15,8 @@ pub(super) struct WorldSpheres<'s> {
     pub(super) appearance: SceneAppearance<'s>,
     /// Number of spheres that slices do not remove.
     pub(super) shown: usize,
-    /// Whether each of the user's spheres is hidden from the camera; empty if none is.
+    /// One flag for each of the user's spheres, true if the camera does not see it; empty if all
+    /// are visible.
     pub(super) hidden: Vec<bool>,
 }
 

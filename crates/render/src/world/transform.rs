@@ -46,9 +46,9 @@ impl Transform {
         Self { scale: if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }, ..self }
     }
 
-    /// Whether a world with this transform is valid for another camera: the camera's own transform
-    /// differs only by a power of two; in both, the spheres are large enough for equal rounding to
-    /// single precision, and the camera is near enough for the conservative test.
+    /// Returns whether a world with this transform is valid for another camera: the camera's own
+    /// transform differs only by a power of two; in both, the spheres are large enough for equal
+    /// rounding to single precision, and the camera is near enough for the conservative test.
     pub(super) fn suits(&self, camera: &Placement) -> bool {
         let own = self.with_camera(camera);
         let near = |transform: &Self| transform.reach > 0.0 && transform.extent() >= MIN_EXTENT;
@@ -62,7 +62,7 @@ impl Transform {
         if self.reach > 0.0 && extent > 0.0 { extent } else { 1.0 }
     }
 
-    /// Whether finite points are mapped to finite points.
+    /// Returns whether finite points are mapped to finite points.
     pub(super) fn is_finite(&self) -> bool {
         let scale = self.scale > 0.0 && self.scale < f64::INFINITY;
         scale && self.shift.is_finite() && self.reach.is_finite()
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn cameras_that_are_not_too_far_away_share_a_frame() {
+    fn cameras_that_are_not_too_far_away_share_a_transform() {
         let transform =
             transform(&[[0.2, 0.1, 0.0], [-3.0, 1.0, 2.0], [1.0, -1.0, 0.5]], &[1.0, 1.0, 0.5]);
         let suits = |x: f64| {
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_giant_sphere_does_not_move_the_middle() {
+    fn a_giant_sphere_does_not_move_the_origin() {
         let transform = transform(
             &[[0.0, -1e7, 0.0], [0.0, 0.1, 0.0], [0.3, 0.1, 0.1], [0.6, 0.1, 0.0]],
             &[1e7, 0.1, 0.1, 0.1],

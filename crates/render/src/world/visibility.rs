@@ -67,7 +67,7 @@ impl World {
         (0..self.spheres.len()).into_par_iter().filter(outside).count() as u64
     }
 
-    /// Whether the ground is between a sphere and a pinhole camera in perspective.
+    /// Returns whether the ground is between a sphere and a pinhole camera in perspective.
     fn is_under_ground(&self, center: glam::DVec3, radius: f64) -> bool {
         let opaque = self.features.ground_kind.is_some_and(|kind| kind != MaterialKind::Dielectric);
         let Some(ground) = self.ground.filter(|_| opaque) else { return false };

@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn names_have_digits_enough() {
+    fn names_have_enough_digits() {
         let range = FrameRange { first: 0, last: None, step: 1 };
         let digits = |turn| plan(range, 9, turn).digits();
         assert_eq!(
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_are_mended() {
+    fn valid_ranges_are_suggested() {
         let range = |first, last, step| FrameRange { first, last, step };
         assert_eq!(
             missing(range(15, Some(40), 1), 20).unwrap(),

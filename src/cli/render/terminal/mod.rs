@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn every_picture_takes_the_place_of_the_last() {
+    fn every_picture_replaces_the_previous_one() {
         let image = Image::filled(40, 24, [0.5; 3]).expect("a picture");
         let blocks = Protocol::Blocks { true_color: true };
         for protocol in [Protocol::Kitty, Protocol::Iterm, Protocol::Sixels, blocks] {

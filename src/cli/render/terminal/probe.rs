@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn protocols_are_told_by_answers_and_names() {
+    fn protocols_are_detected_by_answers_and_names() {
         let (few, many) =
             (Protocol::Blocks { true_color: false }, Protocol::Blocks { true_color: true });
         let wezterm = ("TERM_PROGRAM", "WezTerm");

@@ -22,7 +22,7 @@ fn near(a: DVec2, b: DVec2) -> bool {
 }
 
 #[test]
-fn turning_keeps_the_pivot_in_its_place_and_the_horizon_level() {
+fn orbiting_keeps_the_pivot_fixed_and_the_horizon_level() {
     for pivot in [DVec3::new(1.0, 0.0, 0.5), DVec3::new(2.0, 1.5, -1.0)] {
         let mut control = control();
         control.set_pivot(pivot);
@@ -37,7 +37,7 @@ fn turning_keeps_the_pivot_in_its_place_and_the_horizon_level() {
 }
 
 #[test]
-fn what_is_dragged_goes_with_the_pointer() {
+fn panning_follows_the_pointer() {
     let mut control = control();
     let start = DVec2::new(0.2, -0.1);
     let (origin, direction) = control.ray(start);
@@ -48,7 +48,7 @@ fn what_is_dragged_goes_with_the_pointer() {
 }
 
 #[test]
-fn zooming_keeps_what_is_at_the_pointer() {
+fn zooming_keeps_the_point_at_the_pointer() {
     let mut perspective = control();
     let mut parallel = control();
     parallel.toggle_projection();
@@ -69,7 +69,7 @@ fn zooming_keeps_what_is_at_the_pointer() {
 }
 
 #[test]
-fn a_projection_and_back_is_the_same_picture() {
+fn toggling_the_projection_twice_changes_nothing() {
     let mut control = control();
     let (before, height) = (place(&control, DVec3::new(1.0, 0.0, 0.5)), control.height());
     control.toggle_projection();
@@ -80,7 +80,7 @@ fn a_projection_and_back_is_the_same_picture() {
 }
 
 #[test]
-fn rolling_turns_the_picture_and_turning_keeps_the_roll() {
+fn rolling_turns_the_picture_and_orbiting_keeps_the_roll() {
     let mut control = control();
     let right = control.axes().right;
     control.roll(0.5);

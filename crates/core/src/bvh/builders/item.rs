@@ -33,8 +33,8 @@ impl Item {
     }
 }
 
-/// The order on an axis. What is equal there is told apart by all else, at last by the user's order,
-/// which so counts for nothing but spheres that coincide.
+/// The order on an axis. Ties are broken by the other coordinates, then by the user's order, which so
+/// matters only for spheres that coincide.
 #[inline(always)]
 pub(super) fn along(axis: usize, a: &Item, b: &Item) -> Ordering {
     let on = |axis: usize| a.sphere[axis].total_cmp(&b.sphere[axis]);

@@ -74,7 +74,7 @@ trait Cut: Sync {
     /// The cut that is used where the tree would become too deep.
     fn median(&self) -> &Median;
 
-    /// Whether [`Cut::finish`] makes all that is below so many items.
+    /// Returns whether [`Cut::finish`] builds the subtree over this number of items.
     fn finishes(&self, _items: usize) -> bool {
         false
     }
@@ -161,7 +161,7 @@ fn leave_out_hidden(items: &mut Vec<Item>, precise: &Precise) {
 /// The tree while it is binary.
 struct Binary {
     branches: Vec<Branch>,
-    /// Whether there are crowds of equal centers.
+    /// True if there are crowds of equal centers.
     crowded: bool,
 }
 
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_renders_get_the_best_tree_and_short_ones_the_first() {
+    fn the_number_of_rays_chooses_the_builder() {
         assert_eq!(Builder::for_rays(400, 960 * 540 * 16), Builder::SurfaceArea);
         assert_eq!(Builder::for_rays(10_000_000, 960 * 540), Builder::Morton);
         assert_eq!(Builder::for_rays(10_000_000, 1 << 36), Builder::SurfaceArea);

@@ -187,7 +187,7 @@ mod tests {
     use crate::random::numbered;
 
     #[test]
-    fn spheres_come_as_they_lie_on_the_curve() {
+    fn spheres_are_sorted_by_morton_code() {
         // All over the curve, most of them on one stretch, all at one place.
         for power in [1, 9, 200] {
             let number = |i, axis| numbered(i, axis).powi(power);

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_on_an_axis_come_first() {
+    fn the_lowest_on_an_axis_come_first() {
         let values: [(&str, Values); 5] = [
             ("even", |u| u),
             ("skewed", |u| (-200.0 * u).exp()),

@@ -15,8 +15,8 @@ pub(super) struct Variant {
     pub(super) name: &'static str,
     /// Changes the settings.
     pub(super) change: fn(&mut Settings, &mut Tracer),
-    /// Whether to sample adaptively until the image has the first variant's error, instead of taking
-    /// equally many samples of every pixel.
+    /// True to sample adaptively until the image has the first variant's error, instead of
+    /// taking equally many samples of every pixel.
     pub(super) adaptive: bool,
 }
 

@@ -11,7 +11,7 @@ use spherule_render::ray::{Hits, Rays};
 pub(super) struct Variant {
     pub(super) name: &'static str,
     pub(super) tracer: Tracer,
-    /// Whether hits are verified, not accepted from the single-precision test.
+    /// True if hits are verified, not accepted from the single-precision test.
     pub(super) exact: bool,
 }
 

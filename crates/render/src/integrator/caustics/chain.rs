@@ -16,7 +16,7 @@ pub(super) struct SpecularChain {
     pdf: f32,
     /// The only sphere of the chain; [`MISS`] if there is none, or more than one.
     sphere: u32,
-    /// Whether the path is, or was, inside the sphere.
+    /// True if the path is, or was, inside the sphere.
     inside: bool,
 }
 

@@ -105,7 +105,7 @@ impl FirstSegments {
         }
     }
 
-    /// Whether there is room for another row.
+    /// Returns whether there is room for another row.
     pub(super) fn has_room(&self) -> bool {
         self.second.len() + MAX_LANES <= SHADOW_QUEUE_SIZE
     }

@@ -102,7 +102,7 @@ impl<'a> Block<'a> {
         self.source.error(self.span.clone(), message)
     }
 
-    /// Whether the key exists.
+    /// Returns whether the key exists.
     pub(super) fn has(&self, name: &str) -> bool {
         self.entry(name).is_some()
     }

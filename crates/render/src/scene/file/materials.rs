@@ -45,7 +45,7 @@ impl Materials {
         suggest::help(name, self.rows.iter().map(|row| row.name.as_str()), "the scene's materials")
     }
 
-    /// Whether the material of a row emits light; one that is not added yet does not.
+    /// Returns whether the material of a row emits light; one that is not added yet does not.
     pub(super) fn emits(&self, row: u32) -> bool {
         let named = self.rows.get(row as usize).map(|named| &named.material);
         matches!(named, Some(Material::Emitter { .. }))

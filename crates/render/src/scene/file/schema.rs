@@ -230,7 +230,7 @@ mod tests {
     ];
 
     #[test]
-    fn keys_speak_of_kinds_that_exist() {
+    fn keys_refer_to_existing_kinds() {
         for schema in ALL {
             for (key, kinds) in schema.keys {
                 let known = kinds.iter().all(|kind| schema.kinds.contains(kind));
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn the_manual_speaks_of_every_key_and_kind() {
+    fn the_manual_mentions_every_key_and_kind() {
         let manual = include_str!("../../../../../scenes/README.md");
         for schema in ALL {
             let heading = match schema.section.strip_prefix('[') {

@@ -246,11 +246,11 @@ fn the_environment_is_white_only_without_lights() {
         EnvironmentMap::Constant(color) => color,
         other => panic!("{other:?}"),
     };
-    let lamp = "[material.lamp]\nkind = \"emitter\"\nradiance = 1\n";
+    let emitter = "[material.glow]\nkind = \"emitter\"\nradiance = 1\n";
     let sphere = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
     assert_eq!(sky(""), Rgb::ONE);
-    assert_eq!(sky(lamp), Rgb::ONE);
-    assert_eq!(sky(&[lamp, sphere, "material = \"lamp\"\n"].concat()), Rgb::ZERO);
+    assert_eq!(sky(emitter), Rgb::ONE);
+    assert_eq!(sky(&[emitter, sphere, "material = \"glow\"\n"].concat()), Rgb::ZERO);
     assert_eq!(
         sky("[[light]]\nkind = \"sun\"\ndirection = [0, 1, 0]\nirradiance = 1\n"),
         Rgb::ZERO

@@ -13,7 +13,7 @@ pub struct Field {
     pub count: u64,
     /// Least and greatest radius, more than 0 and at most 0.5; uniform between them.
     pub radius: [f64; 2],
-    /// Whether each sphere has its own color; glass stays clear.
+    /// True if each sphere has its own color; glass stays clear.
     pub colors: bool,
     /// Fractions of diffuse, metal and glass spheres, 0 or more and not all 0; only their ratios count.
     /// Their materials are called `diffuse`, `metal` and `glass`. `None`: one material that the scene

@@ -16,7 +16,7 @@ pub struct Volume {
     /// Least and greatest radius, more than 0; uniform between them. `None` is 0.2 to 0.4 of the mean
     /// spacing.
     pub radius: Option<[f64; 2]>,
-    /// Whether each sphere has its own color.
+    /// True if each sphere has its own color.
     pub colors: bool,
 }
 

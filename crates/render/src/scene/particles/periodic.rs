@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_hold_the_corners_and_no_more() {
+    fn bounds_are_those_of_the_corners() {
         let [low, high] = tilted().bounds();
         assert_eq!(low, DVec3::new(-3.0, 2.0, 5.0));
         assert_eq!(high, DVec3::new(4.0, 5.5, 11.0));

@@ -14,7 +14,7 @@ const DEFAULT_RADIUS: f64 = 1.7;
 /// Radii of all rows.
 pub(super) struct FoundRadii {
     pub(super) radius: Vec<f64>,
-    /// Whether they are all 1 for now, to be guessed from the rows that are drawn.
+    /// True if they are all 1 for now, to be guessed from the rows that are drawn.
     pub(super) guessed: bool,
 }
 

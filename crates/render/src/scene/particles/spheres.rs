@@ -48,8 +48,8 @@ pub struct Particles {
 }
 
 impl Particles {
-    /// Whether particles can be colored by a column of this name: one that was kept, one with a role,
-    /// or one that all particles have.
+    /// Returns whether particles can be colored by a column of this name: one that was kept, one
+    /// with a role, or one that all particles have.
     pub fn can_color_by(&self, name: &str) -> bool {
         [ID, INDEX].contains(&name)
             || Column::find(self, name).is_some_and(|column| column.has_values())

@@ -49,7 +49,7 @@ impl Slice {
         self.normal.dot(point) - self.distance
     }
 
-    /// Whether a sphere is removed.
+    /// Returns whether a sphere is removed.
     pub fn drops(&self, center: DVec3, radius: f64) -> bool {
         match self.mode {
             SliceMode::Remove => self.depth(center) > 0.0,
@@ -58,7 +58,7 @@ impl Slice {
         }
     }
 
-    /// Whether a sphere is hidden from the camera.
+    /// Returns whether a sphere is hidden from the camera.
     pub fn hides(&self, center: DVec3) -> bool {
         self.mode == SliceMode::Hide && self.depth(center) > 0.0
     }
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn modes_leave_what_they_say() {
+    fn every_mode_keeps_its_spheres() {
         for (mode, shown) in [
             (SliceMode::Remove, &[0, 1, 2][..]),
             (SliceMode::Caps, &[0, 1, 2, 3]),
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_hold_radii() {
+    fn bounds_include_radii() {
         let all = bounds(&scene(SliceMode::Remove).spheres);
         assert_eq!(all, Some([DVec3::new(-3.0, -1.0, -1.0), DVec3::new(4.0, 1.0, 1.0)]));
         assert_eq!(bounds(&Spheres::default()), None);

@@ -54,7 +54,7 @@ pub fn write(scene: &Scene, path: &Path) -> Result<(), FileError> {
 ///
 /// # Errors
 ///
-/// Those of [`write()`].
+/// The same as those of [`write()`].
 pub fn write_as(scene: &Scene, header: &Header, path: &Path) -> Result<(), FileError> {
     let columns = path.with_extension("csv");
     if columns == path {
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_scenes_come_back_to_the_last_bit() {
+    fn whole_scenes_survive_to_the_last_bit() {
         for scene in [default_scene(3), everything()] {
             let again = round_trip(&scene);
             assert!(same(&scene, &again), "{scene:?}\n{again:?}");
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn color_bars_come_back() {
+    fn color_bars_survive() {
         let range = Range::new(1.0 / 3.0, 7e30, Spacing::Logarithmic).unwrap();
         let scale = Scale { reversed: true, ..Scale::new(Map::Plasma, range) };
         for (_, corner) in Corner::ALL {
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn looks_come_back() {
+    fn looks_survive() {
         let odd = Rgb::new(0.1, 1.0 / 3.0, BRIGHTEST);
         let vectors = [DVec3::new(0.1, -1e300, 0.0), DVec3::Y / 3.0, DVec3::Z];
         let cell = Cell { origin: DVec3::NEG_ONE / 7.0, vectors, periodic: [false; 3] };
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_of_the_sky_come_back() {
+    fn environment_maps_survive() {
         let pixels = vec![[0.1, 1e-30, 3e8], [0.0, 1.0 / 3.0, 2.0]];
         let image = Arc::new(crate::Image { width: 2, height: 1, pixels });
         let mut scene = default_scene(1);
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn scenes_that_no_file_can_say_are_refused() {
+    fn scenes_that_no_file_can_describe_are_refused() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let refused = |scene: &Scene| write(scene, &folder.path().join("scene.toml")).is_err();
         let mut scene = default_scene(0);

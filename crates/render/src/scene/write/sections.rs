@@ -10,7 +10,7 @@ use glam::DVec3;
 
 pub(super) fn render(settings: &Settings) -> String {
     let line = |setting: &Setting| match setting.get(settings) {
-        // Scene files have no infinite numbers: without the key there is no limit.
+        // Without the key there is no limit.
         Value::None | Value::Word("inf") => String::new(),
         Value::Word(word) => format!("{} = \"{word}\"\n", setting.name),
         value => format!("{} = {value}\n", setting.name),

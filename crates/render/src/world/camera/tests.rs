@@ -49,7 +49,7 @@ fn scene(random: &mut Random, case: u32) -> Scene {
     scene
 }
 
-/// Whether any of many rays through a rectangle of the picture hits a sphere.
+/// Returns whether any of many rays through a rectangle of the picture hits a sphere.
 fn is_hit(world: &World, random: &mut Random, low: DVec2, high: DVec2) -> bool {
     let lens = world.camera.has_lens();
     (0..400).any(|i| {

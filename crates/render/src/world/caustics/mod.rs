@@ -54,7 +54,7 @@ pub(crate) struct CasterPair {
     radius: f64,
     /// Index of refraction outside over that inside; 0 for a mirror.
     index: f64,
-    /// Whether light passes through.
+    /// True if light passes through.
     clear: bool,
     /// Vector from the sphere's center to the emitter's.
     offset: DVec3,
@@ -91,12 +91,12 @@ impl CausticCasters {
         Self { pairs: distribute_shares(pairs.collect()) }
     }
 
-    /// Whether there are no pairs.
+    /// Returns whether there are no pairs.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
 
-    /// Whether a sphere is the specular sphere of a pair.
+    /// Returns whether a sphere is the specular sphere of a pair.
     pub(crate) fn has(&self, row: u32) -> bool {
         self.pairs.iter().any(|pair| pair.sphere == row)
     }
@@ -114,7 +114,8 @@ fn few_kinds(world: &World) -> &'static [MaterialKind] {
     [&KINDS[..], &KINDS[..2]].into_iter().find(count).unwrap_or_default()
 }
 
-/// Whether a sphere is of these kinds and a smooth mirror, coated, or glass with nothing inside.
+/// Returns whether a sphere is of these kinds and a smooth mirror, coated, or glass with nothing
+/// inside.
 fn is_caster(world: &World, kinds: &[MaterialKind], row: u32) -> bool {
     let id = world.appearance.material.row(row as usize);
     let specular = match id.kind() {
@@ -128,7 +129,7 @@ fn is_caster(world: &World, kinds: &[MaterialKind], row: u32) -> bool {
         && (id.kind() != MaterialKind::Dielectric || is_isolated(world, row))
 }
 
-/// Whether neither another sphere nor the ground intersects a sphere's surface.
+/// Returns whether neither another sphere nor the ground intersects a sphere's surface.
 fn is_isolated(world: &World, row: u32) -> bool {
     let (center, radius) = world.spheres.exact(row as usize);
     let cuts = |other: usize| {

@@ -62,7 +62,7 @@ impl Setting {
         let half2 = self.radius * self.radius - off2;
         let entry = self.receiver + direction * (middle - (half2 > 0.0).then(|| half2.sqrt())?);
         let choice = if path == CausticPath::Reflected { -1.0 } else { 1.0 };
-        let meet = |direction: DVec3, point: DVec3, choice| {
+        let scatter_at = |direction: DVec3, point: DVec3, choice| {
             let normal = (point / self.radius).into();
             let (here, around) = (1.0 / self.index, 1.0);
             let sample = scatter(&Interface {
@@ -79,9 +79,9 @@ impl Setting {
             let normal = entry / self.radius;
             return Some((entry, direction - 2.0 * direction.dot(normal) * normal));
         }
-        let inside = meet(direction, entry, choice);
+        let inside = scatter_at(direction, entry, choice);
         let exit = entry - inside * (2.0 * entry.dot(inside));
-        Some((exit, meet(inside, exit, choice)))
+        Some((exit, scatter_at(inside, exit, choice)))
     }
 
     /// Returns where a ray from the receiver crosses the plane through the emitter's point across `axis`.

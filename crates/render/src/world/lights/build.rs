@@ -8,7 +8,7 @@ use std::ops::Range;
 const BINS: usize = 16;
 
 impl LightBounds {
-    /// Whether the light has a finite positive contribution.
+    /// Returns whether the light has a finite positive contribution.
     pub(super) fn is_luminous(&self) -> bool {
         self.total() > 0.0 && self.total().is_finite()
     }

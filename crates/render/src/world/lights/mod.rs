@@ -37,7 +37,7 @@ pub struct Lights {
     pub points: Vec<Point>,
     /// Suns.
     pub suns: Vec<Sun>,
-    /// Whether the environment is sampled as well, as the last light.
+    /// True if the environment is sampled as well, as the last light.
     pub sky: bool,
     sampler: LightSampler,
     by: LightChoice,
@@ -60,7 +60,7 @@ pub struct LightSample {
     pub weight: Rgb,
     /// Density by solid angle, without the choice of the light; `None` if the light has no extent.
     pub pdf: Option<f32>,
-    /// Whether the light is an emissive sphere that is so near, or one of so many, that a diffuse
+    /// True if the light is an emissive sphere that is so near, or one of so many, that a diffuse
     /// surface should find it by BSDF samples too.
     pub close: bool,
 }
@@ -135,12 +135,12 @@ impl Lights {
         self.emitters.len() + self.points.len() + self.suns.len() + usize::from(self.sky)
     }
 
-    /// Whether there is no light to sample, and so no shadow ray.
+    /// Returns whether there is no light to sample, and so no shadow ray.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether light `index` has no extent, so that one shadow ray suffices.
+    /// Returns whether light `index` has no extent, so that one shadow ray suffices.
     pub fn is_delta(&self, index: usize) -> bool {
         match self.light(index) {
             Light::Point(_) => true,
@@ -227,7 +227,7 @@ impl Lights {
         }
     }
 
-    /// Whether a sun has a visible disc.
+    /// Returns whether a sun has a visible disc.
     pub fn suns_have_discs(&self) -> bool {
         self.suns.iter().any(|sun| sun.disc.is_some())
     }

@@ -86,7 +86,7 @@ impl Lights {
         emitters.chain(points).chain(suns).chain(sky).collect()
     }
 
-    /// Whether the choice depends on the receiver.
+    /// Returns whether the choice depends on the receiver.
     pub fn by_receiver(&self) -> bool {
         matches!(self.sampler, LightSampler::Tree(_))
     }

@@ -29,7 +29,7 @@ pub(super) struct SphereView<D: Doubles> {
     pub direction: Vec3<D>,
     /// Squared distance of the center.
     pub distance2: D,
-    /// Whether the center is nearer than the reach, in radii.
+    /// True where the center is nearer than the reach, in radii.
     pub close: D::Mask,
 }
 

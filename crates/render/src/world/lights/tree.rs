@@ -41,7 +41,7 @@ pub(super) struct LightBounds {
     pub(super) power: f64,
     /// Irradiance on a plane that faces it, of light without falloff.
     pub(super) steady: f64,
-    /// Whether light samples find nothing inside: an emissive sphere.
+    /// True if light samples find nothing inside: an emissive sphere.
     pub(super) hollow: bool,
 }
 

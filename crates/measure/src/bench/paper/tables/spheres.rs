@@ -28,7 +28,7 @@ struct Row {
     count: u64,
     builds: Times,
     renders: Times,
-    /// Whether the last contestant of `renders` is the tracer without tree.
+    /// True if the last contestant of `renders` is the tracer without tree.
     brute: bool,
     agreement: Agreement,
 }

@@ -104,7 +104,7 @@ impl ColumnColors {
         Ok(legend)
     }
 
-    /// Whether the column holds numbers.
+    /// Returns whether the column holds numbers.
     pub fn is_numeric(&self, particles: &Particles) -> bool {
         matches!(Column::find(particles, &self.column), Some(Column::Numbers(_)))
     }

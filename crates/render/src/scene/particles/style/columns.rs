@@ -107,7 +107,7 @@ impl<'p> Column<'p> {
         Self::Texts { names, codes: Cow::Owned(Codes::Words(codes)) }
     }
 
-    /// Whether any row has a value.
+    /// Returns whether any row has a value.
     pub(in super::super) fn has_values(&self) -> bool {
         match self {
             Self::Numbers(values) => values.iter().any(|value| value.is_finite()),

@@ -128,8 +128,8 @@ fn faulty_crystals_are_refused() {
         (RUTILE.replace("2.9586(2)", "0"), 0, "there is no cell with edges [4.594, 4.594, 0.0]"),
         (RUTILE.replace("_cell_length_c ", "_some_thing "), 0, "there is no cell"),
     ] {
-        let (found, _, said) = fault(text);
-        assert!(found == line && said.starts_with(message), "{found}: {said}");
+        let (found, _, reported) = fault(text);
+        assert!(found == line && reported.starts_with(message), "{found}: {reported}");
     }
     assert!(fault("data_a\n_cell_length_a 4\n").2.starts_with("holds no particles"));
 }
@@ -172,9 +172,9 @@ fn symmetry_comes_from_the_strongest_declaration() {
         assert_eq!(frame.len(), atoms, "{declared:?}");
         assert_eq!(frame.warnings.len(), warnings, "{declared:?}: {:?}", frame.warnings);
     }
-    let told = count(&[number, symbol, hall, operations]).warnings.concat();
+    let conflict = count(&[number, symbol, hall, operations]).warnings.concat();
     for source in ["P m -3 m", "-P 1", "16"] {
-        assert!(told.contains(source), "{source}: {told}");
+        assert!(conflict.contains(source), "{source}: {conflict}");
     }
     let misfit = count(&["_symmetry_space_group_name_H-M 'P 6'"]).warnings.concat();
     assert!(misfit.contains("P 6"), "{misfit}");

@@ -74,10 +74,10 @@ fn frames_are_counted_skipped_and_announced() {
             let beyond = read_frame(path, &at_frame(&xs.len().to_string()));
             assert!(beyond.is_err_and(|error| error.message.contains("has no frame")), "{text}");
             let first = read_frame(path, &options).expect("a frame");
-            let told = first.warnings.iter().any(|warning| warning.contains("--frame"));
-            assert_eq!(told, xs.len() > 1, "{text}");
+            let announced = first.warnings.iter().any(|warning| warning.contains("--frame"));
+            assert_eq!(announced, xs.len() > 1, "{text}");
             let others = first.warnings.iter().filter(|text| !text.contains("bond")).count();
-            assert_eq!(others, usize::from(told), "{:?}", first.warnings);
+            assert_eq!(others, usize::from(announced), "{:?}", first.warnings);
         });
     }
     assert_eq!(frame(&files()[4].0).x, [1.0, 2.0]);
@@ -94,8 +94,8 @@ fn binary_frames_are_announced() {
     ] {
         assert_eq!(frames(&content).len(), count);
         let warnings = frame(&content).warnings;
-        let told = warnings.iter().any(|warning| warning.contains("--frame"));
-        assert_eq!(told, count > 1, "{warnings:?}");
+        let announced = warnings.iter().any(|warning| warning.contains("--frame"));
+        assert_eq!(announced, count > 1, "{warnings:?}");
     }
 }
 
@@ -194,7 +194,7 @@ fn frames_are_counted_up_to_a_number_or_a_fault() {
 #[test]
 fn progress_is_a_fraction_of_the_file() {
     let options = ReadOptions::default();
-    assert_eq!(options.progress.share(), None);
+    assert_eq!(options.progress.fraction(), None);
     frame_with(dump(1), &options).expect("a frame");
-    assert_eq!(options.progress.share(), Some(1.0));
+    assert_eq!(options.progress.fraction(), Some(1.0));
 }

@@ -85,8 +85,8 @@ fn faulty_dumps_are_refused() {
             "fractional positions, but the box has no volume",
         ),
     ] {
-        let (found, _, said) = fault(text);
-        assert_eq!((found, said.as_str()), (line, message), "{text}");
+        let (found, _, reported) = fault(text);
+        assert_eq!((found, reported.as_str()), (line, message), "{text}");
     }
 }
 
@@ -193,12 +193,13 @@ fn all_styles_place_particles() {
         ("edpd", "", "1 1 0.5 1e5 1.5 2.5 3.5", false),
     ] {
         let header = format!("{more}\n1 atom types");
-        for (comment, is_told) in [(format!(" # {style}"), true), (String::new(), expected)] {
+        for (comment, is_named) in [(format!(" # {style}"), true), (String::new(), expected)] {
             let frame = frame(data(&header, &comment, &[row]));
             assert_eq!(frame.position(0), DVec3::new(1.5, 2.5, 3.5), "{style} {comment}");
             assert_eq!(kinds(&frame)[0].0, "1", "{style} {comment}");
-            let told = frame.warnings.iter().all(|warning| warning.contains(&format!("`{style}`")));
-            assert_eq!(told, is_told, "{style}: {:?}", frame.warnings);
+            let named =
+                frame.warnings.iter().all(|warning| warning.contains(&format!("`{style}`")));
+            assert_eq!(named, is_named, "{style}: {:?}", frame.warnings);
         }
     }
     let species = frame(data("1 atom types", " # tdpd 2", &["1 1 1.5 2.5 3.5 0.25 0.5"]));
@@ -413,8 +414,8 @@ fn bodies_and_bonds_are_counted_by_their_rows() {
         ("Ellipsoids", "3 particles that may"),
         ("Bonds", "3 bonds are"),
     ] {
-        let told = shapes(&format!("\n{section}\n\n1 1 1 1\n2 1 1 1\n3 1 1 1\n"));
-        assert!(told[0].starts_with(start), "{told:?}");
+        let warnings = shapes(&format!("\n{section}\n\n1 1 1 1\n2 1 1 1\n3 1 1 1\n"));
+        assert!(warnings[0].starts_with(start), "{warnings:?}");
     }
     assert!(shapes("\nAngles\n\n1 1 1 2 1\n").is_empty());
 }

@@ -212,8 +212,8 @@ fn faulty_mmcif_is_refused() {
             "no _atom_site_fract_y in this loop of atoms",
         ),
     ] {
-        let (found, _, said) = fault(text);
-        assert_eq!((found, said.as_str()), (line, message));
+        let (found, _, reported) = fault(text);
+        assert_eq!((found, reported.as_str()), (line, message));
     }
     assert!(fault(names).2.starts_with("no column is named `z`"));
 }

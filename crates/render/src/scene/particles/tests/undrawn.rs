@@ -4,16 +4,16 @@ use super::*;
 
 /// Warnings of things that are not drawn.
 fn undrawn(frame: &ParticleFrame) -> Vec<&str> {
-    let said = |text: &&str| {
+    let is_undrawn = |text: &&str| {
         text.contains("not drawn") || text.contains("as spheres") || text.contains("not used")
     };
-    frame.warnings.iter().map(String::as_str).filter(said).collect()
+    frame.warnings.iter().map(String::as_str).filter(is_undrawn).collect()
 }
 
 fn check(frame: &ParticleFrame, starts: &[&str]) {
-    let said = undrawn(frame);
-    assert_eq!(said.len(), starts.len(), "{:?}", frame.warnings);
-    for (text, start) in said.iter().zip(starts) {
+    let messages = undrawn(frame);
+    assert_eq!(messages.len(), starts.len(), "{:?}", frame.warnings);
+    for (text, start) in messages.iter().zip(starts) {
         assert!(text.starts_with(start), "{text} does not begin with {start}");
     }
 }

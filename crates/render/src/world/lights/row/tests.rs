@@ -48,7 +48,7 @@ fn receivers(seed: u64) -> [Receiver; ROW] {
     })
 }
 
-fn rows_choose_and_sample_as_their_lanes_do(world: &World) {
+fn assert_rows_equal_lanes(world: &World) {
     for (seed, lanes) in [(1, 0xffff), (2, 0x0fff), (3, 0xa5a5), (4, 1), (5, 0x8000)] {
         let each = receivers(seed);
         let vector = |of: fn(&Receiver) -> Vec3| {
@@ -116,8 +116,8 @@ fn rows_equal_their_lanes_for_every_kind_of_light() {
             let mut scene = scene.clone();
             scene.settings.light_choice = choice;
             let world = World::build(&scene).expect("the scene is good");
-            rows_choose_and_sample_as_their_lanes_do(&world);
+            assert_rows_equal_lanes(&world);
         }
     }
-    rows_choose_and_sample_as_their_lanes_do(&crate::world::lights::tests::world());
+    assert_rows_equal_lanes(&crate::world::lights::tests::world());
 }
