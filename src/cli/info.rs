@@ -172,7 +172,7 @@ impl LightInfo {
             emissive_spheres: world.lights.emitters.len(),
             points: world.lights.points.len(),
             suns: world.lights.suns.len(),
-            sampled_environment: world.lights.sky,
+            sampled_environment: world.lights.sky_parts > 0,
         }
     }
 

@@ -2,20 +2,21 @@
 
 use super::Job;
 use super::caustics;
+use super::columns::row;
 use super::direct_light::power_heuristic;
-use super::path_state::PreviousBounce;
+use super::path_state::{PathStateRow, PreviousBounce};
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, bits, bits_of, first_lanes, set_bits};
 use crate::ray::MISS;
 use crate::scene::Rgb;
 use crate::shade::MaterialKind;
 use crate::vec3::Vec3;
-use crate::world::Receiver;
+use crate::world::{Receiver, ReceiverRow, SkyLight};
 
 /// Adds the light of the environment and the suns to paths that leave the scene.
 pub(super) fn add_environment(job: &Job, work: &mut Workspace) {
     let (environment, lights) = (&job.world.environment, &job.world.lights);
-    let sampled = lights.sky || lights.suns_have_discs();
+    let sampled = lights.sky_parts > 0 || lights.suns_have_discs();
     if environment.is_black() && !sampled {
         return;
     }
@@ -30,13 +31,14 @@ pub(super) fn add_environment(job: &Job, work: &mut Workspace) {
         let specular_only = state.previous.specular_only().bits();
         let lit =
             if sampled || environment.illuminates { escaped } else { escaped & specular_only };
-        let light = match constant {
+        let seen = if environment.illuminates { lit } else { lit & specular_only };
+        let mut light = match constant {
             Some(color) => Vec3::splat(color.x, color.y, color.z),
-            None if sampled => gather_light(lit, |lane| sky_light(job, work, first + lane)),
-            None => gather_light(lit, |lane| {
-                environment.radiance(work.rays.direction.row(first + lane))
-            }),
+            None => environment_light(job, work, (first, seen), &state),
         };
+        if lights.suns_have_discs() {
+            add_suns(job, work, (first, lit), &mut light);
+        }
         work.paths.add(state.path, state.throughput.times(light), lit);
     }
 }
@@ -53,23 +55,57 @@ fn gather_light(lanes: u32, light: impl Fn(usize) -> Rgb) -> Vec3<F32x16> {
     Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z))
 }
 
-/// Returns the light of environment and suns along the ray of a row, with MIS weights where light
-/// samples may find it too.
-fn sky_light(job: &Job, work: &Workspace, row: usize) -> Rgb {
+/// Returns the light of the environment along the rays of `lanes` of sixteen rows, with MIS weights
+/// where light samples may find it too; 0 in the other lanes.
+#[inline(always)]
+fn environment_light(
+    job: &Job,
+    work: &Workspace,
+    (first, lanes): (usize, u32),
+    state: &PathStateRow,
+) -> Vec3<F32x16> {
     let (environment, lights) = (&job.world.environment, &job.world.lights);
-    let (previous, direction) = (work.states.previous(row), work.rays.direction.row(row));
-    let mut light = Rgb::ZERO;
-    if environment.illuminates || previous.specular_only() {
-        let pdf = || lights.sky_pdf(environment, direction, &receiver(work, row));
-        light += environment.radiance(direction) * mis_weight(previous, pdf);
+    let Some(picture) = environment.picture() else {
+        return gather_light(lanes, |lane| {
+            environment.radiance(work.rays.direction.row(first + lane))
+        });
+    };
+    let toward = work.rays.direction.load::<F32x16>(first);
+    let none = Vec3::splat(0.0, 0.0, 0.0);
+    let sampled = lanes & state.previous.light_sampled().bits();
+    if lights.sky_parts == 0 || sampled == 0 {
+        let radiance = picture.radiances(toward, lanes);
+        return Vec3::select_lanes(<F32x16 as Lanes>::lanes(lanes), radiance, none);
     }
-    if !previous.after_diffuse() {
-        for (sun, radiance) in lights.suns_toward(direction) {
+    let SkyLight { radiance, pdf, part } = picture.light(toward, lanes);
+    let at = ReceiverRow {
+        point: work.rays.origin.load(first),
+        normal: state.normal,
+        own: *row(&work.rays.own, first),
+    };
+    let probability = lights.sky_probabilities(&at, part, sampled);
+    // 1 where no light sample could have found the light: the density is infinite.
+    let weight = power_heuristic(state.previous.density(), pdf * F32x16::new(probability));
+    Vec3::select_lanes(<F32x16 as Lanes>::lanes(lanes), radiance * weight, none)
+}
+
+/// Adds the light of suns along the rays of `lanes` of sixteen rows, with MIS weights where light
+/// samples may find it too.
+fn add_suns(job: &Job, work: &Workspace, (first, lanes): (usize, u32), light: &mut Vec3<F32x16>) {
+    let lights = &job.world.lights;
+    for lane in set_bits(lanes) {
+        let (row, channels) = (first + lane, [&mut light.x, &mut light.y, &mut light.z]);
+        let previous = work.states.previous(row);
+        if previous.after_diffuse() {
+            continue;
+        }
+        let channels = channels.map(|channel| &mut channel.as_mut_array()[lane]);
+        for (sun, radiance) in lights.suns_toward(work.rays.direction.row(row)) {
             let pdf = || lights.sun_pdf(sun, &receiver(work, row));
-            light += radiance * mis_weight(previous, pdf);
+            let radiance = radiance * mis_weight(previous, pdf);
+            (0..3).for_each(|i| *channels[i] += radiance[i]);
         }
     }
-    light
 }
 
 /// Adds the light of emitters to the paths that hit them.

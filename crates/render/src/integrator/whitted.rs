@@ -29,7 +29,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
     // A constant or gradient environment that illuminates surfaces is one more light.
     let sky = job.world.environment.illuminates
         && !job.world.environment.is_black()
-        && !job.world.lights.sky;
+        && job.world.lights.sky_parts == 0;
     let threshold = roulette_threshold(job.world);
     for bounce in 0.. {
         stages::intersect(job, work);

@@ -11,8 +11,7 @@ use super::hash::ONE_BELOW;
 /// Draws are multiples of 2^-24, and so is every probability: choice and probability agree exactly.
 const RESOLUTION: f64 = 16_777_216.0;
 
-/// A discrete distribution over `0..count()`, or a density on [0, 1) that is constant in each of as
-/// many cells.
+/// A discrete distribution over `0..count()`.
 #[derive(Clone, Debug)]
 pub struct Distribution {
     /// `count() + 1` multiples of 2^-24 from 0 to 1, not decreasing.
@@ -70,7 +69,7 @@ impl Distribution {
 
     fn from_cumulative(cumulative: Box<[f32]>) -> Self {
         let count = cumulative.len() - 1;
-        let slots = (count.next_power_of_two() / 2).max(1);
+        let slots = count.next_power_of_two();
         let mut index = 0;
         let guide = (0..=slots)
             .map(|slot| {
@@ -93,39 +92,31 @@ impl Distribution {
     #[inline]
     pub fn sample(&self, u: f32) -> Choice {
         let u = u.min(ONE_BELOW);
+        let index = self.find(u);
+        let (start, pmf) = self.interval(index);
+        Choice { index, pmf, remainder: ((u - start) / pmf).min(ONE_BELOW) }
+    }
+
+    /// Returns the index that a draw below 1 chooses.
+    #[inline]
+    pub(super) fn find(&self, u: f32) -> usize {
         let slots = self.guide.len() - 1;
         let slot = (u * slots as f32) as usize;
         let (low, high) = (self.guide[slot] as usize, self.guide[slot + 1] as usize);
         let between = &self.cumulative[low + 1..=high];
-        let index = low + between.partition_point(|&end| end <= u);
-        let (start, pmf) = (self.cumulative[index], self.pmf(index));
-        Choice { index, pmf, remainder: ((u - start) / pmf).min(ONE_BELOW) }
+        low + between.partition_point(|&end| end <= u)
+    }
+
+    /// Returns the first draw that chooses an index, and the probability of the index.
+    #[inline]
+    pub(super) fn interval(&self, index: usize) -> (f32, f32) {
+        (self.cumulative[index], self.pmf(index))
     }
 
     /// Returns the probability of an index below [`Distribution::count`].
     #[inline]
     pub fn pmf(&self, index: usize) -> f32 {
         self.cumulative[index + 1] - self.cumulative[index]
-    }
-
-    /// Samples a position in [0, 1) with the piecewise-constant density; returns the density as well.
-    #[inline]
-    pub fn sample_position(&self, u: f32) -> (f32, f32) {
-        let Choice { index, pmf, remainder } = self.sample(u);
-        let cells = self.count() as f32;
-        (((index as f32 + remainder) / cells).min(ONE_BELOW), pmf * cells)
-    }
-
-    /// Returns the density of [`Distribution::sample_position`] at a position in [0, 1).
-    #[inline]
-    pub fn pdf(&self, position: f32) -> f32 {
-        self.pmf(self.cell(position)) * self.count() as f32
-    }
-
-    /// Returns the cell of a position in [0, 1); positions outside belong to the nearest.
-    #[inline]
-    pub(super) fn cell(&self, position: f32) -> usize {
-        ((position * self.count() as f32) as usize).min(self.count() - 1)
     }
 }
 
@@ -134,15 +125,6 @@ mod tests {
     use super::*;
     use crate::sampling::statistics::{assert_chi_squared, random_pairs};
     use proptest::prelude::*;
-
-    #[test]
-    fn positions_outside_have_the_density_of_the_nearest_cell() {
-        let distribution = Distribution::new(&[1.0, 2.0, 5.0]).expect("positive weights");
-        for (position, nearest) in [(-0.5, 0.0), (1.0, ONE_BELOW), (7.0, ONE_BELOW)] {
-            assert_eq!(distribution.pdf(position), distribution.pdf(nearest), "{position}");
-        }
-        assert!((distribution.pdf(1.0) - 5.0 / 8.0 * 3.0).abs() < 1e-6);
-    }
 
     #[test]
     fn draws_follow_the_weights() {
@@ -195,11 +177,10 @@ mod tests {
     #[test]
     fn strata_are_kept() {
         let distribution = Distribution::uniform(8).expect("there are eight");
-        let positions = (0..64).map(|i| distribution.sample_position((i as f32 + 0.5) / 64.0));
-        for (i, (position, pdf)) in positions.enumerate() {
-            assert_eq!((position * 64.0) as usize, i);
-            assert_eq!(pdf, 1.0);
-            assert_eq!(distribution.pdf(position), 1.0);
+        for i in 0..64 {
+            let Choice { index, pmf, remainder } = distribution.sample((i as f32 + 0.5) / 64.0);
+            assert_eq!(((index as f32 + remainder) * 8.0) as usize, i);
+            assert_eq!(pmf, 0.125);
         }
     }
 

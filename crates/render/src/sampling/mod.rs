@@ -3,7 +3,7 @@
 //! A [`Sampler`] gives every path its numbers: each is a pure function of (seed, pixel, sample index,
 //! dimension), so that a picture does not depend on threads, tiles or the order of work. The maps from
 //! numbers to directions ([`cosine_hemisphere`], [`Cone`], ...), choices ([`Distribution`],
-//! [`Distribution2d`]) and positions ([`PixelFilter`]) never reject a sample and keep neighbors
+//! [`Distribution2d`]) and positions ([`Bilinear`], [`PixelFilter`]) never reject a sample and keep neighbors
 //! together, so that well-distributed numbers stay well distributed.
 //!
 //! # Dimensions
@@ -21,7 +21,9 @@
 //! The third row is for k of 1 or more, the last one for all. Events that are sampled several times on
 //! one path, such as stratified shadow rays, use [`Sampler::split`] instead.
 
+mod angles;
 mod basis;
+mod bilinear;
 mod cone;
 mod distribution;
 mod distribution2d;
@@ -36,10 +38,12 @@ pub(crate) mod statistics;
 mod stratified;
 mod warp;
 
+pub use angles::{sine_cosine, turns};
 pub use basis::{Bases, Basis};
+pub use bilinear::Bilinear;
 pub use cone::Cone;
 pub use distribution::{Choice, Distribution};
-pub use distribution2d::Distribution2d;
+pub use distribution2d::{CellRow, Distribution2d};
 pub use filter::PixelFilter;
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
 pub use plan::{LightDraw, ScatterDraw};

@@ -4,6 +4,7 @@
 //! the sphere, so that low-discrepancy points keep their advantage. Local directions have z along the
 //! axis; [`Basis`](super::Basis) transforms them to world axes.
 
+use super::angles::octant_sine_cosine;
 use crate::lanes::Lanes;
 use crate::vec3;
 use glam::Vec3;
@@ -40,18 +41,6 @@ fn concentric<L: Lanes>([u, v]: [L; 2]) -> ([L; 2], L) {
     let (sine, cosine) = octant_sine_cosine(L::splat(FRAC_PI_4) * ratio);
     let (along, across) = (longer * cosine, longer * sine);
     ([L::select(steep, across, along), L::select(steep, along, across)], radius)
-}
-
-/// Returns sine and cosine of an angle of at most 45 degrees, within 1e-7.
-///
-/// Polynomials of Moshier's Cephes library, 1992: pictures must not depend on the platform's library.
-#[inline(always)]
-fn octant_sine_cosine<L: Lanes>(angle: L) -> (L, L) {
-    let s = angle * angle;
-    let series = |[a, b, c]: [f32; 3]| L::splat(a).mul_add(s, L::splat(b)).mul_add(s, L::splat(c));
-    let sine = series([-1.951_529_6e-4, 8.332_161e-3, -0.166_666_55]) * s;
-    let cosine = series([2.443_315_7e-5, -1.388_731_6e-3, 4.166_664_6e-2]) * s - L::splat(0.5);
-    (sine.mul_add(angle, angle), cosine.mul_add(s, L::splat(1.0)))
 }
 
 /// Samples a local direction on the upper hemisphere with the density of [`cosine_hemisphere_pdf`].
@@ -145,16 +134,6 @@ mod tests {
         for [u, v] in random_pairs(1000, 5) {
             let mirrored = [ONE_BELOW - u, ONE_BELOW - v];
             assert_eq!(concentric_disk([u, v]), concentric_disk(mirrored).map(|x: f32| -x));
-        }
-    }
-
-    #[test]
-    fn sine_and_cosine_agree_with_the_library() {
-        for i in -1000..=1000_i16 {
-            let angle = FRAC_PI_4 * f32::from(i) / 1000.0;
-            let (sine, cosine) = octant_sine_cosine(angle);
-            let (s, c) = f64::from(angle).sin_cos();
-            assert!((f64::from(sine) - s).abs() < 1e-7 && (f64::from(cosine) - c).abs() < 1e-7);
         }
     }
 }

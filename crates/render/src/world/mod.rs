@@ -29,7 +29,7 @@ pub use caustics::CausticCasters;
 pub(crate) use caustics::{CausticHit, CausticPath, CausticQuery, CausticSample};
 pub use census::Features;
 pub use cut::{Cut, Span};
-pub use environment::{Environment, Picture, Radiance, SkySample};
+pub use environment::{Environment, PartBounds, Picture, Radiance, SkyLight, SkySamples};
 pub(crate) use fit::Placement;
 pub use ground::Ground;
 pub use lights::{

@@ -37,8 +37,8 @@ pub struct Lights {
     pub points: Vec<Point>,
     /// Suns.
     pub suns: Vec<Sun>,
-    /// True if the environment is sampled as well, as the last light.
-    pub sky: bool,
+    /// Number of parts of the environment's picture, which are sampled as well, as the last lights.
+    pub sky_parts: usize,
     sampler: LightSampler,
     by: LightChoice,
     /// [`Transform::extent`].
@@ -73,8 +73,8 @@ pub enum LightView<'a> {
     Delta(LightSample),
     /// A light at infinity.
     Sun(&'a Sun),
-    /// The environment's picture.
-    Sky(&'a Picture),
+    /// A part of the environment's picture.
+    Sky(&'a Picture, usize),
 }
 
 /// A light in the order of the light sampler.
@@ -83,7 +83,7 @@ enum Light {
     Emitter(usize),
     Point(usize),
     Sun(usize),
-    Sky,
+    Sky(usize),
 }
 
 impl Lights {
@@ -108,11 +108,12 @@ impl Lights {
                 }
             }
         }
-        let sky = environment.illuminates && environment.picture().is_some();
+        let picture = environment.picture().filter(|_| environment.illuminates);
+        let sky_parts = picture.map_or(0, |picture| picture.parts().count());
         let (sampler, by) = (LightSampler::None, scene.settings.light_choice);
         let unit = transform.extent();
         let mut lights =
-            Self { emitters, radiance, points, suns, sky, by, sampler, reach: 0.0, unit };
+            Self { emitters, radiance, points, suns, sky_parts, by, sampler, reach: 0.0, unit };
         lights.sampler = LightSampler::new(&lights.light_bounds(spheres, environment), by, unit);
         lights.reach = lights.close_within();
         lights
@@ -132,7 +133,7 @@ impl Lights {
 
     /// Returns the number of lights.
     pub fn len(&self) -> usize {
-        self.emitters.len() + self.points.len() + self.suns.len() + usize::from(self.sky)
+        self.emitters.len() + self.points.len() + self.suns.len() + self.sky_parts
     }
 
     /// Returns whether there is no light to sample, and so no shadow ray.
@@ -145,7 +146,7 @@ impl Lights {
         match self.light(index) {
             Light::Point(_) => true,
             Light::Sun(i) => self.suns[i].disc.is_none(),
-            Light::Emitter(_) | Light::Sky => false,
+            Light::Emitter(_) | Light::Sky(_) => false,
         }
     }
 
@@ -156,14 +157,15 @@ impl Lights {
 
     fn light(&self, index: usize) -> Light {
         let (emitters, points) = (self.emitters.len(), self.points.len());
+        let sky = emitters + points + self.suns.len();
         if index < emitters {
             Light::Emitter(index)
         } else if index < emitters + points {
             Light::Point(index - emitters)
-        } else if index < emitters + points + self.suns.len() {
+        } else if index < sky {
             Light::Sun(index - emitters - points)
         } else {
-            Light::Sky
+            Light::Sky(index - sky)
         }
     }
 
@@ -185,7 +187,9 @@ impl Lights {
             }
             Light::Point(i) => self.points[i].sample(origin).map(LightView::Delta),
             Light::Sun(i) => Some(LightView::Sun(&self.suns[i])),
-            Light::Sky => world.environment.picture().map(LightView::Sky),
+            Light::Sky(part) => {
+                world.environment.picture().map(|picture| LightView::Sky(picture, part))
+            }
         }
     }
 
@@ -216,14 +220,6 @@ impl Lights {
             Some((seen, _)) if diffuse && !seen.close => f32::INFINITY,
             Some((_, cone)) => self.probability(at, index) * cone.pdf(),
             None => 0.0,
-        }
-    }
-
-    /// Returns the density with which the environment's picture is sampled in unit direction `toward`.
-    pub fn sky_pdf(&self, environment: &Environment, toward: Vec3, at: &Receiver) -> f32 {
-        match environment.picture() {
-            Some(picture) if self.sky => self.probability(at, self.len() - 1) * picture.pdf(toward),
-            _ => 0.0,
         }
     }
 
@@ -280,14 +276,17 @@ impl LightView<'_> {
             Self::Disc(disc) => Some(disc.sample(u)),
             Self::Delta(sample) => Some(*sample),
             Self::Sun(sun) => Some(sun.sample(u)),
-            Self::Sky(picture) => picture.sample(u).map(|sample| LightSample {
-                direction: sample.direction,
-                t: f64::INFINITY,
-                target: MISS,
-                weight: sample.radiance / sample.pdf,
-                pdf: Some(sample.pdf),
-                close: true,
-            }),
+            Self::Sky(picture, part) => {
+                let sample = picture.sample::<f32>(*part, u, 1);
+                (sample.lanes == 1).then(|| LightSample {
+                    direction: sample.direction.into(),
+                    t: f64::INFINITY,
+                    target: MISS,
+                    weight: Rgb::from(sample.radiance) / sample.pdf,
+                    pdf: Some(sample.pdf),
+                    close: true,
+                })
+            }
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::ray::MISS;
 use crate::sampling::LightDraw;
 use crate::scene::Rgb;
 use crate::vec3::Vec3;
-use crate::world::World;
+use crate::world::{Picture, SkySamples, World};
 use std::ops::Range;
 
 /// Samples in a row.
@@ -66,6 +66,19 @@ impl LightRow {
             pdf: F32x16::splat(0.0),
             close: 0,
             lanes,
+        }
+    }
+
+    /// Samples a part of a picture of the sky in `lanes`, from two random numbers in [0, 1) each. Lanes without
+    /// light get no sample.
+    #[inline(always)]
+    fn sky((picture, part): (&Picture, usize), u: [F32x16; 2], lanes: u32) -> Self {
+        let SkySamples { direction, radiance, pdf, lanes } = picture.sample(part, u, lanes);
+        Self {
+            weight: radiance.map(|channel| channel / pdf),
+            pdf,
+            close: lanes,
+            ..Self::distant(direction, Rgb::ZERO, lanes)
         }
     }
 
@@ -197,7 +210,14 @@ impl Lights {
         if points != 0 {
             row = row.or(&self.sample_points(at, (light, points), emitters));
         }
-        let others = lanes & !(discs | points);
+        let sky = self.len() - self.sky_parts;
+        for part in 0..self.sky_parts {
+            let lanes = lanes_of(sky + part..sky + part + 1);
+            if let Some(picture) = world.environment.picture().filter(|_| lanes != 0) {
+                row = row.or(&LightRow::sky((picture, part), u, lanes));
+            }
+        }
+        let others = lanes_of(emitters + self.points.len()..sky);
         if others == 0 {
             return row;
         }
@@ -207,6 +227,30 @@ impl Lights {
             let light = light[lane] as usize;
             Some((lane, self.sample(world, light, (point, own), [u[lane], v[lane]])?))
         }))
+    }
+
+    /// Returns the probability with which a part of the environment's picture is sampled, for each of
+    /// the receivers in `lanes`.
+    #[inline(always)]
+    pub fn sky_probabilities(
+        &self,
+        at: &ReceiverRow,
+        mut part: [u32; ROW],
+        lanes: u32,
+    ) -> [f32; ROW] {
+        let first = (self.len() - self.sky_parts) as u32;
+        for part in &mut part {
+            *part += first;
+        }
+        if let LightSampler::Tree(tree) = &self.sampler {
+            return tree.probability_row(at, &part, lanes);
+        }
+        // The same for all receivers.
+        let mut each = [0.0; ROW];
+        for lane in set_bits(lanes) {
+            each[lane] = self.probability(&at.receiver(lane), part[lane] as usize);
+        }
+        each
     }
 
     fn choose_each(&self, at: &ReceiverRow, draw: [F64x8; 2]) -> ([u32; ROW], [f32; ROW]) {
@@ -227,12 +271,8 @@ impl LightView<'_> {
         match self {
             Self::Disc(disc) => disc.sample_row(u, lanes),
             Self::Sun(sun) => sun.sample_row(u, lanes),
-            Self::Delta(_) | Self::Sky(_) => {
-                let [u, v] = u.map(F32x16::to_array);
-                LightRow::dark().with(
-                    (0..count).filter_map(|lane| Some((lane, self.sample([u[lane], v[lane]])?))),
-                )
-            }
+            Self::Sky(picture, part) => LightRow::sky((picture, *part), u, lanes),
+            Self::Delta(sample) => LightRow::dark().with((0..count).map(|lane| (lane, *sample))),
         }
     }
 }

@@ -5,7 +5,7 @@ use super::tree::{BRANCHES, FAR, LightBounds, Receiver, Tree};
 use crate::sampling::Distribution;
 use crate::scene::{LightChoice, Rgb};
 use crate::spheres::Spheres;
-use crate::world::environment::{Environment, luminance};
+use crate::world::environment::{Environment, Picture, luminance};
 use std::f64::consts::PI;
 
 /// A strategy for choosing a light among emitters, points, suns and sky, in this order.
@@ -78,10 +78,16 @@ impl Lights {
             let center = sun.direction.as_dvec3() * far;
             LightBounds { center, radius, steady: power(sun.irradiance), ..dark }
         });
-        let sky = sky.picture().filter(|_| self.sky).map(|picture| {
-            let irradiance = PI * f64::from(picture.mean_luminance());
-            // A quarter of it arrives at the center of the enclosing sphere.
-            LightBounds { radius: far, steady: 4.0 * irradiance, ..dark }
+        let parts =
+            sky.picture().filter(|_| self.sky_parts > 0).into_iter().flat_map(Picture::parts);
+        let sky = parts.map(|part| match part.disc {
+            Some((direction, radius)) => {
+                let (center, radius) = (direction * far, radius * far);
+                LightBounds { center, radius, steady: part.light, ..dark }
+            }
+            // A quarter of the light arrives on a plane; the tree's estimate within the enclosing sphere is
+            // half of this. More light samples would be in vain: BSDF samples find the sky as well.
+            None => LightBounds { radius: far, steady: part.light / 2.0, ..dark },
         });
         emitters.chain(points).chain(suns).chain(sky).collect()
     }

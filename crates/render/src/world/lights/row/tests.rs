@@ -35,6 +35,9 @@ fn rows_equal_their_lanes() {
         let sun = Sun::new(DVec3::new(0.6, 0.0, 0.8), Rgb::ONE, angle);
         check(&LightView::Sun(&sun), ROW, 1);
     }
+    let world = crate::world::lights::tests::world();
+    let picture = world.environment.picture().expect("it is not black");
+    (1..=ROW).for_each(|count| check(&LightView::Sky(picture, 0), count, count as u64));
 }
 
 /// Receivers around the origin, facing many directions.
@@ -65,6 +68,13 @@ fn assert_rows_equal_lanes(world: &World) {
         let columns = std::array::from_fn(|i| F32x16::new(numbers.map(|draw| draw[i])));
         let row = world.lights.sample_row(world, &at, columns, lanes);
         assert_eq!(row.close & !row.lanes, 0);
+        if world.lights.sky_parts > 0 {
+            let index = world.lights.len() - world.lights.sky_parts;
+            let found = world.lights.sky_probabilities(&at, [0; ROW], lanes);
+            for lane in set_bits(lanes) {
+                assert_eq!(found[lane], world.lights.probability(&each[lane], index));
+            }
+        }
         for lane in 0..ROW {
             let draw = LightDraw::new(numbers[lane]);
             let from = (each[lane].point, each[lane].own);

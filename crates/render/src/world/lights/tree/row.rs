@@ -60,6 +60,36 @@ impl Tree {
         (light, probability)
     }
 
+    /// Does what [`Tree::probability`] does for each of the receivers in `lanes`; 0 in the other lanes.
+    #[inline(always)]
+    pub(in super::super) fn probability_row(
+        &self,
+        at: &ReceiverRow,
+        light: &[u32; ROW],
+        lanes: u32,
+    ) -> [f32; ROW] {
+        let chances = self.chances_row(at);
+        let top = usize::from(self.top);
+        let mut total = [F64x8::splat(0.0); 2];
+        for &chance in &chances[..top] {
+            let [low, high] = widen(chance);
+            total = [total[0] + low, total[1] + high];
+        }
+        let totals: [f64; ROW] = bytemuck::cast(total);
+        let chances: [[f32; ROW]; BRANCHES] = bytemuck::cast(chances);
+        let mut probability = [0.0; ROW];
+        for lane in set_bits(lanes) {
+            let (light, total) = (light[lane] as usize, totals[lane]);
+            let node = self.leaf[light] as usize;
+            probability[lane] = if node < top && RESOLVED.contains(&total) {
+                (f64::from(chances[node][lane]) / total) as f32
+            } else {
+                self.probability(&at.receiver(lane), light)
+            };
+        }
+        probability
+    }
+
     /// Estimates the contribution of each of the root's children to each receiver.
     #[inline(always)]
     fn chances_row(&self, at: &ReceiverRow) -> [F32x16; BRANCHES] {
