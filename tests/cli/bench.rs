@@ -91,7 +91,7 @@ fn scenes_come_from_files_and_references_are_used_again() {
     quick(&folder, &["error", "--scenes", "own.toml", "--rounds", "1"]);
     assert_eq!(text(&folder.read("out/error-references.csv")), first);
     assert!(check_files(&folder).contains(&"error-time-own.svg".to_owned()));
-    assert_eq!(fs::read_dir(folder.path("out/references")).expect("references").count(), 4);
+    assert_eq!(fs::read_dir(folder.path("out/references")).expect("references").count(), 6);
 }
 
 #[test]

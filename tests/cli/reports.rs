@@ -56,7 +56,7 @@ fn settings_without_effect_are_reported() {
             "--light-choice power",
             "--light-choice has no effect: the scene has fewer than two lights",
         ),
-        ("--no-caustics", "--no-caustics has no effect"),
+        ("dark.toml --no-caustics", "--no-caustics has no effect"),
         ("--depth 2 --roulette throughput", "--roulette throughput has no effect"),
         ("--traversal scalar --lanes 8", "--lanes has no effect"),
         ("-o a.exr --exposure 1", "exposure has no effect"),

@@ -72,7 +72,7 @@ fn idle_reason(setting: &Setting, settings: &Settings, world: &World) -> Option<
         Need::Light => (world.features.lights, "the scene has no lights to sample"),
         Need::Lights => (world.lights.len() >= 2, "the scene has fewer than two lights"),
         Need::Caustics => {
-            let sampled = path && !world.caustic_casters.is_empty();
+            let sampled = path && world.samples_specular_light();
             (sampled, "the scene has no caustics that are sampled")
         }
     };

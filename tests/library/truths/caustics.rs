@@ -3,7 +3,7 @@
 use crate::common::*;
 use glam::DVec3;
 use spherule_render::image::Image;
-use spherule_render::scene::{Integrator, Material, Rgb, Scene, Settings};
+use spherule_render::scene::{Integrator, Light, Material, Rgb, Scene, Settings};
 
 /// Blocks of an image along each axis.
 const BLOCKS: usize = 4;
@@ -88,11 +88,47 @@ fn paths_reach_the_maximum_depth() {
     }
 }
 
-/// Scenes to which caustic sampling does not apply.
+/// Returns the same scene under a sun instead of an emitter.
+fn sunny(mut scene: Scene) -> Scene {
+    scene.materials[scene.spheres.material[0] as usize].material = lambertian(0.3);
+    scene.lights.push(Light::Sun {
+        direction: DVec3::new(0.5, -0.3, 0.8).normalize(),
+        irradiance: Rgb::splat(3.0),
+        angular_radius: 18.0,
+    });
+    scene
+}
+
 #[test]
-fn other_scenes_do_not_change() {
-    let mut rough = lit();
-    sphere(&mut rough, [0.0, 0.0, 1.0], 1.0, metal(0.2));
+fn suns_and_surfaces_of_every_kind() {
+    for (what, kind) in [("mirror", mirror()), ("glass", glass(1.5)), ("coat", plastic())] {
+        let mut scene = sunny(lit());
+        sphere(&mut scene, [0.0, 0.0, 1.0], 1.0, kind);
+        assert_unbiased(&scene, &format!("{what} under a sun"));
+        sphere(&mut scene, [-1.6, -0.5, 0.6], 0.6, plastic());
+        sphere(&mut scene, [1.4, -0.8, 0.5], 0.5, metal(0.3));
+        sphere(&mut scene, [0.3, -1.7, 0.4], 0.4, red_glass());
+        assert_unbiased(&scene, &format!("{what} among others"));
+    }
+}
+
+#[test]
+fn many_specular_spheres() {
+    let mut scene = sunny(lit());
+    scene.materials[scene.spheres.material[0] as usize].material = emitter(15.0, 0.2);
+    let kinds = [mirror(), glass(1.5), plastic(), red_glass(), lambertian(0.6)];
+    for place in 0..60 {
+        let (x, y) = (f64::from(place % 10) - 4.5, f64::from(place / 10) - 2.5);
+        let radius = 0.2 + 0.05 * f64::from(place * 7 % 5);
+        sphere(&mut scene, [x, y, radius], radius, kinds[(place % 5) as usize].clone());
+    }
+    assert_unbiased(&scene, "sixty spheres");
+}
+
+/// Glass that touches, contains or cuts other things casts no caustics that are sampled; light that it
+/// mirrors is.
+#[test]
+fn glass_that_does_not_stand_alone() {
     let mut nested = lit();
     sphere(&mut nested, [0.0, 0.0, 1.0], 1.0, glass(1.5));
     sphere(&mut nested, [0.0, 0.0, 1.0], 0.5, glass(1.3));
@@ -101,6 +137,17 @@ fn other_scenes_do_not_change() {
     sphere(&mut filled, [0.0, 0.0, 1.0], 0.5, lambertian(0.5));
     let mut sunk = lit();
     sphere(&mut sunk, [0.0, 0.0, 0.5], 1.0, glass(1.5));
+    for (what, scene) in [("nested", nested), ("filled", filled), ("sunk", sunk)] {
+        assert_unbiased(&scene, what);
+        assert_unbiased(&sunny(scene), &format!("{what} under a sun"));
+    }
+}
+
+/// Scenes to which caustic sampling does not apply.
+#[test]
+fn other_scenes_do_not_change() {
+    let mut rough = lit();
+    sphere(&mut rough, [0.0, 0.0, 1.0], 1.0, metal(0.2));
     let mut large = lit();
     sphere(&mut large, [0.0, 0.0, 1.0], 1.0, mirror());
     large.spheres.radius[0] = 3.0;
@@ -110,7 +157,7 @@ fn other_scenes_do_not_change() {
     let mut direct = lit();
     sphere(&mut direct, [0.0, 0.0, 1.0], 1.0, mirror());
     direct.settings.integrator = Integrator::Whitted { shadow_samples: 4 };
-    for (case, scene) in [rough, nested, filled, sunk, large, shallow, direct].iter().enumerate() {
+    for (case, scene) in [rough, large, shallow, direct].iter().enumerate() {
         let chance = Settings { caustics: false, ..scene.settings.clone() };
         let chance = Scene { settings: chance, ..scene.clone() };
         assert_eq!(

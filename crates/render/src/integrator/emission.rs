@@ -4,6 +4,7 @@ use super::Job;
 use super::caustics;
 use super::columns::row;
 use super::direct_light::power_heuristic;
+use super::mirrored_light;
 use super::path_state::{PathStateRow, PreviousBounce};
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, bits, bits_of, first_lanes, set_bits};
@@ -102,7 +103,14 @@ fn add_suns(job: &Job, work: &Workspace, (first, lanes): (usize, u32), light: &m
         let channels = channels.map(|channel| &mut channel.as_mut_array()[lane]);
         for (sun, radiance) in lights.suns_toward(work.rays.direction.row(row)) {
             let pdf = || lights.sun_pdf(sun, &receiver(work, row));
-            let radiance = radiance * mis_weight(previous, pdf);
+            let weight = if previous.light_sampled() {
+                mis_weight(previous, pdf)
+            } else if previous.mirrored_light_sampled() {
+                0.0
+            } else {
+                caustics::sun_weight(job, work, row, sun)
+            };
+            let radiance = radiance * weight;
             (0..3).for_each(|i| *channels[i] += radiance[i]);
         }
     }
@@ -123,13 +131,23 @@ pub(super) fn add_emitted(job: &Job, work: &mut Workspace) {
             weight[lane] = emitter_weight(job, work, queue.ray(first + lane));
         }
         for lane in set_bits(lanes & !state.previous.light_sampled().bits()) {
-            let path = state.path.to_array()[lane];
-            weight[lane] = caustics::mis_weight(job, work, queue.ray(first + lane), path as usize);
+            let (path, row) = (state.path.to_array()[lane] as usize, queue.ray(first + lane));
+            weight[lane] = if left_out(job, work, row) {
+                0.0
+            } else {
+                caustics::emitter_weight(job, work, row, path)
+            };
         }
         let light = state.throughput.times(radiance) * F32x16::new(weight);
         work.paths.add(state.path, light, lanes);
     }
     work.queues.put(MaterialKind::Emitter, queue);
+}
+
+/// Returns whether the emitter that the path in a row has hit was added where the path was mirrored.
+fn left_out(job: &Job, work: &Workspace, row: usize) -> bool {
+    work.states.previous(row).mirrored_light_sampled()
+        && mirrored_light::is_sampled(job.world, work.hits.sphere[row], work.rays.origin.row(row))
 }
 
 /// Returns the MIS weight of the emitter that the path in a row has hit, where light samples may find

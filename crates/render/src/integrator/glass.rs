@@ -3,21 +3,24 @@
 use super::Job;
 use super::interior;
 use super::material_queues::MaterialQueue;
+use super::mirrored_light::{MirrorRow, sample_mirrored_light};
 use super::next_rays::RayRow;
 use super::path_state::PathStateRow;
 use super::path_state::PreviousBounce;
 use super::surface::chord_length;
 use super::workspace::Workspace;
 use crate::lanes::{
-    Doubles, F32x16, F64x8, Lanes, MAX_LANES, Mask, Packing, load_doubles, set_bits, store_rounded,
-    widen,
+    Doubles, F32x16, F64x8, Lanes, MAX_LANES, Mask, Packing, load_doubles, narrow, set_bits,
+    store_rounded, widen,
 };
 use crate::ray::MISS;
 use crate::scene::Rgb;
 use crate::shade::MaterialKind;
 use crate::shade::dielectric::{self, Interface};
+use crate::shade::fresnel;
 use crate::vec3::Vec3;
 use crate::world::World;
+use glam::DVec3;
 
 /// Doubles that are computed at once.
 const HALF: usize = MAX_LANES / 2;
@@ -55,15 +58,141 @@ pub(super) fn scatter(job: &Job, work: &mut Workspace, bounce: u32) {
         if nested {
             set_bits(lanes).for_each(|lane| find_outside_ior(job.world, work, &mut hits, lane));
         }
+        let mut simple = 0;
+        if job.samples_mirrored_light() {
+            simple = simple_lanes(job, &hits, lanes);
+            add_mirrored_light(job, work, (&queue, first), (&hits, lanes));
+            if bounce + 2 <= job.depth() {
+                add_internally_mirrored_light(job, work, (&queue, first), (&hits, simple));
+            }
+        }
         let rays = reflect_or_refract(&hits);
         if nested {
             set_bits(lanes & rays.inward)
                 .for_each(|lane| enter_sphere(job.world, work, &hits, lane));
         }
-        let state = update_states(job.world, tinted, &hits);
+        let mut state = update_states(job.world, tinted, &hits);
+        if job.samples_mirrored_light() {
+            let before = hits.state.previous.mirrored_light_sampled().bits();
+            let mirrored = outside(&hits) & !rays.inward;
+            let inside = simple & (rays.inward | before);
+            state.previous = state.previous.with_mirrored_light(F32x16::lanes(mirrored | inside));
+        }
         spawn_rays(work, lanes, (&hits, &state), &rays);
     }
     work.queues.put(MaterialKind::Dielectric, queue);
+}
+
+/// Returns the lanes whose rays hit a real interface from outside.
+#[inline(always)]
+fn outside(hits: &GlassHits) -> u32 {
+    let real = Lanes::lt(F32x16::splat(0.0), F32x16::new(hits.index[1]));
+    let [x, y, z] = hits.normal;
+    let entering = |lane: usize| {
+        let normal = DVec3::new(x[lane], y[lane], z[lane]);
+        let direction: glam::Vec3 = hits.direction.map(|row| row.to_array()[lane]).into();
+        normal.dot(direction.as_dvec3()) < 0.0
+    };
+    (0..MAX_LANES).filter(|&lane| entering(lane)).fold(0, |lanes, lane| lanes | 1 << lane)
+        & real.bits()
+}
+
+/// Returns the lanes whose rays are inside glass that stands alone.
+fn simple_lanes(job: &Job, hits: &GlassHits, lanes: u32) -> u32 {
+    let inside = set_bits(lanes & !outside(hits));
+    inside
+        .filter(|&lane| job.world.caustic_casters.has(hits.hit[lane]))
+        .fold(0, |lanes, lane| lanes | 1 << lane)
+}
+
+/// Adds the light of suns and emitters that glass mirrors on the outside.
+fn add_mirrored_light(
+    job: &Job,
+    work: &mut Workspace,
+    (queue, first): (&MaterialQueue, usize),
+    (hits, lanes): (&GlassHits, u32),
+) {
+    let [x, y, z] = hits.normal.map(|column| F32x16::new(column.map(|x| x as f32)));
+    let normal = Vec3::new(x, y, z);
+    let cosine = -hits.direction.dot(normal);
+    let direction = (hits.direction + normal * (cosine + cosine)).normalize();
+    let row = MirrorRow {
+        rays: queue.ray_row(first),
+        own: &hits.hit,
+        path: hits.state.path,
+        previous: hits.state.previous,
+        point: hits.point,
+        direction,
+    };
+    let factor = || {
+        let cosine = cosine.to_array();
+        let reflectance = F32x16::new(std::array::from_fn(|lane| {
+            let eta = f64::from(hits.index[1][lane]) / f64::from(hits.index[0][lane]);
+            fresnel::dielectric(f64::from(cosine[lane]).clamp(0.0, 1.0), eta).0 as f32
+        }));
+        tint(job.world, lanes, hits) * reflectance
+    };
+    sample_mirrored_light(job, work, (&row, lanes & outside(hits)), factor);
+}
+
+/// Rays inside a sphere that is hit, mirrored there, and refracted where they leave the sphere next.
+struct InnerMirror {
+    point: [Vec3<F64x8>; 2],
+    direction: [Vec3<F64x8>; 2],
+    /// Fraction of light that both interfaces keep.
+    kept: [F64x8; 2],
+}
+
+/// Adds the light of suns and emitters that glass mirrors once on the inside, and lets out at the next
+/// interface. The incidence is the same at both.
+fn add_internally_mirrored_light(
+    job: &Job,
+    work: &mut Workspace,
+    (queue, first): (&MaterialQueue, usize),
+    (hits, lanes): (&GlassHits, u32),
+) {
+    if lanes == 0 {
+        return;
+    }
+    let InnerMirror { point, direction, kept } = mirror_inside(hits);
+    let row = MirrorRow {
+        rays: queue.ray_row(first),
+        own: &hits.hit,
+        path: hits.state.path,
+        // Caustic samples do not find this light.
+        previous: PreviousBounce::camera(),
+        point: Vec3::narrow(point),
+        direction: Vec3::narrow(direction).normalize(),
+    };
+    let factor = || {
+        let color = colors(job.world, lanes, hits);
+        tint(job.world, lanes, hits).times(color) * narrow(kept)
+    };
+    sample_mirrored_light(job, work, (&row, lanes), factor);
+}
+
+#[inline(always)]
+fn mirror_inside(hits: &GlassHits) -> InnerMirror {
+    let halves = [0, HALF].map(|first| {
+        let doubles = |column: &[f64; MAX_LANES]| F64x8::from(&column[first..first + HALF]);
+        let singles = |column: &[f32; MAX_LANES]| load_doubles(&column[first..]);
+        let [x, y, z] = hits.normal.each_ref().map(doubles);
+        let normal = Vec3::new(x, y, z);
+        let part = |row: Vec3<F32x16>| row.map(|x| widen(x)[first / HALF]);
+        let direction = part(hits.direction);
+        let direction = direction * direction.inverse_length();
+        let two = F64x8::splat(2.0);
+        let cosine = direction.dot_unfused(normal);
+        let mirrored = direction - normal * (two * cosine);
+        let across = mirrored * (two * cosine);
+        let eta = singles(&hits.index[0]) / singles(&hits.index[1]);
+        let (reflected, refracted) = fresnel::dielectric(cosine, eta);
+        let leaving = mirrored * eta + (normal + across) * (refracted - eta * cosine);
+        let kept = reflected * (F64x8::splat(1.0) - reflected);
+        (part(hits.point) + across * singles(&hits.radius), leaving, kept)
+    });
+    let [(p, d, k), (q, e, l)] = halves;
+    InnerMirror { point: [p, q], direction: [d, e], kept: [k, l] }
 }
 
 /// Returns whether any glass absorbs light.
@@ -170,6 +299,11 @@ fn update_states(world: &World, tinted: bool, hits: &GlassHits) -> PathStateRow 
 
 /// Multiplies the throughput of the paths in `lanes` by the color of the glass.
 fn tint(world: &World, lanes: u32, hits: &GlassHits) -> Vec3<F32x16> {
+    hits.state.throughput.times(colors(world, lanes, hits))
+}
+
+/// Returns the colors of the glass in `lanes`.
+fn colors(world: &World, lanes: u32, hits: &GlassHits) -> Vec3<F32x16> {
     let mut color = [[1.0; MAX_LANES]; 3];
     for lane in set_bits(lanes) {
         let hit = hits.hit[lane];
@@ -178,8 +312,7 @@ fn tint(world: &World, lanes: u32, hits: &GlassHits) -> Vec3<F32x16> {
         (color[0][lane], color[1][lane], color[2][lane]) = (x, y, z);
     }
     let [x, y, z] = color;
-    let color = Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z));
-    hits.state.throughput.times(color)
+    Vec3::new(F32x16::new(x), F32x16::new(y), F32x16::new(z))
 }
 
 #[inline(always)]

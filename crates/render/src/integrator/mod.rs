@@ -18,6 +18,7 @@ mod glass;
 mod interior;
 pub mod material_queues;
 pub mod material_table;
+mod mirrored_light;
 mod next_rays;
 pub mod path;
 pub mod path_state;

@@ -5,8 +5,8 @@
 //! heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
 //! SIGGRAPH 1995), except that from a diffuse surface an emitter that is not close, a sun or a point
 //! light is left to light samples alone: BSDF samples would only add variance. A constant or gradient
-//! environment is left to BSDF samples alone. Diffuse surfaces also sample caustics: emitters seen by
-//! one mirror or one glass sphere.
+//! environment is left to BSDF samples alone. Surfaces that are not specular also sample caustics:
+//! emitters seen by one mirror, coat or glass sphere.
 
 use super::Job;
 use super::caustics;
@@ -15,13 +15,14 @@ use super::emission;
 use super::glass;
 use super::material_queues::MaterialQueue;
 use super::material_table::gather_bsdfs;
+use super::mirrored_light::{MirrorRow, sample_mirrored_light};
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_active, roulette_threshold, survival_probability};
 use super::shading_row::{ShadingRow, SurfaceRow};
 use super::stages::{self, KindVisitor};
 use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, Mask};
-use crate::shade::{Bsdf, Material, MaterialId, MaterialKind};
+use crate::shade::{Bsdf, Material, MaterialId, MaterialKind, mirror};
 
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace) {
@@ -40,7 +41,7 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
             job.world,
             &mut Shade { job, work, bounce: Bounce { index: bounce, threshold } },
         );
-        caustics::flush(job, work, bounce);
+        caustics::flush(job, work);
         if !stages::end_bounce(job, work) {
             return;
         }
@@ -67,6 +68,7 @@ impl KindVisitor for Shade<'_> {
         for rows in queue.rows() {
             shade(self.job, self.work, self.bounce, (&queue, rows), (kind, &table));
         }
+        caustics::sample_all(self.job, self.work, self.bounce.index, (kind, &table));
         self.work.queues.put(kind, queue);
     }
 }
@@ -86,9 +88,24 @@ fn shade<M: Material>(
     if job.has_lights() {
         let lanes = shading.lanes & !bsdf.is_delta().bits();
         sample_direct_light::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
-        caustics::enqueue_queries::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
+        caustics::enqueue_queries(job, work, bounce.index, (&shading, lanes), material);
     }
-    spawn_rays::<M>(job, work, bounce, (&shading, &bsdf));
+    let mirrors = M::HAS_DIFFUSE_BASE && job.samples_mirrored_light();
+    if mirrors {
+        let row = MirrorRow {
+            rays: shading.surface_row.rows,
+            own: &shading.surface_row.at.own,
+            path: shading.surface_row.state.path,
+            previous: shading.surface_row.state.previous,
+            point: shading.surface_row.at.point,
+            direction: shading.to_world(mirror(shading.outgoing)),
+        };
+        let lanes = shading.lanes & !shading.surface_row.inside;
+        let throughput = shading.surface_row.state.throughput;
+        let factor = || throughput.times(bsdf.mirrored(shading.outgoing));
+        sample_mirrored_light(job, work, (&row, lanes), factor);
+    }
+    spawn_rays::<M>(job, work, bounce, (&shading, &bsdf, mirrors));
 }
 
 /// Samples the BSDFs, applies Russian roulette, and spawns the next rays of the paths that survive.
@@ -97,7 +114,7 @@ fn spawn_rays<M: Material>(
     job: &Job,
     work: &mut Workspace,
     Bounce { index, threshold }: Bounce,
-    (shading, bsdf): (&ShadingRow, &M::Bsdf<F32x16>),
+    (shading, bsdf, mirrors): (&ShadingRow, &M::Bsdf<F32x16>, bool),
 ) {
     let (roulette, state) = (job.settings.roulette, &shading.surface_row.state);
     // Without a choice between lobes and without roulette, no random numbers are needed for them.
@@ -108,9 +125,15 @@ fn spawn_rays<M: Material>(
     let greatest = throughput.max_element();
     let survival = survival_probability(roulette, greatest, index, threshold);
     let survives = Lanes::lt(draw.roulette, survival) & Lanes::lt(F32x16::splat(0.0), greatest);
+    let mut previous = state.previous.next(scatter.pdf, M::DIFFUSE);
+    if mirrors {
+        let outside = F32x16::lanes(!shading.surface_row.inside);
+        previous =
+            previous.with_mirrored_light(Lanes::le(scatter.pdf, F32x16::splat(0.0)) & outside);
+    }
     let next = PathStateRow {
         throughput: throughput.map(|channel| channel / survival),
-        previous: state.previous.next(scatter.pdf, M::DIFFUSE),
+        previous,
         normal: shading.surface_row.at.normal,
         ..*state
     };

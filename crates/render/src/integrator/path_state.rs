@@ -176,7 +176,8 @@ impl PathStates {
 /// The value is the density of the ray's direction by solid angle. It is negative if the last surface
 /// was diffuse: there light samples alone count for lights that are not close. It is infinite if no
 /// light sample could have found the direction, from the camera or a specular surface, and negative
-/// infinity if the path has met only specular surfaces since the camera.
+/// infinity if the path has met only specular surfaces since the camera. The largest finite values stand
+/// for infinite ones where a specular surface has sampled the lights in the mirrored direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreviousBounce<L>(pub L);
 
@@ -196,7 +197,7 @@ impl<L: Lanes> PreviousBounce<L> {
     /// Returns the lanes in which a light sample could have found the direction.
     #[inline(always)]
     pub fn light_sampled(self) -> L::Mask {
-        self.density().lt(L::splat(f32::INFINITY))
+        self.density().lt(L::splat(f32::MAX))
     }
 
     /// Returns the lanes in which the last surface was diffuse.
@@ -208,7 +209,22 @@ impl<L: Lanes> PreviousBounce<L> {
     /// Returns the lanes whose paths have met only specular surfaces since the camera.
     #[inline(always)]
     pub fn specular_only(self) -> L::Mask {
-        self.0.le(L::splat(f32::NEG_INFINITY))
+        self.0.le(L::splat(-f32::MAX))
+    }
+
+    /// Returns the lanes in which the last surface mirrored the ray, and sampled the lights in its
+    /// direction.
+    #[inline(always)]
+    pub fn mirrored_light_sampled(self) -> L::Mask {
+        let density = self.density();
+        density.lt(L::splat(f32::INFINITY)) & L::splat(f32::MAX).le(density)
+    }
+
+    /// Marks lanes in which the last surface mirrored the ray, and sampled the lights in its direction.
+    #[inline(always)]
+    pub fn with_mirrored_light(self, lanes: L::Mask) -> Self {
+        let marked = self.0.max(L::splat(-f32::MAX)).min(L::splat(f32::MAX));
+        Self(L::select(lanes, marked, self.0))
     }
 
     /// Returns the value after one more bounce with these densities, 0 for specular ones.
@@ -245,5 +261,12 @@ mod tests {
         let even = rough.next(3.0, true);
         assert_eq!(properties(even), (true, true, false, 3.0));
         assert_eq!(properties(even.next(0.0, false)), (false, false, false, none));
+        let mirrored = |previous: PreviousBounce<f32>| {
+            let marked = previous.next(0.0, false).with_mirrored_light(true);
+            assert!(marked.mirrored_light_sampled() && !previous.mirrored_light_sampled());
+            properties(marked)
+        };
+        assert_eq!(mirrored(camera), (false, false, true, f32::MAX));
+        assert_eq!(mirrored(rough), (false, false, false, f32::MAX));
     }
 }

@@ -128,8 +128,8 @@ mod tests {
                     roulette,
                     light as f32,
                 ]));
-                let (choice, point) = sampler.caustic_row(&row, bounce);
-                numbers.extend([choice, point[0], point[1]].map(|row| row.to_array()[0]));
+                let [u, v, choice, _] = sampler.caustic_row(&row, bounce);
+                numbers.extend([choice, u, v].map(|row| row.to_array()[0]));
             }
             let count = numbers.len();
             assert_eq!(count, 1004);

@@ -184,12 +184,11 @@ impl Sampler {
         self.draw4_row(paths, lights(bounce))
     }
 
-    /// Returns numbers for the choice of a caustic at bounce number `bounce` and for a point on its
-    /// light, for each.
+    /// Returns the numbers of [`LightDraw`](super::LightDraw)s for caustics at bounce number `bounce`,
+    /// for each: for the choice of a caustic and for a point on its light.
     #[inline(always)]
-    pub fn caustic_row(&self, paths: &SamplerRow, bounce: u32) -> (F32x16, [F32x16; 2]) {
-        let [u, v, which, _] = self.alternate_row(paths, lights(bounce));
-        (which, [u, v])
+    pub fn caustic_row(&self, paths: &SamplerRow, bounce: u32) -> [F32x16; 4] {
+        self.alternate_row(paths, lights(bounce))
     }
 
     /// [`Sampler::draw4`] for each, with [alternate](SamplerState::alternate) numbers.
@@ -275,10 +274,9 @@ mod tests {
                     assert_eq!(LightDraw::new(light), sampler.light(&row[5], bounce));
                 }
                 for bounce in [0, 3, 99] {
-                    let (which, [u, v]) = sampler.caustic_row(sixteen, bounce);
-                    let each = [u, v, which].map(|x| x.to_array()[5]);
-                    let [u, v, which, _] = sampler.draw4(&row[5].alternate(), lights(bounce));
-                    assert_eq!(each, [u, v, which], "{kind:?} {bounce}");
+                    let each = sampler.caustic_row(sixteen, bounce).map(|x| x.to_array()[5]);
+                    let numbers = sampler.draw4(&row[5].alternate(), lights(bounce));
+                    assert_eq!(each, numbers, "{kind:?} {bounce}");
                 }
                 let [x, y] = sampler.pixel_row(sixteen).map(|x| x.to_array()[3]);
                 assert_eq!([x, y], sampler.pixel(&row[3]));

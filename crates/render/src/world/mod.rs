@@ -26,7 +26,7 @@ pub use appearance::{Appearance, Colors, Column};
 pub use camera::Camera;
 pub use camera_visible::CameraVisible;
 pub use caustics::CausticCasters;
-pub(crate) use caustics::{CausticHit, CausticPath, CausticQuery, CausticSample};
+pub(crate) use caustics::{CausticHit, CausticPath, CausticQuery, CausticSample, CausticSource};
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use environment::{Environment, PartBounds, Picture, Radiance, SkyLight, SkySamples};
@@ -45,7 +45,7 @@ use crate::memory::Shortage;
 use crate::ray::GROUND;
 use crate::scene::{self, Footprint, Rgb, Scene};
 use crate::settings::{InvalidSetting, Settings};
-use crate::shade::{MaterialId, Materials};
+use crate::shade::{MaterialId, MaterialKind, Materials};
 use crate::spheres::Spheres;
 use std::borrow::Cow;
 
@@ -84,7 +84,7 @@ pub struct World {
     /// Lights that can be sampled.
     #[doc(hidden)]
     pub lights: Lights,
-    /// Pairs of specular sphere and emitter whose caustics are sampled.
+    /// The specular spheres and emitters whose caustics are sampled.
     #[doc(hidden)]
     pub caustic_casters: CausticCasters,
     /// The environment: radiance of rays that hit nothing.
@@ -282,6 +282,14 @@ impl World {
         self.placement = pose;
         self.features = std::mem::take(&mut self.features).with_camera_of(self);
         Ok(true)
+    }
+
+    /// Returns whether paths sample the light that specular spheres pass on: caustics, or emitters that
+    /// coats and glass mirror.
+    pub fn samples_specular_light(&self) -> bool {
+        let kinds = [MaterialKind::Dielectric, MaterialKind::Plastic, MaterialKind::Reflective];
+        let mirrors = kinds.iter().any(|&kind| self.features.has(kind));
+        !self.caustic_casters.is_empty() || (mirrors && self.lights.samples_mirrored_light())
     }
 
     /// Returns the material at a hit: a sphere's row or [`GROUND`].

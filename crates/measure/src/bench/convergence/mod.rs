@@ -156,9 +156,9 @@ mod tests {
         assert_eq!((cell(0, 2), cell(1, 2)), (1.0, 4.0));
         assert!(cell(2, 2) >= 16.0 && rmse(2) < rmse(1));
         let cached = || std::fs::read_dir(folder.path().join("references")).unwrap().count();
-        assert_eq!(cached(), 4);
+        assert_eq!(cached(), 6);
         let again = measure(&options, &|_| ()).unwrap();
-        assert_eq!((cached(), &again.tables[2]), (4, &report.tables[2]));
+        assert_eq!((cached(), &again.tables[2]), (6, &report.tables[2]));
         // All traversals find the same hits, so errors are equal.
         let single = report.tables[0].rows.iter().position(|row| row[1] == "single rays".into());
         assert_eq!(rmse(0), rmse(single.unwrap()));

@@ -120,7 +120,7 @@ fn several_lights(scene: &NamedScene) -> Result<Option<Case>, BenchError> {
 fn caustics(scene: &NamedScene) -> Result<Option<Case>, BenchError> {
     let with_path_tracing = |scene: &mut Scene| scene.settings.integrator = Integrator::Path;
     let scene = changed(scene, "caustics", with_path_tracing);
-    Ok((!scene.world()?.caustic_casters.is_empty()).then_some(Case { scene, variants: &CAUSTICS }))
+    Ok(scene.world()?.samples_specular_light().then_some(Case { scene, variants: &CAUSTICS }))
 }
 
 fn direct(scene: &NamedScene) -> Case {

@@ -1,17 +1,20 @@
 //! Chains of specular bounces since the last diffuse surface, for the MIS weights of caustics.
 
 use crate::integrator::Job;
+use crate::integrator::path_state::PreviousBounce;
 use crate::integrator::workspace::Workspace;
 use crate::ray::{GROUND, MISS, Rays};
 use crate::shade::MaterialKind;
-use crate::world::{CausticHit, World};
+use crate::world::{CausticCasters, CausticHit, CausticSource, Receiver, World};
 use glam::Vec3;
 
-/// A path's specular bounces since it left a diffuse surface.
+/// A path's specular bounces since it left a surface that is not specular.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpecularChain {
-    /// Point and normal where it left the diffuse surface.
+    /// Point and normal where it left that surface.
     start: [Vec3; 2],
+    /// The sphere of that surface, or [`GROUND`].
+    own: u32,
     toward: Vec3,
     pdf: f32,
     /// The only sphere of the chain; [`MISS`] if there is none, or more than one.
@@ -21,8 +24,14 @@ pub(super) struct SpecularChain {
 }
 
 impl SpecularChain {
-    pub(super) const NONE: Self =
-        Self { start: [Vec3::ZERO; 2], toward: Vec3::ZERO, pdf: 0.0, sphere: MISS, inside: false };
+    pub(super) const NONE: Self = Self {
+        start: [Vec3::ZERO; 2],
+        own: MISS,
+        toward: Vec3::ZERO,
+        pdf: 0.0,
+        sphere: MISS,
+        inside: false,
+    };
 }
 
 /// Updates the chains of all paths, before they are scattered.
@@ -34,7 +43,7 @@ pub(in crate::integrator) fn track_chains(job: &Job, work: &mut Workspace) {
             let (hit, previous) = (work.hits.sphere[row], queue.states.previous(i));
             let chain = &mut work.caustics.chains[queue.states.path(i)];
             let repeated = chain.sphere == hit && work.rays.own[row] == hit && !chain.inside;
-            *chain = if previous.after_diffuse() && casters.has(hit) {
+            *chain = if previous.light_sampled() && casters.has(hit) {
                 start_chain(job.world, &work.rays, row, (previous.density(), hit))
             } else if repeated && !previous.light_sampled() {
                 SpecularChain { inside: true, ..*chain }
@@ -45,8 +54,8 @@ pub(in crate::integrator) fn track_chains(job: &Job, work: &mut Workspace) {
     }
 }
 
-/// Returns the chain of a path that has reached a sphere from a diffuse surface, on the outside of a
-/// sphere or above the ground.
+/// Returns the chain of a path that has reached a sphere from a surface that is not specular, on the
+/// outside of a sphere or above the ground.
 fn start_chain(world: &World, rays: &Rays, row: usize, (pdf, sphere): (f32, u32)) -> SpecularChain {
     let (point, toward) = (rays.origin.row(row), rays.direction.row(row));
     let normal = match (rays.own[row], &world.ground) {
@@ -56,28 +65,84 @@ fn start_chain(world: &World, rays: &Rays, row: usize, (pdf, sphere): (f32, u32)
     if normal.dot(toward) <= 0.0 {
         return SpecularChain::NONE;
     }
-    SpecularChain { start: [point, normal], toward, pdf, sphere, inside: false }
+    SpecularChain { start: [point, normal], own: rays.own[row], toward, pdf, sphere, inside: false }
 }
 
-/// Returns the MIS weight of the emitter that a path has hit, beside caustic samples.
-pub(in crate::integrator) fn mis_weight(
+/// Returns the MIS weight of an emissive sphere that a path has hit, beside caustic samples.
+pub(in crate::integrator) fn emitter_weight(
     job: &Job,
     work: &Workspace,
     row: usize,
     path: usize,
+) -> f32 {
+    let emitter = CausticSource::Sphere(work.hits.sphere[row]);
+    weight(job, work, (row, path), (emitter, work.surface.point.row(row)))
+}
+
+/// Returns the MIS weight of a sun that a path has reached, beside caustic samples.
+pub(in crate::integrator) fn sun_weight(
+    job: &Job,
+    work: &Workspace,
+    row: usize,
+    sun: usize,
+) -> f32 {
+    let end = (CausticSource::Sun(sun), work.rays.direction.row(row));
+    weight(job, work, (row, work.states.path(row)), end)
+}
+
+/// Returns the MIS weight of an emitter, at a point or in a direction.
+fn weight(
+    job: &Job,
+    work: &Workspace,
+    (row, path): (usize, usize),
+    (emitter, end): (CausticSource, Vec3),
 ) -> f32 {
     let Some(casters) = job.casters() else { return 1.0 };
     let chain = &work.caustics.chains[path];
     if chain.sphere == MISS || work.rays.own[row] != chain.sphere {
         return 1.0;
     }
-    casters.weight(&CausticHit {
-        start: chain.start,
-        toward: chain.toward,
-        pdf: chain.pdf,
-        sphere: chain.sphere,
-        through: chain.inside,
-        emitter: work.hits.sphere[row],
-        end: [work.surface.point.row(row), work.rays.direction.row(row)],
-    })
+    chain.weight(casters, (emitter, end, work.rays.direction.row(row)))
+}
+
+/// Returns the MIS weight of an emitter, at a point of it and in this direction, that the ray in a row
+/// sees in the mirroring sphere that it has hit, beside caustic samples.
+pub(in crate::integrator) fn mirrored_weight(
+    job: &Job,
+    work: &Workspace,
+    (row, previous): (usize, PreviousBounce<f32>),
+    (emitter, point, toward): (CausticSource, Vec3, Vec3),
+) -> f32 {
+    let (Some(casters), hit) = (job.casters(), work.hits.sphere[row]) else { return 1.0 };
+    if !previous.light_sampled() || !casters.has(hit) {
+        return 1.0;
+    }
+    let chain = start_chain(job.world, &work.rays, row, (previous.density(), hit));
+    if chain.sphere == MISS {
+        return 1.0;
+    }
+    let end = if matches!(emitter, CausticSource::Sun(_)) { toward } else { point };
+    chain.weight(casters, (emitter, end, toward))
+}
+
+impl SpecularChain {
+    /// Returns the MIS weight of an emitter, at a point or in a direction, that is reached in direction
+    /// `toward_emitter`.
+    fn weight(
+        &self,
+        casters: &CausticCasters,
+        (emitter, end, toward_emitter): (CausticSource, Vec3, Vec3),
+    ) -> f32 {
+        let [point, normal] = self.start;
+        casters.weight(&CausticHit {
+            start: Receiver { point, normal, own: self.own },
+            toward: self.toward,
+            pdf: self.pdf,
+            sphere: self.sphere,
+            through: self.inside,
+            emitter,
+            end,
+            toward_emitter,
+        })
+    }
 }

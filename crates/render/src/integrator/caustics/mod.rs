@@ -1,25 +1,28 @@
-//! Caustics: samples of emitters by way of a specular sphere, from diffuse surfaces.
+//! Caustics: samples of emitters by way of a specular sphere, from surfaces that are not specular.
 //!
-//! [`enqueue_queries`] chooses which path of light each surface point samples; the queries wait until
-//! they fill a row. Their shadow rays have two segments: all first segments, from surfaces to spheres,
+//! [`enqueue_queries`] chooses which path of light each surface point samples; the queries of a kind of
+//! material wait until they fill a row. Their shadow rays have two segments: all first segments, from surfaces to spheres,
 //! are traced at once; the second segments of those that are not occluded, from spheres to emitters,
-//! join the shadow queue. [`track_chains`] and [`mis_weight`] compute the weight of caustics that BSDF
-//! samples find.
+//! join the shadow queue. [`track_chains`], [`emitter_weight`] and [`sun_weight`] compute the weight of
+//! caustics that BSDF samples find.
 
 mod chain;
 mod queues;
 
-pub(super) use chain::{mis_weight, track_chains};
+pub(super) use chain::{emitter_weight, mirrored_weight, sun_weight, track_chains};
 
 use super::Job;
+use super::direct_light::power_heuristic;
+use super::material_table::gather_bsdfs;
 use super::shading_row::ShadingRow;
 use super::shadow_queue;
 use super::workspace::{BATCH, Workspace};
-use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
+use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, set_bits};
 use crate::ray::MISS;
+use crate::sampling::{Bases, LightDraw, ONE_BELOW};
 use crate::scene::{ConductorFresnel, Rgb};
 use crate::shade::conductor::Conductor;
-use crate::shade::{Bsdf, GatheredParams, Material, MaterialKind};
+use crate::shade::{Bsdf, GatheredParams, Material, MaterialId, MaterialKind};
 use crate::vec3::Vec3;
 use crate::world::{CausticCasters, CausticPath, CausticQuery, World};
 use chain::SpecularChain;
@@ -28,7 +31,7 @@ use queues::{FirstSegments, QueryQueue, QueryRow};
 /// Queues of caustic samples.
 #[derive(Default)]
 pub(super) struct Caustics {
-    /// By path: specular bounces since the last diffuse surface.
+    /// By path: specular bounces since the last surface that is not specular.
     chains: Vec<SpecularChain>,
     queries: QueryQueue,
     first_segments: FirstSegments,
@@ -63,65 +66,110 @@ pub(super) fn enqueue_queries<M: Material>(
     job: &Job,
     work: &mut Workspace,
     bounce: u32,
-    (shading, bsdf, lanes): (&ShadingRow, &M::Bsdf<F32x16>, u32),
+    (shading, lanes): (&ShadingRow, u32),
+    material: (MaterialKind, &impl Fn(MaterialId) -> M),
 ) {
-    if !M::DIFFUSE || bounce + 2 > job.depth() {
+    let lanes = lanes & !shading.surface_row.inside;
+    if lanes == 0 || bounce + 2 > job.depth() {
         return;
     }
     let Some(casters) = job.casters() else { return };
     let (at, state) = (&shading.surface_row.at, &shading.surface_row.state);
-    let (draw, place) = job.sampler.caustic_row(&work.paths.sampler_row(state), bounce);
-    let chosen = casters.choose(at.point, at.normal, draw);
-    let lanes = lanes & chosen.lanes & !shading.surface_row.inside;
-    if lanes == 0 {
-        return;
-    }
-    let facing = bsdf.eval(shading.outgoing, Vec3::splat(0.0, 0.0, 1.0));
-    let row = QueryRow {
-        own: at.own,
-        path: state.path.to_array(),
-        code: chosen.code,
-        probability: chosen.probability,
-        place,
-        factor: state.throughput.times(facing),
-        point: at.point,
-        normal: at.normal,
-    };
-    work.caustics.queries.push(&row, lanes);
-    if work.caustics.queries.len() >= MAX_LANES {
-        sample_queries(job, work, bounce);
+    let numbers = job.sampler.caustic_row(&work.paths.sampler_row(state), bounce);
+    let (draw, mut place, mut lanes) =
+        (LightDraw::light_row(numbers), [numbers[0], numbers[1]], lanes);
+    for number in 0.. {
+        let chosen = casters.choose_row(at, draw, (number, lanes));
+        lanes = chosen.lanes;
+        if lanes == 0 {
+            return;
+        }
+        let row = QueryRow {
+            own: at.own,
+            path: state.path.to_array(),
+            code: chosen.code,
+            emitter: chosen.emitter,
+            rate: chosen.rate,
+            place,
+            throughput: state.throughput,
+            point: at.point,
+            normal: at.normal,
+            outgoing: shading.outgoing,
+        };
+        work.caustics.queries.push(&row, lanes);
+        if work.caustics.queries.len() >= MAX_LANES {
+            sample_queries(job, work, bounce, material);
+        }
+        place = next_place(place);
     }
 }
 
-/// Samples all waiting queries, and traces their first segments.
-pub(super) fn flush(job: &Job, work: &mut Workspace, bounce: u32) {
+/// Returns the next point of a low-discrepancy sequence in the unit square (Roberts, "The Unreasonable
+/// Effectiveness of Quasirandom Sequences", 2018).
+#[inline(always)]
+fn next_place([u, v]: [F32x16; 2]) -> [F32x16; 2] {
+    let step = |x: F32x16, by: f32| {
+        let (x, one) = (x + F32x16::splat(by), F32x16::splat(1.0));
+        let x = Lanes::select(Lanes::lt(x, one), x, x - one);
+        x.min(F32x16::splat(ONE_BELOW))
+    };
+    [step(u, 0.754_877_7), step(v, 0.569_840_3)]
+}
+
+/// Samples all waiting queries, from surfaces of one kind.
+pub(super) fn sample_all<M: Material>(
+    job: &Job,
+    work: &mut Workspace,
+    bounce: u32,
+    material: (MaterialKind, &impl Fn(MaterialId) -> M),
+) {
+    while work.caustics.queries.len() > 0 {
+        sample_queries(job, work, bounce, material);
+    }
+}
+
+/// Traces the first segments that are waiting.
+pub(super) fn flush(job: &Job, work: &mut Workspace) {
     if job.casters().is_some() {
-        while work.caustics.queries.len() > 0 {
-            sample_queries(job, work, bounce);
-        }
         trace_first_segments(job, work);
     }
 }
 
-/// Samples a row of waiting queries.
+/// Samples a row of waiting queries, from surfaces of one kind.
 #[inline(never)]
-fn sample_queries(job: &Job, work: &mut Workspace, bounce: u32) {
+fn sample_queries<M: Material>(
+    job: &Job,
+    work: &mut Workspace,
+    bounce: u32,
+    material: (MaterialKind, &impl Fn(MaterialId) -> M),
+) {
     let world = job.world;
     let (row, lanes) = work.caustics.queries.take();
     let query = CausticQuery {
         point: row.point,
-        normal: row.normal,
-        pair: row.code.map(|code| world.caustic_casters.pair(code)),
+        pairs: world.caustic_casters.pair_row(&row.code, &row.emitter, lanes),
         path: row.code.map(CausticPath::of),
-        probability: row.probability,
+        rate: row.rate,
     };
     let sample = query.sample(row.place);
-    let light = row.factor.times(colors(world, &query, sample.incidence)) * sample.weight;
-    let lit = Lanes::lt(F32x16::splat(0.0), light.max_element()).bits();
+    let bsdf = gather_bsdfs((world, work.material_table.as_ref()), material, &row.own);
+    let incoming = Bases::about(row.normal).to_local(sample.toward);
+    let response = bsdf.eval(row.outgoing, incoming);
+    // The power heuristic, divided by the density.
+    let one = F32x16::splat(1.0);
+    let mirrored = if world.caustic_casters.mirrored_light { sample.reflected } else { 0 };
+    let chance = Lanes::select(F32x16::lanes(mirrored), one, sample.kept);
+    let own = bsdf.pdf(row.outgoing, incoming) * chance;
+    let weight = sample.kept * power_heuristic(sample.pdf, own) / sample.pdf;
+    let light = row.throughput.times(response).times(colors(world, &query, sample.incidence));
+    let light = light * weight;
+    let lit = Lanes::lt(F32x16::splat(0.0), light.max_element())
+        & Lanes::lt(light.max_element(), F32x16::splat(f32::INFINITY))
+        & Lanes::lt(F32x16::splat(0.0), incoming.z);
     // Light through glass has one more bounce.
     let through = |lane: &usize| query.path[*lane] != CausticPath::Reflected;
     let deep = (0..MAX_LANES).filter(|lane| bounce + 3 > job.depth() && through(lane));
-    let lanes = deep.fold(lanes & sample.lanes & lit, |lanes, lane| lanes & !(1 << lane));
+    let lanes = deep.fold(lanes & sample.lanes & lit.bits(), |lanes, lane| lanes & !(1 << lane));
     if !work.caustics.first_segments.has_room() {
         trace_first_segments(job, work);
     }
@@ -136,9 +184,10 @@ fn colors(world: &World, query: &CausticQuery, incidence: F32x16) -> Vec3<F32x16
     let mut metals = [white.params(Rgb::ONE); MAX_LANES];
     let mut tints = [Rgb::ONE; MAX_LANES];
     let mut mirrors = false;
-    for (lane, pair) in query.pair.iter().enumerate() {
-        let (id, own) = (world.material(pair.sphere), world.color(pair.sphere));
-        tints[lane] = pair.radiance;
+    for lane in set_bits(query.pairs.lanes) {
+        let sphere = query.pairs.sphere[lane];
+        let (id, own) = (world.material(sphere), world.color(sphere));
+        tints[lane] = query.pairs.radiance[lane];
         match id.kind() {
             MaterialKind::Conductor => {
                 metals[lane] = world.materials.conductor[id.row()].params(own);

@@ -12,11 +12,11 @@ const ROOM: usize = 3 * MAX_LANES;
 /// Caustic queries waiting for a full row.
 #[derive(Default)]
 pub(super) struct QueryQueue {
-    /// Sphere that the point lies on, path, and code of the pair and the caustic path.
-    numbers: [Vec<u32>; 3],
-    /// Probability of the choice, sample point on the emitter (2 columns), response to unit irradiance,
-    /// point, and normal (3 columns each).
-    values: [Vec<f32>; 12],
+    /// Sphere that the point lies on, path, code of the specular sphere and the caustic path, and emitter.
+    numbers: [Vec<u32>; 4],
+    /// Expected number of samples of the choice, sample point on the emitter (2 columns), throughput, point, normal, and
+    /// local direction toward the origin of the ray (3 columns each).
+    values: [Vec<f32>; 15],
     len: usize,
 }
 
@@ -26,17 +26,19 @@ pub(super) struct QueryRow {
     pub(super) own: [u32; MAX_LANES],
     pub(super) path: [u32; MAX_LANES],
     pub(super) code: [u32; MAX_LANES],
-    pub(super) probability: F32x16,
+    pub(super) emitter: [u32; MAX_LANES],
+    pub(super) rate: F32x16,
     pub(super) place: [F32x16; 2],
-    pub(super) factor: Vec3<F32x16>,
+    pub(super) throughput: Vec3<F32x16>,
     pub(super) point: Vec3<F32x16>,
     pub(super) normal: Vec3<F32x16>,
+    pub(super) outgoing: Vec3<F32x16>,
 }
 
 impl QueryQueue {
     pub(super) fn new() -> Self {
-        let numbers = [(); 3].map(|()| vec![0; ROOM]);
-        Self { numbers, values: [(); 12].map(|()| vec![0.0; ROOM]), len: 0 }
+        let numbers = [(); 4].map(|()| vec![0; ROOM]);
+        Self { numbers, values: [(); 15].map(|()| vec![0.0; ROOM]), len: 0 }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -47,13 +49,14 @@ impl QueryQueue {
     #[inline(always)]
     pub(super) fn push(&mut self, row: &QueryRow, lanes: u32) {
         let packing = Packing::new(lanes);
-        for (column, row) in self.numbers.iter_mut().zip([row.own, row.path, row.code]) {
+        let numbers = [row.own, row.path, row.code, row.emitter];
+        for (column, row) in self.numbers.iter_mut().zip(numbers) {
             packing.store_numbers(U32x16::new(row), &mut column[self.len..]);
         }
-        let ([u, v], Vec3 { x, y, z }) = (row.place, row.factor);
-        let (point, normal) = (row.point, row.normal);
-        let ends = [point.x, point.y, point.z, normal.x, normal.y, normal.z];
-        let values = [row.probability, u, v, x, y, z].into_iter().chain(ends);
+        let [u, v] = row.place;
+        let vectors = [row.throughput, row.point, row.normal, row.outgoing];
+        let vectors = vectors.into_iter().flat_map(|Vec3 { x, y, z }| [x, y, z]);
+        let values = [row.rate, u, v].into_iter().chain(vectors);
         for (column, row) in self.values.iter_mut().zip(values) {
             packing.store(row, &mut column[self.len..]);
         }
@@ -63,18 +66,23 @@ impl QueryQueue {
     /// Takes at most a row off the queue; returns it with its valid lanes.
     pub(super) fn take(&mut self) -> (QueryRow, u32) {
         let count = self.len.min(MAX_LANES);
-        let [own, path, code] = self.numbers.each_ref().map(|column| *first(column));
+        let [mut own, path, code, emitter] = self.numbers.each_ref().map(|column| *first(column));
+        // Kernels read the materials of all lanes.
+        let last = own[0];
+        own[count..].fill(last);
         let value = |i: usize| F32x16::new(*first(&self.values[i]));
         let vector = |i: usize| Vec3::new(value(i), value(i + 1), value(i + 2));
         let row = QueryRow {
             own,
             path,
             code,
-            probability: value(0),
+            emitter,
+            rate: value(0),
             place: [value(1), value(2)],
-            factor: vector(3),
+            throughput: vector(3),
             point: vector(6),
             normal: vector(9),
+            outgoing: vector(12),
         };
         self.numbers.iter_mut().for_each(|column| column.copy_within(count..self.len, 0));
         self.values.iter_mut().for_each(|column| column.copy_within(count..self.len, 0));
@@ -130,13 +138,13 @@ impl FirstSegments {
             v.map(|row| row.to_array()[lane]).into()
         };
         for (row, lane) in (first..).zip(set_bits(lanes)) {
-            let pair = query.pair[lane];
-            self.rays.target[row] = pair.sphere;
+            let sphere = query.pairs.sphere[lane];
+            self.rays.target[row] = sphere;
             self.hits.set(row, sample.length[0][lane], MISS);
             self.second.push(ShadowRay {
-                start: (one(sample.exit, lane), pair.sphere),
+                start: (one(sample.exit, lane), sphere),
                 direction: one(sample.toward_emitter, lane),
-                end: (sample.length[1][lane], pair.emitter),
+                end: (sample.length[1][lane], query.pairs.emitter[lane]),
                 path: path[lane],
                 light: one(light, lane),
             });

@@ -41,7 +41,8 @@ pub(crate) struct Connection<D: Doubles> {
     pub(crate) length: [D; 2],
     /// Angle of incidence.
     pub(crate) at: Angle<D>,
-    /// Area across the ray at the emitter per steradian at the receiver.
+    /// Area across the ray at the emitter per steradian at the receiver, over the squared distance of
+    /// the emitter from the center.
     pub(crate) spread: D,
     /// Mask of the paths that exist; other lanes are meaningless.
     pub(crate) found: D::Mask,

@@ -1,16 +1,21 @@
-//! Caustics: specular spheres that focus the light of emitters on diffuse surfaces.
+//! Caustics: specular spheres that focus the light of emitters on other surfaces.
 //!
-//! The spheres are smooth mirrors, coats and glass; there must be few of them, and few emitters. A
-//! diffuse surface's BSDF sampling finds this light with high variance. But the path is known in closed
-//! form ([`specular_sphere`]), so a point of the emitter can be sampled, and then the direction toward
-//! it, as for light samples. After "Manifold Next Event Estimation" (Hanika, Droske and Fascione,
-//! Computer Graphics Forum 2015), with all solutions at hand instead of a walk to one of them. Light
-//! that both techniques find is weighted by the power heuristic.
+//! Every smooth mirror, coat and glass sphere that an emitter or a sun illuminates is a light of its own.
+//! BSDF sampling finds this light with high variance. But the path is known in closed form
+//! ([`specular_sphere`]), so a point of the emitter can be sampled, and then the direction toward it, as
+//! for light samples. After "Manifold Next Event Estimation" (Hanika, Droske and Fascione, Computer
+//! Graphics Forum 2015), with all solutions at hand instead of a walk to one of them. Which sphere is
+//! sampled is chosen by a [tree], like that of lights. Light that both techniques find is weighted by the
+//! power heuristic.
 
+mod bounds;
 mod connection;
+mod estimate;
+mod isolation;
 mod sample;
 mod selection;
 mod specular_sphere;
+mod tree;
 
 #[cfg(test)]
 mod tests;
@@ -19,179 +24,239 @@ pub(crate) use connection::CausticPath;
 pub(crate) use sample::{CausticHit, CausticQuery, CausticSample};
 
 use super::World;
-use super::environment::luminance;
+use super::lights::{LightSampler, Lights};
 use crate::sampling::Cone;
-use crate::scene::Rgb;
+use crate::scene::{LightChoice, Rgb};
 use crate::shade::MaterialKind;
+use bounds::SampleBounds;
+use estimate::EmitterView;
 use glam::DVec3;
+use isolation::{Neighborhoods, TOUCH_TOLERANCE};
 use rayon::prelude::*;
-use selection::ContributionEstimate;
+use tree::CasterTree;
 
-/// Most specular spheres, and most emitters, for which caustics are sampled: each pair costs time at
-/// every surface.
-const MAX_COUNT: usize = 4;
+/// Most specular spheres whose caustics are sampled: their tree takes time and memory.
+const MAX_CASTERS: u64 = 1 << 16;
 
 /// Sine of an emitter's angular radius as seen from a sphere, from which on BSDF sampling finds the
 /// caustic as well: at 0.37 variance times time is 0.91 of that of BSDF sampling, at 0.55 it is 1.12.
 const MAX_EMITTER_SINE: f64 = 0.4;
 
-/// Overlap, relative to the distance, up to which spheres touch but do not intersect.
-const TOUCH_TOLERANCE: f64 = 1e-6;
+/// Distance of suns, in units of the scene's extent: light that leaves a sphere toward a sun is parallel
+/// to that from its center, to the last bit.
+const FAR: f64 = 1e30;
 
-/// All pairs of specular sphere and emitter whose caustics are sampled.
+/// The specular spheres and the emitters whose caustics are sampled.
 #[derive(Clone, Debug, Default)]
 pub struct CausticCasters {
-    pairs: Vec<CasterPair>,
+    casters: Vec<Caster>,
+    /// Rows of the spheres with their indices in `casters`, by row.
+    rows: Vec<[u32; 2]>,
+    tree: CasterTree,
+    emitters: Vec<CausticEmitter>,
+    emitter_sampler: LightSampler,
+    bounds: SampleBounds,
+    /// True if paths do not choose at random between the light of emitters that a dielectric mirrors and
+    /// what it lets pass.
+    pub(crate) mirrored_light: bool,
 }
 
-/// A specular sphere and an emitter.
-#[derive(Clone, Debug)]
-pub(crate) struct CasterPair {
-    /// Rows of the spheres.
-    pub(crate) sphere: u32,
-    pub(crate) emitter: u32,
+/// A smooth specular sphere.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Caster {
+    /// Row of the sphere.
+    pub(crate) row: u32,
     center: DVec3,
     radius: f64,
     /// Index of refraction outside over that inside; 0 for a mirror.
     index: f64,
     /// True if light passes through.
     clear: bool,
-    /// Vector from the sphere's center to the emitter's.
-    offset: DVec3,
-    emitter_radius: f64,
-    /// The emitter as seen from the sphere's center.
-    cone: Cone,
-    pub(crate) radiance: Rgb,
-    estimate: ContributionEstimate,
+    /// Luminance of the reflectance at normal incidence.
+    normal_reflectance: f64,
 }
 
-impl CasterPair {
-    /// Returns the paths of light from the emitter by the sphere.
-    #[inline(always)]
-    fn paths(&self) -> &'static [CausticPath] {
-        if self.clear { &CausticPath::ALL } else { &CausticPath::ALL[..1] }
-    }
+/// An emissive sphere or a sun.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CausticEmitter {
+    pub(crate) source: CausticSource,
+    pub(crate) radiance: Rgb,
+    /// Center and radius; of a sun, those of a sphere that is [`FAR`] away.
+    center: DVec3,
+    radius: f64,
+    view: EmitterView,
+}
+
+/// The kind of an emitter, and its index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CausticSource {
+    /// An emissive sphere, by row.
+    Sphere(u32),
+    /// A sun.
+    Sun(usize),
+}
+
+/// A specular sphere and an emitter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CasterPair {
+    pub(crate) caster: Caster,
+    pub(crate) emitter: CausticEmitter,
+    /// Vector from the sphere's center to the emitter's.
+    offset: DVec3,
+    /// The emitter as seen from the sphere's center.
+    cone: Cone,
 }
 
 impl CausticCasters {
-    /// Finds the pairs of a world, which is complete otherwise.
+    /// Finds the specular spheres and emitters of a world, which is complete otherwise.
     pub(super) fn find(world: &World) -> Self {
-        let emitters = &world.lights.emitters;
-        let kinds = few_kinds(world);
-        let few = (1..=MAX_COUNT).contains(&emitters.len()) && !kinds.is_empty();
-        if !few || !world.cut.is_empty() || world.features.nested_glass {
+        let emitters = emitters(world);
+        let kinds = sampled_kinds(world);
+        if emitters.is_empty() || kinds.is_empty() || !world.cut.is_empty() {
             return Self::default();
         }
-        let emitters: Vec<u32> =
-            emitters.iter().copied().filter(|&row| is_isolated(world, row)).collect();
-        let rows = (0..world.spheres.len() as u32).into_par_iter();
-        let mut spheres: Vec<u32> = rows.filter(|&row| is_caster(world, kinds, row)).collect();
-        spheres.sort_unstable_by_key(|&row| world.spheres.id[row as usize]);
-        let pairs = spheres.iter().map(|&sphere| pairs(world, sphere, &emitters));
-        Self { pairs: distribute_shares(pairs.collect()) }
+        let casters = casters(world, kinds);
+        if casters.is_empty() {
+            return Self::default();
+        }
+        let bounds = world.lights.light_bounds(&world.spheres, &world.environment);
+        let bounds: Vec<_> = emitter_indices(&world.lights).map(|index| bounds[index]).collect();
+        let emitter_sampler = LightSampler::new(&bounds, LightChoice::Tree, world.lights.unit);
+        let indices = casters.iter().zip(0..);
+        let mut rows: Vec<_> = indices.map(|(caster, index)| [caster.row, index]).collect();
+        rows.sort_unstable();
+        let mut found = Self {
+            tree: CasterTree::build(&casters),
+            casters,
+            rows,
+            emitters,
+            emitter_sampler,
+            bounds: SampleBounds::default(),
+            mirrored_light: world.lights.samples_mirrored_light(),
+        };
+        found.bounds = SampleBounds::build(&found);
+        found
     }
 
-    /// Returns whether there are no pairs.
+    /// Returns whether there are no caustics to sample.
     pub fn is_empty(&self) -> bool {
-        self.pairs.is_empty()
+        self.casters.is_empty()
     }
 
-    /// Returns whether a sphere is the specular sphere of a pair.
+    /// Returns whether a sphere casts caustics that are sampled.
     pub(crate) fn has(&self, row: u32) -> bool {
-        self.pairs.iter().any(|pair| pair.sphere == row)
+        self.index_of(row).is_some()
+    }
+
+    fn index_of(&self, row: u32) -> Option<usize> {
+        let found = self.rows.binary_search_by_key(&row, |[row, _]| *row).ok()?;
+        Some(self.rows[found][1] as usize)
+    }
+
+    /// Returns a pair; `None` if the emitter is large as seen from the sphere.
+    #[inline]
+    fn pair(&self, caster: usize, emitter: usize) -> Option<CasterPair> {
+        let (caster, emitter) = (self.casters[caster], self.emitters[emitter]);
+        let offset = emitter.center - caster.center;
+        let distance = offset.length();
+        let small = emitter.radius < distance * MAX_EMITTER_SINE;
+        let apart = distance > (caster.radius + emitter.radius) * (1.0 + TOUCH_TOLERANCE);
+        if !small || !apart {
+            return None;
+        }
+        let cone = Cone::toward_sphere(distance * distance, emitter.radius)?;
+        Some(CasterPair { caster, emitter, offset, cone })
     }
 }
 
-/// Returns the kinds of specular materials, if there are few spheres of them in total; without coats,
-/// which reflect least, if that makes them few.
-fn few_kinds(world: &World) -> &'static [MaterialKind] {
+/// Returns the indices of emissive spheres and suns with discs among the lights.
+fn emitter_indices(lights: &Lights) -> impl Iterator<Item = usize> {
+    let first = lights.emitters.len() + lights.points.len();
+    let suns = (0..lights.suns.len()).filter(|&sun| lights.suns[sun].disc.is_some());
+    (0..lights.emitters.len()).chain(suns.map(move |sun| first + sun))
+}
+
+/// Returns the emitters, in the order of [`emitter_indices`].
+fn emitters(world: &World) -> Vec<CausticEmitter> {
+    let lights = &world.lights;
+    let spheres = lights.emitters.iter().zip(&lights.radiance).map(|(&row, &radiance)| {
+        let (center, radius) = world.spheres.exact(row as usize);
+        let near = center.as_vec3();
+        let view =
+            EmitterView::Near { center: near, radius2: (radius as f32).powi(2), distance2: 0.0 };
+        CausticEmitter { source: CausticSource::Sphere(row), radiance, center, radius, view }
+    });
+    let suns = lights.suns.iter().enumerate().filter_map(|(index, sun)| {
+        let height = f64::from(sun.disc?.height());
+        let sine2 = height * (2.0 - height);
+        let far = FAR * lights.unit;
+        let direction = sun.direction.as_dvec3().normalize();
+        Some(CausticEmitter {
+            source: CausticSource::Sun(index),
+            radiance: sun.radiance,
+            center: direction * far,
+            radius: far * sine2.sqrt(),
+            view: EmitterView::Far { direction: sun.direction, sine2: sine2 as f32 },
+        })
+    });
+    spheres.chain(suns).collect()
+}
+
+/// Returns the kinds of specular materials whose caustics are sampled: all, if there are not too many
+/// spheres of them, or those without coats, which reflect least.
+fn sampled_kinds(world: &World) -> &'static [MaterialKind] {
     const KINDS: [MaterialKind; 3] =
         [MaterialKind::Conductor, MaterialKind::Dielectric, MaterialKind::Plastic];
     let count = |kinds: &&[MaterialKind]| {
         let each = kinds.iter().map(|&kind| world.features.spheres_by_kind[kind as usize]);
-        (1..=MAX_COUNT as u64).contains(&each.sum())
+        (1..=MAX_CASTERS).contains(&each.sum())
     };
     [&KINDS[..], &KINDS[..2]].into_iter().find(count).unwrap_or_default()
 }
 
-/// Returns whether a sphere is of these kinds and a smooth mirror, coated, or glass with nothing
-/// inside.
-fn is_caster(world: &World, kinds: &[MaterialKind], row: u32) -> bool {
-    let id = world.appearance.material.row(row as usize);
-    let specular = match id.kind() {
-        MaterialKind::Conductor => world.materials.conductor[id.row()].roughness == 0.0,
-        MaterialKind::Dielectric => world.materials.dielectric[id.row()].ior > 1.0,
-        MaterialKind::Plastic => world.materials.plastic[id.row()].ior > 1.0,
-        _ => false,
+/// Returns the spheres of these kinds that are smooth mirrors, coated, or glass that stands alone.
+fn casters(world: &World, kinds: &[MaterialKind]) -> Vec<Caster> {
+    let rows = (0..world.spheres.len() as u32).into_par_iter();
+    let smooth = |&row: &u32| {
+        let id = world.appearance.material.row(row as usize);
+        kinds.contains(&id.kind())
+            && match id.kind() {
+                MaterialKind::Conductor => world.materials.conductor[id.row()].roughness == 0.0,
+                MaterialKind::Dielectric => world.materials.dielectric[id.row()].ior > 1.0,
+                _ => world.materials.plastic[id.row()].ior > 1.0,
+            }
     };
-    specular
-        && kinds.contains(&id.kind())
-        && (id.kind() != MaterialKind::Dielectric || is_isolated(world, row))
+    let rows: Vec<u32> = rows.filter(smooth).collect();
+    let mut rows = world.spheres.first_of_equals(rows.into_iter());
+    rows.retain(smooth);
+    if world.features.spheres_by_kind[MaterialKind::Dielectric as usize] > 0 {
+        let neighborhoods = Neighborhoods::build(world);
+        let stands_alone = |row: &u32| {
+            world.material(*row).kind() != MaterialKind::Dielectric
+                || neighborhoods.is_isolated(world, *row)
+        };
+        rows = rows.into_par_iter().filter(stands_alone).collect();
+    }
+    // In the user's order, the tree does not depend on that of the spheres.
+    rows.sort_unstable_by_key(|&row| world.spheres.id[row as usize]);
+    rows.into_iter().map(|row| caster(world, row)).collect()
 }
 
-/// Returns whether neither another sphere nor the ground intersects a sphere's surface.
-fn is_isolated(world: &World, row: u32) -> bool {
+fn caster(world: &World, row: u32) -> Caster {
     let (center, radius) = world.spheres.exact(row as usize);
-    let cuts = |other: usize| {
-        let (at, reach) = world.spheres.exact(other);
-        let distance = center.distance(at);
-        other != row as usize
-            && distance < (radius + reach) * (1.0 - TOUCH_TOLERANCE)
-            && distance + radius > reach * (1.0 - TOUCH_TOLERANCE)
+    let id = world.material(row);
+    let ior = match id.kind() {
+        MaterialKind::Dielectric => Some(world.materials.dielectric[id.row()].ior),
+        MaterialKind::Plastic => Some(world.materials.plastic[id.row()].ior),
+        _ => None,
     };
-    let grounded = world.ground.as_ref().is_some_and(|ground| {
-        (ground.normal.dot(center) - ground.height).abs() < radius * (1.0 - TOUCH_TOLERANCE)
-    });
-    !grounded && !(0..world.spheres.len()).into_par_iter().any(cuts)
-}
-
-/// Returns the pairs of a specular sphere with all small emitters.
-fn pairs(world: &World, sphere: u32, emitters: &[u32]) -> Vec<CasterPair> {
-    let (center, radius) = world.spheres.exact(sphere as usize);
-    let material = world.material(sphere);
-    let index = match material.kind() {
-        MaterialKind::Dielectric => 1.0 / f64::from(world.materials.dielectric[material.row()].ior),
-        MaterialKind::Plastic => 1.0 / f64::from(world.materials.plastic[material.row()].ior),
-        _ => 0.0,
+    let index = ior.map_or(0.0, |ior| 1.0 / f64::from(ior));
+    let normal_reflectance = if ior.is_some() {
+        ((1.0 - index) / (1.0 + index)).powi(2)
+    } else {
+        let metal = world.materials.conductor[id.row()].color() * world.color(row);
+        f64::from(super::environment::luminance(metal)).max(1e-3)
     };
-    let clear = material.kind() == MaterialKind::Dielectric;
-    let pair = |&emitter: &u32| {
-        let (at, emitter_radius) = world.spheres.exact(emitter as usize);
-        let offset = at - center;
-        let small = emitter_radius < offset.length() * MAX_EMITTER_SINE;
-        let apart = offset.length() > (radius + emitter_radius) * (1.0 + TOUCH_TOLERANCE);
-        let cone = Cone::toward_sphere(offset.length_squared(), emitter_radius)?;
-        let radiance = world.materials.emitter[world.material(emitter).row()].radiance;
-        let estimate = ContributionEstimate::default();
-        (small && apart).then_some(CasterPair {
-            sphere,
-            emitter,
-            center,
-            radius,
-            index,
-            clear,
-            offset,
-            emitter_radius,
-            cone,
-            radiance,
-            estimate,
-        })
-    };
-    emitters.iter().filter_map(pair).collect()
-}
-
-/// Sets each pair's share among the pairs of its sphere, by the light that reaches the sphere from its
-/// emitter.
-fn distribute_shares(spheres: Vec<Vec<CasterPair>>) -> Vec<CasterPair> {
-    let paths = |pairs: &Vec<CasterPair>| pairs.first().map_or(0, |pair| pair.paths().len());
-    let paths: usize = spheres.iter().map(paths).sum();
-    let light = |pair: &CasterPair| f64::from(luminance(pair.radiance) / pair.cone.pdf());
-    let share = |pairs: Vec<CasterPair>| {
-        let all: f64 = pairs.iter().map(light).sum();
-        pairs.into_iter().map(move |pair| {
-            let share = light(&pair) / all;
-            pair.with_estimate(share, paths)
-        })
-    };
-    spheres.into_iter().flat_map(share).collect()
+    let clear = id.kind() == MaterialKind::Dielectric;
+    Caster { row, center, radius, index, clear, normal_reflectance }
 }

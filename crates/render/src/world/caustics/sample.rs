@@ -2,22 +2,86 @@
 
 use super::connection::{CausticPath, PathMasks, connect};
 use super::specular_sphere::{Angle, SpecularSphere};
-use super::{CasterPair, CausticCasters};
-use crate::lanes::{Doubles, F32x16, F64x8, MAX_LANES, Mask, narrow, widen};
+use super::{CasterPair, CausticCasters, CausticSource};
+use crate::lanes::{Doubles, F32x16, F64x8, MAX_LANES, Mask, narrow, set_bits, widen};
+use crate::ray::MISS;
 use crate::sampling::{Bases, Cone};
+use crate::scene::Rgb;
 use crate::shade::fresnel;
 use crate::vec3::Vec3;
+use crate::world::Receiver;
 use glam::DVec3;
-use std::f64::consts::FRAC_1_PI;
 
-/// A row of surface points, each with a pair and a path to sample.
-pub(crate) struct CausticQuery<'a> {
+/// A row of surface points, each with a caustic to sample.
+pub(crate) struct CausticQuery {
     pub(crate) point: Vec3<F32x16>,
-    pub(crate) normal: Vec3<F32x16>,
-    pub(crate) pair: [&'a CasterPair; MAX_LANES],
+    pub(crate) pairs: CasterPairRow,
     pub(crate) path: [CausticPath; MAX_LANES],
-    /// Probabilities of the choices.
-    pub(crate) probability: F32x16,
+    /// Expected numbers of samples of the caustics.
+    pub(crate) rate: F32x16,
+}
+
+/// A row of specular spheres and emitters, in columns.
+#[derive(Clone)]
+pub(crate) struct CasterPairRow {
+    center: [[f64; MAX_LANES]; 3],
+    radius: [f64; MAX_LANES],
+    index: [f64; MAX_LANES],
+    offset: [[f64; MAX_LANES]; 3],
+    emitter_radius: [f64; MAX_LANES],
+    /// Directions from the spheres' centers to the emitters.
+    axis: [[f32; MAX_LANES]; 3],
+    cone: [Cone; MAX_LANES],
+    /// Rows of the spheres.
+    pub(crate) sphere: [u32; MAX_LANES],
+    /// Rows of emissive spheres; [`MISS`] for suns.
+    pub(crate) emitter: [u32; MAX_LANES],
+    /// Radiance of the emitters.
+    pub(crate) radiance: [Rgb; MAX_LANES],
+    /// Lanes of the suns.
+    suns: u32,
+    /// Lanes that have a pair; the others have any numbers that are valid.
+    pub(crate) lanes: u32,
+}
+
+impl CasterPairRow {
+    fn new() -> Self {
+        let (zero, one) = ([0.0; MAX_LANES], [1.0; MAX_LANES]);
+        Self {
+            center: [zero; 3],
+            radius: one,
+            index: zero,
+            offset: [[4.0; MAX_LANES], zero, zero],
+            emitter_radius: one,
+            axis: [[1.0; MAX_LANES], [0.0; MAX_LANES], [0.0; MAX_LANES]],
+            cone: [Cone::from_half_angle(0.1); MAX_LANES],
+            sphere: [MISS; MAX_LANES],
+            emitter: [MISS; MAX_LANES],
+            radiance: [Rgb::ZERO; MAX_LANES],
+            suns: 0,
+            lanes: 0,
+        }
+    }
+
+    fn set(&mut self, lane: usize, pair: &CasterPair) {
+        let axis = pair.offset.normalize();
+        for i in 0..3 {
+            self.center[i][lane] = pair.caster.center[i];
+            self.offset[i][lane] = pair.offset[i];
+            self.axis[i][lane] = axis[i] as f32;
+        }
+        self.radius[lane] = pair.caster.radius;
+        self.index[lane] = pair.caster.index;
+        self.emitter_radius[lane] = pair.emitter.radius;
+        self.cone[lane] = pair.cone;
+        self.sphere[lane] = pair.caster.row;
+        self.radiance[lane] = pair.emitter.radiance;
+        match pair.emitter.source {
+            CausticSource::Sphere(row) => self.emitter[lane] = row,
+            CausticSource::Sun(_) => self.suns |= 1 << lane,
+        }
+        self.lanes |= 1 << lane;
+    }
 }
 
 /// A row of caustic samples: light that arrives if both segments are unoccluded.
@@ -28,31 +92,36 @@ pub(crate) struct CausticSample {
     pub(crate) exit: Vec3<F32x16>,
     /// Unit vectors from there to the emitters.
     pub(crate) toward_emitter: Vec3<F32x16>,
-    /// Lengths of both segments.
+    /// Lengths of both segments; infinite toward a sun.
     pub(crate) length: [[f64; MAX_LANES]; 2],
     /// Cosine of the angle of incidence.
     pub(crate) incidence: F32x16,
-    /// Factor on the emitter's radiance, the surface's response to light along the normal, and the
-    /// color of mirrors and glass; includes the MIS weight.
-    pub(crate) weight: F32x16,
+    /// Fraction of light that reflection or refraction keeps, without colors.
+    pub(crate) kept: F32x16,
+    /// Lanes that are reflected.
+    pub(crate) reflected: u32,
+    /// Density of the samples at the points, by solid angle.
+    pub(crate) pdf: F32x16,
     /// Lanes that have a sample.
     pub(crate) lanes: u32,
 }
 
-/// A ray from a diffuse surface that hit an emitter by way of a specular sphere.
+/// A ray from a surface that reached an emitter by way of a specular sphere.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CausticHit {
-    /// Origin: the point, and the normal.
-    pub(crate) start: [glam::Vec3; 2],
+    /// Origin.
+    pub(crate) start: Receiver,
     /// Direction at the origin.
     pub(crate) toward: glam::Vec3,
     /// Density of that direction by solid angle.
     pub(crate) pdf: f32,
     pub(crate) sphere: u32,
     pub(crate) through: bool,
-    pub(crate) emitter: u32,
-    /// Point of the emitter, and the direction of the ray there.
-    pub(crate) end: [glam::Vec3; 2],
+    pub(crate) emitter: CausticSource,
+    /// Point of an emissive sphere; of a sun, the direction toward it.
+    pub(crate) end: glam::Vec3,
+    /// Direction of the ray there.
+    pub(crate) toward_emitter: glam::Vec3,
 }
 
 /// Samples of half a row, in double precision.
@@ -62,49 +131,50 @@ struct HalfRow {
     toward_emitter: Vec3<F64x8>,
     length: [F64x8; 2],
     incidence: F64x8,
-    weight: F64x8,
+    kept: F64x8,
+    pdf: F64x8,
     found: u32,
 }
 
-impl CausticQuery<'_> {
+impl CausticQuery {
     /// Samples each path, from two random numbers in [0, 1).
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn sample(&self, u: [F32x16; 2]) -> CausticSample {
-        let column = |of: &dyn Fn(&CasterPair) -> f64| self.pair.map(of);
-        let axis = |i: usize| F32x16::new(self.pair.map(|pair| pair.offset[i] as f32));
-        let axes = Vec3::new(axis(0), axis(1), axis(2)).normalize();
-        let cone = Cone::row(&self.pair.map(|pair| pair.cone));
-        let seen = Bases::about(axes).to_world(cone.sample_each(u));
-        let (seen, pdf) = (seen.halves(), widen(cone.pdfs() * self.probability));
-        let (point, normal) = (self.point.halves(), self.normal.halves());
+        let pairs = &self.pairs;
+        let [x, y, z] = pairs.axis.map(F32x16::new);
+        let cone = Cone::row(&pairs.cone);
+        let seen = Bases::about(Vec3::new(x, y, z)).to_world(cone.sample_each(u));
+        let (seen, pdf) = (seen.halves(), widen(cone.pdfs() * self.rate));
+        let point = self.point.halves();
         let [low, high] = [0, 1].map(|half| {
-            let part =
-                |of: &dyn Fn(&CasterPair) -> f64| F64x8::from(&column(of)[8 * half..8 * half + 8]);
-            let vector = |of: fn(&CasterPair) -> DVec3| {
-                let axis = |i: usize| part(&move |pair| of(pair)[i]);
-                Vec3::new(axis(0), axis(1), axis(2))
-            };
-            let receiver = point[half] - vector(|pair| pair.center);
-            let emitter = (vector(|pair| pair.offset), part(&|pair| pair.emitter_radius));
-            let sphere = (part(&|pair| pair.radius), part(&|pair| pair.index));
-            let paths = self.paths(half);
-            sample_half((receiver, normal[half]), (sphere, emitter), (seen[half], pdf[half]), paths)
+            let part = |column: &[f64; MAX_LANES]| F64x8::from(&column[8 * half..8 * half + 8]);
+            let vector = |[x, y, z]: &[[f64; MAX_LANES]; 3]| Vec3::new(part(x), part(y), part(z));
+            let receiver = point[half] - vector(&pairs.center);
+            let emitter = (vector(&pairs.offset), part(&pairs.emitter_radius));
+            let sphere = (part(&pairs.radius), part(&pairs.index));
+            sample_half(receiver, (sphere, emitter), (seen[half], pdf[half]), self.paths(half))
         });
-        let center = |i: usize| F32x16::new(self.pair.map(|pair| pair.center[i] as f32));
+        let center = |i: usize| F32x16::new(pairs.center[i].map(|x| x as f32));
         let lengths = |i: usize| {
             let mut row = [0.0; MAX_LANES];
             row[..8].copy_from_slice(&low.length[i].to_array());
             row[8..].copy_from_slice(&high.length[i].to_array());
             row
         };
+        let mut length = [lengths(0), lengths(1)];
+        set_bits(pairs.suns).for_each(|lane| length[1][lane] = f64::INFINITY);
         CausticSample {
             toward: Vec3::narrow([low.toward, high.toward]).normalize(),
             exit: Vec3::narrow([low.exit, high.exit]) + Vec3::new(center(0), center(1), center(2)),
             toward_emitter: Vec3::narrow([low.toward_emitter, high.toward_emitter]).normalize(),
-            length: [lengths(0), lengths(1)],
+            length,
             incidence: narrow([low.incidence, high.incidence]),
-            weight: narrow([low.weight, high.weight]),
-            lanes: low.found | high.found << 8,
+            kept: narrow([low.kept, high.kept]),
+            reflected: (0..MAX_LANES)
+                .filter(|&lane| self.path[lane] == CausticPath::Reflected)
+                .fold(0, |lanes, lane| lanes | 1 << lane),
+            pdf: narrow([low.pdf, high.pdf]),
+            lanes: pairs.lanes & (low.found | high.found << 8),
         }
     }
 
@@ -126,7 +196,7 @@ impl CausticQuery<'_> {
 /// from the center in directions `seen`.
 #[inline(always)]
 fn sample_half(
-    (receiver, normal): (Vec3<F64x8>, Vec3<F64x8>),
+    receiver: Vec3<F64x8>,
     (sphere, (offset, radius)): ((F64x8, F64x8), (Vec3<F64x8>, F64x8)),
     (seen, pdf): (Vec3<F64x8>, F64x8),
     paths: PathMasks<F64x8>,
@@ -143,21 +213,17 @@ fn sample_half(
     let outward = (emitter - offset) * (one / radius);
     let leaving = -outward.dot_unfused(seen);
     let arriving = -outward.dot_unfused(connection.toward_emitter);
-    let cosine = normal.dot_unfused(connection.toward);
-    let density = pdf * leaving * connection.spread / (distance * distance * arriving);
-    let fresnel_factor = fresnel_factor(connection.at, sphere.1, paths.through);
-    let own = cosine * F64x8::splat(FRAC_1_PI) * fresnel_factor;
-    // The power heuristic, divided by the density.
-    let weight = cosine * fresnel_factor * density / (density * density + own * own);
-    let there = zero.lt(leaving) & zero.lt(arriving) & zero.lt(cosine) & zero.lt(density);
-    let found = connection.found & outside & there & weight.lt(F64x8::splat(f64::from(f32::MAX)));
+    let pdf = pdf * leaving * connection.spread / arriving;
+    let there = zero.lt(leaving) & zero.lt(arriving) & zero.lt(pdf);
+    let found = connection.found & outside & there;
     HalfRow {
         toward: connection.toward,
         exit: connection.exit,
         toward_emitter: connection.toward_emitter,
         length: connection.length,
         incidence: connection.at.cosine,
-        weight,
+        kept: fresnel_factor(connection.at, sphere.1, paths.through),
+        pdf,
         found: found.bits(),
     }
 }
@@ -173,41 +239,76 @@ fn fresnel_factor<D: Doubles>(at: Angle<D>, index: D, through: D::Mask) -> D {
 }
 
 impl CausticCasters {
-    /// Returns the pair of a code.
-    #[inline(always)]
-    pub(crate) fn pair(&self, code: u32) -> &CasterPair {
-        &self.pairs[(code / CausticPath::COUNT) as usize]
+    /// Returns the specular spheres and emitters of the choices in `lanes`, without those whose emitter is
+    /// large as seen from the sphere.
+    pub(crate) fn pair_row(
+        &self,
+        code: &[u32; MAX_LANES],
+        emitter: &[u32; MAX_LANES],
+        lanes: u32,
+    ) -> CasterPairRow {
+        let mut row = CasterPairRow::new();
+        for lane in set_bits(lanes) {
+            let caster = (code[lane] / CausticPath::COUNT) as usize;
+            if let Some(pair) = self.pair(caster, emitter[lane] as usize) {
+                row.set(lane, &pair);
+            }
+        }
+        row
+    }
+
+    /// Returns the probability with which a path that meets a sphere of a pair goes on to the emitter: 1
+    /// for mirrored light that is sampled.
+    fn own_probability(&self, at: Angle<f64>, pair: &CasterPair, through: bool) -> f64 {
+        if self.mirrored_light && !through {
+            1.0
+        } else {
+            fresnel_factor(at, pair.caster.index, through)
+        }
     }
 
     /// Returns the MIS weight of an emitter that a BSDF sample has hit, beside caustic samples.
     pub(crate) fn weight(&self, found: &CausticHit) -> f32 {
-        let same = |pair: &CasterPair| pair.sphere == found.sphere && pair.emitter == found.emitter;
-        let Some(number) = self.pairs.iter().position(same) else { return 1.0 };
-        let pair = &self.pairs[number];
-        let [from, end] =
-            [found.start[0], found.end[0]].map(|place| place.as_dvec3() - pair.center);
+        let emitter = self.emitters.iter().position(|emitter| emitter.source == found.emitter);
+        let Some((caster, emitter)) = self.index_of(found.sphere).zip(emitter) else { return 1.0 };
+        let Some(pair) = self.pair(caster, emitter) else { return 1.0 };
+        let from = found.start.point.as_dvec3() - pair.caster.center;
+        let end = match found.emitter {
+            CausticSource::Sphere(_) => found.end.as_dvec3() - pair.caster.center,
+            CausticSource::Sun(_) => pair.point_toward(found.end.as_dvec3()),
+        };
         let toward = found.toward.as_dvec3();
         let distance = [from.length(), end.length()];
-        let sine = from.cross(toward).length() / (toward.length() * pair.radius);
-        if distance[0] <= pair.radius || sine >= 1.0 {
+        let sine = from.cross(toward).length() / (toward.length() * pair.caster.radius);
+        if distance[0] <= pair.caster.radius || sine >= 1.0 {
             return 1.0;
         }
         let at = Angle { sine, cosine: ((1.0 - sine) * (1.0 + sine)).sqrt() };
-        let index = if found.through { pair.index } else { 0.0 };
-        let sphere = SpecularSphere::new(pair.radius, distance, index);
+        let index = if found.through { pair.caster.index } else { 0.0 };
+        let sphere = SpecularSphere::new(pair.caster.radius, distance, index);
         let turn = sphere.turn(at);
         let path = if found.through { CausticPath::through(&turn) } else { CausticPath::Reflected };
-        let outward = (end - pair.offset) / pair.emitter_radius;
+        let outward = (end - pair.offset) / pair.emitter.radius;
         let leaving = -outward.dot(end) / distance[1];
-        let arriving = -outward.dot(found.end[1].as_dvec3());
-        let chance = self.probability(number, path, found.start) * pair.cone.pdf();
-        let spread = sphere.spread(at, &turn);
-        let density = f64::from(chance) * leaving * spread / (distance[1] * distance[1] * arriving);
-        let own = f64::from(found.pdf) * fresnel_factor(at, pair.index, found.through);
+        let arriving = -outward.dot(found.toward_emitter.as_dvec3());
+        let chance = self.rate(&found.start, (emitter, caster), path);
+        let cone = f64::from(pair.cone.pdf());
+        let density = chance * cone * leaving * sphere.spread(at, &turn) / arriving;
+        let own = f64::from(found.pdf) * self.own_probability(at, &pair, found.through);
         if leaving > 0.0 && arriving > 0.0 && density > 0.0 {
             let ratio = density / own;
             return (1.0 / (1.0 + ratio * ratio)) as f32;
         }
         1.0
+    }
+}
+
+impl CasterPair {
+    /// Returns the point of a sun's sphere in a direction, relative to the center of the specular sphere.
+    fn point_toward(&self, direction: DVec3) -> DVec3 {
+        let direction = direction.normalize();
+        let middle = self.offset.dot(direction);
+        let off2 = (self.offset - direction * middle).length_squared();
+        direction * (middle - (self.emitter.radius.powi(2) - off2).max(0.0).sqrt())
     }
 }

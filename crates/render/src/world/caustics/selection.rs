@@ -1,170 +1,187 @@
-//! The choice of a caustic path for a surface point, by estimated contributions.
-//!
-//! The estimates take few operations, since every diffuse point needs them: they affect the noise, not
-//! the expected image.
+//! The choice of a caustic for a surface point: an emitter, a specular sphere and a kind of path.
 
+use super::CausticCasters;
 use super::connection::CausticPath;
-use super::{CasterPair, CausticCasters};
-use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
-use crate::vec3::Vec3;
+use super::estimate::EmitterView;
+use super::tree::NodeChances;
+use crate::lanes::{F32x16, F64x8, MAX_LANES, set_bits};
+use crate::world::lights::{ROOT, Receiver, ReceiverRow};
 
-/// Probability of a path that brings as much light as reaches the sphere: the most efficient value in
-/// the images of `tools/references`; values up to four times as large make little difference.
-const IRRADIANCE_TO_PROBABILITY: f64 = 0.5;
+/// Number of samples where caustics bring as much light as their emitter. In the default field, variance
+/// times time is 0.85 of that with four times as many.
+const IRRADIANCE_TO_SAMPLES: f64 = 0.25;
 
-/// Least divergence of rays that is assumed: a focus is not sharper than that.
-const LEAST_RATE: f32 = 0.2;
+/// Maximum number of samples at a point.
+const MAX_SAMPLES: f64 = 16.0;
 
-/// Data of a pair for the estimates, in single precision.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ContributionEstimate {
-    center: glam::Vec3,
-    radius: f32,
-    /// Unit vector from the sphere to the emitter.
-    axis: glam::Vec3,
-    /// Radius of the sphere over the distance of the emitter.
-    radius_over_distance: f32,
-    /// Squared angular radius of the emitter.
-    emitter_radius2: f32,
-    index: f32,
-    clear: bool,
-    /// Reflectance of the glass at normal incidence.
-    normal_reflectance: f32,
-    /// Factor from irradiance to probability, and the probability's maximum.
-    probability_scale: f32,
-    max_probability: f32,
-}
+/// Range of sums of estimates that single precision resolves well.
+const RESOLVED: std::ops::Range<f64> = 1e-30..1e30;
 
-impl CasterPair {
-    /// Sets the estimate's data, from the share of the pair in the light that reaches its sphere, and
-    /// the number of paths by all spheres.
-    pub(super) fn with_estimate(self, share: f64, paths: usize) -> Self {
-        let far = self.offset.length();
-        let index = self.index;
-        let estimate = ContributionEstimate {
-            center: self.center.as_vec3(),
-            radius: self.radius as f32,
-            axis: (self.offset / far).as_vec3(),
-            radius_over_distance: (self.radius / far) as f32,
-            emitter_radius2: (self.emitter_radius / far).powi(2) as f32,
-            index: index as f32,
-            clear: self.clear,
-            normal_reflectance: ((1.0 - index) / (1.0 + index)).powi(2) as f32,
-            probability_scale: (IRRADIANCE_TO_PROBABILITY * share) as f32,
-            max_probability: (share / paths as f64) as f32,
-        };
-        Self { estimate, ..self }
-    }
+/// An emitter, a specular sphere and a kind of path.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CausticChoice {
+    /// Indices in the lists of emitters and of spheres.
+    pub(crate) emitter: usize,
+    pub(crate) caster: usize,
+    pub(crate) path: CausticPath,
+    /// Probability of the choice times the expected number of samples.
+    pub(crate) rate: f64,
 }
 
 /// A row of choices.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SelectedPaths {
-    /// Number of the pair, times [`CausticPath::COUNT`], plus that of the path.
+pub(crate) struct CausticChoices {
+    /// Indices of the emitters.
+    pub(crate) emitter: [u32; MAX_LANES],
+    /// Indices of the spheres times [`CausticPath::COUNT`], plus those of the paths.
     pub(crate) code: [u32; MAX_LANES],
-    /// Probabilities of the choices.
-    pub(crate) probability: F32x16,
-    /// Lanes in which a path was chosen.
+    /// Probabilities of the choices times the expected numbers of samples.
+    pub(crate) rate: F32x16,
+    /// Lanes in which something was chosen.
     pub(crate) lanes: u32,
 }
 
 impl CausticCasters {
-    /// Chooses paths for points on surfaces with these normals, by random numbers in [0, 1).
-    #[inline(always)]
-    pub(crate) fn choose(
+    /// Chooses a caustic for each of the receivers in `lanes` that has more than `number` samples.
+    #[inline(never)]
+    pub(crate) fn choose_row(
         &self,
-        point: Vec3<F32x16>,
-        normal: Vec3<F32x16>,
-        draw: F32x16,
-    ) -> SelectedPaths {
-        let zero = F32x16::splat(0.0);
-        let (mut sum, mut probability, mut code) = (zero, zero, zero);
-        let mut open = Lanes::le(zero, draw);
-        for (number, pair) in self.pairs.iter().enumerate() {
-            let chances = pair.estimate.chances(point, normal);
-            for (chance, path) in chances.into_iter().zip(pair.paths()) {
-                sum += chance;
-                let here = open & Lanes::lt(draw, sum);
-                probability = Lanes::select(here, chance, probability);
-                let this = number as u32 * CausticPath::COUNT + *path as u32;
-                code = Lanes::select(here, F32x16::splat(this as f32), code);
-                open = open & !here;
-            }
+        at: &ReceiverRow,
+        draw: [F64x8; 2],
+        (number, lanes): (u32, u32),
+    ) -> CausticChoices {
+        let draw = draw.map(F64x8::to_array);
+        let (mut emitter, mut code) = ([0; MAX_LANES], [0; MAX_LANES]);
+        let (mut rate, mut found) = ([1.0; MAX_LANES], 0);
+        for lane in set_bits(lanes) {
+            let draw = draw[lane / 8][lane % 8];
+            let Some(choice) = self.choose(&at.receiver(lane), draw, number) else { continue };
+            emitter[lane] = choice.emitter as u32;
+            code[lane] = choice.caster as u32 * CausticPath::COUNT + choice.path as u32;
+            rate[lane] = choice.rate as f32;
+            found |= 1 << lane;
         }
-        let code = code.to_array().map(|code| code as u32);
-        SelectedPaths { code, probability, lanes: (!open).bits() }
+        CausticChoices { emitter, code, rate: F32x16::new(rate), lanes: found }
     }
 
-    /// Returns the probability with which [`CausticCasters::choose`] chooses a path of a pair.
-    pub(super) fn probability(
+    /// Chooses the caustic of sample `number` by a random number in [0, 1), the same for all samples of a
+    /// receiver. The expected number of samples is proportional to the light that caustics may bring.
+    pub(super) fn choose(&self, at: &Receiver, draw: f64, number: u32) -> Option<CausticChoice> {
+        let (emitter, probability, draw) = self.emitter_sampler.choose_around(at, draw);
+        let bound = self.bounds.at(at.point);
+        if f64::from(number) + draw >= bound {
+            return None;
+        }
+        let view = self.view(emitter, at);
+        let mut children = self.tree.children(ROOT);
+        let mut chances = self.tree.chances(children, at, &view);
+        let samples = chances.samples().min(bound);
+        // Sample `number` is taken if the random number, extended by the sample's number, is in the range
+        // of expected samples; what is left of it is the sample's own random number.
+        let left = f64::from(number) + draw;
+        if left >= samples {
+            return None;
+        }
+        let mut draw = left / samples;
+        let mut rate = f64::from(probability) * samples;
+        loop {
+            let (lane, rest) = chances.all.pick(children.1, draw);
+            rate *= chances.all.of(lane);
+            let node = children.0 + lane;
+            if let Some(caster) = self.tree.leaf(node) {
+                let (path, share) = chances.pick_path(lane, rest)?;
+                return Some(CausticChoice { emitter, caster, path, rate: rate * share });
+            }
+            children = self.tree.children(node as u32);
+            chances = self.tree.chances(children, at, &view);
+            if !RESOLVED.contains(&chances.all.total) {
+                return None;
+            }
+            draw = rest;
+        }
+    }
+
+    /// Returns the expected number of samples at a receiver, without bound.
+    pub(super) fn samples(&self, emitter: usize, at: &Receiver) -> f64 {
+        self.tree.chances(self.tree.children(ROOT), at, &self.view(emitter, at)).samples()
+    }
+
+    /// Returns the expected number of samples of a caustic at a receiver.
+    pub(super) fn rate(
         &self,
-        pair: usize,
+        at: &Receiver,
+        (emitter, caster): (usize, usize),
         path: CausticPath,
-        [point, normal]: [glam::Vec3; 2],
-    ) -> f32 {
-        self.pairs[pair].estimate.chances::<f32>(point.into(), normal.into())[path as usize]
+    ) -> f64 {
+        let mut rate = f64::from(self.emitter_sampler.probability_around(at, emitter));
+        let view = self.view(emitter, at);
+        let mut nodes = self.tree.path_to_root(caster).peekable();
+        if nodes.peek().is_none() {
+            return 0.0;
+        }
+        for node in nodes {
+            let parent = self.tree.parent(node);
+            let children = self.tree.children(parent);
+            let chances = self.tree.chances(children, at, &view);
+            if !RESOLVED.contains(&chances.all.total) {
+                return 0.0;
+            }
+            let lane = node as usize - children.0;
+            rate *= chances.all.of(lane);
+            if self.tree.leaf(node as usize).is_some() {
+                rate *= chances.share(lane, path);
+            }
+            if parent == ROOT {
+                rate *= chances.samples().min(self.bounds.at(at.point));
+            }
+        }
+        rate
+    }
+
+    /// Returns an emitter for the estimates at a receiver.
+    fn view(&self, emitter: usize, at: &Receiver) -> EmitterView {
+        match self.emitters[emitter].view {
+            EmitterView::Near { center, radius2, .. } => {
+                let distance2 = center.distance_squared(at.point).max(radius2);
+                EmitterView::Near { center, radius2, distance2 }
+            }
+            sun @ EmitterView::Far { .. } => sun,
+        }
     }
 }
 
-impl ContributionEstimate {
-    /// Estimates the probability of each path: the unoccluded irradiance that it brings, relative to
-    /// that of the sphere, times a factor.
-    #[inline(always)]
-    fn chances<L: Lanes>(
-        &self,
-        point: Vec3<L>,
-        normal: Vec3<L>,
-    ) -> [L; CausticPath::COUNT as usize] {
-        let splat = |v: glam::Vec3| Vec3::<L>::splat(v.x, v.y, v.z);
-        let (zero, one, two) = (L::splat(0.0), L::splat(1.0), L::splat(2.0));
-        let toward = splat(self.center) - point;
-        let inverse = one / toward.dot(toward).sqrt();
-        let near = L::splat(self.radius) * inverse;
-        let above = (normal.dot(toward) * inverse + near).min(one).max(zero);
-        let level =
-            L::select(near.lt(one), above * near * near * L::splat(self.probability_scale), zero);
-        let max = L::splat(self.max_probability);
-        // Cosine of the angle at the sphere between the point and the emitter.
-        let between = -(toward.dot(splat(self.axis)) * inverse);
-        let ends = near + L::splat(self.radius_over_distance);
-        let facing = (one + between) * L::splat(0.5);
-        let rate = two - ends * facing;
-        let reflected = level / (rate * rate);
-        if self.index == 0.0 {
-            let seen = (near * L::splat(0.5) - one).lt(between);
-            return [L::select(seen, reflected.min(max), zero), zero, zero, zero];
+impl NodeChances {
+    /// Returns the expected number of samples, for children of the root.
+    fn samples(&self) -> f64 {
+        let total = self.all.total;
+        if RESOLVED.contains(&total) {
+            (total * IRRADIANCE_TO_SAMPLES).min(MAX_SAMPLES)
+        } else {
+            0.0
         }
-        let rise = one - facing;
-        let reflectance = L::splat(self.normal_reflectance)
-            + L::splat(1.0 - self.normal_reflectance) * (rise * rise * rise);
-        let reflected = (reflected * reflectance).min(max);
-        if !self.clear {
-            return [reflected, zero, zero, zero];
-        }
-        let through = self.through((between, ends), level).map(|chance| chance.min(max));
-        [reflected, through[0], through[1], through[2]]
     }
 
-    /// Estimates the probabilities of the paths through glass.
-    #[inline(always)]
-    fn through<L: Lanes>(&self, (between, ends): (L, L), level: L) -> [L; 3] {
-        let (zero, least) = (L::splat(0.0), L::splat(LEAST_RATE));
-        // Divergence of rays near the axis: 0 if a focus lies between both points.
-        let straight = L::splat(2.0 - 2.0 * self.index);
-        let rate = straight - ends;
-        let beyond = zero.lt(rate);
-        let edge = 2.0 * self.index * self.index - 1.0;
-        let beam = ((-between - L::splat(edge)) * L::splat(1.0 / (1.0 - edge))).max(zero);
-        let parting = L::select(beyond, rate.max(least), straight);
-        let crossed = level * (beam * beam * beam) / (parting * parting);
-        // An approximation of the least turn on this side of the focus.
-        let depth = (-rate).max(zero);
-        let bend = 0.7 + 2.0 * self.index * (1.0 - self.index * self.index);
-        let least_turn2 = depth * depth * depth * L::splat(6.0 * 4.0 / 27.0 / bend);
-        let reach = least_turn2 + L::splat(self.emitter_radius2);
-        let within = (L::splat(1.0) + between).lt(reach) & zero.lt(depth);
-        let parting = depth.max(least);
-        let paraxial = L::select(within, level / (parting * parting), zero);
-        [crossed, paraxial, paraxial * L::splat(0.5)]
+    /// Chooses a kind of path by a random number in [0, 1); also returns the probability.
+    fn pick_path(&self, lane: usize, draw: f64) -> Option<(CausticPath, f64)> {
+        let mut left = draw;
+        let mut last = None;
+        for path in CausticPath::ALL {
+            let share = self.share(lane, path);
+            if share > 0.0 {
+                last = Some((path, share));
+                if left < share {
+                    break;
+                }
+            }
+            left -= share;
+        }
+        last
+    }
+
+    /// Returns the share of a kind of path in the contribution of a node.
+    fn share(&self, lane: usize, path: CausticPath) -> f64 {
+        let each = self.each.map(|row| f64::from(row[lane]));
+        let sum: f64 = each.iter().sum();
+        if sum > 0.0 { each[path as usize] / sum } else { 0.0 }
     }
 }

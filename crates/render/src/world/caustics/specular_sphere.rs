@@ -159,11 +159,11 @@ impl<D: Doubles> SpecularSphere<D> {
         (at, found)
     }
 
-    /// Returns the area across the ray at the emitter per steradian at the receiver.
+    /// Returns the area across the ray at the emitter per steradian at the receiver, over the squared
+    /// distance of the emitter from the center.
     #[inline(always)]
     pub(crate) fn spread(&self, at: Angle<D>, turn: &Deflection<D>) -> D {
-        let [x, y] = self.distance;
-        let across = x * y / self.radius;
+        let across = self.distance[0] / self.radius;
         let [a, b] = turn.slope;
         across * across * (turn.gain * turn.rate).abs() * a * b / at.cosine
     }

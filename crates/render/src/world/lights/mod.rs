@@ -10,9 +10,11 @@ mod tree;
 
 pub use point::Point;
 pub use row::{LightRow, ROW, ReceiverRow};
+pub(super) use sampler::LightSampler;
 pub use sphere_light::Disc;
 pub use sun::Sun;
 pub use tree::Receiver;
+pub(super) use tree::{BRANCHES, Chances, LightBounds, ROOT, Tree, WITHIN, horizon};
 
 use super::appearance::Appearance;
 use super::environment::{Environment, Picture};
@@ -22,8 +24,10 @@ use crate::scene::{self, LightChoice, Rgb, Scene};
 use crate::shade::{MaterialKind, Materials};
 use crate::spheres::Spheres;
 use glam::Vec3;
-use sampler::LightSampler;
 use sphere_light::view_sphere;
+
+/// Most emissive spheres that are tested against the direction of each mirrored ray.
+const MAX_MIRRORED: usize = 16;
 
 /// The lights. Unless the settings say otherwise, each is chosen in proportion to its estimated
 /// unoccluded contribution at the receiver.
@@ -32,7 +36,7 @@ pub struct Lights {
     /// Rows of emissive spheres, in the order of [`Spheres::key`]: samples do not depend on the tree.
     pub emitters: Vec<u32>,
     /// Radiance of each emissive sphere.
-    radiance: Vec<Rgb>,
+    pub(crate) radiance: Vec<Rgb>,
     /// Point lights.
     pub points: Vec<Point>,
     /// Suns.
@@ -42,7 +46,7 @@ pub struct Lights {
     sampler: LightSampler,
     by: LightChoice,
     /// [`Transform::extent`].
-    unit: f64,
+    pub(super) unit: f64,
     /// Distance from its center, in radii, within which an emissive sphere is close.
     reach: f64,
 }
@@ -136,6 +140,12 @@ impl Lights {
         self.emitters.len() + self.points.len() + self.suns.len() + self.sky_parts
     }
 
+    /// Returns whether suns and emissive spheres are sampled in the directions of mirrored rays: if there
+    /// are few, since each is tested.
+    pub fn samples_mirrored_light(&self) -> bool {
+        self.emitters.len() <= MAX_MIRRORED && (self.suns_have_discs() || !self.emitters.is_empty())
+    }
+
     /// Returns whether there is no light to sample, and so no shadow ray.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -208,12 +218,17 @@ impl Lights {
         }
     }
 
+    /// Returns the index of emissive sphere `row`; `None` if it is not sampled.
+    pub fn emitter_index(&self, spheres: &Spheres, row: u32) -> Option<usize> {
+        let key = spheres.key(row as usize);
+        let found = self.emitters.binary_search_by_key(&key, |&other| spheres.key(other as usize));
+        found.ok().filter(|&index| self.emitters[index] == row)
+    }
+
     /// Returns the density with which `choose` and `sample` find emissive sphere `row`; 0 from in or on
     /// it, infinite if it is not close to a `diffuse` surface: then light samples alone count.
     pub fn emitter_pdf(&self, spheres: &Spheres, row: u32, at: &Receiver, diffuse: bool) -> f32 {
-        let key = spheres.key(row as usize);
-        let found = self.emitters.binary_search_by_key(&key, |&other| spheres.key(other as usize));
-        let Some(index) = found.ok().filter(|&i| self.emitters[i] == row && row != at.own) else {
+        let Some(index) = self.emitter_index(spheres, row).filter(|_| row != at.own) else {
             return 0.0;
         };
         match view_sphere(spheres, row as usize, (at.point, self.reach)) {
@@ -230,12 +245,10 @@ impl Lights {
 
     /// Returns each sun that is visible in unit direction `toward`, with its radiance.
     pub fn suns_toward(&self, toward: Vec3) -> impl Iterator<Item = (usize, Rgb)> {
-        self.suns.iter().enumerate().filter_map(move |(i, sun)| {
-            let cone = sun.disc.as_ref()?;
-            // 1 - cos by the chord, without cancellation.
-            let height = (toward - sun.direction).length_squared() / 2.0;
-            (height <= cone.height()).then_some((i, sun.radiance))
-        })
+        self.suns
+            .iter()
+            .enumerate()
+            .filter_map(move |(i, sun)| sun.is_toward(toward).then_some((i, sun.radiance)))
     }
 
     /// Returns the density with which a direction toward sun `sun` is sampled.

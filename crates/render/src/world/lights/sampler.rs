@@ -1,7 +1,7 @@
 //! The light sampler: chooses the light to sample.
 
 use super::Lights;
-use super::tree::{BRANCHES, FAR, LightBounds, Receiver, Tree};
+use super::tree::{AllAround, BRANCHES, FAR, LightBounds, Receiver, Surface, Tree};
 use crate::sampling::Distribution;
 use crate::scene::{LightChoice, Rgb};
 use crate::spheres::Spheres;
@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 /// A strategy for choosing a light among emitters, points, suns and sky, in this order.
 #[derive(Clone, Debug, Default)]
 #[expect(clippy::large_enum_variant, reason = "a world has one of them")]
-pub(super) enum LightSampler {
+pub(in crate::world) enum LightSampler {
     /// No light is luminous.
     #[default]
     None,
@@ -26,7 +26,7 @@ pub(super) enum LightSampler {
 impl LightSampler {
     /// Creates the sampler of these lights, with a unit of length, a power of two. If some lights fall
     /// off and others do not, the unit decides which are the brightest.
-    pub(super) fn new(lights: &[LightBounds], by: LightChoice, unit: f64) -> Self {
+    pub(in crate::world) fn new(lights: &[LightBounds], by: LightChoice, unit: f64) -> Self {
         let lights: Vec<LightBounds> =
             lights.iter().map(|light| light.scaled(unit.recip())).collect();
         let weights = |of: fn(&LightBounds) -> f64| lights.iter().map(of).collect::<Vec<_>>();
@@ -46,11 +46,35 @@ impl LightSampler {
             None => Self::None,
         }
     }
+
+    /// Chooses a light by a random number in [0, 1), in proportion to the light that reaches a point
+    /// from any side: its index, the probability of the choice, and the place of the number in the
+    /// light's share.
+    #[inline]
+    pub(in crate::world) fn choose_around(&self, at: &Receiver, draw: f64) -> (usize, f32, f64) {
+        match self {
+            Self::Tree(tree) => tree.choose::<AllAround>(at, draw),
+            _ => (0, 1.0, draw),
+        }
+    }
+
+    /// Returns the probability with which [`LightSampler::choose_around`] chooses a light.
+    #[inline]
+    pub(in crate::world) fn probability_around(&self, at: &Receiver, light: usize) -> f32 {
+        match self {
+            Self::Tree(tree) => tree.probability::<AllAround>(at, light),
+            _ => 1.0,
+        }
+    }
 }
 
 impl Lights {
     /// Returns the bounds of each light.
-    pub(super) fn light_bounds(&self, spheres: &Spheres, sky: &Environment) -> Vec<LightBounds> {
+    pub(in crate::world) fn light_bounds(
+        &self,
+        spheres: &Spheres,
+        sky: &Environment,
+    ) -> Vec<LightBounds> {
         let far = FAR * self.unit;
         let power = |color: Rgb| f64::from(luminance(color));
         let dark = LightBounds::default();
@@ -117,7 +141,10 @@ impl Lights {
         match &self.sampler {
             LightSampler::None => None,
             LightSampler::Single => Some((0, 1.0)),
-            LightSampler::Tree(tree) => Some(tree.choose(at, draw)),
+            LightSampler::Tree(tree) => {
+                let (light, probability, _) = tree.choose::<Surface>(at, draw);
+                Some((light, probability))
+            }
             LightSampler::Table(table) => {
                 let choice = table.sample(draw as f32);
                 Some((choice.index, choice.pmf))
@@ -131,7 +158,7 @@ impl Lights {
         match &self.sampler {
             LightSampler::None => 0.0,
             LightSampler::Single => 1.0,
-            LightSampler::Tree(tree) => tree.probability(at, index),
+            LightSampler::Tree(tree) => tree.probability::<Surface>(at, index),
             LightSampler::Table(table) => table.pmf(index),
         }
     }

@@ -17,12 +17,12 @@ const NO_DISC: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub struct Sun {
     pub(super) basis: Basis,
-    pub(super) direction: Vec3,
+    pub(crate) direction: Vec3,
     pub(super) irradiance: Rgb,
     /// The disc; `None` if it has no extent.
-    pub(super) disc: Option<Cone>,
+    pub(crate) disc: Option<Cone>,
     /// Radiance of the disc.
-    pub(super) radiance: Rgb,
+    pub(crate) radiance: Rgb,
     /// Weight of a sample: radiance over density, or the irradiance if there is no extent.
     pub(super) weight: Rgb,
 }
@@ -47,6 +47,14 @@ impl Sun {
             radiance,
             weight: disc.map_or(irradiance, |cone| radiance / cone.pdf()),
         }
+    }
+
+    /// Returns whether the disc is visible in unit direction `toward`.
+    #[inline]
+    pub(crate) fn is_toward(&self, toward: Vec3) -> bool {
+        // 1 - cos by the chord, without cancellation.
+        let height = (toward - self.direction).length_squared() / 2.0;
+        self.disc.is_some_and(|disc| height <= disc.height())
     }
 
     /// Samples a direction toward the disc.

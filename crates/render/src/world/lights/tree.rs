@@ -18,7 +18,7 @@ use glam::{DVec3, Vec3};
 use std::ops::Range;
 
 /// Most branches of a node.
-pub(super) const BRANCHES: usize = 16;
+pub(in crate::world) const BRANCHES: usize = 16;
 
 /// Distance of lights at infinity, in units of the scene's extent.
 pub(super) const FAR: f64 = 1e6;
@@ -30,19 +30,19 @@ const HIDDEN: f32 = 1e-2;
 /// Least squared distance within a cluster, relative to its squared radius: the mean of the reciprocal
 /// over a ball is that at a third from its center, and lights fill less than the ball. The best of
 /// measured values.
-const WITHIN: f32 = 0.25;
+pub(in crate::world) const WITHIN: f32 = 0.25;
 
 /// Bounding sphere of a light or a cluster, with its power.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LightBounds {
-    pub(super) center: DVec3,
-    pub(super) radius: f64,
+pub(in crate::world) struct LightBounds {
+    pub(in crate::world) center: DVec3,
+    pub(in crate::world) radius: f64,
     /// Irradiance on a plane that faces it, times the squared distance.
-    pub(super) power: f64,
+    pub(in crate::world) power: f64,
     /// Irradiance on a plane that faces it, of light without falloff.
-    pub(super) steady: f64,
+    pub(in crate::world) steady: f64,
     /// True if light samples find nothing inside: an emissive sphere.
-    pub(super) hollow: bool,
+    pub(in crate::world) hollow: bool,
 }
 
 impl LightBounds {
@@ -75,41 +75,76 @@ pub struct Receiver {
 
 /// Clusters of lights, in columns. The children of a node are neighbors, and the root's are the first.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tree {
-    pub(super) x: Vec<f32>,
-    pub(super) y: Vec<f32>,
-    pub(super) z: Vec<f32>,
+pub(in crate::world) struct Tree {
+    pub(in crate::world) x: Vec<f32>,
+    pub(in crate::world) y: Vec<f32>,
+    pub(in crate::world) z: Vec<f32>,
     /// Radius of the bounds, negative if hollow.
-    pub(super) radius: Vec<f32>,
+    pub(in crate::world) radius: Vec<f32>,
     pub(super) power: Vec<f32>,
     pub(super) steady: Vec<f32>,
     /// First child; the light of a leaf.
-    pub(super) child: Vec<u32>,
+    pub(in crate::world) child: Vec<u32>,
     /// Number of children; 0 for a leaf.
-    pub(super) children: Vec<u8>,
+    pub(in crate::world) children: Vec<u8>,
     /// Parent node; [`ROOT`] for children of the root.
-    pub(super) parent: Vec<u32>,
+    pub(in crate::world) parent: Vec<u32>,
     /// Number of the root's children.
     pub(super) top: u8,
     /// Leaf of each light; [`ROOT`] for a light that is not luminous.
-    pub(super) leaf: Vec<u32>,
+    pub(in crate::world) leaf: Vec<u32>,
 }
 
 /// The root, which has no row.
-pub(super) const ROOT: u32 = u32::MAX;
+pub(in crate::world) const ROOT: u32 = u32::MAX;
 
 /// Range of sums that single precision resolves well.
 const RESOLVED: Range<f64> = 1e-30..1e30;
 
 /// Relative probabilities of sibling nodes.
-struct Chances {
+pub(in crate::world) struct Chances {
     each: [f32; BRANCHES],
-    total: f64,
+    pub(in crate::world) total: f64,
+}
+
+/// The part that a light's direction plays in the choice.
+pub(super) trait Facing {
+    /// Returns the factor on the irradiance of a light whose center is at this cosine to the normal, and
+    /// whose bounds have this angular radius, as a sine.
+    fn facing<L: Lanes>(cosine: L, sine: L) -> L;
+}
+
+/// A surface receives light from above its horizon.
+pub(super) struct Surface;
+
+impl Facing for Surface {
+    #[inline(always)]
+    fn facing<L: Lanes>(cosine: L, sine: L) -> L {
+        horizon(cosine, sine)
+    }
+}
+
+/// A point receives light from everywhere.
+pub(super) struct AllAround;
+
+impl Facing for AllAround {
+    #[inline(always)]
+    fn facing<L: Lanes>(_: L, _: L) -> L {
+        L::splat(1.0)
+    }
+}
+
+/// Returns the cosine of a disc's center; an approximation for the part that is above the horizon, for
+/// a disc of this angular radius, as a sine, that crosses it.
+#[inline(always)]
+pub(in crate::world) fn horizon<L: Lanes>(cosine: L, sine: L) -> L {
+    let above = (cosine + sine).max(L::splat(0.0));
+    L::select(cosine.lt(sine), above * above / (sine * L::splat(4.0)), cosine)
 }
 
 impl Tree {
     /// Builds the tree of these lights; `None` if none is luminous.
-    pub(super) fn new(lights: &[LightBounds]) -> Option<Self> {
+    pub(in crate::world) fn new(lights: &[LightBounds]) -> Option<Self> {
         build_tree(lights)
     }
 
@@ -122,30 +157,31 @@ impl Tree {
         self
     }
 
-    /// Chooses a light by a random number in [0, 1): its index, and the probability of the choice. The
-    /// next random number chooses the same light or a neighbor.
+    /// Chooses a light by a random number in [0, 1): its index, the probability of the choice, and the
+    /// place of the number in the light's share. The next random number chooses the same light or a
+    /// neighbor.
     // Not inlined: the case of a single light should not have to jump around it.
     #[inline(never)]
-    pub(super) fn choose(&self, at: &Receiver, draw: f64) -> (usize, f32) {
-        self.descend((0, usize::from(self.top)), at, (draw, 1.0))
+    pub(super) fn choose<F: Facing>(&self, at: &Receiver, draw: f64) -> (usize, f32, f64) {
+        self.descend::<F>((0, usize::from(self.top)), at, (draw, 1.0))
     }
 
     /// Chooses among the `count` nodes from `first` on and their descendants, given the probability of
     /// reaching them.
-    fn descend(
+    fn descend<F: Facing>(
         &self,
         (mut first, mut count): (usize, usize),
         at: &Receiver,
         (mut draw, mut probability): (f64, f64),
-    ) -> (usize, f32) {
+    ) -> (usize, f32, f64) {
         loop {
-            let chances = self.chances(first, count, at);
+            let chances = self.chances::<F>(first, count, at);
             let (lane, rest) = chances.pick(count, draw);
             probability *= chances.of(lane);
             let node = first + lane;
             count = usize::from(self.children[node]);
             if count == 0 {
-                return (self.child[node] as usize, probability as f32);
+                return (self.child[node] as usize, probability as f32, rest);
             }
             (first, draw) = (self.child[node] as usize, rest);
         }
@@ -153,7 +189,7 @@ impl Tree {
 
     /// Returns the probability with which a light is chosen.
     #[inline(never)]
-    pub(super) fn probability(&self, at: &Receiver, light: usize) -> f32 {
+    pub(super) fn probability<F: Facing>(&self, at: &Receiver, light: usize) -> f32 {
         let (mut node, mut probability) = (self.leaf[light], 1.0);
         if node == ROOT {
             return 0.0;
@@ -161,13 +197,14 @@ impl Tree {
         while node != ROOT {
             let above = self.parent[node as usize];
             let (first, count) = self.below(above);
-            probability *= self.chances(first, count, at).of(node as usize - first);
+            probability *= self.chances::<F>(first, count, at).of(node as usize - first);
             node = above;
         }
         probability as f32
     }
 
-    fn below(&self, node: u32) -> (usize, usize) {
+    /// Returns the first child of a node or the [`ROOT`], and the number of children.
+    pub(in crate::world) fn below(&self, node: u32) -> (usize, usize) {
         if node == ROOT {
             return (0, usize::from(self.top));
         }
@@ -177,8 +214,8 @@ impl Tree {
     /// Returns the relative probabilities of the `count` nodes from `first` on; by power alone if they
     /// leave the range of single precision.
     #[inline(always)]
-    fn chances(&self, first: usize, count: usize, at: &Receiver) -> Chances {
-        let chances = Chances::new(self.irradiance(first, at), count);
+    fn chances<F: Facing>(&self, first: usize, count: usize, at: &Receiver) -> Chances {
+        let chances = Chances::new(self.irradiance::<F>(first, at), count);
         if RESOLVED.contains(&chances.total) {
             return chances;
         }
@@ -188,7 +225,7 @@ impl Tree {
 
     /// Estimates the unoccluded irradiance of each of the nodes from `first` on at a receiver.
     #[inline(always)]
-    fn irradiance(&self, first: usize, at: &Receiver) -> F32x16 {
+    fn irradiance<F: Facing>(&self, first: usize, at: &Receiver) -> F32x16 {
         let row = |column: &[f32]| F32x16::load(&column[first..]);
         let splat = |v: Vec3| vec3::Vec3::splat(v.x, v.y, v.z);
         let nodes = Nodes {
@@ -197,7 +234,7 @@ impl Tree {
             power: row(&self.power),
             steady: row(&self.steady),
         };
-        nodes.irradiance(splat(at.point), splat(at.normal))
+        nodes.irradiance::<F>(splat(at.point), splat(at.normal))
     }
 }
 
@@ -212,16 +249,13 @@ struct Nodes<L> {
 impl<L: Lanes> Nodes<L> {
     /// Estimates the unoccluded irradiance of each node at the receiver in its lane.
     #[inline(always)]
-    fn irradiance(&self, point: vec3::Vec3<L>, normal: vec3::Vec3<L>) -> L {
-        let (zero, four) = (L::splat(0.0), L::splat(4.0));
+    fn irradiance<F: Facing>(&self, point: vec3::Vec3<L>, normal: vec3::Vec3<L>) -> L {
+        let zero = L::splat(0.0);
         let toward = self.center - point;
         let (radius, distance2) = (self.radius, toward.dot(toward));
         let radius2 = radius * radius;
         let near = L::splat(1.0) / distance2.max(radius2 * L::splat(WITHIN)).sqrt();
-        let (cosine, sine) = (toward.dot(normal) * near, radius.abs() * near);
-        // An approximation for the part of a disc that is above the horizon.
-        let above = (cosine + sine).max(zero);
-        let facing = L::select(cosine.lt(sine), above * above / (sine * four), cosine);
+        let facing = F::facing(toward.dot(normal) * near, radius.abs() * near);
         let total = (near * near).mul_add(self.power, self.steady);
         // Light below the range of single precision keeps a positive probability.
         let given = (total * facing.max(L::splat(HIDDEN))).max(L::splat(f32::MIN_POSITIVE));
@@ -230,21 +264,22 @@ impl<L: Lanes> Nodes<L> {
 }
 
 impl Chances {
+    /// Creates the probabilities of the first `count` lanes.
     #[inline(always)]
-    fn new(chances: F32x16, count: usize) -> Self {
+    pub(in crate::world) fn new(chances: F32x16, count: usize) -> Self {
         let each = chances.to_array();
         Self { each, total: each[..count].iter().copied().map(f64::from).sum() }
     }
 
     /// Returns the probability of a lane.
     #[inline(always)]
-    fn of(&self, lane: usize) -> f64 {
+    pub(in crate::world) fn of(&self, lane: usize) -> f64 {
         f64::from(self.each[lane]) / self.total
     }
 
     /// Returns the lane in whose share a random number falls, and its place in that share, in [0, 1).
     #[inline(always)]
-    fn pick(&self, count: usize, draw: f64) -> (usize, f64) {
+    pub(in crate::world) fn pick(&self, count: usize, draw: f64) -> (usize, f64) {
         let (mut left, mut last) = (draw * self.total, (0, 0.0));
         for (lane, chance) in self.each[..count].iter().copied().map(f64::from).enumerate() {
             if chance > 0.0 {

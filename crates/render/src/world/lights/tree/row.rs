@@ -4,7 +4,7 @@
 //! that sums and searches are in lanes as well. Below, each receiver descends alone.
 
 use super::super::row::{ROW, ReceiverRow};
-use super::{BRANCHES, Nodes, RESOLVED, Tree};
+use super::{BRANCHES, Nodes, RESOLVED, Surface, Tree};
 use crate::lanes::{Doubles, F32x16, F64x8, Mask, set_bits, widen};
 use crate::vec3::Vec3;
 
@@ -45,14 +45,14 @@ impl Tree {
                 let lane = 8 * half + i;
                 let node = place[i] as usize;
                 let below = usize::from(self.children[node]);
-                let (found, pdf) = if picked.resolved >> i & 1 == 0 {
-                    self.choose(&at.receiver(lane), draw.to_array()[i])
+                let (found, pdf, _) = if picked.resolved >> i & 1 == 0 {
+                    self.choose::<Surface>(&at.receiver(lane), draw.to_array()[i])
                 } else if below > 0 {
                     let first = self.child[node] as usize;
                     let rest = picked.rest.to_array()[i];
-                    self.descend((first, below), &at.receiver(lane), (rest, chance[i]))
+                    self.descend::<Surface>((first, below), &at.receiver(lane), (rest, chance[i]))
                 } else {
-                    (self.child[node] as usize, chance[i] as f32)
+                    (self.child[node] as usize, chance[i] as f32, 0.0)
                 };
                 (light[lane], probability[lane]) = (found as u32, pdf);
             }
@@ -84,7 +84,7 @@ impl Tree {
             probability[lane] = if node < top && RESOLVED.contains(&total) {
                 (f64::from(chances[node][lane]) / total) as f32
             } else {
-                self.probability(&at.receiver(lane), light)
+                self.probability::<Surface>(&at.receiver(lane), light)
             };
         }
         probability
@@ -101,7 +101,7 @@ impl Tree {
                 power: F32x16::splat(self.power[node]),
                 steady: F32x16::splat(self.steady[node]),
             };
-            *chance = nodes.irradiance(at.point, at.normal);
+            *chance = nodes.irradiance::<Surface>(at.point, at.normal);
         }
         chances
     }
