@@ -79,6 +79,11 @@ impl Region {
         region.is_in(width, height).then_some(region).ok_or(outside)
     }
 
+    /// Returns the number of pixels.
+    pub(crate) fn area(self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
     fn is_in(self, width: u32, height: u32) -> bool {
         let fits = |first: u32, count: u32, most: u32| {
             count > 0 && u64::from(first) + u64::from(count) <= u64::from(most)
@@ -177,7 +182,7 @@ impl Film {
 
     /// Returns the number of pixels.
     pub fn pixels(&self) -> u64 {
-        u64::from(self.region.width) * u64::from(self.region.height)
+        self.region.area()
     }
 
     /// Gives probes to the tiles that need them.

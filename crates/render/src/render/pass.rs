@@ -42,12 +42,12 @@ pub(super) struct TileView {
     view: View,
 }
 
-/// Samples of a tile that are not yet added to its sums.
+/// Samples of tiles that are not yet added to their sums.
 pub(super) enum TileSamples {
     /// Samples of equal radiance.
     Uniform(Rgb),
-    /// The radiance of this number of paths of a workspace.
-    Paths(usize),
+    /// The radiance of the paths of a workspace, tile by tile.
+    Paths,
 }
 
 impl TileView {
@@ -55,37 +55,60 @@ impl TileView {
         Self { region: tile.region, view: tile.view }
     }
 
-    /// Takes samples of the pixels.
-    pub(super) fn take(self, job: &Job, samples: Range<u32>, work: &mut Workspace) -> TileSamples {
-        work.clock.restart();
-        let uniform = uniform_view(job.world, self.view).filter(|_| job.elisions.even_background);
-        if let Some(radiance) = uniform {
-            let pixels = u64::from(self.region.width) * u64::from(self.region.height);
-            work.counters.skipped_samples += pixels * samples.len() as u64;
-            return TileSamples::Uniform(radiance);
-        }
-        let streams = self.region.morton().map(|(x, y)| (x, y, *job.sampler));
-        TileSamples::Paths(trace_paths(job, self.view, (streams, samples), work))
+    /// Returns whether samples of both tiles can be taken in one batch.
+    pub(super) fn matches(self, other: Self) -> bool {
+        self.view == other.view
     }
 }
 
 impl TileSamples {
-    /// Adds the samples to their tile: `count` for each of its pixels.
-    pub(super) fn add(self, tile: &mut Tile, count: u32, work: &mut Workspace) {
-        match self {
+    /// Takes samples of the pixels of tiles with the same view, no more than a batch of paths.
+    pub(super) fn take(
+        job: &Job,
+        tiles: impl Iterator<Item = TileView> + Clone,
+        samples: Range<u32>,
+        work: &mut Workspace,
+    ) -> Self {
+        work.clock.restart();
+        let view = tiles.clone().next().map_or(View::Anything, |tile| tile.view);
+        let uniform = uniform_view(job.world, view).filter(|_| job.elisions.even_background);
+        if let Some(radiance) = uniform {
+            let pixels: u64 = tiles.map(|tile| tile.region.area()).sum();
+            work.counters.skipped_samples += pixels * samples.len() as u64;
+            return Self::Uniform(radiance);
+        }
+        let streams =
+            tiles.flat_map(|tile| tile.region.morton()).map(|(x, y)| (x, y, *job.sampler));
+        trace_paths(job, view, (streams, samples), work);
+        Self::Paths
+    }
+
+    /// Adds the samples of a tile to its sums: `count` for each of its pixels. The tile's first path is
+    /// number `first`. Returns the number of the next tile's.
+    pub(super) fn add(
+        &self,
+        tile: &mut Tile,
+        count: u32,
+        first: usize,
+        work: &mut Workspace,
+    ) -> usize {
+        let end = first + (tile.len() * count) as usize;
+        match *self {
             Self::Uniform(radiance) => tile.add_even(radiance, count),
-            Self::Paths(paths) => {
-                work.counters.bad_samples += tile.add(&work.paths.radiance[..paths], count);
+            Self::Paths => {
+                work.counters.bad_samples += tile.add(&work.paths.radiance[first..end], count);
             }
         }
         work.clock.end(Stage::Film);
+        end
     }
 }
 
 /// Adds samples to the pixels of a tile.
 pub(super) fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
     let count = samples.end - samples.start;
-    TileView::of(tile).take(job, samples, work).add(tile, count, work);
+    let view = std::iter::once(TileView::of(tile));
+    TileSamples::take(job, view, samples, work).add(tile, count, 0, work);
 }
 
 /// Adds to the probes of a tile the samples that they lack, up to the end, as long as `proceed` is

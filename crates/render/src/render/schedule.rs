@@ -1,7 +1,12 @@
 //! Division of an image's samples into tasks.
 
 use super::pass::PASS;
+use crate::film::TILE;
+use crate::integrator::workspace::BATCH;
 use std::ops::Range;
+
+/// Minimum number of times that each thread takes tasks: then all threads end at about the same time.
+const TURNS: usize = 8;
 
 /// Division of the last passes into tasks, as pairs: passes per thread, and tasks per pass, from the
 /// last pass.
@@ -63,8 +68,23 @@ impl Schedule {
         Self { passes: rounds * taken.len(), taken, spp, threads }
     }
 
+    /// Returns the number of tasks that a thread takes at once: as many as fill a batch of paths, since
+    /// smaller batches take longer, unless too few tasks would remain for the other threads.
+    pub(super) fn at_once(&self) -> usize {
+        let paths = (TILE * TILE * self.spp.clamp(1, PASS)) as usize;
+        (BATCH / paths).min(self.passes / (TURNS * self.threads)).max(1)
+    }
+
+    /// Returns the tasks with samples that a thread takes at once, from a number on; `None` after the
+    /// last one.
+    pub(super) fn tasks(&self, first: usize) -> Option<Vec<Task>> {
+        self.task(first)?;
+        let tasks = (first..first + self.at_once()).map_while(|at| self.task(at));
+        Some(tasks.filter(|task| !task.samples.is_empty()).collect())
+    }
+
     /// Returns a task by its number; `None` after the last one.
-    pub(super) fn task(&self, at: usize) -> Option<Task> {
+    fn task(&self, at: usize) -> Option<Task> {
         let (mut first_task, mut first_pass) = (0, 0);
         for (passes, parts) in self.zones() {
             let offset = at - first_task;

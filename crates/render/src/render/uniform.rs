@@ -1,7 +1,7 @@
 //! Renders with the same number of samples for every pixel.
 
 use super::end::End;
-use super::pass::{PASS, TileView, probe_pass};
+use super::pass::{PASS, TileSamples, TileView, probe_pass};
 use super::schedule::{Schedule, Task};
 use super::state::State;
 use super::watch::Watch;
@@ -14,9 +14,10 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// Gives every pixel the samples that it lacks of `part`, a range of samples.
 ///
-/// A task is a pass over a tile or a part of one, and threads take tasks from one counter. No thread
-/// waits for the end of a pass over the whole picture, nor for another that has samples of the same
-/// tile, except while these are added up, in any order.
+/// A task is a pass over a tile or a part of one, and threads take tasks from one counter: several at
+/// once if their samples fill a batch of paths together. No thread waits for the end of a pass over the
+/// whole picture, nor for another that has samples of the same tile, except while these are added up,
+/// in any order.
 pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch) -> End {
     let spp = part.len() as u32;
     let taken: Vec<u32> = state.film.tiles.iter().map(|tile| tile.samples).collect();
@@ -28,14 +29,18 @@ pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch)
     rayon::broadcast(|_| {
         let mut work = Workspace::new(job.world, job.elisions);
         while !watch.cancelled() {
-            let next = next.fetch_add(1, Ordering::Relaxed);
-            let Some(Task { tile, samples, of }) = schedule.task(next) else { return };
-            let count = samples.len() as u64;
-            if count > 0 {
+            let first = next.fetch_add(schedule.at_once(), Ordering::Relaxed);
+            let Some(tasks) = schedule.tasks(first) else { return };
+            let in_one_batch = |a: &Task, b: &Task| {
+                a.samples == b.samples && tiles[a.tile].0.matches(tiles[b.tile].0)
+            };
+            for batch in tasks.chunk_by(in_one_batch) {
+                let [.., Task { samples, of, .. }] = batch else { continue };
+                let count = (batch.len() * samples.len()) as u64;
                 let samples = part.start + samples.start..part.start + samples.end;
-                add(job, &tiles[tile], samples, part.start, &mut work);
+                add(job, &tiles, (batch, samples), part.start, &mut work);
                 let done = done.fetch_add(count, Ordering::Relaxed) + count;
-                watch.report(&mut work, Some(of), done as f64 / all as f64, None);
+                watch.report(&mut work, Some(*of), done as f64 / all as f64, None);
             }
         }
     });
@@ -45,24 +50,35 @@ pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch)
     if complete { End::Samples } else { End::Cancelled }
 }
 
-/// Returns a tile that all threads may add samples to.
-fn shared_tile(tile: &mut Tile) -> (TileView, Mutex<&mut Tile>) {
+/// A tile that all threads may add samples to.
+type SharedTile<'a> = (TileView, Mutex<&'a mut Tile>);
+
+fn shared_tile(tile: &mut Tile) -> SharedTile<'_> {
     (TileView::of(tile), Mutex::new(tile))
 }
 
-/// Takes samples of a tile and adds them up, also for its probes, from `first` on.
+/// Takes samples of the tiles of a batch and adds them up, also for their probes, from `first` on.
 fn add(
     job: &Job,
-    (view, tile): &(TileView, Mutex<&mut Tile>),
-    samples: Range<u32>,
+    tiles: &[SharedTile],
+    (batch, samples): (&[Task], Range<u32>),
     first: u32,
     work: &mut Workspace,
 ) {
     let (count, end) = (samples.len() as u32, samples.end);
-    let taken = view.take(job, samples, work);
-    if let Ok(mut tile) = tile.lock() {
-        taken.add(&mut tile, count, work);
-        probe_pass(job, &mut tile, first..end, work, || true);
+    let tiles = batch.iter().map(|task| &tiles[task.tile]);
+    let taken = TileSamples::take(job, tiles.clone().map(|tile| tile.0), samples, work);
+    let mut path = 0;
+    for (_, tile) in tiles.clone() {
+        if let Ok(mut tile) = tile.lock() {
+            path = taken.add(&mut tile, count, path, work);
+        }
+    }
+    // Probes are paths, too: they replace those of the tiles.
+    for (_, tile) in tiles {
+        if let Ok(mut tile) = tile.lock() {
+            probe_pass(job, &mut tile, first..end, work, || true);
+        }
     }
 }
 
