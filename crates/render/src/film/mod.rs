@@ -18,7 +18,9 @@ pub use tile::{TILE, Tile, View};
 
 use crate::image::Image;
 use crate::settings::Settings;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::iter::repeat_n;
 use std::ops::Range;
 
 /// A rectangle of pixels of a picture.
@@ -200,42 +202,49 @@ impl Film {
 
     /// Returns the mean radiance of each pixel; black without samples.
     pub fn resolve(&self) -> Image {
-        let radiance = |tile: &Tile| tile.sums.means(tile.samples).map(single).collect::<Vec<_>>();
-        Image {
-            width: self.region.width,
-            height: self.region.height,
-            pixels: self.gather([0.0; 3], radiance),
-        }
+        let pixels = self.gather([0.0; 3], |_, tile| tile.sums.means(tile.samples).map(single));
+        Image { width: self.region.width, height: self.region.height, pixels }
     }
 
     /// Returns the number of samples of each pixel, row by row.
     pub fn samples(&self) -> Vec<u32> {
-        self.gather(0, |tile| vec![tile.samples; tile.len() as usize])
+        self.gather(0, |_, tile| repeat_n(tile.samples, tile.len() as usize))
     }
 
     /// Returns the variance of each pixel's mean, row by row and by channel: the variance of its
     /// samples over their number, times the `gain` of its tile. All 0 without sums of squares.
     pub fn variance(&self, gain: impl Fn(usize) -> f64) -> Image {
         let gains: Vec<f64> = (0..self.tiles.len()).map(gain).collect();
-        let mut tiles = gains.iter();
-        let pixels = self.gather([0.0; 3], |tile| {
-            let factor = tiles.next().copied().unwrap_or(1.0) / f64::from(tile.samples.max(1));
-            let of_mean = |variance: [f64; 3]| single(variance.map(|channel| channel * factor));
-            tile.sums.variances(tile.samples).map(of_mean).collect()
+        let pixels = self.gather([0.0; 3], |index, tile| {
+            let factor = gains[index] / f64::from(tile.samples.max(1));
+            let of_mean =
+                move |variance: [f64; 3]| single(variance.map(|channel| channel * factor));
+            tile.sums.variances(tile.samples).map(of_mean)
         });
         Image { width: self.region.width, height: self.region.height, pixels }
     }
 
-    /// Gathers values of the tiles' pixels into rows of the region.
-    fn gather<T: Copy>(&self, empty: T, mut of_tile: impl FnMut(&Tile) -> Vec<T>) -> Vec<T> {
+    /// Gathers values of the tiles' pixels into rows of the region; `of_tile` gets a tile and its index.
+    fn gather<'a, T, V>(&'a self, empty: T, of_tile: impl Fn(usize, &'a Tile) -> V + Sync) -> Vec<T>
+    where
+        T: Copy + Send + Sync,
+        V: Iterator<Item = T>,
+    {
         let width = self.region.width as usize;
         let mut pixels = vec![empty; width * self.region.height as usize];
-        for tile in &self.tiles {
-            for ((x, y), value) in tile.pixels().zip(of_tile(tile)) {
-                let (column, row) = (x - self.region.x, y - self.region.y);
-                pixels[row as usize * width + column as usize] = value;
+        // A band is the rows of a row of tiles.
+        let bands = pixels.par_chunks_mut(width * TILE as usize).enumerate();
+        bands.for_each(|(band, pixels)| {
+            let top = self.region.y + band as u32 * TILE;
+            let first = self.tiles.partition_point(|tile| tile.region.y < top);
+            let tiles = self.tiles.iter().enumerate().skip(first);
+            for (index, tile) in tiles.take_while(|(_, tile)| tile.region.y == top) {
+                for ((x, y), value) in tile.pixels().zip(of_tile(index, tile)) {
+                    let (column, row) = (x - self.region.x, y - top);
+                    pixels[row as usize * width + column as usize] = value;
+                }
             }
-        }
+        });
         pixels
     }
 }
