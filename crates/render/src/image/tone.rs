@@ -4,7 +4,7 @@
 //! encodes these, and codes are the nearest integers. NaN becomes code 0 and positive infinity the
 //! largest code; [`Image::count_non_finite`](super::Image::count_non_finite) counts such values.
 
-use super::{ImageError, WriteOptions};
+use super::{Depth, ImageError, WriteOptions};
 use crate::settings::{Settings, Tone};
 use rayon::prelude::*;
 
@@ -118,11 +118,19 @@ impl Codes8 {
     }
 }
 
+/// Minimum number of pixels for which creating [`Codes8`] takes less time than it saves.
+const TABLE_PIXELS: usize = 1 << 13;
+
 /// Returns the codes of pixels for these options.
 pub(super) fn codes(pixels: &[[f32; 3]], options: &WriteOptions) -> Vec<[u16; 3]> {
     let transform = DisplayTransform::nearest(options.exposure, options.tone);
+    let each = pixels.par_iter().with_min_len(1 << 12);
+    if options.depth == Depth::Eight && pixels.len() >= TABLE_PIXELS {
+        let table = Codes8::new(transform);
+        return each.map(|pixel| pixel.map(|value| u16::from(table.code(value)))).collect();
+    }
     let maximum = options.depth.maximum();
-    pixels.par_iter().map(|pixel| pixel.map(|value| transform.code(value, maximum))).collect()
+    each.map(|pixel| pixel.map(|value| transform.code(value, maximum))).collect()
 }
 
 /// Returns the linear value of every code in `0..=maximum`; `maximum` is 1 or more.
