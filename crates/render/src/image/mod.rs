@@ -9,6 +9,7 @@
 mod channel;
 mod codes;
 pub mod compare;
+mod deflate;
 mod error;
 mod exr;
 mod format;

@@ -1,17 +1,21 @@
 //! PNG: sRGB codes of 8 or 16 bits, with the metadata in text chunks.
 
 use super::{
-    Depth, Image, Metadata, WriteOptions, codes,
+    Depth, Image, Metadata, WriteOptions, codes, deflate,
     format::{claimed_area, damaged},
 };
 use ::png::{
     BitDepth, ColorType, Decoder, Encoder, EncodingError, Info, Reader, SrgbRenderingIntent,
-    Transformations,
+    Transformations, chunk,
 };
+use rayon::prelude::*;
 use std::io::Cursor;
 
 /// Maximum compression ratio of Deflate (its longest match is 258 bytes in 2 bits).
 const MAXIMUM_DEFLATE_RATIO: usize = 1032;
+
+/// Maximum bytes of a chunk.
+const MAXIMUM_CHUNK: usize = i32::MAX as usize;
 
 /// Peak bytes per pixel while it is decoded: its samples twice, and three floats.
 const PIXEL_BYTES: u64 = 8 + 8 + 12;
@@ -93,16 +97,29 @@ pub(super) fn encode(
         Depth::Eight => BitDepth::Eight,
         Depth::Sixteen => BitDepth::Sixteen,
     };
+    let pixel = info.bytes_per_pixel();
+    let layout = Layout { row: image.width as usize * pixel, pixel };
+    let stream = deflate::compress(&filter(&samples, layout)).map_err(|error| error.to_string())?;
     let mut bytes = Vec::new();
-    compress(&mut bytes, info, &options.metadata, &samples).map_err(|error| error.to_string())?;
+    write(&mut bytes, info, &options.metadata, &stream).map_err(|error| error.to_string())?;
     Ok(bytes)
 }
 
-fn compress(
+/// Numbers of bytes in samples.
+#[derive(Clone, Copy)]
+struct Layout {
+    /// Of a row of pixels.
+    row: usize,
+    /// Of a pixel.
+    pixel: usize,
+}
+
+/// Writes the chunks of a file, whose compressed rows are `stream`.
+fn write(
     bytes: &mut Vec<u8>,
     info: Info<'_>,
     metadata: &Metadata,
-    samples: &[u8],
+    stream: &[u8],
 ) -> Result<(), EncodingError> {
     let mut encoder = Encoder::with_info(bytes, info)?;
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
@@ -117,8 +134,80 @@ fn compress(
         }
     }
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(samples)?;
+    for part in stream.chunks(MAXIMUM_CHUNK) {
+        writer.write_chunk(chunk::IDAT, part)?;
+    }
     writer.finish()
+}
+
+/// Returns the rows of samples, each after the number of its filter: the one with the least sum of
+/// absolute differences, as the specification recommends.
+fn filter(samples: &[u8], layout: Layout) -> Vec<u8> {
+    let Layout { row, pixel } = layout;
+    let mut filtered = vec![0; samples.len() / row * (1 + row)];
+    let rows = filtered.par_chunks_exact_mut(1 + row).enumerate();
+    rows.for_each_init(
+        || (vec![0; pixel + row], vec![0; pixel + row], vec![0; row]),
+        |(this, above, differences), (y, filtered)| {
+            // Samples before the first pixel and above the first row count as 0.
+            this[pixel..].copy_from_slice(&samples[y * row..][..row]);
+            match y {
+                0 => above.fill(0),
+                _ => above[pixel..].copy_from_slice(&samples[(y - 1) * row..][..row]),
+            }
+            let mut least = u64::MAX;
+            for number in 0..FILTERS {
+                predict(number, (this, above), pixel, differences);
+                let size = |byte: &u8| u64::from(byte.cast_signed().unsigned_abs());
+                let sum = differences.iter().map(size).sum();
+                if sum < least {
+                    least = sum;
+                    filtered[0] = number;
+                    filtered[1..].copy_from_slice(differences);
+                }
+            }
+        },
+    );
+    filtered
+}
+
+/// Number of filters.
+const FILTERS: u8 = 5;
+
+/// Computes the differences between the samples of a row and their predictions by a filter. Both rows,
+/// this one and the one above, begin with a pixel of zeros.
+fn predict(filter: u8, rows: (&[u8], &[u8]), pixel: usize, differences: &mut [u8]) {
+    match filter {
+        0 => subtract(rows, pixel, differences, |_, _, _| 0),
+        1 => subtract(rows, pixel, differences, |left, _, _| left),
+        2 => subtract(rows, pixel, differences, |_, up, _| up),
+        3 => subtract(rows, pixel, differences, |left, up, _| left.midpoint(up)),
+        _ => subtract(rows, pixel, differences, paeth),
+    }
+}
+
+/// Subtracts the prediction of each sample, from those to the left, above, and above to the left.
+#[inline(always)]
+fn subtract(
+    (this, above): (&[u8], &[u8]),
+    pixel: usize,
+    differences: &mut [u8],
+    predicted: impl Fn(u8, u8, u8) -> u8,
+) {
+    let left = this.iter().zip(&this[pixel..]);
+    let up = above.iter().zip(&above[pixel..]);
+    for (difference, ((&left, &sample), (&corner, &up))) in differences.iter_mut().zip(left.zip(up))
+    {
+        *difference = sample.wrapping_sub(predicted(left, up, corner));
+    }
+}
+
+/// Returns the neighbor that is nearest to `left + up - corner`.
+fn paeth(left: u8, up: u8, corner: u8) -> u8 {
+    let [a, b, c] = [left, up, corner].map(i16::from);
+    let (of_left, of_up, of_corner) = ((b - c).abs(), (a - c).abs(), (a + b - 2 * c).abs());
+    let nearer = if of_up <= of_corner { up } else { corner };
+    if of_left <= of_up && of_left <= of_corner { left } else { nearer }
 }
 
 #[cfg(test)]
