@@ -6,7 +6,7 @@ use super::interior;
 use super::workspace::Workspace;
 use crate::film::Tile;
 use crate::lanes::{F32x16, F64x8, MAX_LANES, widen};
-use crate::sampling::{self, Sampler};
+use crate::sampling::{self, SampleRow, Sampler};
 use crate::world::World;
 use std::ops::Range;
 
@@ -23,11 +23,7 @@ pub fn generate_streams(
     samples: Range<u32>,
     work: &mut Workspace,
 ) {
-    let mut count = 0;
-    for (x, y, sampler) in streams {
-        work.start_samples(&sampler, (x, y, samples.start), count..count + samples.len());
-        count += samples.len();
-    }
+    let count = start(job, streams, samples, work);
     work.start_paths(count);
     for first in (0..count).step_by(MAX_LANES) {
         let state = work.states.init_camera(first);
@@ -40,13 +36,40 @@ pub fn generate_streams(
     finish_camera_rays(job, work);
 }
 
+/// Starts the samples of streams, and returns their number.
+fn start(
+    job: &Job,
+    streams: impl Iterator<Item = (u32, u32, Sampler)>,
+    samples: Range<u32>,
+    work: &mut Workspace,
+) -> usize {
+    let mut count = 0;
+    if samples.len().is_multiple_of(MAX_LANES) {
+        for (x, y, sampler) in streams {
+            work.start_pixel(&sampler, (x, y, samples.start), count..count + samples.len());
+            count += samples.len();
+        }
+        return count;
+    }
+    let mut row = SampleRow::default();
+    for (x, y, sampler) in streams {
+        for index in samples.clone() {
+            row.set(count % MAX_LANES, (x, y, index), &sampler);
+            count += 1;
+            if count.is_multiple_of(MAX_LANES) {
+                work.start_samples(job.sampler, &row, count - MAX_LANES);
+            }
+        }
+    }
+    if !count.is_multiple_of(MAX_LANES) {
+        work.start_samples(job.sampler, &row, count - count % MAX_LANES);
+    }
+    count
+}
+
 /// Starts a path through the center of each of the tile's pixels and of the lens.
 pub fn generate_centers(job: &Job, tile: &Tile, work: &mut Workspace) {
-    let mut count = 0;
-    for (x, y) in tile.pixels() {
-        work.start_samples(job.sampler, (x, y, 0), count..count + 1);
-        count += 1;
-    }
+    let count = start(job, tile.pixels().map(|(x, y)| (x, y, *job.sampler)), 0..1, work);
     work.start_paths(count);
     let middle = [F32x16::splat(0.0); 2];
     for first in (0..count).step_by(MAX_LANES) {

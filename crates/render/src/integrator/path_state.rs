@@ -137,13 +137,6 @@ impl PathStates {
         self.columns.store(first, [(SEQUENCE, *positions), (SEQUENCE + 1, *seeds)]);
     }
 
-    /// Writes the place in the sample sequence of row `i`: place and seed.
-    #[inline]
-    pub(super) fn set_sequence_of(&mut self, i: usize, [place, seed]: [u32; 2]) {
-        self.columns.set(SEQUENCE, i, place);
-        self.columns.set(SEQUENCE + 1, i, seed);
-    }
-
     /// Initializes the states of rows `first..first + 16`, whose samples have been started: the indices
     /// of the paths are their rows.
     #[inline(always)]

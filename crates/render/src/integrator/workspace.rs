@@ -14,7 +14,7 @@ use super::surface::{Surface, chord_length, exit_distance};
 use crate::film::View;
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
 use crate::ray::{GROUND, Hits, MISS, Rays};
-use crate::sampling::{Sampler, SamplerRow, SamplerState, SamplerStates};
+use crate::sampling::{SampleRow, Sampler, SamplerRow, SamplerState, SamplerStates, StartRow};
 use crate::scene::Rgb;
 use crate::vec3 as row;
 use crate::world::World;
@@ -116,29 +116,32 @@ impl Workspace {
         self.rays.is_empty()
     }
 
-    /// Starts the samples from `first` on of the pixel in column `x` and row `y`; stores the pixel's
-    /// coordinates as origins of rays.
-    pub(super) fn start_samples(
+    /// Starts whole rows of samples, from `first` on, of the pixel in column `x` and row `y`; stores the
+    /// pixel's coordinates as origins of rays.
+    pub(super) fn start_pixel(
         &mut self,
         sampler: &Sampler,
         (x, y, first): (u32, u32, u32),
         rows: Range<usize>,
     ) {
         for (row, first) in rows.clone().step_by(MAX_LANES).zip((first..).step_by(MAX_LANES)) {
-            if rows.end - row >= MAX_LANES {
-                let start = sampler.start_row(x, y, first);
-                self.paths.sampler_states.set_row(row, &start);
-                self.states.set_sequence(row, &start.positions);
-                continue;
-            }
-            for (row, sample) in (row..rows.end).zip(first..) {
-                let start = sampler.start(x, y, sample);
-                self.paths.sampler_states.set(row, &start);
-                self.states.set_sequence_of(row, start.sobol());
-            }
+            self.set_start(row, &sampler.start_row(x, y, first));
         }
         self.rays.origin.x[rows.clone()].fill(x as f32);
         self.rays.origin.y[rows].fill(y as f32);
+    }
+
+    /// Starts a row of samples of any pixels, and stores the pixels' coordinates as origins of rays.
+    pub(super) fn start_samples(&mut self, sampler: &Sampler, samples: &SampleRow, row: usize) {
+        self.set_start(row, &sampler.start_samples(samples));
+        let rows = row..row + MAX_LANES;
+        self.rays.origin.x[rows.clone()].copy_from_slice(&samples.x.map(|x| x as f32));
+        self.rays.origin.y[rows].copy_from_slice(&samples.y.map(|y| y as f32));
+    }
+
+    fn set_start(&mut self, row: usize, start: &StartRow) {
+        self.paths.sampler_states.set_row(row, start);
+        self.states.set_sequence(row, &start.positions);
     }
 
     /// Starts `count` paths, whose samples have been started. The caller sets their rays.

@@ -47,7 +47,7 @@ pub use distribution2d::{CellRow, Distribution2d};
 pub use filter::PixelFilter;
 pub use hash::{ONE_BELOW, mix, stream, unit, unit_pair};
 pub use plan::{LightDraw, ScatterDraw};
-pub use rows::{SamplerRow, SamplerStates, ScatterRow, SobolPositions, StartRow};
+pub use rows::{SampleRow, SamplerRow, SamplerStates, ScatterRow, SobolPositions, StartRow};
 pub use sampler::{Sampler, SamplerState, Split};
 pub use warp::{
     UNIFORM_SPHERE_PDF, cap, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,

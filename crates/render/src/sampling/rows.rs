@@ -1,8 +1,9 @@
 //! Random numbers of sixteen paths at once.
 
+use super::hash::stream;
 use super::plan::{ScatterDraw, choices, directions, lights};
 use super::sampler::{ALTERNATE, Points, Sampler, SamplerState};
-use super::sobol::{Shuffled, block, shuffle_from};
+use super::sobol::{Shuffled, block, shuffle_from, shuffle_row};
 use crate::lanes::{F32x16, MAX_LANES, U32x16};
 
 /// Positions of sixteen paths in their Sobol sequences.
@@ -29,6 +30,27 @@ pub struct StartRow {
     pub positions: SobolPositions,
 }
 
+/// Samples of sixteen paths, of any pixels.
+#[derive(Clone, Debug, Default)]
+pub struct SampleRow {
+    /// Columns of the pixels.
+    pub x: [u32; MAX_LANES],
+    /// Rows of the pixels.
+    pub y: [u32; MAX_LANES],
+    index: [u32; MAX_LANES],
+    /// Seeds of the samplers.
+    seed: [u64; MAX_LANES],
+}
+
+impl SampleRow {
+    /// Sets a lane: sample `index` of the pixel in column `x` and row `y`.
+    #[inline]
+    pub fn set(&mut self, lane: usize, (x, y, index): (u32, u32, u32), sampler: &Sampler) {
+        (self.x[lane], self.y[lane], self.index[lane]) = (x, y, index);
+        self.seed[lane] = sampler.seed;
+    }
+}
+
 /// Sampler states of a row of sixteen paths.
 #[derive(Clone, Copy, Debug)]
 pub struct SamplerRow<'a> {
@@ -51,14 +73,6 @@ impl StartRow {
     }
 }
 
-impl SamplerState {
-    /// Returns the position in the Sobol sequence, and its seed.
-    #[inline]
-    pub fn sobol(&self) -> [u32; 2] {
-        [self.shuffled.0, self.key as u32]
-    }
-}
-
 impl SamplerStates {
     /// Creates states for `count` paths, and for a whole row after the last.
     pub fn with_paths(count: usize) -> Self {
@@ -70,12 +84,6 @@ impl SamplerStates {
     pub fn set_row(&mut self, first: usize, row: &StartRow) {
         self.key[first..first + MAX_LANES].copy_from_slice(&row.key);
         self.index[first..first + MAX_LANES].copy_from_slice(&row.index);
-    }
-
-    /// Writes the state of a path.
-    #[inline]
-    pub fn set(&mut self, path: usize, state: &SamplerState) {
-        (self.key[path], self.index[path]) = (state.key, state.index);
     }
 
     /// Returns the state of a path, whose position in the Sobol sequence is given.
@@ -142,6 +150,28 @@ impl Sampler {
                 seeds: U32x16::splat(start.key as u32),
             },
         }
+    }
+
+    /// Returns the states of sixteen samples, [`Sampler::start`] for each; their samplers may be replicas
+    /// of this one.
+    #[inline]
+    pub fn start_samples(&self, samples: &SampleRow) -> StartRow {
+        let SampleRow { x, y, index, seed } = samples;
+        if !matches!(self.points, Points::Sobol(_)) {
+            return StartRow::of(&std::array::from_fn(|lane| {
+                let sampler = Self { seed: seed[lane], points: self.points };
+                sampler.start(x[lane], y[lane], index[lane])
+            }));
+        }
+        let blocks = index.map(|index| block(u64::from(index)));
+        let key = std::array::from_fn(|lane| {
+            let pixel = stream(seed[lane], u64::from(y[lane]) << 32 | u64::from(x[lane]));
+            stream(pixel, blocks[lane].0)
+        });
+        let (index, seeds) = (blocks.map(|(_, index)| index), key.map(|key: u64| key as u32));
+        let seeds = U32x16::new(seeds);
+        let positions = SobolPositions { positions: shuffle_row(U32x16::new(index), seeds), seeds };
+        StartRow { key, index, positions }
     }
 
     /// Returns the camera rays' positions in their pixels: [`Sampler::pixel`] for each.
@@ -287,15 +317,37 @@ mod tests {
     }
 
     #[test]
+    fn samples_of_different_pixels_start_together() {
+        for kind in [SamplerKind::Sobol, SamplerKind::Stratified, SamplerKind::Independent] {
+            let sampler = Sampler::new(kind, 4, 16);
+            let path = |lane: u32| (lane % 5, 7 * lane, 9000 * lane);
+            let replica = |lane: u32| sampler.replica(u64::from(lane / 9));
+            let mut samples = SampleRow::default();
+            (0..16).for_each(|lane| samples.set(lane as usize, path(lane), &replica(lane)));
+            let expected = StartRow::of(&std::array::from_fn(|lane| {
+                let (x, y, index) = path(lane as u32);
+                replica(lane as u32).start(x, y, index)
+            }));
+            let start = sampler.start_samples(&samples);
+            assert_eq!((start.key, start.index), (expected.key, expected.index), "{kind:?}");
+            let [a, b] = [start, expected].map(|row| row.positions);
+            assert_eq!(a.positions.to_array(), b.positions.to_array(), "{kind:?}");
+            assert_eq!(a.seeds.to_array(), b.seeds.to_array(), "{kind:?}");
+        }
+    }
+
+    #[test]
     fn states_are_kept_by_path() {
         let sampler = Sampler::new(SamplerKind::Sobol, 4, 16);
+        let mut samples = SampleRow::default();
+        (0..3).for_each(|i| samples.set(i as usize, (i, 7, 70_000 + i), &sampler));
+        let start = sampler.start_samples(&samples);
         let mut states = SamplerStates::with_paths(3);
-        let paths = [0, 1, 2].map(|path| sampler.start(path, 7, 70_000 + path));
-        for (path, state) in paths.iter().enumerate() {
-            states.set(path, state);
-        }
-        for (path, state) in paths.iter().enumerate() {
-            let [position, seed] = state.sobol();
+        states.set_row(0, &start);
+        let SobolPositions { positions, seeds } = start.positions;
+        let sequences = positions.to_array().into_iter().zip(seeds.to_array());
+        for (path, (position, seed)) in sequences.enumerate().take(3) {
+            let state = &sampler.start(path as u32, 7, 70_000 + path as u32);
             assert_eq!(states.state(path, position), *state);
             // A row of paths draws from this position, in the sequence of this seed.
             let positions =

@@ -34,7 +34,7 @@ pub(super) const ALTERNATE: u64 = 0x3c6e_f372_fe94_f82b;
 ///   path and set.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
-    seed: u64,
+    pub(super) seed: u64,
     pub(super) points: Points,
 }
 

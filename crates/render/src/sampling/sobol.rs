@@ -155,6 +155,13 @@ pub(super) fn shuffle_from(first: u32, seed: u32) -> U32x16 {
     owen_scramble_row(reverse_bits(indices), scramble) >> INDEX_BITS
 }
 
+/// [`shuffle`] for a row of indices, each with its seed.
+#[inline(always)]
+pub(super) fn shuffle_row(indices: U32x16, seeds: U32x16) -> U32x16 {
+    let scramble = hash_row(seeds ^ U32x16::splat(0x79c6_8e4a));
+    owen_scramble_row(reverse_bits(indices), scramble) >> INDEX_BITS
+}
+
 /// Splits a position into the number of its block of 2^16 points and its index there.
 #[inline]
 pub(super) fn block(position: u64) -> (u64, u32) {
