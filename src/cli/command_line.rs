@@ -1,8 +1,8 @@
 //! The arguments of the process, with the default command `render` inserted.
 
 use super::Failure;
-use super::args::Args;
-use clap::CommandFactory;
+use super::args::{Args, Command};
+use clap::{CommandFactory, Subcommand};
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -15,6 +15,9 @@ const USUAL: &str = "render";
 /// Options of the program, not of a command.
 const OWN: [&str; 4] = ["-h", "--help", "-V", "--version"];
 
+/// The command that `clap` adds.
+const HELP: &str = "help";
+
 /// Minimum similarity of a word to a suggestion, 0..=1.
 const LIKENESS: f64 = 0.6;
 
@@ -24,17 +27,18 @@ const COMPARED: usize = 10_000;
 /// Returns the arguments of this process, its own name first. A file or an option of `render` that comes
 /// first means `render`; the name of a command is never a file.
 pub(super) fn command_line() -> Result<Vec<OsString>, Failure> {
-    complete(env::args_os().collect(), &commands())
+    complete(env::args_os().collect())
 }
 
-fn complete(mut line: Vec<OsString>, commands: &[String]) -> Result<Vec<OsString>, Failure> {
+fn complete(mut line: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
     let Some(first) = line.get(1) else { return Ok(line) };
-    let is_among = |word: &str| first.to_str() == Some(word);
-    if OWN.into_iter().any(is_among) || commands.iter().any(|command| is_among(command)) {
+    let is_known =
+        |word: &str| OWN.contains(&word) || word == HELP || Command::has_subcommand(word);
+    if first.to_str().is_some_and(is_known) {
         return Ok(line);
     }
     if !first.as_encoded_bytes().starts_with(b"-") && !exists(Path::new(first)) {
-        return Err(Failure::usage("", unknown(first, commands)));
+        return Err(Failure::usage("", unknown(first, &commands())));
     }
     line.insert(1, USUAL.into());
     Ok(line)
@@ -74,7 +78,7 @@ mod tests {
 
     fn completed(words: &[&str]) -> Result<Vec<OsString>, String> {
         let line = std::iter::once(&"spherule").chain(words).map(Into::into).collect();
-        complete(line, &commands()).map_err(|failure| failure.to_string())
+        complete(line).map_err(|failure| failure.to_string())
     }
 
     #[test]

@@ -30,6 +30,7 @@ pub(super) fn render_command() -> Command {
 pub(super) struct CommandOptions(Vec<(String, Vec<OsString>)>);
 
 /// A command line, and the folder in which it was run.
+#[derive(Default)]
 pub(super) struct Invocation {
     pub(super) folder: PathBuf,
     pub(super) typed: CommandOptions,

@@ -48,6 +48,11 @@ impl PartArgs {
         Ok(self.resolved())
     }
 
+    /// Returns whether there is a part, resolved or not.
+    pub(super) fn is_given(self) -> bool {
+        self.part.is_some()
+    }
+
     /// Returns the part, once it is resolved.
     pub(super) fn resolved(self) -> Option<Part> {
         match self.part {

@@ -63,7 +63,9 @@ struct Traced {
 /// Renders, writes the image, and prints a summary.
 pub(super) fn run(mut args: RenderArgs) -> Result<ExitCode, Failure> {
     args.memory.apply();
-    let mut now = Invocation::of_process();
+    // Only files of unfinished renders store the command line.
+    let is_stored = args.part.is_given() || args.checkpoints.file().is_some();
+    let mut now = if is_stored { Invocation::of_process() } else { Invocation::default() };
     part::add_checkpoint(&mut args, &mut now.typed)?;
     let Some(path) = &args.checkpoints.resume else {
         files(&args).check()?;
