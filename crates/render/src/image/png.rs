@@ -99,7 +99,10 @@ pub(super) fn encode(
     };
     let pixel = info.bytes_per_pixel();
     let layout = Layout { row: image.width as usize * pixel, pixel };
-    let stream = deflate::compress(&filter(&samples, layout)).map_err(|error| error.to_string())?;
+    let filtered = filter(&samples, layout);
+    drop(samples);
+    let stream = deflate::compress(&filtered).map_err(|error| error.to_string())?;
+    drop(filtered);
     let mut bytes = Vec::new();
     write(&mut bytes, info, &options.metadata, &stream).map_err(|error| error.to_string())?;
     Ok(bytes)
