@@ -1,246 +1,337 @@
 #!/usr/bin/env python3
-"""Holds Spherule's pictures against those of Mitsuba 3: the same scene files, the same camera, linear radiance.
+"""Compares images of Spherule with those of Mitsuba 3 and Cycles: the same scene files, camera and pixels, in linear radiance.
 
-    pip install mitsuba
+    pip install mitsuba numpy
     cargo build --release
-    tools/references/compare.py                       # the scenes beside this file
-    tools/references/compare.py --spp 1024 my.toml    # what maps one to one, or else it says what does not
+    tools/references/compare.py                    # all generated scenes, and the small ones beside this file
+    tools/references/compare.py small-lamp         # one generated scene
+    tools/references/compare.py my.toml            # a scene file; reports features that Mitsuba does not share
 
-Both render every scene several times with other seeds, so the spread of the pictures tells the errors of their means. For each scene
-it prints the means, their difference in standard errors, and the mean over squares of 4 x 4 pixels of the squared difference by its
-variance, which is 1 if no place differs, with how many standard errors it is off that; then the processor's time for a picture, its
-relative mean squared error, and how many times as much time Mitsuba takes to the same error. It fails if anything differs by more than
-five standard errors, or without noise by 1e-4 of the mean.
+For each scene, long renders of both must agree, as a whole and block by block, and together are the reference. Then each renders
+images of more and more samples, whose errors and times are measured. The exit code is 1 if the renderers differ by more than five
+standard errors.
 
-Mitsuba is fastest with a late LLVM, such as 19 (DRJIT_LIBLLVM_PATH says where it is); without, --variant scalar_rgb.
+Mitsuba needs LLVM for its fastest variant; DRJIT_LIBLLVM_PATH names the library if it is not found.
 """
 
 import argparse
+import json
 import math
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
-import tomllib
 from pathlib import Path
 
-import mitsuba as mi
-import numpy as np
+import errors
+import scenes
+from scene_file import read_pfm, read_scene
 
 HERE = Path(__file__).resolve().parent
-# Half the edge of what stands for an infinite plane, in the scene's unit. A camera should not see its horizon, which is too near; but
-# of larger ones Mitsuba's single precision makes stripes.
-PLANE = 1e4
+SAMPLERS = ["multijitter", "orthogonal", "ldsampler", "independent"]
+# Seeds of long renders; other images have small seeds.
+LONG = 1000
+# Greatest factor from one level of samples to the next.
+STEP = 4
 
 
-class Unmapped(Exception):
-    """Something that the two do not have in common."""
+class Failed(Exception):
+    """A renderer that could not render a scene."""
 
 
 def main():
     options = arguments()
-    mi.set_variant(options.variant)
-    scenes = options.scenes or sorted((HERE / "scenes").glob("*.toml"))
-    print("| scene | Spherule | Mitsuba | sigma | places, squared | ms : ms | error : error | time to equal error |")
-    print("|---|--:|--:|--:|--:|--:|--:|--:|")
-    worst = max([compare(path, options) for path in scenes], default=0.0)
-    return 1 if worst > 5.0 else 0
+    rows, worst = [], 0.0
+    for path in scene_paths(options):
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                row = compare(path, Path(folder), options)
+            except Failed as error:
+                print(f"{path.stem}: not compared: {error}", file=sys.stderr)
+                continue
+        rows.append(row)
+        worst = max(worst, abs(row["sigma"]), row["worst"])
+        print(f"{path.stem}: {summary(row)}", file=sys.stderr, flush=True)
+        if options.json:
+            options.json.write_text(json.dumps(rows, indent=1))
+    print(tables(rows))
+    return 1 if worst > 5 else 0
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", type=Path)
+    parser.add_argument("scenes", nargs="*", help="scene files, or names of generated scenes [default: all]")
     parser.add_argument("--spherule", type=Path, default=HERE.parents[1] / "target/release/spherule")
-    parser.add_argument("--variant", default="llvm_ad_rgb", help="of Mitsuba")
-    parser.add_argument("--sampler", default="multijitter", help="of Mitsuba")
-    parser.add_argument("--spp", type=int, default=256, help="samples per pixel of each picture")
-    parser.add_argument("--seeds", type=int, default=24, help="pictures of each")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the generated scenes [default: 1]")
+    parser.add_argument("--size", type=int, default=512, help="edge of the generated scenes' images [default: 512]")
+    parser.add_argument("--spp", type=int, default=64, help="samples per pixel of the images compared [default: 64]")
+    parser.add_argument("--images", type=int, default=2, help="images of each number of samples [default: 2]")
+    parser.add_argument("--long-images", type=int, default=4, help="images of each long render [default: 4]")
+    parser.add_argument("--long-spp", type=int, default=128, help="samples per pixel of each of these [default: 128]")
+    parser.add_argument("--most-seconds", type=float, default=40, help="processor time of the longest image [default: 40]")
+    parser.add_argument("--threads", type=int, default=2, help="threads of every renderer [default: 2]")
+    parser.add_argument("--variant", help="variant of Mitsuba [default: the faster of llvm_ad_rgb and scalar_rgb]")
+    parser.add_argument("--sampler", help="sampler of Mitsuba [default: the one with the least error in equal time]")
+    parser.add_argument("--cycles", metavar="PYTHON", help="Python that can import bpy [default: this one, if it can]")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="also write all results to FILE")
     return parser.parse_args()
 
 
-def compare(path, options):
-    """Prints a row; returns the largest difference in standard errors."""
-    scene = tomllib.loads(path.read_text())
-    try:
-        ours, theirs = spherule(path, options), mitsuba(scene, options)
-    except Unmapped as why:
-        print(f"| {path.stem} | not compared: {why} |")
-        return 0.0
-    count, freedom = options.seeds, 2 * options.seeds - 2
-    means = [pictures.mean(axis=(1, 2, 3)) for pictures, _ in (ours, theirs)]
-    scale = means[1].mean()
-    spread = math.hypot(*[mean.std(ddof=1) / math.sqrt(count) for mean in means])
-    sigma = (means[0].mean() - scale) / max(spread, 1e-7 * scale)
-    blocks = [in_blocks(pictures) for pictures, _ in (ours, theirs)]
-    error = sum(block.var(axis=0, ddof=1) for block in blocks) / count
-    off = (blocks[0].mean(axis=0) - blocks[1].mean(axis=0)) ** 2
-    # Where neither has any noise, single precision decides.
-    noisy = error > (1e-5 * scale) ** 2
-    silent = math.sqrt(off[~noisy].max(initial=0.0)) / scale
-    # Student's: the errors are estimates too.
-    squared = (off[noisy] / error[noisy]).mean() * (freedom - 2) / freedom
-    places = (squared - 1.0) / math.sqrt(2.0 * (freedom - 1) / (freedom - 4) / noisy.sum())
-    # As `spherule compare` has it: else the edges of lamps are all of the error.
-    by = ((ours[0].mean(axis=0) + theirs[0].mean(axis=0)) / 2) ** 2 + 0.01
-    squares = [(pictures.var(axis=0, ddof=1) / by).mean() for pictures, _ in (ours, theirs)]
-    seconds = [seconds for _, seconds in (ours, theirs)]
-    ratio = squares[1] * seconds[1] / max(squares[0] * seconds[0], 1e-30)
-    print(
-        f"| {path.stem} | {means[0].mean():.6f} | {means[1].mean():.6f} | {sigma:+.2f} | {squared:.3f} ({places:+.1f}) | "
-        f"{seconds[0] * 1e3:.0f} : {seconds[1] * 1e3:.0f} | {squares[0]:.2e} : {squares[1]:.2e} | {ratio:.1f} |",
-        flush=True,
-    )
-    return max(abs(sigma), places, 6.0 if silent > 1e-4 else 0.0)
+def scene_paths(options):
+    """Returns the scene files to compare, after generating those that are given by name."""
+    generate = lambda name: scenes.generate(name, scenes.FOLDER, options.seed, options.size)
+    if options.scenes:
+        return [generate(name) if name in scenes.SCENES else Path(name) for name in options.scenes]
+    return sorted((HERE / "scenes").glob("*.toml")) + [generate(name) for name in scenes.SCENES]
 
 
-def in_blocks(pictures):
-    """Means over squares of 4 x 4 pixels and over channels: single pixels are less Gaussian."""
-    count, height, width, channels = pictures.shape
-    height, width = height // 4, width // 4
-    whole = pictures[:, : 4 * height, : 4 * width]
-    return whole.reshape(count, height, 4, width, 4, channels).mean(axis=(2, 4, 5))
-
-
-def spherule(path, options):
-    """Pictures of all seeds, and the processor's seconds for one, of all threads together."""
-    pictures, seconds = [], []
-    with tempfile.TemporaryDirectory() as folder:
-        for seed in range(options.seeds):
-            picture = Path(folder) / "picture.pfm"
-            command = [options.spherule, "render", path, "--spp", options.spp, "--seed", seed, "--quiet", "-o", picture]
-            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-            subprocess.run(list(map(str, command)), check=True)
-            seconds.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
-            pictures.append(np.array(mi.Bitmap(str(picture)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32)))
-    return np.array(pictures, dtype=np.float64), float(np.median(seconds))
-
-
-def mitsuba(scene, options):
-    """The same of Mitsuba, whose first picture takes compiling, and is not counted."""
-    loaded = mi.load_dict(mapped(scene, options))
-    pictures, seconds = [], []
-    for seed in range(-1, options.seeds):
-        start = time.process_time()
-        picture = np.array(mi.render(loaded, spp=options.spp, seed=seed + 1))
-        if seed >= 0:
-            seconds.append(time.process_time() - start)
-            pictures.append(picture)
-    return np.array(pictures, dtype=np.float64), float(np.median(seconds))
-
-
-def mapped(scene, options):
-    """A scene as Mitsuba takes it."""
-    render = scene.get("render", {})
-    if render.get("integrator", "path") != "path":
-        raise Unmapped("the integrator")
-    if render.get("filter") != "box":
-        raise Unmapped('the filter; say filter = "box"')
-    depth = render.get("depth", "unlimited")
-    made = {
-        "type": "scene",
-        "integrator": {"type": "path", "max_depth": -1 if depth == "unlimited" else depth + 1},
-        "sensor": camera(scene["camera"], render["size"], options),
-        **environment(scene.get("environment", {})),
+def compare(path, folder, options):
+    """Measures one scene; returns its row of all tables."""
+    ours = lambda spp, seeds: render_spherule(path, folder, spp, seeds, options)
+    long_seeds = range(LONG, LONG + options.long_images)
+    spherule = errors.LongRender([run["image"] for run in ours(options.long_spp, long_seeds)])
+    settings = fastest_variant(path, folder, options)
+    theirs = lambda spp, seeds, **others: render_mitsuba(path, folder, spp, seeds, settings | others, options)
+    mitsuba = errors.LongRender([run["image"] for run in theirs(options.long_spp, long_seeds, sampler="multijitter")])
+    agreement = errors.agreement(spherule, mitsuba)
+    reference = errors.Reference([spherule, mitsuba])
+    settings["sampler"] = options.sampler or best_sampler(theirs, reference)
+    row = {
+        "scene": path.stem,
+        "spheres": read_scene(path).count(),
+        "means": agreement.means,
+        "sigma": agreement.sigma,
+        "squared": agreement.squared,
+        "worst": agreement.worst,
+        "settings": settings,
+        "spherule": measure(ours, reference, options) | total_spherule(path, folder, options),
+        "mitsuba": measure(theirs, reference, options) | total_mitsuba(path, folder, settings, options),
     }
-    for i, light in enumerate(scene.get("light", [])):
-        made[f"light{i}"] = light_of(light)
-    materials = scene.get("material", {})
-    for i, sphere in enumerate(scene.get("sphere", [])):
-        made[f"sphere{i}"] = {
-            "type": "sphere",
-            "center": sphere["center"],
-            "radius": sphere["radius"],
-            **surface(materials[sphere["material"]]),
-        }
-    if "ground" in scene:
-        made["ground"] = plane(scene["ground"], materials)
-    for name in ("generate", "file"):
-        if name in scene:
-            raise Unmapped(name)
-    return made
+    if cycles_python(options):
+        try:
+            cycles = lambda spp, seeds: render_cycles(path, folder, spp, seeds, options)
+            images = [run["image"] for run in cycles(options.long_spp, long_seeds)]
+            row["cycles_agreement"] = vars(errors.agreement(errors.LongRender(images), spherule))
+            row["cycles"] = measure(cycles, reference, options) | total_cycles(path, folder, options)
+        except Failed as error:
+            row["cycles_failed"] = str(error)
+    return row
 
 
-def camera(told, size, options):
-    if told.get("projection", "perspective") != "perspective" or "aperture" in told or "eye" not in told:
-        raise Unmapped("the camera; it must be a pinhole with `eye` and `target`")
-    transform = mi.ScalarTransform4f().look_at(origin=told["eye"], target=told["target"], up=told.get("up", [0, 1, 0]))
-    return {
-        "type": "perspective",
-        "fov": told.get("fov", 40),
-        "fov_axis": "y",
-        "near_clip": 1e-3,
-        "far_clip": 1e7,
-        "to_world": transform,
-        "sampler": {"type": options.sampler, "sample_count": options.spp},
-        "film": {
-            "type": "hdrfilm",
-            "width": size[0],
-            "height": size[1],
-            "rfilter": {"type": "box"},
-            "pixel_format": "rgb",
-            "component_format": "float32",
-        },
-    }
-
-
-def environment(told):
-    if told.get("kind", "constant") != "constant" or not told.get("illuminates", True):
-        raise Unmapped("the environment; it must be constant, and light the scene")
-    color = rgb(told.get("color", 1))
-    return {"environment": {"type": "constant", "radiance": color}} if any(color["value"]) else {}
-
-
-def light_of(told):
-    if told["kind"] == "sun" and told.get("angular_radius", 0) == 0:
-        return {
-            "type": "directional",
-            "direction": [-x for x in told["direction"]],
-            "irradiance": rgb(told["irradiance"]),
-        }
-    if told["kind"] == "point" and told.get("falloff", "square") == "square":
-        return {"type": "point", "position": told["position"], "intensity": rgb(told["intensity"])}
-    raise Unmapped("a light; they must be points or suns without extent")
-
-
-def surface(told):
-    kind = told["kind"]
-    if kind == "lambertian":
-        return {"bsdf": {"type": "diffuse", "reflectance": rgb(told.get("color", 1))}}
-    if kind == "emitter":
-        return {
-            "emitter": {"type": "area", "radiance": rgb(told["radiance"])},
-            "bsdf": {"type": "diffuse", "reflectance": rgb(told.get("albedo", 0))},
-        }
-    if kind == "conductor" and told.get("fresnel") == "constant" and told.get("roughness", 0) == 0:
-        return {"bsdf": {"type": "conductor", "material": "none", "specular_reflectance": rgb(told.get("color", 1))}}
-    if kind == "dielectric" and told.get("color", 1) == 1:
-        return {"bsdf": {"type": "dielectric", "int_ior": float(told["ior"]), "ext_ior": 1.0}}
-    if kind == "plastic":
-        return {
-            "bsdf": {
-                "type": "plastic",
-                "diffuse_reflectance": rgb(told.get("color", 1)),
-                "int_ior": float(told.get("ior", 1.5)),
-                "ext_ior": 1.0,
-                "nonlinear": True,
+def measure(render, reference, options):
+    """Renders images of more and more samples; returns the times and errors of each number of samples."""
+    levels, spp = [], 1
+    while True:
+        runs = render(spp, range(options.images))
+        images = [run["image"] for run in runs]
+        levels.append(
+            {
+                "spp": spp,
+                "cpu": min(run["cpu"] for run in runs),
+                "wall": min(run["wall"] for run in runs),
+                "squared": mean(reference.squared_error(image) for image in images),
+                "relative": mean(reference.relative_error(image) for image in images),
+                "fireflies": mean(reference.fireflies(image) for image in images),
             }
-        }
-    raise Unmapped(f"a material of kind {kind} with these parameters")
+        )
+        last = levels[-1]
+        reached = math.sqrt(max(last["squared"], 0)) < 0.01
+        if spp >= options.spp and (reached or STEP * last["cpu"] > options.most_seconds):
+            return {"levels": levels, "at": next(level for level in levels if level["spp"] == options.spp)}
+        spp *= STEP
 
 
-def plane(told, materials):
-    normal = np.array(told.get("normal", [0, 1, 0]), dtype=float)
-    normal /= np.linalg.norm(normal)
-    middle = normal * told.get("height", 0)
-    beside = [1, 0, 0] if abs(normal[0]) < 0.5 else [0, 0, 1]
-    transform = mi.ScalarTransform4f().look_at(origin=list(middle), target=list(middle + normal), up=beside)
-    bsdf = surface(materials[told["material"]])
-    return {"type": "rectangle", "to_world": transform @ mi.ScalarTransform4f().scale([PLANE, PLANE, 1]), **bsdf}
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values)
 
 
-def rgb(value):
-    return {"type": "rgb", "value": [float(x) for x in value] if isinstance(value, list) else [float(value)] * 3}
+def fastest_variant(path, folder, options):
+    """Returns the variant and the shapes of Mitsuba that take the least time."""
+    trials = []
+    for variant in [options.variant] if options.variant else ["llvm_ad_rgb", "scalar_rgb"]:
+        for shapes in ("sphere", "ellipsoids"):
+            settings = {"variant": variant, "shapes": shapes, "sampler": "multijitter"}
+            try:
+                runs = render_mitsuba(path, folder, 4, range(1), settings, options)
+            except Failed as error:
+                print(f"{path.stem}: {variant} does not run: {error}", file=sys.stderr)
+                break
+            trials.append((min(run["cpu"] for run in runs), settings))
+    if not trials:
+        raise Failed("no variant of Mitsuba renders it")
+    return min(trials, key=lambda trial: trial[0])[1]
+
+
+def best_sampler(render, reference):
+    """Returns the sampler of Mitsuba with the least product of error and time."""
+    costs = {}
+    for sampler in SAMPLERS:
+        runs = render(16, range(2), sampler=sampler)
+        error = mean(reference.relative_error(run["image"]) for run in runs)
+        costs[sampler] = error * min(run["cpu"] for run in runs)
+    return min(costs, key=costs.get)
+
+
+def render_spherule(path, folder, spp, seeds, options):
+    """Renders an image for each seed."""
+    runs = []
+    for seed in seeds:
+        image = folder / "image.pfm"
+        before, start = children_seconds(), time.perf_counter()
+        output = execute(spherule_command(path, image, spp, seed, options))
+        wall, cpu = time.perf_counter() - start, children_seconds() - before
+        alone = json.loads(output)["statistics"]["render_seconds"]
+        runs.append({"image": read_pfm(image), "cpu": cpu, "wall": wall, "alone": alone})
+    return runs
+
+
+def children_seconds():
+    """Returns the user and system time of all finished child processes."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def spherule_command(path, image, spp, seed, options):
+    settings = ["--spp", spp, "--seed", seed, "--threads", options.threads]
+    return [options.spherule, "render", path, *settings, "--quiet", "--json", "-o", image]
+
+
+def render_mitsuba(path, folder, spp, seeds, settings, options):
+    """Renders an image for each seed in one process, whose start and compilation are not counted."""
+    command = mitsuba_command(path, folder, settings, options)
+    # Long renders are not timed, and scalar variants do not compile.
+    if seeds[0] < LONG and settings["variant"].startswith("llvm"):
+        command.append("--warm-up")
+    return render_worker(command, folder, spp, seeds)
+
+
+def mitsuba_command(path, folder, settings, options):
+    chosen = [f"--{key}={value}" for key, value in settings.items()]
+    return [sys.executable, HERE / "mitsuba_render.py", path, "--folder", folder, f"--threads={options.threads}", *chosen]
+
+
+def render_cycles(path, folder, spp, seeds, options):
+    """Renders an image for each seed in one process, whose start is not counted."""
+    return render_worker(cycles_command(path, folder, options), folder, spp, seeds)
+
+
+def cycles_command(path, folder, options):
+    return [cycles_python(options), "-W", "ignore", HERE / "cycles_render.py", path, "--folder", folder, f"--threads={options.threads}"]
+
+
+def cycles_python(options):
+    """Returns the Python that runs Cycles, if there is one."""
+    if not hasattr(options, "cycles_found"):
+        python = options.cycles or sys.executable
+        works = shutil.which(python) and subprocess.run([python, "-c", "import bpy"], capture_output=True).returncode == 0
+        if not works:
+            print("Cycles is left out: this Python cannot import bpy (pip install bpy; --cycles)", file=sys.stderr)
+        options.cycles_found = python if works else None
+    return options.cycles_found
+
+
+def render_worker(command, folder, spp, seeds):
+    output = execute([*command, "--spp", spp, "--seeds", *seeds])
+    runs = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
+    for run in runs:
+        run["image"] = read_pfm(folder / f"{run['seed']}.pfm")
+    return runs
+
+
+def total_spherule(path, folder, options):
+    """Returns the wall-clock time from the start of the process to the written image, and of the render alone."""
+    runs = render_spherule(path, folder, options.spp, range(options.images), options)
+    return {"total": min(run["wall"] for run in runs), "alone": min(run["alone"] for run in runs)}
+
+
+def total_mitsuba(path, folder, settings, options):
+    return total_worker(mitsuba_command(path, folder, settings, options), options)
+
+
+def total_cycles(path, folder, options):
+    return total_worker(cycles_command(path, folder, options), options)
+
+
+def total_worker(command, options):
+    totals, alone = [], []
+    for _ in range(options.images):
+        start = time.perf_counter()
+        output = execute([*command, "--spp", options.spp])
+        totals.append(time.perf_counter() - start)
+        alone += [json.loads(line)["wall"] for line in output.splitlines() if line.startswith("{")]
+    return {"total": min(totals), "alone": min(alone)}
+
+
+def execute(command):
+    """Runs a program; returns its standard output."""
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    if done.returncode:
+        lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+        raise Failed(lines[-1])
+    return done.stdout
+
+
+def summary(row):
+    ours, theirs = row["spherule"]["at"], row["mitsuba"]["at"]
+    return f"sigma {row['sigma']:+.2f}, cpu {ours['cpu']:.2f} : {theirs['cpu']:.2f} s, equal error {equal_error(row)}"
+
+
+def tables(rows):
+    """Returns all results as tables in Markdown."""
+    lines = [
+        "| scene | spheres | Spherule | Mitsuba | sigma | blocks | worst block |",
+        "|---|--:|--:|--:|--:|--:|--:|",
+    ]
+    for row in rows:
+        lines.append(
+            f"| {row['scene']} | {row['spheres']} | {row['means'][0]:.6f} | {row['means'][1]:.6f} | {row['sigma']:+.2f} | "
+            f"{row['squared']:.2f} | {row['worst']:.1f} |"
+        )
+    for name in ("mitsuba", "cycles"):
+        if any(name in row for row in rows):
+            lines += ["", *renderer_table([row for row in rows if name in row], name)]
+    return "\n".join(lines)
+
+
+def renderer_table(rows, name):
+    """Returns the table of times and errors beside one renderer."""
+    lines = [
+        "| scene | settings | processor s | wall s | from start to file, s | error | fireflies | equal error | RMSE 0.01, s |",
+        "|---|---|--:|--:|--:|--:|--:|--:|--:|",
+    ]
+    for row in rows:
+        ours, theirs = row["spherule"], row[name]
+        a, b = ours["at"], theirs["at"]
+        lines.append(
+            f"| {row['scene']} | {', '.join(row['settings'].values()) if name == 'mitsuba' else ''} | "
+            f"{number(a['cpu'])} : {number(b['cpu'])} | {number(ours['alone'])} : {number(theirs['alone'])} | "
+            f"{number(ours['total'])} : {number(theirs['total'])} | {a['relative']:.2e} : {b['relative']:.2e} | "
+            f"{a['fireflies']:.0f} : {b['fireflies']:.0f} | {equal_error(row, name)} | "
+            f"{seconds_to(ours)} : {seconds_to(theirs)} |"
+        )
+    return lines
+
+
+def equal_error(row, name="mitsuba"):
+    """Returns how many times Spherule's processor time the other renderer takes to the error of its own image."""
+    theirs = row[name]["at"]
+    seconds, sign = errors.time_to(row["spherule"]["levels"], theirs["relative"], "relative")
+    # A bound on Spherule's time is the opposite bound on the ratio.
+    return {"<": ">", ">": "<"}.get(sign, sign) + number(theirs["cpu"] / max(seconds, 1e-9))
+
+
+def seconds_to(measured):
+    """Returns the processor time to a root mean square error of 0.01."""
+    seconds, sign = errors.time_to(measured["levels"], 1e-4, "squared")
+    return sign + number(seconds)
+
+
+def number(value):
+    """Returns a number with two significant digits, or all before the point."""
+    return f"{value:.2g}" if value < 10 else f"{value:.0f}"
 
 
 if __name__ == "__main__":

@@ -1,0 +1,105 @@
+"""Scene files of Spherule, as far as other renderers can represent them exactly, and PFM images."""
+
+import csv
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+
+class Unsupported(Exception):
+    """A feature of a scene that the other renderer does not share."""
+
+
+@dataclass
+class Spheres:
+    """The spheres of one material."""
+
+    centers: np.ndarray
+    radii: np.ndarray
+
+
+@dataclass
+class Scene:
+    """A scene file, with its spheres grouped by material and its environment map read."""
+
+    table: dict
+    spheres: dict[str, Spheres]
+    picture: np.ndarray | None
+
+    @property
+    def size(self):
+        return self.table["render"]["size"]
+
+    @property
+    def materials(self):
+        return self.table.get("material", {})
+
+    def count(self):
+        return sum(len(group.radii) for group in self.spheres.values())
+
+
+def read_scene(path):
+    """Reads a scene file and the files that it names."""
+    table = tomllib.loads(path.read_text())
+    check(table)
+    rows = [(s["material"], *s["center"], s["radius"]) for s in table.get("sphere", [])]
+    for file in table.get("file", []):
+        with open(path.parent / file["path"], newline="") as lines:
+            for row in csv.DictReader(lines):
+                rows.append((row["material"], *(float(row[key]) for key in ("x", "y", "z", "radius"))))
+    groups = {}
+    for material, *numbers in rows:
+        groups.setdefault(material, []).append(numbers)
+    spheres = {}
+    for material, numbers in groups.items():
+        numbers = np.array(numbers)
+        spheres[material] = Spheres(numbers[:, :3], numbers[:, 3])
+    environment = table.get("environment", {})
+    picture = None
+    if environment.get("kind") == "picture":
+        picture = read_pfm(path.parent / environment["file"]) * environment.get("scale", 1.0)
+    return Scene(table, spheres, picture)
+
+
+def check(table):
+    """Raises `Unsupported` for features that no other renderer here shares."""
+    render, camera, environment = table["render"], table["camera"], table.get("environment", {})
+    if render.get("integrator", "path") != "path":
+        raise Unsupported('the integrator must be "path"')
+    if render.get("filter") != "box":
+        raise Unsupported('the filter must be "box"')
+    if camera.get("projection", "perspective") != "perspective" or "aperture" in camera or "eye" not in camera:
+        raise Unsupported("the camera must be a pinhole with `eye` and `target`")
+    if environment.get("kind", "constant") == "gradient" or not environment.get("illuminates", True):
+        raise Unsupported("the environment must be constant or a picture, and illuminate the scene")
+    if environment.get("rotation", 0) or environment.get("up", [0, 1, 0]) != [0, 1, 0]:
+        raise Unsupported("an environment map must not be rotated")
+    for section in ("generate", "slice"):
+        if section in table:
+            raise Unsupported(f"the section `{section}`")
+
+
+def rgb(value):
+    """Returns a color of a scene file as three numbers."""
+    return [float(x) for x in value] if isinstance(value, list) else [float(value)] * 3
+
+
+def read_pfm(path):
+    """Returns a color image in PFM, its first row at the top."""
+    with open(path, "rb") as file:
+        if file.readline().strip() != b"PF":
+            raise Unsupported(f"{path.name} is not a color image in PFM")
+        width, height = map(int, file.readline().split())
+        order = "<f4" if float(file.readline()) < 0 else ">f4"
+        values = np.frombuffer(file.read(), dtype=order)
+    return values.reshape(height, width, 3)[::-1].astype(np.float64)
+
+
+def write_pfm(path: Path, image):
+    """Writes a color image in PFM."""
+    height, width, _ = image.shape
+    with open(path, "wb") as file:
+        file.write(f"PF\n{width} {height}\n-1.0\n".encode())
+        file.write(np.ascontiguousarray(image[::-1], dtype="<f4").tobytes())

@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+"""Generates the large scenes of the comparison: a scene file, its spheres in CSV, and environment maps in PFM.
+
+    tools/references/scenes.py                         # all scenes, into target/references
+    tools/references/scenes.py --seed 7 white-diffuse  # one scene with other random numbers
+
+The same seed gives the same files.
+"""
+
+import argparse
+import math
+from pathlib import Path
+
+import numpy as np
+
+from scene_file import write_pfm
+
+HERE = Path(__file__).resolve().parent
+FOLDER = HERE.parents[1] / "target/references"
+
+# Diffuse colors; each sphere has one of them, so that renderers need few materials.
+PALETTE = [[0.75, 0.75, 0.75], [0.7, 0.3, 0.2], [0.25, 0.45, 0.65], [0.65, 0.6, 0.3], [0.3, 0.55, 0.3], [0.5, 0.3, 0.5]]
+GROUND = {"kind": "lambertian", "color": [0.38, 0.36, 0.34]}
+GLASS = {"kind": "dielectric", "ior": 1.5}
+MIRROR = {"kind": "conductor", "fresnel": "constant", "color": 0.9}
+# Aluminum, by its complex index of refraction.
+METAL = {"kind": "conductor", "eta": [1.35, 0.97, 0.62], "k": [7.47, 6.4, 5.3]}
+# Frames a field of 20 x 20 spheres from above, so that the horizon of the ground is not in the image.
+FIELD_CAMERA = {"fov": 40, "eye": [0, 14, 19], "target": [0, 0, 0.5]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES))
+    parser.add_argument("--folder", type=Path, default=FOLDER, help="output folder [default: target/references]")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random numbers [default: 1]")
+    parser.add_argument("--size", type=int, default=512, help="width and height in pixels [default: 512]")
+    options = parser.parse_args()
+    unknown = [name for name in options.scenes if name not in SCENES]
+    if unknown:
+        parser.error(f"there is no scene {unknown[0]}; the scenes are {', '.join(SCENES)}")
+    for name in options.scenes or SCENES:
+        print(generate(name, options.folder, options.seed, options.size))
+
+
+def generate(name, folder, seed, size=512):
+    """Writes a scene and the files that it names; returns the path of the scene file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    scene = SCENES[name](np.random.default_rng(seed))
+    sections = [("render", {"size": [size, size], "filter": "box"}), ("camera", scene["camera"])]
+    environment = scene.get("environment", {"color": 0})
+    if "picture" in scene:
+        write_pfm(folder / f"{name}-environment.pfm", scene["picture"])
+        environment = {"kind": "picture", "file": f"{name}-environment.pfm"}
+    sections.append(("environment", environment))
+    if "ground" in scene:
+        sections += [("ground", {"material": "ground"}), ("material.ground", scene["ground"])]
+    sections += [(f"material.{key}", material) for key, material in scene["materials"].items()]
+    for center, radius, material in scene.get("lamps", []):
+        sections.append(("[sphere]", {"center": center, "radius": radius, "material": material}))
+    sections.append(("[file]", {"path": f"{name}.csv", "format": "csv"}))
+    with open(folder / f"{name}.csv", "w") as file:
+        file.write("x,y,z,radius,material\n")
+        for (x, y, z, radius), material in zip(scene["spheres"].tolist(), scene["names"]):
+            file.write(f"{x},{y},{z},{radius},{material}\n")
+    path = folder / f"{name}.toml"
+    lines = [f"# {SCENES[name].__doc__.splitlines()[0]}"]
+    for section, keys in sections:
+        lines += [f"\n[{section}]", *(f"{key} = {value_text(value)}" for key, value in keys.items())]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def value_text(value):
+    """Returns a value of a scene file as TOML."""
+    return f'"{value}"' if isinstance(value, str) else str(value)
+
+
+def field(rng, columns, rows):
+    """Returns x, y, z and radius of spheres on the plane y = 0, each in a unit square of its own."""
+    count = columns * rows
+    radius = rng.uniform(0.1, 0.45, count)
+    column, row = np.arange(count) % columns, np.arange(count) // columns
+    x = column - columns / 2 + radius + rng.random(count) * (1 - 2 * radius)
+    z = row - rows / 2 + radius + rng.random(count) * (1 - 2 * radius)
+    return np.stack([x, radius, z, radius], axis=1)
+
+
+def shares(rng, count, parts):
+    """Returns a material's name for each sphere, in exact shares and random order."""
+    names = [name for name, share in parts for _ in range(round(share * count))]
+    names = (names + [parts[-1][0]] * count)[:count]
+    return [names[i] for i in rng.permutation(count)]
+
+
+def painted(rng, names, kind, parameters=None):
+    """Gives each sphere of a kind of material a color of the palette; returns the materials for these."""
+    for i, name in enumerate(names):
+        if name == kind:
+            names[i] = f"{kind}-{rng.integers(len(PALETTE))}"
+    return {f"{kind}-{i}": {"kind": "lambertian", "color": color, **(parameters or {})} for i, color in enumerate(PALETTE)}
+
+
+def diffuse_field(rng, columns, rows):
+    """Returns a field of diffuse spheres, and their materials."""
+    names = ["diffuse"] * (columns * rows)
+    spheres = field(rng, columns, rows)
+    materials = painted(rng, names, "diffuse")
+    return {"camera": FIELD_CAMERA, "spheres": spheres, "names": names, "materials": materials}
+
+
+def latlong(width, radiance):
+    """Returns an environment map of the radiance from each direction, given as columns and cosines to up."""
+    height = width // 2
+    cosine = np.cos((np.arange(height) + 0.5) / height * math.pi)
+    return np.broadcast_to(radiance(cosine)[:, None, :], (height, width, 3)).copy()
+
+
+def gradient(bottom, top):
+    """Returns the radiance of a sky that is linear in the cosine of the angle to up."""
+    return lambda cosine: np.outer((1 - cosine) / 2, bottom) + np.outer((1 + cosine) / 2, top)
+
+
+def small_lamp(rng):
+    """Glass, mirrors, plastic and diffuse spheres, 100 of each, under one small emissive sphere."""
+    names = shares(rng, 400, [("glass", 0.25), ("mirror", 0.25), ("plastic", 0.25), ("diffuse", 0.25)])
+    spheres = field(rng, 20, 20)
+    materials = painted(rng, names, "diffuse") | painted(rng, names, "plastic", {"kind": "plastic", "ior": 1.5})
+    return {
+        "camera": FIELD_CAMERA,
+        "spheres": spheres,
+        "names": names,
+        "ground": GROUND,
+        "materials": {"glass": GLASS, "mirror": MIRROR, "lamp": {"kind": "emitter", "radiance": 6000}, **materials},
+        "lamps": [([3, 12, 12], 0.1, "lamp")],
+    }
+
+
+def many_lamps(rng):
+    """50 000 spheres at night: diffuse ones on a ground, and 200 emissive ones above them."""
+    scene = diffuse_field(rng, 250, 200)
+    for i in rng.choice(len(scene["names"]), 200, replace=False):
+        scene["names"][i] = "lamp"
+        scene["spheres"][i, 1] = rng.uniform(2, 4)
+    scene["camera"] = {"fov": 40, "eye": [0, 90, 110], "target": [0, 0, 5]}
+    scene["ground"] = GROUND
+    scene["materials"]["lamp"] = {"kind": "emitter", "radiance": [300, 270, 225]}
+    return scene
+
+
+def picture_sky(rng):
+    """400 diffuse spheres on a ground under an environment map, a sky whose sun is four pixels."""
+    scene = diffuse_field(rng, 20, 20)
+    sky = latlong(512, gradient([0.3, 0.28, 0.26], [0.2, 0.4, 0.8]))
+    sky[70:72, 190:192] = [9000, 8400, 7200]
+    return scene | {"ground": GROUND, "picture": sky}
+
+
+def ground_lamp(rng):
+    """400 diffuse spheres on a ground under one emissive sphere."""
+    scene = diffuse_field(rng, 20, 20)
+    scene["materials"]["lamp"] = {"kind": "emitter", "radiance": [75, 71, 64]}
+    return scene | {"ground": GROUND, "lamps": [([12, 22, 12], 3, "lamp")]}
+
+
+def default_field(rng):
+    """The field of `spherule render`: plastic, metal and glass under a blue sky and a sun of 10 degrees.
+
+    The camera has no lens and does not see the horizon, metal is smooth, and the sun is a distant emissive sphere.
+    """
+    names = shares(rng, 400, [("plastic", 0.68), ("metal", 0.2), ("glass", 0.12)])
+    spheres = field(rng, 20, 20)
+    materials = painted(rng, names, "plastic", {"kind": "plastic", "ior": 1.5})
+    sine = math.sin(math.radians(10))
+    radiance = [round(x / (math.pi * sine**2), 6) for x in (3.2, 2.75, 2.2)]
+    direction = np.array([-0.7547319081399414, 0.5534700659692904, 0.3522082237986393])
+    return {
+        "camera": FIELD_CAMERA,
+        "spheres": spheres,
+        "names": names,
+        "ground": GROUND,
+        "picture": latlong(512, gradient([0.95, 0.9, 0.85], [0.05, 0.22, 0.7])),
+        "materials": {"metal": METAL, "glass": GLASS, "sun": {"kind": "emitter", "radiance": radiance}, **materials},
+        "lamps": [((1000 * direction).round(6).tolist(), round(1000 * sine, 6), "sun")],
+    }
+
+
+def white_diffuse(rng):
+    """400 diffuse spheres under a white sky."""
+    return diffuse_field(rng, 20, 20) | {"environment": {"color": 1}}
+
+
+def white_thirds(rng):
+    """Mirrors, glass and diffuse spheres, a third of 400 each, under a white sky."""
+    names = shares(rng, 400, [("mirror", 1 / 3), ("glass", 1 / 3), ("diffuse", 1 / 3)])
+    spheres = field(rng, 20, 20)
+    materials = painted(rng, names, "diffuse")
+    return {
+        "camera": FIELD_CAMERA,
+        "spheres": spheres,
+        "names": names,
+        "environment": {"color": 1},
+        "materials": {"mirror": MIRROR, "glass": GLASS, **materials},
+    }
+
+
+def white_volume(rng):
+    """10 000 diffuse spheres in a cube under a white sky."""
+    count = 10_000
+    edge = count ** (1 / 3)
+    names = ["diffuse"] * count
+    spheres = np.column_stack([rng.uniform(-edge / 2, edge / 2, (count, 3)), rng.uniform(0.2, 0.4, count)])
+    return {
+        "camera": {"fov": 40, "eye": [26, 18, 40], "target": [0, 0, 0]},
+        "spheres": spheres,
+        "names": names,
+        "environment": {"color": 1},
+        "materials": painted(rng, names, "diffuse"),
+    }
+
+
+SCENES = {
+    "white-diffuse": white_diffuse,
+    "white-thirds": white_thirds,
+    "white-volume": white_volume,
+    "ground-lamp": ground_lamp,
+    "many-lamps": many_lamps,
+    "small-lamp": small_lamp,
+    "picture-sky": picture_sky,
+    "default-field": default_field,
+}
+
+
+if __name__ == "__main__":
+    main()
