@@ -23,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 import errors
@@ -33,6 +34,9 @@ HERE = Path(__file__).resolve().parent
 SAMPLERS = ["multijitter", "orthogonal", "ldsampler", "independent"]
 # Seeds of long renders; other images have small seeds.
 LONG = 1000
+# Greatest number of spheres for which long renders have Mitsuba's shape `sphere`: more take too long. Its `ellipsoids` are faster, but
+# some pixels are wrong.
+MOST_EXACT = 1000
 # Greatest factor from one level of samples to the next.
 STEP = 4
 
@@ -81,23 +85,27 @@ def arguments():
 
 def scene_paths(options):
     """Returns the scene files to compare, after generating those that are given by name."""
-    generate = lambda name: scenes.generate(name, scenes.FOLDER, options.seed, options.size)
-    if options.scenes:
-        return [generate(name) if name in scenes.SCENES else Path(name) for name in options.scenes]
-    return sorted((HERE / "scenes").glob("*.toml")) + [generate(name) for name in scenes.SCENES]
+    names = options.scenes or [*sorted((HERE / "scenes").glob("*.toml")), *scenes.SCENES]
+    for name in names:
+        if name in scenes.SCENES:
+            yield scenes.generate(name, scenes.FOLDER, options.seed, options.size)
+        else:
+            yield Path(name)
 
 
 def compare(path, folder, options):
     """Measures one scene; returns its row of all tables."""
-    ours = lambda spp, seeds: render_spherule(path, folder, spp, seeds, options)
+    ours = partial(render_spherule, path, folder, options)
     long_seeds = range(LONG, LONG + options.long_images)
     spherule = errors.LongRender([run["image"] for run in ours(options.long_spp, long_seeds)])
     settings = fastest_variant(path, folder, options)
-    theirs = lambda spp, seeds, **others: render_mitsuba(path, folder, spp, seeds, settings | others, options)
-    mitsuba = errors.LongRender([run["image"] for run in theirs(options.long_spp, long_seeds, sampler="multijitter")])
+    exact = settings | {"shapes": "sphere"} if read_scene(path).count() <= MOST_EXACT else settings
+    runs = render_mitsuba(path, folder, options, exact, options.long_spp, long_seeds)
+    mitsuba = errors.LongRender([run["image"] for run in runs])
     agreement = errors.agreement(spherule, mitsuba)
     reference = errors.Reference([spherule, mitsuba])
-    settings["sampler"] = options.sampler or best_sampler(theirs, reference)
+    settings["sampler"] = options.sampler or best_sampler(path, folder, options, settings, reference)
+    theirs = partial(render_mitsuba, path, folder, options, settings)
     row = {
         "scene": path.stem,
         "spheres": read_scene(path).count(),
@@ -106,17 +114,17 @@ def compare(path, folder, options):
         "squared": agreement.squared,
         "worst": agreement.worst,
         "settings": settings,
-        "spherule": measure(ours, reference, options) | total_spherule(path, folder, options),
+        "spherule": measure(ours, reference, options),
         "mitsuba": measure(theirs, reference, options) | total_mitsuba(path, folder, settings, options),
     }
     if cycles_python(options):
         try:
-            cycles = lambda spp, seeds: render_cycles(path, folder, spp, seeds, options)
+            cycles = partial(render_cycles, path, folder, options)
             images = [run["image"] for run in cycles(options.long_spp, long_seeds)]
             row["cycles_agreement"] = vars(errors.agreement(errors.LongRender(images), spherule))
             row["cycles"] = measure(cycles, reference, options) | total_cycles(path, folder, options)
         except Failed as error:
-            row["cycles_failed"] = str(error)
+            print(f"{path.stem}: left out of the table of Cycles: {error}", file=sys.stderr)
     return row
 
 
@@ -131,6 +139,7 @@ def measure(render, reference, options):
                 "spp": spp,
                 "cpu": min(run["cpu"] for run in runs),
                 "wall": min(run["wall"] for run in runs),
+                "alone": min(run.get("alone", run["wall"]) for run in runs),
                 "squared": mean(reference.squared_error(image) for image in images),
                 "relative": mean(reference.relative_error(image) for image in images),
                 "fireflies": mean(reference.fireflies(image) for image in images),
@@ -139,7 +148,9 @@ def measure(render, reference, options):
         last = levels[-1]
         reached = math.sqrt(max(last["squared"], 0)) < 0.01
         if spp >= options.spp and (reached or STEP * last["cpu"] > options.most_seconds):
-            return {"levels": levels, "at": next(level for level in levels if level["spp"] == options.spp)}
+            at = next(level for level in levels if level["spp"] == options.spp)
+            # Spherule's processes render one image each; those of others, several.
+            return {"levels": levels, "at": at, "total": at["wall"], "alone": at["alone"]}
         spp *= STEP
 
 
@@ -150,32 +161,32 @@ def mean(values):
 
 def fastest_variant(path, folder, options):
     """Returns the variant and the shapes of Mitsuba that take the least time."""
-    trials = []
+    trials, failure = [], None
     for variant in [options.variant] if options.variant else ["llvm_ad_rgb", "scalar_rgb"]:
         for shapes in ("sphere", "ellipsoids"):
             settings = {"variant": variant, "shapes": shapes, "sampler": "multijitter"}
             try:
-                runs = render_mitsuba(path, folder, 4, range(1), settings, options)
+                runs = render_mitsuba(path, folder, options, settings, 4, range(1))
             except Failed as error:
-                print(f"{path.stem}: {variant} does not run: {error}", file=sys.stderr)
+                failure = error
                 break
             trials.append((min(run["cpu"] for run in runs), settings))
     if not trials:
-        raise Failed("no variant of Mitsuba renders it")
+        raise failure
     return min(trials, key=lambda trial: trial[0])[1]
 
 
-def best_sampler(render, reference):
+def best_sampler(path, folder, options, settings, reference):
     """Returns the sampler of Mitsuba with the least product of error and time."""
     costs = {}
     for sampler in SAMPLERS:
-        runs = render(16, range(2), sampler=sampler)
+        runs = render_mitsuba(path, folder, options, settings | {"sampler": sampler}, 16, range(1))
         error = mean(reference.relative_error(run["image"]) for run in runs)
         costs[sampler] = error * min(run["cpu"] for run in runs)
     return min(costs, key=costs.get)
 
 
-def render_spherule(path, folder, spp, seeds, options):
+def render_spherule(path, folder, options, spp, seeds):
     """Renders an image for each seed."""
     runs = []
     for seed in seeds:
@@ -199,10 +210,10 @@ def spherule_command(path, image, spp, seed, options):
     return [options.spherule, "render", path, *settings, "--quiet", "--json", "-o", image]
 
 
-def render_mitsuba(path, folder, spp, seeds, settings, options):
+def render_mitsuba(path, folder, options, settings, spp, seeds):
     """Renders an image for each seed in one process, whose start and compilation are not counted."""
     command = mitsuba_command(path, folder, settings, options)
-    # Long renders are not timed, and scalar variants do not compile.
+    # Long renders are not timed, and the scalar variant does not compile.
     if seeds[0] < LONG and settings["variant"].startswith("llvm"):
         command.append("--warm-up")
     return render_worker(command, folder, spp, seeds)
@@ -213,7 +224,7 @@ def mitsuba_command(path, folder, settings, options):
     return [sys.executable, HERE / "mitsuba_render.py", path, "--folder", folder, f"--threads={options.threads}", *chosen]
 
 
-def render_cycles(path, folder, spp, seeds, options):
+def render_cycles(path, folder, options, spp, seeds):
     """Renders an image for each seed in one process, whose start is not counted."""
     return render_worker(cycles_command(path, folder, options), folder, spp, seeds)
 
@@ -241,12 +252,6 @@ def render_worker(command, folder, spp, seeds):
     return runs
 
 
-def total_spherule(path, folder, options):
-    """Returns the wall-clock time from the start of the process to the written image, and of the render alone."""
-    runs = render_spherule(path, folder, options.spp, range(options.images), options)
-    return {"total": min(run["wall"] for run in runs), "alone": min(run["alone"] for run in runs)}
-
-
 def total_mitsuba(path, folder, settings, options):
     return total_worker(mitsuba_command(path, folder, settings, options), options)
 
@@ -256,13 +261,11 @@ def total_cycles(path, folder, options):
 
 
 def total_worker(command, options):
-    totals, alone = [], []
-    for _ in range(options.images):
-        start = time.perf_counter()
-        output = execute([*command, "--spp", options.spp])
-        totals.append(time.perf_counter() - start)
-        alone += [json.loads(line)["wall"] for line in output.splitlines() if line.startswith("{")]
-    return {"total": min(totals), "alone": min(alone)}
+    """Returns the wall-clock time from the start of a process to its written image, and of the render alone."""
+    start = time.perf_counter()
+    output = execute([*command, "--spp", options.spp])
+    total = time.perf_counter() - start
+    return {"total": total, "alone": min(json.loads(line)["wall"] for line in output.splitlines() if line.startswith("{"))}
 
 
 def execute(command):
@@ -299,14 +302,14 @@ def tables(rows):
 def renderer_table(rows, name):
     """Returns the table of times and errors beside one renderer."""
     lines = [
-        "| scene | settings | processor s | wall s | from start to file, s | error | fireflies | equal error | RMSE 0.01, s |",
+        "| scene | settings | processor s | render alone, s | start to file, s | error | fireflies | equal error | RMSE 0.01, s |",
         "|---|---|--:|--:|--:|--:|--:|--:|--:|",
     ]
     for row in rows:
         ours, theirs = row["spherule"], row[name]
         a, b = ours["at"], theirs["at"]
         lines.append(
-            f"| {row['scene']} | {', '.join(row['settings'].values()) if name == 'mitsuba' else ''} | "
+            f"| {row['scene']} | {', '.join(row['settings'].values()) if name == 'mitsuba' else 'points'} | "
             f"{number(a['cpu'])} : {number(b['cpu'])} | {number(ours['alone'])} : {number(theirs['alone'])} | "
             f"{number(ours['total'])} : {number(theirs['total'])} | {a['relative']:.2e} : {b['relative']:.2e} | "
             f"{a['fireflies']:.0f} : {b['fireflies']:.0f} | {equal_error(row, name)} | "

@@ -122,7 +122,17 @@ def gradient(bottom, top):
 
 
 def small_lamp(rng):
-    """Glass, mirrors, plastic and diffuse spheres, 100 of each, under one small emissive sphere."""
+    """Glass, mirrors, plastic and diffuse spheres, 100 of each, on a ground under one small emissive sphere."""
+    return four_materials(rng, 0.25, 3000)
+
+
+def large_lamp(rng):
+    """The spheres of small-lamp under a large emissive sphere, whose light paths find by chance, too."""
+    return four_materials(rng, 2.5, 30)
+
+
+def four_materials(rng, radius, radiance):
+    """Returns spheres of four materials under an emissive sphere."""
     names = shares(rng, 400, [("glass", 0.25), ("mirror", 0.25), ("plastic", 0.25), ("diffuse", 0.25)])
     spheres = field(rng, 20, 20)
     materials = painted(rng, names, "diffuse") | painted(rng, names, "plastic", {"kind": "plastic", "ior": 1.5})
@@ -131,8 +141,8 @@ def small_lamp(rng):
         "spheres": spheres,
         "names": names,
         "ground": GROUND,
-        "materials": {"glass": GLASS, "mirror": MIRROR, "lamp": {"kind": "emitter", "radiance": 6000}, **materials},
-        "lamps": [([3, 12, 12], 0.1, "lamp")],
+        "materials": {"glass": GLASS, "mirror": MIRROR, "lamp": {"kind": "emitter", "radiance": radiance}, **materials},
+        "lamps": [([4, 15, 12], radius, "lamp")],
     }
 
 
@@ -226,6 +236,7 @@ SCENES = {
     "ground-lamp": ground_lamp,
     "many-lamps": many_lamps,
     "small-lamp": small_lamp,
+    "large-lamp": large_lamp,
     "picture-sky": picture_sky,
     "default-field": default_field,
 }
