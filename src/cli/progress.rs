@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn lines_show_percent_time_left_and_speed() {
         assert_eq!(text(&at(0.25, 10)), "25 %, 30s left, 3.0 Mrays/s");
-        let noise = Some(Noise { error: 0.0123, bound: 0.013 });
+        let noise = Some(Noise { error: 0.0123, bound: 0.013, expected: 0.0 });
         let text = text(&Progress { noise, ..at(0.25, 10) });
         assert_eq!(text, "25 %, 30s left, 3.0 Mrays/s, error 1.23 %");
     }

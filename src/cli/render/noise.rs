@@ -14,6 +14,8 @@ pub(super) struct NoiseSummary {
     error: f64,
     bound: f64,
     confidence: f64,
+    /// Fraction of the squared error that no probe has found.
+    expected_share: f64,
     ended_by: &'static str,
     rounds: u32,
     least_samples: u32,
@@ -29,6 +31,7 @@ impl NoiseSummary {
             error: noise.error,
             bound: noise.bound,
             confidence: CONFIDENCE,
+            expected_share: noise.expected,
             ended_by: match render.end {
                 End::Samples => "samples",
                 End::Error => "error",
@@ -54,6 +57,12 @@ impl NoiseSummary {
             self.least_samples,
             self.most_samples,
         ));
+        if self.expected_share >= 0.01 {
+            output::print(format_args!(
+                "        {:.0} % of the squared error is expected of lights that few samples find, by rays that narrowly miss them",
+                100.0 * self.expected_share,
+            ));
+        }
     }
 }
 

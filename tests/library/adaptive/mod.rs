@@ -225,3 +225,40 @@ fn a_time_limit_leaves_no_pixel_out() {
         assert!(render.samples.least > 0 && render.noise.is_some(), "{:?}", render.samples);
     }
 }
+
+/// A lamp in view, and by way of two mirrors and a nested glass sphere, which only paths that hit it find.
+fn lamp(radius: f64) -> Scene {
+    let mut scene = dark();
+    ground(&mut scene, lambertian(0.6));
+    sphere(&mut scene, [0.5, 2.0, 2.2], radius, emitter((1.0 / (radius * radius)) as f32, 0.0));
+    sphere(&mut scene, [-1.2, 0.0, 0.8], 0.8, mirror());
+    sphere(&mut scene, [0.7, 0.3, 0.7], 0.7, mirror());
+    sphere(&mut scene, [2.2, 0.0, 0.6], 0.6, glass(1.5));
+    sphere(&mut scene, [2.2, 0.0, 0.6], 0.4, glass(1.3));
+    look(&mut scene, DVec3::new(0.0, -7.0, 3.0), DVec3::new(0.3, 0.0, 0.9), 35.0);
+    scene.settings.depth = Some(8);
+    scene
+}
+
+#[test]
+fn bounds_hold_where_lights_are_found_by_chance() {
+    const SEEDS: u64 = 10;
+    let mut diffuse = lamp(0.05);
+    diffuse.settings.caustics = false;
+    for (what, scene) in [("lamp", lamp(0.05)), ("by chance", diffuse), ("large lamp", lamp(0.2))] {
+        let mut reference = scene.clone();
+        (reference.settings.spp, reference.settings.seed) = (1 << 14, 999);
+        reference.settings.caustics = true;
+        let truth: Vec<f64> =
+            render_scene(&reference).image.pixels.iter().map(|p| f64::from(p[0])).collect();
+        let held = (0..SEEDS).filter(|&seed| {
+            let mut scene = with_target(scene.clone(), 1e-6);
+            (scene.settings.spp, scene.settings.seed) = (16, seed);
+            let render = render_scene(&scene);
+            let bound = render.noise.expect("an error is measured").bound;
+            true_error(&render, &truth) <= bound
+        });
+        let held = held.count();
+        assert!(held >= 9, "{what}: {held} of {SEEDS}");
+    }
+}

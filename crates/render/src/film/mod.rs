@@ -4,12 +4,14 @@
 //! tile order, or on the division of samples into passes and machines. By filter importance sampling
 //! every sample has weight 1: a pixel is the mean of its own samples.
 
+mod chance;
 mod exact;
 mod probes;
 mod saved;
 mod sums;
 mod tile;
 
+pub use chance::{ChanceLight, ChanceVariance, Term};
 pub use exact::ExactSums;
 pub use probes::{Density, Pilot, Probes, Reading, Role};
 pub(crate) use saved::TileHeader;

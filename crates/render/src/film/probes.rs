@@ -4,7 +4,7 @@
 //! Samples of probes are no part of the picture: all their streams have random numbers of their own. So
 //! decisions that depend on probes are independent of the picture's own samples (see [`crate::noise`]).
 
-use super::{Sums, Tile};
+use super::{ChanceLight, ChanceVariance, Sums, Tile};
 use crate::color::Rgb;
 use crate::sampling::{Sampler, mix, stream};
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,8 @@ pub struct Probes {
     pub samples: u32,
     /// Rays of these samples.
     pub rays: u64,
+    /// Light that these samples find by chance.
+    pub chance: ChanceLight,
     /// Probes of both roles, alternating.
     list: Vec<Probe>,
     /// Two streams for each probe, one after the other.
@@ -142,6 +144,7 @@ impl Probes {
     pub(super) fn merge(&mut self, other: &Self) -> bool {
         self.samples += other.samples;
         self.rays += other.rays;
+        self.chance.merge(&other.chance);
         self.list.len() == other.list.len() && self.sums.merge(&other.sums)
     }
 
@@ -160,6 +163,12 @@ impl Probes {
                 independent: spread.map(average).iter().sum::<f64>() / 2.0 / count,
             }
         })
+    }
+
+    /// Returns the variance of a pixel's mean that is expected of light found by chance; of the hits, those
+    /// of the probes of one role are known.
+    pub fn chance_variance(&self, role: Role) -> ChanceVariance {
+        self.chance.variance(role, self.list.len() / 2, self.samples)
     }
 
     /// Returns the mean number of rays of a sample.

@@ -1,11 +1,11 @@
 //! Saving and restoring of films in files.
 
 use super::exact::LEVELS;
-use super::{Density, ExactSums, Film, Pilot, Probes, Tile, View};
+use super::{ChanceLight, Density, ExactSums, Film, Pilot, Probes, Tile, View};
 use serde::{Deserialize, Serialize};
 
 /// The saved state of a tile, without its sums.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TileHeader {
     pub(crate) samples: u32,
     view: View,
@@ -13,14 +13,16 @@ pub(crate) struct TileHeader {
     pub(crate) probe_samples: u32,
     pub(crate) probe_rays: u64,
     pilot: Option<Pilot>,
+    chance: ChanceLight,
     /// Number of levels of each of its sums, in the order of [`Tile::columns`].
     levels: [u8; 4],
 }
 
 impl TileHeader {
-    /// Returns whether the numbers of levels are in range.
+    /// Returns whether the numbers are in range.
     pub(crate) fn is_valid(&self) -> bool {
-        self.levels.iter().all(|&levels| (1..=LEVELS).contains(&usize::from(levels)))
+        self.chance.is_valid()
+            && self.levels.iter().all(|&levels| (1..=LEVELS).contains(&usize::from(levels)))
     }
 
     /// Returns the number of levels of its pixels' sums.
@@ -39,6 +41,7 @@ impl Film {
             probe_samples: tile.probes.samples,
             probe_rays: tile.probes.rays,
             pilot: tile.probes.pilot,
+            chance: tile.probes.chance.clone(),
             levels: tile.exact_sums().map(|sums| sums.levels().len() as u8),
         };
         self.tiles.iter().map(header).collect()
@@ -55,6 +58,7 @@ impl Film {
             tile.probes.samples = header.probe_samples;
             tile.probes.rays = header.probe_rays;
             tile.probes.pilot = header.pilot;
+            tile.probes.chance = header.chance.clone();
             for (sums, levels) in tile.exact_sums_mut().into_iter().zip(header.levels) {
                 sums.restore(levels.into());
             }

@@ -12,7 +12,7 @@ use crate::ray::MISS;
 use crate::scene::Rgb;
 use crate::shade::MaterialKind;
 use crate::vec3::Vec3;
-use crate::world::{Receiver, ReceiverRow, SkyLight};
+use crate::world::{CausticSource, Receiver, ReceiverRow, SkyLight};
 
 /// Adds the light of the environment and the suns to paths that leave the scene.
 pub(super) fn add_environment(job: &Job, work: &mut Workspace) {
@@ -101,14 +101,15 @@ fn add_suns(job: &Job, work: &Workspace, (first, lanes): (usize, u32), light: &m
             continue;
         }
         let channels = channels.map(|channel| &mut channel.as_mut_array()[lane]);
-        for (sun, radiance) in lights.suns_toward(work.rays.direction.row(row)) {
+        let direction = work.rays.direction.row(row);
+        for (sun, radiance) in lights.suns_toward(direction) {
             let pdf = || lights.sun_pdf(sun, &receiver(work, row));
             let weight = if previous.light_sampled() {
                 mis_weight(previous, pdf)
             } else if previous.mirrored_light_sampled() {
                 0.0
             } else {
-                caustics::sun_weight(job, work, row, sun)
+                caustics::weight(job, work, row, (CausticSource::Sun(sun), direction))
             };
             let radiance = radiance * weight;
             (0..3).for_each(|i| *channels[i] += radiance[i]);
@@ -131,11 +132,12 @@ pub(super) fn add_emitted(job: &Job, work: &mut Workspace) {
             weight[lane] = emitter_weight(job, work, queue.ray(first + lane));
         }
         for lane in set_bits(lanes & !state.previous.light_sampled().bits()) {
-            let (path, row) = (state.path.to_array()[lane] as usize, queue.ray(first + lane));
+            let row = queue.ray(first + lane);
             weight[lane] = if left_out(job, work, row) {
                 0.0
             } else {
-                caustics::emitter_weight(job, work, row, path)
+                let emitter = CausticSource::Sphere(work.hits.sphere[row]);
+                caustics::weight(job, work, row, (emitter, work.surface.point.row(row)))
             };
         }
         let light = state.throughput.times(radiance) * F32x16::new(weight);

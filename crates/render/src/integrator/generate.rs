@@ -89,6 +89,7 @@ fn generate_rays(
     (offset, lens): ([F32x16; 2], Option<[F32x16; 2]>),
 ) {
     let (origin, direction) = (&mut work.rays.origin, &mut work.rays.direction);
+    work.seen_lights.set_pixels(first, &origin.x[first..], &origin.y[first..]);
     let pixel = origin.load::<F32x16>(first);
     let (columns, rows) = (widen(pixel.x), widen(pixel.y));
     let [across, down] = [widen(offset[0]), widen(offset[1])];

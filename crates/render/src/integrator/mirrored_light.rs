@@ -13,7 +13,7 @@ use super::workspace::Workspace;
 use crate::intersect;
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, U32x16, set_bits};
 use crate::ray::{ExactRay, MISS};
-use crate::scene::Rgb;
+use crate::scene::{Integrator, Rgb};
 use crate::vec3::Vec3;
 use crate::world::{CausticSource, World};
 
@@ -41,9 +41,12 @@ struct Target {
 }
 
 impl Job<'_> {
-    /// Returns whether mirrored light is sampled.
+    /// Returns whether mirrored light is sampled: only in path tracing, which leaves it out of the paths
+    /// that find it.
     pub(super) fn samples_mirrored_light(&self) -> bool {
-        self.settings.caustics && self.world.lights.samples_mirrored_light()
+        self.settings.caustics
+            && self.settings.integrator == Integrator::Path
+            && self.world.lights.samples_mirrored_light()
     }
 }
 

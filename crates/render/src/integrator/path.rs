@@ -13,9 +13,11 @@ use super::caustics;
 use super::direct_light::sample_direct_light;
 use super::emission;
 use super::glass;
+use super::light_images;
 use super::material_queues::MaterialQueue;
 use super::material_table::gather_bsdfs;
 use super::mirrored_light::{MirrorRow, sample_mirrored_light};
+use super::near_misses;
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_active, roulette_threshold, survival_probability};
 use super::shading_row::{ShadingRow, SurfaceRow};
@@ -27,8 +29,10 @@ use crate::shade::{Bsdf, Material, MaterialId, MaterialKind, mirror};
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace) {
     let threshold = roulette_threshold(job.world);
+    light_images::sample(job, work);
     for bounce in 0.. {
         stages::intersect(job, work);
+        near_misses::record(job, work, bounce);
         emission::add_environment(job, work);
         emission::add_emitted(job, work);
         if bounce == job.depth() {

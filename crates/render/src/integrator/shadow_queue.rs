@@ -82,6 +82,7 @@ impl Default for ShadowQueue {
 }
 
 /// A single shadow ray.
+#[derive(Clone, Copy)]
 pub(super) struct ShadowRay {
     /// Origin, and the sphere that it lies on.
     pub(super) start: (Point, u32),

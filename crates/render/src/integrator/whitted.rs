@@ -9,6 +9,7 @@
 use super::Job;
 use super::glass;
 use super::material_queues::MaterialQueue;
+use super::near_misses;
 use super::path_state::PathStateRow;
 use super::roulette::{roulette_threshold, survival_probability};
 use super::shading_row::{LocalSurface, SurfaceRow};
@@ -33,6 +34,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
     let threshold = roulette_threshold(job.world);
     for bounce in 0.. {
         stages::intersect(job, work);
+        near_misses::record(job, work, bounce);
         add_environment(job, work);
         add_emitted(job, work);
         if bounce == job.depth() {

@@ -1,17 +1,20 @@
 //! The workspace of a task: its columns, allocated once and reused for each tile.
 
+use super::Job;
 use super::caustics::Caustics;
 use super::clock::Clock;
 use super::counters::Counters;
 use super::elisions::Elisions;
+use super::light_images::SeenLights;
 use super::material_queues::{ESCAPED, HitColumns, MaterialQueues};
 use super::material_table::MaterialTable;
+use super::near_misses::NearMisses;
 use super::next_rays::{NextRays, RayRow};
 use super::path_state::{PathStateRow, PathStates};
 use super::shading_row::SurfaceRow;
 use super::shadow_queue::ShadowQueue;
 use super::surface::{Surface, chord_length, exit_distance};
-use crate::film::View;
+use crate::film::{Region, View};
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{SampleRow, Sampler, SamplerRow, SamplerState, SamplerStates, StartRow};
@@ -59,6 +62,10 @@ pub struct Workspace {
     pub shadow_queue: ShadowQueue,
     /// Caustic queries and their rays.
     pub(super) caustics: Caustics,
+    /// Lights that the camera sees.
+    pub(super) seen_lights: SeenLights,
+    /// Near misses of probes.
+    pub near_misses: NearMisses,
     /// View of the camera rays: anything, or only background.
     pub view: View,
     /// Counts of work.
@@ -100,6 +107,8 @@ impl Workspace {
             next_rays: NextRays::new(normals),
             shadow_queue: ShadowQueue::new(),
             caustics: Caustics::new(world),
+            seen_lights: SeenLights::default(),
+            near_misses: NearMisses::default(),
             view: View::Anything,
             counters: Counters::default(),
             clock: Clock::new(),
@@ -114,6 +123,11 @@ impl Workspace {
     /// Returns whether no path is alive.
     pub fn is_empty(&self) -> bool {
         self.rays.is_empty()
+    }
+
+    /// Prepares for paths of pixels of some regions.
+    pub(crate) fn begin(&mut self, job: &Job, regions: impl Iterator<Item = Region>) {
+        self.seen_lights.begin(job, regions);
     }
 
     /// Starts whole rows of samples, from `first` on, of the pixel in column `x` and row `y`; stores the

@@ -13,6 +13,16 @@ const DEVIATIONS: f64 = 3.0;
 /// Weight of the third moment over the second in the bound: (2 x^2 + 1) / 6 for the same `x`.
 const SKEW: f64 = (2.0 * DEVIATIONS * DEVIATIONS + 1.0) / 6.0;
 
+/// The squared error of a picture: its sum over pixels, averaged over channels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SquaredError {
+    /// By probes, and by what they have not found.
+    pub all: Estimate,
+    /// Part of it that is only expected: light found by chance, which near misses predict and probes have
+    /// not found.
+    pub expected: f64,
+}
+
 /// An estimated number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
@@ -32,17 +42,22 @@ pub struct Noise {
     pub error: f64,
     /// Upper bound of the error with the probability [`CONFIDENCE`].
     pub bound: f64,
+    /// Fraction of the squared error that no probe has found: it is expected of light that few samples
+    /// find, by the rays that narrowly miss it.
+    pub expected: f64,
 }
 
 impl Noise {
     /// Computes the error from the sum of the squared errors of `pixels` pixels, and their mean
     /// radiance. A picture without error has an error of 0 even if it is black.
-    pub fn new(squared: Estimate, pixels: u64, mean: Estimate) -> Self {
+    pub fn new(squared: SquaredError, pixels: u64, mean: Estimate) -> Self {
+        let SquaredError { all: squared, expected } = squared;
         if squared.value == 0.0 {
-            return Self { error: 0.0, bound: 0.0 };
+            return Self { error: 0.0, bound: 0.0, expected: 0.0 };
         }
+        let expected = expected / squared.value;
         if mean.value == 0.0 {
-            return Self { error: f64::INFINITY, bound: f64::INFINITY };
+            return Self { error: f64::INFINITY, bound: f64::INFINITY, expected };
         }
         let ratio = squared.value / pixels as f64 / mean.value.powi(2);
         // Relative variances of the sum and of the squared mean.
@@ -51,7 +66,7 @@ impl Noise {
         // Skewness correction of Cornish and Fisher, for terms of which few are large.
         let skew = squared.third / squared.variance.max(f64::MIN_POSITIVE) / squared.value;
         let bound = ratio * (1.0 + DEVIATIONS * variance.sqrt() + SKEW * skew);
-        Self { error: ratio.sqrt(), bound: bound.sqrt() }
+        Self { error: ratio.sqrt(), bound: bound.sqrt(), expected }
     }
 }
 
@@ -91,9 +106,22 @@ impl Add for Estimate {
 }
 
 /// Estimates the sum of the squared errors of all pixels, averaged over channels.
-pub fn squared_error(film: &Film) -> Estimate {
+pub fn squared_error(film: &Film) -> SquaredError {
     let readings = film.tiles.iter().flat_map(|tile| tile.probes.readings(Role::Judge));
-    readings.map(|reading| Estimate::of_squared(&reading)).fold(Estimate::default(), Add::add)
+    let measured =
+        readings.map(|reading| Estimate::of_squared(&reading)).fold(Estimate::default(), Add::add);
+    let (mut expected, mut found, mut variance) = (0.0, 0.0, 0.0);
+    for tile in &film.tiles {
+        let (chance, pixels) = (tile.probes.chance_variance(Role::Judge), f64::from(tile.len()));
+        expected += chance.expected * pixels;
+        found += chance.found * pixels;
+        // That of the estimate, and that of the actual error about its expectation.
+        variance += chance.uncertainty * pixels * pixels + chance.spread * pixels;
+    }
+    let missing = f64::max(expected - found, 0.0);
+    let variance = if missing > 0.0 { variance } else { 0.0 };
+    let chance = Estimate { value: missing, variance, third: 0.0 };
+    SquaredError { all: measured + chance, expected: missing }
 }
 
 /// Estimates the mean radiance over pixels and channels from pilot and probes, independently of the
@@ -187,7 +215,8 @@ mod tests {
             });
             let terms = readings.map(|reading| Estimate::of_squared(&reading));
             let total = terms.fold(Estimate::default(), Add::add);
-            held += u64::from(Noise::new(total, pixels, mean).bound.powi(2) >= truth);
+            let squared = SquaredError { all: total, expected: 0.0 };
+            held += u64::from(Noise::new(squared, pixels, mean).bound.powi(2) >= truth);
             sum += total.value / pixels as f64;
         }
         (held as f64 / RUNS as f64, sum / RUNS as f64)
@@ -232,9 +261,12 @@ mod tests {
     #[test]
     fn a_picture_without_error_has_none_whatever_its_brightness() {
         let nothing = Estimate::default();
-        assert_eq!(Noise::new(nothing, 5, nothing), Noise { error: 0.0, bound: 0.0 });
-        let dim = Noise::new(Estimate { value: 1.0, ..nothing }, 4, nothing);
-        assert_eq!(dim, Noise { error: f64::INFINITY, bound: f64::INFINITY });
+        let exact = Noise::new(SquaredError::default(), 5, nothing);
+        assert_eq!(exact, Noise { error: 0.0, bound: 0.0, expected: 0.0 });
+        let squared = SquaredError { all: Estimate { value: 1.0, ..nothing }, expected: 0.5 };
+        let dim = Noise::new(squared, 4, nothing);
+        let (error, bound) = (f64::INFINITY, f64::INFINITY);
+        assert_eq!(dim, Noise { error, bound, expected: 0.5 });
     }
 
     #[test]
@@ -254,7 +286,8 @@ mod tests {
     #[test]
     fn the_bound_adds_the_relative_variances_of_error_and_mean() {
         let estimate = |value, variance| Estimate { value, variance, third: 0.0 };
-        let noise = Noise::new(estimate(4.0, 1.0), 4, estimate(2.0, 0.5));
+        let squared = SquaredError { all: estimate(4.0, 1.0), expected: 0.0 };
+        let noise = Noise::new(squared, 4, estimate(2.0, 0.5));
         assert_eq!(noise.error, 0.5);
         let variance: f64 = 1.0 / 16.0 + 4.0 * 0.5 / 4.0;
         let bound = 0.25 * (1.0 + DEVIATIONS * variance.sqrt());

@@ -29,17 +29,26 @@
 //! the sum of their second moments below its expectation with a probability of at most exp(-x^2/2)
 //! (Maurer, "A Bound on the Deviation Probability for Sums of Non-Negative Random Variables", JIPAM
 //! 2003). Second moments are estimated by the squares of the terms, and third moments are added to the
-//! bound, so that it holds for several decisions and for errors that few pixels dominate. Noise that no
-//! probe finds is underestimated: noise of events too rare for the probes' samples, or with an infinite
-//! fourth moment (roulette that makes paths ever brighter).
+//! bound, so that it holds for several decisions and for errors that few pixels dominate.
 //!
+//! # Light found by chance
+//!
+//! Probes may not find noise of events that are too rare for their samples, such as small lights that
+//! paths hit only by chance. That noise is predicted by the rays that narrowly miss a light
+//! ([`NearMisses`]); what is predicted beyond that of the hits is added to the estimate.
+//!
+//! What remains underestimated is rare noise of other kinds, such as that of bright spots on diffuse
+//! surfaces close to a small light, and noise with an infinite fourth moment (roulette that makes paths
+//! ever brighter).
+//!
+//! [`NearMisses`]: crate::integrator::near_misses::NearMisses
 //! [`Probes`]: crate::film::Probes
 
 mod estimate;
 mod plan;
 mod stop_condition;
 
-pub use estimate::{CONFIDENCE, Estimate, Noise, gain, mean_radiance, squared_error};
+pub use estimate::{CONFIDENCE, Estimate, Noise, SquaredError, gain, mean_radiance, squared_error};
 pub use plan::{Slope, next_round, steering_variance, work};
 pub(crate) use stop_condition::FIRST_SAMPLES;
 pub use stop_condition::StopCondition;

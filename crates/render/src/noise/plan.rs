@@ -43,9 +43,13 @@ impl Slope {
     }
 }
 
-/// Returns the sum of the variances of a tile's pixels, by the steering probes.
+/// Returns the sum of the variances of a tile's pixels, by the steering probes and by what they are
+/// expected not to have found.
 pub fn steering_variance(tile: &Tile) -> f64 {
-    tile.probes.readings(Role::Steer).map(|reading| reading.weight * reading.squared).sum()
+    let measured: f64 =
+        tile.probes.readings(Role::Steer).map(|reading| reading.weight * reading.squared).sum();
+    let chance = tile.probes.chance_variance(Role::Steer);
+    measured + f64::from(tile.len()) * f64::max(chance.expected - chance.found, 0.0)
 }
 
 /// Returns the tiles of the next round in descending order of benefit; none if all have the maximum of
@@ -216,6 +220,6 @@ mod tests {
         let samples: Vec<Rgb> = (0..probes.streams()).map(radiance).collect();
         probes.add(&samples, 1);
         assert_eq!(steering_variance(&film.tiles[0]), 0.0);
-        assert!(crate::noise::squared_error(&film).value > 0.0);
+        assert!(crate::noise::squared_error(&film).all.value > 0.0);
     }
 }

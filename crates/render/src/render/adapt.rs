@@ -18,6 +18,10 @@ const PILOT: (u64, u64) = (4096, 65_536);
 /// Interval of looking at the clock: fraction of the time limit, and minimum in seconds.
 const CLOCK_CHECKS: (f64, f64) = (0.02, 0.1);
 
+/// Fraction of the squared error below which light that probes have not found does not matter: with more, a
+/// render does not end at the first look.
+const SEEN: f64 = 0.05;
+
 /// Renders until the target is met.
 pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) -> End {
     start(job, state, stop, watch);
@@ -34,7 +38,9 @@ pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Wa
         }
         if state.plan.is_empty() {
             let noise = state.noise(stop.until_error.is_some());
-            if stop.until_error.zip(noise).is_some_and(|(error, noise)| noise.bound <= error) {
+            if stop.until_error.zip(noise).is_some_and(|(error, noise)| {
+                noise.bound <= error && (noise.expected < SEEN || state.round > 1)
+            }) {
                 return End::Error;
             }
             if !state.next_round(stop, noise) {

@@ -71,6 +71,7 @@ impl TileSamples {
     ) -> Self {
         work.clock.restart();
         let view = tiles.clone().next().map_or(View::Anything, |tile| tile.view);
+        let regions = tiles.clone().map(|tile| tile.region);
         let uniform = uniform_view(job.world, view).filter(|_| job.elisions.even_background);
         if let Some(radiance) = uniform {
             let pixels: u64 = tiles.map(|tile| tile.region.area()).sum();
@@ -79,7 +80,7 @@ impl TileSamples {
         }
         let streams =
             tiles.flat_map(|tile| tile.region.morton()).map(|(x, y)| (x, y, *job.sampler));
-        trace_paths(job, view, (streams, samples), work);
+        trace_paths(job, (view, regions), (streams, samples), work);
         Self::Paths
     }
 
@@ -128,7 +129,11 @@ pub(super) fn probe_pass(
         work.clock.restart();
         let rays = work.counters.rays();
         let streams = tile.probes.starts(job.sampler);
-        let paths = trace_paths(job, tile.view, (streams, range), work);
+        work.near_misses.start(count);
+        let paths =
+            trace_paths(job, (tile.view, std::iter::once(tile.region)), (streams, range), work);
+        let streams = tile.probes.streams();
+        work.near_misses.finish(&mut tile.probes.chance, streams);
         work.counters.bad_samples += tile.probes.add(&work.paths.radiance[..paths], count);
         tile.probes.rays += work.counters.rays() - rays;
         work.clock.end(Stage::Film);
@@ -151,20 +156,22 @@ pub(super) fn pilot_pass(
     work.clock.restart();
     let pixels = Pilot::starts(tile, job.sampler, job.settings.seed, block);
     let streams = pixels.iter().map(|&(x, y, sampler, _)| (x, y, sampler));
-    let paths = trace_paths(job, tile.view, (streams, 0..samples), work);
+    let paths =
+        trace_paths(job, (tile.view, std::iter::once(tile.region)), (streams, 0..samples), work);
     let weights = pixels.iter().map(|&(.., weight)| weight);
     tile.probes.pilot = Some(Pilot::new(&work.paths.radiance[..paths], samples, weights));
     work.clock.end(Stage::Film);
 }
 
-/// Traces the paths of samples to their ends, and returns their number.
+/// Traces the paths of samples of pixels in these regions to their ends, and returns their number.
 fn trace_paths(
     job: &Job,
-    view: View,
+    (view, regions): (View, impl Iterator<Item = Region>),
     (streams, samples): (impl Iterator<Item = (u32, u32, Sampler)>, Range<u32>),
     work: &mut Workspace,
 ) -> usize {
     work.view = view;
+    work.begin(job, regions);
     generate_streams(job, streams, samples, work);
     let paths = work.len();
     job.integrate(work);

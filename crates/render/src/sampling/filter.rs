@@ -22,7 +22,16 @@ const RADIUS: f32 = 2.0;
 #[derive(Clone, Debug)]
 pub struct PixelFilter {
     /// `None` for the box filter.
-    offsets: Option<Offsets>,
+    table: Option<Table>,
+}
+
+/// A filter that is not constant.
+#[derive(Clone, Debug)]
+struct Table {
+    offsets: Offsets,
+    profile: fn(f64) -> f64,
+    /// Integral of the profile over the filter's width.
+    mass: f64,
 }
 
 /// The inverse of a profile's positive half: row `i` holds the distance beyond which the fraction `w^2`
@@ -33,12 +42,12 @@ type Offsets = Box<[f32; STEPS + 1]>;
 impl PixelFilter {
     /// Tabulates a filter.
     pub fn new(filter: Filter) -> Self {
-        let offsets = match filter {
+        let table = match filter {
             Filter::Box => None,
             Filter::Gaussian => Some(tabulate(gaussian)),
             Filter::BlackmanHarris => Some(tabulate(blackman_harris)),
         };
-        Self { offsets }
+        Self { table }
     }
 
     /// Returns the offset (dx, dy) from the pixel's center in pixels, for two numbers in [0, 1).
@@ -46,24 +55,36 @@ impl PixelFilter {
     /// Each coordinate increases with its draw, so that strata of draws are strata of the filter.
     #[inline]
     pub fn offset(&self, [u, v]: [f32; 2]) -> [f32; 2] {
-        match &self.offsets {
+        match &self.table {
             None => [u - 0.5, v - 0.5],
-            Some(offsets) => [offset(offsets, u), offset(offsets, v)],
+            Some(Table { offsets, .. }) => [offset(offsets, u), offset(offsets, v)],
         }
     }
 
     /// [`PixelFilter::offset`] for a row of numbers.
     #[inline(always)]
     pub fn offset_row(&self, row: [F32x16; 2]) -> [F32x16; 2] {
-        match &self.offsets {
+        match &self.table {
             None => row.map(|u| u - F32x16::splat(0.5)),
-            Some(offsets) => row.map(|u| F32x16::new(u.to_array().map(|u| offset(offsets, u)))),
+            Some(Table { offsets, .. }) => {
+                row.map(|u| F32x16::new(u.to_array().map(|u| offset(offsets, u))))
+            }
         }
+    }
+
+    /// Returns the density of [`PixelFilter::offset`] per square pixel.
+    pub fn pdf(&self, offset: [f64; 2]) -> f64 {
+        let density = |x: f64| match &self.table {
+            _ if x.abs() > f64::from(self.radius()) => 0.0,
+            None => 1.0,
+            Some(Table { profile, mass, .. }) => profile(x) / mass,
+        };
+        density(offset[0]) * density(offset[1])
     }
 
     /// Returns the largest absolute offset on either axis, in pixels.
     pub fn radius(&self) -> f32 {
-        if self.offsets.is_some() { RADIUS } else { 0.5 }
+        if self.table.is_some() { RADIUS } else { 0.5 }
     }
 }
 
@@ -77,7 +98,7 @@ fn offset(offsets: &Offsets, u: f32) -> f32 {
 }
 
 /// Integrates a profile over each cell by Simpson's rule, and inverts the cumulative sum.
-fn tabulate(profile: impl Fn(f64) -> f64) -> Offsets {
+fn tabulate(profile: fn(f64) -> f64) -> Table {
     let step = f64::from(RADIUS) / CELLS as f64;
     let masses: Vec<f64> = (0..CELLS)
         .map(|cell| cell as f64 * step)
@@ -95,7 +116,8 @@ fn tabulate(profile: impl Fn(f64) -> f64) -> Offsets {
         let part = ((wanted - within) / masses[cell]).clamp(0.0, 1.0);
         *offset = ((cell as f64 + part) * step) as f32;
     }
-    offsets
+    // By Simpson's rule, of both halves.
+    Table { offsets, profile, mass: 2.0 * total * step / 6.0 }
 }
 
 /// A Gaussian with a standard deviation of 0.5 pixels.
@@ -193,6 +215,23 @@ mod tests {
             for (lane, u) in us.into_iter().enumerate() {
                 assert_eq!(rows.map(|row| row[lane]), filter.offset(u), "{kind:?}");
             }
+        }
+    }
+
+    #[test]
+    fn densities_are_those_of_the_offsets() {
+        const STEPS: u32 = 400;
+        for kind in [Filter::Box, Filter::Gaussian, Filter::BlackmanHarris] {
+            let filter = PixelFilter::new(kind);
+            // The area of cells of equal probability times the density in their middle.
+            let place = |i: u32| f64::from(filter.offset([i as f32 / STEPS as f32, 0.5])[0]);
+            let at = filter.pdf([0.0, 0.0]).sqrt();
+            for i in STEPS / 20..STEPS - STEPS / 20 {
+                let (low, high) = (place(i), place(i + 1));
+                let mass = (high - low) * filter.pdf([low.midpoint(high), 0.0]) / at;
+                assert!((mass * f64::from(STEPS) - 1.0).abs() < 2e-3, "{kind:?}, {i}: {mass}");
+            }
+            assert_eq!(filter.pdf([2.1, 0.0]), 0.0);
         }
     }
 

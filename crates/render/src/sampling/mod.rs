@@ -18,7 +18,8 @@
 //! | 1 + 2 k | direction of bounce k                 | lobe, roulette of bounce k        |
 //! | 2 + 2 k | point on a light, sampled at bounce k | choice of the light, in two parts |
 //!
-//! The third row is for k of 1 or more, the last one for all. Events that are sampled several times on
+//! The third row is for k of 1 or more, the last one for all. Caustics have numbers of their own in the
+//! place of those for lights, and lights in view in that of the position in the pixel. Events that are sampled several times on
 //! one path, such as stratified shadow rays, use [`Sampler::split`] instead.
 
 mod angles;
@@ -51,5 +52,5 @@ pub use rows::{SampleRow, SamplerRow, SamplerStates, ScatterRow, SobolPositions,
 pub use sampler::{Sampler, SamplerState, Split};
 pub use warp::{
     UNIFORM_SPHERE_PDF, cap, concentric_disk, cosine_hemisphere, cosine_hemisphere_pdf,
-    cosine_hemispheres, uniform_sphere,
+    cosine_hemispheres, next_in_square, uniform_sphere,
 };

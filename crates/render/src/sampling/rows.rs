@@ -221,6 +221,12 @@ impl Sampler {
         self.alternate_row(paths, lights(bounce))
     }
 
+    /// Returns the numbers of further places of camera rays in their pixels.
+    #[inline(always)]
+    pub fn image_row(&self, paths: &SamplerRow) -> [F32x16; 4] {
+        self.alternate_row(paths, 0)
+    }
+
     /// [`Sampler::draw4`] for each, with [alternate](SamplerState::alternate) numbers.
     #[inline(always)]
     fn alternate_row(&self, paths: &SamplerRow, set: u32) -> [F32x16; 4] {

@@ -5,10 +5,22 @@
 //! axis; [`Basis`](super::Basis) transforms them to world axes.
 
 use super::angles::octant_sine_cosine;
+use super::hash::ONE_BELOW;
 use crate::lanes::Lanes;
 use crate::vec3;
 use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_4};
+
+/// Returns the next point of a low-discrepancy sequence in the unit square (Roberts, "The Unreasonable
+/// Effectiveness of Quasirandom Sequences", 2018).
+#[inline(always)]
+pub fn next_in_square<L: Lanes>([u, v]: [L; 2]) -> [L; 2] {
+    let step = |x: L, by: f32| {
+        let (x, one) = (x + L::splat(by), L::splat(1.0));
+        L::select(x.lt(one), x, x - one).min(L::splat(ONE_BELOW))
+    };
+    [step(u, 0.754_877_7), step(v, 0.569_840_3)]
+}
 
 /// Density of [`uniform_sphere`] per steradian.
 pub const UNIFORM_SPHERE_PDF: f32 = FRAC_1_PI / 4.0;
@@ -18,7 +30,7 @@ pub const UNIFORM_SPHERE_PDF: f32 = FRAC_1_PI / 4.0;
 /// Neither end is reached, and on that grid the result is exact and never 0.
 #[inline(always)]
 pub(super) fn centered<L: Lanes>(u: L) -> L {
-    L::splat(2.0) * u - L::splat(super::ONE_BELOW)
+    L::splat(2.0) * u - L::splat(ONE_BELOW)
 }
 
 /// Returns points in the unit disk, uniform by area, from two numbers in [0, 1) each.

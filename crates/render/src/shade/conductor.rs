@@ -87,7 +87,7 @@ impl<L: Lanes> ComplexIor<L> {
 impl<L: Lanes> ConductorBsdf<L> {
     /// Returns the reflectance at this cosine between direction and facet.
     #[inline(always)]
-    fn reflectance(&self, cosine: L) -> Vec3<L> {
+    pub fn reflectance(&self, cosine: L) -> Vec3<L> {
         let one = L::splat(1.0);
         let rise = fresnel::schlick_rise(cosine) * self.schlick_weight;
         let schlick = self.normal_incidence.map(|color| color + (one - color) * rise);

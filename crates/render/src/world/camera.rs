@@ -89,6 +89,26 @@ impl Camera {
         DVec2::new(1.0 + across, 1.0 - upward) / 2.0 * size
     }
 
+    /// Returns the place in the picture, in pixels from the top left corner, of a ray in perspective from a
+    /// point of the lens, in a direction before it, and the area of the picture per steradian there.
+    pub fn place(&self, origin: DVec3, direction: DVec3) -> (DVec2, f64) {
+        let along = direction.dot(self.forward);
+        let offset = direction / along;
+        let shift = if self.has_lens() { (origin - self.eye) / self.focus } else { DVec3::ZERO };
+        let seen = self.view(self.eye + offset + shift);
+        let area = f64::from(self.width) * f64::from(self.height)
+            / (4.0 * self.half_width * self.half_height);
+        (self.pixel(DVec3::new(seen.x, seen.y, 1.0)), area / along.powi(3))
+    }
+
+    /// Returns how far a point at this depth along the view axis deviates in the picture, in pixels, as seen
+    /// from the edge of the lens instead of its middle.
+    pub fn blur(&self, depth: f64) -> f64 {
+        let slope = self.lens_radius * (1.0 / self.focus - 1.0 / depth).abs();
+        let tangent = if self.orthographic { slope * depth } else { slope };
+        tangent / self.half_height * f64::from(self.height) / 2.0
+    }
+
     /// Estimates how many pixels of a rectangle of the picture, from `low` to `high` in pixels from its
     /// top left corner, a sphere of the world covers if nothing hides it: 0 if no ray through the
     /// rectangle hits the sphere, infinity if the camera is inside of it or very near.

@@ -16,6 +16,7 @@ mod environment;
 mod fit;
 pub mod framing;
 mod ground;
+mod light_images;
 mod lights;
 mod parts;
 mod spheres;
@@ -26,12 +27,15 @@ pub use appearance::{Appearance, Colors, Column};
 pub use camera::Camera;
 pub use camera_visible::CameraVisible;
 pub use caustics::CausticCasters;
-pub(crate) use caustics::{CausticHit, CausticPath, CausticQuery, CausticSample, CausticSource};
+pub(crate) use caustics::{
+    Caster, CausticHit, CausticPath, CausticQuery, CausticSample, CausticSource,
+};
 pub use census::Features;
 pub use cut::{Cut, Span};
 pub use environment::{Environment, PartBounds, Picture, Radiance, SkyLight, SkySamples};
 pub(crate) use fit::Placement;
 pub use ground::Ground;
+pub(crate) use light_images::{LightImage, LightImages, SeenLight};
 pub use lights::{
     Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
 };
@@ -87,6 +91,8 @@ pub struct World {
     /// The specular spheres and emitters whose caustics are sampled.
     #[doc(hidden)]
     pub caustic_casters: CausticCasters,
+    /// Images of lights in the picture.
+    pub(crate) light_images: LightImages,
     /// The environment: radiance of rays that hit nothing.
     #[doc(hidden)]
     pub environment: Environment,
@@ -232,12 +238,14 @@ impl World {
             materials,
             lights,
             caustic_casters: CausticCasters::default(),
+            light_images: LightImages::default(),
             environment,
             camera,
             features: Features::default(),
         };
         world.features = Features::census(&world, omitted);
         world.caustic_casters = CausticCasters::find(&world);
+        world.light_images = LightImages::find(&world);
         world
     }
 
@@ -257,6 +265,7 @@ impl World {
             materials: self.materials.clone(),
             lights: self.lights.without_spheres(&self.environment),
             caustic_casters: CausticCasters::default(),
+            light_images: LightImages::default(),
             environment: self.environment.clone(),
             camera: self.camera,
             features,
@@ -281,6 +290,7 @@ impl World {
         self.camera = Camera::build(scene, &pose, &self.transform);
         self.placement = pose;
         self.features = std::mem::take(&mut self.features).with_camera_of(self);
+        self.light_images = LightImages::find(self);
         Ok(true)
     }
 

@@ -1,19 +1,22 @@
 //! Chains of specular bounces since the last diffuse surface, for the MIS weights of caustics.
 
 use crate::integrator::Job;
+use crate::integrator::light_images;
 use crate::integrator::path_state::PreviousBounce;
 use crate::integrator::workspace::Workspace;
 use crate::ray::{GROUND, MISS, Rays};
 use crate::shade::MaterialKind;
-use crate::world::{CausticCasters, CausticHit, CausticSource, Receiver, World};
+use crate::world::{
+    CausticCasters, CausticHit, CausticSource, LightImage, Receiver, SeenLight, World,
+};
 use glam::Vec3;
 
-/// A path's specular bounces since it left a surface that is not specular.
+/// A path's specular bounces since it left a surface that is not specular, or the camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpecularChain {
     /// Point and normal where it left that surface.
     start: [Vec3; 2],
-    /// The sphere of that surface, or [`GROUND`].
+    /// The sphere of that surface, or [`GROUND`]; [`MISS`] for the camera, which has no density.
     own: u32,
     toward: Vec3,
     pdf: f32,
@@ -43,7 +46,10 @@ pub(in crate::integrator) fn track_chains(job: &Job, work: &mut Workspace) {
             let (hit, previous) = (work.hits.sphere[row], queue.states.previous(i));
             let chain = &mut work.caustics.chains[queue.states.path(i)];
             let repeated = chain.sphere == hit && work.rays.own[row] == hit && !chain.inside;
-            *chain = if previous.light_sampled() && casters.has(hit) {
+            let from_camera = work.rays.own[row] == MISS && !work.seen_lights.is_empty();
+            *chain = if from_camera && casters.has(hit) {
+                start_at_camera(&work.rays, row, hit)
+            } else if previous.light_sampled() && casters.has(hit) {
                 start_chain(job.world, &work.rays, row, (previous.density(), hit))
             } else if repeated && !previous.light_sampled() {
                 SpecularChain { inside: true, ..*chain }
@@ -52,6 +58,12 @@ pub(in crate::integrator) fn track_chains(job: &Job, work: &mut Workspace) {
             };
         }
     }
+}
+
+/// Returns the chain of a camera ray that has reached a sphere.
+fn start_at_camera(rays: &Rays, row: usize, sphere: u32) -> SpecularChain {
+    let (point, toward) = (rays.origin.row(row), rays.direction.row(row));
+    SpecularChain { start: [point, toward], toward, sphere, ..SpecularChain::NONE }
 }
 
 /// Returns the chain of a path that has reached a sphere from a surface that is not specular, on the
@@ -68,41 +80,33 @@ fn start_chain(world: &World, rays: &Rays, row: usize, (pdf, sphere): (f32, u32)
     SpecularChain { start: [point, normal], own: rays.own[row], toward, pdf, sphere, inside: false }
 }
 
-/// Returns the MIS weight of an emissive sphere that a path has hit, beside caustic samples.
-pub(in crate::integrator) fn emitter_weight(
+/// Returns the MIS weight of an emitter that the path in a row reaches by specular surfaces alone, at a point
+/// or in a direction, beside caustic samples; 0 if the camera sees it, and samples it in its pixels.
+pub(in crate::integrator) fn weight(
     job: &Job,
     work: &Workspace,
     row: usize,
-    path: usize,
-) -> f32 {
-    let emitter = CausticSource::Sphere(work.hits.sphere[row]);
-    weight(job, work, (row, path), (emitter, work.surface.point.row(row)))
-}
-
-/// Returns the MIS weight of a sun that a path has reached, beside caustic samples.
-pub(in crate::integrator) fn sun_weight(
-    job: &Job,
-    work: &Workspace,
-    row: usize,
-    sun: usize,
-) -> f32 {
-    let end = (CausticSource::Sun(sun), work.rays.direction.row(row));
-    weight(job, work, (row, work.states.path(row)), end)
-}
-
-/// Returns the MIS weight of an emitter, at a point or in a direction.
-fn weight(
-    job: &Job,
-    work: &Workspace,
-    (row, path): (usize, usize),
     (emitter, end): (CausticSource, Vec3),
 ) -> f32 {
+    let path = work.states.path(row);
+    let seen_in = |sphere, through| {
+        let light = SeenLight { source: emitter, sphere, through };
+        work.seen_lights.find(job, path, &light)
+    };
+    if work.rays.own[row] == MISS {
+        return if seen_in(MISS, false).is_some() { 0.0 } else { 1.0 };
+    }
     let Some(casters) = job.casters() else { return 1.0 };
     let chain = &work.caustics.chains[path];
     if chain.sphere == MISS || work.rays.own[row] != chain.sphere {
         return 1.0;
     }
-    chain.weight(casters, (emitter, end, work.rays.direction.row(row)))
+    let end = (emitter, end, work.rays.direction.row(row));
+    if chain.own != MISS {
+        return chain.weight(casters, end, None);
+    }
+    let image = seen_in(chain.sphere, chain.inside);
+    image.map_or(1.0, |image| chain.weight_at_camera((job, work, path), image, end))
 }
 
 /// Returns the MIS weight of an emitter, at a point of it and in this direction, that the ray in a row
@@ -114,6 +118,16 @@ pub(in crate::integrator) fn mirrored_weight(
     (emitter, point, toward): (CausticSource, Vec3, Vec3),
 ) -> f32 {
     let (Some(casters), hit) = (job.casters(), work.hits.sphere[row]) else { return 1.0 };
+    if work.rays.own[row] == MISS {
+        let light = SeenLight { source: emitter, sphere: hit, through: false };
+        let path = work.states.path(row);
+        let end = if matches!(emitter, CausticSource::Sun(_)) { toward } else { point };
+        let chain = start_at_camera(&work.rays, row, hit);
+        let image = work.seen_lights.find(job, path, &light);
+        return image.map_or(1.0, |image| {
+            chain.weight_at_camera((job, work, path), image, (emitter, end, toward))
+        });
+    }
     if !previous.light_sampled() || !casters.has(hit) {
         return 1.0;
     }
@@ -122,16 +136,30 @@ pub(in crate::integrator) fn mirrored_weight(
         return 1.0;
     }
     let end = if matches!(emitter, CausticSource::Sun(_)) { toward } else { point };
-    chain.weight(casters, (emitter, end, toward))
+    chain.weight(casters, (emitter, end, toward), None)
 }
 
 impl SpecularChain {
+    /// Returns the weight of an emitter of which the camera sees this image, beside samples in its pixels.
+    fn weight_at_camera(
+        &self,
+        (job, work, path): (&Job, &Workspace, usize),
+        image: &LightImage,
+        end: (CausticSource, Vec3, Vec3),
+    ) -> f32 {
+        let Some(casters) = job.casters().filter(|_| image.is_tiny()) else { return 0.0 };
+        let ([origin, toward], pixel) = (self.start, work.seen_lights.pixel(path));
+        let pdf = light_images::camera_pdf(job, pixel, origin, toward);
+        Self { pdf, ..*self }.weight(casters, end, Some(1.0))
+    }
+
     /// Returns the MIS weight of an emitter, at a point or in a direction, that is reached in direction
     /// `toward_emitter`.
     fn weight(
         &self,
         casters: &CausticCasters,
         (emitter, end, toward_emitter): (CausticSource, Vec3, Vec3),
+        rate: Option<f64>,
     ) -> f32 {
         let [point, normal] = self.start;
         casters.weight(&CausticHit {
@@ -143,6 +171,7 @@ impl SpecularChain {
             emitter,
             end,
             toward_emitter,
+            rate,
         })
     }
 }

@@ -3,26 +3,26 @@
 //! [`enqueue_queries`] chooses which path of light each surface point samples; the queries of a kind of
 //! material wait until they fill a row. Their shadow rays have two segments: all first segments, from surfaces to spheres,
 //! are traced at once; the second segments of those that are not occluded, from spheres to emitters,
-//! join the shadow queue. [`track_chains`], [`emitter_weight`] and [`sun_weight`] compute the weight of
+//! join the shadow queue. [`track_chains`] and [`weight`] compute the weight of
 //! caustics that BSDF samples find.
 
 mod chain;
 mod queues;
 
-pub(super) use chain::{emitter_weight, mirrored_weight, sun_weight, track_chains};
+pub(super) use chain::{mirrored_weight, track_chains, weight};
 
 use super::Job;
 use super::direct_light::power_heuristic;
 use super::material_table::gather_bsdfs;
 use super::shading_row::ShadingRow;
-use super::shadow_queue;
+use super::shadow_queue::{self, ShadowRay};
 use super::workspace::{BATCH, Workspace};
 use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask, set_bits};
 use crate::ray::MISS;
-use crate::sampling::{Bases, LightDraw, ONE_BELOW};
+use crate::sampling::{Bases, LightDraw, next_in_square};
 use crate::scene::{ConductorFresnel, Rgb};
 use crate::shade::conductor::Conductor;
-use crate::shade::{Bsdf, GatheredParams, Material, MaterialId, MaterialKind};
+use crate::shade::{BroadcastParams, Bsdf, GatheredParams, Material, MaterialId, MaterialKind};
 use crate::vec3::Vec3;
 use crate::world::{CausticCasters, CausticPath, CausticQuery, World};
 use chain::SpecularChain;
@@ -100,20 +100,8 @@ pub(super) fn enqueue_queries<M: Material>(
         if work.caustics.queries.len() >= MAX_LANES {
             sample_queries(job, work, bounce, material);
         }
-        place = next_place(place);
+        place = next_in_square(place);
     }
-}
-
-/// Returns the next point of a low-discrepancy sequence in the unit square (Roberts, "The Unreasonable
-/// Effectiveness of Quasirandom Sequences", 2018).
-#[inline(always)]
-fn next_place([u, v]: [F32x16; 2]) -> [F32x16; 2] {
-    let step = |x: F32x16, by: f32| {
-        let (x, one) = (x + F32x16::splat(by), F32x16::splat(1.0));
-        let x = Lanes::select(Lanes::lt(x, one), x, x - one);
-        x.min(F32x16::splat(ONE_BELOW))
-    };
-    [step(u, 0.754_877_7), step(v, 0.569_840_3)]
 }
 
 /// Samples all waiting queries, from surfaces of one kind.
@@ -188,18 +176,12 @@ fn colors(world: &World, query: &CausticQuery, incidence: F32x16) -> Vec3<F32x16
         let sphere = query.pairs.sphere[lane];
         let (id, own) = (world.material(sphere), world.color(sphere));
         tints[lane] = query.pairs.radiance[lane];
-        match id.kind() {
-            MaterialKind::Conductor => {
-                metals[lane] = world.materials.conductor[id.row()].params(own);
-                mirrors = true;
-            }
-            MaterialKind::Dielectric => {
-                let times = if query.path[lane] == CausticPath::Reflected { 1 } else { 2 };
-                let color = world.materials.dielectric[id.row()].color * own;
-                (0..times).for_each(|_| tints[lane] *= color);
-            }
-            // A coat has no color.
-            _ => {}
+        if id.kind() == MaterialKind::Conductor {
+            metals[lane] = world.materials.conductor[id.row()].params(own);
+            mirrors = true;
+        } else {
+            let through = query.path[lane] != CausticPath::Reflected;
+            tints[lane] *= specular_color(world, sphere, through, 1.0);
         }
     }
     let channel = |i: usize| F32x16::new(tints.each_ref().map(|tint| tint[i]));
@@ -212,6 +194,45 @@ fn colors(world: &World, query: &CausticQuery, incidence: F32x16) -> Vec3<F32x16
     let outgoing = Vec3::new(sine, zero, incidence);
     let metals = <Conductor as Material>::row::<F32x16>(&GatheredParams(metals));
     tints.times(metals.sample(outgoing, [zero; 2], zero).weight)
+}
+
+/// Returns the color of a smooth specular sphere: the factor on what it mirrors, or passes on, at this cosine
+/// of the angle of incidence, beside Fresnel's for dielectrics.
+pub(super) fn specular_color(world: &World, sphere: u32, through: bool, cosine: f32) -> Rgb {
+    let (id, own) = (world.material(sphere), world.color(sphere));
+    match id.kind() {
+        MaterialKind::Conductor => {
+            let params = world.materials.conductor[id.row()].params(own);
+            Conductor::row::<f32>(&BroadcastParams(params)).reflectance(cosine).into()
+        }
+        MaterialKind::Dielectric => {
+            let color = world.materials.dielectric[id.row()].color * own;
+            if through { color * color } else { color }
+        }
+        // A coat has no color.
+        _ => Rgb::ONE,
+    }
+}
+
+/// Enqueues a shadow ray that starts at a specular sphere, after a segment from the camera to it with this
+/// origin, direction and length; or one that starts at the camera itself.
+pub(super) fn push_segments(
+    job: &Job,
+    work: &mut Workspace,
+    first: Option<(glam::Vec3, glam::Vec3, f64)>,
+    ray: &ShadowRay,
+) {
+    let Some(first) = first else {
+        if !work.shadow_queue.has_room(1) {
+            shadow_queue::trace_shadow_rays(job, work);
+        }
+        work.shadow_queue.push(ray);
+        return;
+    };
+    if !work.caustics.first_segments.has_room() {
+        trace_first_segments(job, work);
+    }
+    work.caustics.first_segments.push(first, ray);
 }
 
 /// Traces the first segments, and enqueues the second ones of those that are not occluded.

@@ -123,6 +123,20 @@ impl FirstSegments {
         self.second.clear();
     }
 
+    /// Appends a segment from the camera with this origin, direction and length, to the sphere at which the
+    /// second one starts. There must be room for it.
+    pub(super) fn push(
+        &mut self,
+        (origin, direction, length): (glam::Vec3, glam::Vec3, f64),
+        second: &ShadowRay,
+    ) {
+        let row = self.rays.len();
+        self.rays.push(origin, direction, MISS);
+        self.rays.target[row] = second.start.1;
+        self.hits.set(row, length, MISS);
+        self.second.push(*second);
+    }
+
     /// Appends the rays in `lanes`, from these spheres and of these paths, with the light that arrives
     /// if they are not occluded.
     pub(super) fn push_row(

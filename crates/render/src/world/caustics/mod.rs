@@ -66,10 +66,10 @@ pub struct CausticCasters {
 pub(crate) struct Caster {
     /// Row of the sphere.
     pub(crate) row: u32,
-    center: DVec3,
-    radius: f64,
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
     /// Index of refraction outside over that inside; 0 for a mirror.
-    index: f64,
+    pub(crate) index: f64,
     /// True if light passes through.
     clear: bool,
     /// Luminance of the reflectance at normal incidence.
@@ -141,6 +141,26 @@ impl CausticCasters {
     /// Returns whether there are no caustics to sample.
     pub fn is_empty(&self) -> bool {
         self.casters.is_empty()
+    }
+
+    /// Returns the number of specular spheres.
+    pub(crate) fn len(&self) -> usize {
+        self.casters.len()
+    }
+
+    /// Returns the number of emitters.
+    pub(crate) fn emitter_count(&self) -> usize {
+        self.emitters.len()
+    }
+
+    /// Returns center and radius of a specular sphere.
+    pub(crate) fn sphere(&self, caster: usize) -> (DVec3, f64) {
+        (self.casters[caster].center, self.casters[caster].radius)
+    }
+
+    /// Returns the specular sphere in a row of the world's; `None` if it casts no caustics that are sampled.
+    pub(crate) fn caster(&self, row: u32) -> Option<&Caster> {
+        self.index_of(row).map(|index| &self.casters[index])
     }
 
     /// Returns whether a sphere casts caustics that are sampled.

@@ -9,7 +9,7 @@ use crate::sampling::{Bases, Cone};
 use crate::scene::Rgb;
 use crate::shade::fresnel;
 use crate::vec3::Vec3;
-use crate::world::Receiver;
+use crate::world::{Receiver, SeenLight};
 use glam::DVec3;
 
 /// A row of surface points, each with a caustic to sample.
@@ -122,6 +122,8 @@ pub(crate) struct CausticHit {
     pub(crate) end: glam::Vec3,
     /// Direction of the ray there.
     pub(crate) toward_emitter: glam::Vec3,
+    /// Expected number of samples of this caustic; `None` for that of a surface.
+    pub(crate) rate: Option<f64>,
 }
 
 /// Samples of half a row, in double precision.
@@ -257,6 +259,49 @@ impl CausticCasters {
         row
     }
 
+    /// Returns a query for samples of one emitter by one sphere and path, from a row of points; `None` if the
+    /// emitter is large as seen from the sphere.
+    pub(crate) fn query(
+        &self,
+        (sphere, source): (u32, CausticSource),
+        path: CausticPath,
+        (point, lanes): (Vec3<F32x16>, u32),
+    ) -> Option<CausticQuery> {
+        let emitter = self.emitters.iter().position(|emitter| emitter.source == source)?;
+        let pair = self.pair(self.index_of(sphere)?, emitter)?;
+        let mut pairs = CasterPairRow::new();
+        set_bits(lanes).for_each(|lane| pairs.set(lane, &pair));
+        Some(CausticQuery { point, pairs, path: [path; MAX_LANES], rate: F32x16::splat(1.0) })
+    }
+
+    /// Returns an emitter as a camera sees it in a specular sphere, and points of the sphere in which it is
+    /// seen; `None` if it is not seen in this way, or is large as seen from the sphere.
+    pub(crate) fn image_in(
+        &self,
+        (caster, emitter): (usize, usize),
+        path: CausticPath,
+        eye: DVec3,
+    ) -> Option<(SeenLight, Vec<DVec3>)> {
+        let through = path != CausticPath::Reflected;
+        let (caster, source) = (&self.casters[caster], self.emitters[emitter].source);
+        if through && !caster.clear {
+            return None;
+        }
+        let point = eye.as_vec3();
+        let points = (Vec3::splat(point.x, point.y, point.z), (1 << MAX_LANES) - 1);
+        let query = self.query((caster.row, source), path, points)?;
+        // A grid over the emitter, up to its rim.
+        let place = |step: usize| (step as f32 + 0.05) / 3.11;
+        let [u, v] = [std::array::from_fn(|i| place(i % 4)), std::array::from_fn(|i| place(i / 4))];
+        let sample = query.sample([F32x16::new(u), F32x16::new(v)]);
+        let hit = |lane: usize| {
+            let toward: glam::Vec3 = sample.toward.map(|row| row.to_array()[lane]).into();
+            eye + toward.as_dvec3() * sample.length[0][lane]
+        };
+        let light = SeenLight { source, sphere: caster.row, through };
+        (sample.lanes != 0).then(|| (light, set_bits(sample.lanes).map(hit).collect()))
+    }
+
     /// Returns the probability with which a path that meets a sphere of a pair goes on to the emitter: 1
     /// for mirrored light that is sampled.
     fn own_probability(&self, at: Angle<f64>, pair: &CasterPair, through: bool) -> f64 {
@@ -291,9 +336,10 @@ impl CausticCasters {
         let outward = (end - pair.offset) / pair.emitter.radius;
         let leaving = -outward.dot(end) / distance[1];
         let arriving = -outward.dot(found.toward_emitter.as_dvec3());
-        let chance = self.rate(&found.start, (emitter, caster), path);
+        let of_surface = || self.rate(&found.start, (emitter, caster), path);
+        let rate = found.rate.unwrap_or_else(of_surface);
         let cone = f64::from(pair.cone.pdf());
-        let density = chance * cone * leaving * sphere.spread(at, &turn) / arriving;
+        let density = rate * cone * leaving * sphere.spread(at, &turn) / arriving;
         let own = f64::from(found.pdf) * self.own_probability(at, &pair, found.through);
         if leaving > 0.0 && arriving > 0.0 && density > 0.0 {
             let ratio = density / own;

@@ -251,10 +251,15 @@ impl Lights {
             .filter_map(move |(i, sun)| sun.is_toward(toward).then_some((i, sun.radiance)))
     }
 
+    /// Returns the index of sun `sun` among all lights.
+    pub(crate) fn sun_index(&self, sun: usize) -> usize {
+        self.emitters.len() + self.points.len() + sun
+    }
+
     /// Returns the density with which a direction toward sun `sun` is sampled.
     pub fn sun_pdf(&self, sun: usize, at: &Receiver) -> f32 {
-        let index = self.emitters.len() + self.points.len() + sun;
-        self.suns[sun].disc.map_or(0.0, |cone| self.probability(at, index) * cone.pdf())
+        let probability = || self.probability(at, self.sun_index(sun));
+        self.suns[sun].disc.map_or(0.0, |cone| probability() * cone.pdf())
     }
 }
 

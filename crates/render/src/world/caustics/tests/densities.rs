@@ -102,6 +102,7 @@ fn densities(
             CausticSource::Sun(_) => toward_emitter,
         },
         toward_emitter,
+        rate: None,
     });
     let ratio = (1.0 / f64::from(chance) - 1.0).sqrt();
     Some([density, density * ratio])
