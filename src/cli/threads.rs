@@ -16,10 +16,3 @@ pub(super) fn pool(count: usize) -> Result<ThreadPool, Failure> {
     let builder = ThreadPoolBuilder::new().num_threads(count);
     builder.build().map_err(|error| Failure::Threads(count, error))
 }
-
-/// Creates a pool of `count` threads, one of which is this thread: so that little memory changes hands
-/// between threads, and a single thread starts no other. A thread can be in one pool only.
-pub(super) fn pool_with_this_thread(count: usize) -> Result<ThreadPool, Failure> {
-    let builder = ThreadPoolBuilder::new().num_threads(count).use_current_thread();
-    builder.build().map_err(|error| Failure::Threads(count, error))
-}

@@ -176,11 +176,6 @@ impl<'a> Job<'a> {
         threads::pool(self.threads)
     }
 
-    /// Creates the thread pool of a process with only one.
-    pub(super) fn only_pool(&self) -> Result<rayon::ThreadPool, Failure> {
-        threads::pool_with_this_thread(self.threads)
-    }
-
     /// Returns the BVH builder for a number of spheres and samples.
     pub(in crate::cli) fn builder(&self, spheres: usize, samples: u64) -> Builder {
         match self.speed.builder {

@@ -93,7 +93,7 @@ fn run_as(
     terminal::check(job.report.terminal)?;
     if args.is_sequence() {
         let files = files(args);
-        return job.only_pool()?.install(|| sequence::run(&job, &files, writer, resumed));
+        return job.pool()?.install(|| sequence::run(&job, &files, writer, resumed));
     }
     if let Some(resumed) = resumed.take_if(|_| args.sequence.first_picture.is_some()) {
         return Err(
@@ -101,10 +101,10 @@ fn run_as(
         );
     }
     if let Some(file) = &args.prepare {
-        return job.only_pool()?.install(|| prepared_file::write(&job, file));
+        return job.pool()?.install(|| prepared_file::write(&job, file));
     }
     picture_file::check(&job.output)?;
-    job.only_pool()?.install(|| render_image(&job, writer, resumed))
+    job.pool()?.install(|| render_image(&job, writer, resumed))
 }
 
 /// Reserves standard output for a single image; rejects it for parts and sequences.
