@@ -121,8 +121,8 @@ def set_world(target, scene):
         height, width, _ = scene.picture.shape
         image = bpy.data.images.new("picture", width, height, float_buffer=True, is_data=True)
         values = np.ones((height, width, 4), dtype=np.float32)
-        # Rows are from below; the columns of Spherule's picture go around the other way, and begin half a turn away.
-        values[:, :, :3] = np.roll(scene.picture[::-1, ::-1], width // 2, axis=1)
+        # Rows are from below; the columns of Spherule's picture begin half a turn away.
+        values[:, :, :3] = np.roll(scene.picture[::-1], width // 2, axis=1)
         image.pixels.foreach_set(values.ravel())
         image.pack()
         texture = tree.nodes.new("ShaderNodeTexEnvironment")

@@ -107,8 +107,7 @@ def sensor(scene, options):
 def environment(scene):
     """Returns the environment, unless it is black."""
     if scene.picture is not None:
-        # The columns of Spherule's picture go around the other way.
-        picture = at_poles(scene.picture[:, ::-1]).astype(np.float32)
+        picture = at_poles(scene.picture).astype(np.float32)
         turn = mi.ScalarTransform4f().rotate([0, 1, 0], -90)
         return {"environment": {"type": "envmap", "bitmap": mi.Bitmap(picture), "to_world": turn}}
     color = rgb(scene.table.get("environment", {}).get("color", 1))

@@ -127,7 +127,8 @@ impl Picture {
         let rows: Box<[_]> = (0..=height).map(|row| PatchRow::new(row, width, height)).collect();
         let mut picture = Self {
             scale,
-            axes: Basis { tangent: axes.x_axis, bitangent: axes.y_axis, normal: axes.z_axis },
+            // Columns run clockwise about the pole, so that from inside the picture is as painted.
+            axes: Basis { tangent: axes.x_axis, bitangent: -axes.y_axis, normal: axes.z_axis },
             rows,
             parts: Vec::new(),
             image,

@@ -319,3 +319,14 @@ fn rows_equal_their_lanes() {
         }
     }
 }
+
+#[test]
+fn from_inside_it_is_as_painted() {
+    let pixels = (0..WIDTH * HEIGHT).map(|i| [(i % WIDTH) as f32; 3]).collect();
+    let image = Image::new(WIDTH as u32, HEIGHT as u32, pixels).unwrap();
+    let picture = Picture::new(Arc::new(image), DVec3::Z, 0.0, 1.0);
+    // Facing the middle, -x, the greater columns are to the right: +y if up is z.
+    let column = |toward| picture.radiance(toward).x;
+    assert!((column(Vec3::NEG_X) - 5.5).abs() < 1e-4);
+    assert!((column(Vec3::Y) - 8.5).abs() < 1e-4 && (column(Vec3::NEG_Y) - 2.5).abs() < 1e-4);
+}
