@@ -172,7 +172,7 @@ fn layers_of_parts_are_those_of_the_whole() {
 #[test]
 fn merging_one_file_changes_nothing() {
     let mut scene = still_life();
-    (scene.settings.until_error, scene.settings.spp) = (Some(0.2), 4096);
+    (scene.settings.until_error, scene.settings.spp) = (Some(0.5), 4096);
     let world = World::build(&scene).expect("the scene is sound");
     let mut alone =
         ResumableRender::begin(&world, &scene.settings, &STATISTICS).expect("settings in range");

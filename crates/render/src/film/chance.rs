@@ -8,15 +8,14 @@ use std::ops::Add;
 /// samples on it is between 0.2 and 0.6 in images of lamps.
 const EDGES: f64 = 0.5;
 
-/// Sums over the near misses of a tile's probes, from [`NearMisses`].
+/// Sums over the near misses of a tile's probes, from [`NearMisses`]: for each probe and stream in the order of
+/// its samples, so that they do not depend on the batches in which samples are taken.
 ///
 /// [`NearMisses`]: crate::integrator::near_misses::NearMisses
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ChanceLight {
-    /// Sums for steering and for judging probes.
-    roles: [Term; 2],
-    /// Sum of the squares of the terms, each of one probe, of both roles.
-    squares: f64,
+    /// By probe; empty before the first near miss.
+    terms: Vec<Term>,
     /// Light of the hits, by stream and channel; empty before the first.
     hits: Vec<[f64; 3]>,
 }
@@ -49,11 +48,10 @@ pub struct ChanceVariance {
 }
 
 impl ChanceLight {
-    /// Adds the terms of a probe of one role.
-    pub fn add(&mut self, role: Role, term: Term) {
-        let sum = &mut self.roles[role as usize];
-        *sum = *sum + term;
-        self.squares += (term.rare + term.edges).powi(2);
+    /// Adds a term of one probe, of `probes`.
+    pub fn add(&mut self, (probe, probes): (usize, usize), term: Term) {
+        self.terms.resize(probes, Term::default());
+        self.terms[probe] = self.terms[probe] + term;
     }
 
     /// Adds the light of a hit to the stream of its sample, of `streams`.
@@ -64,10 +62,9 @@ impl ChanceLight {
 
     /// Adds other samples of the same probes.
     pub(super) fn merge(&mut self, other: &Self) {
-        for (sum, term) in self.roles.iter_mut().zip(other.roles) {
-            *sum = *sum + term;
+        for (probe, term) in other.terms.iter().enumerate() {
+            self.add((probe, other.terms.len()), *term);
         }
-        self.squares += other.squares;
         for (stream, light) in other.hits.iter().enumerate() {
             self.add_hit((stream, other.hits.len()), *light);
         }
@@ -75,9 +72,9 @@ impl ChanceLight {
 
     /// Returns whether all sums are numbers, and none is negative.
     pub(super) fn is_valid(&self) -> bool {
-        let terms = self.roles.iter().flat_map(Term::all);
+        let terms = self.terms.iter().flat_map(Term::all);
         let hits = self.hits.iter().flatten().copied();
-        terms.chain([self.squares]).chain(hits).all(|sum| sum.is_finite() && sum >= 0.0)
+        terms.chain(hits).all(|sum| sum.is_finite() && sum >= 0.0)
     }
 
     /// Returns the variance of the mean of `samples` samples, by `probes` probes of each role with as many.
@@ -88,14 +85,14 @@ impl ChanceLight {
         }
         let (n, pairs) = (f64::from(samples), probes as f64 * f64::from(samples));
         let at_edges = EDGES / n.sqrt();
-        let [steer, judge] = self.roles;
-        let both = steer + judge;
+        let both = self.terms.iter().fold(Term::default(), |sum, term| sum + *term);
+        let squares: f64 = self.terms.iter().map(|term| (term.rare + term.edges).powi(2)).sum();
         let of_role = self.hits.chunks_exact(2).skip(role as usize).step_by(2);
         let squared = of_role.flat_map(|hits| (0..3).map(|c| (hits[0][c] - hits[1][c]).powi(2)));
         ChanceVariance {
             expected: (both.rare + both.edges * at_edges) / (2.0 * pairs) / n,
             found: squared.sum::<f64>() / 6.0 / (pairs * n),
-            uncertainty: self.squares / (2.0 * pairs * n).powi(2),
+            uncertainty: squares / (2.0 * pairs * n).powi(2),
             spread: both.fourth / (2.0 * pairs) / n.powi(3),
         }
     }

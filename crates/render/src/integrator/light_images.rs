@@ -131,10 +131,16 @@ impl SeenLights {
         self.pixels[path]
     }
 
-    /// Collects the lights of a pixel, each once, and whether their images are tiny.
-    fn collect(&self, job: &Job, pixel: [u32; 2], lights: &mut Vec<(SeenLight, bool)>) {
+    /// Collects the selected lights of a pixel, each once, and whether their images are tiny.
+    fn collect(
+        &self,
+        job: &Job,
+        pixel: [u32; 2],
+        selected: &impl Fn(&SeenLight) -> bool,
+        lights: &mut Vec<(SeenLight, bool)>,
+    ) {
         lights.clear();
-        for image in &self.images {
+        for image in self.images.iter().filter(|image| selected(&image.light)) {
             let light = (image.light, image.is_tiny());
             if image.reaches(pixel, job.filter.radius()) && !lights.contains(&light) {
                 lights.push(light);
@@ -153,11 +159,19 @@ struct PixelRow<'a> {
     lens: Option<[F32x16; 2]>,
 }
 
-/// Samples the lights that camera rays may see, in their pixels.
+/// Samples the lights that camera rays may see, in their pixels: first those by way of spheres, then the others,
+/// so that the light of a path is added in an order that does not depend on other paths.
 pub(super) fn sample(job: &Job, work: &mut Workspace) {
     if work.seen_lights.is_empty() {
         return;
     }
+    sample_lights(job, work, |light| light.sphere != MISS);
+    caustics::flush(job, work);
+    sample_lights(job, work, |light| light.sphere == MISS);
+}
+
+/// Samples those of the lights that `selected` returns true for.
+fn sample_lights(job: &Job, work: &mut Workspace, selected: impl Fn(&SeenLight) -> bool) {
     let (mut lights, mut last) = (Vec::new(), None);
     for first in (0..work.len()).step_by(MAX_LANES) {
         let mut numbers = None;
@@ -170,7 +184,7 @@ pub(super) fn sample(job: &Job, work: &mut Workspace) {
             let lanes = first_lanes(lane + same) & !first_lanes(lane);
             lane += same;
             if last.replace(pixel) != Some(pixel) {
-                work.seen_lights.collect(job, pixel, &mut lights);
+                work.seen_lights.collect(job, pixel, &selected, &mut lights);
             }
             if lights.is_empty() {
                 continue;

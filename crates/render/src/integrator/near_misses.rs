@@ -21,7 +21,7 @@ use super::Job;
 use super::caustics;
 use super::path_state::PreviousBounce;
 use super::workspace::Workspace;
-use crate::film::{ChanceLight, Role, Term};
+use crate::film::{ChanceLight, Term};
 use crate::ray::{GROUND, MISS};
 use crate::sampling::{Basis, Cone, cap, mix, next_in_square};
 use crate::scene::{Integrator, Rgb};
@@ -30,7 +30,7 @@ use crate::world::{CausticSource, World};
 use glam::{DVec2, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::FRAC_2_PI;
-use std::ops::Add;
+use std::ops::{Add, Range};
 
 /// Minimum of 1 - cos of the half-angle of the cone about a light: 0.15 radian.
 const CONE: f32 = 0.01125;
@@ -45,8 +45,8 @@ const TESTED: usize = 16;
 /// Near misses of a batch of paths.
 #[derive(Default)]
 pub struct NearMisses {
-    /// Samples of each stream in the batch, if its paths belong to probes; otherwise 0.
-    samples: u32,
+    /// Samples of each stream in the batch, if its paths belong to probes; otherwise none.
+    samples: Range<u32>,
     rows: Vec<NearMiss>,
     /// [`part_in_view`] of each light that a camera ray has passed.
     in_view: HashMap<Light, Option<f32>>,
@@ -94,8 +94,8 @@ struct Target {
 
 /// Records the near misses of the current rays, once their hits are known.
 pub(super) fn record(job: &Job, work: &mut Workspace, bounce: u32) {
-    let samples = work.near_misses.samples;
-    if samples == 0 {
+    let samples = work.near_misses.samples.clone();
+    if samples.is_empty() {
         return;
     }
     let NearMisses { mut rows, mut in_view, .. } = std::mem::take(&mut work.near_misses);
@@ -116,10 +116,11 @@ pub(super) fn record(job: &Job, work: &mut Workspace, bounce: u32) {
             );
         }
         let stride = lights.emitters.len().div_ceil(TESTED).max(1);
-        let first = Group::of(work.states.path(row) as u32, samples).hash(bounce) as usize % stride;
+        let first =
+            Group::of(work.states.path(row) as u32, &samples).hash(bounce) as usize % stride;
         for emitter in (first..lights.emitters.len()).step_by(stride) {
             rows.extend(near_emitter(job.world, work, row, emitter).and_then(|target| {
-                let density = density(job.world, work.rays.own[row], &target, &mut in_view)?;
+                let density = density(job.world, work.rays.own[row], target.light, &mut in_view)?;
                 near_miss(job, work, (row, bounce, previous), (&target, stride as f32 / density))
             }));
         }
@@ -195,20 +196,32 @@ fn cone_height(light: f32) -> f32 {
 fn density(
     world: &World,
     own: u32,
-    target: &Target,
+    light: Light,
     in_view: &mut HashMap<Light, Option<f32>>,
 ) -> Option<f32> {
     if own != MISS || world.camera.is_orthographic() {
         return Some(1.0);
     }
-    let part = || part_in_view(world, target.center, target.height);
-    *in_view.entry(target.light).or_insert_with(part)
+    *in_view.entry(light).or_insert_with(|| part_in_view(world, light))
 }
 
-/// Returns the part of the cone about a light that is in the picture; `None` if the light's center is not.
-fn part_in_view(world: &World, center: Vec3, height: f32) -> Option<f32> {
+/// Returns the part of the cone about a light that is in the picture, as seen from the middle of the lens; `None`
+/// if the light's center is not.
+fn part_in_view(world: &World, light: Light) -> Option<f32> {
     const DIRECTIONS: usize = 64;
     let camera = &world.camera;
+    let (center, height) = match light {
+        Light::Sun(index) => {
+            let sun = &world.lights.suns[index];
+            (sun.direction, sun.disc?.height())
+        }
+        Light::Emitter(index) => {
+            let (center, radius) = world.spheres.exact(world.lights.emitters[index] as usize);
+            let toward = center - camera.eye;
+            let cone = Cone::toward_sphere(toward.length_squared(), radius)?;
+            (toward.normalize().as_vec3(), cone.height())
+        }
+    };
     let in_view = |toward: Vec3| {
         let seen = camera.view(camera.eye + toward.as_dvec3());
         let size = DVec2::new(camera.width.into(), camera.height.into());
@@ -282,29 +295,28 @@ fn overlap(distance: f32, angle: f32) -> f32 {
 }
 
 impl NearMisses {
-    /// Starts to record the near misses of a batch of probes, with `samples` samples in each stream.
-    pub fn start(&mut self, samples: u32) {
+    /// Starts to record the near misses of a batch of probes, with these samples of each stream.
+    pub fn start(&mut self, samples: Range<u32>) {
         self.samples = samples;
     }
 
     /// Ends a batch, and adds its near misses to the sums of a tile with this number of streams.
     pub fn finish(&mut self, sums: &mut ChanceLight, streams: usize) {
         let samples = std::mem::take(&mut self.samples);
-        let probe = |near: &NearMiss| Group::of(near.path, samples).probe;
         let event =
-            |near: &NearMiss| (Group::of(near.path, samples), near.bounce, near.light, near.own);
+            |near: &NearMiss| (Group::of(near.path, &samples), near.bounce, near.light, near.own);
         self.rows.sort_unstable_by_key(|near| (event(near), near.path));
         for near in self.rows.iter().filter(|near| near.hit) {
             let light = near.value.to_array().map(f64::from);
-            sums.add_hit(((near.path / samples) as usize, streams), light);
+            sums.add_hit(((near.path / samples.len() as u32) as usize, streams), light);
         }
-        for rows in self.rows.chunk_by(|a, b| probe(a) == probe(b)) {
-            let terms = rows.chunk_by(|a, b| event(a) == event(b)).map(|same| match same {
+        for same in self.rows.chunk_by(|a, b| event(a) == event(b)) {
+            let term = match same {
                 [a, b] => pair(a, b),
                 _ => same.iter().map(single).fold(Term::default(), Add::add),
-            });
-            let role = if probe(&rows[0]) % 2 == 0 { Role::Steer } else { Role::Judge };
-            sums.add(role, terms.fold(Term::default(), Add::add));
+            };
+            let probe = Group::of(same[0].path, &samples).probe as usize;
+            sums.add((probe, streams / 2), term);
         }
         self.rows.clear();
     }
@@ -318,9 +330,10 @@ struct Group {
 }
 
 impl Group {
-    /// Returns the group of a path, in a batch with `samples` samples in each stream.
-    fn of(path: u32, samples: u32) -> Self {
-        Self { probe: path / samples / 2, sample: path % samples }
+    /// Returns the group of a path, in a batch with these samples of each stream.
+    fn of(path: u32, samples: &Range<u32>) -> Self {
+        let count = samples.len() as u32;
+        Self { probe: path / count / 2, sample: samples.start + path % count }
     }
 
     /// Returns a hash of the group at a bounce.
@@ -360,6 +373,7 @@ fn pair(a: &NearMiss, b: &NearMiss) -> Term {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::Role;
     use crate::sampling::{stream, unit};
 
     fn near(path: u32, across: f32, hit: bool) -> NearMiss {
@@ -405,7 +419,7 @@ mod tests {
     #[test]
     fn a_batch_adds_the_near_misses_of_its_samples() {
         let mut all = NearMisses::default();
-        all.start(4);
+        all.start(8..12);
         // Streams 0 and 1 are a steering probe, 2 and 3 a judge: samples 1 of the first are a pair.
         all.rows = vec![near(5, 0.004, false), near(1, 0.0, true), near(10, 0.0, false)];
         let mut sums = ChanceLight::default();
@@ -416,6 +430,6 @@ mod tests {
         assert!(steer.expected > 0.0 && judge.found == 0.0);
         // One hit of light 2 among four samples of one stream: half its square.
         assert_eq!(steer.found, (2.0_f64 / 4.0).powi(2) / 2.0);
-        assert_eq!(all.samples, 0);
+        assert!(all.samples.is_empty());
     }
 }

@@ -92,7 +92,6 @@ fn shade<M: Material>(
     if job.has_lights() {
         let lanes = shading.lanes & !bsdf.is_delta().bits();
         sample_direct_light::<M>(job, work, bounce.index, (&shading, &bsdf, lanes));
-        caustics::enqueue_queries(job, work, bounce.index, (&shading, lanes), material);
     }
     let mirrors = M::HAS_DIFFUSE_BASE && job.samples_mirrored_light();
     if mirrors {
@@ -108,6 +107,11 @@ fn shade<M: Material>(
         let throughput = shading.surface_row.state.throughput;
         let factor = || throughput.times(bsdf.mirrored(shading.outgoing));
         sample_mirrored_light(job, work, (&row, lanes), factor);
+    }
+    // After all other light of these paths, which is added in this order for any composition of batches.
+    if job.has_lights() {
+        let lanes = shading.lanes & !bsdf.is_delta().bits();
+        caustics::enqueue_queries(job, work, bounce.index, (&shading, lanes), material);
     }
     spawn_rays::<M>(job, work, bounce, (&shading, &bsdf, mirrors));
 }

@@ -129,7 +129,7 @@ pub(super) fn probe_pass(
         work.clock.restart();
         let rays = work.counters.rays();
         let streams = tile.probes.starts(job.sampler);
-        work.near_misses.start(count);
+        work.near_misses.start(range.clone());
         let paths =
             trace_paths(job, (tile.view, std::iter::once(tile.region)), (streams, range), work);
         let streams = tile.probes.streams();
