@@ -2,6 +2,7 @@
 
 use super::StopCondition;
 use super::estimate::neighbors;
+use crate::elementary::{log2, pow};
 use crate::film::{Film, Role, Tile};
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +39,7 @@ impl Slope {
 
     /// Returns the exponent: variance is inversely proportional to this power of the number of samples.
     pub fn exponent(&self) -> f64 {
-        let exponent = (self.sums[0] / self.sums[1]).log2();
+        let exponent = log2(self.sums[0] / self.sums[1]);
         if exponent.is_finite() { exponent.clamp(EXPONENTS.0, EXPONENTS.1) } else { 1.0 }
     }
 }
@@ -119,7 +120,7 @@ impl Benefit {
     fn of(film: &Film, stop: &StopCondition, exponent: f64) -> Vec<Self> {
         let count = film.tiles.len();
         // Noise and pixels of each tile, as for one sample.
-        let power = |samples: u32| f64::from(samples.max(1)).powf(exponent);
+        let power = |samples: u32| pow(f64::from(samples.max(1)), exponent);
         let measured = |tile: &Tile| tile.probes.streams() > 0;
         let rows: Vec<(f64, f64)> = film
             .tiles
