@@ -14,6 +14,7 @@ mod layers;
 mod looks;
 mod memory;
 mod outputs;
+mod packages;
 mod particles;
 mod parts;
 mod pictures;
