@@ -3,6 +3,7 @@
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use spherule_core::internals::bvh::builders::{Builder, build};
+use spherule_core::internals::elementary::{ceil_log2, power_of_two};
 use spherule_core::internals::spheres::Spheres;
 use spherule_render::scene::generate::{Field, Generator, Volume};
 use std::hint::black_box;
@@ -12,7 +13,7 @@ use std::time::Duration;
 fn spheres(generator: &Generator) -> Spheres {
     let from = generator.generate(1).expect("parameters are valid").spheres;
     let reach = (0..from.len()).map(|i| from.center(i).abs().max_element()).fold(0.0, f64::max);
-    let scale = (-reach.log2().ceil()).exp2();
+    let scale = power_of_two(-ceil_log2(reach));
     let column = |values: &[f64]| values.iter().map(|x| (x * scale) as f32).collect::<Vec<_>>();
     let [x, y, z] = [column(&from.x), column(&from.y), column(&from.z)];
     Spheres::from_columns(&x, &y, &z, &column(&from.radius))

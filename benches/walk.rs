@@ -2,6 +2,8 @@
 //! choice, for four classes of rays; also without the exact decision, to measure its cost. Rays are generated
 //! beforehand, and hits are compared with those of single rays.
 
+#![allow(clippy::disallowed_methods, reason = "scenes that are only timed")]
+
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::Vec3;
 use spherule_core::internals::bvh::builders::{Builder, build};

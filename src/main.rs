@@ -2,6 +2,8 @@
 //!
 //! The command line is parsed to `Args` and validated as a job, which calls `spherule-render` and `spherule-measure`.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
+
 mod cli;
 
 use std::process::ExitCode;

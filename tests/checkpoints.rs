@@ -1,6 +1,8 @@
 //! Modified checkpoints and parts: damaged ones are refused, and forged ones with a correct hash are refused
 //! or harmless. Neither crashes the program or makes it allocate without bound.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
+
 mod common;
 
 use cap::Cap;

@@ -17,7 +17,7 @@ use super::particles::ParticleArgs;
 use super::sequences::SequenceArgs;
 use super::slices::SliceArgs;
 use super::views::{StyleArgs, ViewArgs};
-use super::{Failure, bench, compare, examples, merge, part, status, stress, view};
+use super::{Failure, bench, compare, examples, merge, part, status, stress, version, view};
 use clap::{Parser, Subcommand};
 use spherule_render::image::Format;
 use std::path::PathBuf;
@@ -71,6 +71,12 @@ pub(super) enum Command {
     /// Print a completion script for a shell
     #[command(after_help = examples::COMPLETIONS)]
     Completions(CompletionsArgs),
+    /// Write the manual pages of all commands to a folder
+    #[command(hide = true)]
+    Man(ManArgs),
+    /// Print the version with details: `--version --verbose`
+    #[command(skip)]
+    Version,
 }
 
 #[derive(Debug, Parser)]
@@ -151,6 +157,12 @@ pub(super) struct CompletionsArgs {
     pub(super) shell: clap_complete::Shell,
 }
 
+#[derive(Debug, clap::Args)]
+pub(super) struct ManArgs {
+    /// Existing folder
+    pub(super) folder: PathBuf,
+}
+
 /// Help of the option that names the output image.
 pub(super) fn picture_help() -> String {
     format!(
@@ -169,6 +181,9 @@ impl Args {
     /// or a usage error.
     pub(super) fn of_process() -> Result<Command, Failure> {
         let default = || Command::Render(Box::new(RenderArgs::parse_from(["spherule"])));
+        if version::is_asked_in_detail(&std::env::args_os().collect::<Vec<_>>()) {
+            return Ok(Command::Version);
+        }
         let args = Self::try_parse_from(command_line()?).map_err(Failure::Usage)?;
         Ok(args.command.unwrap_or_else(default))
     }

@@ -48,7 +48,7 @@ fn complete(mut line: Vec<OsString>) -> Result<Vec<OsString>, Failure> {
 fn commands() -> Vec<String> {
     let mut program = Args::command();
     program.build();
-    let commands = program.get_subcommands();
+    let commands = program.get_subcommands().filter(|command| !command.is_hide_set());
     commands.flat_map(|command| command.get_name_and_visible_aliases()).map(str::to_owned).collect()
 }
 

@@ -84,7 +84,8 @@ pub(crate) enum Failure {
     Window(String),
     #[error(
         "this program was compiled for a processor with {0}, which this processor does not have; build it on \
-         this machine: cargo build --release"
+         this machine (cargo build --release), or install the archive or package, whose programs suit every \
+         processor"
     )]
     Processor(String),
 }

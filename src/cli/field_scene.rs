@@ -1,6 +1,7 @@
 //! Light, ground and cameras for generated spheres.
 
 use glam::DVec3;
+use spherule_render::elementary::tan;
 use spherule_render::scene::generate::{Field, GenerateError, Generator, Group, default_scene};
 use spherule_render::scene::{
     Camera, Environment, EnvironmentMap, Lens, Material, NamedMaterial, Pose, Projection, Rgb,
@@ -53,7 +54,7 @@ fn weekend(group: Group, seed: u64) -> Scene {
     let top = Rgb::new(0.5, 0.7, 1.0);
     let map = EnvironmentMap::Gradient { bottom, top, up: DVec3::Y };
     // The book's cone of 0.6 degrees at distance 10.
-    let aperture = 2.0 * 10.0 * 0.3_f64.to_radians().tan();
+    let aperture = 2.0 * 10.0 * tan(0.3_f64.to_radians());
     let scene = default_scene(seed);
     Scene {
         title: "Ray Tracing in One Weekend, final scene".to_owned(),

@@ -16,6 +16,7 @@ mod files;
 mod frames;
 mod info;
 mod invocation;
+mod man;
 mod memory;
 mod merge;
 mod names;
@@ -36,6 +37,7 @@ mod status;
 mod stress;
 mod threads;
 mod values;
+mod version;
 mod view;
 mod views;
 mod with_text;
@@ -61,5 +63,7 @@ pub(crate) fn run() -> Result<ExitCode, Failure> {
         Command::Stress(args) => stress::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Completions(args) => Ok(completions::run(&args)),
+        Command::Man(args) => man::run(&args),
+        Command::Version => Ok(version::print_in_detail()),
     }
 }

@@ -1,15 +1,46 @@
-//! Check that this processor has the instructions that the program was compiled for.
+//! The instructions that the program was compiled for, and those that this processor has.
 //!
 //! The standard library's `is_x86_feature_detected!` does not help: it returns true for features that the
 //! program was compiled with. So the check queries the processor itself.
 
 use super::Failure;
+use spherule_levels::Level;
+use std::env;
 
 /// Returns an error if the program would stop at an illegal instruction.
 #[inline(never)]
 pub(super) fn check() -> Result<(), Failure> {
     let missing = missing(&required());
     if missing.is_empty() { Ok(()) } else { Err(Failure::Processor(missing.join(", "))) }
+}
+
+/// Returns the level of the program, and why it is this one.
+pub(super) fn level() -> String {
+    let (compiled, available) = (Level::compiled(), Level::of_processor());
+    if compiled >= available {
+        format!("{compiled}, the highest that this processor has")
+    } else if is_forced(compiled) {
+        format!("{compiled}, as SPHERULE_LEVEL says; this processor has {available}")
+    } else {
+        format!("{compiled}, which it was compiled for; this processor has {available}")
+    }
+}
+
+/// Returns how to get a faster program, if this processor has a higher level than this one was compiled for.
+pub(super) fn advice() -> Option<String> {
+    let (compiled, available) = (Level::compiled(), Level::of_processor());
+    (compiled < available && !is_forced(compiled)).then(|| {
+        format!(
+            "this program was compiled for {compiled}, and this processor has {available}, with which renders \
+             are faster and give the same images: install the archive or package of Spherule, or compile it \
+             with RUSTFLAGS=\"-C target-cpu=native\""
+        )
+    })
+}
+
+/// Returns whether the user asked for a level by the variable that the launcher of packages reads.
+fn is_forced(level: Level) -> bool {
+    env::var("SPHERULE_LEVEL").is_ok_and(|name| name == level.name())
 }
 
 /// An instruction set: its name, whether the program was compiled for it, whether the processor has

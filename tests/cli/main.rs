@@ -1,4 +1,6 @@
 //! The program as users run it: commands, messages, exit codes and files.
+
+#![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
 #![cfg(feature = "cli")]
 
 mod bench;
@@ -12,6 +14,7 @@ mod layers;
 mod looks;
 mod memory;
 mod outputs;
+mod packages;
 mod particles;
 mod parts;
 mod pictures;

@@ -3,6 +3,8 @@
 //!
 //! `SPHERULE_FAULT_SECONDS=600 cargo test --release --test faults` kills for ten minutes instead of a few
 //! seconds. Moments are random in every run; `SPHERULE_FAULT_SEED`, which a failed run prints, repeats them.
+
+#![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
 #![cfg(all(feature = "cli", target_os = "linux"))]
 
 mod damage;

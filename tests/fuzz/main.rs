@@ -13,6 +13,8 @@
 //! reported like others, with the name of a file in `target/tmp` that contains the reduced input. Fix the
 //! reader, and add the input to the corpus.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
+
 mod mutate;
 mod png;
 mod process;

@@ -1,6 +1,8 @@
 //! Tests of the library: images, traversals, BVHs, queries and readers, compared with closed forms and
 //! oracles.
 
+#![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
+
 #[path = "../common/mod.rs"]
 mod common;
 

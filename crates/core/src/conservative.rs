@@ -39,6 +39,14 @@
 //!   what is left of `96 K (r + T)` is for rounding: so the hit is not beyond `t - half + (r / 64 + 96 K
 //!   (r + T)) / |d|`, but for what may underflow: three of what follows, in the difference of squares.
 //!
+//! Every bound holds whether a product is fused with the sum that follows or rounded before
+//! ([`Lanes::relaxed_mul_add`]). Fused, `f.d`, `d.d` and the square of `p` have as many roundings in their
+//! longest chain: three, three and four. The products `K T`, `half (1 + 2 K)` and `f - t d` are counted
+//! with theirs. That leaves the square of the reach, which is then off by `u (r + x)^2`: the difference
+//! of squares is still too large by `5 u r^2`, as `x^2 - y^2` outweighs the rest, and the half chord's
+//! inequality holds with that; where the signs turn around, `(x - y)(2 r - x - y)` is at least
+//! `6 u (r - x)^2`.
+//!
 //! Underflow: worlds are scaled so that their largest coordinate is about 1, and origins are no
 //! farther than 2^20, so nothing overflows, and what underflows is less than 2^-120 in squares.
 
@@ -84,7 +92,7 @@ impl<L: Lanes> ConservativeRay<L> {
     /// `direction` is neither zero nor so long or short that its square overflows or underflows.
     #[inline(always)]
     pub fn new(origin: Vec3<L>, direction: Vec3<L>) -> Self {
-        let length2 = direction.dot(direction);
+        let length2 = direction.relaxed_dot(direction);
         Self {
             origin,
             direction,
@@ -203,13 +211,14 @@ impl<L: Lanes> Chord<L> {
     #[inline(always)]
     pub fn new(ray: &ConservativeRay<L>, center: Vec3<L>, radius: L) -> Self {
         let to_center = center - ray.origin;
-        let middle = to_center.dot(ray.direction) * ray.inverse_length2;
-        let perpendicular = to_center.along(ray.direction, -middle);
-        let distance2 = perpendicular.dot_add(perpendicular, L::splat(-UNDERFLOW));
-        let reach = middle.abs().mul_add(ray.band, radius * L::splat(1.0 + K));
-        let chord2 = reach.mul_add(reach, -distance2);
+        let middle = to_center.relaxed_dot(ray.direction) * ray.inverse_length2;
+        let perpendicular = to_center.relaxed_along(ray.direction, -middle);
+        let distance2 = perpendicular.relaxed_dot_add(perpendicular, L::splat(-UNDERFLOW));
+        let reach = middle.abs().relaxed_mul_add(ray.band, radius * L::splat(1.0 + K));
+        let chord2 = reach.relaxed_mul_add(reach, -distance2);
         let slack = middle.abs() * L::splat(K);
-        let half = (chord2 * ray.inverse_length2).sqrt().mul_add(L::splat(1.0 + 2.0 * K), slack);
+        let half =
+            (chord2 * ray.inverse_length2).sqrt().relaxed_mul_add(L::splat(1.0 + 2.0 * K), slack);
         Self { middle, distance2, half, slack }
     }
 
@@ -233,8 +242,11 @@ impl<L: Lanes> Chord<L> {
     pub fn near_at_most(&self, radius: L, margin: &Margin<L>) -> L {
         const ERRORS: f32 = 96.0;
         let per_radius = L::splat(ERRORS + 1.0 / (64.0 * K));
-        let part = radius.mul_add(per_radius, L::splat(4.0 * ROOT_OF_UNDERFLOW / K));
-        self.slack.mul_add(L::splat(ERRORS), part.mul_add(margin.inverse_band, self.near()))
+        let part = radius.relaxed_mul_add(per_radius, L::splat(4.0 * ROOT_OF_UNDERFLOW / K));
+        self.slack.relaxed_mul_add(
+            L::splat(ERRORS),
+            part.relaxed_mul_add(margin.inverse_band, self.near()),
+        )
     }
 
     /// The lanes whose ray starts outside the sphere and enters it, for certain. Outside is also beyond
@@ -243,7 +255,7 @@ impl<L: Lanes> Chord<L> {
     pub fn enters(&self, ray: &ConservativeRay<L>, radius: L, margin: &Margin<L>) -> L::Mask {
         let zero = L::splat(0.0);
         // The far hit is not before the middle, which is off by at most this.
-        let error = radius.mul_add(margin.inverse_band, self.slack);
+        let error = radius.relaxed_mul_add(margin.inverse_band, self.slack);
         let outside = self.near() * (self.middle - error);
         zero.lt(self.least_chord2(ray, radius))
             & zero.lt(self.near())
@@ -273,14 +285,14 @@ impl<L: Lanes> Chord<L> {
     fn least_chord2(&self, ray: &ConservativeRay<L>, radius: L) -> L {
         let reach = radius * L::splat(1.0 - K) - self.middle.abs() * ray.band;
         let reach = reach.max(L::splat(0.0));
-        reach.mul_add(reach, -(self.distance2 + L::splat(2.0 * UNDERFLOW)))
+        reach.relaxed_mul_add(reach, -(self.distance2 + L::splat(2.0 * UNDERFLOW)))
     }
 }
 
 impl<L: Lanes> Margin<L> {
     #[inline(always)]
     fn about(&self, radius: L) -> L {
-        radius.mul_add(self.per_radius, self.least)
+        radius.relaxed_mul_add(self.per_radius, self.least)
     }
 }
 

@@ -31,9 +31,11 @@
 //! `-C target-cpu=native`, or name the processor that the program is for.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
 
 mod bvh;
 mod conservative;
+mod elementary;
 mod exact;
 mod intersect;
 mod lanes;
@@ -60,6 +62,10 @@ pub mod internals {
     /// The conservative test in single precision.
     pub mod conservative {
         pub use crate::conservative::*;
+    }
+    /// Elementary functions that are the same on every platform.
+    pub mod elementary {
+        pub use crate::elementary::*;
     }
     /// The exact decision, on integers.
     pub mod exact {

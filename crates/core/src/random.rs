@@ -1,5 +1,6 @@
 //! Random numbers for scenes and rays: the same for a seed on every machine.
 
+use crate::elementary::{self, cos, sin};
 use glam::DVec3;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -31,7 +32,7 @@ impl Random {
 
     /// Ten to a power that is uniform between two numbers.
     pub fn decades(&mut self, range: [f64; 2]) -> f64 {
-        10_f64.powf(self.between(range))
+        elementary::pow(10.0, self.between(range))
     }
 
     /// Uniform in `0..count`; 0 for none.
@@ -58,14 +59,14 @@ impl Random {
     pub fn direction(&mut self) -> DVec3 {
         let (z, angle) = (self.between([-1.0, 1.0]), TAU * self.unit());
         let radius = (1.0 - z * z).sqrt();
-        DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
+        DVec3::new(radius * cos(angle), radius * sin(angle), z)
     }
 
     /// Uniform on the unit circle at right angles to a unit vector.
     pub fn perpendicular(&mut self, to: DVec3) -> DVec3 {
         let (side, other) = to.any_orthonormal_pair();
         let angle = TAU * self.unit();
-        side * angle.cos() + other * angle.sin()
+        side * cos(angle) + other * sin(angle)
     }
 }
 

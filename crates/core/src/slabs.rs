@@ -142,8 +142,8 @@ impl Slabs {
             let splat = |x: &[f32; 4]| F32x8::splat(x[axis]);
             let first = F32x8::load(&planes[axis][usize::from(negative)]);
             let second = F32x8::load(&planes[axis][usize::from(!negative)]);
-            let enter = Lanes::mul_add(first, splat(&self.near[0]), splat(&self.near[1]));
-            let leave = Lanes::mul_add(second, splat(&self.far[0]), splat(&self.far[1]));
+            let enter = Lanes::relaxed_mul_add(first, splat(&self.near[0]), splat(&self.near[1]));
+            let leave = Lanes::relaxed_mul_add(second, splat(&self.far[0]), splat(&self.far[1]));
             near = Lanes::max(enter, near);
             far = Lanes::min(leave, far);
         }

@@ -36,12 +36,6 @@ impl<L: Lanes> Vec3<L> {
         Self { x: L::splat(x), y: L::splat(y), z: L::splat(z) }
     }
 
-    /// Scalar product plus `term`: three fused multiply-adds.
-    #[inline(always)]
-    pub fn dot_add(self, other: Self, term: L) -> L {
-        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z.mul_add(other.z, term)))
-    }
-
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> L {
@@ -55,6 +49,33 @@ impl<L: Lanes> Vec3<L> {
             x: direction.x.mul_add(t, self.x),
             y: direction.y.mul_add(t, self.y),
             z: direction.z.mul_add(t, self.z),
+        }
+    }
+}
+
+/// Products and sums as [`Lanes::relaxed_mul_add`] rounds them: for bounds.
+impl<L: Lanes> Vec3<L> {
+    /// Scalar product.
+    #[inline(always)]
+    pub fn relaxed_dot(self, other: Self) -> L {
+        let last = self.z * other.z;
+        self.x.relaxed_mul_add(other.x, self.y.relaxed_mul_add(other.y, last))
+    }
+
+    /// Scalar product plus `term`.
+    #[inline(always)]
+    pub fn relaxed_dot_add(self, other: Self, term: L) -> L {
+        let last = self.z.relaxed_mul_add(other.z, term);
+        self.x.relaxed_mul_add(other.x, self.y.relaxed_mul_add(other.y, last))
+    }
+
+    /// `self + direction * t`.
+    #[inline(always)]
+    pub fn relaxed_along(self, direction: Self, t: L) -> Self {
+        Self {
+            x: direction.x.relaxed_mul_add(t, self.x),
+            y: direction.y.relaxed_mul_add(t, self.y),
+            z: direction.z.relaxed_mul_add(t, self.z),
         }
     }
 }

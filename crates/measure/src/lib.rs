@@ -9,9 +9,13 @@
 //! This crate is internal to the program; anything here may change in any release.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
 
+#[allow(clippy::disallowed_methods, reason = "fits of timings, which no image shows")]
 pub mod bench;
+#[allow(clippy::disallowed_methods, reason = "a baseline that is timed, not compared")]
 pub mod paper;
+#[allow(clippy::disallowed_methods, reason = "scales of plots, which no image shows")]
 pub mod report;
 pub mod stress;
 pub mod workload;

@@ -41,7 +41,7 @@ impl Cell {
     pub(crate) fn of_lengths(lengths: [f64; 3], angles: [f64; 3]) -> Option<Self> {
         let [a, b, c] = lengths;
         // Right angles are exact.
-        let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { angle.to_radians().cos() };
+        let cosine = |angle: f64| if angle == 90.0 { 0.0 } else { libm::cos(angle.to_radians()) };
         let [alpha, beta, gamma] = angles.map(cosine);
         let sine = (1.0 - gamma * gamma).sqrt();
         let tilt = (alpha - beta * gamma) / sine;

@@ -43,7 +43,7 @@ use super::invocation::Invocation;
 use super::progress::Meter;
 use super::views::draw_over as draw_look;
 use super::write_file::write_file;
-use super::{Failure, output, picture_file, signals};
+use super::{Failure, output, picture_file, processor, signals};
 use spherule_render::overlay::Matte;
 use spherule_render::render::{End, Options, Render, RenderError, ResumableRender};
 use spherule_render::scene::Scene;
@@ -88,6 +88,11 @@ fn run_as(
 ) -> Result<ExitCode, Failure> {
     prepared_file::refuse_sequence(args)?;
     let job = Job::new(args)?;
+    if !job.report.quiet
+        && let Some(advice) = processor::advice()
+    {
+        output::note(advice);
+    }
     check_stream(args)?;
     check_bar(&job)?;
     terminal::check(job.report.terminal)?;

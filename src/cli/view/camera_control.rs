@@ -1,6 +1,7 @@
 //! Camera control: orbit about a pivot, pan, and zoom toward the pointer.
 
 use glam::{DQuat, DVec2, DVec3};
+use spherule_render::elementary::{acos, rotation, tan};
 use spherule_render::scene::{Camera, Lens, Pose, Projection};
 
 /// Minimum angle between the view direction and the vertical axis, in radians.
@@ -96,9 +97,7 @@ impl CameraControl {
     /// Height of the view at the pivot, in the scene's unit.
     fn height(&self) -> f64 {
         match self.camera.projection {
-            Projection::Perspective { fov } => {
-                2.0 * self.distance() * (fov.to_radians() / 2.0).tan()
-            }
+            Projection::Perspective { fov } => 2.0 * self.distance() * tan(fov.to_radians() / 2.0),
             Projection::Orthographic { height } => height.unwrap_or(2.0 * self.size),
         }
     }
@@ -111,19 +110,18 @@ impl CameraControl {
     /// Orbits about the pivot by angles in radians: the scene turns to the right, and downward.
     pub(super) fn orbit(&mut self, turn: DVec2) {
         let Axes { right, forward, .. } = self.axes();
-        let height = forward.dot(self.vertical).clamp(-1.0, 1.0).acos();
+        let height = acos(forward.dot(self.vertical).clamp(-1.0, 1.0));
         let tilt = (height + turn.y).clamp(POLE, std::f64::consts::PI - POLE) - height;
         // The limit does not apply if the view already is vertical.
         let tilt = if turn.y == 0.0 { 0.0 } else { tilt };
-        let turn =
-            DQuat::from_axis_angle(self.vertical, -turn.x) * DQuat::from_axis_angle(right, -tilt);
+        let turn = rotation(self.vertical, -turn.x) * rotation(right, -tilt);
         self.turn(turn);
     }
 
     /// Rolls the camera by an angle in radians: the scene turns counterclockwise.
     pub(super) fn roll(&mut self, angle: f64) {
         let Axes { up, forward, .. } = self.axes();
-        self.camera.up = DQuat::from_axis_angle(forward, angle) * up;
+        self.camera.up = rotation(forward, angle) * up;
     }
 
     fn turn(&mut self, turn: DQuat) {
@@ -186,7 +184,7 @@ impl CameraControl {
         let default = Camera::default().projection;
         self.camera.projection = default;
         if let Projection::Perspective { fov } = default {
-            let distance = height / 2.0 / (fov.to_radians() / 2.0).tan();
+            let distance = height / 2.0 / tan(fov.to_radians() / 2.0);
             let target = self.eye() + forward * self.distance();
             self.pivot = target;
             self.place(target - forward * distance, forward, distance);

@@ -9,6 +9,7 @@ use super::image::Picture;
 use super::keys;
 use super::loading::Loading;
 use glam::DVec2;
+use spherule_render::elementary::pow;
 use spherule_render::scene::particles::Legend;
 use spherule_render::scene::{Background, Camera, Look, Settings};
 
@@ -198,11 +199,11 @@ impl Viewer {
             Event::Press { button, held, double } => return self.press(button, held, double),
             Event::Release => return self.release(),
             Event::Wheel(steps, held) if held.shift => {
-                self.control.scale_field_of_view(WIDER.powf(-steps));
+                self.control.scale_field_of_view(pow(WIDER, -steps));
                 self.change();
             }
             Event::Wheel(steps, _) => {
-                self.control.zoom(WHEEL.powf(steps), self.to_image_heights(self.pointer));
+                self.control.zoom(pow(WHEEL, steps), self.to_image_heights(self.pointer));
                 self.change();
             }
             Event::Key(key) => {
@@ -241,7 +242,7 @@ impl Viewer {
         match self.drag {
             Some(Drag::Turn) => self.control.orbit(DVec2::new(moved.x, -moved.y) * TURN),
             Some(Drag::Pan) => self.control.pan(moved),
-            Some(Drag::Zoom) => self.control.zoom(DRAG.powf(-moved.y), DVec2::ZERO),
+            Some(Drag::Zoom) => self.control.zoom(pow(DRAG, -moved.y), DVec2::ZERO),
             Some(Drag::Roll) => self.control.roll(-moved.x * TURN),
             Some(Drag::Click(..) | Drag::CutPlane(_)) | None => return,
         }

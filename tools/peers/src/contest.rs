@@ -1,6 +1,7 @@
 //! Both systems on the same rays, by turns.
 
 use crate::embree::{Call, Scene};
+use crate::levels::Runner;
 use crate::rays::{Class, Rays};
 use crate::referee::{Referee, Verdicts};
 use crate::scenes::Columns;
@@ -9,6 +10,7 @@ use serde::Serialize;
 use spherule_core::SphereTree;
 use spherule_core::{Hits, NOTHING, QueryError};
 use spherule_measure::workload::SphereScene;
+use std::error::Error;
 use std::time::Duration;
 
 /// One way to ask Embree.
@@ -36,6 +38,8 @@ pub struct Outcome {
     pub fastest: Entry,
     pub embree: f64,
     pub spherule: f64,
+    /// Spherule compiled for other processor levels.
+    pub levels: Vec<(String, f64)>,
     /// Rays that Spherule decided in arithmetic without rounding.
     pub exact: u64,
     pub verdicts: Verdicts,
@@ -55,11 +59,11 @@ pub struct Contest<'a> {
 }
 
 /// Room for answers.
-struct Answers {
-    spheres: Vec<u32>,
+pub struct Answers {
+    pub spheres: Vec<u32>,
     embree_t: Vec<f32>,
-    spherule_t: Vec<f64>,
-    occluded: Vec<bool>,
+    pub spherule_t: Vec<f64>,
+    pub occluded: Vec<bool>,
 }
 
 impl Entry {
@@ -84,7 +88,7 @@ impl Entry {
 }
 
 impl Answers {
-    fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Self {
             spheres: vec![NOTHING; count],
             embree_t: vec![0.0; count],
@@ -96,16 +100,17 @@ impl Answers {
 
 impl Contest<'_> {
     /// Measures one class of rays: a heat of all ways to ask Embree, then rounds of the fastest
-    /// `finalists` and Spherule by turns.
+    /// `finalists` and Spherule by turns, for every level.
     ///
     /// # Errors
-    /// Columns of different lengths.
+    /// Columns of different lengths, or a level that has other answers.
     pub fn run(
         &self,
         (class, rays): (Class, &Rays),
         entries: &[Entry],
         (rounds, finalists): (u32, u32),
-    ) -> Result<Outcome, QueryError> {
+        runners: &mut [Runner],
+    ) -> Result<Outcome, Box<dyn Error>> {
         let mut answers = Answers::new(rays.len());
         let rate = |seconds: f64| rays.len() as f64 / seconds / 1e6;
         let mut heat: Vec<(Entry, f64)> = Vec::new();
@@ -117,12 +122,18 @@ impl Contest<'_> {
         let finalists = &heat[..heat.len().min(finalists as usize)];
         let mut embree = vec![Vec::new(); finalists.len()];
         let mut spherule = Vec::new();
+        let mut levels = vec![Vec::new(); runners.len()];
         for _ in 0..rounds {
             for ((entry, _), seconds) in finalists.iter().zip(&mut embree) {
                 seconds.push(self.embree(class, rays, *entry, &mut answers));
             }
             spherule.push(self.spherule(class, rays, &mut answers)?.0);
+            for (runner, seconds) in runners.iter_mut().zip(&mut levels) {
+                seconds.push(runner.run(class, &answers)?);
+            }
         }
+        let names = runners.iter().map(|runner| runner.level.clone());
+        let levels = names.zip(levels.iter_mut().map(|seconds| rate(median(seconds))));
         let medians = embree.iter_mut().map(|seconds| median(seconds));
         let mut order: Vec<_> = finalists.iter().map(|(entry, _)| *entry).zip(medians).collect();
         order.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -136,6 +147,7 @@ impl Contest<'_> {
             fastest,
             embree: rate(seconds),
             spherule: rate(median(&mut spherule)),
+            levels: levels.collect(),
             exact,
             verdicts,
             heat,
@@ -166,21 +178,7 @@ impl Contest<'_> {
         rays: &Rays,
         answers: &mut Answers,
     ) -> Result<(f64, u64), QueryError> {
-        let columns = rays.columns();
-        let Answers { spherule_t: t, spheres: sphere, occluded, .. } = answers;
-        let (mut clock, mut exact) = (Clock::default(), 0);
-        while clock.goes_on() {
-            t.fill(f64::INFINITY);
-            let tally = clock.time(|| {
-                if class.is_any() {
-                    self.tree.occluded_columns(&columns, t, occluded)
-                } else {
-                    self.tree.intersect_columns(&columns, Hits { t, sphere, surface: None })
-                }
-            })?;
-            exact = tally.exact;
-        }
-        Ok((clock.mean(), exact))
+        spherule(self.tree, class, rays, answers)
     }
 
     /// Where the systems differ, and the share of rays that hit something.
@@ -226,6 +224,33 @@ impl Contest<'_> {
             }
         }
     }
+}
+
+/// Seconds that Spherule takes, and rays that needed arithmetic without rounding.
+///
+/// # Errors
+/// Columns of different lengths.
+pub fn spherule(
+    tree: &SphereTree,
+    class: Class,
+    rays: &Rays,
+    answers: &mut Answers,
+) -> Result<(f64, u64), QueryError> {
+    let columns = rays.columns();
+    let Answers { spherule_t: t, spheres: sphere, occluded, .. } = answers;
+    let (mut clock, mut exact) = (Clock::default(), 0);
+    while clock.goes_on() {
+        t.fill(f64::INFINITY);
+        let tally = clock.time(|| {
+            if class.is_any() {
+                tree.occluded_columns(&columns, t, occluded)
+            } else {
+                tree.intersect_columns(&columns, Hits { t, sphere, surface: None })
+            }
+        })?;
+        exact = tally.exact;
+    }
+    Ok((clock.mean(), exact))
 }
 
 /// Adds up runs until they can be told from the clock's grain: in time of the processor, which other

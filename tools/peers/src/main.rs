@@ -3,6 +3,7 @@
 mod builds;
 mod contest;
 mod embree;
+mod levels;
 mod options;
 mod rays;
 mod referee;
@@ -13,6 +14,7 @@ use builds::Builds;
 use clap::Parser;
 use contest::{Contest, Entry, Outcome};
 use embree::{Device, EmbreeError, Scene};
+use levels::Runner;
 use options::Options;
 use rays::Seen;
 use scenes::Columns;
@@ -40,6 +42,11 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    if options.serve {
+        return levels::serve(options);
+    }
+    let runners = options.level.iter().map(|program| Runner::start(program, options));
+    let mut runners = runners.collect::<Result<Vec<_>, _>>()?;
     let (mut outcomes, mut builds) = (Vec::new(), Vec::new());
     for &scene in &options.scenes {
         let spheres = Columns::of(scene)?;
@@ -47,7 +54,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             writeln!(stderr(), "{}: builds", scene.name)?;
             builds.push(builds::measure(options, scene, &spheres)?);
         }
-        trace(options, scene, &spheres, &mut outcomes)?;
+        trace(options, (scene, &spheres), &mut runners, &mut outcomes)?;
     }
     report::write(&mut stdout().lock(), options, &outcomes, &builds)?;
     if let Some(path) = &options.json {
@@ -60,8 +67,8 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 /// Measures all classes of rays in a scene.
 fn trace(
     options: &Options,
-    scene: SphereScene,
-    spheres: &Columns,
+    (scene, spheres): (SphereScene, &Columns),
+    runners: &mut [Runner],
     outcomes: &mut Vec<Outcome>,
 ) -> Result<(), Box<dyn Error>> {
     let Columns { x, y, z, radius } = spheres;
@@ -82,6 +89,9 @@ fn trace(
     let entries = Entry::all(embree.len(), &options.calls);
     let picture = (options.side.next_multiple_of(4), options.order);
     let seen = Seen::new(scene.flat, spheres, &tree, picture)?;
+    for runner in &mut *runners {
+        runner.load(scene)?;
+    }
     for &class in &options.classes {
         writeln!(stderr(), "{}: {} rays", scene.name, report::name(&class))?;
         let rays = seen.rays(class);
@@ -89,7 +99,10 @@ fn trace(
             continue;
         }
         let limits = (options.rounds, options.finalists);
-        outcomes.push(contest.run((class, &rays), &entries, limits)?);
+        for runner in &mut *runners {
+            runner.make_rays(class, &rays)?;
+        }
+        outcomes.push(contest.run((class, &rays), &entries, limits, runners)?);
     }
     Ok(())
 }

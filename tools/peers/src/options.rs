@@ -1,6 +1,7 @@
 //! The command line.
 
 use crate::embree::{Build, Device, EmbreeError};
+use crate::levels::Program;
 use crate::rays::{Class, Order};
 use clap::{Parser, ValueEnum};
 use spherule_measure::workload::SphereScene;
@@ -61,6 +62,15 @@ pub struct Options {
     /// Lets Embree test boxes so that rounding loses nothing.
     #[arg(long)]
     pub robust: bool,
+
+    /// This program compiled for another processor level, as v3=FILE; may be given several times. Each runs in
+    /// the rounds too, and must find the same hits.
+    #[arg(long, value_name = "LEVEL=FILE")]
+    pub level: Vec<Program>,
+
+    /// Measures for another process of this program.
+    #[arg(long, hide = true)]
+    pub serve: bool,
 
     /// Does not measure builds.
     #[arg(long)]

@@ -5,6 +5,7 @@ use crate::contest::{Entry, Outcome};
 use crate::options::Options;
 use crate::rays::Class;
 use clap::ValueEnum;
+use spherule_core::internals::elementary::{exp, ln};
 use std::io::{self, Write};
 
 /// Writes the tables.
@@ -19,6 +20,9 @@ pub fn write(
 ) -> io::Result<()> {
     rates(out, options, outcomes)?;
     means(out, outcomes)?;
+    if outcomes.iter().any(|outcome| !outcome.levels.is_empty()) {
+        levels(out, outcomes)?;
+    }
     if !builds.is_empty() {
         costs(out, builds)?;
     }
@@ -65,6 +69,41 @@ fn means(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
     row("all".to_owned(), outcomes.iter().collect())
 }
 
+/// Rates of programs for other processor levels, and their ratios to Embree's.
+fn levels(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
+    writeln!(out, "\n| scene, rays | level | Spherule, Mrays/s | ratio |")?;
+    writeln!(out, "|---|---|--:|--:|")?;
+    for outcome in outcomes {
+        for (level, rate) in &outcome.levels {
+            let (scene, class, ratio) =
+                (outcome.scene, name(&outcome.class), rate / outcome.embree);
+            writeln!(out, "| {scene}, {class} | {level} | {rate:.2} | {ratio:.2} |")?;
+        }
+    }
+    let names = outcomes.first().map(|outcome| outcome.levels.iter().map(|level| &level.0));
+    writeln!(out, "\n| geometric means of ratios | level | ratio |")?;
+    writeln!(out, "|---|---|--:|")?;
+    for level in names.into_iter().flatten() {
+        let ratio = |outcome: &Outcome| {
+            let of = outcome.levels.iter().find(|(name, _)| name == level);
+            of.map_or(f64::NAN, |(_, rate)| rate / outcome.embree)
+        };
+        let mut row = |name: &str, of: Vec<&Outcome>| {
+            if of.is_empty() {
+                return Ok(());
+            }
+            let mean = geometric_mean(of.into_iter().map(ratio));
+            writeln!(out, "| {name} | {level} | {mean:.2} |")
+        };
+        for &class in Class::value_variants() {
+            let of = outcomes.iter().filter(|outcome| outcome.class == class).collect();
+            row(&name(&class), of)?;
+        }
+        row("all", outcomes.iter().collect())?;
+    }
+    Ok(())
+}
+
 fn costs(out: &mut impl Write, builds: &[Builds]) -> io::Result<()> {
     writeln!(out, "\n| build | system | 1 thread, ms | 2 threads, ms | bytes/sphere | at most |")?;
     writeln!(out, "|---|---|--:|--:|--:|--:|")?;
@@ -100,7 +139,7 @@ fn differences(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
 
 fn geometric_mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len() as f64;
-    (values.map(f64::ln).sum::<f64>() / count).exp()
+    exp(values.map(ln).sum::<f64>() / count)
 }
 
 /// Such as `8 coherent, sorted, simd256`.

@@ -49,7 +49,7 @@ impl Beam {
         let mut met = !0;
         for side in &self.sides {
             let (reach, size) = most(side.normal);
-            let slack = size.mul_add(F32x8::splat(ROUNDING), F32x8::splat(self.margin));
+            let slack = size.relaxed_mul_add(F32x8::splat(ROUNDING), F32x8::splat(self.margin));
             // False for what is nowhere, whose coordinates are infinite or no numbers.
             met &= Lanes::lt(F32x8::splat(side.offset), reach + slack).bits();
         }
@@ -62,7 +62,7 @@ impl Beam {
             let (mut reach, mut size) = (F32x8::splat(0.0), F32x8::splat(0.0));
             for (planes, along) in node.planes.iter().zip(normal) {
                 let corner = F32x8::load(&planes[usize::from(along >= 0.0)]);
-                reach = corner.mul_add(F32x8::splat(along), reach);
+                reach = corner.relaxed_mul_add(F32x8::splat(along), reach);
                 size += Lanes::abs(corner);
             }
             (reach, size)
@@ -76,7 +76,7 @@ impl Beam {
             let (mut reach, mut size) = (radius, radius);
             for (center, along) in [&block.x, &block.y, &block.z].into_iter().zip(normal) {
                 let center = F32x8::load(center);
-                reach = center.mul_add(F32x8::splat(along), reach);
+                reach = center.relaxed_mul_add(F32x8::splat(along), reach);
                 size += Lanes::abs(center);
             }
             (reach, size)

@@ -26,6 +26,7 @@ pub use traversal::{
     Any, Closest, PacketWidth, Query, Tracer, Traversal, Unverified, Visits, count_visits, trace,
 };
 
+use crate::elementary;
 use crate::lanes::U32x16;
 use crate::spheres::{LEAF, Spheres};
 use glam::Vec3;
@@ -194,9 +195,12 @@ impl Bvh {
         let some = nodes.iter().step_by(nodes.len().div_ceil(SAMPLES).max(1));
         let leaves =
             some.flat_map(Node::children).filter(|(child, _)| child.kind() == Child::BLOCK);
-        let edges: Vec<f32> =
-            leaves.map(|(_, bounds)| (bounds.high - bounds.low).max_element().log2()).collect();
-        let mean_leaf_extent = (edges.iter().sum::<f32>() / edges.len().max(1) as f32).exp2();
+        let edges: Vec<f32> = leaves
+            .map(|(_, bounds)| (bounds.high - bounds.low).max_element())
+            .map(elementary::log2f)
+            .collect();
+        let mean_leaf_extent =
+            elementary::exp2f(edges.iter().sum::<f32>() / edges.len().max(1) as f32);
         Self { nodes, mean_leaf_extent }
     }
 

@@ -68,7 +68,7 @@ pub(super) struct Candidate<L: Lanes> {
 /// Returns a distance beyond which spheres are hardly hit that are not hit before `near`.
 #[inline(always)]
 pub(super) fn likely_distance<L: Lanes>(near: L, radius: L) -> L {
-    near.mul_add(L::splat(1.0 + LIKELY_DISTANCE), radius * L::splat(LIKELY_RADIUS))
+    near.relaxed_mul_add(L::splat(1.0 + LIKELY_DISTANCE), radius * L::splat(LIKELY_RADIUS))
 }
 
 impl<L: Lanes> SphereLanes<L> {

@@ -147,14 +147,16 @@ fn interval_slabs<L: Lanes>(rays: &Rays, row: usize, lanes: u32) -> Slabs {
     Slabs::between(interval(&rays.origin), interval(&rays.direction))
 }
 
-/// Returns the boxes of the spheres of a block, rounded outward as those of the tree are.
+/// Returns the boxes of the spheres of a block, rounded outward as those of the tree are: products with
+/// powers of two are exact, and where the margin is not lost, it outweighs what rounding the other
+/// product takes.
 #[inline(always)]
 pub(super) fn sphere_boxes(block: &SphereBlock) -> Planes {
     let widen = F32x8::splat(1.0 + 2.0 * f32::EPSILON);
-    let radius = Lanes::mul_add(F32x8::load(&block.radius), widen, F32x8::splat(MARGIN));
+    let radius = Lanes::relaxed_mul_add(F32x8::load(&block.radius), widen, F32x8::splat(MARGIN));
     let slab = |center: &[f32; LEAF]| {
         let center = F32x8::load(center);
-        let reach = Lanes::mul_add(Lanes::abs(center), F32x8::splat(f32::EPSILON), radius);
+        let reach = Lanes::relaxed_mul_add(Lanes::abs(center), F32x8::splat(f32::EPSILON), radius);
         [(center - reach).to_array(), (center + reach).to_array()]
     };
     [slab(&block.x), slab(&block.y), slab(&block.z)]

@@ -1,5 +1,6 @@
 //! Numbers that never round: whole multiples of powers of two.
 
+use crate::elementary::power_of_two;
 use num_bigint::{BigInt, Sign};
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -53,9 +54,9 @@ impl Dyadic {
         let top = i128::try_from(&top).unwrap_or(0) as f64;
         let exponent = self.exponent + surplus as i64;
         // In two steps, neither of which leaves the range where the result does not.
-        let half = exponent.clamp(-2000, 2000) / 2;
-        let rest = exponent.clamp(-2000, 2000) - half;
-        top * (half as f64).exp2() * (rest as f64).exp2()
+        let half = exponent.clamp(-2000, 2000) as i32 / 2;
+        let rest = exponent.clamp(-2000, 2000) as i32 - half;
+        top * power_of_two(half) * power_of_two(rest)
     }
 }
 

@@ -5,13 +5,14 @@
 //! that names `wide`.
 //!
 //! Everything here rounds each lane as IEEE 754 says, without horizontal operations, so a lane's
-//! result does not depend on how many lanes there are. `#[inline(always)]` is on everything that
+//! result depends neither on how many lanes there are nor on the processor. `#[inline(always)]` is on everything that
 //! takes or returns lanes here and in the kernels, because a wide value that crosses a real call
 //! goes through memory.
 
 mod across;
 mod bits;
 mod doubles;
+mod fused;
 mod masks;
 
 pub use across::{
@@ -57,8 +58,14 @@ pub trait Lanes:
     /// # Panics
     /// If there are fewer.
     fn store(self, row: &mut [f32]);
-    /// `self * factor + term`, rounded once where the target has fused multiply-add.
+    /// `self * factor + term`, rounded once on every processor.
     fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// `self * factor + term`, rounded once where the processor has an instruction for it, and twice
+    /// elsewhere: for bounds that hold in both cases, and for nothing that an image shows.
+    #[inline(always)]
+    fn relaxed_mul_add(self, factor: Self, term: Self) -> Self {
+        if fused::IN_HARDWARE { self.mul_add(factor, term) } else { self * factor + term }
+    }
     /// Square root; NaN below 0.
     fn sqrt(self) -> Self;
     /// Magnitude.
@@ -126,11 +133,11 @@ impl Lanes for f32 {
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {
-        // As `wide` does: without the instruction, the fused form would be a call into a library.
-        if cfg!(target_feature = "fma") {
+        // Without the instruction, the standard library's is a call.
+        if fused::IN_HARDWARE {
             Self::mul_add(self, factor, term)
         } else {
-            self * factor + term
+            fused::mul_add(self, factor, term)
         }
     }
     #[inline(always)]
@@ -211,7 +218,12 @@ macro_rules! impl_lanes {
             }
             #[inline(always)]
             fn mul_add(self, factor: Self, term: Self) -> Self {
-                self.mul_add(factor, term)
+                if fused::IN_HARDWARE {
+                    self.mul_add(factor, term)
+                } else {
+                    let rows = [self, factor, term].map(Self::to_array);
+                    Self::new(fused::mul_add_row(rows[0], rows[1], rows[2]))
+                }
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -223,11 +235,21 @@ macro_rules! impl_lanes {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
-                self.fast_min(other)
+                // Only the instructions of x86 define which of two zeros, or of a number and NaN, is the
+                // lesser.
+                if cfg!(target_arch = "x86_64") {
+                    self.fast_min(other)
+                } else {
+                    wide::Select::select(self.simd_lt(other), self, other)
+                }
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                self.fast_max(other)
+                if cfg!(target_arch = "x86_64") {
+                    self.fast_max(other)
+                } else {
+                    wide::Select::select(self.simd_gt(other), self, other)
+                }
             }
             #[inline(always)]
             fn lt(self, other: Self) -> Self::Mask {

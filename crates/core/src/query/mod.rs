@@ -15,6 +15,7 @@ pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, build};
 use crate::bvh::{Any, Closest, Tree};
+use crate::elementary;
 use crate::spheres::Spheres;
 use columns::same_length;
 use glam::{DVec3, Vec3};
@@ -90,7 +91,11 @@ impl SphereTree {
             let [x, y, z, radius] = wide(i);
             largest.max(DVec3::new(x, y, z).abs().max_element() + radius)
         });
-        let scale = if largest > 0.0 { (-largest.log2().ceil()).exp2() } else { 1.0 };
+        let scale = if largest > 0.0 {
+            elementary::power_of_two(-elementary::ceil_log2(largest))
+        } else {
+            1.0
+        };
         let scaled = |i: usize| wide(i).map(|value| value * scale);
         let mut spheres = Spheres::with_capacity(count);
         let mut rounded = false;

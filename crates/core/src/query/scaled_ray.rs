@@ -4,6 +4,7 @@
 use super::batch::FoundHit;
 use super::{SphereTree, Tally};
 use crate::bvh::{Query, trace_one};
+use crate::elementary;
 use crate::exact::{self, Distance};
 use crate::intersect;
 use crate::ray::ExactRay;
@@ -60,7 +61,7 @@ impl SphereTree {
         if !(origin.is_finite() && direction.is_finite() && longest > 0.0) {
             return None;
         }
-        let shrink = (-longest.log2().floor()).exp2();
+        let shrink = elementary::power_of_two(-elementary::floor_log2(longest));
         let (origin, direction) = (origin * self.scale, direction * shrink);
         let ray = ExactRay { origin, direction, origin_error: 0.0 };
         Some(ScaledRay { ray, unit: shrink / self.scale })

@@ -18,16 +18,16 @@ pub struct NamedScene {
 /// Name of the program's default scene.
 pub const FIELD: &str = "field";
 
-/// Built-in scenes, from the folder `scenes`.
+/// Built-in scenes, by links to the folder `scenes` of the repository, which packages replace by the files.
 const FILES: [(&str, &str); 8] = [
-    ("furnace", include_str!("../../../../scenes/furnace.toml")),
-    ("glass-nested", include_str!("../../../../scenes/glass-nested.toml")),
-    ("mirror-sky", include_str!("../../../../scenes/mirror-sky.toml")),
-    ("paper-field-20", include_str!("../../../../scenes/paper-field-20.toml")),
-    ("smallpt", include_str!("../../../../scenes/smallpt.toml")),
-    ("sphereflake", include_str!("../../../../scenes/sphereflake.toml")),
-    ("veach", include_str!("../../../../scenes/veach.toml")),
-    ("weekend", include_str!("../../../../scenes/weekend.toml")),
+    ("furnace", include_str!("../../scenes/furnace.toml")),
+    ("glass-nested", include_str!("../../scenes/glass-nested.toml")),
+    ("mirror-sky", include_str!("../../scenes/mirror-sky.toml")),
+    ("paper-field-20", include_str!("../../scenes/paper-field-20.toml")),
+    ("smallpt", include_str!("../../scenes/smallpt.toml")),
+    ("sphereflake", include_str!("../../scenes/sphereflake.toml")),
+    ("veach", include_str!("../../scenes/veach.toml")),
+    ("weekend", include_str!("../../scenes/weekend.toml")),
 ];
 
 impl NamedScene {

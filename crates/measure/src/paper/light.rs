@@ -4,6 +4,7 @@ use super::random::{Cells, Random};
 use super::shape::{EPSILON, Ray, Sphere};
 use super::{Tracer, Unsupported};
 use glam::{DVec2, DVec3};
+use spherule_render::elementary::sin;
 use spherule_render::scene::{self, Scene};
 use std::f64::consts::{PI, TAU};
 
@@ -46,9 +47,9 @@ impl Light {
             }
             scene::Light::Sun { direction, irradiance, angular_radius } => {
                 let angle = angular_radius.to_radians();
-                let projected_angle = if angle > 0.0 { PI * angle.sin().powi(2) } else { 1.0 };
+                let projected_angle = if angle > 0.0 { PI * sin(angle).powi(2) } else { 1.0 };
                 let radiance = irradiance.as_dvec3() / projected_angle;
-                Self::Sun { direction, radiance, height: 2.0 * (angle / 2.0).sin().powi(2) }
+                Self::Sun { direction, radiance, height: 2.0 * sin(angle / 2.0).powi(2) }
             }
             _ => return Err(Unsupported::Light),
         })

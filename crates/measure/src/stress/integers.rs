@@ -14,6 +14,7 @@
 
 use super::rays::Ray;
 use num_bigint::{BigInt, Sign};
+use spherule_render::elementary::power_of_two;
 use std::cmp::Ordering;
 
 /// Binary places of the first attempt to compare distances.
@@ -175,7 +176,7 @@ fn quotient(numerator: BigInt, denominator: &BigInt, exponent: i32) -> DoubleDou
 /// Returns `x 2^exponent`, in two steps that overflow only if the result does.
 fn scale_by_power(x: f64, exponent: i64) -> f64 {
     let exponent = exponent.clamp(-2000, 2000) as i32;
-    x * f64::from(exponent / 2).exp2() * f64::from(exponent - exponent / 2).exp2()
+    x * power_of_two(exponent / 2) * power_of_two(exponent - exponent / 2)
 }
 
 /// Splits a finite number into the magnitude of its significand and its exponent.

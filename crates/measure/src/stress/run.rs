@@ -11,6 +11,7 @@ use super::surface;
 use glam::DVec3;
 use rayon::prelude::*;
 use spherule_core::internals::random::Random;
+use spherule_render::elementary::atan2;
 use spherule_render::query::{Hits, NOTHING, QueryError, SphereTree, Surface};
 use spherule_render::sampling::{mix, stream};
 
@@ -147,7 +148,7 @@ fn difference(x: f64, expected: DoubleDouble) -> f64 {
 fn angle(found: DVec3, expected: &[DoubleDouble; 3]) -> f64 {
     let unit = DVec3::from(expected.map(|component| component.high));
     let rest = DVec3::from(std::array::from_fn(|i| difference(found[i], expected[i])));
-    unit.cross(rest).length().atan2(found.dot(unit))
+    atan2(unit.cross(rest).length(), found.dot(unit))
 }
 
 /// Answers of [`Form::Spherule`] to the rays of a scene.

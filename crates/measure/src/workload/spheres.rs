@@ -1,6 +1,7 @@
 //! Generated sets of spheres.
 
 use glam::DVec3;
+use spherule_render::elementary::{ceil_log2, cos, exp, ln, power_of_two};
 use spherule_render::memory::{self, Shortage};
 use spherule_render::sampling::{mix, stream, unit_pair};
 use spherule_render::scene::generate::{Field, GenerateError, Generator, Lattice, Volume};
@@ -131,14 +132,14 @@ fn cloud(count: u64) -> [Vec<f64>; 4] {
     let column = |i: u64| (0..count).map(move |row| normal(4 * row + i));
     let centers = [0, 1, 2].map(|i| column(i).map(|x| 50.0 * x).collect());
     let [x, y, z] = centers;
-    [x, y, z, column(3).map(|x| 0.05 * (1.2 * x).exp()).collect()]
+    [x, y, z, column(3).map(|x| 0.05 * exp(1.2 * x)).collect()]
 }
 
 /// Returns normally distributed number `position` of a sequence (Box, Muller, "A Note on the Generation
 /// of Random Normal Deviates", Annals of Mathematical Statistics 1958).
 fn normal(position: u64) -> f64 {
     let [u, v] = unit_pair(stream(mix(SEED), position)).map(f64::from);
-    (-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()
+    (-2.0 * ln(1.0 - u)).sqrt() * cos(TAU * v)
 }
 
 fn near_origin([x, y, z, radius]: &[Vec<f64>; 4]) -> Spheres {
@@ -146,7 +147,7 @@ fn near_origin([x, y, z, radius]: &[Vec<f64>; 4]) -> Spheres {
     let centers = x.iter().zip(y).zip(z).map(|((&x, &y), &z)| DVec3::new(x, y, z));
     let [low, high] = centers.fold(none, |[low, high], at| [low.min(at), high.max(at)]);
     let (middle, extent) = ((low + high) / 2.0, ((high - low) / 2.0).max_element());
-    let scale = (-extent.log2().ceil()).exp2();
+    let scale = power_of_two(-ceil_log2(extent));
     let column = |values: &[f64], middle: f64| {
         values.iter().map(|value| ((value - middle) * scale) as f32).collect::<Vec<_>>()
     };

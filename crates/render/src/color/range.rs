@@ -1,5 +1,6 @@
 //! Ranges of numbers, and positions in them.
 
+use crate::elementary::ln;
 use rayon::prelude::*;
 
 /// Spacing of numbers between the ends of a range.
@@ -104,7 +105,7 @@ impl Range {
         // Halves, so that no difference overflows.
         let along = |number: f64| match self.spacing {
             Spacing::Linear => number / 2.0,
-            Spacing::Logarithmic => number.max(0.0).ln(),
+            Spacing::Logarithmic => ln(number.max(0.0)),
         };
         let (low, high) = (along(self.low), along(self.high));
         let offset = along(value) - low;

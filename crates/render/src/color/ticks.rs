@@ -1,6 +1,7 @@
 //! Ticks: round numbers of a range, and their labels.
 
 use super::{Range, Spacing};
+use crate::elementary::{log10, power_of_ten};
 
 /// A tick of a range.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,8 +45,8 @@ struct Round {
 impl Round {
     fn value(self) -> f64 {
         // Divides by a power that is exact if its inverse is not.
-        let power = 10_f64.powi(self.exponent.abs().min(300));
-        let rest = 10_f64.powi((self.exponent.abs() - 300).max(0));
+        let power = power_of_ten(self.exponent.unsigned_abs().min(300));
+        let rest = power_of_ten(self.exponent.unsigned_abs().saturating_sub(300));
         if self.exponent < 0 { self.whole / power / rest } else { self.whole * power * rest }
     }
 }
@@ -57,7 +58,7 @@ fn linear(range: &Range, most: usize) -> Vec<Round> {
     let half = range.high() / 2.0 - range.low() / 2.0;
     // Differences below this are smaller than the rounding error.
     let finest = 1e-12 * range.low().abs().max(range.high().abs());
-    let least = (half / most as f64).max(finest).log10().floor() as i32;
+    let least = log10((half / most as f64).max(finest)).floor() as i32;
     let steps = (least..).flat_map(|exponent| [1, 2, 5].map(|whole| (f64::from(whole), exponent)));
     for (whole, exponent) in steps {
         let step = Round { whole, exponent }.value();
@@ -76,7 +77,7 @@ fn linear(range: &Range, most: usize) -> Vec<Round> {
 fn logarithmic(range: &Range, most: usize) -> Vec<Round> {
     let slack = 1e-9;
     let (low, high) = (range.low() * (1.0 - slack), range.high() * (1.0 + slack));
-    let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+    let (first, last) = (log10(low).floor() as i32, log10(high).ceil() as i32);
     let within = |wholes: &[u8], stride: i32| -> Vec<Round> {
         let exponents = (first..=last).filter(|exponent| exponent.rem_euclid(stride) == 0);
         exponents

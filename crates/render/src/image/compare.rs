@@ -1,6 +1,7 @@
 //! Comparison of a picture with a reference.
 
 use super::Image;
+use crate::elementary::log10;
 use serde::Serialize;
 
 /// Keeps the relative error finite where the reference is black.
@@ -143,7 +144,7 @@ impl Sums {
             pixels,
             rmse: mean_square.sqrt(),
             relative_mse: self.relative_squares / self.values as f64,
-            psnr: if mean_square > 0.0 { -10.0 * mean_square.log10() } else { f64::INFINITY },
+            psnr: if mean_square > 0.0 { -10.0 * log10(mean_square) } else { f64::INFINITY },
             max_difference: Difference { value: self.largest, x: x as u32, y: y as u32, channel },
             bias,
             bias_standard_error,

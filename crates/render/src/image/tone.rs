@@ -5,6 +5,7 @@
 //! largest code; [`Image::count_non_finite`](super::Image::count_non_finite) counts such values.
 
 use super::{Depth, ImageError, WriteOptions};
+use crate::elementary::{exp2, pow};
 use crate::settings::{Settings, Tone};
 use rayon::prelude::*;
 
@@ -12,12 +13,12 @@ use rayon::prelude::*;
 ///
 /// Below 0 the curve's linear part continues, above 1 its power law.
 pub fn srgb_encode(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * pow(linear, 1.0 / 2.4) - 0.055 }
 }
 
 /// Returns the display-linear value, 0..=1, of an sRGB code in 0..=1: the inverse of [`srgb_encode`].
 pub fn srgb_decode(code: f64) -> f64 {
-    if code <= 0.040_45 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+    if code <= 0.040_45 { code / 12.92 } else { pow((code + 0.055) / 1.055, 2.4) }
 }
 
 /// Applies a filmic curve: increases midtones and compresses highlights; 0 at 0, increasing, at most 1.
@@ -46,7 +47,7 @@ impl DisplayTransform {
     /// [`ImageError::Exposure`] outside of [`Settings::EXPOSURES`].
     pub fn new(exposure: f64, tone: Tone) -> Result<Self, ImageError> {
         if Settings::EXPOSURES.contains(&exposure) {
-            Ok(Self { gain: exposure.exp2(), tone })
+            Ok(Self { gain: exp2(exposure), tone })
         } else {
             Err(ImageError::Exposure(exposure))
         }
@@ -56,7 +57,7 @@ impl DisplayTransform {
     pub fn nearest(exposure: f64, tone: Tone) -> Self {
         let (least, most) = (*Settings::EXPOSURES.start(), *Settings::EXPOSURES.end());
         let exposure = if exposure.is_nan() { 0.0 } else { exposure.clamp(least, most) };
-        Self { gain: exposure.exp2(), tone }
+        Self { gain: exp2(exposure), tone }
     }
 
     /// Returns the display-linear value, 0..=1, of a radiance; 0 for negative values and NaN.

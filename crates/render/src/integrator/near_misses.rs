@@ -22,6 +22,7 @@ use super::caustics;
 use super::path_state::PreviousBounce;
 use super::probe_batch::ProbeSample;
 use super::workspace::Workspace;
+use crate::elementary::acos;
 use crate::film::{ChanceLight, Term};
 use crate::ray::{GROUND, MISS};
 use crate::sampling::{Basis, Cone, cap, mix, next_in_square};
@@ -289,7 +290,7 @@ fn reflectance(world: &World, work: &Workspace, row: usize) -> f32 {
 /// Returns the common part of two discs of radius `angle` at `distance`, as a fraction of one.
 fn overlap(distance: f32, angle: f32) -> f32 {
     let x = distance / (2.0 * angle);
-    if x < 1.0 { FRAC_2_PI * (x.acos() - x * (1.0 - x * x).sqrt()) } else { 0.0 }
+    if x < 1.0 { FRAC_2_PI * (acos(x.into()) as f32 - x * (1.0 - x * x).sqrt()) } else { 0.0 }
 }
 
 impl NearMisses {

@@ -2,6 +2,7 @@
 
 use super::estimate::neighbors;
 use super::{Noise, StopCondition};
+use crate::elementary::{ln, pow};
 use crate::film::{Film, Role, Tile};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::LN_2;
@@ -42,7 +43,7 @@ impl Slope {
         let nothing = Self { before: 0.0, growth: 0.0, after: 0.0 };
         steps.fold(nothing, |sum, (variance, from, to)| Self {
             before: sum.before + variance,
-            growth: sum.growth + variance * (f64::from(to) / f64::from(from)).ln(),
+            growth: sum.growth + variance * ln(f64::from(to) / f64::from(from)),
             ..sum
         })
     }
@@ -61,7 +62,7 @@ impl Slope {
 
     /// Returns the exponent: variance is inversely proportional to this power of the number of samples.
     pub fn exponent(&self) -> f64 {
-        let exponent = (self.before / self.after).ln() * self.before / self.growth;
+        let exponent = ln(self.before / self.after) * self.before / self.growth;
         if exponent.is_finite() { exponent.clamp(EXPONENTS.0, EXPONENTS.1) } else { 1.0 }
     }
 }
@@ -151,7 +152,7 @@ impl Benefit {
     ) -> Vec<Self> {
         let count = film.tiles.len();
         // Noise and pixels of each tile, as for one sample.
-        let power = |samples: u32| f64::from(samples.max(1)).powf(exponent);
+        let power = |samples: u32| pow(f64::from(samples.max(1)), exponent);
         let measured = |tile: &Tile| tile.probes.streams() > 0;
         let rows: Vec<(f64, f64)> = film
             .tiles

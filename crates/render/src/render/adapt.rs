@@ -5,6 +5,7 @@ use super::pass::{self, PASS};
 use super::schedule::TURNS;
 use super::state::{State, Step};
 use super::watch::Watch;
+use crate::elementary::pow;
 use crate::film::{TILE, Tile, View};
 use crate::integrator::Job;
 use crate::integrator::workspace::{BATCH, Workspace};
@@ -113,7 +114,7 @@ fn expected_work(
     spent: f64,
     slope: Slope,
 ) -> Option<f64> {
-    let more = stop.wanted(noise).powf(-1.0 / slope.exponent());
+    let more = pow(stop.wanted(noise), -1.0 / slope.exponent());
     Some(spent * more.max(1.0)).filter(|rays| rays.is_finite() && *rays > 0.0)
 }
 

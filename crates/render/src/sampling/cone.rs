@@ -1,6 +1,7 @@
 //! Cones of directions: the directions from a point to a sphere or a sun.
 
 use super::warp::cap;
+use crate::elementary::sin;
 use crate::lanes::{Doubles, F32x16, F64x8, Lanes, MAX_LANES, Mask, narrow};
 use crate::vec3;
 use glam::Vec3;
@@ -30,7 +31,7 @@ impl Cone {
 
     /// Returns the cone of a half-angle in radians, 0 < angle <= pi.
     pub fn from_half_angle(angle: f64) -> Self {
-        let sine = (0.5 * angle).sin();
+        let sine = sin(0.5 * angle);
         Self::from_height(2.0 * sine * sine)
     }
 

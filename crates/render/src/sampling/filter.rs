@@ -5,6 +5,7 @@
 //! 2006. The filters are products of one profile per axis and never negative.
 
 use super::warp::centered;
+use crate::elementary::{cos, exp};
 use crate::lanes::F32x16;
 use crate::settings::Filter;
 use std::f64::consts::FRAC_PI_2;
@@ -122,13 +123,13 @@ fn tabulate(profile: fn(f64) -> f64) -> Table {
 
 /// A Gaussian with a standard deviation of 0.5 pixels.
 fn gaussian(x: f64) -> f64 {
-    (-2.0 * x * x).exp()
+    exp(-2.0 * x * x)
 }
 
 /// The four-term window of -92 dB, over a width of 4 pixels: Harris, "On the Use of Windows for
 /// Harmonic Analysis with the Discrete Fourier Transform", Proc. IEEE 1978.
 fn blackman_harris(x: f64) -> f64 {
-    let cosine = |harmonic: f64| (harmonic * FRAC_PI_2 * x).cos();
+    let cosine = |harmonic: f64| cos(harmonic * FRAC_PI_2 * x);
     0.358_75 + 0.488_29 * cosine(1.0) + 0.141_28 * cosine(2.0) + 0.011_68 * cosine(3.0)
 }
 

@@ -6,6 +6,7 @@ use super::fresnel;
 use super::lambertian::{Emitter, Lambertian};
 use super::plastic::Plastic;
 use super::reflective::Reflective;
+use crate::elementary::power_of_two;
 use crate::scene::{Material, NamedMaterial, Rgb};
 
 /// The kinds of material, in the order in which they are shaded.
@@ -194,7 +195,7 @@ impl Materials {
 
 /// A mirror, where the density of its facets would overflow single precision.
 fn smooth_below(roughness: f64) -> f32 {
-    if roughness < (-60.0_f64).exp2() { 0.0 } else { roughness as f32 }
+    if roughness < power_of_two(-60) { 0.0 } else { roughness as f32 }
 }
 
 fn push<T>(table: &mut Vec<T>, kind: MaterialKind, row: T) -> MaterialId {

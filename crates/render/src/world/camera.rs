@@ -3,6 +3,7 @@
 use super::Transform;
 use super::fit::Placement;
 use crate::bvh::Beam;
+use crate::elementary::hypot;
 use crate::lanes::Doubles;
 use crate::scene::{Projection, Scene};
 use crate::vec3::Vec3;
@@ -126,7 +127,7 @@ impl Camera {
             if self.orthographic {
                 inward - edge >= -reach
             } else {
-                inward - edge * seen.z >= -reach * edge.hypot(1.0)
+                inward - edge * seen.z >= -reach * hypot(edge, 1.0)
             }
         };
         let in_view = seen.z + reach > self.near
@@ -153,7 +154,7 @@ impl Camera {
     /// Returns the center and radius of a sphere that contains every ray's origin.
     pub fn origins(&self) -> (DVec3, f64) {
         let (across, along) = if self.orthographic {
-            (self.half_width.hypot(self.half_height), self.near)
+            (hypot(self.half_width, self.half_height), self.near)
         } else {
             let slant = (1.0 + self.half_width.powi(2) + self.half_height.powi(2)).sqrt();
             (0.0, self.near * slant)

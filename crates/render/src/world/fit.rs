@@ -1,6 +1,7 @@
 //! Placement of the camera: as given, or fitted to all spheres.
 
 use super::WorldError;
+use crate::elementary::{atan, cos, sin, tan};
 use crate::scene::{Pose, Projection, Scene, Spheres};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -117,7 +118,7 @@ fn look_at(scene: &Scene, eye: DVec3, target: DVec3) -> Result<Placement, WorldE
         reach: reach + lens_radius(scene) + scene.camera.near,
     };
     Ok(match scene.camera.projection {
-        Projection::Perspective { fov } => placed((fov.to_radians() / 2.0).tan(), 0.0),
+        Projection::Perspective { fov } => placed(tan(fov.to_radians() / 2.0), 0.0),
         Projection::Orthographic { height } => {
             let half = match height {
                 Some(height) => height / 2.0,
@@ -148,7 +149,7 @@ fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldE
     let middle = (extent.low + extent.high) / 2.0;
     Ok(match scene.camera.projection {
         Projection::Perspective { fov } => {
-            let half_height = (fov.to_radians() / 2.0).tan();
+            let half_height = tan(fov.to_radians() / 2.0);
             let half_width = half_height * aspect;
             let tangents = (half_width * used, half_height * used);
             let at = nearest_eye(scene, &axes, tangents);
@@ -229,7 +230,7 @@ struct Sides {
 impl Sides {
     /// Creates the normals from the tangents of half the picture's width and height.
     fn new((tan_x, tan_y): (f64, f64)) -> Self {
-        let normal = |tangent: f64| (tangent.atan().cos(), tangent.atan().sin());
+        let normal = |tangent: f64| (cos(atan(tangent)), sin(atan(tangent)));
         let ((cos_x, sin_x), (cos_y, sin_y)) = (normal(tan_x), normal(tan_y));
         Self { cos_x, sin_x, cos_y, sin_y }
     }
@@ -265,7 +266,7 @@ impl Limits {
     pub(super) fn new(scene: &Scene) -> Option<Self> {
         let Pose::Fit { direction, margin } = scene.camera.pose else { return None };
         let tangent = match scene.camera.projection {
-            Projection::Perspective { fov } => (fov.to_radians() / 2.0).tan(),
+            Projection::Perspective { fov } => tan(fov.to_radians() / 2.0),
             Projection::Orthographic { .. } => 1.0,
         };
         let used = 1.0 - margin;

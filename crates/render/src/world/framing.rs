@@ -6,8 +6,9 @@ mod sequence;
 pub use sequence::SequenceBounds;
 
 use super::{WorldError, fit};
+use crate::elementary::{atan, hypot, rotation, sin, tan};
 use crate::scene::{Camera, Pose, Projection, Rgb, Scene, Spheres};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 
 /// Number of sweeps after which Jacobi's method has converged for any 3 x 3 matrix.
 const SWEEPS: usize = 20;
@@ -63,7 +64,7 @@ fn truncate(spheres: &mut Spheres, count: usize) {
 /// every angle.
 pub fn orbit(scene: &mut Scene, points: &[DVec3], angle: f64) {
     let up = scene.camera.up.normalize_or(DVec3::Y);
-    let rotation = DQuat::from_axis_angle(up, angle);
+    let rotation = rotation(up, angle);
     let (eye, target) = match scene.camera.pose {
         Pose::LookAt { eye, target } => (eye, target),
         Pose::Fit { .. } if scene.spheres.is_empty() => return,
@@ -84,8 +85,8 @@ fn fit_distance(scene: &mut Scene, radius: f64) -> f64 {
     let aspect = f64::from(scene.settings.width) / f64::from(scene.settings.height);
     match &mut scene.camera.projection {
         Projection::Perspective { fov } => {
-            let half = (fov.to_radians() / 2.0).tan();
-            radius / half.min(half * aspect).atan().sin()
+            let half = tan(fov.to_radians() / 2.0);
+            radius / sin(atan(half.min(half * aspect)))
         }
         Projection::Orthographic { height } => {
             height.get_or_insert(2.0 * radius / aspect.min(1.0));
@@ -177,8 +178,8 @@ fn eigenvectors(mut matrix: DMat3) -> [DVec3; 3] {
         }
         // Golub and Van Loan, "Matrix Computations", 4th edition 2013, section 8.5.2.
         let tau = (matrix.col(column)[column] - matrix.col(row)[row]) / (2.0 * off);
-        let tangent = tau.signum() / (tau.abs() + tau.hypot(1.0));
-        let cosine = tangent.hypot(1.0).recip();
+        let tangent = tau.signum() / (tau.abs() + hypot(tau, 1.0));
+        let cosine = hypot(tangent, 1.0).recip();
         let sine = tangent * cosine;
         let mut rotation = DMat3::IDENTITY;
         rotation.col_mut(row)[row] = cosine;
@@ -211,7 +212,7 @@ mod tests {
     }
 
     fn turned() -> [DVec3; 3] {
-        let rotation = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
+        let rotation = rotation(DVec3::new(1.0, 2.0, -0.5).normalize(), 0.7);
         [rotation * DVec3::X, rotation * DVec3::Y, rotation * DVec3::Z]
     }
 

@@ -6,6 +6,7 @@
 
 use super::World;
 use super::caustics::{CausticPath, CausticSource};
+use crate::elementary::sincos;
 use crate::ray::MISS;
 use glam::{DVec2, DVec3, Vec2};
 use rayon::prelude::*;
@@ -180,7 +181,7 @@ fn rim(toward: DVec3, sine: f64) -> [DVec3; 8] {
     let other = toward.normalize().cross(side);
     let radius = toward.length() * sine;
     std::array::from_fn(|i| {
-        let (sine, cosine) = (i as f64 * std::f64::consts::FRAC_PI_4).sin_cos();
+        let (sine, cosine) = sincos(i as f64 * std::f64::consts::FRAC_PI_4);
         toward + (side * cosine + other * sine) * radius
     })
 }

@@ -1,5 +1,6 @@
 //! The transform from the user's coordinates to the world's: a shift and a power of two.
 
+use crate::elementary::{ceil_log2, power_of_two};
 use crate::scene::Spheres;
 use crate::world::fit::Placement;
 use glam::DVec3;
@@ -105,7 +106,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// Returns the least power of two that is not below `x`; 1 for 0.
 fn power_of_two_above(x: f64) -> f64 {
-    if x > 0.0 { x.log2().ceil().clamp(-1020.0, 1020.0).exp2() } else { 1.0 }
+    if x > 0.0 { power_of_two(ceil_log2(x).clamp(-1020, 1020)) } else { 1.0 }
 }
 
 #[cfg(test)]

@@ -25,16 +25,14 @@ const SIDE: f64 = 20.0;
 
 impl PaperScene {
     /// Two mirrors that reflect each other.
-    pub const TWO: Self = Self {
-        name: "two-spheres",
-        text: include_str!("../../../../../scenes/paper-two-spheres.toml"),
-    };
+    pub const TWO: Self =
+        Self { name: "two-spheres", text: include_str!("../../../scenes/paper-two-spheres.toml") };
     /// A grid of 20 x 20 spheres.
     pub const GRID: Self =
-        Self { name: "grid", text: include_str!("../../../../../scenes/paper-grid-20.toml") };
+        Self { name: "grid", text: include_str!("../../../scenes/paper-grid-20.toml") };
     /// 20 x 20 spheres with random radii and positions.
     pub const FIELD: Self =
-        Self { name: "field", text: include_str!("../../../../../scenes/paper-field-20.toml") };
+        Self { name: "field", text: include_str!("../../../scenes/paper-field-20.toml") };
 
     /// All scenes.
     pub const ALL: [Self; 3] = [Self::TWO, Self::GRID, Self::FIELD];

@@ -1,5 +1,6 @@
 //! Random numbers for generators: one sequence per seed, the same on every machine.
 
+use crate::elementary::{cos, ln, power_of_two};
 use crate::scene::{Rgb, linear_from_srgb};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -16,7 +17,7 @@ impl Random {
     /// Returns a number uniform in 0..1.
     pub(super) fn unit(&mut self) -> f64 {
         // A double holds the upper 53 bits.
-        (self.0.next_u64() >> 11) as f64 * 2.0_f64.powi(-53)
+        (self.0.next_u64() >> 11) as f64 * power_of_two(-53)
     }
 
     /// Returns a number uniform from `low` to `high`.
@@ -27,8 +28,8 @@ impl Random {
     /// Returns a normal number with mean 0 and standard deviation 1 (Box, Muller, "A Note on the
     /// Generation of Random Normal Deviates", Annals of Mathematical Statistics 1958).
     pub(super) fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
-        radius * (TAU * self.unit()).cos()
+        let radius = (-2.0 * ln(1.0 - self.unit())).sqrt();
+        radius * cos(TAU * self.unit())
     }
 
     /// Returns three values, each uniform from `low` to `high`.

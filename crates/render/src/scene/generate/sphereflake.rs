@@ -2,6 +2,7 @@
 //! Environments", IEEE Computer Graphics and Applications 1987).
 
 use super::{GenerateError, Group, require_radius, reserve_spheres};
+use crate::elementary;
 use crate::scene::{Rgb, Spheres};
 use glam::{DQuat, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
@@ -76,9 +77,9 @@ fn directions() -> [DVec3; 9] {
     let diagonal = FRAC_1_SQRT_2;
     let trio = [DVec3::new(1.0, 1.0, 0.0), DVec3::new(1.0, 0.0, -1.0), DVec3::new(0.0, 1.0, -1.0)];
     let axis = DVec3::new(diagonal, -diagonal, 0.0);
-    let tilt = DQuat::from_axis_angle(axis, (2.0 / 6.0_f64.sqrt()).asin());
+    let tilt = elementary::rotation(axis, elementary::asin(2.0 / 6.0_f64.sqrt()));
     std::array::from_fn(|child| {
-        let third = DQuat::from_rotation_z((child / 3) as f64 * TAU / 3.0);
+        let third = elementary::rotation(DVec3::Z, (child / 3) as f64 * TAU / 3.0);
         third * (tilt * (trio[child % 3] * diagonal))
     })
 }

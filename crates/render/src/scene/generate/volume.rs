@@ -2,6 +2,7 @@
 
 use super::random::Random;
 use super::{GenerateError, Group, require, require_radii, reserve_spheres};
+use crate::elementary::cbrt;
 use crate::scene::Rgb;
 use glam::DVec3;
 
@@ -28,7 +29,7 @@ impl Default for Volume {
 
 impl Volume {
     pub(super) fn generate(&self, seed: u64) -> Result<Group, GenerateError> {
-        let across = (self.count as f64).cbrt();
+        let across = cbrt(self.count as f64);
         let size = self.size.unwrap_or(across);
         let mut spheres = reserve_spheres(self.count, "count")?;
         require(size.is_finite() && size > 0.0, "size", "must be finite and more than 0")?;

@@ -5,6 +5,7 @@ use super::ParticleFrame;
 use super::spheres::Warnings;
 use super::{Kind, Kinds};
 use super::{Radii, ReadOptions};
+use crate::elementary::{exp, ln};
 use crate::scene::FileError;
 use std::path::Path;
 
@@ -92,8 +93,8 @@ pub(super) fn half_spacing(position: [&Vec<f64>; 3]) -> f64 {
         return 1.0;
     }
     // The mean of logarithms avoids overflow of the product of lengths.
-    let logarithms: f64 = extents.iter().map(|extent| extent.ln()).sum();
-    let spacing = ((logarithms - (count as f64).ln()) / extents.len() as f64).exp();
+    let logarithms: f64 = extents.iter().map(|extent| ln(*extent)).sum();
+    let spacing = exp((logarithms - ln(count as f64)) / extents.len() as f64);
     format!("{:.1e}", spacing / 2.0).parse().unwrap_or(1.0)
 }
 

@@ -4,6 +4,7 @@
 //! the estimates that a choice needs. It limits the number of samples, too, so that it need not be exact.
 
 use super::CausticCasters;
+use crate::elementary::cbrtf;
 use crate::ray::MISS;
 use crate::world::lights::Receiver;
 use glam::{UVec3, Vec3};
@@ -44,7 +45,7 @@ impl SampleBounds {
         let margin = (high - low).max_element() * MARGIN;
         let (low, high) = (low - margin, high + margin);
         let size = high - low;
-        let length = (size.x * size.y * size.z / CELLS).cbrt();
+        let length = cbrtf(size.x * size.y * size.z / CELLS);
         let cells_per_length = 1.0 / length;
         let cells = (size * cells_per_length).ceil().as_uvec3().max(UVec3::ONE);
         let numbers_fit = cells.as_vec3().element_product() < 8.0 * CELLS;

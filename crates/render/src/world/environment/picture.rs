@@ -10,6 +10,7 @@
 //! belongs to one of them. So the light tree chooses between them at each receiver.
 
 use super::region::{Grid, Region};
+use crate::elementary;
 use crate::image::Image;
 use crate::lanes::{Lanes, MAX_LANES, Mask, set_bits};
 use crate::sampling::{Basis, Bilinear, CellRow, Distribution2d, sine_cosine, turns};
@@ -122,7 +123,8 @@ impl Picture {
     /// radians. Its middle column faces -x if up is z and there is no rotation.
     pub(super) fn new(image: Arc<Image>, up: DVec3, rotation: f64, scale: f32) -> Self {
         let (width, height) = (image.width as usize, image.height as usize);
-        let turn = DQuat::from_rotation_arc(DVec3::Z, up) * DQuat::from_rotation_z(rotation);
+        let turn =
+            DQuat::from_rotation_arc(DVec3::Z, up) * elementary::rotation(DVec3::Z, rotation);
         let axes = DMat3::from_quat(turn).as_mat3();
         let rows: Box<[_]> = (0..=height).map(|row| PatchRow::new(row, width, height)).collect();
         let mut picture = Self {
