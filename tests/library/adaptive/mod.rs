@@ -196,7 +196,8 @@ fn pictures_without_noise_end_at_once() {
     for (scene, value) in [(black, 0.0), (white, 1.0), (with_target(furnace(), 0.01), 1.0)] {
         let render = render_scene(&scene);
         assert_every_pixel(&render.image, value, "no noise");
-        assert_eq!((render.end, render.samples.most), (End::Error, 16));
+        assert_eq!(render.end, End::Error);
+        assert!(render.samples.most <= 16 && render.samples.rounds <= 1, "{:?}", render.samples);
     }
 }
 

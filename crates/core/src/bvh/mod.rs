@@ -7,9 +7,11 @@
 mod beam;
 pub mod builders;
 mod child_order;
+mod decision;
 mod enclosing;
 mod interleaved;
 mod nearest;
+mod one_ray;
 mod packet;
 mod ray_setup;
 mod resolver;
@@ -18,6 +20,7 @@ mod single;
 mod traversal;
 
 pub use beam::Beam;
+pub use one_ray::{OneHit, trace_one};
 pub use rows::NodeRow;
 pub use traversal::{
     Any, Closest, PacketWidth, Query, Tracer, Traversal, Unverified, Visits, count_visits, trace,

@@ -1,29 +1,24 @@
 //! Decides which candidates of the conservative test are hits, and which hit is the nearest.
 //!
-//! Hits are decided by [`intersect::confirm`] alone, and of spheres at equal distances the one that
-//! comes first in the user's scene is hit. So traversals differ in time, never in their answers.
-//!
-//! Single rays that look for any hit decide candidate by candidate ([`HitResolver::test_sphere`]).
+//! Single rays that look for any hit decide candidate by candidate ([`Decision`]).
 //! Other rays keep their best candidate until they have passed the tree
 //! ([`NearestHit`](super::nearest::NearestHit)), and then up to eight of them are decided in lanes: a
 //! packet's at once ([`HitResolver::commit_packet`]), those of single rays as soon as eight are pending
 //! ([`HitResolver::push_pending`]). Rays that can't be decided so are traced again, with each candidate
 //! decided at once.
 
+use super::decision::{Decision, Nearest};
 use super::nearest::{NearestHit, RunnerUp};
 use super::ray_setup::RaySetup;
 use super::traversal::{Query, Visits};
 use crate::conservative::{Chord, ConservativeRay};
-use crate::exact::{self, Distance};
-use crate::intersect::{self, CLEAR, Pairs, Root};
+use crate::intersect::{self, CLEAR, Pairs};
 use crate::lanes::{
     Doubles, F64x8, Lanes, Mask, bits, bits_of, load_doubles, set_bits, store_where,
 };
-use crate::ray::{CHUNK, ExactRay, Hits, MISS, Rays, rounding};
+use crate::ray::{CHUNK, Hits, MISS, Rays, rounding};
 use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
-use glam::DVec3;
-use std::cmp::Ordering;
 use std::marker::PhantomData;
 
 /// The bound of a ray that needs no more answers.
@@ -78,7 +73,7 @@ impl<'a, Q: Query> HitResolver<'a, Q> {
             return (DONE, DONE);
         }
         let (t, error) = (self.hits.t[row], self.hits.error[row % CHUNK]);
-        (rounded_out((t - error) as f32).0, rounded_out((t + error) as f32).1)
+        Nearest { t, error, sphere: MISS }.bounds()
     }
 
     /// Returns what [`HitResolver::bounds`] does, for the rays from `row` on, which have no hits yet;
@@ -98,7 +93,7 @@ impl<'a, Q: Query> HitResolver<'a, Q> {
 
 /// Returns bounds of a number that was rounded to `t`, at any magnitude.
 #[inline(always)]
-fn rounded_out<L: Lanes>(t: L) -> (L, L) {
+pub(super) fn rounded_out<L: Lanes>(t: L) -> (L, L) {
     let scaled = |factor, least| t.mul_add(L::splat(factor), L::splat(least));
     (scaled(1.0 - f32::EPSILON, -f32::MIN_POSITIVE), scaled(1.0 + f32::EPSILON, f32::MIN_POSITIVE))
 }
@@ -112,41 +107,21 @@ impl<Q: Query> HitResolver<'_, Q> {
         if !Q::EXACT {
             return self.accept_unverified(row, sphere);
         }
-        if self.is_same(sphere, self.rays.own[row]) || self.is_same(sphere, self.rays.target[row]) {
-            return false;
-        }
-        let (center, radius) = self.spheres.exact(sphere);
-        let ray = self.rays.exact(row);
-        let (plain, t) = intersect::confirm_plain(&Pairs::one(&ray, center, radius));
-        if !plain {
-            return self.test_sphere_closely(row, sphere, &ray);
-        }
-        self.update_if_nearer(row, sphere, &ray, (t, t * CLEAR))
-    }
-
-    /// Does what [`HitResolver::test_sphere`] does where the short test in double precision can't tell.
-    #[inline(never)]
-    fn test_sphere_closely(&mut self, row: usize, sphere: usize, ray: &ExactRay) -> bool {
-        let (center, radius) = self.spheres.exact(sphere);
-        let inside = || self.starts_within(ray, row, center, radius);
-        let Some(root) = intersect::confirm(ray, center, radius, inside) else { return false };
-        self.exact += u64::from(root.exact);
-        self.update_if_nearer(row, sphere, ray, (root.t, root.error))
-    }
-
-    /// Stores a hit at distance `t`, give or take `error`, if it is nearer than the ray's hit so far.
-    /// Returns whether it is.
-    #[inline(always)]
-    fn update_if_nearer(
-        &mut self,
-        row: usize,
-        sphere: usize,
-        ray: &ExactRay,
-        (t, error): (f64, f64),
-    ) -> bool {
-        let nearer = self.is_nearer(row, sphere, ray, (t, error));
+        let error = self.hits.error[row % CHUNK];
+        let mut decision = Decision::<Q> {
+            spheres: self.spheres,
+            ray: self.rays.exact(row),
+            own: self.rays.own[row],
+            target: self.rays.target[row],
+            nearest: Nearest { t: self.hits.t[row], error, sphere: self.hits.sphere[row] },
+            exact: 0,
+            query: PhantomData,
+        };
+        let nearer = decision.test_sphere(sphere);
+        self.exact += decision.exact;
         if nearer {
-            self.hits.sphere[row] = sphere as u32;
+            let Nearest { t, error, sphere } = decision.nearest;
+            self.hits.sphere[row] = sphere;
             if !Q::ANY {
                 (self.hits.t[row], self.hits.error[row % CHUNK]) = (t, error);
             }
@@ -165,93 +140,6 @@ impl<Q: Query> HitResolver<'_, Q> {
             self.hits.set(row, f64::from(near), sphere as u32);
         }
         nearer
-    }
-
-    /// Returns whether `sphere` is sphere `known` of the ray, or coincides with it. A sphere that
-    /// coincides with `known` comes later in the scene, or it would be known instead.
-    #[inline(always)]
-    fn is_same(&self, sphere: usize, known: u32) -> bool {
-        known == sphere as u32
-            || ((known as usize) < self.spheres.len()
-                && self.spheres.exact(known as usize) == self.spheres.exact(sphere))
-    }
-
-    /// Returns whether a ray whose origin is on the surface of a sphere, within rounding, starts on
-    /// another sphere that touches it from within.
-    fn starts_within(&self, ray: &ExactRay, row: usize, center: DVec3, radius: f64) -> bool {
-        let own = self.rays.own[row] as usize;
-        if own >= self.spheres.len() {
-            return false;
-        }
-        let (own_center, own_radius) = self.spheres.exact(own);
-        own_radius < radius && (ray.origin - own_center).dot(ray.origin - center) > 0.0
-    }
-
-    /// Returns whether a hit replaces the ray's hit so far.
-    #[inline(always)]
-    fn is_nearer(
-        &mut self,
-        row: usize,
-        sphere: usize,
-        ray: &ExactRay,
-        (t, error): (f64, f64),
-    ) -> bool {
-        let (nearest, nearest_error) = (self.hits.t[row], self.hits.error[row % CHUNK]);
-        if t + error < nearest - nearest_error {
-            return true;
-        }
-        if t - error > nearest + nearest_error {
-            return false;
-        }
-        match self.compare(row, sphere, ray, (t, error)) {
-            Ordering::Less => true,
-            Ordering::Equal => !Q::ANY && self.precedes(sphere, self.hits.sphere[row]),
-            Ordering::Greater => false,
-        }
-    }
-
-    /// Compares distances that are closer than their errors: by closer bounds, then on integers.
-    #[cold]
-    fn compare(
-        &mut self,
-        row: usize,
-        sphere: usize,
-        ray: &ExactRay,
-        (t, error): (f64, f64),
-    ) -> Ordering {
-        let (nearest, other) = (self.hits.t[row], self.hits.sphere[row] as usize);
-        let nearest_error = self.hits.error[row % CHUNK];
-        let coincide = || self.spheres.exact(sphere) == self.spheres.exact(other);
-        if nearest_error != 0.0 && coincide() {
-            return Ordering::Equal;
-        }
-        let first = self.root(ray, sphere, t, error);
-        let second = self.root(ray, other, nearest, nearest_error);
-        let gap = first.0.t - second.0.t;
-        if gap.abs() > first.0.error + second.0.error {
-            return gap.total_cmp(&0.0);
-        }
-        self.exact += 1;
-        exact::compare(ray, &first.1, &second.1)
-    }
-
-    /// Returns a distance with its closest bound, and its definition. An error of 0 says that the distance
-    /// is a given number.
-    fn root(&self, ray: &ExactRay, sphere: usize, t: f64, error: f64) -> (Root, Distance) {
-        let number = Root { t, error: 0.0, exact: false };
-        if error == 0.0 {
-            return (number, Distance::Number(t));
-        }
-        let (center, radius) = self.spheres.exact(sphere);
-        let root = intersect::confirm_closely(ray, center, radius, || false);
-        (root.unwrap_or(number), Distance::Hit(center, radius))
-    }
-
-    /// Returns whether `sphere` comes before `other` in the user's scene; the ground comes last,
-    /// and a bound is no hit.
-    fn precedes(&self, sphere: usize, other: u32) -> bool {
-        other != MISS
-            && self.spheres.id.get(other as usize).is_none_or(|&id| self.spheres.id[sphere] < id)
     }
 }
 

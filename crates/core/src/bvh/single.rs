@@ -43,7 +43,7 @@ impl OwnSphere {
 
 /// Returns the chords of a ray through the spheres of a block.
 #[inline(always)]
-fn chords(ray: &ConservativeRay<f32>, block: &SphereBlock) -> Chord<F32x8> {
+pub(super) fn chords(ray: &ConservativeRay<f32>, block: &SphereBlock) -> Chord<F32x8> {
     let center = Vec3::new(F32x8::load(&block.x), F32x8::load(&block.y), F32x8::load(&block.z));
     Chord::new(&ray.splat(), center, F32x8::load(&block.radius))
 }
@@ -82,7 +82,12 @@ impl<Q: Query> RayGroup<Q> for SingleRay {
     fn test_spheres(&mut self, resolver: &mut HitResolver<Q>, first: usize, spheres: u32) {
         let row = self.row as usize;
         for sphere in set_bits(spheres).map(|lane| first + lane) {
-            if Q::ANY && self.certainly_hits(resolver, sphere) {
+            // A shadow ray that nothing stops comes to its light: so that is tested first.
+            let certain = || {
+                let sphere = (resolver.spheres.center(sphere), resolver.spheres.radius(sphere));
+                certainly_hits(&self.ray, sphere, resolver.bounds(row).0)
+            };
+            if Q::ANY && resolver.rays.target[row] != sphere as u32 && certain() {
                 resolver.hits.sphere[row] = sphere as u32;
             } else {
                 resolver.test_sphere(row, sphere);
@@ -111,21 +116,18 @@ impl SingleRay {
             t_far = ray.t_far(resolver);
         }
     }
+}
 
-    /// Returns whether single precision can tell that the sphere is hit before the search ends.
-    #[inline(always)]
-    fn certainly_hits<Q: Query>(&self, resolver: &HitResolver<Q>, sphere: usize) -> bool {
-        let row = self.row as usize;
-        // A shadow ray that nothing stops comes to its light: so that is tested first.
-        if resolver.rays.target[row] == sphere as u32 {
-            return false;
-        }
-        let (center, radius) = (resolver.spheres.center(sphere), resolver.spheres.radius(sphere));
-        let chord = Chord::new(&self.ray, center.into(), radius);
-        let margin = self.ray.margin();
-        chord.enters(&self.ray, radius, &margin)
-            && chord.near_at_most(radius, &margin) < resolver.bounds(row).0
-    }
+/// Returns whether single precision can tell that a ray hits a sphere before a distance.
+#[inline(always)]
+pub(super) fn certainly_hits(
+    ray: &ConservativeRay<f32>,
+    (center, radius): (glam::Vec3, f32),
+    before: f32,
+) -> bool {
+    let chord = Chord::new(ray, center.into(), radius);
+    let margin = ray.margin();
+    chord.enters(ray, radius, &margin) && chord.near_at_most(radius, &margin) < before
 }
 
 /// A ray whose first hit is decided at the end.

@@ -52,7 +52,7 @@ impl SphereTree {
             tally.exact += trace::<F32x16, Q>(Traversal::Auto, self.tree(), &rays, &mut hits);
             for (row, i) in rows.enumerate() {
                 if !is_plain(row) {
-                    let hit = self.trace_scaled::<Q>(columns.row(i), bound(i), &mut tally);
+                    let hit = self.trace_one::<Q>(columns.row(i), bound(i), &mut tally);
                     if let Some(hit) = hit {
                         found(i, &hit);
                     }

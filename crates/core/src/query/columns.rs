@@ -75,12 +75,6 @@ impl RayColumns<'_> {
     }
 }
 
-/// A single ray in columns.
-pub(super) fn one<'a>(origin: &'a [f32; 3], direction: &'a [f32; 3]) -> RayColumns<'a> {
-    let columns = |v: &'a [f32; 3]| v.each_ref().map(std::slice::from_ref);
-    RayColumns { origin: columns(origin), direction: columns(direction) }
-}
-
 pub(super) fn same_length(expected: usize, lengths: &[usize]) -> Result<(), QueryError> {
     match lengths.iter().find(|&&found| found != expected) {
         Some(&found) => Err(QueryError::Lengths { expected, found }),

@@ -17,7 +17,7 @@ use crate::bvh::builders::{Builder, build};
 use crate::bvh::{Any, Closest, Tree};
 use crate::elementary;
 use crate::spheres::Spheres;
-use columns::{one, same_length};
+use columns::same_length;
 use glam::{DVec3, Vec3};
 use std::cell::Cell;
 
@@ -141,24 +141,16 @@ impl SphereTree {
     /// Returns the first hit of a ray: of spheres at equal distances, the one of the lowest row. `None`
     /// if the ray hits nothing, or is invalid.
     pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
-        let mut hit = None;
-        self.run::<Closest>(
-            &one(&origin, &direction),
-            |_| f64::INFINITY,
-            |_, found| {
-                let Surface { point, normal } = self.surface((origin, direction), found);
-                hit = Some(Hit { sphere: found.id, t: found.t, point, normal });
-            },
-        );
-        hit
+        let ray = (origin, direction);
+        let found = self.trace_one::<Closest>(ray, f64::INFINITY, &mut Tally::default())?;
+        let Surface { point, normal } = self.surface(ray, &found);
+        Some(Hit { sphere: found.id, t: found.t, point, normal })
     }
 
     /// Returns whether a ray hits anything at a distance less than `t_max`, in units of the
     /// direction's length.
     pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> bool {
-        let mut hit = false;
-        self.run::<Any>(&one(&origin, &direction), |_| t_max, |_, _| hit = true);
-        hit
+        self.trace_one::<Any>((origin, direction), t_max, &mut Tally::default()).is_some()
     }
 
     /// Finds the first hit of each ray: of spheres at equal distances, the one of the lowest row.

@@ -1,14 +1,14 @@
-//! Rays one by one whose coordinates or distances single precision cannot hold.
+//! Rays one by one: those of which there is only one, and those whose coordinates or distances single precision
+//! cannot hold.
 
 use super::batch::FoundHit;
 use super::{SphereTree, Tally};
-use crate::bvh::{Query, Traversal, trace};
+use crate::bvh::{Query, trace_one};
 use crate::elementary;
 use crate::exact::{self, Distance};
 use crate::intersect;
-use crate::lanes::F32x16;
-use crate::ray::{self, ExactRay, MISS, Rays};
-use glam::{DVec3, Vec3};
+use crate::ray::ExactRay;
+use glam::Vec3;
 use std::cmp::Ordering;
 
 /// Origins farther than this many times the largest coordinate are beyond what single precision can
@@ -27,17 +27,11 @@ impl ScaledRay {
     fn is_far(&self) -> bool {
         self.ray.origin.abs().max_element() > REACH
     }
-
-    /// Returns whether single precision holds the ray.
-    fn is_single(&self) -> bool {
-        let single = |v: DVec3| v.as_vec3().as_dvec3() == v;
-        single(self.ray.origin) && single(self.ray.direction)
-    }
 }
 
 impl SphereTree {
-    /// Traces a ray that is not plain.
-    pub(super) fn trace_scaled<Q: Query>(
+    /// Traces one ray, plain or not.
+    pub(super) fn trace_one<Q: Query>(
         &self,
         (origin, direction): ([f32; 3], [f32; 3]),
         bound: f64,
@@ -53,16 +47,11 @@ impl SphereTree {
             tally.exact += 1;
             return self.test_all(&scaled, bound);
         }
-        let (mut rays, mut hits) = (Rays::with_capacity(1), ray::Hits::with_capacity(1));
-        hits.set(0, bound, MISS);
-        rays.push(scaled.ray.origin.as_vec3(), scaled.ray.direction.as_vec3(), MISS);
-        if !scaled.is_single() {
-            rays.precise.push(scaled.ray);
-        }
-        tally.exact += trace::<F32x16, Q>(Traversal::Single, self.tree(), &rays, &mut hits);
-        let sphere = hits.sphere[0] as usize;
+        let hit = trace_one::<Q>(self.tree(), &scaled.ray, bound);
+        tally.exact += hit.exact;
+        let sphere = hit.sphere as usize;
         let id = *self.spheres.id.get(sphere)?;
-        Some(FoundHit { sphere, id, t: hits.t[0] * scaled.unit })
+        Some(FoundHit { sphere, id, t: hit.t * scaled.unit })
     }
 
     /// A ray in the tree's units; `None` if it is no ray.

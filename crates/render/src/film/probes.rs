@@ -91,7 +91,7 @@ pub struct Reading {
 
 impl Density {
     /// Returns the density for a picture with this number of pixels: one in 64 has a probe of each
-    /// role, which takes a sixteenth of the time; more in small pictures, which would have too few.
+    /// role, which are a sixteenth of all samples; more in small pictures, which would have too few.
     pub fn of(pixels: u64) -> Self {
         let block = match pixels {
             65_536.. => 64,

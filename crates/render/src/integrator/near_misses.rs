@@ -20,6 +20,7 @@
 use super::Job;
 use super::caustics;
 use super::path_state::PreviousBounce;
+use super::probe_batch::ProbeSample;
 use super::workspace::Workspace;
 use crate::elementary::acos;
 use crate::film::{ChanceLight, Term};
@@ -31,7 +32,7 @@ use crate::world::{CausticSource, World};
 use glam::{DVec2, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::FRAC_2_PI;
-use std::ops::{Add, Range};
+use std::ops::Add;
 
 /// Minimum of 1 - cos of the half-angle of the cone about a light: 0.15 radian.
 const CONE: f32 = 0.01125;
@@ -43,11 +44,9 @@ const LARGEST: f32 = 0.02;
 /// Maximum number of emissive spheres that are tested for each ray; of more, some are chosen at random.
 const TESTED: usize = 16;
 
-/// Near misses of a batch of paths.
+/// Near misses of a batch of probes.
 #[derive(Default)]
 pub struct NearMisses {
-    /// Samples of each stream in the batch, if its paths belong to probes; otherwise none.
-    samples: Range<u32>,
     rows: Vec<NearMiss>,
     /// [`part_in_view`] of each light that a camera ray has passed.
     in_view: HashMap<Light, Option<f32>>,
@@ -56,7 +55,7 @@ pub struct NearMisses {
 /// A ray that passes, or hits, a light that its path can find only by chance.
 #[derive(Clone, Copy, Debug)]
 struct NearMiss {
-    path: u32,
+    sample: ProbeSample,
     bounce: u32,
     light: Light,
     /// Sphere at which the ray starts, or [`MISS`].
@@ -95,11 +94,10 @@ struct Target {
 
 /// Records the near misses of the current rays, once their hits are known.
 pub(super) fn record(job: &Job, work: &mut Workspace, bounce: u32) {
-    let samples = work.near_misses.samples.clone();
-    if samples.is_empty() {
+    if work.probes.is_empty() {
         return;
     }
-    let NearMisses { mut rows, mut in_view, .. } = std::mem::take(&mut work.near_misses);
+    let NearMisses { mut rows, mut in_view } = std::mem::take(&mut work.near_misses);
     let lights = &job.world.lights;
     for row in 0..work.len() {
         let previous = work.states.previous(row);
@@ -117,8 +115,8 @@ pub(super) fn record(job: &Job, work: &mut Workspace, bounce: u32) {
             );
         }
         let stride = lights.emitters.len().div_ceil(TESTED).max(1);
-        let first =
-            Group::of(work.states.path(row) as u32, &samples).hash(bounce) as usize % stride;
+        let sample = work.probes.sample(work.states.path(row) as u32);
+        let first = Group::of(sample).hash(bounce) as usize % stride;
         for emitter in (first..lights.emitters.len()).step_by(stride) {
             rows.extend(near_emitter(job.world, work, row, emitter).and_then(|target| {
                 let density = density(job.world, work.rays.own[row], target.light, &mut in_view)?;
@@ -126,7 +124,7 @@ pub(super) fn record(job: &Job, work: &mut Workspace, bounce: u32) {
             }));
         }
     }
-    work.near_misses = NearMisses { samples, rows, in_view };
+    work.near_misses = NearMisses { rows, in_view };
 }
 
 /// Returns a sun if the ray in a row leaves the scene near it.
@@ -257,7 +255,7 @@ fn near_miss(
     }
     let toward = work.rays.direction.row(row);
     let near = NearMiss {
-        path: work.states.path(row) as u32,
+        sample: work.probes.sample(work.states.path(row) as u32),
         bounce,
         light: target.light,
         own: work.rays.own[row],
@@ -296,28 +294,26 @@ fn overlap(distance: f32, angle: f32) -> f32 {
 }
 
 impl NearMisses {
-    /// Starts to record the near misses of a batch of probes, with these samples of each stream.
-    pub fn start(&mut self, samples: Range<u32>) {
-        self.samples = samples;
-    }
-
-    /// Ends a batch, and adds its near misses to the sums of a tile with this number of streams.
-    pub fn finish(&mut self, sums: &mut ChanceLight, streams: usize) {
-        let samples = std::mem::take(&mut self.samples);
-        let event =
-            |near: &NearMiss| (Group::of(near.path, &samples), near.bounce, near.light, near.own);
-        self.rows.sort_unstable_by_key(|near| (event(near), near.path));
-        for near in self.rows.iter().filter(|near| near.hit) {
-            let light = near.value.to_array().map(f64::from);
-            sums.add_hit(((near.path / samples.len() as u32) as usize, streams), light);
-        }
-        for same in self.rows.chunk_by(|a, b| event(a) == event(b)) {
-            let term = match same {
-                [a, b] => pair(a, b),
-                _ => same.iter().map(single).fold(Term::default(), Add::add),
-            };
-            let probe = Group::of(same[0].path, &samples).probe as usize;
-            sums.add((probe, streams / 2), term);
+    /// Adds the near misses of a batch to the sums of its tiles, with the number of streams of each.
+    pub fn finish<'a>(&mut self, tiles: impl Iterator<Item = (&'a mut ChanceLight, usize)>) {
+        let tile = |near: &NearMiss| near.sample.tile;
+        let event = |near: &NearMiss| (Group::of(near.sample), near.bounce, near.light, near.own);
+        self.rows.sort_unstable_by_key(|near| (tile(near), event(near), near.sample.stream));
+        let mut rows = self.rows.as_slice();
+        for ((sums, streams), number) in tiles.zip(0..) {
+            let (of_tile, rest) = rows.split_at(rows.partition_point(|near| tile(near) <= number));
+            rows = rest;
+            for near in of_tile.iter().filter(|near| near.hit) {
+                let light = near.value.to_array().map(f64::from);
+                sums.add_hit((near.sample.stream as usize, streams), light);
+            }
+            for same in of_tile.chunk_by(|a, b| event(a) == event(b)) {
+                let term = match same {
+                    [a, b] => pair(a, b),
+                    _ => same.iter().map(single).fold(Term::default(), Add::add),
+                };
+                sums.add((Group::of(same[0].sample).probe as usize, streams / 2), term);
+            }
         }
         self.rows.clear();
     }
@@ -331,10 +327,8 @@ struct Group {
 }
 
 impl Group {
-    /// Returns the group of a path, in a batch with these samples of each stream.
-    fn of(path: u32, samples: &Range<u32>) -> Self {
-        let count = samples.len() as u32;
-        Self { probe: path / count / 2, sample: samples.start + path % count }
+    fn of(sample: ProbeSample) -> Self {
+        Self { probe: sample.stream / 2, sample: sample.sample }
     }
 
     /// Returns a hash of the group at a bounce.
@@ -377,9 +371,9 @@ mod tests {
     use crate::film::Role;
     use crate::sampling::{stream, unit};
 
-    fn near(path: u32, across: f32, hit: bool) -> NearMiss {
+    fn near((tile, stream, sample): (u32, u32, u32), across: f32, hit: bool) -> NearMiss {
         NearMiss {
-            path,
+            sample: ProbeSample { tile, stream, sample },
             bounce: 0,
             light: Light::Emitter(0),
             own: MISS,
@@ -409,6 +403,7 @@ mod tests {
 
     #[test]
     fn rays_that_pass_a_light_far_apart_are_rare_hits_and_close_ones_edges() {
+        let near = |stream, across, hit| near((0, stream, 0), across, hit);
         let far = pair(&near(0, 0.0, false), &near(1, 0.05, false));
         // Each of two samples, of which the variance is half the sum.
         assert_eq!((far.rare, far.edges), (2.0 * 2.0 * 0.25, 0.0));
@@ -418,19 +413,27 @@ mod tests {
     }
 
     #[test]
-    fn a_batch_adds_the_near_misses_of_its_samples() {
-        let mut all = NearMisses::default();
-        all.start(8..12);
-        // Streams 0 and 1 are a steering probe, 2 and 3 a judge: samples 1 of the first are a pair.
-        all.rows = vec![near(5, 0.004, false), near(1, 0.0, true), near(10, 0.0, false)];
-        let mut sums = ChanceLight::default();
-        all.finish(&mut sums, 4);
+    fn near_misses_are_added_to_their_tiles() {
+        // Streams 0 and 1 are a steering probe, 2 and 3 a judge: samples 9 of the first are a pair. Another tile
+        // in the batch has none.
+        let rows = |tile| {
+            let near = |stream, sample, across, hit| near((tile, stream, sample), across, hit);
+            [near(1, 9, 0.004, false), near(0, 9, 0.0, true), near(2, 10, 0.0, false)]
+        };
+        let finish = |rows: Vec<NearMiss>| {
+            let mut tiles = [(); 3].map(|()| ChanceLight::default());
+            NearMisses { rows, ..NearMisses::default() }
+                .finish(tiles.iter_mut().map(|sums| (sums, 4)));
+            tiles
+        };
+        let [sums, none, same] = finish([rows(2), rows(0)].concat());
+        assert_eq!((&sums, &none), (&same, &ChanceLight::default()));
+        assert_eq!([sums.clone(), none.clone(), none], finish(rows(0).to_vec()));
         let steer = sums.variance(Role::Steer, 1, 4);
         let judge = sums.variance(Role::Judge, 1, 4);
         assert_eq!(steer.expected, judge.expected);
         assert!(steer.expected > 0.0 && judge.found == 0.0);
         // One hit of light 2 among four samples of one stream: half its square.
         assert_eq!(steer.found, (2.0_f64 / 4.0).powi(2) / 2.0);
-        assert!(all.samples.is_empty());
     }
 }

@@ -147,6 +147,7 @@ pub fn trace_shadow_rays(job: &Job, work: &mut Workspace) {
         work.paths.add(path, shadows.light.load(first), lit);
     }
     work.counters.shadow_rays += shadows.rays.len() as u64;
+    work.probes.count_rays(shadows.path[..shadows.rays.len()].iter().copied());
     shadows.rays.truncate(0);
     work.clock.end(Stage::Shadow);
 }

@@ -22,6 +22,7 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
                 trace::closest(job.tracer, job.world, &work.rays, &mut work.hits);
         }
     }
+    work.probes.count_rays((0..work.rays.len()).map(|row| work.states.path(row) as u32));
     work.clock.end(Stage::Trace);
     compute_surfaces(job.world, work);
     work.sort(job.world);

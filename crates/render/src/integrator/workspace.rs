@@ -11,6 +11,7 @@ use super::material_table::MaterialTable;
 use super::near_misses::NearMisses;
 use super::next_rays::{NextRays, RayRow};
 use super::path_state::{PathStateRow, PathStates};
+use super::probe_batch::ProbeBatch;
 use super::shading_row::SurfaceRow;
 use super::shadow_queue::ShadowQueue;
 use super::surface::{Surface, chord_length, exit_distance};
@@ -64,6 +65,8 @@ pub struct Workspace {
     pub(super) caustics: Caustics,
     /// Lights that the camera sees.
     pub(super) seen_lights: SeenLights,
+    /// The probes whose paths these are, if any.
+    pub probes: ProbeBatch,
     /// Near misses of probes.
     pub near_misses: NearMisses,
     /// View of the camera rays: anything, or only background.
@@ -108,6 +111,7 @@ impl Workspace {
             shadow_queue: ShadowQueue::new(),
             caustics: Caustics::new(world),
             seen_lights: SeenLights::default(),
+            probes: ProbeBatch::default(),
             near_misses: NearMisses::default(),
             view: View::Anything,
             counters: Counters::default(),

@@ -1,10 +1,11 @@
 //! Adaptive sampling: chooses the tiles that get more samples, as a function of the film.
 
-use super::StopCondition;
 use super::estimate::neighbors;
-use crate::elementary::{log2, pow};
+use super::{Noise, StopCondition};
+use crate::elementary::{ln, pow};
 use crate::film::{Film, Role, Tile};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::LN_2;
 
 /// Minimum and maximum exponent of the decrease of variance with samples.
 const EXPONENTS: (f64, f64) = (0.5, 2.0);
@@ -17,29 +18,51 @@ const PRIOR_PIXELS: f64 = 128.0;
 /// number of decisions.
 const WORK: (f64, f64) = (1.0 / 16.0, 0.5);
 
-/// The rate at which variance falls with samples, learned from tiles whose samples were doubled.
+/// The rate at which variance falls with samples, learned from steps of tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slope {
-    /// Sum of the tiles' variances before and after doubling.
-    sums: [f64; 2],
+    /// Sum of the tiles' variances before their steps.
+    before: f64,
+    /// The same, times the logarithm of the factor by which a step multiplied the samples.
+    growth: f64,
+    /// Sum of the variances after the steps.
+    after: f64,
 }
 
 impl Default for Slope {
     /// The rate of independent samples, with little weight.
     fn default() -> Self {
-        Self { sums: [2e-12, 1e-12] }
+        Self { before: 2e-12, growth: 2e-12 * LN_2, after: 1e-12 }
     }
 }
 
 impl Slope {
-    /// Learns from variances `before` and `after` doubling the samples; older values decay.
-    pub fn learn(&mut self, before: f64, after: f64) {
-        self.sums = [self.sums[0] / 2.0 + before, self.sums[1] / 2.0 + after];
+    /// Returns what is known of the steps of a round before they are made: the variance of each tile, and its
+    /// numbers of samples before and after the step.
+    pub fn before(steps: impl Iterator<Item = (f64, u32, u32)>) -> Self {
+        let nothing = Self { before: 0.0, growth: 0.0, after: 0.0 };
+        steps.fold(nothing, |sum, (variance, from, to)| Self {
+            before: sum.before + variance,
+            growth: sum.growth + variance * ln(f64::from(to) / f64::from(from)),
+            ..sum
+        })
+    }
+
+    /// Returns the same steps once they are made, with the sum of the variances after them.
+    pub fn after(self, variance: f64) -> Self {
+        Self { after: variance, ..self }
+    }
+
+    /// Learns from the steps of a round; older values decay.
+    pub fn learn(&mut self, steps: Self) {
+        self.before = self.before / 2.0 + steps.before;
+        self.growth = self.growth / 2.0 + steps.growth;
+        self.after = self.after / 2.0 + steps.after;
     }
 
     /// Returns the exponent: variance is inversely proportional to this power of the number of samples.
     pub fn exponent(&self) -> f64 {
-        let exponent = log2(self.sums[0] / self.sums[1]);
+        let exponent = ln(self.before / self.after) * self.before / self.growth;
         if exponent.is_finite() { exponent.clamp(EXPONENTS.0, EXPONENTS.1) } else { 1.0 }
     }
 }
@@ -56,9 +79,13 @@ pub fn steering_variance(tile: &Tile) -> f64 {
 /// Returns the tiles of the next round in descending order of benefit; none if all have the maximum of
 /// samples.
 ///
-/// `wanted` is the factor by which the picture's squared error must fall, less than 1; 0 if there is no
-/// error target.
-pub fn next_round(film: &Film, stop: &StopCondition, slope: Slope, wanted: f64) -> Vec<u32> {
+/// `noise` is the estimated error of the picture.
+pub fn next_round(
+    film: &Film,
+    stop: &StopCondition,
+    slope: Slope,
+    noise: Option<Noise>,
+) -> Vec<u32> {
     let least = film.tiles.iter().filter(|tile| tile.probes.streams() > 0);
     let least = least.map(|tile| tile.samples).min().unwrap_or(0);
     let mut open: Vec<u32> = (0..film.tiles.len() as u32)
@@ -70,7 +97,8 @@ pub fn next_round(film: &Film, stop: &StopCondition, slope: Slope, wanted: f64) 
         open.sort_by_key(|&tile| crate::sampling::mix(u64::from(tile)));
         return open;
     }
-    let tiles = Benefit::of(film, stop, slope.exponent());
+    let wanted = stop.wanted(noise);
+    let tiles = Benefit::of(film, (stop, noise), slope.exponent());
     open.sort_by(|&a, &b| tiles[b as usize].rate().total_cmp(&tiles[a as usize].rate()));
     let total: f64 = tiles.iter().map(|tile| tile.variance).sum();
     let spent: f64 = film.tiles.iter().map(work).sum();
@@ -117,7 +145,11 @@ struct Benefit {
 impl Benefit {
     /// Computes the benefit of each tile, also by probes of its neighbors, whose noise is scaled to the
     /// tile's own number of samples.
-    fn of(film: &Film, stop: &StopCondition, exponent: f64) -> Vec<Self> {
+    fn of(
+        film: &Film,
+        (stop, of_picture): (&StopCondition, Option<Noise>),
+        exponent: f64,
+    ) -> Vec<Self> {
         let count = film.tiles.len();
         // Noise and pixels of each tile, as for one sample.
         let power = |samples: u32| pow(f64::from(samples.max(1)), exponent);
@@ -143,7 +175,7 @@ impl Benefit {
                 .map(|(at, weight)| (weight * rows[at].0, weight * rows[at].1))
                 .fold((PRIOR_PIXELS * mean, PRIOR_PIXELS), sum);
             let variance = pooled.0 / pooled.1 * rows[index].1 / power(tile.samples);
-            let next = stop.next_samples(tile.samples, count);
+            let next = stop.next_samples(tile.samples, count, of_picture);
             let gained = variance * (1.0 - power(tile.samples) / power(next));
             let steps = f64::from(next.saturating_sub(tile.samples));
             Self { variance, gained, work: steps * per_sample(tile) }
@@ -162,16 +194,24 @@ mod tests {
     use crate::film::{Density, Region};
     use crate::scene::Rgb;
 
+    fn doubling(before: f64, after: f64) -> Slope {
+        Slope::before(std::iter::once((before, 16, 32))).after(after)
+    }
+
     #[test]
     fn slopes_follow_new_values() {
         let mut slope = Slope::default();
         assert_eq!(slope.exponent(), 1.0);
-        slope.learn(8.0, 3.0);
+        slope.learn(doubling(8.0, 3.0));
         assert!((slope.exponent() - (8.0_f64 / 3.0).log2()).abs() < 1e-9);
-        slope.learn(1e9, 1.0);
+        slope.learn(doubling(1e9, 1.0));
         assert_eq!(slope.exponent(), 2.0);
-        slope.learn(0.0, 0.0);
+        slope.learn(doubling(0.0, 0.0));
         assert!(slope.exponent().is_finite());
+        // Half as many samples again, at the rate of independent samples.
+        let mut slope = Slope::default();
+        slope.learn(Slope::before([(3.0, 16, 24), (6.0, 32, 48)].into_iter()).after(6.0));
+        assert!((slope.exponent() - 1.0).abs() < 1e-9, "{}", slope.exponent());
     }
 
     /// Four tiles in a row; probes of tile `noisy` find noise, and tile 3 needs none.
@@ -195,19 +235,21 @@ mod tests {
     fn noisy_tiles_come_first_and_others_last() {
         let stop = StopCondition { until_error: None, time: None, spp: 64 };
         let film = film(1);
-        let some = next_round(&film, &stop, Slope::default(), 0.9);
+        let wanted = |error: f64| Some(Noise { error, bound: error, expected: 0.0 });
+        let target = StopCondition { until_error: Some(0.9_f64.sqrt()), ..stop };
+        let some = next_round(&film, &target, Slope::default(), wanted(1.0));
         assert_eq!(some, [1]);
-        let all = next_round(&film, &stop, Slope::default(), 0.0);
+        let all = next_round(&film, &stop, Slope::default(), None);
         assert!(all.len() >= 2 && all[0] == 1 && !all.contains(&3), "{all:?}");
         let done = StopCondition { spp: 16, ..stop };
-        assert!(next_round(&film, &done, Slope::default(), 0.0).is_empty());
+        assert!(next_round(&film, &done, Slope::default(), None).is_empty());
     }
 
     #[test]
     fn older_values_count_half() {
         let mut slope = Slope::default();
-        slope.learn(8.0, 3.0);
-        slope.learn(1.0, 1.0);
+        slope.learn(doubling(8.0, 3.0));
+        slope.learn(doubling(1.0, 1.0));
         assert!((slope.exponent() - (5.0_f64 / 2.5).log2()).abs() < 1e-9);
     }
 

@@ -2,12 +2,13 @@
 
 use super::end::End;
 use super::pass::{self, PASS};
+use super::schedule::TURNS;
 use super::state::{State, Step};
 use super::watch::Watch;
 use crate::elementary::pow;
-use crate::film::Tile;
+use crate::film::{TILE, Tile, View};
 use crate::integrator::Job;
-use crate::integrator::workspace::Workspace;
+use crate::integrator::workspace::{BATCH, Workspace};
 use crate::noise::{self, Noise, Slope, StopCondition};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,10 +19,6 @@ const PILOT: (u64, u64) = (4096, 65_536);
 
 /// Interval of looking at the clock: fraction of the time limit, and minimum in seconds.
 const CLOCK_CHECKS: (f64, f64) = (0.02, 0.1);
-
-/// Fraction of the squared error below which light that probes have not found does not matter: with more, a
-/// render does not end at the first look.
-const SEEN: f64 = 0.05;
 
 /// Renders until the target is met.
 pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) -> End {
@@ -39,9 +36,7 @@ pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Wa
         }
         if state.plan.is_empty() {
             let noise = state.noise(stop.until_error.is_some());
-            if stop.until_error.zip(noise).is_some_and(|(error, noise)| {
-                noise.bound <= error && (noise.expected < SEEN || state.round > 1)
-            }) {
+            if noise.is_some_and(|noise| stop.is_met(noise, state.least_samples(), state.round)) {
                 return End::Error;
             }
             if !state.next_round(stop, noise) {
@@ -61,16 +56,22 @@ fn start(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) {
     let pixels = state.film.pixels();
     let samples = PILOT.0.div_ceil(pixels).clamp(1, u64::from(PASS)) as u32;
     let block = if pixels < PILOT.1 { 1 } else { 4 };
-    let even = |tile: &Tile| tile.samples == 0 && pass::uniform_radiance(job.world, tile).is_some();
-    let unpiloted = |tile: &Tile| stop.until_error.is_some() && tile.probes.pilot.is_none();
-    let tiles = state.film.tiles.iter_mut().filter(|tile| even(tile) || unpiloted(tile));
-    for_each_tile(job, tiles.collect::<Vec<_>>(), watch, |tile, work| {
-        if even(tile) {
-            pass::tile_pass(job, tile, 0..stop.first_samples(), work);
-        }
-        if unpiloted(tile) {
-            pass::pilot_pass(job, tile, (block, samples), work);
-        }
+    let tiles = state.film.tiles.iter_mut();
+    let even =
+        tiles.filter(|tile| tile.samples == 0 && pass::uniform_radiance(job.world, tile).is_some());
+    let even = even.map(|tile| (tile, stop.first_samples())).collect();
+    let paths = |tile: &Tile, samples| (tile.len() * samples) as usize;
+    for_each_batch(job, batches(even, paths), watch, |(tiles, to), work| {
+        pass::tile_pass(job, tiles, 0..to, work);
+    });
+    if stop.until_error.is_none() {
+        return;
+    }
+    let unpiloted = state.film.tiles.iter_mut().filter(|tile| tile.probes.pilot.is_none());
+    let unpiloted = unpiloted.map(|tile| (tile, samples)).collect();
+    let paths = |tile: &Tile, samples| pass::pilot_paths(tile, (block, samples));
+    for_each_batch(job, batches(unpiloted, paths), watch, |(tiles, samples), work| {
+        pass::pilot_pass(job, tiles, (block, samples), work);
         watch.report(work, None, 0.0, None);
     });
 }
@@ -89,9 +90,10 @@ fn refine(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch, pau
     let count = count.max(rayon::current_num_threads()).max(state.begun).min(state.plan.len());
     let expected = expected_work(stop, noise, spent, state.slope);
     let added = AtomicU64::new(0);
-    for_each_tile(job, state.take(count), watch, |(tile, to), work| {
-        let rays = rays(tile, to);
-        advance(job, tile, to, watch, work);
+    let paths = |tile: &Tile, to| pass::probe_paths(tile, to - tile.probes.samples.min(to));
+    for_each_batch(job, batches(state.take(count), paths), watch, |(tiles, to), work| {
+        let rays: f64 = tiles.iter().map(|tile| rays(tile, to)).sum();
+        advance(job, tiles, to, watch, work);
         let added = added.fetch_add(rays as u64, Ordering::Relaxed) as f64 + rays;
         let by_error = expected.map_or(0.0, |expected| (spent + added) / expected);
         let by_time = stop.time.map_or(0.0, |time| watch.elapsed().div_duration_f64(time));
@@ -116,27 +118,66 @@ fn expected_work(
     Some(spent * more.max(1.0)).filter(|rays| rays.is_finite() && *rays > 0.0)
 }
 
-/// Brings the pixels of a tile and its probes to `to` samples.
-fn advance(job: &Job, tile: &mut Tile, to: u32, watch: &Watch, work: &mut Workspace) {
-    while tile.samples < to && !watch.cancelled() {
-        let first = tile.samples;
-        pass::tile_pass(job, tile, first..to.min(first.saturating_add(PASS)), work);
+/// Brings the pixels of the tiles of a batch and their probes to `to` samples.
+fn advance(job: &Job, tiles: &mut [&mut Tile], to: u32, watch: &Watch, work: &mut Workspace) {
+    let Some(mut first) = tiles.first().map(|tile| tile.samples) else { return };
+    while first < to {
+        let end = to.min(first.saturating_add(PASS));
+        let paths = (TILE * TILE * (end - first)) as usize;
+        for tiles in tiles.chunks_mut((BATCH / paths).max(1)) {
+            if watch.cancelled() {
+                return;
+            }
+            pass::tile_pass(job, tiles, first..end, work);
+        }
+        first = end;
     }
-    pass::probe_pass(job, tile, 0..to, work, || !watch.cancelled());
+    pass::probe_pass(job, tiles, 0..to, work, || !watch.cancelled());
 }
 
-/// Processes each of the tiles, on all threads.
-fn for_each_tile<T: Send>(
+/// Tiles of the same view and with equally many samples, which are to get as many as the number says.
+type Batch<'a> = (Vec<&'a mut Tile>, u32);
+
+/// Divides steps of tiles into batches. Few paths at once take longer, so the probes of a batch, or other samples
+/// of which each tile has `paths`, are traced together; but there are enough batches for all threads.
+fn batches(
+    mut steps: Vec<(&mut Tile, u32)>,
+    paths: impl Fn(&Tile, u32) -> usize,
+) -> Vec<Batch<'_>> {
+    let kind =
+        |tile: &Tile, to: u32| (tile.view == View::Anything, tile.samples, tile.probes.samples, to);
+    steps.sort_by_key(|(tile, to)| kind(tile, *to));
+    let most = steps.len().div_ceil(TURNS * rayon::current_num_threads());
+    let mut batches: Vec<Batch> = Vec::new();
+    let mut left = 0_usize;
+    for (tile, to) in steps {
+        let paths = paths(tile, to);
+        let last = batches.last_mut().filter(|(tiles, end)| {
+            paths <= left && tiles.len() < most && kind(tiles[0], *end) == kind(tile, to)
+        });
+        if let Some((tiles, _)) = last {
+            left -= paths;
+            tiles.push(tile);
+        } else {
+            left = BATCH.saturating_sub(paths);
+            batches.push((vec![tile], to));
+        }
+    }
+    batches
+}
+
+/// Processes all batches, on all threads.
+fn for_each_batch(
     job: &Job,
-    tiles: impl IntoParallelIterator<Item = T>,
+    batches: Vec<Batch>,
     watch: &Watch,
-    each: impl Fn(T, &mut Workspace) + Sync,
+    each: impl Fn((&mut [&mut Tile], u32), &mut Workspace) + Sync,
 ) {
-    tiles.into_par_iter().for_each_init(
+    batches.into_par_iter().for_each_init(
         || Workspace::new(job.world, job.elisions),
-        |work, tile| {
+        |work, (mut tiles, to)| {
             if !watch.cancelled() {
-                each(tile, work);
+                each((&mut tiles, to), work);
             }
         },
     );

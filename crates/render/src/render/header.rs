@@ -30,8 +30,8 @@ pub(crate) struct RenderHeader {
     round: u32,
     plan: Vec<Step>,
     begun: usize,
-    doubled: Vec<u32>,
-    variance: f64,
+    refined: Vec<u32>,
+    steps: Slope,
     slope: Slope,
     tiles: Vec<TileHeader>,
 }
@@ -52,8 +52,8 @@ impl RenderHeader {
             round: state.round,
             plan: state.plan.clone(),
             begun: state.begun,
-            doubled: state.doubled.clone(),
-            variance: state.variance,
+            refined: state.refined.clone(),
+            steps: state.steps,
             slope: state.slope,
             tiles: state.film.tile_headers(),
         }
@@ -84,8 +84,8 @@ impl RenderHeader {
     fn check_plan(&self, most: u32) -> Result<(), &'static str> {
         let exists = |tile: u32| (tile as usize) < self.tiles.len();
         let steps = self.plan.iter().all(|step| exists(step.tile) && step.samples <= most);
-        let doubled = self.doubled.iter().all(|tile| exists(*tile));
-        require(steps && doubled && self.begun <= self.plan.len(), "a plan for missing tiles")?;
+        let refined = self.refined.iter().all(|tile| exists(*tile));
+        require(steps && refined && self.begun <= self.plan.len(), "a plan for missing tiles")?;
         let last = self.stop_conditions.last().copied();
         let expected = self.settings.has_target().then(|| StopCondition::of(&self.settings));
         require(last == expected && self.met <= self.stop_conditions.len(), "inconsistent targets")
@@ -130,8 +130,8 @@ impl RenderHeader {
             round: self.round,
             plan: self.plan,
             begun: self.begun,
-            doubled: self.doubled,
-            variance: self.variance,
+            refined: self.refined,
+            steps: self.steps,
             slope: self.slope,
         };
         ResumableRender {

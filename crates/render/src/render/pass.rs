@@ -4,6 +4,7 @@ use crate::film::{Pilot, Region, Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
 use crate::integrator::generate::generate_streams;
+use crate::integrator::probe_batch::ProbeBatch;
 use crate::integrator::workspace::{BATCH, Workspace};
 use crate::sampling::Sampler;
 use crate::scene::Rgb;
@@ -105,76 +106,118 @@ impl TileSamples {
     }
 }
 
-/// Adds samples to the pixels of a tile.
-pub(super) fn tile_pass(job: &Job, tile: &mut Tile, samples: Range<u32>, work: &mut Workspace) {
+/// Adds samples to the pixels of tiles of the same view, no more than a batch of paths.
+pub(super) fn tile_pass(
+    job: &Job,
+    tiles: &mut [&mut Tile],
+    samples: Range<u32>,
+    work: &mut Workspace,
+) {
     let count = samples.end - samples.start;
-    let view = std::iter::once(TileView::of(tile));
-    TileSamples::take(job, view, samples, work).add(tile, count, 0, work);
+    let views = tiles.iter().map(|tile| TileView::of(tile));
+    let taken = TileSamples::take(job, views, samples, work);
+    let mut path = 0;
+    for tile in tiles {
+        path = taken.add(tile, count, path, work);
+    }
 }
 
-/// Adds to the probes of a tile the samples that they lack, up to the end, as long as `proceed` is
-/// true.
+/// Adds to the probes of tiles the samples that they lack, up to the end, as long as `proceed` is true.
+///
+/// The tiles are of the same view, and their probes have equally many samples. They are best as many as fill a
+/// batch of paths.
 pub(super) fn probe_pass(
     job: &Job,
-    tile: &mut Tile,
+    tiles: &mut [&mut Tile],
     samples: Range<u32>,
     work: &mut Workspace,
     proceed: impl Fn() -> bool,
 ) {
-    let Some(batch) = BATCH.checked_div(tile.probes.streams()) else { return };
-    while samples.start + tile.probes.samples < samples.end && proceed() {
-        let first = samples.start + tile.probes.samples;
-        let range = first..samples.end.min(first.saturating_add(batch as u32));
+    let Some(Tile { view, .. }) = tiles.first() else { return };
+    let view = *view;
+    loop {
+        let streams = tiles.iter().map(|tile| tile.probes.streams());
+        let taken = tiles.iter().map(|tile| tile.probes.samples).max().unwrap_or(0);
+        let first = samples.start + taken;
+        let Some(batch) = BATCH.checked_div(streams.clone().sum()) else { return };
+        if first >= samples.end || !proceed() {
+            return;
+        }
+        let range = first..samples.end.min(first.saturating_add((batch as u32).max(1)));
         let count = range.len() as u32;
         work.clock.restart();
-        let rays = work.counters.rays();
-        let streams = tile.probes.starts(job.sampler);
-        work.near_misses.start(range.clone());
-        let paths =
-            trace_paths(job, (tile.view, std::iter::once(tile.region)), (streams, range), work);
-        let streams = tile.probes.streams();
-        work.near_misses.finish(&mut tile.probes.chance, streams);
-        work.counters.bad_samples += tile.probes.add(&work.paths.radiance[..paths], count);
-        tile.probes.rays += work.counters.rays() - rays;
+        work.probes = ProbeBatch::new(range.clone(), streams);
+        let starts = tiles.iter().flat_map(|tile| tile.probes.starts(job.sampler));
+        let regions = tiles.iter().map(|tile| tile.region);
+        trace_paths(job, (view, regions), (starts, range), work);
+        let probes = std::mem::take(&mut work.probes);
+        work.near_misses.finish(tiles.iter_mut().map(|tile| {
+            let streams = tile.probes.streams();
+            (&mut tile.probes.chance, streams)
+        }));
+        let mut radiance = work.paths.radiance.as_slice();
+        for (tile, rays) in tiles.iter_mut().zip(probes.rays()) {
+            let (own, rest) = radiance.split_at(tile.probes.streams() * count as usize);
+            radiance = rest;
+            work.counters.bad_samples += tile.probes.add(own, count);
+            tile.probes.rays += rays;
+        }
         work.clock.end(Stage::Film);
     }
 }
 
-/// Takes pilot samples, which are not part of the picture: one pixel of each `block`, and `samples` of
-/// it, at most [`PASS`].
+/// Returns the number of paths of `samples` samples of the probes of a tile.
+pub(super) fn probe_paths(tile: &Tile, samples: u32) -> usize {
+    tile.probes.streams() * samples.min(PASS) as usize
+}
+
+/// Takes pilot samples of tiles of the same view, which are not part of the picture: one pixel of each `block`,
+/// and `samples` of it, at most [`PASS`].
 pub(super) fn pilot_pass(
     job: &Job,
-    tile: &mut Tile,
+    tiles: &mut [&mut Tile],
     (block, samples): (u32, u32),
     work: &mut Workspace,
 ) {
-    if let Some(radiance) = uniform_radiance(job.world, tile) {
-        let sum = f64::from(tile.len()) * radiance.to_array().map(f64::from).iter().sum::<f64>();
-        tile.probes.pilot = Some(Pilot { sum: sum / 3.0, variance: 0.0 });
+    let Some(Tile { view, .. }) = tiles.first() else { return };
+    if let Some(radiance) = uniform_view(job.world, *view) {
+        let mean = radiance.to_array().map(f64::from).iter().sum::<f64>() / 3.0;
+        for tile in tiles {
+            tile.probes.pilot = Some(Pilot { sum: f64::from(tile.len()) * mean, variance: 0.0 });
+        }
         return;
     }
     work.clock.restart();
-    let pixels = Pilot::starts(tile, job.sampler, job.settings.seed, block);
-    let streams = pixels.iter().map(|&(x, y, sampler, _)| (x, y, sampler));
-    let paths =
-        trace_paths(job, (tile.view, std::iter::once(tile.region)), (streams, 0..samples), work);
-    let weights = pixels.iter().map(|&(.., weight)| weight);
-    tile.probes.pilot = Some(Pilot::new(&work.paths.radiance[..paths], samples, weights));
+    let pixels = |tile: &&mut Tile| Pilot::starts(tile, job.sampler, job.settings.seed, block);
+    let pixels: Vec<_> = tiles.iter().map(pixels).collect();
+    let streams = pixels.iter().flatten().map(|&(x, y, sampler, _)| (x, y, sampler));
+    let regions = tiles.iter().map(|tile| tile.region);
+    trace_paths(job, (*view, regions), (streams, 0..samples), work);
+    let mut radiance = work.paths.radiance.as_slice();
+    for (tile, pixels) in tiles.iter_mut().zip(pixels) {
+        let (own, rest) = radiance.split_at(pixels.len() * samples as usize);
+        radiance = rest;
+        let weights = pixels.iter().map(|&(.., weight)| weight);
+        tile.probes.pilot = Some(Pilot::new(own, samples, weights));
+    }
     work.clock.end(Stage::Film);
 }
 
-/// Traces the paths of samples of pixels in these regions to their ends, and returns their number.
+/// Returns the number of paths of a tile's pilot.
+pub(super) fn pilot_paths(tile: &Tile, (block, samples): (u32, u32)) -> usize {
+    tile.len().div_ceil(block) as usize * samples as usize
+}
+
+/// Traces the paths of samples of pixels in these regions to their ends.
 fn trace_paths(
     job: &Job,
     (view, regions): (View, impl Iterator<Item = Region>),
     (streams, samples): (impl Iterator<Item = (u32, u32, Sampler)>, Range<u32>),
     work: &mut Workspace,
-) -> usize {
+) {
     work.view = view;
     work.begin(job, regions);
     generate_streams(job, streams, samples, work);
-    let paths = work.len();
     job.integrate(work);
     work.clock.end(Stage::Shade);
-    paths
 }

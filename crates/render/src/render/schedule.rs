@@ -6,7 +6,7 @@ use crate::integrator::workspace::BATCH;
 use std::ops::Range;
 
 /// Minimum number of times that each thread takes tasks: then all threads end at about the same time.
-const TURNS: usize = 8;
+pub(super) const TURNS: usize = 8;
 
 /// Division of the last passes into tasks, as pairs: passes per thread, and tasks per pass, from the
 /// last pass.

@@ -19,10 +19,11 @@ pub(super) struct State {
     /// Steps at the head of the plan that were in progress when the render was cancelled: all of them
     /// are continued first, so that the steps of any later end are a prefix of the one sequence.
     pub(super) begun: usize,
-    /// Tiles of this round whose samples it doubles.
-    pub(super) doubled: Vec<u32>,
-    /// Variance of these tiles before the round, by steering probes.
-    pub(super) variance: f64,
+    /// Tiles that this round refines, with enough samples before it to learn from their steps.
+    pub(super) refined: Vec<u32>,
+    /// What is known of these steps before the round, by steering probes.
+    pub(super) steps: Slope,
+    /// The rate learned so far.
     pub(super) slope: Slope,
 }
 
@@ -52,8 +53,8 @@ impl State {
             round: 0,
             plan: Vec::new(),
             begun: 0,
-            doubled: Vec::new(),
-            variance: 0.0,
+            refined: Vec::new(),
+            steps: Slope::before(std::iter::empty()),
             slope: Slope::default(),
         }
     }
@@ -70,29 +71,41 @@ impl State {
         begun.then(|| Noise::new(noise::squared_error(&self.film), self.film.pixels(), mean))
     }
 
-    /// Ends a round and plans the next; returns false if no pixel can get more samples.
-    pub(super) fn next_round(&mut self, stop: &StopCondition, noise: Option<Noise>) -> bool {
-        if self.variance > 0.0 {
-            self.slope.learn(self.variance, self.steering_variance(&self.doubled));
-        }
-        let plan = noise::next_round(&self.film, stop, self.slope, stop.wanted(noise));
-        let tiles = &self.film.tiles;
-        let samples = |tile: u32| tiles[tile as usize].samples;
-        let next = |tile: u32| stop.next_samples(samples(tile), tiles.len());
-        let doubles = |&tile: &u32| {
-            samples(tile) >= stop.first_samples() && next(tile) == samples(tile).saturating_mul(2)
-        };
-        let doubled: Vec<u32> = plan.iter().copied().filter(doubles).collect();
-        self.plan = plan.into_iter().map(|tile| Step { tile, samples: next(tile) }).collect();
-        self.variance = self.steering_variance(&doubled);
-        self.doubled = doubled;
-        self.round += 1;
-        !self.plan.is_empty()
+    /// Returns the minimum number of samples per pixel.
+    pub(super) fn least_samples(&self) -> u32 {
+        self.film.tiles.iter().map(|tile| tile.samples).min().unwrap_or(0)
     }
 
-    fn steering_variance(&self, tiles: &[u32]) -> f64 {
-        let of = |&tile: &u32| noise::steering_variance(&self.film.tiles[tile as usize]);
-        tiles.iter().map(of).sum()
+    /// Ends a round and plans the next; returns false if no pixel can get more samples.
+    pub(super) fn next_round(&mut self, stop: &StopCondition, noise: Option<Noise>) -> bool {
+        if !self.refined.is_empty() {
+            let variance = |&tile: &u32| noise::steering_variance(&self.film.tiles[tile as usize]);
+            let after = self.refined.iter().map(variance).sum();
+            self.slope.learn(self.steps.after(after));
+        }
+        let wanted = stop.wanted(noise);
+        let plan = noise::next_round(&self.film, stop, self.slope, noise);
+        let tiles = &self.film.tiles;
+        let step = |tile: u32| {
+            let samples = tiles[tile as usize].samples;
+            let even = samples < stop.first_samples();
+            let next = if even {
+                stop.next_even(samples, wanted)
+            } else {
+                stop.next_samples(samples, tiles.len(), noise)
+            };
+            Step { tile, samples: next }
+        };
+        self.plan = plan.into_iter().map(step).collect();
+        let refines = |step: &&Step| tiles[step.tile as usize].samples >= stop.first_samples();
+        let refined = self.plan.iter().filter(refines);
+        self.steps = Slope::before(refined.clone().map(|step| {
+            let tile = &tiles[step.tile as usize];
+            (noise::steering_variance(tile), tile.samples, step.samples)
+        }));
+        self.refined = refined.map(|step| step.tile).collect();
+        self.round += 1;
+        !self.plan.is_empty()
     }
 
     /// Returns the rays that the picture has taken.

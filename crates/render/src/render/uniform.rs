@@ -77,7 +77,7 @@ fn add(
     // Probes are paths, too: they replace those of the tiles.
     for (_, tile) in tiles {
         if let Ok(mut tile) = tile.lock() {
-            probe_pass(job, &mut tile, first..end, work, || true);
+            probe_pass(job, &mut [&mut tile], first..end, work, || true);
         }
     }
 }

@@ -241,6 +241,7 @@ fn trace_first_segments(job: &Job, work: &mut Workspace) {
     work.counters.exact_decisions +=
         shadow_queue::test_occlusion(job, &first.rays, &mut first.hits);
     work.counters.shadow_rays += first.rays.len() as u64;
+    work.probes.count_rays(first.second.iter().map(|next| next.path));
     for (row, next) in first.second.iter().enumerate() {
         if first.hits.sphere[row] != MISS {
             continue;
