@@ -1,4 +1,4 @@
-//! What packages are made of: manual pages, and the level of the program.
+//! Contents of packages: manual pages, and the level of the program.
 
 use crate::folder::{Folder, text};
 use std::fs;
@@ -53,7 +53,7 @@ fn the_level_of_the_program_is_named() {
     assert_eq!(lines.next(), Some(concat!("program: ", env!("CARGO_BIN_EXE_spherule"))));
 }
 
-/// Whether a render advises to get a faster program depends on the processor and on flags of the compiler, but never
+/// The advice to get a faster program depends on the processor and on flags of the compiler, but a render never
 /// does with `--quiet`, nor where the user chose the level.
 #[test]
 fn advice_about_the_processor_is_for_who_did_not_choose() {

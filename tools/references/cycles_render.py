@@ -6,20 +6,18 @@ spheres, but only from outside; and it does not sample emissive points as lights
 mirrors of constant reflectance, a diffuse ground, and light only from the environment. Images are written to --folder as SEED.pfm.
 """
 
-import argparse
 import contextlib
 import json
 import math
 import os
 import sys
 import time
-from pathlib import Path
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from scene_file import Unsupported, read_scene, rgb, write_pfm
+from scene_file import Unsupported, read_scene, render_arguments, rgb, write_pfm
 
 # Half the edge of the square that represents the ground, in the scene's unit.
 GROUND = 1e4
@@ -28,12 +26,7 @@ BOUNCES = 1024
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene", type=Path)
-    parser.add_argument("--folder", type=Path, required=True, help="output folder")
-    parser.add_argument("--spp", type=int, default=16, help="samples per pixel [default: 16]")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0], help="seed of each image [default: 0]")
-    parser.add_argument("--threads", type=int, default=2, help="number of threads [default: 2]")
+    parser = render_arguments(__doc__)
     options = parser.parse_args()
     try:
         build(read_scene(options.scene), options)

@@ -5,18 +5,16 @@ Images are written to --folder as SEED.pfm. An image's times are those of `mi.re
 image that is neither written nor counted is rendered first, so that the times contain no compilation.
 """
 
-import argparse
 import json
 import math
 import sys
 import time
-from pathlib import Path
 
 import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from scene_file import Unsupported, read_scene, rgb, write_pfm
+from scene_file import Unsupported, read_scene, render_arguments, rgb, write_pfm
 
 # Half the edge of the square that represents the ground, in the scene's unit. On larger ones, the single precision of Mitsuba makes
 # stripes. The camera should not see its edge, which is nearer than the horizon.
@@ -24,12 +22,7 @@ GROUND = 1e4
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene", type=Path)
-    parser.add_argument("--folder", type=Path, required=True, help="output folder")
-    parser.add_argument("--spp", type=int, default=16, help="samples per pixel [default: 16]")
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0], help="seed of each image [default: 0]")
-    parser.add_argument("--threads", type=int, default=2, help="number of threads [default: 2]")
+    parser = render_arguments(__doc__)
     parser.add_argument("--variant", default="llvm_ad_rgb", help="variant of Mitsuba [default: llvm_ad_rgb]")
     parser.add_argument("--sampler", default="multijitter", help="sampler of Mitsuba [default: multijitter]")
     parser.add_argument("--shapes", choices=["sphere", "ellipsoids"], default="sphere", help="shapes of opaque spheres")

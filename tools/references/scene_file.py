@@ -1,5 +1,6 @@
-"""Scene files of Spherule, as far as other renderers can represent them exactly, and PFM images."""
+"""Shared by all renderers: options, scene files of Spherule, as far as they can represent them exactly, and PFM images."""
 
+import argparse
 import csv
 import tomllib
 from dataclasses import dataclass
@@ -38,6 +39,17 @@ class Scene:
 
     def count(self):
         return sum(len(group.radii) for group in self.spheres.values())
+
+
+def render_arguments(description):
+    """Returns a parser of the options of a program that renders a scene file."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", type=Path)
+    parser.add_argument("--folder", type=Path, required=True, help="output folder")
+    parser.add_argument("--spp", type=int, default=16, help="samples per pixel [default: 16]")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[0], help="seed of each image [default: 0]")
+    parser.add_argument("--threads", type=int, default=2, help="number of threads [default: 2]")
+    return parser
 
 
 def read_scene(path):

@@ -6,7 +6,7 @@
 //! whose result varies; the roots and fused multiply-adds that they take from a processor that has them are
 //! rounded as those in software are. `clippy.toml` forbids the standard library's.
 //!
-//! What is exact or rounded correctly everywhere may be called as it is: `sqrt`, `mul_add`, `floor`,
+//! Functions that are exact or rounded correctly everywhere may be called as they are: `sqrt`, `mul_add`, `floor`,
 //! `round`, `to_radians`, and `powi` with a constant exponent of at most 3.
 
 use glam::{DQuat, DVec3};

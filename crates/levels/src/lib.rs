@@ -10,7 +10,7 @@ use std::fmt::{self, Display, Formatter};
 /// A set of instructions that a program is compiled for, lowest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// What every processor of the architecture has: of x86-64, SSE2.
+    /// The instructions of every processor of the architecture: on x86-64, SSE2.
     Baseline,
     /// SSE4.2 and POPCNT; processors since about 2009.
     V2,

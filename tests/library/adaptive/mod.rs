@@ -228,7 +228,7 @@ fn a_time_limit_leaves_no_pixel_out() {
 }
 
 /// A lamp in view, and by way of two mirrors and a nested glass sphere, which only paths that hit it find.
-fn lamp(radius: f64) -> Scene {
+fn small_emitter(radius: f64) -> Scene {
     let mut scene = dark();
     ground(&mut scene, lambertian(0.6));
     sphere(&mut scene, [0.5, 2.0, 2.2], radius, emitter((1.0 / (radius * radius)) as f32, 0.0));
@@ -244,9 +244,11 @@ fn lamp(radius: f64) -> Scene {
 #[test]
 fn bounds_hold_where_lights_are_found_by_chance() {
     const SEEDS: u64 = 10;
-    let mut diffuse = lamp(0.05);
+    let mut diffuse = small_emitter(0.05);
     diffuse.settings.caustics = false;
-    for (what, scene) in [("lamp", lamp(0.05)), ("by chance", diffuse), ("large lamp", lamp(0.2))] {
+    for (what, scene) in
+        [("small", small_emitter(0.05)), ("by chance", diffuse), ("large", small_emitter(0.2))]
+    {
         let mut reference = scene.clone();
         (reference.settings.spp, reference.settings.seed) = (1 << 14, 999);
         reference.settings.caustics = true;

@@ -136,7 +136,7 @@ fn hash_of_answers(class: Class, answers: &Answers) -> u64 {
     hasher.finish()
 }
 
-/// What a program that serves has built.
+/// The tree and the rays of a program that serves.
 struct Served {
     tree: SphereTree,
     seen: Seen,

@@ -22,7 +22,7 @@ pub struct ChanceLight {
 
 /// The variance of samples of a pixel, averaged over channels, by a pair of samples, or a sum of such.
 ///
-/// Of rare hits the variance of a pixel's mean is that of a sample over their number n; of edges, which
+/// For rare hits, the variance of a pixel's mean is that of a sample over their number n; for edges, which
 /// well-distributed samples resolve, it is less by the square root of n.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Term {
@@ -78,7 +78,7 @@ impl ChanceLight {
     }
 
     /// Returns the variance of the mean of `samples` samples, by `probes` probes of each role with as many.
-    /// What is found is that of one role: half the squared difference of the two streams of its probes.
+    /// The variance found is that of one role: half the squared difference of the two streams of its probes.
     pub fn variance(&self, role: Role, probes: usize, samples: u32) -> ChanceVariance {
         if probes == 0 || samples == 0 {
             return ChanceVariance::default();

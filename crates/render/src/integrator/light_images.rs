@@ -45,7 +45,7 @@ struct Ways<D: Doubles> {
     toward: Row<D>,
     /// Distances of the specular sphere, if there is one.
     entry: D,
-    /// Where the rays leave it.
+    /// The point at which the rays leave it.
     exit: Row<D>,
     /// Directions there.
     toward_light: Row<D>,

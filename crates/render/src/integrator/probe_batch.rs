@@ -5,7 +5,7 @@ use std::ops::Range;
 /// Samples of the probes of some tiles, as paths in this order: tile by tile, stream by stream, sample by
 /// sample. Empty while other paths are traced.
 ///
-/// What is recorded by it does not depend on the tiles that share a batch.
+/// Its records do not depend on the tiles that share a batch.
 #[derive(Clone, Debug, Default)]
 pub struct ProbeBatch {
     /// Samples of each stream.

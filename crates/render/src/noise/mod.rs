@@ -37,7 +37,7 @@
 //! paths hit only by chance. That noise is predicted by the rays that narrowly miss a light
 //! ([`NearMisses`]); what is predicted beyond that of the hits is added to the estimate.
 //!
-//! What remains underestimated is rare noise of other kinds, such as that of bright spots on diffuse
+//! Underestimated are still rare noise of other kinds, such as that of bright spots on diffuse
 //! surfaces close to a small light, and noise with an infinite fourth moment (roulette that makes paths
 //! ever brighter).
 //!

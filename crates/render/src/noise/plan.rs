@@ -37,8 +37,8 @@ impl Default for Slope {
 }
 
 impl Slope {
-    /// Returns what is known of the steps of a round before they are made: the variance of each tile, and its
-    /// numbers of samples before and after the step.
+    /// Returns the sums of a round's steps before they are made, from the variance of each tile, and its numbers of
+    /// samples before and after the step.
     pub fn before(steps: impl Iterator<Item = (f64, u32, u32)>) -> Self {
         let nothing = Self { before: 0.0, growth: 0.0, after: 0.0 };
         steps.fold(nothing, |sum, (variance, from, to)| Self {

@@ -21,7 +21,7 @@ pub(super) struct State {
     pub(super) begun: usize,
     /// Tiles that this round refines, with enough samples before it to learn from their steps.
     pub(super) refined: Vec<u32>,
-    /// What is known of these steps before the round, by steering probes.
+    /// Variances and samples of these steps before the round, by steering probes.
     pub(super) steps: Slope,
     /// The rate learned so far.
     pub(super) slope: Slope,
