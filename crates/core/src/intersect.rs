@@ -32,8 +32,9 @@ mod terms;
 
 use self::terms::Terms;
 use crate::exact;
-use crate::lanes::Doubles;
-use crate::ray::ExactRay;
+use crate::lanes::{Doubles, F64x8, load_doubles};
+use crate::ray::{ExactRay, Rays, rounding};
+use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
 use glam::DVec3;
 
@@ -104,6 +105,38 @@ impl Pairs<f64> {
             center: center.into(),
             radius,
         }
+    }
+}
+
+/// Rows of a ray and of a sphere that belong together.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pair {
+    /// The ray's row.
+    pub row: u32,
+    /// The sphere's row.
+    pub sphere: u32,
+}
+
+impl Pairs<F64x8> {
+    /// Gathers rays and spheres, which single precision holds.
+    #[inline(always)]
+    pub fn gather(rays: &Rays, spheres: &Spheres, pairs: &[Pair; 8]) -> Self {
+        let mut columns = [[0.0; 8]; 10];
+        for (lane, pair) in pairs.iter().enumerate() {
+            let (row, sphere) = (pair.row as usize, pair.sphere as usize);
+            let (origin, direction) = (rays.origin.row(row), rays.direction.row(row));
+            let (block, place) = (&spheres.blocks()[sphere / LEAF], sphere % LEAF);
+            let sphere = [block.x[place], block.y[place], block.z[place], block.radius[place]];
+            let ray = origin.to_array().into_iter().chain(direction.to_array());
+            for (column, x) in columns.iter_mut().zip(ray.chain(sphere)) {
+                column[lane] = x;
+            }
+        }
+        let row = |i: usize| load_doubles(&columns[i]);
+        let vector = |i: usize| Vec3::new(row(i), row(i + 1), row(i + 2));
+        let (origin, direction, center, radius) = (vector(0), vector(3), vector(6), row(9));
+        // As if all origins were on surfaces, which is no less.
+        Self { origin, direction, origin_error: rounding(origin), center, radius }
     }
 }
 

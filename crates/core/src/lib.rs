@@ -40,6 +40,7 @@ mod exact;
 mod intersect;
 mod lanes;
 mod query;
+mod radix;
 mod random;
 mod ray;
 mod slabs;

@@ -156,6 +156,13 @@ impl From<DVec3> for Vec3<f64> {
     }
 }
 
+impl From<Vec3<f64>> for [f64; 3] {
+    #[inline(always)]
+    fn from(v: Vec3<f64>) -> Self {
+        [v.x, v.y, v.z]
+    }
+}
+
 impl From<glam::Vec3> for Vec3<f32> {
     #[inline(always)]
     fn from(v: glam::Vec3) -> Self {

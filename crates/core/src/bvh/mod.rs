@@ -204,6 +204,11 @@ impl Bvh {
         Self { nodes, mean_leaf_extent }
     }
 
+    /// The geometric mean of the longest edges of some leaves' boxes.
+    pub fn mean_leaf_extent(&self) -> f32 {
+        self.mean_leaf_extent
+    }
+
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.nodes.len()

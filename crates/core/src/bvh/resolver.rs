@@ -12,12 +12,12 @@ use super::nearest::{NearestHit, RunnerUp};
 use super::ray_setup::RaySetup;
 use super::traversal::{Query, Visits};
 use crate::conservative::{Chord, ConservativeRay};
-use crate::intersect::{self, CLEAR, Pairs};
+use crate::intersect::{self, CLEAR, Pair, Pairs};
 use crate::lanes::{
     Doubles, F64x8, Lanes, Mask, bits, bits_of, load_doubles, set_bits, store_where,
 };
-use crate::ray::{CHUNK, Hits, MISS, Rays, rounding};
-use crate::spheres::{LEAF, Spheres};
+use crate::ray::{CHUNK, Hits, MISS, Rays};
+use crate::spheres::Spheres;
 use crate::vec3::Vec3;
 use std::marker::PhantomData;
 
@@ -238,16 +238,9 @@ impl<Q: Query> HitResolver<'_, Q> {
 #[derive(Clone, Copy, Default)]
 struct PendingHits {
     count: usize,
-    ray: [PendingHit; ROW],
+    ray: [Pair; ROW],
     /// Distances before which no other sphere is hit.
     runner_up: [f32; ROW],
-}
-
-/// Rows of a ray and of its best candidate.
-#[derive(Clone, Copy, Default)]
-struct PendingHit {
-    row: u32,
-    sphere: u32,
 }
 
 /// Single rays, at the end of their traversal.
@@ -265,7 +258,7 @@ impl<Q: Query> HitResolver<'_, Q> {
         }
         let pending = &mut self.pending;
         let place = pending.count % ROW;
-        pending.ray[place] = PendingHit { row, sphere };
+        pending.ray[place] = Pair { row, sphere };
         // Nothing beyond `t_max` was tested.
         pending.runner_up[place] = runner_up.min(nearest.t_max);
         pending.count = place + usize::from(sphere != MISS);
@@ -285,7 +278,7 @@ impl<Q: Query> HitResolver<'_, Q> {
         // Unused lanes repeat the first ray.
         let first = ray[0];
         ray[count..].fill(first);
-        let (plain, t) = intersect::confirm_either(&self.pairs(&ray));
+        let (plain, t) = intersect::confirm_either(&Pairs::gather(self.rays, self.spheres, &ray));
         let resolved = plain & (t * F64x8::splat(1.0 + CLEAR)).lt(load_doubles(&runner_up));
         let (resolved, t) = (resolved.bits(), t.to_array());
         for (lane, (ray, t)) in ray.into_iter().zip(t).enumerate().take(count) {
@@ -295,26 +288,5 @@ impl<Q: Query> HitResolver<'_, Q> {
                 self.unresolved.push(ray.row);
             }
         }
-    }
-
-    /// Gathers pending rays and their candidates in lanes.
-    #[inline(always)]
-    fn pairs(&self, rays: &[PendingHit; ROW]) -> Pairs<F64x8> {
-        let mut columns = [[0.0; ROW]; 10];
-        for (lane, ray) in rays.iter().enumerate() {
-            let (row, sphere) = (ray.row as usize, ray.sphere as usize);
-            let (origin, direction) = (self.rays.origin.row(row), self.rays.direction.row(row));
-            let (block, place) = (&self.spheres.blocks()[sphere / LEAF], sphere % LEAF);
-            let sphere = [block.x[place], block.y[place], block.z[place], block.radius[place]];
-            let ray = origin.to_array().into_iter().chain(direction.to_array());
-            for (column, x) in columns.iter_mut().zip(ray.chain(sphere)) {
-                column[lane] = x;
-            }
-        }
-        let row = |i: usize| load_doubles(&columns[i]);
-        let vector = |i: usize| Vec3::new(row(i), row(i + 1), row(i + 2));
-        let (origin, direction, center, radius) = (vector(0), vector(3), vector(6), row(9));
-        // As if all origins were on surfaces, which is no less.
-        Pairs { origin, direction, origin_error: rounding(origin), center, radius }
     }
 }

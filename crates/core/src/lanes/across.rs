@@ -17,6 +17,21 @@ pub fn transpose(columns: [F32x16; 8], first: usize) -> [F32x8; 8] {
     F32x8::transpose(columns.map(|column| bytemuck::cast::<_, [F32x8; 2]>(column)[(first / 8) & 1]))
 }
 
+/// In row `i` number `i` of each of sixteen rows.
+#[inline(always)]
+pub fn columns_of(rows: &[[f32; 8]; 16]) -> [F32x16; 8] {
+    let half =
+        |first: usize| F32x8::transpose(std::array::from_fn(|i| F32x8::new(rows[first + i])));
+    let (low, high) = (half(0), half(8));
+    std::array::from_fn(|i| bytemuck::cast([low[i], high[i]]))
+}
+
+/// The integer parts of numbers from 0 to 2^31; 0 for NaN and for numbers below 0.
+#[inline(always)]
+pub fn truncated(numbers: F32x16) -> U32x16 {
+    bytemuck::cast(numbers.max(F32x16::splat(0.0)).trunc_int())
+}
+
 /// Puts number `order >> 4 i & 7` of a row in place `i`.
 #[inline(always)]
 pub fn shuffle_numbers(row: &[u32; 8], order: u32) -> [u32; 8] {

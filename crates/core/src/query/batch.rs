@@ -1,14 +1,17 @@
 //! Batches of rays: those that single precision holds are traced in packets, the others one by one.
 
-use super::columns::{RayColumns, Surface, Tally};
-use super::scaled_ray::ScaledRay;
-use super::{NOTHING, SphereTree, load};
+use super::chunk::{ChunkRays, Rows};
+use super::columns::{Hits, RayColumns, Surface, Tally};
+use super::load::PACKET;
+use super::reorder::{BATCH, SortedRays};
+use super::surface::PendingSurfaces;
+use super::{NOTHING, SphereTree};
 use crate::bvh::{Query, Traversal, trace};
-use crate::exact;
-use crate::lanes::F32x16;
+use crate::intersect::Pair;
+use crate::lanes::{F32x16, Lanes, Mask, bits, bits_of, first_lanes, set_bits};
 use crate::ray::{self, MISS, Rays};
 
-/// Rays that are traced together.
+/// Rays that are traced together: they stay in the second-level cache.
 pub(super) const CHUNK: usize = 2048;
 
 /// A hit.
@@ -21,68 +24,132 @@ pub(super) struct FoundHit {
     pub(super) t: f64,
 }
 
+/// Columns of the caller's for the answers of a query.
+pub(super) trait Answers {
+    /// The distances at which searches end.
+    fn bounds(&self) -> &[f64];
+    /// Writes the answer of ray `i`.
+    fn set(&mut self, i: usize, found: &FoundHit);
+    /// The column of surfaces, if they are asked for.
+    fn surfaces(&mut self) -> Option<&mut [Surface]>;
+}
+
+impl Answers for Hits<'_> {
+    fn bounds(&self) -> &[f64] {
+        self.t
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, found: &FoundHit) {
+        (self.t[i], self.sphere[i]) = (found.t, found.id);
+    }
+
+    #[inline(always)]
+    fn surfaces(&mut self) -> Option<&mut [Surface]> {
+        self.surface.as_deref_mut()
+    }
+}
+
+/// Columns of a query for any hit.
+pub(super) struct Occlusion<'a> {
+    pub(super) t: &'a [f64],
+    pub(super) occluded: &'a mut [bool],
+}
+
+impl Answers for Occlusion<'_> {
+    fn bounds(&self) -> &[f64] {
+        self.t
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, _: &FoundHit) {
+        self.occluded[i] = true;
+    }
+
+    #[inline(always)]
+    fn surfaces(&mut self) -> Option<&mut [Surface]> {
+        None
+    }
+}
+
 impl SphereTree {
-    /// Traces rays in chunks that stay in the second-level cache; `bound` is where the search for each
-    /// ends.
-    pub(super) fn run<Q: Query>(
-        &self,
-        columns: &RayColumns,
-        bound: impl Fn(usize) -> f64,
-        mut found: impl FnMut(usize, &FoundHit),
-    ) -> Tally {
+    /// Traces rays in chunks, and writes the answers of those that hit something.
+    pub(super) fn run<Q: Query>(&self, columns: &RayColumns, answers: &mut impl Answers) -> Tally {
         let mut tally = Tally::default();
         let count = columns.origin[0].len();
-        // Powers of two: their reciprocals and products do not round.
-        let inverse_scale = self.scale.recip();
         let mut rays = Rays::with_capacity(CHUNK.min(count));
         let mut hits = ray::Hits::with_capacity(CHUNK.min(count));
-        for first in (0..count).step_by(CHUNK) {
-            let rows = first..count.min(first + CHUNK);
-            rays.truncate(0);
-            let plain = self.load(columns, rows.clone(), &mut rays);
-            let stretch = |row: usize| f64::from(plain.stretch[row]);
-            let unit = |row: usize| f64::from(plain.shrink[row]) * inverse_scale;
-            let is_plain =
-                |row: usize| plain.packets[row / load::PACKET] && !bound(first + row).is_nan();
-            for (row, i) in rows.clone().enumerate() {
-                // Nothing counts below 0: what is not plain is not traced here.
-                let bound = if is_plain(row) { bound(i) * self.scale * stretch(row) } else { -1.0 };
-                hits.set(row, bound, MISS);
-            }
-            tally.exact += trace::<F32x16, Q>(Traversal::Auto, self.tree(), &rays, &mut hits);
-            for (row, i) in rows.enumerate() {
-                if !is_plain(row) {
-                    let hit = self.trace_one::<Q>(columns.row(i), bound(i), &mut tally);
-                    if let Some(hit) = hit {
-                        found(i, &hit);
-                    }
-                } else if hits.sphere[row] != MISS {
-                    let sphere = hits.sphere[row] as usize;
-                    let id = if Q::ANY { NOTHING } else { self.spheres.id[sphere] };
-                    found(i, &FoundHit { sphere, id, t: hits.t[row] * unit(row) });
+        let mut sorted = SortedRays::taken();
+        for first in (0..count).step_by(BATCH) {
+            let batch = Rows { columns, rows: first..count.min(first + BATCH) };
+            let is_sorted = self.sort_rays(&batch, answers.bounds(), &mut sorted);
+            for first in (0..batch.rows.len()).step_by(CHUNK) {
+                let places = first..batch.rows.len().min(first + CHUNK);
+                let traced = (&mut rays, &mut hits);
+                if is_sorted {
+                    self.run_chunk::<Q>(
+                        columns,
+                        &sorted.chunk(places),
+                        traced,
+                        answers,
+                        &mut tally,
+                    );
+                } else {
+                    let chunk = batch.chunk(places);
+                    self.run_chunk::<Q>(columns, &chunk, traced, answers, &mut tally);
                 }
             }
         }
+        sorted.give_back();
         tally
     }
 
-    pub(super) fn surface(
+    /// Traces the rays of a chunk, and writes their answers.
+    #[inline(always)]
+    fn run_chunk<Q: Query>(
         &self,
-        (origin, direction): ([f32; 3], [f32; 3]),
-        found: &FoundHit,
-    ) -> Surface {
-        /// Beyond this many radii, double precision shows its limits.
-        const FAR: f64 = (1 << 20) as f64;
-        let Some(ScaledRay { ray, unit }) = self.scaled(origin, direction) else {
-            return Surface::default();
-        };
-        let (center, radius) = self.spheres.exact(found.sphere);
-        let normal = if ray.origin.distance(center) > FAR * radius {
-            exact::normal(&ray, center, radius)
-        } else {
-            ray.at_from(center, found.t / unit).normalize_or(-ray.direction.normalize())
-        };
-        let point = (center + normal * radius) / self.scale;
-        Surface { point: point.to_array(), normal: normal.to_array() }
+        columns: &RayColumns,
+        chunk: &impl ChunkRays,
+        (rays, hits): (&mut Rays, &mut ray::Hits),
+        answers: &mut impl Answers,
+        tally: &mut Tally,
+    ) {
+        let loaded = self.load(chunk, answers.bounds(), rays, hits);
+        tally.exact += trace::<F32x16, Q>(Traversal::Auto, self.tree(), rays, hits);
+        // Powers of two: their reciprocals and products do not round.
+        let inverse_scale = self.scale.recip();
+        let unit = |row: usize| f64::from(loaded.shrink[row]) * inverse_scale;
+        let mut pending = PendingSurfaces::NONE;
+        for first in (0..chunk.len()).step_by(PACKET) {
+            let plain = loaded.plain[first / PACKET];
+            let lanes = first_lanes(chunk.len() - first);
+            let hit = F32x16::lanes(plain)
+                & !bits_of::<F32x16>(&hits.sphere[first..]).has_bits_of(bits(MISS));
+            for row in set_bits(hit.bits() & lanes).map(|lane| first + lane) {
+                let (i, sphere) = (chunk.row(row), hits.sphere[row] as usize);
+                let id = if Q::ANY { NOTHING } else { self.spheres.id[sphere] };
+                let hit = FoundHit { sphere, id, t: hits.t[row] * unit(row) };
+                answers.set(i, &hit);
+                let Some(surfaces) = answers.surfaces() else { continue };
+                let pair = Pair { row: row as u32, sphere: sphere as u32 };
+                if !self.spheres.precise.is_empty() {
+                    surfaces[i] = self.surface(columns.row(i), &hit);
+                } else if pending.push(pair, i) {
+                    self.flush_surfaces(&mut pending, (rays, hits), (columns, unit), surfaces);
+                }
+            }
+            for row in set_bits(!plain & lanes).map(|lane| first + lane) {
+                let i = chunk.row(row);
+                let bound = answers.bounds()[i];
+                let Some(hit) = self.trace_one::<Q>(columns.row(i), bound, tally) else { continue };
+                answers.set(i, &hit);
+                if let Some(surfaces) = answers.surfaces() {
+                    surfaces[i] = self.surface(columns.row(i), &hit);
+                }
+            }
+        }
+        if let Some(surfaces) = answers.surfaces() {
+            self.flush_surfaces(&mut pending, (rays, hits), (columns, unit), surfaces);
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! Loads rays sixteen at a time: a power of two scales them to the tree's units, and single precision must
 //! hold the result exactly.
 
+use super::SphereTree;
 use super::batch::CHUNK;
+use super::chunk::{ChunkRays, RayPacket};
 use super::scaled_ray::REACH;
-use super::{RayColumns, SphereTree};
-use crate::lanes::{F32x16, Lanes, Mask};
-use crate::ray::Rays;
-use std::ops::Range;
+use crate::lanes::{F32x16, Lanes, Mask, set_bits};
+use crate::ray::{Hits, MISS, Rays};
 
 /// Number of rays that are loaded together.
 pub(super) const PACKET: usize = F32x16::WIDTH;
@@ -16,45 +16,33 @@ const LONGEST: f32 = (1_u128 << 100) as f32;
 
 /// Rays in the units of the tree.
 pub(super) struct LoadedRays {
-    /// By packet, whether single precision holds its rays.
-    pub(super) packets: [bool; CHUNK / PACKET],
+    /// By packet, the lanes whose rays single precision holds: a bit for each.
+    pub(super) plain: [u32; CHUNK / PACKET],
     /// By ray, the power of two that its direction was multiplied by.
     pub(super) shrink: [f32; CHUNK],
-    /// The reciprocals of `shrink`.
-    pub(super) stretch: [f32; CHUNK],
 }
 
 impl SphereTree {
-    /// Appends some rays in the tree's units, and tells which are plain: all that they are fits single
-    /// precision, and they start no farther than [`REACH`].
+    /// Replaces rays and bounds by those of a chunk in the tree's units, and tells which are plain: all that they
+    /// are fits single precision, they start no farther than [`REACH`], and their bound is a number. Others get
+    /// bounds at which no search begins.
     pub(super) fn load(
         &self,
-        columns: &RayColumns,
-        rows: Range<usize>,
+        chunk: &impl ChunkRays,
+        bounds: &[f64],
         rays: &mut Rays,
+        hits: &mut Hits,
     ) -> LoadedRays {
-        let mut plain = LoadedRays {
-            packets: [false; CHUNK / PACKET],
-            shrink: [1.0; CHUNK],
-            stretch: [1.0; CHUNK],
-        };
+        let mut loaded = LoadedRays { plain: [0; CHUNK / PACKET], shrink: [1.0; CHUNK] };
         let scale = self.scale as f32;
         let scalable = f64::from(scale) == self.scale && scale.is_normal();
-        for (packet, first) in rows.clone().step_by(PACKET).enumerate() {
-            let lanes = PACKET.min(rows.end - first);
-            let column = |x: &[f32], rest: f32| {
-                let mut row = [rest; PACKET];
-                row[..lanes].copy_from_slice(&x[first..first + lanes]);
-                F32x16::new(row)
-            };
-            let origin = columns.origin.map(|x| column(x, 0.0));
-            let direction = columns.direction.map(|x| column(x, 1.0));
+        rays.truncate(0);
+        for (packet, first) in (0..chunk.len()).step_by(PACKET).enumerate() {
+            let RayPacket { origin, direction, bound } = chunk.packet(first, bounds);
             let [x, y, z] = direction.map(Lanes::abs);
             let longest = Lanes::max(Lanes::max(x, y), z);
             let shrink = longest.to_array().map(reciprocal_power);
-            plain.shrink[packet * PACKET..][..PACKET].copy_from_slice(&shrink);
-            let stretch = F32x16::splat(1.0) / F32x16::new(shrink);
-            stretch.store(&mut plain.stretch[packet * PACKET..]);
+            loaded.shrink[first..][..PACKET].copy_from_slice(&shrink);
             let moved = origin.map(|x| x * F32x16::splat(scale));
             let turned = direction.map(|x| x * F32x16::new(shrink));
             let mut all =
@@ -64,10 +52,23 @@ impl SphereTree {
                 all = all & is_exact(turned[axis], direction[axis]);
                 all = all & Lanes::abs(moved[axis]).le(F32x16::splat(REACH as f32));
             }
-            plain.packets[packet] = scalable && all.bits() == u32::from(u16::MAX);
-            rays.append(lanes, &moved, &turned);
+            let (t, sphere) = (&mut hits.t[first..][..PACKET], &mut hits.sphere[first..][..PACKET]);
+            sphere.fill(MISS);
+            let mut numbers = 0;
+            for lane in 0..PACKET {
+                // The reciprocal of a power of two is one, and its product does not round.
+                t[lane] = bound[lane] * self.scale * f64::from(shrink[lane].recip());
+                numbers |= u32::from(!bound[lane].is_nan()) << lane;
+            }
+            let plain = if scalable { all.bits() & numbers } else { 0 };
+            // Nothing counts below 0.
+            if plain != u32::from(u16::MAX) {
+                set_bits(!plain & u32::from(u16::MAX)).for_each(|lane| t[lane] = -1.0);
+            }
+            loaded.plain[packet] = plain;
+            rays.append(PACKET.min(chunk.len() - first), &moved, &turned);
         }
-        plain
+        loaded
     }
 }
 

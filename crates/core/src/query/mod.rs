@@ -6,9 +6,12 @@
 //! by a power of two, which is exact, and nothing else is done to them.
 
 mod batch;
+mod chunk;
 mod columns;
 mod load;
+mod reorder;
 mod scaled_ray;
+mod surface;
 
 pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 
@@ -17,9 +20,9 @@ use crate::bvh::builders::{Builder, build};
 use crate::bvh::{Any, Closest, Tree};
 use crate::elementary;
 use crate::spheres::Spheres;
+use batch::Occlusion;
 use columns::same_length;
 use glam::{DVec3, Vec3};
-use std::cell::Cell;
 
 /// Spheres, ready for exact queries.
 #[derive(Clone, Debug)]
@@ -157,23 +160,15 @@ impl SphereTree {
     ///
     /// # Errors
     /// Columns of different lengths.
-    pub fn intersect_columns(&self, rays: &RayColumns, hits: Hits) -> Result<Tally, QueryError> {
-        let Hits { t, sphere, mut surface } = hits;
-        let surfaces = surface.as_ref().map_or(t.len(), |column| column.len());
-        rays.check(&[t.len(), sphere.len(), surfaces])?;
-        sphere.fill(NOTHING);
-        let t = Cell::from_mut(t).as_slice_of_cells();
-        Ok(self.run::<Closest>(
-            rays,
-            |i| t[i].get(),
-            |i, found| {
-                t[i].set(found.t);
-                sphere[i] = found.id;
-                if let Some(surface) = &mut surface {
-                    surface[i] = self.surface(rays.row(i), found);
-                }
-            },
-        ))
+    pub fn intersect_columns(
+        &self,
+        rays: &RayColumns,
+        mut hits: Hits,
+    ) -> Result<Tally, QueryError> {
+        let surfaces = hits.surface.as_ref().map_or(hits.t.len(), |column| column.len());
+        rays.check(&[hits.t.len(), hits.sphere.len(), surfaces])?;
+        hits.sphere.fill(NOTHING);
+        Ok(self.run::<Closest>(rays, &mut hits))
     }
 
     /// Finds whether each ray hits anything nearer than its bound in `t`.
@@ -188,7 +183,7 @@ impl SphereTree {
     ) -> Result<Tally, QueryError> {
         rays.check(&[t.len(), occluded.len()])?;
         occluded.fill(false);
-        Ok(self.run::<Any>(rays, |i| t[i], |i, _| occluded[i] = true))
+        Ok(self.run::<Any>(rays, &mut Occlusion { t, occluded }))
     }
 }
 

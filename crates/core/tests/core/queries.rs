@@ -4,6 +4,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use spherule_core::internals::exact::{self, Distance};
+use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::ExactRay;
 use spherule_core::{Hits, NOTHING, RayColumns, SphereTree, Surface, Tally};
 use std::cmp::Ordering;
@@ -213,6 +214,64 @@ fn distance_does_not_matter() {
             })
             .collect();
         check(&spheres, &rays);
+    }
+}
+
+/// Random spheres in the unit cube.
+fn field(count: usize) -> Vec<Sphere> {
+    let mut random = Random::new(7);
+    let size = 0.8 * (count as f32).cbrt().recip();
+    let mut sphere = || [random.single(), random.single(), random.single(), size * random.single()];
+    (0..count).map(|_| sphere()).collect()
+}
+
+/// Rays in no order: from one point, toward one direction, or any; and some that are no rays, or that single
+/// precision cannot hold.
+fn disordered(count: usize, one_origin: bool, one_direction: bool) -> Vec<Ray> {
+    let mut random = Random::new(3);
+    let mut ray = |i: usize| {
+        let mut vector = || [0; 3].map(|_| 2.0 * random.single() - 1.0);
+        let origin = if one_origin { [0.5, 0.5, 3.0] } else { vector() };
+        let target = vector();
+        let direction = std::array::from_fn(|axis| 0.5 + 0.5 * target[axis] - origin[axis]);
+        let direction = if one_direction { [0.3, 0.2, -1.0] } else { direction };
+        match i % 61 {
+            0 => ([f32::NAN, 0.0, 0.0], direction),
+            1 => (origin, [0.0; 3]),
+            2 => (origin, direction.map(|x| x * 1e-35)),
+            3 => (origin.map(|x| x * 1e9), direction),
+            _ => (origin, direction),
+        }
+    };
+    (0..count).map(&mut ray).collect()
+}
+
+#[test]
+fn the_order_of_rays_changes_no_answer() {
+    // Small trees stay in the caches, so only rays that packets can be made of are sorted there.
+    for (spheres, count, one_origin, one_direction) in
+        [(2000, 5000, true, false), (2000, 5000, false, true), (40_000, 40_001, false, false)]
+    {
+        let tree = SphereTree::from_rows(&field(spheres)).expect("few spheres");
+        let rays = disordered(count, one_origin, one_direction);
+        let (t, sphere, surface, tally) = traced(&tree, &rays);
+        assert_eq!(tally.invalid, (0..count).filter(|i| i % 61 < 2).count() as u64);
+        let [x, y, z, dx, dy, dz] = columns(&rays);
+        let view = RayColumns { origin: [&x, &y, &z], direction: [&dx, &dy, &dz] };
+        let bounds: Vec<f64> = (0..count).map(|i| 0.1 * (1 + i % 20) as f64).collect();
+        let mut occluded = vec![true; count];
+        tree.occluded_columns(&view, &bounds, &mut occluded).expect("columns agree");
+        let mut hits = 0;
+        for (i, &(origin, direction)) in rays.iter().enumerate() {
+            let alone = tree.intersect(origin, direction);
+            hits += usize::from(alone.is_some());
+            let answer = alone.map(|hit| (hit.sphere, hit.t, hit.point, hit.normal));
+            let Surface { point, normal } = surface[i];
+            let found = (sphere[i] != NOTHING).then_some((sphere[i], t[i], point, normal));
+            assert_eq!(found, answer, "{i}");
+            assert_eq!(occluded[i], tree.occluded(origin, direction, bounds[i]), "{i}");
+        }
+        assert!(hits > count / 8, "{hits} of {count}");
     }
 }
 

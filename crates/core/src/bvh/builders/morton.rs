@@ -7,6 +7,7 @@
 use super::item::{Extent, Item, along, spread};
 use super::median::Median;
 use super::{Cut, snapped};
+use crate::radix::{sort_by_digits, spaced};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -20,9 +21,6 @@ const STRETCHES: usize = 512;
 
 /// Number of spheres that are worth a task.
 const CHUNK: usize = 1 << 14;
-
-/// Bits of a place on a stretch that are ordered at a time.
-const DIGIT: u32 = 11;
 
 /// With fewer keys comparing them is faster, and with more on one stretch there may be no work for
 /// other threads but on them.
@@ -138,7 +136,9 @@ impl Cells {
         let keys = from.par_iter().with_min_len(CHUNK).enumerate().map(key);
         let mut keys: Vec<u64> = keys.collect();
         match keys.len() {
-            count if BY_DIGITS.contains(&count) => sort_by_digits(&mut keys),
+            count if BY_DIGITS.contains(&count) => {
+                sort_by_digits(&mut keys, &mut Vec::new(), 32, 2);
+            }
             _ => keys.par_sort_unstable(),
         }
         let item = |key: u64| &from[key as u32 as usize];
@@ -148,37 +148,6 @@ impl Cells {
         let to = to.par_iter_mut().zip(codes).zip(keys).with_min_len(CHUNK);
         to.for_each(|((to, code), key)| (*to, *code) = (*item(key), (key >> 32) as u32));
     }
-}
-
-/// Sorts keys by their places on one stretch of the curve; those at one place stay as they are.
-fn sort_by_digits(keys: &mut Vec<u64>) {
-    let mut sorted = vec![0; keys.len()];
-    for shift in [32, 32 + DIGIT] {
-        let digit = |key: u64| (key >> shift) as usize % (1 << DIGIT);
-        let mut places = [0_u32; 1 << DIGIT];
-        for &key in &*keys {
-            places[digit(key)] += 1;
-        }
-        let mut below = 0;
-        for place in &mut places {
-            below += std::mem::replace(place, below);
-        }
-        for &key in &*keys {
-            let place = &mut places[digit(key)];
-            sorted[*place as usize] = key;
-            *place += 1;
-        }
-        std::mem::swap(keys, &mut sorted);
-    }
-}
-
-/// The lowest ten bits with two zeros above each.
-#[inline(always)]
-fn spaced(x: u32) -> u32 {
-    let x = (x | x << 16) & 0x0300_00ff;
-    let x = (x | x << 8) & 0x0300_f00f;
-    let x = (x | x << 4) & 0x030c_30c3;
-    (x | x << 2) & 0x0924_9249
 }
 
 #[cfg(test)]

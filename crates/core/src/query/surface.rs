@@ -1,0 +1,103 @@
+//! Points and normals of hits.
+
+use super::batch::FoundHit;
+use super::scaled_ray::ScaledRay;
+use super::{RayColumns, SphereTree, Surface};
+use crate::exact;
+use crate::intersect::{Pair, Pairs};
+use crate::lanes::{Doubles, F64x8, Mask, set_bits};
+use crate::ray::{Hits, Rays};
+use crate::vec3::Vec3;
+
+/// Beyond this many radii from a sphere, double precision shows its limits.
+const FAR: f64 = (1 << 20) as f64;
+
+/// Number of hits whose surfaces are computed together.
+const ROW: usize = 8;
+
+/// Hits of a chunk whose surfaces are still to be computed.
+pub(super) struct PendingSurfaces {
+    count: usize,
+    /// Rows of rays in the chunk, and of spheres.
+    pairs: [Pair; ROW],
+    /// The caller's rows of the rays.
+    of: [usize; ROW],
+}
+
+impl PendingSurfaces {
+    pub(super) const NONE: Self =
+        Self { count: 0, pairs: [Pair { row: 0, sphere: 0 }; ROW], of: [0; ROW] };
+
+    /// Adds a hit; the caller flushes when it returns true.
+    #[inline(always)]
+    pub(super) fn push(&mut self, pair: Pair, of: usize) -> bool {
+        (self.pairs[self.count % ROW], self.of[self.count % ROW]) = (pair, of);
+        self.count += 1;
+        self.count == ROW
+    }
+}
+
+impl SphereTree {
+    /// Returns the surface where a ray has hit a sphere.
+    pub(super) fn surface(
+        &self,
+        (origin, direction): ([f32; 3], [f32; 3]),
+        found: &FoundHit,
+    ) -> Surface {
+        let Some(ScaledRay { ray, unit }) = self.scaled(origin, direction) else {
+            return Surface::default();
+        };
+        let (center, radius) = self.spheres.exact(found.sphere);
+        let (clear, normal) = normals(&Pairs::one(&ray, center, radius), found.t / unit);
+        let normal = if clear { normal } else { exact::normal(&ray, center, radius).into() };
+        let point = (normal * radius + center.into()) * self.scale.recip();
+        Surface { point: point.into(), normal: normal.into() }
+    }
+
+    /// Writes the surfaces of pending hits to the caller's rows.
+    pub(super) fn flush_surfaces(
+        &self,
+        pending: &mut PendingSurfaces,
+        (rays, hits): (&Rays, &Hits),
+        (columns, unit): (&RayColumns, impl Fn(usize) -> f64),
+        surfaces: &mut [Surface],
+    ) {
+        let count = std::mem::take(&mut pending.count);
+        if count == 0 {
+            return;
+        }
+        // Unused lanes repeat the first hit.
+        let first = pending.pairs[0];
+        pending.pairs[count..].fill(first);
+        let t = pending.pairs.map(|pair| hits.t[pair.row as usize]);
+        let pairs = Pairs::gather(rays, &self.spheres, &pending.pairs);
+        let (clear, normal) = normals(&pairs, F64x8::new(t));
+        let scale = F64x8::splat(self.scale.recip());
+        let point = (normal * pairs.radius + pairs.center) * scale;
+        let coordinates = |v: Vec3<F64x8>| [v.x, v.y, v.z].map(F64x8::to_array);
+        let (point, normal) = (coordinates(point), coordinates(normal));
+        for lane in 0..count {
+            let row = |columns: &[[f64; ROW]; 3]| [0, 1, 2].map(|axis| columns[axis][lane]);
+            surfaces[pending.of[lane]] = Surface { point: row(&point), normal: row(&normal) };
+        }
+        for lane in set_bits(!clear.bits() & ((1 << count) - 1)) {
+            let (Pair { row, sphere }, of) = (pending.pairs[lane], pending.of[lane]);
+            let t = hits.t[row as usize] * unit(row as usize);
+            let found = FoundHit { sphere: sphere as usize, id: 0, t };
+            surfaces[of] = self.surface(columns.row(of), &found);
+        }
+    }
+}
+
+/// Returns the outward unit normals where rays hit spheres at distances `t`, in lanes in which double precision
+/// suffices, which are the first result. Every operation is rounded by itself, so lanes equal single values.
+#[inline(always)]
+fn normals<D: Doubles>(pairs: &Pairs<D>, t: D) -> (D::Mask, Vec3<D>) {
+    // The difference first, which loses nothing where both are far from the coordinates' origin.
+    let from_center = pairs.origin - pairs.center;
+    let distance = from_center.dot_unfused(from_center).sqrt();
+    let normal = from_center + pairs.direction * t;
+    let inverse = normal.inverse_length();
+    let finite = D::splat(0.0).lt(inverse) & inverse.lt(D::splat(f64::INFINITY));
+    (!(pairs.radius * D::splat(FAR)).lt(distance) & finite, normal * inverse)
+}
