@@ -2,13 +2,13 @@
 
 use crate::embree::{Call, Scene};
 use crate::levels::Runner;
-use crate::rays::{Class, Rays};
+use crate::rays::{Class, Order, Rays};
 use crate::referee::{Referee, Verdicts};
 use crate::scenes::Columns;
 use cpu_time::ThreadTime;
 use serde::Serialize;
 use spherule_core::SphereTree;
-use spherule_core::{Hits, NOTHING, QueryError};
+use spherule_core::{Hits, NOTHING, QueryError, Surface};
 use spherule_measure::workload::SphereScene;
 use std::error::Error;
 use std::time::Duration;
@@ -31,6 +31,7 @@ pub struct Entry {
 pub struct Outcome {
     pub scene: &'static str,
     pub class: Class,
+    pub order: Order,
     pub rays: usize,
     /// Share of the rays that hit something.
     pub hits: f64,
@@ -38,6 +39,8 @@ pub struct Outcome {
     pub fastest: Entry,
     pub embree: f64,
     pub spherule: f64,
+    /// Calls for one ray each, in the same order.
+    pub single: SingleCalls,
     /// Spherule compiled for other processor levels.
     pub levels: Vec<(String, f64)>,
     /// Rays that Spherule decided in arithmetic without rounding.
@@ -47,6 +50,15 @@ pub struct Outcome {
     pub heat: Vec<(Entry, f64)>,
 }
 
+/// Nanoseconds that a call for one ray takes.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SingleCalls {
+    /// `rtcIntersect1` or `rtcOccluded1`, in the fastest of all ways.
+    pub embree: f64,
+    /// `SphereTree::intersect` or `occluded`.
+    pub spherule: f64,
+}
+
 /// Who competes in a scene.
 pub struct Contest<'a> {
     pub scene: SphereScene,
@@ -54,6 +66,8 @@ pub struct Contest<'a> {
     pub tree: &'a SphereTree,
     /// The rows of spheres along a Morton curve.
     pub order: &'a [u32],
+    /// Whether Spherule leaves out points and normals.
+    pub hits_only: bool,
     /// For each of Embree's configurations: spheres as in the file, and along the curve.
     pub embree: &'a [[Scene<'a>; 2]],
 }
@@ -63,6 +77,7 @@ pub struct Answers {
     pub spheres: Vec<u32>,
     embree_t: Vec<f32>,
     pub spherule_t: Vec<f64>,
+    surfaces: Vec<Surface>,
     pub occluded: Vec<bool>,
 }
 
@@ -93,6 +108,7 @@ impl Answers {
             spheres: vec![NOTHING; count],
             embree_t: vec![0.0; count],
             spherule_t: vec![f64::INFINITY; count],
+            surfaces: vec![Surface::default(); count],
             occluded: vec![false; count],
         }
     }
@@ -106,7 +122,7 @@ impl Contest<'_> {
     /// Columns of different lengths, or a level that has other answers.
     pub fn run(
         &self,
-        (class, rays): (Class, &Rays),
+        (class, order, rays): (Class, Order, &Rays),
         entries: &[Entry],
         (rounds, finalists): (u32, u32),
         runners: &mut [Runner],
@@ -121,13 +137,19 @@ impl Contest<'_> {
         let (_, exact) = self.spherule(class, rays, &mut answers)?;
         let finalists = &heat[..heat.len().min(finalists as usize)];
         let mut embree = vec![Vec::new(); finalists.len()];
-        let mut spherule = Vec::new();
+        // Of the ways to ask for one ray, heat decides.
+        let one = heat.iter().find(|(entry, _)| entry.width == 1).map(|(entry, _)| *entry);
+        let (mut spherule, mut single) = (Vec::new(), [Vec::new(), Vec::new()]);
         let mut levels = vec![Vec::new(); runners.len()];
         for _ in 0..rounds {
             for ((entry, _), seconds) in finalists.iter().zip(&mut embree) {
                 seconds.push(self.embree(class, rays, *entry, &mut answers));
             }
             spherule.push(self.spherule(class, rays, &mut answers)?.0);
+            if let Some(one) = one {
+                single[0].push(self.embree(class, rays, one, &mut answers));
+                single[1].push(self.spherule_single(class, rays, &mut answers));
+            }
             for (runner, seconds) in runners.iter_mut().zip(&mut levels) {
                 seconds.push(runner.run(class, &answers)?);
             }
@@ -135,18 +157,23 @@ impl Contest<'_> {
         let names = runners.iter().map(|runner| runner.level.clone());
         let levels = names.zip(levels.iter_mut().map(|seconds| rate(median(seconds))));
         let medians = embree.iter_mut().map(|seconds| median(seconds));
-        let mut order: Vec<_> = finalists.iter().map(|(entry, _)| *entry).zip(medians).collect();
-        order.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let (fastest, seconds) = order[0];
+        let mut ranked: Vec<_> = finalists.iter().map(|(entry, _)| *entry).zip(medians).collect();
+        ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let (fastest, seconds) = ranked[0];
         let (verdicts, hits) = self.judge(class, rays, fastest)?;
         Ok(Outcome {
             scene: self.scene.name,
             class,
+            order,
             rays: rays.len(),
             hits,
             fastest,
             embree: rate(seconds),
             spherule: rate(median(&mut spherule)),
+            single: SingleCalls {
+                embree: median(&mut single[0]) / rays.len() as f64 * 1e9,
+                spherule: median(&mut single[1]) / rays.len() as f64 * 1e9,
+            },
             levels: levels.collect(),
             exact,
             verdicts,
@@ -178,7 +205,31 @@ impl Contest<'_> {
         rays: &Rays,
         answers: &mut Answers,
     ) -> Result<(f64, u64), QueryError> {
-        spherule(self.tree, class, rays, answers)
+        spherule(self.tree, class, rays, self.hits_only, answers)
+    }
+
+    /// Seconds that calls of Spherule for one ray each take.
+    fn spherule_single(&self, class: Class, rays: &Rays, answers: &mut Answers) -> f64 {
+        let mut clock = Clock::default();
+        while clock.goes_on() {
+            clock.time(|| {
+                for i in 0..rays.len() {
+                    let (origin, direction) = rays.row(i);
+                    let (origin, direction) = (origin.into(), direction.into());
+                    if class.is_any() {
+                        let occluded = self.tree.occluded(origin, direction, f64::INFINITY);
+                        answers.occluded[i] = occluded;
+                    } else if let Some(hit) = self.tree.intersect(origin, direction) {
+                        let surface = Surface { point: hit.point, normal: hit.normal };
+                        (answers.spheres[i], answers.spherule_t[i]) = (hit.sphere, hit.t);
+                        answers.surfaces[i] = surface;
+                    } else {
+                        answers.spheres[i] = NOTHING;
+                    }
+                }
+            });
+        }
+        clock.mean()
     }
 
     /// Where the systems differ, and the share of rays that hit something.
@@ -234,18 +285,20 @@ pub fn spherule(
     tree: &SphereTree,
     class: Class,
     rays: &Rays,
+    hits_only: bool,
     answers: &mut Answers,
 ) -> Result<(f64, u64), QueryError> {
     let columns = rays.columns();
-    let Answers { spherule_t: t, spheres: sphere, occluded, .. } = answers;
+    let Answers { spherule_t: t, spheres: sphere, occluded, surfaces, .. } = answers;
     let (mut clock, mut exact) = (Clock::default(), 0);
     while clock.goes_on() {
-        t.fill(f64::INFINITY);
         let tally = clock.time(|| {
+            t.fill(f64::INFINITY);
             if class.is_any() {
                 tree.occluded_columns(&columns, t, occluded)
             } else {
-                tree.intersect_columns(&columns, Hits { t, sphere, surface: None })
+                let surface = (!hits_only).then_some(surfaces.as_mut_slice());
+                tree.intersect_columns(&columns, Hits { t, sphere, surface })
             }
         })?;
         exact = tally.exact;

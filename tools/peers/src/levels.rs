@@ -6,7 +6,7 @@
 
 use crate::contest::{Answers, spherule};
 use crate::options::Options;
-use crate::rays::{Class, Rays, Seen};
+use crate::rays::{Class, Order, Rays, Seen};
 use crate::report::name;
 use crate::scenes::Columns;
 use clap::ValueEnum;
@@ -49,10 +49,9 @@ impl Runner {
     /// # Errors
     /// It cannot be started.
     pub fn start(program: &Program, options: &Options) -> Result<Self, Box<dyn Error>> {
-        let order = name(&options.order);
         let mut command = Command::new(&program.path);
-        command.args(["--serve", "--embree", "none", "--order", &order, "--side"]);
-        command.arg(options.side.to_string());
+        command.args(["--serve", "--embree", "none", "--side", &options.side.to_string()]);
+        command.args(options.hits_only.then_some("--hits-only"));
         let child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         let failed = |error| format!("{} cannot be started: {error}", program.path.display());
         let mut child = child.map_err(failed)?;
@@ -82,8 +81,12 @@ impl Runner {
     ///
     /// # Errors
     /// The program has ended, or has other rays.
-    pub fn make_rays(&mut self, class: Class, rays: &Rays) -> Result<(), Box<dyn Error>> {
-        let theirs = self.ask(&format!("rays {}", name(&class)))?;
+    pub fn make_rays(
+        &mut self,
+        (class, order): (Class, Order),
+        rays: &Rays,
+    ) -> Result<(), Box<dyn Error>> {
+        let theirs = self.ask(&format!("rays {} {}", name(&class), name(&order)))?;
         if theirs == hash_of_rays(rays).to_string() { Ok(()) } else { Err(self.differs("rays")) }
     }
 
@@ -139,7 +142,9 @@ fn hash_of_answers(class: Class, answers: &Answers) -> u64 {
 /// The tree and the rays of a program that serves.
 struct Served {
     tree: SphereTree,
-    seen: Seen,
+    spheres: Columns,
+    flat: bool,
+    seen: Option<(Order, Seen)>,
     class: Class,
     rays: Rays,
 }
@@ -160,19 +165,26 @@ pub fn serve(options: &Options) -> Result<(), Box<dyn Error>> {
                 let spheres = Columns::of(scene)?;
                 let Columns { x, y, z, radius } = &spheres;
                 let tree = SphereTree::from_columns(x, y, z, radius)?;
-                let picture = (options.side.next_multiple_of(4), options.order);
-                let seen = Seen::new(scene.flat, &spheres, &tree, picture)?;
-                served = Some(Served { tree, seen, class: Class::Primary, rays: Rays::default() });
+                let (flat, class, rays) = (scene.flat, Class::Primary, Rays::default());
+                served = Some(Served { tree, spheres, flat, seen: None, class, rays });
                 "ready".to_owned()
             }
             (("rays", of), Some(served)) => {
-                served.class = Class::from_str(of, true)?;
-                served.rays = served.seen.rays(served.class).into_owned();
+                let (class, order) = of.split_once(' ').ok_or("no order")?;
+                let order = Order::from_str(order, true)?;
+                if served.seen.as_ref().is_none_or(|(of, _)| *of != order) {
+                    let picture = (options.side.next_multiple_of(4), order);
+                    let seen = Seen::new(served.flat, &served.spheres, &served.tree, picture)?;
+                    served.seen = Some((order, seen));
+                }
+                served.class = Class::from_str(class, true)?;
+                let rays = served.seen.as_ref().map(|(_, seen)| seen.rays(served.class, order));
+                served.rays = rays.ok_or("no picture")?.into_owned();
                 hash_of_rays(&served.rays).to_string()
             }
             (("run", _), Some(Served { tree, class, rays, .. })) => {
                 let mut answers = Answers::new(rays.len());
-                let (seconds, _) = spherule(tree, *class, rays, &mut answers)?;
+                let (seconds, _) = spherule(tree, *class, rays, options.hits_only, &mut answers)?;
                 format!("{seconds:e} {}", hash_of_answers(*class, &answers))
             }
             _ => return Err(format!("cannot do `{line}`").into()),

@@ -85,24 +85,34 @@ fn trace(
         Ok([build(&filed)?, build(&sorted)?])
     };
     let embree = devices.iter().map(build).collect::<Result<Vec<_>, _>>()?;
-    let contest = Contest { scene, spheres, tree: &tree, order: &order, embree: &embree };
+    let hits_only = options.hits_only;
+    let contest =
+        Contest { scene, spheres, tree: &tree, order: &order, hits_only, embree: &embree };
     let entries = Entry::all(embree.len(), &options.calls);
-    let picture = (options.side.next_multiple_of(4), options.order);
-    let seen = Seen::new(scene.flat, spheres, &tree, picture)?;
     for runner in &mut *runners {
         runner.load(scene)?;
     }
-    for &class in &options.classes {
-        writeln!(stderr(), "{}: {} rays", scene.name, report::name(&class))?;
-        let rays = seen.rays(class);
-        if rays.len() == 0 {
-            continue;
+    for &order in &options.orders {
+        let picture = (options.side.next_multiple_of(4), order);
+        let seen = Seen::new(scene.flat, spheres, &tree, picture)?;
+        for &class in &options.classes {
+            writeln!(
+                stderr(),
+                "{}: {} rays, {}",
+                scene.name,
+                report::name(&class),
+                report::name(&order)
+            )?;
+            let rays = seen.rays(class, order);
+            if rays.len() == 0 {
+                continue;
+            }
+            let limits = (options.rounds, options.finalists);
+            for runner in &mut *runners {
+                runner.make_rays((class, order), &rays)?;
+            }
+            outcomes.push(contest.run((class, order, &rays), &entries, limits, runners)?);
         }
-        let limits = (options.rounds, options.finalists);
-        for runner in &mut *runners {
-            runner.make_rays(class, &rays)?;
-        }
-        outcomes.push(contest.run((class, &rays), &entries, limits, runners)?);
     }
     Ok(())
 }
@@ -114,7 +124,8 @@ fn json(
 ) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&serde_json::json!({
         "side": options.side.next_multiple_of(4),
-        "order": options.order,
+        "orders": options.orders,
+        "hits_only": options.hits_only,
         "rounds": options.rounds,
         "configuration": options.configuration,
         "quality": options.quality,

@@ -35,9 +35,13 @@ pub struct Options {
     #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=8192))]
     pub side: u32,
 
-    /// Order of the pixels, and so of all rays; the same for both systems.
-    #[arg(long, value_enum, default_value_t = Order::Blocks)]
-    pub order: Order,
+    /// Orders of all rays, separated by commas; the same for both systems.
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Order::Blocks, Order::Random])]
+    pub orders: Vec<Order>,
+
+    /// Does not ask Spherule for points and normals, which Embree always computes.
+    #[arg(long)]
+    pub hits_only: bool,
 
     /// Rounds in which all that are compared run once, by turns; medians count.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]

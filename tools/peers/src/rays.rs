@@ -5,6 +5,7 @@ use clap::ValueEnum;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
 use spherule_core::SphereTree;
+use spherule_core::internals::random::Random;
 use spherule_core::{Hits, NOTHING, QueryError, RayColumns, Surface};
 use spherule_measure::workload::{LIGHT, View, above};
 use std::borrow::Cow;
@@ -23,14 +24,16 @@ pub enum Class {
     Diffuse,
 }
 
-/// Order of pixels, and with them of all rays.
+/// Order of all rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Order {
-    /// Blocks of 4 x 4 pixels, row by row; within each, row by row.
+    /// By pixels in blocks of 4 x 4, row by row; within each, row by row.
     Blocks,
-    /// Row by row.
+    /// By pixels, row by row.
     Rows,
+    /// Shuffled.
+    Random,
 }
 
 /// Rays in columns.
@@ -79,6 +82,20 @@ impl Rays {
         (row(&self.origin), row(&self.direction))
     }
 
+    /// The same rays in a random order.
+    fn shuffled(&self) -> Self {
+        let mut rows: Vec<usize> = (0..self.len()).collect();
+        let mut random = Random::new(4);
+        for last in (1..rows.len()).rev() {
+            rows.swap(last, random.index(last + 1));
+        }
+        let mut rays = Self::default();
+        for (origin, direction) in rows.into_iter().map(|row| self.row(row)) {
+            rays.push(origin, direction);
+        }
+        rays
+    }
+
     /// Appends a ray.
     pub fn push(&mut self, origin: Vec3, direction: Vec3) {
         for axis in 0..3 {
@@ -111,14 +128,15 @@ impl Seen {
         Ok(Self { primary, points })
     }
 
-    /// The rays of a class.
-    pub fn rays(&self, class: Class) -> Cow<'_, Rays> {
-        match class {
+    /// The rays of a class; those that come by pixels come as the picture's do.
+    pub fn rays(&self, class: Class, order: Order) -> Cow<'_, Rays> {
+        let rays = match class {
             Class::Primary => Cow::Borrowed(&self.primary),
             Class::Shadow => Cow::Owned(self.toward(LIGHT.normalize())),
             Class::Ao => Cow::Owned(self.scattered(2, 4)),
             Class::Diffuse => Cow::Owned(self.scattered(3, 1)),
-        }
+        };
+        if order == Order::Random { Cow::Owned(rays.shuffled()) } else { rays }
     }
 
     /// One ray from each point above whose horizon the light is.
@@ -177,7 +195,7 @@ impl Order {
     fn pixel(self, i: u32, side: u32) -> (u32, u32) {
         match self {
             Self::Rows => (i % side, i / side),
-            Self::Blocks => View::in_blocks(i, side),
+            Self::Blocks | Self::Random => View::in_blocks(i, side),
         }
     }
 }
@@ -198,14 +216,27 @@ mod tests {
     }
 
     #[test]
+    fn shuffled_rays_are_the_same_rays() {
+        let mut rays = Rays::default();
+        (0..100).for_each(|i| rays.push(Vec3::splat(i as f32), Vec3::X * i as f32));
+        let shuffled = rays.shuffled();
+        let mut rows: Vec<_> = (0..100).map(|i| shuffled.row(i)).collect();
+        assert!(rows.iter().all(|(origin, direction)| origin.x == direction.x));
+        let in_place = rows.iter().enumerate().filter(|(i, row)| row.0.x == *i as f32).count();
+        assert!(in_place < 10, "{in_place}");
+        rows.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
+        assert!(rows.iter().enumerate().all(|(i, row)| row.0.x == i as f32));
+    }
+
+    #[test]
     fn rays_leave_what_they_start_from() {
         let spheres = Columns::of(SphereScene::PAPER400).unwrap();
         let Columns { x, y, z, radius } = &spheres;
         let tree = SphereTree::from_columns(x, y, z, radius).unwrap();
         let seen = Seen::new(true, &spheres, &tree, (64, Order::Blocks)).unwrap();
         assert!(seen.points.len() > 400);
-        assert_eq!(seen.rays(Class::Ao).len(), 4 * seen.points.len());
-        let rays = seen.rays(Class::Diffuse);
+        assert_eq!(seen.rays(Class::Ao, Order::Blocks).len(), 4 * seen.points.len());
+        let rays = seen.rays(Class::Diffuse, Order::Blocks);
         for (i, point) in seen.points.iter().enumerate() {
             let (origin, direction) = rays.row(i);
             assert!(direction.as_dvec3().dot(point.normal) > 0.0);

@@ -1,9 +1,9 @@
 //! Tables in Markdown.
 
 use crate::builds::Builds;
-use crate::contest::{Entry, Outcome};
+use crate::contest::{Entry, Outcome, SingleCalls};
 use crate::options::Options;
-use crate::rays::Class;
+use crate::rays::{Class, Order};
 use clap::ValueEnum;
 use spherule_core::internals::elementary::{exp, ln};
 use std::io::{self, Write};
@@ -32,41 +32,78 @@ pub fn write(
 fn rates(out: &mut impl Write, options: &Options, outcomes: &[Outcome]) -> io::Result<()> {
     writeln!(
         out,
-        "\n| scene, rays | count | hit | Embree, Mrays/s | its call | Spherule, Mrays/s | ratio |"
+        "\n| scene, rays | count | hit | Embree, Mrays/s | its call | Spherule, Mrays/s | ratio | \
+         one call, ns | Embree's | ratio |"
     )?;
-    writeln!(out, "|---|--:|--:|--:|---|--:|--:|")?;
+    writeln!(out, "|---|--:|--:|--:|---|--:|--:|--:|--:|--:|")?;
     for outcome in outcomes {
+        let SingleCalls { embree, spherule } = outcome.single;
         writeln!(
             out,
-            "| {}, {} | {} | {:.0} % | {:.2} | {} | {:.2} | {:.2} |",
-            outcome.scene,
-            name(&outcome.class),
+            "| {} | {} | {:.0} % | {:.2} | {} | {:.2} | {:.2} | {spherule:.0} | {embree:.0} | {:.2} |",
+            outcome.name(),
             outcome.rays,
             outcome.hits * 100.0,
             outcome.embree,
             call(options, outcome.fastest),
             outcome.spherule,
-            outcome.spherule / outcome.embree
+            outcome.ratio(),
+            embree / spherule,
         )?;
     }
     Ok(())
 }
 
+/// Geometric means and the least ratio by class and order.
 fn means(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
-    writeln!(out, "\n| geometric means | Embree, Mrays/s | Spherule, Mrays/s | ratio |")?;
-    writeln!(out, "|---|--:|--:|--:|")?;
-    let mut row = |name: String, of: Vec<&Outcome>| {
-        if of.is_empty() {
-            return Ok(());
-        }
+    writeln!(
+        out,
+        "\n| geometric means | Embree, Mrays/s | Spherule, Mrays/s | ratio | least | one call, ratio | least |"
+    )?;
+    writeln!(out, "|---|--:|--:|--:|--:|--:|--:|")?;
+    for (name, of) in groups(outcomes) {
         let embree = geometric_mean(of.iter().map(|outcome| outcome.embree));
         let spherule = geometric_mean(of.iter().map(|outcome| outcome.spherule));
-        writeln!(out, "| {name} | {embree:.2} | {spherule:.2} | {:.2} |", spherule / embree)
-    };
-    for &class in Class::value_variants() {
-        row(name(&class), outcomes.iter().filter(|outcome| outcome.class == class).collect())?;
+        let single = |outcome: &&Outcome| outcome.single.embree / outcome.single.spherule;
+        let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+        writeln!(
+            out,
+            "| {name} | {embree:.2} | {spherule:.2} | {:.2} | {:.2} | {:.2} | {:.2} |",
+            spherule / embree,
+            least(&mut of.iter().map(|outcome| outcome.ratio())),
+            geometric_mean(of.iter().map(single)),
+            least(&mut of.iter().map(single)),
+        )?;
     }
-    row("all".to_owned(), outcomes.iter().collect())
+    Ok(())
+}
+
+/// Outcomes by order and class, and all.
+fn groups(outcomes: &[Outcome]) -> Vec<(String, Vec<&Outcome>)> {
+    let mut groups = Vec::new();
+    for order in Order::value_variants() {
+        for class in Class::value_variants() {
+            let is_in = |outcome: &&Outcome| (outcome.class, outcome.order) == (*class, *order);
+            groups.push((
+                format!("{}, {}", name(class), name(order)),
+                outcomes.iter().filter(is_in).collect::<Vec<_>>(),
+            ));
+        }
+    }
+    groups.push(("all".to_owned(), outcomes.iter().collect()));
+    groups.retain(|(_, of)| !of.is_empty());
+    groups
+}
+
+impl Outcome {
+    /// Scene, class and order.
+    fn name(&self) -> String {
+        format!("{}, {}, {}", self.scene, name(&self.class), name(&self.order))
+    }
+
+    fn ratio(&self) -> f64 {
+        self.spherule / self.embree
+    }
 }
 
 /// Rates of programs for other processor levels, and their ratios to Embree's.
@@ -75,9 +112,8 @@ fn levels(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
     writeln!(out, "|---|---|--:|--:|")?;
     for outcome in outcomes {
         for (level, rate) in &outcome.levels {
-            let (scene, class, ratio) =
-                (outcome.scene, name(&outcome.class), rate / outcome.embree);
-            writeln!(out, "| {scene}, {class} | {level} | {rate:.2} | {ratio:.2} |")?;
+            let (rays, ratio) = (outcome.name(), rate / outcome.embree);
+            writeln!(out, "| {rays} | {level} | {rate:.2} | {ratio:.2} |")?;
         }
     }
     let names = outcomes.first().map(|outcome| outcome.levels.iter().map(|level| &level.0));
@@ -88,18 +124,10 @@ fn levels(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
             let of = outcome.levels.iter().find(|(name, _)| name == level);
             of.map_or(f64::NAN, |(_, rate)| rate / outcome.embree)
         };
-        let mut row = |name: &str, of: Vec<&Outcome>| {
-            if of.is_empty() {
-                return Ok(());
-            }
+        for (name, of) in groups(outcomes) {
             let mean = geometric_mean(of.into_iter().map(ratio));
-            writeln!(out, "| {name} | {level} | {mean:.2} |")
-        };
-        for &class in Class::value_variants() {
-            let of = outcomes.iter().filter(|outcome| outcome.class == class).collect();
-            row(&name(&class), of)?;
+            writeln!(out, "| {name} | {level} | {mean:.2} |")?;
         }
-        row("all", outcomes.iter().collect())?;
     }
     Ok(())
 }
@@ -124,9 +152,8 @@ fn differences(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
         let verdicts = outcome.verdicts;
         writeln!(
             out,
-            "| {}, {} | {} | {} | {} | {} | {} |",
-            outcome.scene,
-            name(&outcome.class),
+            "| {} | {} | {} | {} | {} | {} |",
+            outcome.name(),
             verdicts.differ,
             verdicts.embree_wrong,
             verdicts.spherule_wrong,
