@@ -129,6 +129,16 @@ impl Slabs {
         Self { near, far, negative: NEGATIVE[octant], octant }
     }
 
+    /// The same rays, for boxes that are larger by more than half of `slack` on each side.
+    #[inline(always)]
+    pub fn widened(mut self, slack: f32) -> Self {
+        for axis in 0..3 {
+            self.near[1][axis] -= self.near[0][axis].abs() * slack;
+            self.far[1][axis] += self.far[0][axis].abs() * slack;
+        }
+        self
+    }
+
     /// Returns the boxes that a ray may enter at a distance in `0..=t_max`, in the lowest bits, and
     /// distances before which it does not.
     ///

@@ -67,16 +67,30 @@ impl<Q: Query> Decision<'_, Q> {
         }
         self.update_if_nearer(sphere, (t, t * CLEAR))
     }
+
     /// Does what [`Decision::test_sphere`] does where the short test in double precision can't tell.
     #[inline(never)]
     fn test_sphere_closely(&mut self, sphere: usize) -> bool {
         let (center, radius) = self.spheres.exact(sphere);
         let inside = || self.starts_within(center, radius);
-        let Some(root) = intersect::confirm(&self.ray, center, radius, inside) else {
-            return false;
-        };
-        self.exact += u64::from(root.exact);
-        self.update_if_nearer(sphere, (root.t, root.error))
+        let root = intersect::confirm(&self.ray, center, radius, inside);
+        self.update_if_root(sphere, root)
+    }
+
+    /// Does what [`Decision::test_sphere`] does for a ray that starts far from all spheres: the distance gets its
+    /// closest bound, for others would be wider than the scene.
+    pub(super) fn test_sphere_from_afar(&mut self, sphere: usize) -> bool {
+        let (center, radius) = self.spheres.exact(sphere);
+        let root = intersect::confirm_closely(&self.ray, center, radius, || false);
+        self.update_if_root(sphere, root)
+    }
+
+    /// [`Decision::update_if_nearer`], if there is a hit.
+    fn update_if_root(&mut self, sphere: usize, root: Option<Root>) -> bool {
+        root.is_some_and(|Root { t, error, exact }| {
+            self.exact += u64::from(exact);
+            self.update_if_nearer(sphere, (t, error))
+        })
     }
 
     /// Keeps a hit at distance `t`, give or take `error`, if it is nearer than the hit so far. Returns whether

@@ -20,7 +20,7 @@ mod single;
 mod traversal;
 
 pub use beam::Beam;
-pub use one_ray::{OneHit, trace_one};
+pub use one_ray::{OneHit, trace_far, trace_one};
 pub use rows::NodeRow;
 pub use traversal::{
     Any, Closest, PacketWidth, Query, Tracer, Traversal, Unverified, Visits, count_visits, trace,

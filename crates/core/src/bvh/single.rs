@@ -41,11 +41,17 @@ impl OwnSphere {
     }
 }
 
-/// Returns the chords of a ray through the spheres of a block.
+/// Returns the chords of a ray through the spheres of a block, their radii increased by `slack`.
 #[inline(always)]
-pub(super) fn chords(ray: &ConservativeRay<f32>, block: &SphereBlock) -> Chord<F32x8> {
+pub(super) fn chords(
+    ray: &ConservativeRay<f32>,
+    block: &SphereBlock,
+    slack: Option<f32>,
+) -> Chord<F32x8> {
     let center = Vec3::new(F32x8::load(&block.x), F32x8::load(&block.y), F32x8::load(&block.z));
-    Chord::new(&ray.splat(), center, F32x8::load(&block.radius))
+    let radius = F32x8::load(&block.radius);
+    let radius = slack.map_or(radius, |slack| radius + F32x8::splat(slack));
+    Chord::new(&ray.splat(), center, radius)
 }
 
 /// A ray whose candidates are decided at once.
@@ -74,7 +80,7 @@ impl<Q: Query> RayGroup<Q> for SingleRay {
 
     #[inline(always)]
     fn test_leaf(&mut self, _: &Slabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
-        let chord = chords(&self.ray, block);
+        let chord = chords(&self.ray, block, None);
         chord.may_hit(F32x8::splat(t_far)).bits() & self.own.allowed(index)
     }
 
@@ -171,7 +177,7 @@ impl<Q: Query> RayGroup<Q> for DeferredRay {
 
     #[inline(always)]
     fn test_leaf(&mut self, _: &Slabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
-        let chord = chords(&self.ray, block);
+        let chord = chords(&self.ray, block, None);
         chord.near().store(&mut self.near);
         chord.may_hit(F32x8::splat(t_far)).bits() & self.own.allowed(index)
     }

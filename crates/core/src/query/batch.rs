@@ -116,35 +116,46 @@ impl SphereTree {
     ) {
         let loaded = self.load(chunk, answers.bounds(), rays, hits);
         tally.exact += trace::<F32x16, Q>(Traversal::Auto, self.tree(), rays, hits);
-        // Powers of two: their reciprocals and products do not round.
-        let inverse_scale = self.scale.recip();
-        let unit = |row: usize| f64::from(loaded.shrink[row]) * inverse_scale;
+        // Powers of two, whose product does not round.
+        let unit = |row: usize| f64::from(loaded.shrink[row]) * self.scale[1];
         let mut pending = PendingSurfaces::NONE;
         for first in (0..chunk.len()).step_by(PACKET) {
             let plain = loaded.plain[first / PACKET];
             let lanes = first_lanes(chunk.len() - first);
             let hit = F32x16::lanes(plain)
                 & !bits_of::<F32x16>(&hits.sphere[first..]).has_bits_of(bits(MISS));
-            for row in set_bits(hit.bits() & lanes).map(|lane| first + lane) {
-                let (i, sphere) = (chunk.row(row), hits.sphere[row] as usize);
+            let found = |row: usize| {
+                let sphere = hits.sphere[row] as usize;
                 let id = if Q::ANY { NOTHING } else { self.spheres.id[sphere] };
-                let hit = FoundHit { sphere, id, t: hits.t[row] * unit(row) };
+                FoundHit { sphere, id, t: hits.t[row] * unit(row) }
+            };
+            // What is decided ray by ray: rays that are not plain, and all where there are strays.
+            let alone = if self.strays.is_empty() { !plain & lanes } else { lanes };
+            let hit = hit.bits() & lanes;
+            for row in set_bits(hit & !alone).map(|lane| first + lane) {
+                let (i, hit) = (chunk.row(row), found(row));
                 answers.set(i, &hit);
                 let Some(surfaces) = answers.surfaces() else { continue };
-                let pair = Pair { row: row as u32, sphere: sphere as u32 };
+                let pair = Pair { row: row as u32, sphere: hit.sphere as u32 };
                 if !self.spheres.precise.is_empty() {
                     surfaces[i] = self.surface(columns.row(i), &hit);
                 } else if pending.push(pair, i) {
                     self.flush_surfaces(&mut pending, (rays, hits), (columns, unit), surfaces);
                 }
             }
-            for row in set_bits(!plain & lanes).map(|lane| first + lane) {
-                let i = chunk.row(row);
-                let bound = answers.bounds()[i];
-                let Some(hit) = self.trace_one::<Q>(columns.row(i), bound, tally) else { continue };
+            for lane in set_bits(alone) {
+                let i = chunk.row(first + lane);
+                let (ray, bound) = (columns.row(i), answers.bounds()[i]);
+                let hit = if plain >> lane & 1 == 1 {
+                    let hit = (hit >> lane & 1 == 1).then(|| found(first + lane));
+                    self.with_strays::<Q>(ray, bound, hit, tally)
+                } else {
+                    self.trace_one::<Q>(ray, bound, tally)
+                };
+                let Some(hit) = hit else { continue };
                 answers.set(i, &hit);
                 if let Some(surfaces) = answers.surfaces() {
-                    surfaces[i] = self.surface(columns.row(i), &hit);
+                    surfaces[i] = self.surface(ray, &hit);
                 }
             }
         }

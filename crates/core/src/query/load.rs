@@ -4,7 +4,6 @@
 use super::SphereTree;
 use super::batch::CHUNK;
 use super::chunk::{ChunkRays, RayPacket};
-use super::scaled_ray::REACH;
 use crate::lanes::{F32x16, Lanes, Mask, set_bits};
 use crate::ray::{Hits, MISS, Rays};
 
@@ -12,7 +11,7 @@ use crate::ray::{Hits, MISS, Rays};
 pub(super) const PACKET: usize = F32x16::WIDTH;
 
 /// No direction with a larger coordinate than this, or none larger than its reciprocal, is plain.
-const LONGEST: f32 = (1_u128 << 100) as f32;
+const LONGEST: f32 = (1_u128 << 126) as f32;
 
 /// Rays in the units of the tree.
 pub(super) struct LoadedRays {
@@ -24,7 +23,7 @@ pub(super) struct LoadedRays {
 
 impl SphereTree {
     /// Replaces rays and bounds by those of a chunk in the tree's units, and tells which are plain: all that they
-    /// are fits single precision, they start no farther than [`REACH`], and their bound is a number. Others get
+    /// are fits single precision, they start within the tree's reach, and their bound is a number. Others get
     /// bounds at which no search begins.
     pub(super) fn load(
         &self,
@@ -34,8 +33,10 @@ impl SphereTree {
         hits: &mut Hits,
     ) -> LoadedRays {
         let mut loaded = LoadedRays { plain: [0; CHUNK / PACKET], shrink: [1.0; CHUNK] };
-        let scale = self.scale as f32;
-        let scalable = f64::from(scale) == self.scale && scale.is_normal();
+        let scale = self.scale[0] as f32;
+        let scalable =
+            f64::from(scale) == self.scale[0] && scale.is_normal() && scale.recip().is_normal();
+        let unscale = F32x16::splat(scale.recip());
         rays.truncate(0);
         for (packet, first) in (0..chunk.len()).step_by(PACKET).enumerate() {
             let RayPacket { origin, direction, bound } = chunk.packet(first, bounds);
@@ -43,21 +44,22 @@ impl SphereTree {
             let longest = Lanes::max(Lanes::max(x, y), z);
             let shrink = longest.to_array().map(reciprocal_power);
             loaded.shrink[first..][..PACKET].copy_from_slice(&shrink);
+            // The reciprocal of a power of two is one.
+            let stretch = F32x16::new(shrink.map(f32::recip));
             let moved = origin.map(|x| x * F32x16::splat(scale));
             let turned = direction.map(|x| x * F32x16::new(shrink));
             let mut all =
                 F32x16::splat(LONGEST.recip()).le(longest) & longest.le(F32x16::splat(LONGEST));
             for axis in 0..3 {
-                all = all & is_exact(moved[axis], origin[axis]);
-                all = all & is_exact(turned[axis], direction[axis]);
-                all = all & Lanes::abs(moved[axis]).le(F32x16::splat(REACH as f32));
+                all = all & is_exact(moved[axis], origin[axis], unscale);
+                all = all & is_exact(turned[axis], direction[axis], stretch);
+                all = all & Lanes::abs(moved[axis]).le(F32x16::splat(self.reach as f32));
             }
             let (t, sphere) = (&mut hits.t[first..][..PACKET], &mut hits.sphere[first..][..PACKET]);
             sphere.fill(MISS);
             let mut numbers = 0;
             for lane in 0..PACKET {
-                // The reciprocal of a power of two is one, and its product does not round.
-                t[lane] = bound[lane] * self.scale * f64::from(shrink[lane].recip());
+                t[lane] = bound[lane] * self.scale[0] * f64::from(shrink[lane].recip());
                 numbers |= u32::from(!bound[lane].is_nan()) << lane;
             }
             let plain = if scalable { all.bits() & numbers } else { 0 };
@@ -78,8 +80,8 @@ fn reciprocal_power(x: f32) -> f32 {
     f32::from_bits((254_u32 << 23).wrapping_sub(x.to_bits() & EXPONENT))
 }
 
-/// The lanes in which multiplication by a power of two has not underflowed.
-fn is_exact(product: F32x16, of: F32x16) -> <F32x16 as Lanes>::Mask {
-    let zero = F32x16::splat(0.0);
-    F32x16::splat(f32::MIN_POSITIVE).le(Lanes::abs(product)) | Lanes::abs(of).le(zero)
+/// The lanes in which a product by a power of two is exact; `inverse` is that of the power.
+fn is_exact(product: F32x16, of: F32x16, inverse: F32x16) -> <F32x16 as Lanes>::Mask {
+    let back = product * inverse;
+    back.le(of) & of.le(back)
 }

@@ -11,6 +11,7 @@ mod columns;
 mod load;
 mod reorder;
 mod scaled_ray;
+mod strays;
 mod surface;
 
 pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
@@ -23,14 +24,21 @@ use crate::spheres::Spheres;
 use batch::Occlusion;
 use columns::same_length;
 use glam::{DVec3, Vec3};
+use scaled_ray::{REACH, REACH_IN_LEAVES};
 
 /// Spheres, ready for exact queries.
 #[derive(Clone, Debug)]
 pub struct SphereTree {
     spheres: Spheres,
     bvh: Bvh,
-    /// A power of two, which makes the largest coordinate about 1.
-    scale: f64,
+    /// A power of two, which makes the largest coordinate in the tree about 1, and its reciprocal.
+    scale: [f64; 2],
+    /// No ray in the tree's units is traced with others whose origin has a larger coordinate.
+    reach: f64,
+    /// Centers, radii and ids of the spheres that are not in the tree ([`strays`]), in their own units.
+    strays: Vec<(DVec3, f64, u32)>,
+    /// A power of two, which makes their largest coordinate about 1, and its reciprocal.
+    stray_scale: [f64; 2],
     invalid: usize,
 }
 
@@ -90,19 +98,22 @@ impl SphereTree {
                 && radius < f32::INFINITY
         };
         let wide = |i: usize| row(i).map(f64::from);
-        let largest = (0..count).filter(|&i| valid(i)).fold(0.0, |largest: f64, i| {
+        let extent = |i: usize| {
             let [x, y, z, radius] = wide(i);
-            largest.max(DVec3::new(x, y, z).abs().max_element() + radius)
-        });
-        let scale = if largest > 0.0 {
-            elementary::power_of_two(-elementary::ceil_log2(largest))
-        } else {
-            1.0
+            DVec3::new(x, y, z).abs().max_element() + radius
         };
+        let extents = || (0..count).filter(|&i| valid(i)).map(extent);
+        let largest = strays::largest_of_most(extents());
+        let [scale, unscale] = scale_of(largest);
         let scaled = |i: usize| wide(i).map(|value| value * scale);
         let mut spheres = Spheres::with_capacity(count);
+        let mut strays = Vec::new();
         let mut rounded = false;
         for i in (0..count).filter(|&i| valid(i)) {
+            if extent(i) > largest {
+                strays.push((wide(i), i as u32));
+                continue;
+            }
             let single = scaled(i).map(|value| value as f32);
             rounded |= single.map(f64::from) != scaled(i);
             let [x, y, z, radius] = single;
@@ -112,19 +123,27 @@ impl SphereTree {
             // Scales so far apart that the smallest numbers leave single precision.
             spheres.precise = spheres.id.iter().map(|&i| split(scaled(i as usize))).collect();
         }
-        let invalid = count - spheres.len();
+        let stray_scale = scale_of(extents().fold(0.0, f64::max));
+        let stray = |(row, id): ([f64; 4], u32)| {
+            let (center, radius) = split(row.map(|value| value * stray_scale[0]));
+            (center, radius, id)
+        };
+        let strays: Vec<_> = strays.into_iter().map(stray).collect();
+        let invalid = count - spheres.len() - strays.len();
         let bvh = build(&mut spheres, Builder::default());
-        Ok(Self { spheres, bvh, scale, invalid })
+        let reach = (f64::from(bvh.mean_leaf_extent()) * REACH_IN_LEAVES).clamp(4.0, REACH);
+        let scale = [scale, unscale];
+        Ok(Self { spheres, bvh, scale, reach, strays, stray_scale, invalid })
     }
 
     /// Number of spheres that can be hit.
     pub fn len(&self) -> usize {
-        self.spheres.len()
+        self.spheres.len() + self.strays.len()
     }
 
     /// Returns whether nothing can be hit.
     pub fn is_empty(&self) -> bool {
-        self.spheres.is_empty()
+        self.len() == 0
     }
 
     /// Spheres that were left out because they are invalid.
@@ -138,7 +157,7 @@ impl SphereTree {
 
     /// Bytes of tree and spheres.
     pub fn bytes(&self) -> usize {
-        self.spheres.bytes() + self.bvh.bytes()
+        self.spheres.bytes() + self.bvh.bytes() + size_of_val(self.strays.as_slice())
     }
 
     /// Returns the first hit of a ray: of spheres at equal distances, the one of the lowest row. `None`
@@ -185,6 +204,12 @@ impl SphereTree {
         occluded.fill(false);
         Ok(self.run::<Any>(rays, &mut Occlusion { t, occluded }))
     }
+}
+
+/// A power of two that makes a number about 1, and its reciprocal; 1 for 0.
+fn scale_of(largest: f64) -> [f64; 2] {
+    let exponent = if largest > 0.0 { elementary::ceil_log2(largest) } else { 0 };
+    [-exponent, exponent].map(elementary::power_of_two)
 }
 
 fn split([x, y, z, radius]: [f64; 4]) -> (DVec3, f64) {

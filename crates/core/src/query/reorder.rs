@@ -176,7 +176,7 @@ impl SphereTree {
         let origins = [apart(&origin, &near), apart(&origin, &far)];
         let directions = [apart(&direction, &near), apart(&direction, &far)];
         let is_disorder = |[near, far]: [f32; 2]| near > DISORDER * far;
-        let spread_out = f64::from(origins[1]) * self.scale > f64::from(leaf);
+        let spread_out = f64::from(origins[1]) * self.scale[0] > f64::from(leaf);
         let fanned_out = directions[1] > leaf;
         let pays = if spread_out {
             is_disorder(origins) && (!fanned_out || self.bytes() > CACHED)

@@ -39,18 +39,19 @@ impl PendingSurfaces {
 
 impl SphereTree {
     /// Returns the surface where a ray has hit a sphere.
-    pub(super) fn surface(
-        &self,
-        (origin, direction): ([f32; 3], [f32; 3]),
-        found: &FoundHit,
-    ) -> Surface {
-        let Some(ScaledRay { ray, unit }) = self.scaled(origin, direction) else {
+    pub(super) fn surface(&self, ray: ([f32; 3], [f32; 3]), found: &FoundHit) -> Surface {
+        // Strays have units of their own.
+        let stray = found.sphere.checked_sub(self.spheres.len()).map(|i| self.strays[i]);
+        let ((center, radius), scale) = match stray {
+            Some((center, radius, _)) => ((center, radius), self.stray_scale),
+            None => (self.spheres.exact(found.sphere), self.scale),
+        };
+        let Some(ScaledRay { ray, unit }) = ScaledRay::new(ray, scale) else {
             return Surface::default();
         };
-        let (center, radius) = self.spheres.exact(found.sphere);
         let (clear, normal) = normals(&Pairs::one(&ray, center, radius), found.t / unit);
         let normal = if clear { normal } else { exact::normal(&ray, center, radius).into() };
-        let point = (normal * radius + center.into()) * self.scale.recip();
+        let point = (normal * radius + center.into()) * scale[1];
         Surface { point: point.into(), normal: normal.into() }
     }
 
@@ -72,7 +73,7 @@ impl SphereTree {
         let t = pending.pairs.map(|pair| hits.t[pair.row as usize]);
         let pairs = Pairs::gather(rays, &self.spheres, &pending.pairs);
         let (clear, normal) = normals(&pairs, F64x8::new(t));
-        let scale = F64x8::splat(self.scale.recip());
+        let scale = F64x8::splat(self.scale[1]);
         let point = (normal * pairs.radius + pairs.center) * scale;
         let coordinates = |v: Vec3<F64x8>| [v.x, v.y, v.z].map(F64x8::to_array);
         let (point, normal) = (coordinates(point), coordinates(normal));

@@ -276,6 +276,51 @@ fn the_order_of_rays_changes_no_answer() {
 }
 
 #[test]
+fn strays_are_hit_like_other_spheres() {
+    let mut random = Random::new(11);
+    for size in [1e8_f32, 1e18, 1e30] {
+        let mut spheres = field(60);
+        // One that encloses all, one that is behind all, one that touches another from afar.
+        spheres.insert(7, [0.0, 0.0, 0.0, size]);
+        spheres.insert(20, [size, 0.25 * size, 0.5 * size, 0.5 * size]);
+        spheres.push([-size, 0.0, 0.0, size - 0.5]);
+        let at = |point: [f32; 3], random: &mut Random| point.map(|x| x + 0.1 * random.single());
+        let mut rays = Vec::new();
+        for i in 0..400 {
+            let target = at([random.single(), random.single(), random.single()], &mut random);
+            let origin = match i % 5 {
+                0 => at([2.0, 2.0, 2.0], &mut random),
+                1 => [3.0 * size, 0.1 * size, size],
+                2 => [-0.5 * size, size, size],
+                3 => [1e5, 2e4, 3e6],
+                _ => at([0.2, 0.3, 0.4], &mut random),
+            };
+            rays.push((origin, std::array::from_fn(|axis| target[axis] - origin[axis])));
+        }
+        check(&spheres, &rays);
+    }
+}
+
+#[test]
+fn rays_come_from_anywhere() {
+    let spheres = field(80);
+    let mut random = Random::new(12);
+    let mut rays = Vec::new();
+    for i in 0..600 {
+        let far = (i as f32 / 8.0).exp2();
+        let origin = [0; 3].map(|_| far * (2.0 * random.single() - 1.0));
+        let target = [0; 3].map(|_| random.single());
+        rays.push((origin, std::array::from_fn(|axis| target[axis] - origin[axis])));
+    }
+    check(&spheres, &rays);
+    let tree = SphereTree::from_rows(&spheres).expect("few spheres");
+    let hits = |rays: &[Ray]| traced(&tree, rays).1.iter().filter(|&&id| id != NOTHING).count();
+    // From farther than single precision can aim, few rays come near the spheres.
+    assert!(hits(&rays[..160]) > 80, "{}", hits(&rays[..160]));
+    assert!(hits(&rays[160..]) > 0);
+}
+
+#[test]
 fn columns_of_different_lengths_are_refused() {
     assert!(SphereTree::from_columns(&[0.0], &[0.0], &[], &[1.0]).is_err());
     let tree = SphereTree::from_rows(&[[0.0, 0.0, 0.0, 1.0]]).expect("one sphere");
