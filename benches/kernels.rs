@@ -7,7 +7,7 @@ use spherule_core::internals::conservative::{Chord, ConservativeRay};
 use spherule_core::internals::intersect::confirm;
 use spherule_core::internals::lanes::{F32x4, F32x8, F32x16, Lanes, Mask};
 use spherule_core::internals::ray::{ExactRay, MISS, Rays};
-use spherule_core::internals::slabs::{Planes, Slabs};
+use spherule_core::internals::slabs::{Planes, RaySlabs, Slabs};
 use spherule_core::internals::vec3::Vec3;
 use spherule_render::sampling::{stream, uniform_sphere, unit_pair};
 use std::hint::black_box;
@@ -59,7 +59,7 @@ fn boxes(spheres: &[(Point, f32)]) -> Vec<Planes> {
 fn boxes_entered(boxes: &[Planes], rays: &Rays) -> u32 {
     let mut entered = 0;
     for row in 0..RAYS {
-        let ray = Slabs::new(rays.origin.row(row), rays.direction.row(row));
+        let ray = RaySlabs::new(rays.origin.row(row), rays.direction.row(row));
         for planes in boxes {
             entered += ray.enters(planes, f32::INFINITY).0.count_ones();
         }

@@ -17,24 +17,14 @@ const U: f32 = f32::EPSILON / 2.0;
 /// Relative amount by which products of origins are moved to the safe side.
 const SLACK: f32 = 4.0 * U;
 
-/// Factor by which near planes are moved toward the origin.
+/// Factor by which near distances are decreased.
 const SOONER: f32 = 1.0 - 8.0 * U;
 
 /// Directions are kept this far from 0, so that their reciprocals are finite: what moves a ray by
 /// less than boxes are wider than what is in them, over any distance that counts.
 const LEAST: f32 = 1.0 / (1_u128 << 100) as f32;
 
-/// By octant and axis, whether directions are negative.
-const NEGATIVE: [[bool; 4]; 8] = {
-    let (mut table, mut i) = ([[false; 4]; 8], 0);
-    while i < 8 * 3 {
-        table[i / 3][i % 3] = ((i / 3) >> (i % 3)) & 1 == 1;
-        i += 1;
-    }
-    table
-};
-
-/// The rays between two bounds: one ray, or a packet.
+/// The rays between two bounds: one ray ([`RaySlabs`]), or a packet ([`PacketSlabs`]).
 ///
 /// On each axis all directions have the same sign, that of a zero included: with both signs, boxes that
 /// are met would be rejected.
@@ -51,36 +41,170 @@ const NEGATIVE: [[bool; 4]; 8] = {
 /// For a packet, a near plane is met first by the steepest ray if it starts farthest ahead, a far one
 /// last by the flattest if it starts farthest behind: bounds that no ray exceeds, though none may
 /// reach them. Distances below 0 count as 0, so their bounds need not hold.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub struct Slabs {
-    /// By axis, factors and terms of near distances.
-    near: [[f32; 4]; 2],
-    /// By axis, factors and terms of far distances.
-    far: [[f32; 4]; 2],
-    /// By axis, whether the direction is negative.
-    negative: [bool; 4],
-    /// Bit `a` is set where the direction is negative on axis `a`.
-    pub octant: usize,
+pub trait Slabs: Copy {
+    /// In place of a ray where there is none.
+    const IDLE: Self;
+
+    /// The octant of the directions: bit `a` is set where they are negative on axis `a`.
+    fn octant(&self) -> usize;
+
+    /// Whether directions are negative on an axis: 1 if they are.
+    fn is_negative(&self, axis: usize) -> usize;
+
+    /// The factors and terms that turn coordinates of planes on an axis into distances: before which none of the rays
+    /// enters, but for `SOONER`, and beyond which all have left.
+    fn distances(&self, axis: usize) -> [[f32; 2]; 2];
+
+    /// Returns the boxes that a ray may enter at a distance in `0..=t_max`, in the lowest bits, and
+    /// distances before which it does not.
+    ///
+    /// Never omits a box that contains a point of the ray.
+    #[inline(always)]
+    fn enters(&self, planes: &Planes, t_max: f32) -> (u32, F32x8) {
+        let mut near = F32x8::splat(0.0);
+        let mut far = F32x8::splat(t_max);
+        for (axis, sides) in planes.iter().enumerate() {
+            let negative = self.is_negative(axis);
+            let distance = |side: usize, [factor, term]: [f32; 2]| {
+                let plane = F32x8::load(&sides[side]);
+                Lanes::relaxed_mul_add(plane, F32x8::splat(factor), F32x8::splat(term))
+            };
+            let [enter, leave] = self.distances(axis);
+            near = Lanes::max(distance(negative, enter), near);
+            far = Lanes::min(distance(1 - negative, leave), far);
+        }
+        let near = near * F32x8::splat(SOONER);
+        (near.le(far).bits(), near)
+    }
 }
 
-impl Slabs {
-    /// In place of a ray where there is none.
-    pub const IDLE: Self = Self {
-        near: [[1.0; 4], [0.0; 4]],
-        far: [[1.0; 4], [0.0; 4]],
-        negative: [false; 4],
+/// The slabs of one ray, in one line of cache.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(64))]
+pub struct RaySlabs {
+    /// By axis, the factor of all distances.
+    inverse: [f32; 4],
+    /// By axis, terms of near distances.
+    near: [f32; 4],
+    /// By axis, terms of far distances.
+    far: [f32; 4],
+    /// By axis, 1 if the direction is negative.
+    negative: [u8; 4],
+    octant: u32,
+    unused: [u32; 2],
+}
+
+impl Slabs for RaySlabs {
+    const IDLE: Self = Self {
+        inverse: [1.0; 4],
+        near: [0.0; 4],
+        far: [0.0; 4],
+        negative: [0; 4],
         octant: 0,
+        unused: [0; 2],
     };
 
+    #[inline(always)]
+    fn octant(&self) -> usize {
+        self.octant as usize
+    }
+
+    #[inline(always)]
+    fn is_negative(&self, axis: usize) -> usize {
+        usize::from(self.negative[axis] & 1)
+    }
+
+    #[inline(always)]
+    fn distances(&self, axis: usize) -> [[f32; 2]; 2] {
+        let inverse = self.inverse[axis];
+        [[inverse, self.near[axis]], [inverse, self.far[axis]]]
+    }
+}
+
+impl RaySlabs {
     /// For one ray.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let (origin, direction) = (row(origin), row(direction));
         let inverse = inverse(direction);
-        Self::from_bounds(direction, (inverse, origin), (inverse, origin))
+        let negative = direction.is_negative().bits();
+        let sign = |axis: u32| (negative >> axis & 1) as u8;
+        Self {
+            inverse: inverse.to_array(),
+            near: near(inverse, origin).to_array(),
+            far: far(inverse, origin).to_array(),
+            negative: [sign(0), sign(1), sign(2), 0],
+            octant: negative & 7,
+            unused: [0; 2],
+        }
     }
 
+    /// For sixteen rays, each on its own: as [`RaySlabs::new`], by axis.
+    #[inline(always)]
+    pub fn of_rays(origin: [F32x16; 3], direction: [F32x16; 3], slabs: &mut [Self; 16]) {
+        let mut columns = [[F32x16::splat(0.0); 8]; 2];
+        let (mut octant, mut negative) = (U32x16::splat(0), U32x16::splat(0));
+        for axis in 0..3 {
+            let inverse = inverse(direction[axis]);
+            columns[0][axis] = inverse;
+            columns[0][4 + axis] = near(inverse, origin[axis]);
+            columns[1][axis] = far(inverse, origin[axis]);
+            let sign = bytemuck::cast::<_, U32x16>(direction[axis]) >> 31;
+            octant |= sign << axis as u32;
+            negative |= sign << (u8::BITS * axis as u32);
+        }
+        (columns[1][4], columns[1][5]) = (bytemuck::cast(negative), bytemuck::cast(octant));
+        for first in [0, 8] {
+            let (low, high) = (transpose(columns[0], first), transpose(columns[1], first));
+            for i in 0..8 {
+                slabs[first + i] = bytemuck::cast([low[i], high[i]]);
+            }
+        }
+    }
+
+    /// The same ray, for boxes that are larger by more than half of `slack` on each side.
+    #[inline(always)]
+    pub fn widened(mut self, slack: f32) -> Self {
+        for axis in 0..3 {
+            self.near[axis] -= self.inverse[axis].abs() * slack;
+            self.far[axis] += self.inverse[axis].abs() * slack;
+        }
+        self
+    }
+}
+
+/// The slabs of a packet.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct PacketSlabs {
+    /// By axis, factors and terms of near distances.
+    near: [[f32; 4]; 2],
+    /// By axis, factors and terms of far distances.
+    far: [[f32; 4]; 2],
+    /// A bit for each axis on which directions are negative.
+    octant: usize,
+}
+
+impl Slabs for PacketSlabs {
+    const IDLE: Self = Self { near: [[1.0; 4], [0.0; 4]], far: [[1.0; 4], [0.0; 4]], octant: 0 };
+
+    #[inline(always)]
+    fn octant(&self) -> usize {
+        self.octant
+    }
+
+    #[inline(always)]
+    fn is_negative(&self, axis: usize) -> usize {
+        self.octant >> axis & 1
+    }
+
+    #[inline(always)]
+    fn distances(&self, axis: usize) -> [[f32; 2]; 2] {
+        [self.near, self.far].map(|rows| rows.map(|row| row[axis]))
+    }
+}
+
+impl PacketSlabs {
     /// For rays whose origins and directions lie between two bounds, lower first, of which those of the
     /// directions have the same signs; in lanes 0 to 2 what is on their axes.
     #[inline(always)]
@@ -92,72 +216,12 @@ impl Slabs {
         let [low, high] = origin;
         let (ahead, behind) =
             (Lanes::select(negative, low, high), Lanes::select(negative, high, low));
-        Self::from_bounds(lower, (steep, ahead), (flat, behind))
-    }
-
-    /// For sixteen rays, each on its own: as [`Slabs::new`], by axis.
-    #[inline(always)]
-    pub fn of_rays(origin: [F32x16; 3], direction: [F32x16; 3], slabs: &mut [Self; 16]) {
-        let mut columns = [[F32x16::splat(0.0); 8]; 2];
-        let mut octants = U32x16::splat(0);
-        for axis in 0..3 {
-            let inverse = inverse(direction[axis]);
-            let bounds = [near(inverse, origin[axis]), far(inverse, origin[axis])];
-            for (columns, [factor, term]) in columns.iter_mut().zip(bounds) {
-                (columns[axis], columns[4 + axis]) = (factor, term);
-            }
-            let sign: U32x16 = bytemuck::cast(direction[axis]);
-            octants |= (sign >> 31) << axis as u32;
+        let rows = |factor: F32x4, term: F32x4| [factor.to_array(), term.to_array()];
+        Self {
+            near: rows(steep, near(steep, ahead)),
+            far: rows(flat, far(flat, behind)),
+            octant: negative.bits() as usize & 7,
         }
-        let octants = octants.to_array();
-        for first in [0, 8] {
-            let (near, far) = (transpose(columns[0], first), transpose(columns[1], first));
-            for i in 0..8 {
-                let octant = octants[first + i] as usize & 7;
-                let (near, far) = (bytemuck::cast(near[i]), bytemuck::cast(far[i]));
-                slabs[first + i] = Self { near, far, negative: NEGATIVE[octant], octant };
-            }
-        }
-    }
-
-    /// From directions, and the reciprocal direction and the origin that bound near and far distances.
-    #[inline(always)]
-    fn from_bounds(direction: F32x4, first: (F32x4, F32x4), last: (F32x4, F32x4)) -> Self {
-        let ([a, b], [c, d]) = (near(first.0, first.1), far(last.0, last.1));
-        let octant = direction.is_negative().bits() as usize & 7;
-        let (near, far) = ([a.to_array(), b.to_array()], [c.to_array(), d.to_array()]);
-        Self { near, far, negative: NEGATIVE[octant], octant }
-    }
-
-    /// The same rays, for boxes that are larger by more than half of `slack` on each side.
-    #[inline(always)]
-    pub fn widened(mut self, slack: f32) -> Self {
-        for axis in 0..3 {
-            self.near[1][axis] -= self.near[0][axis].abs() * slack;
-            self.far[1][axis] += self.far[0][axis].abs() * slack;
-        }
-        self
-    }
-
-    /// Returns the boxes that a ray may enter at a distance in `0..=t_max`, in the lowest bits, and
-    /// distances before which it does not.
-    ///
-    /// Never omits a box that contains a point of the ray.
-    #[inline(always)]
-    pub fn enters(&self, planes: &Planes, t_max: f32) -> (u32, F32x8) {
-        let mut near = F32x8::splat(0.0);
-        let mut far = F32x8::splat(t_max);
-        for axis in 0..3 {
-            let negative = self.negative[axis];
-            let splat = |x: &[f32; 4]| F32x8::splat(x[axis]);
-            let first = F32x8::load(&planes[axis][usize::from(negative)]);
-            let second = F32x8::load(&planes[axis][usize::from(!negative)]);
-            let enter = Lanes::relaxed_mul_add(first, splat(&self.near[0]), splat(&self.near[1]));
-            let leave = Lanes::relaxed_mul_add(second, splat(&self.far[0]), splat(&self.far[1]));
-            near = Lanes::max(enter, near);
-            far = Lanes::min(leave, far);
-        }
-        (near.le(far).bits(), near)
     }
 }
 
@@ -175,19 +239,18 @@ fn inverse<L: Lanes>(direction: L) -> L {
     L::splat(1.0) / kept
 }
 
-/// Returns the factor and the term that turn a plane's coordinate into a near distance.
+/// Returns the term of near distances of planes.
 #[inline(always)]
-fn near<L: Lanes>(inverse: L, origin: L) -> [L; 2] {
-    let sooner = inverse * L::splat(SOONER);
-    let shift = origin * sooner;
-    [sooner, -(shift + shift.abs() * L::splat(SLACK))]
+fn near<L: Lanes>(inverse: L, origin: L) -> L {
+    let shift = origin * inverse;
+    -(shift + shift.abs() * L::splat(SLACK))
 }
 
-/// Returns the factor and the term that turn a plane's coordinate into a far distance.
+/// Returns the term of far distances of planes.
 #[inline(always)]
-fn far<L: Lanes>(inverse: L, origin: L) -> [L; 2] {
+fn far<L: Lanes>(inverse: L, origin: L) -> L {
     let shift = origin * inverse;
-    [inverse, shift.abs() * L::splat(SLACK) - shift]
+    shift.abs() * L::splat(SLACK) - shift
 }
 
 #[cfg(test)]

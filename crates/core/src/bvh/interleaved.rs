@@ -22,6 +22,9 @@ pub(super) trait RayGroup<Q: Query>: Copy {
     /// The rays that a group is made of.
     type Start;
 
+    /// Its slabs.
+    type Slabs: Slabs;
+
     /// Returns a group without rays.
     fn idle() -> Self;
 
@@ -31,12 +34,18 @@ pub(super) trait RayGroup<Q: Query>: Copy {
         &mut self,
         resolver: &mut HitResolver<Q>,
         start: Self::Start,
-        slabs: &mut Slabs,
+        slabs: &mut Self::Slabs,
     ) -> f32;
 
     /// Returns the spheres of a block that may be hit at a distance of at most `t_far`. The group passes
     /// the box of the block.
-    fn test_leaf(&mut self, slabs: &Slabs, t_far: f32, index: usize, block: &SphereBlock) -> u32;
+    fn test_leaf(
+        &mut self,
+        slabs: &Self::Slabs,
+        t_far: f32,
+        index: usize,
+        block: &SphereBlock,
+    ) -> u32;
 
     /// Tests spheres that may be hit: a bit for each, from sphere `first` on.
     fn test_spheres(&mut self, resolver: &mut HitResolver<Q>, first: usize, spheres: u32);
@@ -54,8 +63,8 @@ pub(super) trait RayGroup<Q: Query>: Copy {
 
 /// The traversal of a group.
 #[derive(Clone, Copy)]
-struct TraversalState<G> {
-    slabs: Slabs,
+struct TraversalState<S, G> {
+    slabs: S,
     group: G,
     /// The distance beyond which the group needs no answers, below 0 if it needs none.
     t_far: f32,
@@ -189,7 +198,7 @@ pub(super) fn trace<Q: Query, G: RayGroup<Q>, const IN_FLIGHT: usize>(
 /// Tests the spheres of the leaves that traversals visit.
 #[inline(always)]
 fn visit_leaves<Q: Query, G: RayGroup<Q>, const IN_FLIGHT: usize>(
-    states: &mut [TraversalState<G>; IN_FLIGHT],
+    states: &mut [TraversalState<G::Slabs, G>; IN_FLIGHT],
     next: &NextVisits<IN_FLIGHT>,
     at_leaves: u64,
     resolver: &mut HitResolver<Q>,
@@ -217,10 +226,10 @@ fn visit_leaves<Q: Query, G: RayGroup<Q>, const IN_FLIGHT: usize>(
     }
 }
 
-impl<G: Copy> TraversalState<G> {
+impl<S: Slabs, G: Copy> TraversalState<S, G> {
     fn idle(group: G) -> Self {
         Self {
-            slabs: Slabs::IDLE,
+            slabs: S::IDLE,
             group,
             t_far: DONE,
             nearer: false,
@@ -233,7 +242,7 @@ impl<G: Copy> TraversalState<G> {
     #[inline(always)]
     fn visit_node<Q: Query>(&mut self, node: &Node) -> Child {
         let (hit, near) = self.slabs.enters(&node.planes, self.t_far);
-        let order = farthest_first(self.slabs.octant, hit);
+        let order = farthest_first(self.slabs.octant(), hit);
         self.stack.put(self.top as usize, bytemuck::cast_ref(&node.child), order);
         if !Q::ANY {
             let top = self.top as usize;

@@ -20,7 +20,7 @@ use super::{Child, DEPTH, Tree, WIDTH};
 use crate::conservative::ConservativeRay;
 use crate::lanes::{F32x8, Lanes, Mask, set_bits, shuffle, shuffle_numbers};
 use crate::ray::{ExactRay, MISS};
-use crate::slabs::Slabs;
+use crate::slabs::{RaySlabs, Slabs};
 use crate::spheres::LEAF;
 use std::marker::PhantomData;
 
@@ -94,7 +94,7 @@ fn walk<Q: Query, const PLACES: usize, const MOVED: bool>(
 ) -> Option<OneHit> {
     let direction = ray.direction.as_vec3();
     let single = ConservativeRay::new(moved.origin.into(), direction.into());
-    let mut slabs = Slabs::new(moved.origin, direction);
+    let mut slabs = RaySlabs::new(moved.origin, direction);
     if MOVED {
         slabs = slabs.widened(moved.slack as f32);
     }
@@ -132,7 +132,7 @@ fn walk<Q: Query, const PLACES: usize, const MOVED: bool>(
             }
             let node = &tree.bvh.nodes()[next.index()];
             let (hit, enters) = slabs.enters(&node.planes, t_far);
-            let order = farthest_first(slabs.octant, hit);
+            let order = farthest_first(slabs.octant(), hit);
             let row: [u32; WIDTH] = shuffle_numbers(bytemuck::cast_ref(&node.child), order);
             child[top..top + WIDTH].copy_from_slice(bytemuck::cast_ref::<_, [Child; WIDTH]>(&row));
             shuffle(enters, order).store(&mut near[top..top + WIDTH]);

@@ -13,7 +13,7 @@ use super::traversal::Query;
 use crate::conservative::{Chord, ConservativeRay, Margin};
 use crate::lanes::{F32x8, Lanes, bits, bits_of, greatest_of, set_bits};
 use crate::ray::{Columns3, MISS, Rays};
-use crate::slabs::{MARGIN, Planes, Slabs};
+use crate::slabs::{MARGIN, PacketSlabs, Planes, Slabs};
 use crate::spheres::{LEAF, SphereBlock, Spheres};
 use crate::vec3::Vec3;
 
@@ -33,6 +33,7 @@ pub(super) struct Packet<L: Lanes> {
 impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
     /// The first row, and a bit for each lane that belongs to the packet.
     type Start = (usize, u32);
+    type Slabs = PacketSlabs;
 
     #[inline(always)]
     fn idle() -> Self {
@@ -51,7 +52,7 @@ impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
         &mut self,
         resolver: &mut HitResolver<Q>,
         (row, lanes): (usize, u32),
-        slabs: &mut Slabs,
+        slabs: &mut PacketSlabs,
     ) -> f32 {
         self.load_rays(resolver, (row, lanes));
         *slabs = interval_slabs::<L>(resolver.rays, row, lanes);
@@ -59,7 +60,7 @@ impl<Q: Query, L: Lanes> RayGroup<Q> for Packet<L> {
     }
 
     #[inline(always)]
-    fn test_leaf(&mut self, slabs: &Slabs, t_far: f32, _: usize, block: &SphereBlock) -> u32 {
+    fn test_leaf(&mut self, slabs: &PacketSlabs, t_far: f32, _: usize, block: &SphereBlock) -> u32 {
         slabs.enters(&sphere_boxes(block), t_far).0
     }
 
@@ -135,7 +136,7 @@ impl<L: Lanes> Packet<L> {
 
 /// Returns the slabs of the intervals that hold the origins and directions of a packet's rays.
 #[inline(always)]
-fn interval_slabs<L: Lanes>(rays: &Rays, row: usize, lanes: u32) -> Slabs {
+fn interval_slabs<L: Lanes>(rays: &Rays, row: usize, lanes: u32) -> PacketSlabs {
     let first = row + lanes.trailing_zeros() as usize;
     let active = L::lanes(lanes);
     let interval = |v: &Columns3| {
@@ -144,7 +145,7 @@ fn interval_slabs<L: Lanes>(rays: &Rays, row: usize, lanes: u32) -> Slabs {
         let v = [column(&v.x), column(&v.y), column(&v.z)];
         [-greatest_of(v.map(|x| -x)), greatest_of(v)]
     };
-    Slabs::between(interval(&rays.origin), interval(&rays.direction))
+    PacketSlabs::between(interval(&rays.origin), interval(&rays.direction))
 }
 
 /// Returns the boxes of the spheres of a block, rounded outward as those of the tree are: products with

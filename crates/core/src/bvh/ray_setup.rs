@@ -7,7 +7,7 @@ use super::resolver::{DONE, HitResolver};
 use super::traversal::Query;
 use crate::conservative::{ConservativeRay, ConservativeRow};
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
-use crate::slabs::Slabs;
+use crate::slabs::{RaySlabs, Slabs};
 use crate::vec3::Vec3;
 
 /// A ray that is to be traced one by one.
@@ -22,7 +22,7 @@ pub(super) struct RayStart {
 pub(super) struct RaySetup {
     /// The first of the rays.
     first: usize,
-    slabs: [Slabs; MAX_LANES],
+    slabs: [RaySlabs; MAX_LANES],
     ray: [ConservativeRow; MAX_LANES],
     /// Lower and upper bounds of the distance at which the search ends.
     bounds: [[f32; MAX_LANES]; 2],
@@ -32,7 +32,7 @@ impl RaySetup {
     /// The setup of no rays.
     pub(super) const NONE: Self = Self {
         first: usize::MAX,
-        slabs: [Slabs::IDLE; MAX_LANES],
+        slabs: [RaySlabs::IDLE; MAX_LANES],
         ray: [ConservativeRow::NONE; MAX_LANES],
         bounds: [[DONE; MAX_LANES]; 2],
     };
@@ -45,11 +45,11 @@ impl<Q: Query> HitResolver<'_, Q> {
     pub(super) fn start_ray(
         &mut self,
         RayStart { row, few }: RayStart,
-        slabs: &mut Slabs,
+        slabs: &mut RaySlabs,
     ) -> (ConservativeRay<f32>, (f32, f32)) {
         if few {
             let (origin, direction) = (self.rays.origin.row(row), self.rays.direction.row(row));
-            *slabs = Slabs::new(origin, direction);
+            *slabs = RaySlabs::new(origin, direction);
             return (ConservativeRay::new(origin.into(), direction.into()), self.bounds(row));
         }
         let place = row % MAX_LANES;
@@ -67,7 +67,7 @@ impl<Q: Query> HitResolver<'_, Q> {
         let bounds = self.search_bounds::<F32x16>(first, F32x16::lanes(u32::MAX));
         let setup = &mut self.setup;
         let columns = |v: Vec3<F32x16>| [v.x, v.y, v.z];
-        Slabs::of_rays(columns(origin), columns(direction), &mut setup.slabs);
+        RaySlabs::of_rays(columns(origin), columns(direction), &mut setup.slabs);
         ConservativeRay::new(origin, direction).rows(&mut setup.ray);
         setup.bounds = [bounds.0.to_array(), bounds.1.to_array()];
         setup.first = first;

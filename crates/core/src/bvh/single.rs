@@ -13,7 +13,7 @@ use super::traversal::Query;
 use crate::conservative::{Chord, ConservativeRay};
 use crate::lanes::{F32x8, Lanes, Mask, bits, set_bits};
 use crate::ray::MISS;
-use crate::slabs::Slabs;
+use crate::slabs::{RaySlabs, Slabs};
 use crate::spheres::{LEAF, SphereBlock};
 use crate::vec3::Vec3;
 
@@ -64,6 +64,7 @@ pub(super) struct SingleRay {
 
 impl<Q: Query> RayGroup<Q> for SingleRay {
     type Start = RayStart;
+    type Slabs = RaySlabs;
 
     #[inline(always)]
     fn idle() -> Self {
@@ -71,7 +72,12 @@ impl<Q: Query> RayGroup<Q> for SingleRay {
     }
 
     #[inline(always)]
-    fn start(&mut self, resolver: &mut HitResolver<Q>, start: RayStart, slabs: &mut Slabs) -> f32 {
+    fn start(
+        &mut self,
+        resolver: &mut HitResolver<Q>,
+        start: RayStart,
+        slabs: &mut RaySlabs,
+    ) -> f32 {
         let (ray, bounds) = resolver.start_ray(start, slabs);
         let own = OwnSphere::new(resolver.rays.own[start.row]);
         *self = Self { row: start.row as u32, own, ray };
@@ -79,7 +85,7 @@ impl<Q: Query> RayGroup<Q> for SingleRay {
     }
 
     #[inline(always)]
-    fn test_leaf(&mut self, _: &Slabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
+    fn test_leaf(&mut self, _: &RaySlabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
         let chord = chords(&self.ray, block, None);
         chord.may_hit(F32x8::splat(t_far)).bits() & self.own.allowed(index)
     }
@@ -114,7 +120,7 @@ impl SingleRay {
     /// Tests the ray of a row against every sphere.
     pub(super) fn test_all_spheres<Q: Query>(resolver: &mut HitResolver<Q>, row: usize) {
         let (spheres, mut ray) = (resolver.spheres, <Self as RayGroup<Q>>::idle());
-        let mut slabs = Slabs::IDLE;
+        let mut slabs = RaySlabs::IDLE;
         let mut t_far = ray.start(resolver, RayStart { row, few: true }, &mut slabs);
         for (index, block) in spheres.blocks().iter().enumerate() {
             let hit = <Self as RayGroup<Q>>::test_leaf(&mut ray, &slabs, t_far, index, block);
@@ -151,6 +157,7 @@ pub(super) struct DeferredRay {
 
 impl<Q: Query> RayGroup<Q> for DeferredRay {
     type Start = RayStart;
+    type Slabs = RaySlabs;
 
     #[inline(always)]
     fn idle() -> Self {
@@ -165,7 +172,12 @@ impl<Q: Query> RayGroup<Q> for DeferredRay {
     }
 
     #[inline(always)]
-    fn start(&mut self, resolver: &mut HitResolver<Q>, start: RayStart, slabs: &mut Slabs) -> f32 {
+    fn start(
+        &mut self,
+        resolver: &mut HitResolver<Q>,
+        start: RayStart,
+        slabs: &mut RaySlabs,
+    ) -> f32 {
         let (ray, bounds) = resolver.start_ray(start, slabs);
         self.row = start.row as u32;
         self.own = OwnSphere::new(resolver.rays.own[start.row]);
@@ -176,7 +188,7 @@ impl<Q: Query> RayGroup<Q> for DeferredRay {
     }
 
     #[inline(always)]
-    fn test_leaf(&mut self, _: &Slabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
+    fn test_leaf(&mut self, _: &RaySlabs, t_far: f32, index: usize, block: &SphereBlock) -> u32 {
         let chord = chords(&self.ray, block, None);
         chord.near().store(&mut self.near);
         chord.may_hit(F32x8::splat(t_far)).bits() & self.own.allowed(index)

@@ -63,7 +63,7 @@ fn planes(boxes: &[[[f32; 2]; 3]; 8]) -> Planes {
 }
 
 /// Asserts that boxes about points at distances of 0 or more are hit no farther than the points.
-fn assert_met(slabs: &Slabs, points: &[Point; 8], random: &mut Random) {
+fn assert_met(slabs: &impl Slabs, points: &[Point; 8], random: &mut Random) {
     let boxes = points.map(|point| point.box_about(random));
     for (i, point) in points.iter().enumerate() {
         let (met, near) = slabs.enters(&planes(&boxes), point.t);
@@ -77,8 +77,30 @@ fn no_box_with_a_point_on_a_ray_is_missed() {
     let mut random = Random::new(1);
     for _ in 0..100_000 {
         let point = point(&mut random);
-        let slabs = Slabs::new(point.origin, point.direction);
+        let slabs = RaySlabs::new(point.origin, point.direction);
         assert_met(&slabs, &[point; 8], &mut random);
+    }
+}
+
+#[test]
+fn no_box_near_a_point_on_a_ray_is_missed_by_widened_slabs() {
+    let mut random = Random::new(9);
+    for _ in 0..100_000 {
+        let point = Point { t: random.decades([-3.0, 1.0]) as f32, ..point(&mut random) };
+        let slack = random.decades([-5.0, 0.0]);
+        let slabs = RaySlabs::new(point.origin, point.direction).widened(slack as f32);
+        // Boxes about a point of a line that is beside the ray.
+        let beside = random.in_cube() * (0.5 * slack);
+        let boxes = [(); 8].map(|()| {
+            let sides = point.box_about(&mut random);
+            std::array::from_fn(|axis| {
+                let [low, high] = sides[axis].map(|side| f64::from(side) + beside[axis]);
+                [low as f32, high as f32]
+            })
+        });
+        let (met, near) = slabs.enters(&planes(&boxes), point.t);
+        let nearest = near.to_array().into_iter().fold(0.0, f32::max);
+        assert!(met == 0xff && nearest <= point.t, "{point:?} {boxes:?}");
     }
 }
 
@@ -106,13 +128,13 @@ fn nearby(first: &Point, spread: f64, random: &mut Random) -> Point {
     }
 }
 
-fn between(points: &[Point; 8]) -> Slabs {
+fn between(points: &[Point; 8]) -> PacketSlabs {
     let bounds = |of: fn(&Point) -> Vec3| {
         let low = points.iter().map(of).reduce(Vec3::min).unwrap_or_default();
         let high = points.iter().map(of).reduce(Vec3::max).unwrap_or_default();
         [row(low), row(high)]
     };
-    Slabs::between(bounds(|point| point.origin), bounds(|point| point.direction))
+    PacketSlabs::between(bounds(|point| point.origin), bounds(|point| point.direction))
 }
 
 /// Returns the distance from entering a box, or the start of the ray, to leaving it. Relative to the
@@ -142,7 +164,7 @@ fn slab_tests_agree_with_double_precision() {
             let (center, size) = (random.in_cube(), random.decades([-2.0, 0.0]));
             [0, 1, 2].map(|axis| [center[axis] - size, center[axis] + size].map(|x| x as f32))
         });
-        let (met, _) = Slabs::new(ray.origin, ray.direction).enters(&planes(&boxes), ray.t);
+        let (met, _) = RaySlabs::new(ray.origin, ray.direction).enters(&planes(&boxes), ray.t);
         for (i, sides) in boxes.iter().enumerate() {
             let gap = gap(&ray, sides);
             if gap.abs() < 1e-5 {
@@ -164,22 +186,24 @@ fn rays_in_lanes_equal_single_rays() {
         let columns = |v: fn(&Point) -> Vec3| {
             [0, 1, 2].map(|axis| F32x16::new(rays.each_ref().map(|ray| v(ray)[axis])))
         };
-        let mut slabs = [Slabs::IDLE; 16];
-        Slabs::of_rays(columns(|ray| ray.origin), columns(|ray| ray.direction), &mut slabs);
+        let mut slabs = [RaySlabs::IDLE; 16];
+        RaySlabs::of_rays(columns(|ray| ray.origin), columns(|ray| ray.direction), &mut slabs);
         for (slabs, ray) in slabs.iter().zip(&rays) {
-            let one = Slabs::new(ray.origin, ray.direction);
-            let bits = |slabs: &Slabs, axis: usize| {
-                let rows = [slabs.near[0], slabs.near[1], slabs.far[0], slabs.far[1]];
-                rows.map(|row| row[axis].to_bits())
+            let one = RaySlabs::new(ray.origin, ray.direction);
+            let numbers = |slabs: &RaySlabs, axis: usize| {
+                slabs.distances(axis).map(|distance| distance.map(f32::to_bits))
             };
-            assert!((0..3).all(|axis| bits(slabs, axis) == bits(&one, axis)), "{ray:?}");
-            assert_eq!((slabs.octant, slabs.negative), (one.octant, one.negative), "{ray:?}");
+            for axis in 0..3 {
+                assert_eq!(numbers(slabs, axis), numbers(&one, axis), "{ray:?}");
+                assert_eq!(slabs.is_negative(axis), one.is_negative(axis), "{ray:?}");
+            }
+            assert_eq!(slabs.octant(), one.octant(), "{ray:?}");
         }
     }
 }
 
 #[test]
 fn signs_of_the_direction_make_the_octant() {
-    let octant = |x, y, z| Slabs::new(Vec3::ONE, Vec3::new(x, y, z)).octant;
+    let octant = |x, y, z| RaySlabs::new(Vec3::ONE, Vec3::new(x, y, z)).octant();
     assert_eq!([octant(1.0, 0.0, 1.0), octant(-1.0, 1.0, -0.0), octant(0.5, -0.1, 0.0)], [0, 5, 2]);
 }
