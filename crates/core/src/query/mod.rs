@@ -14,9 +14,10 @@ pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 
 use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, build};
-use crate::bvh::{Any, Closest, Tree};
+use crate::bvh::{Any, ClosestRounded, Tree};
 use crate::elementary;
 use crate::spheres::Spheres;
+use crate::vec3::Vec3 as Coordinates;
 use columns::same_length;
 use glam::{DVec3, Vec3};
 use std::cell::Cell;
@@ -111,6 +112,8 @@ impl SphereTree {
         }
         let invalid = count - spheres.len();
         let bvh = build(&mut spheres, Builder::default());
+        spheres.coarse = !rounded
+            && (0..spheres.len()).all(|i| Coordinates::from(spheres.center(i)).is_coarse());
         Ok(Self { spheres, bvh, scale, invalid })
     }
 
@@ -142,7 +145,7 @@ impl SphereTree {
     /// if the ray hits nothing, or is invalid.
     pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
         let ray = (origin, direction);
-        let found = self.trace_one::<Closest>(ray, f64::INFINITY, &mut Tally::default())?;
+        let found = self.trace_one::<ClosestRounded>(ray, f64::INFINITY, &mut Tally::default())?;
         let Surface { point, normal } = self.surface(ray, &found);
         Some(Hit { sphere: found.id, t: found.t, point, normal })
     }
@@ -163,7 +166,7 @@ impl SphereTree {
         rays.check(&[t.len(), sphere.len(), surfaces])?;
         sphere.fill(NOTHING);
         let t = Cell::from_mut(t).as_slice_of_cells();
-        Ok(self.run::<Closest>(
+        Ok(self.run::<ClosestRounded>(
             rays,
             |i| t[i].get(),
             |i, found| {

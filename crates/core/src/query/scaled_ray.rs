@@ -8,6 +8,7 @@ use crate::elementary;
 use crate::exact::{self, Distance};
 use crate::intersect;
 use crate::ray::ExactRay;
+use crate::vec3::Vec3 as Coordinates;
 use glam::Vec3;
 use std::cmp::Ordering;
 
@@ -45,13 +46,31 @@ impl SphereTree {
         let bound = bound / scaled.unit;
         if scaled.is_far() {
             tally.exact += 1;
-            return self.test_all(&scaled, bound);
+            let hit = self.test_all(&scaled, bound)?;
+            return Some(FoundHit { t: self.distance::<Q>(&scaled, hit.sphere, hit.t), ..hit });
         }
         let hit = trace_one::<Q>(self.tree(), &scaled.ray, bound);
         tally.exact += hit.exact;
         let sphere = hit.sphere as usize;
         let id = *self.spheres.id.get(sphere)?;
-        Some(FoundHit { sphere, id, t: hit.t * scaled.unit })
+        Some(FoundHit { sphere, id, t: self.distance::<Q>(&scaled, sphere, hit.t) })
+    }
+
+    /// Returns a hit's distance in the user's units, rounded if that is asked for; `t` is in the tree's units.
+    fn distance<Q: Query>(
+        &self,
+        ScaledRay { ray, unit }: &ScaledRay,
+        sphere: usize,
+        t: f64,
+    ) -> f64 {
+        if !Q::ROUNDED {
+            return t * unit;
+        }
+        let origin = ray.origin.as_vec3();
+        let coarse = self.spheres.coarse
+            && origin.as_dvec3() == ray.origin
+            && Coordinates::from(origin).is_coarse();
+        intersect::nearest(ray, self.spheres.exact(sphere), t, coarse) * unit
     }
 
     /// A ray in the tree's units; `None` if it is no ray.
@@ -67,7 +86,7 @@ impl SphereTree {
         Some(ScaledRay { ray, unit: shrink / self.scale })
     }
 
-    /// Tests every sphere: for rays from so far away that the filter cannot tell anything.
+    /// Tests every sphere, and returns the hit in the tree's units: for rays from so far away that the filter cannot tell anything.
     fn test_all(&self, scaled: &ScaledRay, bound: f64) -> Option<FoundHit> {
         let mut best: Option<FoundHit> = None;
         let mut nearest = Distance::Number(bound);
@@ -84,7 +103,7 @@ impl SphereTree {
             let first = best.as_ref().is_some_and(|best| id < best.id);
             if order.is_lt() || (order.is_eq() && first) {
                 nearest = distance;
-                best = Some(FoundHit { sphere: row, id, t: root.t * scaled.unit });
+                best = Some(FoundHit { sphere: row, id, t: root.t });
             }
         }
         best
