@@ -65,16 +65,12 @@
 //! Nothing underflows that counts: see the [module's documentation](super).
 
 use super::Pairs;
+use crate::elementary::power_of_two;
 use crate::exact;
 use crate::lanes::Doubles;
 use crate::ray::ExactRay;
 use crate::vec3::Vec3;
 use glam::DVec3;
-
-/// Two to a power.
-const fn power(exponent: i64) -> f64 {
-    f64::from_bits(((1023 + exponent) as u64) << 52)
-}
 
 /// Rounds the distances at which rays hit spheres to the nearest doubles, in lanes in which that is certain,
 /// which are the first result. In these, the ray does hit the sphere there.
@@ -91,9 +87,9 @@ pub fn nearest_quickly<D: Doubles>(pairs: &Pairs<D>, start: D) -> (D::Mask, D) {
     let rest = (from_center - high) + way;
     let excess = square_excess(high, radius) + rest.dot_unfused(high + point);
     // Coordinates of `F - u` are at most `3 r + 2 s`, and multiples of 2^-46 and of the grid.
-    let exact = start.lt(D::splat(16.0)) & start.lt(D::splat(power(25)) * radius);
+    let exact = start.lt(D::splat(16.0)) & start.lt(D::splat(power_of_two(25)) * radius);
     let step = Step { start, excess, slope: point.dot_unfused(direction), direction };
-    let (certain, t) = step.rounded(D::splat(power(-70)) * radius * radius, radius);
+    let (certain, t) = step.rounded(D::splat(power_of_two(-70)) * radius * radius, radius);
     (exact & certain, t)
 }
 
@@ -107,13 +103,13 @@ pub fn nearest_closely<D: Doubles>(pairs: &Pairs<D>, t: D) -> (D::Mask, D) {
     let lost = lost + also_lost;
     let magic = radius * D::splat(MAGIC);
     let (high, rest) = split(point, magic);
-    let (middle, low) = split(rest, magic * D::splat(power(-25)));
+    let (middle, low) = split(rest, magic * D::splat(power_of_two(-25)));
     let mixed = high.dot_unfused(middle);
     let small = high.dot_unfused(low) + point.dot_unfused(lost);
     let excess = (square_excess(high, radius) + (mixed + mixed))
         + (rest.dot_unfused(rest) + (small + small));
     let span = radius + start;
-    let error = (D::splat(power(-93)) * radius + D::splat(power(-96)) * span) * span;
+    let error = (D::splat(power_of_two(-93)) * radius + D::splat(power_of_two(-96)) * span) * span;
     let slope = point.dot_unfused(direction) + lost.dot_unfused(direction);
     Step { start, excess, slope, direction }.rounded(error, radius)
 }
@@ -144,7 +140,7 @@ fn nearest_or_exact(pairs: &Pairs<f64>, ray: &ExactRay, t: f64) -> f64 {
 
 /// Times the radius, a number whose last place is the grid of the first digits of `P`. It is 1.5 times a power of
 /// two, so that sums with it have that grid or half of it.
-const MAGIC: f64 = 1.5 * power(28);
+const MAGIC: f64 = 1.5 * power_of_two(28);
 
 /// `u.u - r^2` for `u` on the grid, without rounding.
 #[inline(always)]
@@ -155,7 +151,7 @@ fn square_excess<D: Doubles>(u: Vec3<D>, radius: D) -> D {
 /// The nearest number with 29 digits (Veltkamp's splitting).
 #[inline(always)]
 fn shortened<D: Doubles>(t: D) -> D {
-    let long = t * D::splat(power(24) + 1.0);
+    let long = t * D::splat(power_of_two(24) + 1.0);
     long - (long - t)
 }
 
@@ -204,14 +200,14 @@ impl<D: Doubles> Step<D> {
         let enters = slope.lt(zero);
         let length = excess * inverse;
         let step = D::select(enters, length, -length);
-        let error = (error + D::splat(power(-45)) * radius * length.abs()) * inverse;
+        let error = (error + D::splat(power_of_two(-45)) * radius * length.abs()) * inverse;
         let rounded = start + step;
         let lost = step - (rounded - start);
         let (least, most) = (rounded + (lost - error), rounded + (lost + error));
         // False for anything NaN.
         let certain = (product + product).abs().lt(slope2)
-            & (enters | (D::splat(power(-15)) * a * start).lt(slope))
-            & (D::splat(power(10)) * length.abs()).lt(start)
+            & (enters | (D::splat(power_of_two(-15)) * a * start).lt(slope))
+            & (D::splat(power_of_two(10)) * length.abs()).lt(start)
             & !least.lt(most);
         (certain, rounded)
     }
