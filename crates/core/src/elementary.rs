@@ -16,8 +16,14 @@ pub use libm::{
 pub use libm::{cbrtf, exp2f, log2f};
 
 /// Two to an integer power, exactly; infinite or 0 beyond the range of double precision.
-pub fn power_of_two(exponent: i32) -> f64 {
-    libm::ldexp(1.0, exponent)
+pub const fn power_of_two(exponent: i32) -> f64 {
+    match exponent {
+        1024.. => f64::INFINITY,
+        -1022..1024 => f64::from_bits(((exponent + 1023) as u64) << 52),
+        // Subnormal numbers have no hidden bit.
+        -1074..-1022 => f64::from_bits(1 << (exponent + 1074)),
+        _ => 0.0,
+    }
 }
 
 /// Two to any power.
@@ -32,7 +38,11 @@ pub fn power_of_ten(exponent: u32) -> f64 {
 
 /// The exponent of the greatest power of two that is not above a positive, finite number.
 pub fn floor_log2(x: f64) -> i32 {
-    libm::ilogb(x)
+    match (x.to_bits() >> 52) as i32 {
+        // Subnormal.
+        0 => libm::ilogb(x),
+        biased => biased - 1023,
+    }
 }
 
 /// The exponent of the least power of two that is not below a positive, finite number.
@@ -69,7 +79,10 @@ mod tests {
                 assert_eq!((floor_log2(above), ceil_log2(above)), (exponent, exponent + 1));
             }
         }
-        assert_eq!((power_of_two(1024), power_of_two(-1080)), (f64::INFINITY, 0.0));
+        for (exponent, power) in [(1024, f64::INFINITY), (i32::MAX, f64::INFINITY), (-1075, 0.0)] {
+            assert_eq!(power_of_two(exponent), power);
+        }
+        assert_eq!(power_of_two(i32::MIN), 0.0);
     }
 
     #[test]

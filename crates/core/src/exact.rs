@@ -13,7 +13,7 @@
 mod dyadic;
 
 use crate::ray::ExactRay;
-use dyadic::{Dyadic, dot};
+use dyadic::{Dyadic, dot, nearest_root};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -66,6 +66,14 @@ pub fn hit(ray: &ExactRay, center: DVec3, radius: f64) -> Option<f64> {
     } else {
         encounter.outside.to_f64().abs() / sum
     })
+}
+
+/// The double that is nearest to the distance at which a ray hits a sphere, of two the even one; `None` if it
+/// does not. Otherwise as [`hit`], which is faster.
+pub fn nearest_distance(ray: &ExactRay, center: DVec3, radius: f64) -> Option<f64> {
+    let encounter = Encounter::new(ray, center, radius);
+    let sign = encounter.root()?;
+    Some(nearest_root(&encounter.a, &encounter.b, (sign, &encounter.discriminant)))
 }
 
 /// Outward unit normal where a ray hits a sphere, which it does, correct to a few units of the last

@@ -25,11 +25,36 @@
 //! - The root of `x (1 + e)` is off by less than `e` of itself, and errors of products and quotients
 //!   add up, in first order; 1 % on top covers the second.
 //!
-//! A sign is taken from double precision only where the value is beyond its bound. Underflow does
-//! not matter: the least product of four single-precision numbers is 1e-180.
+//! A sign is taken from double precision only where the value is beyond its bound.
+//!
+//! # Range
+//!
+//! Numbers of single precision are multiples of 2^-149, below 2^128. A [tree](crate::SphereTree) multiplies by
+//! a power of two from 2^-129 to 2^149, so that its largest coordinate, radii included, is between 1/2 and 1,
+//! and each direction by one that brings its largest coordinate into `1..2`. So coordinates and radii are
+//! multiples of 2^-278, origins are below 2^277, and coordinates of directions are multiples of 2^-276. Double
+//! precision, whose least normal number is 2^-1022 and whose largest is below 2^1024, has room for products of two
+//! such numbers, but not for all products of four. Term by term:
+//!
+//! - `F`, `a`, `b`, `F.F` and `r^2` are 0 or between 2^-610 and 2^560: a sum that cancels leaves no less than
+//!   the last place of a product, and no product is less than 2^-556.
+//! - `b/a` is at least 2^-614, and times a coordinate of `d` at least 2^-890. A square in `P.P` underflows where
+//!   that coordinate of `P` is below 2^-511. What is lost is less than 2^-1019 in `P.P` and 2^-509 in `p`,
+//!   which `8 E f p` takes times `2^-50 f`. As `f` is at least 2^-278, or all are 0, both are less than `E^2
+//!   f^2`, and the bound has `(16 E f)^2` where `(11 E f)^2` is enough.
+//! - `f p` in the bound is the product of two roots. The root of the product of squares would be 0 where `f p` is
+//!   below 2^-537, as it is among spheres of 2^-270; though `E f p` may be far above `E r^2` there.
+//! - `Terms::are_clear` and `Terms::meet_clearly` compare products of four. Rounding keeps order, also where
+//!   it underflows: if one product is rounded to less than another, it is no more than the other. Where the left
+//!   one overflows nothing is clear. Where the right one does, `p` is above 2^255, `f` is below 2^279, and the
+//!   left one, `2^-56 f^2 p^2`, is in truth less than `p^4`.
+//! - A distance is computed where `r^2 - P.P` and `F.F - r^2` are beyond their bounds, so above 2^-606. It is
+//!   between 2^-560 and 2^279: `F.F - r^2` and `b` are multiples of 2^-556.
 
+mod rounding;
 mod terms;
 
+pub use self::rounding::{nearest, nearest_closely, nearest_quickly};
 use self::terms::Terms;
 use crate::exact;
 use crate::lanes::{Doubles, F64x8, load_doubles};
@@ -137,6 +162,15 @@ impl Pairs<F64x8> {
         let (origin, direction, center, radius) = (vector(0), vector(3), vector(6), row(9));
         // As if all origins were on surfaces, which is no less.
         Self { origin, direction, origin_error: rounding(origin), center, radius }
+    }
+
+    /// The ray and the sphere of a lane; the origin is taken as exact.
+    pub fn lane(&self, lane: usize) -> (ExactRay, DVec3, f64) {
+        let number = |row: F64x8| row.to_array()[lane];
+        let vector = |v: Vec3<F64x8>| DVec3::new(number(v.x), number(v.y), number(v.z));
+        let (origin, direction) = (vector(self.origin), vector(self.direction));
+        let ray = ExactRay { origin, direction, origin_error: 0.0 };
+        (ray, vector(self.center), number(self.radius))
     }
 }
 

@@ -3,7 +3,8 @@
 //! Answers are those of arithmetic without rounding on the numbers as they are given, without an
 //! epsilon, at any scale. A conservative test in single precision, in SIMD lanes, rules out most
 //! spheres; double precision with error bounds decides nearly all that is left, and integers decide
-//! the rest. The [`SphereTree`] is an eight-wide bounding volume hierarchy, walked by packets of 16
+//! the rest. Distances are rounded once: each is the double that is nearest to the true one, at a
+//! tangent, on a surface, and a million radii away. The [`SphereTree`] is an eight-wide bounding volume hierarchy, walked by packets of 16
 //! coherent rays or with 64 incoherent rays in flight.
 //!
 //! ```

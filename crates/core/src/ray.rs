@@ -25,6 +25,8 @@ pub struct Rays {
     pub target: Vec<u32>,
     /// Exact rays, if the single-precision columns cannot hold them; empty otherwise.
     pub precise: Vec<ExactRay>,
+    /// True if it is known that all origins are [coarse](Vec3::is_coarse).
+    pub coarse: bool,
     len: usize,
 }
 
@@ -106,6 +108,7 @@ impl Rays {
             own: vec![MISS; rows],
             target: vec![MISS; rows],
             precise: Vec::new(),
+            coarse: false,
             len: 0,
         }
     }

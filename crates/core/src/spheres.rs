@@ -38,6 +38,8 @@ pub struct Spheres {
     pub id: Vec<u32>,
     /// Exact centers and radii, if the single-precision columns cannot hold them; empty otherwise.
     pub precise: Vec<(DVec3, f64)>,
+    /// True if it is known that all centers are [coarse](crate::vec3::Vec3::is_coarse).
+    pub coarse: bool,
 }
 
 impl Spheres {
@@ -62,6 +64,7 @@ impl Spheres {
             blocks: Vec::with_capacity(count.div_ceil(LEAF)),
             id: Vec::with_capacity(count),
             precise: Vec::new(),
+            coarse: false,
         }
     }
 
@@ -81,6 +84,7 @@ impl Spheres {
             blocks: rows(count.div_ceil(LEAF)).map(block).collect(),
             id: rows(count).map(|i| row(i).1).collect(),
             precise: Vec::new(),
+            coarse: false,
         }
     }
 
@@ -90,7 +94,7 @@ impl Spheres {
         if blocks.len() != id.len().div_ceil(LEAF) {
             return None;
         }
-        let spheres = Self { blocks, id, precise: Vec::new() };
+        let spheres = Self { blocks, id, precise: Vec::new(), coarse: false };
         let is_sphere = |row: usize| {
             let radius = spheres.radius(row);
             spheres.center(row).is_finite() && radius > 0.0 && radius < f32::INFINITY

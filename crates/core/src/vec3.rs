@@ -97,6 +97,19 @@ impl<L: Lanes> Vec3<L> {
         Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
     }
 
+    /// Returns the lanes in which all coordinates are multiples of 2^-46, so that sums of a few that are below 64
+    /// are exact in double precision. Of small coordinates only 0 is called so.
+    #[inline(always)]
+    pub fn is_coarse(self) -> L::Mask {
+        /// Numbers that are not below this are multiples of 2^-46.
+        const LEAST: f32 = 1.0 / (1 << 23) as f32;
+        let Vec3 { x, y, z } = self.map(|x| {
+            let x = x.abs();
+            x.le(L::splat(0.0)) | L::splat(LEAST).le(x)
+        });
+        x & y & z
+    }
+
     /// The greatest coordinate.
     #[inline(always)]
     pub fn max_element(self) -> L {

@@ -130,8 +130,8 @@ mod tests {
     fn the_verdict_names_failing_regimes() {
         let regimes = REGIMES[..2].iter().collect();
         let mut report = stress::run(&Options { rays: 64, seed: 0, regimes }, &|_| ());
-        assert_eq!(conclusion(&report), "0 wrong results in 80 rays and 28 bounds");
+        assert_eq!(conclusion(&report), "0 wrong results in 80 rays and 36 bounds");
         report.regimes[1].forms[Form::Spherule as usize].wrong_spheres = 1234;
-        assert_eq!(conclusion(&report), "1,234 wrong results in 80 rays and 28 bounds, in inside");
+        assert_eq!(conclusion(&report), "1,234 wrong results in 80 rays and 36 bounds, in inside");
     }
 }

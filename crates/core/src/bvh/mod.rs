@@ -23,7 +23,8 @@ pub use beam::Beam;
 pub use one_ray::{OneHit, trace_far, trace_one};
 pub use rows::NodeRow;
 pub use traversal::{
-    Any, Closest, PacketWidth, Query, Tracer, Traversal, Unverified, Visits, count_visits, trace,
+    Any, Closest, ClosestRounded, PacketWidth, Query, Tracer, Traversal, Unverified, Visits,
+    count_visits, trace,
 };
 
 use crate::elementary;

@@ -12,6 +12,7 @@ use super::nearest::{NearestHit, RunnerUp};
 use super::ray_setup::RaySetup;
 use super::traversal::{Query, Visits};
 use crate::conservative::{Chord, ConservativeRay};
+use crate::exact;
 use crate::intersect::{self, CLEAR, Pair, Pairs};
 use crate::lanes::{
     Doubles, F64x8, Lanes, Mask, bits, bits_of, load_doubles, set_bits, store_where,
@@ -36,6 +37,10 @@ pub(super) struct HitResolver<'a, Q> {
     pub(super) exact: u64,
     /// Rays that are to be traced again, for their hits may be wrong.
     pub(super) unresolved: Vec<u32>,
+    /// Rays whose distances are still to be rounded, if they are to be.
+    unrounded: Vec<u32>,
+    /// True if all origins and centers are [coarse](Vec3::is_coarse), and distances are to be rounded.
+    coarse: bool,
     /// Rays that wait until there are enough of them to be decided in lanes.
     pending: PendingHits,
     /// The rays that start next.
@@ -53,6 +58,8 @@ impl<'a, Q: Query> HitResolver<'a, Q> {
             hits,
             exact: 0,
             unresolved: Vec::new(),
+            unrounded: Vec::new(),
+            coarse: Q::ROUNDED && spheres.coarse && rays.coarse,
             pending: PendingHits::default(),
             setup: RaySetup::NONE,
             visits: Visits::default(),
@@ -124,6 +131,9 @@ impl<Q: Query> HitResolver<'_, Q> {
             self.hits.sphere[row] = sphere;
             if !Q::ANY {
                 (self.hits.t[row], self.hits.error[row % CHUNK]) = (t, error);
+            }
+            if Q::ROUNDED {
+                self.unrounded.push(row as u32);
             }
         }
         nearer
@@ -201,12 +211,40 @@ impl<Q: Query> HitResolver<'_, Q> {
             center: vector(runner_up.sphere.center),
             radius: runner_up.sphere.radius.doubles(FROM),
         };
-        let (plain, t) = intersect::confirm_either(&pairs);
+        let near = nearest.near.doubles(FROM);
         // Nothing beyond `t_max` was tested.
         let other = runner_up.near.min(nearest.t_max).doubles(FROM);
-        let resolved = plain & (t * F64x8::splat(1.0 + CLEAR)).lt(other);
+        let found = nearest.found().bits() >> FROM & 0xff;
+        let (resolved, t) = self.resolve(&pairs, found, near, other);
         store_where(resolved, t, &mut self.hits.t[first + FROM..]);
         resolved.bits()
+    }
+
+    /// Returns the lanes in which double precision decides that the ray hits the sphere, before `other`, and the
+    /// distances. `near` is a distance before which it does not; only `wanted` lanes matter.
+    #[inline(always)]
+    fn resolve(
+        &self,
+        pairs: &Pairs<F64x8>,
+        wanted: u32,
+        near: F64x8,
+        other: F64x8,
+    ) -> (<F64x8 as Doubles>::Mask, F64x8) {
+        let is_first = |t: F64x8| (t * F64x8::splat(1.0 + CLEAR)).lt(other);
+        if !Q::ROUNDED {
+            let (plain, t) = intersect::confirm_either(pairs);
+            return (plain & is_first(t), t);
+        }
+        if self.coarse {
+            let (certain, t) = intersect::nearest_quickly(pairs, near);
+            let resolved = certain & is_first(t);
+            if !resolved.bits() & wanted == 0 {
+                return (resolved, t);
+            }
+        }
+        // A copy, so that pairs stay in registers up to here.
+        let pairs = *pairs;
+        resolve_closely(&pairs, wanted, other)
     }
 
     #[inline(always)]
@@ -234,6 +272,38 @@ impl<Q: Query> HitResolver<'_, Q> {
     }
 }
 
+/// Does what [`HitResolver::resolve`] does, with rounded distances, where the quick way is not certain.
+#[inline(never)]
+fn resolve_closely(
+    pairs: &Pairs<F64x8>,
+    wanted: u32,
+    other: F64x8,
+) -> (<F64x8 as Doubles>::Mask, F64x8) {
+    let (plain, about) = intersect::confirm_either(pairs);
+    let resolved = plain & (about * F64x8::splat(1.0 + CLEAR)).lt(other);
+    let (certain, t) = intersect::nearest_closely(pairs, about);
+    let mut t = t.to_array();
+    for lane in set_bits(resolved.bits() & !certain.bits() & wanted) {
+        let (ray, center, radius) = pairs.lane(lane);
+        t[lane] = exact::nearest_distance(&ray, center, radius).unwrap_or(about.to_array()[lane]);
+    }
+    (resolved, F64x8::new(t))
+}
+
+/// Distances that were decided candidate by candidate.
+impl<Q: Query> HitResolver<'_, Q> {
+    /// Rounds the distances of rays that were decided candidate by candidate, if they are to be rounded.
+    pub(super) fn round_distances(&mut self) {
+        for &row in &self.unrounded {
+            let row = row as usize;
+            let sphere = self.spheres.exact(self.hits.sphere[row] as usize);
+            let t = &mut self.hits.t[row];
+            *t = intersect::nearest(&self.rays.exact(row), sphere, *t, self.coarse);
+        }
+        self.unrounded.clear();
+    }
+}
+
 /// Single rays and their best candidates, which are decided when there are [`ROW`] of them.
 #[derive(Clone, Copy, Default)]
 struct PendingHits {
@@ -241,6 +311,8 @@ struct PendingHits {
     ray: [Pair; ROW],
     /// Distances before which no other sphere is hit.
     runner_up: [f32; ROW],
+    /// Distances before which the candidate is not hit.
+    near: [f32; ROW],
 }
 
 /// Single rays, at the end of their traversal.
@@ -261,6 +333,7 @@ impl<Q: Query> HitResolver<'_, Q> {
         pending.ray[place] = Pair { row, sphere };
         // Nothing beyond `t_max` was tested.
         pending.runner_up[place] = runner_up.min(nearest.t_max);
+        pending.near[place] = nearest.near;
         pending.count = place + usize::from(sphere != MISS);
         if pending.count == ROW {
             self.flush_pending();
@@ -274,12 +347,13 @@ impl<Q: Query> HitResolver<'_, Q> {
         if count == 0 {
             return;
         }
-        let PendingHits { mut ray, runner_up, .. } = self.pending;
+        let PendingHits { mut ray, runner_up, near, .. } = self.pending;
         // Unused lanes repeat the first ray.
         let first = ray[0];
         ray[count..].fill(first);
-        let (plain, t) = intersect::confirm_either(&Pairs::gather(self.rays, self.spheres, &ray));
-        let resolved = plain & (t * F64x8::splat(1.0 + CLEAR)).lt(load_doubles(&runner_up));
+        let (near, other) = (load_doubles(&near), load_doubles(&runner_up));
+        let pairs = Pairs::gather(self.rays, self.spheres, &ray);
+        let (resolved, t) = self.resolve(&pairs, (1 << count) - 1, near, other);
         let (resolved, t) = (resolved.bits(), t.to_array());
         for (lane, (ray, t)) in ray.into_iter().zip(t).enumerate().take(count) {
             if resolved >> lane & 1 == 1 {

@@ -52,6 +52,8 @@ pub trait Query {
     const ANY: bool;
     /// True if hits are decided exactly.
     const EXACT: bool = true;
+    /// True if distances are rounded to the nearest doubles.
+    const ROUNDED: bool = false;
     /// True if visits are counted.
     const COUNTED: bool = false;
 }
@@ -61,6 +63,15 @@ pub struct Closest;
 
 impl Query for Closest {
     const ANY: bool = false;
+}
+
+/// As [`Closest`], and each `t` is the double that is nearest to the distance. The largest coordinate of each
+/// direction is in `1..2`, origins are exact, and no ray has a hit beforehand.
+pub struct ClosestRounded;
+
+impl Query for ClosestRounded {
+    const ANY: bool = false;
+    const ROUNDED: bool = true;
 }
 
 /// Any hit of a ray nearer than `t`: fills `sphere` of [`Hits`] with some sphere that it hits.
@@ -237,6 +248,7 @@ fn trace_chunks<'a, L: Lanes, Q: Query>(
         }
         let brute_force = traversal == Traversal::Brute || spheres.len() <= SMALL_SCENE;
         trace_unresolved(bvh, resolver, brute_force);
+        resolver.round_distances();
     }
     all
 }

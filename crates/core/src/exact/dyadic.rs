@@ -52,11 +52,42 @@ impl Dyadic {
         let surplus = self.mantissa.bits().saturating_sub(64);
         let top = &self.mantissa >> surplus;
         let top = i128::try_from(&top).unwrap_or(0) as f64;
-        let exponent = self.exponent + surplus as i64;
-        // In two steps, neither of which leaves the range where the result does not.
-        let half = exponent.clamp(-2000, 2000) as i32 / 2;
-        let rest = exponent.clamp(-2000, 2000) as i32 - half;
-        top * power_of_two(half) * power_of_two(rest)
+        times_power(top, self.exponent + surplus as i64)
+    }
+}
+
+/// `x` times a power of two, in two steps, neither of which leaves the range where the result does not.
+fn times_power(x: f64, exponent: i64) -> f64 {
+    let exponent = exponent.clamp(-2000, 2000) as i32;
+    let half = exponent / 2;
+    x * power_of_two(half) * power_of_two(exponent - half)
+}
+
+/// The nearest number of double precision to `(b + sign sqrt(q)) / a`, which is positive and in the range of
+/// normal numbers; of two that are equally near the even one. `a` is positive, `q` not negative.
+pub(super) fn nearest_root(a: &Dyadic, b: &Dyadic, (sign, q): (i32, &Dyadic)) -> f64 {
+    /// Bits of the quotient: those of the result, one to round by, and one that says whether more follow.
+    const BITS: u64 = 55;
+    // Binary places with which `b` and `q` are whole.
+    let mut places = (-b.exponent).max((1 - q.exponent).div_euclid(2));
+    loop {
+        let whole = |x: &Dyadic, places: i64| &x.mantissa << (x.exponent + places) as u64;
+        let square = whole(q, 2 * places);
+        let root = square.sqrt();
+        let rounded = &root * &root != square;
+        // Rounded down, so that the quotient is as well.
+        let root = if sign < 0 { -(root + i32::from(rounded)) } else { root };
+        let sum = whole(b, places) + root;
+        let quotient = &sum / &a.mantissa;
+        let bits = quotient.bits();
+        if bits >= BITS {
+            let surplus = bits - BITS;
+            let inexact = rounded || &quotient * &a.mantissa != sum;
+            let more = inexact || quotient.trailing_zeros().is_some_and(|zeros| zeros < surplus);
+            let top = u64::try_from(quotient >> surplus).unwrap_or(0) << 1 | u64::from(more);
+            return times_power(top as f64, surplus as i64 - 1 - places - a.exponent);
+        }
+        places += (BITS + 1 - bits) as i64;
     }
 }
 

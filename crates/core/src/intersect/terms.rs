@@ -104,7 +104,7 @@ impl Terms<f64> {
     }
 
     pub(super) fn chord2_error(&self) -> f64 {
-        let mixed = (self.distance2 * self.p2).sqrt();
+        let mixed = self.distance2.sqrt() * self.p2.sqrt();
         8.0 * E * (mixed + self.p2 + self.r2) + (16.0 * E).powi(2) * self.distance2
     }
 

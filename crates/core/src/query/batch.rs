@@ -20,7 +20,7 @@ pub(super) struct FoundHit {
     pub(super) sphere: usize,
     /// The sphere's row in the user's columns; [`NOTHING`] if nobody asks which.
     pub(super) id: u32,
-    /// In units of the user's direction.
+    /// In units of the user's direction; unspecified if any hit was looked for.
     pub(super) t: f64,
 }
 

@@ -19,7 +19,9 @@ pub struct RayColumns<'a> {
 #[derive(Debug)]
 pub struct Hits<'a> {
     /// On entry, hits not nearer than this do not count; infinity for no bound. On return the
-    /// distance of the hit, in units of the direction's length, or unchanged.
+    /// distance of the hit, in units of the direction's length, or unchanged. It is the double that is nearest to
+    /// the true distance: off by half a unit of its last place at most. It is never more than the bound, and
+    /// equals it if the true distance is less by no more than that.
     pub t: &'a mut [f64],
     /// On return the sphere's row in the columns that the tree was built from, or [`NOTHING`].
     pub sphere: &'a mut [u32],
@@ -33,7 +35,7 @@ pub struct Hits<'a> {
 pub struct Hit {
     /// Row of the sphere in the columns that the tree was built from.
     pub sphere: u32,
-    /// Distance in units of the direction's length, more than 0.
+    /// Distance in units of the direction's length, more than 0: the double that is nearest to the true distance.
     pub t: f64,
     /// The point of the sphere, in the user's coordinates.
     pub point: [f64; 3],

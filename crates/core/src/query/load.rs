@@ -6,6 +6,8 @@ use super::batch::CHUNK;
 use super::chunk::{ChunkRays, RayPacket};
 use crate::lanes::{F32x16, Lanes, Mask, set_bits};
 use crate::ray::{Hits, MISS, Rays};
+use crate::vec3::Vec3;
+use glam::Vec3 as Point;
 
 /// Number of rays that are loaded together.
 pub(super) const PACKET: usize = F32x16::WIDTH;
@@ -37,6 +39,7 @@ impl SphereTree {
         let scalable =
             f64::from(scale) == self.scale[0] && scale.is_normal() && scale.recip().is_normal();
         let unscale = F32x16::splat(scale.recip());
+        let mut coarse = u32::MAX;
         rays.truncate(0);
         for (packet, first) in (0..chunk.len()).step_by(PACKET).enumerate() {
             let RayPacket { origin, direction, bound } = chunk.packet(first, bounds);
@@ -63,13 +66,17 @@ impl SphereTree {
                 numbers |= u32::from(!bound[lane].is_nan()) << lane;
             }
             let plain = if scalable { all.bits() & numbers } else { 0 };
-            // Nothing counts below 0.
-            if plain != u32::from(u16::MAX) {
-                set_bits(!plain & u32::from(u16::MAX)).for_each(|lane| t[lane] = -1.0);
-            }
             loaded.plain[packet] = plain;
+            let [x, y, z] = moved;
+            coarse &= Vec3::new(x, y, z).is_coarse().bits() | !plain;
             rays.append(PACKET.min(chunk.len() - first), &moved, &turned);
+            // Nothing counts below 0. Such rays keep no others from being plain.
+            for row in set_bits(!plain & u32::from(u16::MAX)).map(|lane| first + lane) {
+                hits.t[row] = -1.0;
+                rays.set(row, Point::ZERO, Point::ONE, MISS);
+            }
         }
+        rays.coarse = coarse & u32::from(u16::MAX) == u32::from(u16::MAX);
         loaded
     }
 }

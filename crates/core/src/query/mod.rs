@@ -18,9 +18,10 @@ pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 
 use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, build};
-use crate::bvh::{Any, Closest, Tree};
+use crate::bvh::{Any, ClosestRounded, Tree};
 use crate::elementary;
 use crate::spheres::Spheres;
+use crate::vec3::Vec3 as Coordinates;
 use batch::Occlusion;
 use columns::same_length;
 use glam::{DVec3, Vec3};
@@ -131,6 +132,8 @@ impl SphereTree {
         let strays: Vec<_> = strays.into_iter().map(stray).collect();
         let invalid = count - spheres.len() - strays.len();
         let bvh = build(&mut spheres, Builder::default());
+        spheres.coarse = !rounded
+            && (0..spheres.len()).all(|i| Coordinates::from(spheres.center(i)).is_coarse());
         let reach = (f64::from(bvh.mean_leaf_extent()) * REACH_IN_LEAVES).clamp(4.0, REACH);
         let scale = [scale, unscale];
         Ok(Self { spheres, bvh, scale, reach, strays, stray_scale, invalid })
@@ -164,7 +167,7 @@ impl SphereTree {
     /// if the ray hits nothing, or is invalid.
     pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
         let ray = (origin, direction);
-        let found = self.trace_one::<Closest>(ray, f64::INFINITY, &mut Tally::default())?;
+        let found = self.trace_one::<ClosestRounded>(ray, f64::INFINITY, &mut Tally::default())?;
         let Surface { point, normal } = self.surface(ray, &found);
         Some(Hit { sphere: found.id, t: found.t, point, normal })
     }
@@ -187,7 +190,7 @@ impl SphereTree {
         let surfaces = hits.surface.as_ref().map_or(hits.t.len(), |column| column.len());
         rays.check(&[hits.t.len(), hits.sphere.len(), surfaces])?;
         hits.sphere.fill(NOTHING);
-        Ok(self.run::<Closest>(rays, &mut hits))
+        Ok(self.run::<ClosestRounded>(rays, &mut hits))
     }
 
     /// Finds whether each ray hits anything nearer than its bound in `t`.

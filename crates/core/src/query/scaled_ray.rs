@@ -8,6 +8,7 @@ use crate::exact::{self, Distance};
 use crate::intersect;
 use crate::intersect::CLEAR;
 use crate::ray::ExactRay;
+use crate::vec3::Vec3 as Coordinates;
 use glam::{DVec3, Vec3};
 use std::cmp::Ordering;
 
@@ -85,17 +86,36 @@ impl SphereTree {
         } else if farthest <= FAR_REACH {
             trace_far::<Q>(self.tree(), &scaled.ray, bound)
         } else {
-            return self.test_all(scaled, bound, tally);
+            return self.test_all::<Q>(scaled, bound, tally);
         };
         tally.exact += hit.exact;
         let sphere = hit.sphere as usize;
         let id = *self.spheres.id.get(sphere)?;
-        Some(FoundHit { sphere, id, t: hit.t * scaled.unit })
+        Some(FoundHit { sphere, id, t: self.distance::<Q>(scaled, sphere, hit.t) })
+    }
+
+    /// Returns the distance of a hit in the user's units, rounded if that is asked for; `t` is in the tree's units.
+    #[inline(always)]
+    fn distance<Q: Query>(&self, scaled: &ScaledRay, sphere: usize, t: f64) -> f64 {
+        let ScaledRay { ray, unit } = scaled;
+        if !Q::ROUNDED {
+            return t * unit;
+        }
+        let origin = ray.origin.as_vec3();
+        let coarse = self.spheres.coarse
+            && origin.as_dvec3() == ray.origin
+            && Coordinates::from(origin).is_coarse();
+        intersect::nearest(ray, self.spheres.exact(sphere), t, coarse) * unit
     }
 
     /// Tests every sphere: for rays from so far away that nothing else can tell, but for those that pass all.
     #[inline(never)]
-    fn test_all(&self, scaled: &ScaledRay, bound: f64, tally: &mut Tally) -> Option<FoundHit> {
+    fn test_all<Q: Query>(
+        &self,
+        scaled: &ScaledRay,
+        bound: f64,
+        tally: &mut Tally,
+    ) -> Option<FoundHit> {
         let ExactRay { origin, direction, .. } = scaled.ray;
         // All spheres are in the cube from -1 to 1. The line's distance from its middle is off by less than 2^-48 of
         // the origin's.
@@ -109,8 +129,8 @@ impl SphereTree {
             let (center, radius) = self.spheres.exact(row);
             nearest.test(row, self.spheres.id[row], (center, radius), tally);
         }
-        let (row, id) = nearest.found?;
-        Some(FoundHit { sphere: row, id, t: nearest.t * scaled.unit })
+        let (sphere, id) = nearest.found?;
+        Some(FoundHit { sphere, id, t: self.distance::<Q>(scaled, sphere, nearest.t) })
     }
 
     /// Returns the nearest of a hit of the tree and of hits of strays, or any.
@@ -140,8 +160,14 @@ impl SphereTree {
             nearest.test(self.spheres.len() + i, id, (center, radius), tally);
         }
         let (sphere, id) = nearest.found?;
-        let is_stray = sphere >= self.spheres.len();
-        if is_stray { Some(FoundHit { sphere, id, t: nearest.t * scaled.unit }) } else { hit }
+        let Some(stray) = sphere.checked_sub(self.spheres.len()) else { return hit };
+        let (center, radius, _) = self.strays[stray];
+        let t = if Q::ROUNDED {
+            intersect::nearest(&scaled.ray, (center, radius), nearest.t, false)
+        } else {
+            nearest.t
+        };
+        Some(FoundHit { sphere, id, t: t * scaled.unit })
     }
 }
 

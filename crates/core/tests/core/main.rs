@@ -2,6 +2,8 @@
 
 #![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
 
+mod distances;
 mod queries;
+mod reference;
 mod traversals;
 mod trees;

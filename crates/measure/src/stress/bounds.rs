@@ -10,21 +10,24 @@ use super::report::RegimeReport;
 use spherule_render::query::{QueryError, SphereTree};
 
 /// Number of bounds of a ray.
-const COUNT: usize = 7;
+const COUNT: usize = 9;
 
 /// Relative offsets of bounds from the distance: 16 and a quarter of the unit in the last place of single
-/// precision.
-const OFFSETS: [f64; 2] = [1.0 / (1 << 19) as f64, 1.0 / (1 << 25) as f64];
+/// precision, and 32 of that of double precision.
+const OFFSETS: [f64; 3] =
+    [1.0 / (1 << 19) as f64, 1.0 / (1 << 25) as f64, 1.0 / (1_u64 << 47) as f64];
 
 /// Returns the bounds for a distance, which is known to one unit in the last place of double precision.
 fn bounds_around(t: f64) -> [f64; COUNT] {
-    let [far, near] = OFFSETS;
+    let [far, near, close] = OFFSETS;
     [
         t * (1.0 - far),
         t * (1.0 - near),
+        t * (1.0 - close),
         t.next_down(),
         t,
         t.next_up(),
+        t * (1.0 + close),
         t * (1.0 + near),
         t * (1.0 + far),
     ]
@@ -61,14 +64,15 @@ mod tests {
         let ray = Ray { origin: [-3.0, 0.0, 0.0], direction: [0.5, 0.0, 0.0] };
         let unit = [0.0, 0.0, 0.0, 1.0];
         let known = reference::nearer_than(unit, &ray, bounds_around).unwrap();
-        assert_eq!(known.map(|(_, nearer)| nearer), [false, false, false, false, true, true, true]);
-        assert!(known.is_sorted() && known[3].0 == 4.0);
+        let nearer = known.map(|(_, nearer)| nearer);
+        assert_eq!(nearer, [false, false, false, false, false, true, true, true, true]);
+        assert!(known.is_sorted() && known[4].0 == 4.0);
         let mut report = RegimeReport::new(&REGIMES[0]);
         count(&[unit], &[(ray, 0)], &mut report);
-        assert_eq!((report.bounds, report.form(Form::Spherule).wrong_bounds), (7, 0));
+        assert_eq!((report.bounds, report.form(Form::Spherule).wrong_bounds), (9, 0));
         // With another sphere in front, the given one is not the nearest, so answers are wrong.
         let nearer = [-2.0, 0.0, 0.0, 0.5];
         count(&[unit, nearer], &[(ray, 0)], &mut report);
-        assert_eq!((report.bounds, report.form(Form::Spherule).wrong_bounds), (14, 4));
+        assert_eq!((report.bounds, report.form(Form::Spherule).wrong_bounds), (18, 5));
     }
 }

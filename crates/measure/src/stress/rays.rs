@@ -1,7 +1,10 @@
 //! Random rays by a recipe.
 
-use super::scenes::{Aim, NORMALS, Origin, Recipe, above, axis, center_and_radius};
+use super::scenes::{
+    Aim, LEAST, NORMALS, Origin, Recipe, TANGENTS, above, axis, center_and_radius,
+};
 use glam::{DVec3, Vec3};
+use spherule_core::internals::elementary::power_of_two;
 use spherule_core::internals::random::{Random, direction_past};
 use spherule_render::query::RayColumns;
 
@@ -45,6 +48,7 @@ pub(super) fn ray(recipe: &Recipe, spheres: &[[f32; 4]], random: &mut Random) ->
         Aim::AxisTangent => axis_tangent(target, radius, random),
         // Exact in single precision.
         Aim::NearOrigin(decades) => perturbed(target, decades, random),
+        Aim::Ends => toward_least(&spheres[1..], random),
         aim => {
             let origin = start(recipe, (target, radius), spheres, random);
             // Rounded as in the result.
@@ -102,7 +106,7 @@ fn direction(
             direction_past(contact - origin, near * random.decades([-9.0, -2.0]), random)
         }
         Aim::Sphere | Aim::Contact => direction_past(toward, radius * within(random), random),
-        Aim::AxisTangent | Aim::NearOrigin(_) | Aim::Anywhere => random.direction(),
+        Aim::AxisTangent | Aim::NearOrigin(_) | Aim::Ends | Aim::Anywhere => random.direction(),
     }
 }
 
@@ -119,6 +123,25 @@ fn axis_tangent(center: DVec3, radius: f64, random: &mut Random) -> (DVec3, DVec
     };
     let direction = along * random.sign();
     (touch.as_dvec3() - direction * (1.0 + random.index(64) as f64 / 16.0), direction)
+}
+
+/// Returns a ray that is a tangent to one of the spheres, exactly or off by [`LEAST`], or that passes near its
+/// limb. Spheres are those of [`Arrangement::Ends`](super::scenes::Arrangement::Ends), the large one excluded.
+fn toward_least(spheres: &[[f32; 4]], random: &mut Random) -> (DVec3, DVec3) {
+    let (center, radius) = center_and_radius(spheres[random.index(spheres.len())]);
+    // A power of two and so many other digits that quotients and roots are rounded.
+    let digits = (1 + 2 * random.index(1 << 19)) as f64;
+    let length = digits * power_of_two(random.index(200) as i32 - 120);
+    let divides = |&(_, _, length): &(DVec3, DVec3, f64)| radius % (length * LEAST) == 0.0;
+    let tangent = TANGENTS.into_iter().find(divides).filter(|_| random.coin());
+    let Some((direction, normal, unit)) = tangent else {
+        let origin = center + (random.in_cube() * 400.0).round() * LEAST;
+        let aside = radius * (1.0 + random.sign() * random.decades([-9.0, 0.0]));
+        return (origin, direction_past(center - origin, aside, random) * length);
+    };
+    let step = axis(random) * (LEAST * random.index(2) as f64);
+    let back = direction * (LEAST * random.index(100) as f64);
+    (center + normal * (radius / unit) - back + step, direction * length)
 }
 
 /// Returns a ray through the origin of coordinates, perturbed slightly along axes where its direction has

@@ -65,7 +65,7 @@ const ABOVE: Origin = Origin::Above([-4.0, 1.0]);
 const AROUND: Origin = Origin::Away([0.1, 1.5]);
 
 /// All regimes, in display order.
-pub static REGIMES: [Regime; 34] = [
+pub static REGIMES: [Regime; 36] = [
     regime("near_unit", "radii 0.2 to 1, rays from 2 to 30 radii", NEAR),
     regime("inside", "rays that start inside a sphere", Recipe { origin: Origin::Inside, ..NEAR }),
     regime("far_1e3", "radius / distance 1e-3", far(3.0)),
@@ -146,7 +146,25 @@ pub static REGIMES: [Regime; 34] = [
     regime(
         "mixed",
         "radii and distances over 12 decades",
-        arranged(Arrangement::Decades, Origin::Somewhere([-6.0, 6.0]), Aim::SphereOrTangent),
+        arranged(
+            Arrangement::Decades([-6.0, 6.0]),
+            Origin::Somewhere([-6.0, 6.0]),
+            Aim::SphereOrTangent,
+        ),
+    ),
+    regime(
+        "mixed_all",
+        "radii and distances over 82 decades",
+        arranged(
+            Arrangement::Decades([-44.0, 38.0]),
+            Origin::Somewhere([-44.0, 38.0]),
+            Aim::SphereOrTangent,
+        ),
+    ),
+    regime(
+        "both_ends",
+        "a sphere of 1e38, and rays near and tangent to ones of 1e-44",
+        arranged(Arrangement::Ends, Origin::Zero, Aim::Ends),
     ),
 ];
 

@@ -31,7 +31,7 @@ pub struct RegimeReport {
     pub close: u64,
     /// Number of decisions for which Spherule needed exact arithmetic.
     pub exact: u64,
-    /// Number of any-hit queries with a maximum distance near that of the hit: seven for one in 16 rays
+    /// Number of any-hit queries with a maximum distance near that of the hit: nine for one in 16 rays
     /// that hit.
     pub bounds: u64,
     /// Number of further rays that start on a surface and point outward.

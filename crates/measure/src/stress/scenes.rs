@@ -15,6 +15,9 @@ const GAP: f64 = 4e-5;
 /// Extent of the region around the top of a large sphere in which spheres stand on it.
 const FIELD: f64 = 10.0;
 
+/// The least positive number of single precision.
+pub(super) const LEAST: f64 = f32::from_bits(1) as f64;
+
 /// Parameters of random scenes and rays.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Recipe {
@@ -46,8 +49,10 @@ pub(super) enum Arrangement {
     Shells,
     /// Some of them equal.
     Twins,
-    /// Radii and positions over 12 decades.
-    Decades,
+    /// Radii and positions over a range of decades.
+    Decades([f64; 2]),
+    /// A sphere of 1e38, and spheres whose centers and radii are small multiples of [`LEAST`].
+    Ends,
 }
 
 /// Distribution of ray origins.
@@ -88,6 +93,8 @@ pub(super) enum Aim {
     Anywhere,
     /// Toward the contact of two spheres, or toward a sphere.
     Contact,
+    /// Tangent to a sphere of [`Arrangement::Ends`], exactly or off by [`LEAST`], or toward it.
+    Ends,
 }
 
 /// Returns a random scene by a recipe, as rows of x, y, z and radius.
@@ -101,7 +108,8 @@ pub(super) fn scene(recipe: &Recipe, random: &mut Random) -> Vec<[f32; 4]> {
         Arrangement::Chain => chain(count, random),
         Arrangement::Shells => shells(count, random),
         Arrangement::Twins => twins(count, random),
-        Arrangement::Decades => (0..count).map(|_| of_any_size(random)).collect(),
+        Arrangement::Decades(range) => (0..count).map(|_| of_any_size(range, random)).collect(),
+        Arrangement::Ends => ends(count.max(2), random),
     };
     let offset = random.direction() * recipe.offset;
     let rounded = |(center, radius): (DVec3, f64)| {
@@ -178,8 +186,26 @@ fn twins(count: usize, random: &mut Random) -> Vec<(DVec3, f64)> {
     spheres
 }
 
-fn of_any_size(random: &mut Random) -> (DVec3, f64) {
-    (random.direction() * random.decades([-6.0, 6.0]), random.decades([-6.0, 6.0]))
+fn of_any_size(range: [f64; 2], random: &mut Random) -> (DVec3, f64) {
+    (random.direction() * random.decades(range), random.decades(range))
+}
+
+/// Directions, normals to them of the same length, and that length. All are integers, so that tangents to spheres
+/// whose radius is a multiple of the length are exact.
+pub(super) const TANGENTS: [(DVec3, DVec3, f64); 3] = [
+    (DVec3::new(2.0, 6.0, -3.0), DVec3::new(6.0, -3.0, -2.0), 7.0),
+    (DVec3::new(3.0, 4.0, 0.0), DVec3::new(-4.0, 3.0, 0.0), 5.0),
+    (DVec3::Z, DVec3::X, 1.0),
+];
+
+fn ends(count: usize, random: &mut Random) -> Vec<(DVec3, f64)> {
+    let mut spheres = vec![(random.direction() * 1e38, 1e38 * random.between([0.5, 2.0]))];
+    while spheres.len() < count {
+        let (_, _, length) = TANGENTS[random.index(TANGENTS.len())];
+        let radius = length * (1.0 + random.index(3) as f64);
+        spheres.push(((random.in_cube() * 300.0).round() * LEAST, radius * LEAST));
+    }
+    spheres
 }
 
 pub(super) fn axis(random: &mut Random) -> DVec3 {
