@@ -86,7 +86,8 @@ impl SphereTree {
         Some(ScaledRay { ray, unit: shrink / self.scale })
     }
 
-    /// Tests every sphere, and returns the hit in the tree's units: for rays from so far away that the filter cannot tell anything.
+    /// Tests every sphere, for rays from so far away that the filter cannot tell anything. The hit is in the
+    /// tree's units.
     fn test_all(&self, scaled: &ScaledRay, bound: f64) -> Option<FoundHit> {
         let mut best: Option<FoundHit> = None;
         let mut nearest = Distance::Number(bound);
