@@ -30,8 +30,9 @@
 //! of `P` its part `u` on a grid: the multiples of `q`, a power of two between `2^-25 r` and `2^-24 r`, or of
 //! `2 q`. Squares of `u` and `r` are multiples of `q^2`, and so are the sums in
 //! `(u_x^2 - r^2) + u_y^2 + u_z^2`. In this order no sum is larger than `r^2` or the last one. Where
-//! `|P| < 1.42 r`, as is required below, that is less than `2^53 q^2`: so `u.u - r^2` is exact. (Where it
-//! is not, all of `f` is off by too little to meet the requirement.) The rest `w = P - u` is at most `2^-24 r` in each coordinate, and `f = (u.u - r^2) + w.(2 u + w)`.
+//! `|P| < 1.42 r`, as is required below, that is less than `2^53 q^2`: so `u.u - r^2` is exact. (Where it is
+//! not, `f` is off by too little to meet the requirement nevertheless.) The rest `w = P - u` is at most
+//! `2^-24 r` in each coordinate, and `f = (u.u - r^2) + w.(2 u + w)`.
 //!
 //! With `E` = 2^-53:
 //!
@@ -115,7 +116,7 @@ pub fn nearest_closely<D: Doubles>(pairs: &Pairs<D>, t: D) -> (D::Mask, D) {
 }
 
 /// Rounds the distance at which a ray hits a sphere, which it does, to the nearest double; `t` is within 2^-18
-/// of it. `coarse` says that all coordinates are as [`nearest_quickly`] needs them.
+/// of it. `coarse` says that origin and center are, as [`nearest_quickly`] needs them.
 #[inline(always)]
 pub fn nearest(ray: &ExactRay, (center, radius): (DVec3, f64), t: f64, coarse: bool) -> f64 {
     let pairs = Pairs::one(ray, center, radius);

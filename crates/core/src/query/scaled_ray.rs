@@ -4,9 +4,9 @@
 use super::batch::FoundHit;
 use super::{SphereTree, Tally};
 use crate::bvh::{Query, trace_far, trace_one};
+use crate::elementary;
 use crate::exact::{self, Distance};
-use crate::intersect;
-use crate::intersect::CLEAR;
+use crate::intersect::{self, CLEAR};
 use crate::ray::ExactRay;
 use crate::vec3::Vec3 as Coordinates;
 use glam::{DVec3, Vec3};
@@ -38,15 +38,12 @@ impl ScaledRay {
         (origin, direction): ([f32; 3], [f32; 3]),
         [scale, unscale]: [f64; 2],
     ) -> Option<Self> {
-        /// The sum of the exponents, as stored, of a power of two and of its reciprocal.
-        const EXPONENTS: u64 = 2 * 1023;
         let (origin, direction) = (Vec3::from(origin), Vec3::from(direction));
         let longest = direction.abs().max_element();
         if !(origin.is_finite() && direction.is_finite() && longest > 0.0) {
             return None;
         }
-        // In double precision no number of single precision is subnormal.
-        let shrink = f64::from_bits((EXPONENTS - (f64::from(longest).to_bits() >> 52)) << 52);
+        let shrink = elementary::power_of_two(-elementary::floor_log2(f64::from(longest)));
         let (origin, direction) = (origin.as_dvec3() * scale, direction.as_dvec3() * shrink);
         let ray = ExactRay { origin, direction, origin_error: 0.0 };
         Some(Self { ray, unit: shrink * unscale })
