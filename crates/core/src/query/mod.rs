@@ -13,13 +13,18 @@ mod scaled_ray;
 pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 
 use crate::bvh::Bvh;
-use crate::bvh::builders::{Builder, build};
+use crate::bvh::builders::{Builder, Item, Precise, build_items, collected};
 use crate::bvh::{Any, Closest, Tree};
 use crate::elementary;
 use crate::spheres::Spheres;
 use columns::same_length;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
+use rayon::prelude::*;
 use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// Number of spheres that are worth a task.
+const TASK: usize = 1 << 12;
 
 /// Spheres, ready for exact queries.
 #[derive(Clone, Debug)]
@@ -74,44 +79,61 @@ impl SphereTree {
         Self::build(rows.len(), |i| rows[i])
     }
 
-    fn build(count: usize, row: impl Fn(usize) -> [f32; 4]) -> Result<Self, QueryError> {
+    fn build(count: usize, row: impl Fn(usize) -> [f32; 4] + Sync) -> Result<Self, QueryError> {
         if count > Spheres::MAX {
             return Err(QueryError::TooMany(count));
         }
-        let valid = |i: usize| {
-            let [x, y, z, radius] = row(i);
+        let is_valid = |[x, y, z, radius]: [f32; 4]| {
             x.is_finite()
                 && y.is_finite()
                 && z.is_finite()
                 && radius > 0.0
                 && radius < f32::INFINITY
         };
-        let wide = |i: usize| row(i).map(f64::from);
-        let largest = (0..count).filter(|&i| valid(i)).fold(0.0, |largest: f64, i| {
-            let [x, y, z, radius] = wide(i);
-            largest.max(DVec3::new(x, y, z).abs().max_element() + radius)
-        });
+        // The largest coordinate, and how many are valid.
+        let census = |chunk: usize| {
+            let rows = (chunk * TASK..count.min((chunk + 1) * TASK)).map(&row);
+            rows.filter(|&row| is_valid(row)).fold(
+                (0.0, 0),
+                |(largest, valid), [x, y, z, radius]| {
+                    let reach = x.abs().max(y.abs()).max(z.abs());
+                    (f64::max(largest, f64::from(reach) + f64::from(radius)), valid + 1)
+                },
+            )
+        };
+        let sum = |a: (f64, usize), b: (f64, usize)| (a.0.max(b.0), a.1 + b.1);
+        let chunks = (0..count.div_ceil(TASK)).into_par_iter();
+        let (largest, valid) = chunks.map(census).reduce(|| (0.0, 0), sum);
         let scale = if largest > 0.0 {
             elementary::power_of_two(-elementary::ceil_log2(largest))
         } else {
             1.0
         };
-        let scaled = |i: usize| wide(i).map(|value| value * scale);
-        let mut spheres = Spheres::with_capacity(count);
-        let mut rounded = false;
-        for i in (0..count).filter(|&i| valid(i)) {
-            let single = scaled(i).map(|value| value as f32);
-            rounded |= single.map(f64::from) != scaled(i);
-            let [x, y, z, radius] = single;
-            spheres.push(Vec3::new(x, y, z), radius, i as u32);
-        }
-        if rounded {
+        let scaled = |i: usize| row(i).map(|value| f64::from(value) * scale);
+        let is_rounded = AtomicBool::new(false);
+        let item = |i: usize| {
+            let scaled = scaled(i);
+            let sphere = scaled.map(|value| value as f32);
+            if sphere.map(f64::from) != scaled {
+                is_rounded.store(true, Relaxed);
+            }
+            Item { sphere, id: i as u32 }
+        };
+        let items = if valid == count {
+            collected(count, item)
+        } else {
+            let mut items = Vec::with_capacity(valid);
+            items.extend((0..count).filter(|&i| is_valid(row(i))).map(item));
+            items
+        };
+        let mut precise = Precise::default();
+        if is_rounded.into_inner() {
             // Scales so far apart that the smallest numbers leave single precision.
-            spheres.precise = spheres.id.iter().map(|&i| split(scaled(i as usize))).collect();
+            precise.id = items.iter().map(|item| item.id).collect();
+            precise.sphere = precise.id.iter().map(|&i| split(scaled(i as usize))).collect();
         }
-        let invalid = count - spheres.len();
-        let bvh = build(&mut spheres, Builder::default());
-        Ok(Self { spheres, bvh, scale, invalid })
+        let (spheres, bvh) = build_items(items, &precise, Builder::default());
+        Ok(Self { spheres, bvh, scale, invalid: count - valid })
     }
 
     /// Number of spheres that can be hit.

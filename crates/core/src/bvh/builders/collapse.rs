@@ -5,7 +5,7 @@
 //! shallow.
 
 use super::branch::{self, Branch, Top};
-use super::item::{Item, bounds};
+use super::item::{Extent, Item};
 use super::{PARALLEL, freeing};
 use crate::bvh::{Bounds, Child, DEPTH, Node, WIDTH, child_order};
 use crate::spheres::{LEAF, Spheres};
@@ -132,7 +132,8 @@ fn over(parts: &[Part], spheres: &Spheres, begin: impl Fn(usize) -> usize) -> No
 fn box_of(part: Part, spheres: &Spheres) -> Bounds {
     let leaf = || {
         let first = part.block * LEAF;
-        bounds((first..spheres.len().min(first + LEAF)).map(|row| Item::of(spheres, row)))
+        let rows = first..spheres.len().min(first + LEAF);
+        Extent::around(rows.map(|row| Item::of(spheres, row))).bounds()
     };
     part.branches.first().map_or_else(leaf, |root| root.top.bounds)
 }

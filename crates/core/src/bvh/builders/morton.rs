@@ -6,6 +6,7 @@
 
 use super::item::{Extent, Item, along, spread};
 use super::median::Median;
+use super::segment::Segment;
 use super::{Cut, snapped};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -55,15 +56,15 @@ impl Morton {
 }
 
 impl Cut for Morton {
-    fn cut(&self, items: &mut [Item], first: usize) -> usize {
-        let codes = &self.codes[first..first + items.len()];
+    fn cut(&self, segment: &mut Segment, first: usize) -> usize {
+        let codes = &self.codes[first..first + segment.len()];
         let differ = codes[0] ^ codes[codes.len() - 1];
         if differ == 0 {
-            return self.median.cut(items, first);
+            return self.median.cut(segment, first);
         }
         let bit = 1 << differ.ilog2();
         let place = codes.partition_point(|code| code & bit == 0);
-        snapped(place, items.len())
+        snapped(place, segment.len())
     }
 
     fn median(&self) -> &Median {
@@ -81,8 +82,8 @@ struct Cells {
 impl Cells {
     fn over(items: &[Item]) -> Self {
         let all = items.par_chunks(CHUNK).map(spread).reduce(|| Extent::EMPTY, |a, b| a.union(&b));
-        let width = (all.high - all.low).truncate().max_element();
-        Self { low: all.low.truncate(), scale: ((1 << BITS) as f32 / width).min(f32::MAX) }
+        let width = all.size().truncate().max_element();
+        Self { low: all.low().truncate(), scale: ((1 << BITS) as f32 / width).min(f32::MAX) }
     }
 
     /// The place on the curve of a sphere's center.

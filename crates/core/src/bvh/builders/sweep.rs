@@ -6,6 +6,7 @@
 use super::CROWD;
 use super::branch::{Branch, Top};
 use super::item::{AXES, Extent, Item, along, spread};
+use super::segment::Segment;
 use super::surface_area::axes;
 use crate::bvh::WIDTH;
 use crate::spheres::LEAF;
@@ -22,6 +23,8 @@ const NODE: f32 = 4.0;
 /// Spheres in their order on each axis.
 struct Sweep {
     items: Vec<Item>,
+    /// Their boxes.
+    extent: Vec<Extent>,
     /// By axis: places in `items`, which is in the order on the first one.
     order: [[u8; SWEEP]; AXES],
     axes: usize,
@@ -32,14 +35,14 @@ struct Sweep {
 }
 
 /// Makes the branches over at most [`SWEEP`] items; tells if they are a crowd about one center.
-pub(super) fn grow(items: &mut [Item], branches: &mut [Branch], crowded: &AtomicBool) -> Top {
-    let spread = spread(items);
-    if items.len() >= CROWD && (spread.high - spread.low).truncate().max_element() <= 0.0 {
+pub(super) fn grow(segment: Segment, branches: &mut [Branch], crowded: &AtomicBool) -> Top {
+    let spread = spread(segment.items);
+    if segment.len() >= CROWD && spread.size().truncate().max_element() <= 0.0 {
         crowded.store(true, Relaxed);
     }
-    let mut sweep = Sweep::over(items, axes(&spread));
-    let top = sweep.grow(0, items.len(), branches);
-    for (item, &from) in items.iter_mut().zip(&sweep.order[0]) {
+    let mut sweep = Sweep::over(segment.items, axes(&spread));
+    let top = sweep.grow(0, segment.len(), branches);
+    for (item, &from) in segment.destination().0.iter_mut().zip(&sweep.order[0]) {
         *item = sweep.items[from as usize];
     }
     top
@@ -47,8 +50,10 @@ pub(super) fn grow(items: &mut [Item], branches: &mut [Branch], crowded: &Atomic
 
 impl Sweep {
     fn over(items: &[Item], axes: usize) -> Self {
+        let items = sorted(items);
         let mut sweep = Self {
-            items: sorted(items),
+            extent: items.iter().map(Extent::of).collect(),
+            items,
             order: [[0; SWEEP]; AXES],
             axes,
             behind: [false; SWEEP],
@@ -69,7 +74,7 @@ impl Sweep {
 
     fn grow(&mut self, from: usize, to: usize, branches: &mut [Branch]) -> Top {
         let Some((root, rest)) = branches.split_first_mut() else {
-            return Top::leaf(self.order[0][from..to].iter().map(|&i| self.items[i as usize]));
+            return Top::leaf(&self.extent_of(&self.order[0][from..to]));
         };
         let (axis, first) = self.best(from, to);
         let border = from + first * LEAF;
@@ -80,6 +85,13 @@ impl Sweep {
         root.top
     }
 
+    /// The box of some spheres.
+    #[inline(always)]
+    fn extent_of(&self, places: &[u8]) -> Extent {
+        let extents = places.iter().map(|&i| self.extent[i as usize]);
+        extents.fold(Extent::EMPTY, |all, extent| all.union(&extent))
+    }
+
     /// The axis and the number of leaves of the cheapest first part.
     fn best(&self, from: usize, to: usize) -> (usize, usize) {
         let leaves = (to - from).div_ceil(LEAF);
@@ -88,8 +100,7 @@ impl Sweep {
         for axis in 0..self.axes {
             let mut leaf = [Extent::EMPTY; SWEEP / LEAF];
             for (extent, of_leaf) in leaf.iter_mut().zip(self.order[axis][from..to].chunks(LEAF)) {
-                let extents = of_leaf.iter().map(|&i| Extent::of(&self.items[i as usize]));
-                *extent = extents.fold(Extent::EMPTY, |all, extent| all.union(&extent));
+                *extent = self.extent_of(of_leaf);
             }
             let mut above = [Extent::EMPTY; SWEEP / LEAF];
             let mut all = Extent::EMPTY;
