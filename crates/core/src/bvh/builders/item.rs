@@ -4,7 +4,7 @@ use crate::bvh::Bounds;
 use crate::lanes::{F32x8, Lanes};
 use crate::slabs::MARGIN;
 use crate::spheres::Spheres;
-use glam::{Vec3, Vec4};
+use glam::{Vec3, Vec3A, Vec3Swizzles, Vec4};
 use std::cmp::Ordering;
 
 /// The axes on which spheres may be parted: where they are, and as the last one how large they are.
@@ -86,8 +86,8 @@ impl Extent {
     /// Half of the surface, with lengths multiplied by `scale`.
     #[inline(always)]
     pub(super) fn half_area(&self, scale: f32) -> f32 {
-        let size = self.size().truncate() * scale;
-        size.x * size.y + size.y * size.z + size.z * size.x
+        let size = Vec3A::from_vec4(self.size()) * scale;
+        size.dot(size.yzx())
     }
 
     /// One over the longest side, so that areas neither vanish nor overflow.
@@ -99,10 +99,21 @@ impl Extent {
     /// the true bound, the next number cannot.
     #[inline(always)]
     pub(super) fn bounds(&self) -> Bounds {
-        let sides: [f32; 8] = (self.0 + F32x8::splat(MARGIN)).to_array();
-        let [x0, y0, z0, _, x1, y1, z1, _] = sides.map(f32::next_up);
+        let mut sides: [f32; 8] = (self.0 + F32x8::splat(MARGIN)).to_array();
+        for side in &mut sides {
+            *side = next_up(*side);
+        }
+        let [x0, y0, z0, _, x1, y1, z1, _] = sides;
         Bounds { low: Vec3::new(-x0, -y0, -z0), high: Vec3::new(x1, y1, z1) }
     }
+}
+
+/// The next number, as [`f32::next_up`] but for NaN, without branches.
+#[inline(always)]
+fn next_up(x: f32) -> f32 {
+    // Adding 0 makes -0 the same as 0.
+    let bits = (x.min(f32::MAX) + 0.0).to_bits();
+    f32::from_bits(bits.wrapping_add_signed(bits as i32 >> 31 | 1))
 }
 
 /// The extent of centers and radii.
@@ -113,4 +124,17 @@ pub(super) fn spread(items: &[Item]) -> Extent {
         (low, high) = (low.min(place), high.max(place));
     }
     Extent(bytemuck::cast([-low, high]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_number_is_that_of_the_standard_library() {
+        let positive = [0.0, 1e-45, 1.1e-38, 0.75, 1.0, 3e38, f32::MAX, f32::INFINITY];
+        for x in positive.into_iter().flat_map(|x| [x, -x]) {
+            assert_eq!(next_up(x).to_bits(), x.next_up().to_bits(), "{x}");
+        }
+    }
 }

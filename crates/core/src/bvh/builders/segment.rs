@@ -36,17 +36,16 @@ impl<'a> Segment<'a> {
         (part(items.0, spare.0), part(items.1, spare.1))
     }
 
-    /// The place where the items are to be in the end; and where they are, if that is elsewhere.
-    pub(super) fn destination(self) -> (&'a mut [Item], Option<&'a mut [Item]>) {
-        if self.moved { (self.spare, Some(self.items)) } else { (self.items, None) }
+    /// The place where the items are to be in the end.
+    pub(super) fn destination(self) -> &'a mut [Item] {
+        if self.moved { self.spare } else { self.items }
     }
 
     /// Puts the items where they are to be in the end.
     pub(super) fn settle(self) -> &'a mut [Item] {
-        let (to, from) = self.destination();
-        if let Some(from) = from {
-            to.copy_from_slice(from);
+        if self.moved {
+            self.spare.copy_from_slice(self.items);
         }
-        to
+        self.destination()
     }
 }
