@@ -102,6 +102,7 @@ fn first_greatest(row: F32x8) -> (usize, f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::numbered;
     use glam::Vec3;
 
     #[test]
@@ -114,6 +115,35 @@ mod tests {
                 assert!(slots.iter().all(|slot| hit >> slot & 1 == 1), "{octant} {hit:b}");
                 assert!(slots.windows(2).all(|pair| pair[0] ^ octant > pair[1] ^ octant));
             }
+        }
+    }
+
+    /// The pair that agrees best of all that are left, and so on.
+    #[test]
+    fn slots_are_those_of_a_search_over_all_pairs() {
+        for (seed, count) in (0..1000).zip((1..=WIDTH).cycle()) {
+            let number = |i: usize, k| numbered(seed * 64 + i as u64, k);
+            let corner = |i, k| Vec3::new(number(i, k), number(i, k + 1), number(i, k + 2));
+            let cube = |i| Bounds { low: corner(i, 0) - 1.0, high: corner(i, 3) };
+            let boxes: Vec<_> = (0..count).map(cube).collect();
+            let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
+            let mut expected = [WIDTH; WIDTH];
+            for _ in 0..count {
+                let mut best = (f32::NEG_INFINITY, 0, 0);
+                for (child, slot) in (0..count).flat_map(|i| (0..WIDTH).map(move |slot| (i, slot)))
+                {
+                    let bounds = &boxes[child];
+                    let from_middle = (bounds.low - all.low) + (bounds.high - all.high);
+                    let toward = |a: usize| if slot >> a & 1 == 1 { 1.0 } else { -1.0 };
+                    let agreement = (0..3).map(|a| from_middle[a] * toward(a)).sum::<f32>();
+                    let is_free = expected[child] == WIDTH && !expected.contains(&slot);
+                    if is_free && agreement > best.0 {
+                        best = (agreement, child, slot);
+                    }
+                }
+                expected[best.1] = best.2;
+            }
+            assert_eq!(slots(&boxes), expected, "{seed}");
         }
     }
 

@@ -198,8 +198,8 @@ impl Binary {
             Builder::Median => Self::with_copy(items, &Median::default()),
             Builder::SurfaceArea => Self::with_copy(items, &SurfaceArea::default()),
             Builder::Morton => {
-                let (morton, mut spare) = Morton::sort(items);
-                Self::cut(items, &mut spare, &morton)
+                let (morton, memory) = Morton::sort(items);
+                freeing(memory, || Self::cut(items, &mut [], &morton))
             }
         }
     }

@@ -96,6 +96,13 @@ impl Grid {
         counts: &BinCounts,
         place: usize,
     ) {
+        if segment.spare.is_empty() {
+            let mut spare = segment.items.to_vec();
+            let mut all = Segment::new(segment.items, &mut spare);
+            self.part(&mut all, axis, counts, place);
+            all.settle();
+            return;
+        }
         let (mut bin, mut below) = (0, 0);
         while bin < BINS - 1 && below + counts.all[bin] as usize <= place {
             below += counts.all[bin] as usize;
@@ -189,12 +196,15 @@ mod tests {
                 let (mut parted, mut spare) = (items.clone(), items.clone());
                 let grid = Grid::over(&parted);
                 let counts = grid.count(&parted, axis);
-                let mut segment = Segment::new(&mut parted, &mut spare);
-                grid.part(&mut segment, axis, &counts, place);
-                segment.settle();
-                parted[..place].sort_by(|a, b| along(axis, a, b));
-                parted[place..].sort_by(|a, b| along(axis, a, b));
-                assert!(parted == sorted, "{name}, {count}, axis {axis} at {place}");
+                for spare in [&mut *spare, &mut []] {
+                    parted.copy_from_slice(&items);
+                    let mut segment = Segment::new(&mut parted, spare);
+                    grid.part(&mut segment, axis, &counts, place);
+                    segment.settle();
+                    parted[..place].sort_by(|a, b| along(axis, a, b));
+                    parted[place..].sort_by(|a, b| along(axis, a, b));
+                    assert!(parted == sorted, "{name}, {count}, axis {axis} at {place}");
+                }
             }
         }
     }

@@ -5,7 +5,7 @@
 
 use super::item::Item;
 
-/// The spheres of a part, and as much memory beside them.
+/// The spheres of a part, and as much memory beside them, or none where they are rarely parted.
 pub(super) struct Segment<'a> {
     pub(super) items: &'a mut [Item],
     pub(super) spare: &'a mut [Item],
@@ -14,7 +14,7 @@ pub(super) struct Segment<'a> {
 }
 
 impl<'a> Segment<'a> {
-    /// Of items that are to stay where they are; `spare` is as long.
+    /// Of items that are to stay where they are; `spare` is as long, or empty.
     pub(super) fn new(items: &'a mut [Item], spare: &'a mut [Item]) -> Self {
         Self { items, spare, moved: false }
     }
@@ -31,7 +31,8 @@ impl<'a> Segment<'a> {
 
     pub(super) fn split_at(self, place: usize) -> (Self, Self) {
         let Self { items, spare, moved } = self;
-        let (items, spare) = (items.split_at_mut(place), spare.split_at_mut(place));
+        let of_spare = place.min(spare.len());
+        let (items, spare) = (items.split_at_mut(place), spare.split_at_mut(of_spare));
         let part = |items, spare| Self { items, spare, moved };
         (part(items.0, spare.0), part(items.1, spare.1))
     }

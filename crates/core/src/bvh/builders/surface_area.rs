@@ -200,3 +200,22 @@ fn aligned(place: usize, items: usize) -> usize {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::builders::item::spread;
+
+    #[test]
+    fn cuts_are_looked_for_on_wide_axes() {
+        let axes = |[x, y, z, radius]: [f32; AXES]| {
+            let corners = [[0.0; AXES], [x, y, z, radius]].map(|sphere| Item { sphere, id: 0 });
+            Axes::wide(&spread(&corners)).to_vec()
+        };
+        assert_eq!(axes([1.0, 1.0, 1.0, 0.1]), [0, 1, 2]);
+        assert_eq!(axes([1.0, 0.5, 0.7, 0.1]), [0, 2]);
+        assert_eq!(axes([0.5, 0.0, 2.0, 0.2]), [2]);
+        assert_eq!(axes([0.5, 0.0, 2.0, 0.3]), [2, 3]);
+        assert_eq!(axes([0.0; AXES]), [0, 1, 2]);
+    }
+}

@@ -246,3 +246,40 @@ fn ordered(x: f32) -> u32 {
     let bits = x.to_bits();
     bits ^ (((bits as i32 >> 31) as u32) | 1 << 31)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::numbered;
+
+    #[test]
+    fn keys_are_sorted() {
+        let values: [fn(f32) -> f32; 6] = [
+            |u| u,
+            |u| 2.0 * u - 1.0,
+            |u| (-80.0 * u).exp(),
+            |u| (4.0 * u).floor(),
+            |_| -0.0,
+            |u| if u < 0.01 { 1e30 } else { u },
+        ];
+        for (value, count) in values.into_iter().flat_map(|v| [9, 100, SWEEP].map(|n| (v, n))) {
+            let number = |i, axis| value(numbered(i, axis));
+            let sphere = |i| std::array::from_fn(|axis| number(i, axis as u64));
+            let items: Vec<_> =
+                (0..count as u32).map(|id| Item { sphere: sphere(id.into()), id }).collect();
+            let spread = spread(&items);
+            for axis in 0..AXES {
+                let mut by_library: Vec<_> = (0..count).collect();
+                by_library
+                    .sort_by(|&a, &b| items[a].sphere[axis].total_cmp(&items[b].sphere[axis]));
+                let mut keys = [0; SWEEP];
+                let keys = sorted_keys(axis, &items, &spread, &mut keys);
+                let places = keys.iter().map(|&key| key as u32 as usize);
+                assert!(places.eq(by_library), "{count}, axis {axis}");
+            }
+            let mut by_library = items.clone();
+            by_library.sort_by(|a, b| along(0, a, b));
+            assert_eq!(sorted(&items, &spread), by_library);
+        }
+    }
+}
