@@ -7,7 +7,7 @@
 use super::item::{Extent, Item, along, spread};
 use super::median::Median;
 use super::segment::Segment;
-use super::{Cut, PARALLEL, collected, snapped};
+use super::{Cut, collected, snapped};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -41,7 +41,8 @@ impl Morton {
     pub(super) fn sort(items: &mut [Item]) -> (Self, Vec<Item>) {
         let cells = Cells::over(items);
         let mut codes = collected(items.len(), |_| 0);
-        if items.len() < PARALLEL {
+        // One stretch, whose keys are compared.
+        if items.len() < BY_DIGITS.start {
             let spare = items.to_vec();
             cells.sort(&spare, items, &mut codes);
             return (Self { codes, median: Median::default() }, spare);
@@ -194,7 +195,9 @@ mod tests {
     #[test]
     fn spheres_are_sorted_by_morton_code() {
         // All over the curve, most of them on one stretch, all at one place.
-        let scenes = [1, 9, 200].into_iter().flat_map(|power| [(power, 70_000), (power, 900)]);
+        let scenes = [1, 9, 200]
+            .into_iter()
+            .flat_map(|power| [900, 3000, 70_000].map(|count| (power, count)));
         for (power, count) in scenes {
             let number = |i, axis| numbered(i, axis).powi(power);
             let sphere = |i| std::array::from_fn(|axis| number(i, axis as u64));

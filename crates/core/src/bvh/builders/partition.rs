@@ -32,6 +32,9 @@ pub(super) struct Grid {
     scale: Vec4,
 }
 
+/// With fewer spheres comparing them is faster.
+const FEW: usize = 256;
+
 /// Adding this to a number up to [`BINS`] moves its integer part to [`BIN_SHIFT`] in its bits; rounding to the
 /// 2048th part does not matter. (Conversions to integers take care of what does not occur here.)
 const BIN_OFFSET: f32 = (1 << (f32::MANTISSA_DIGITS - 1 - BIN_SHIFT)) as f32;
@@ -142,7 +145,7 @@ impl Grid {
 
 /// Parts the spheres of one bin: with all threads and bins of its own if they are many.
 fn part_some(mut segment: Segment, axis: usize, place: usize) {
-    if segment.len() > CHUNK {
+    if segment.len() > FEW {
         let grid = Grid::over(segment.items);
         let counts = grid.count(segment.items, axis);
         if counts.all.iter().all(|&count| (count as usize) < segment.len()) {
