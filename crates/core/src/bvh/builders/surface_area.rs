@@ -26,8 +26,9 @@ use std::ops::Deref;
 const LARGE: f32 = 1.0 / 8.0;
 
 /// Cuts are looked for on axes on which the centers are spread at least this part of how widely they are on the widest:
-/// those on others are rarely better.
-const WIDE: f32 = 0.6;
+/// those on others are rarely better (measured: rays visit up to 0.4 % less or more. With 0.6 builds take 3 % less time,
+/// and rays visit up to 1.7 % more).
+const WIDE: f32 = 0.4;
 
 /// The surface-area heuristic.
 #[derive(Default)]
@@ -213,7 +214,7 @@ mod tests {
             Axes::wide(&spread(&corners)).to_vec()
         };
         assert_eq!(axes([1.0, 1.0, 1.0, 0.1]), [0, 1, 2]);
-        assert_eq!(axes([1.0, 0.5, 0.7, 0.1]), [0, 2]);
+        assert_eq!(axes([1.0, 0.3, 0.5, 0.1]), [0, 2]);
         assert_eq!(axes([0.5, 0.0, 2.0, 0.2]), [2]);
         assert_eq!(axes([0.5, 0.0, 2.0, 0.3]), [2, 3]);
         assert_eq!(axes([0.0; AXES]), [0, 1, 2]);
