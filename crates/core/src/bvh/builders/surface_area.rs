@@ -113,6 +113,7 @@ impl Deref for Axes {
 }
 
 /// Extents and counts of the spheres in the bins of a grid, on some axes.
+#[derive(Clone, Copy)]
 struct Histogram<const N: usize> {
     extent: [[Extent; BINS]; N],
     count: [Counts; N],
@@ -133,17 +134,30 @@ impl<const N: usize> Histogram<N> {
     }
 
     fn of_few(items: &[Item], grid: &Grid, axes: [usize; N]) -> Self {
-        let mut histogram = Self::EMPTY;
-        for item in items {
-            let (bins, extent) = (grid.bins(item), Extent::of(item));
-            for (i, axis) in axes.into_iter().enumerate() {
-                let bin = bins[axis];
-                let of_bin = &mut histogram.extent[i][bin];
-                *of_bin = of_bin.union(&extent);
-                histogram.count[i][bin] += 1;
+        // Neighbors are often in one bin: with a histogram of its own, none waits for what another has written.
+        let mut histograms = [Self::EMPTY; 4];
+        let (rows, rest) = items.as_chunks::<4>();
+        for row in rows {
+            for (histogram, item) in histograms.iter_mut().zip(row) {
+                histogram.add(item, grid, axes);
             }
         }
-        histogram
+        let [mut all, others @ ..] = histograms;
+        for item in rest {
+            all.add(item, grid, axes);
+        }
+        others.iter().fold(all, Self::sum)
+    }
+
+    #[inline(always)]
+    fn add(&mut self, item: &Item, grid: &Grid, axes: [usize; N]) {
+        let (bins, extent) = (grid.bins(item), Extent::of(item));
+        for (i, axis) in axes.into_iter().enumerate() {
+            let bin = bins[axis];
+            let of_bin = &mut self.extent[i][bin];
+            *of_bin = of_bin.union(&extent);
+            self.count[i][bin] += 1;
+        }
     }
 
     fn sum(mut self, other: &Self) -> Self {
