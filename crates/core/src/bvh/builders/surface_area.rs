@@ -2,10 +2,10 @@
 //!
 //! A random line that meets a box meets one inside it with the probability that is the ratio of their
 //! surfaces (`MacDonald` & Booth, "Heuristics for Ray Tracing Using Space Subdivision", The Visual
-//! Computer 1990). Places to cut are the borders of a few intervals on each axis (Wald, "On Fast
-//! Construction of SAH-based Bounding Volume Hierarchies", RT 2007), moved to the next multiple of a
-//! full subtree or at least of a leaf; where spheres are few, every multiple of a leaf is tried
-//! (`sweep`).
+//! Computer 1990). Places to cut are the borders of a few intervals (Wald, "On Fast Construction of
+//! SAH-based Bounding Volume Hierarchies", RT 2007) on each axis on which the centers are spread widely,
+//! moved to the next multiple of a full subtree or at least of a leaf; where spheres are few, every
+//! multiple of a leaf is tried (`sweep`).
 //!
 //! Besides by where they are, spheres are parted by how large they are: a large one among many that
 //! are small would spoil the boxes of all parts that it is in.
