@@ -52,7 +52,8 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         let spheres = Columns::of(scene)?;
         if !options.no_builds {
             writeln!(stderr(), "{}: builds", scene.name)?;
-            builds.push(builds::measure(options, scene, &spheres)?);
+            builds.push(builds::measure(options, scene, (&spheres, false))?);
+            builds.push(builds::measure(options, scene, (&spheres.sorted(), true))?);
         }
         trace(options, (scene, &spheres), &mut runners, &mut outcomes)?;
     }

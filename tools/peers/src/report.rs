@@ -133,13 +133,24 @@ fn levels(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
 }
 
 fn costs(out: &mut impl Write, builds: &[Builds]) -> io::Result<()> {
-    writeln!(out, "\n| build | system | 1 thread, ms | 2 threads, ms | bytes/sphere | at most |")?;
-    writeln!(out, "|---|---|--:|--:|--:|--:|")?;
+    writeln!(
+        out,
+        "\n| build | system | 1 thread, ms | 2 threads, ms | of Embree's rate | bytes/sphere | at most |"
+    )?;
+    writeln!(out, "|---|---|--:|--:|--:|--:|--:|")?;
     for build in builds {
-        for (system, cost) in [("Embree", build.embree), ("Spherule", build.spherule)] {
-            let ([one, two], scene) = (cost.seconds.map(|s| s * 1e3), build.scene);
+        let Builds { embree, spherule, morton, .. } = build;
+        let systems = [("Embree", embree), ("Spherule", spherule), ("Spherule, Morton", morton)];
+        let scene = format!("{}{}", build.scene, if build.sorted { ", sorted" } else { "" });
+        for (system, cost) in systems {
+            let [one, two] = cost.seconds.map(|s| s * 1e3);
+            let rate = |i: usize| embree.seconds[i] / cost.seconds[i];
+            let (rate_one, rate_two) = (rate(0), rate(1));
             let (bytes, peak) = (cost.bytes, cost.peak);
-            writeln!(out, "| {scene} | {system} | {one:.2} | {two:.2} | {bytes:.1} | {peak:.1} |")?;
+            writeln!(
+                out,
+                "| {scene} | {system} | {one:.3} | {two:.3} | {rate_one:.2}, {rate_two:.2} | {bytes:.1} | {peak:.1} |"
+            )?;
         }
     }
     Ok(())

@@ -30,6 +30,14 @@ impl Columns {
         [self.x[i], self.y[i], self.z[i], self.radius[i]]
     }
 
+    /// The spheres along a Morton curve through the centers.
+    pub fn sorted(&self) -> Self {
+        let order = self.morton_order();
+        let column = |values: &[f32]| order.iter().map(|&row| values[row as usize]).collect();
+        let Self { x, y, z, radius } = self;
+        Self { x: column(x), y: column(y), z: column(z), radius: column(radius) }
+    }
+
     /// The rows along a Morton curve through the centers.
     pub fn morton_order(&self) -> Vec<u32> {
         let axes = [&self.x, &self.y, &self.z].map(|column| {
@@ -71,8 +79,6 @@ mod tests {
             columns.z.push((corner >> 2) as f32);
             columns.radius.push(corner as f32);
         }
-        let order = columns.morton_order();
-        let corners: Vec<f32> = order.iter().map(|&row| columns.radius[row as usize]).collect();
-        assert_eq!(corners, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+        assert_eq!(columns.sorted().radius, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
     }
 }

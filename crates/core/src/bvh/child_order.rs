@@ -8,6 +8,7 @@
 //! the nearest last, where a stack is popped.
 
 use super::{Bounds, WIDTH};
+use crate::lanes::{F32x8, Lanes, Mask};
 
 /// By octant and by which slots are hit: their numbers, the farthest first, in four bits each.
 static FARTHEST_FIRST: [[u32; 1 << WIDTH]; 8] = table();
@@ -44,29 +45,46 @@ pub(super) fn in_order(mask: u32) -> u32 {
     farthest_first(WIDTH - 1, mask)
 }
 
+/// By axis, the side of each slot: 1 on the upper one, -1 on the lower one.
+const SIDE: [F32x8; 3] = {
+    let (mut side, mut i) = ([[0.0; WIDTH]; 3], 0);
+    while i < 3 * WIDTH {
+        let (axis, slot) = (i / WIDTH, i % WIDTH);
+        side[axis][slot] = if slot >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        i += 1;
+    }
+    [F32x8::new(side[0]), F32x8::new(side[1]), F32x8::new(side[2])]
+};
+
 /// Returns a slot for each of at most [`WIDTH`] boxes: the pair that agrees best first, then the next.
 pub(super) fn slots(boxes: &[Bounds]) -> [usize; WIDTH] {
+    let none = F32x8::splat(f32::NEG_INFINITY);
     let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
-    let mut agreement = [[f32::NEG_INFINITY; WIDTH]; WIDTH];
-    for (row, bounds) in agreement.iter_mut().zip(boxes) {
+    // By child, the agreement with each slot that is free.
+    let mut agreement = [none; WIDTH];
+    let mut best = [(0, f32::NEG_INFINITY); WIDTH];
+    for ((row, best), bounds) in agreement.iter_mut().zip(&mut best).zip(boxes) {
         let [x, y, z] = ((bounds.low - all.low) + (bounds.high - all.high)).to_array();
-        for (slot, agreement) in row.iter_mut().enumerate() {
-            let toward = |axis: usize, x: f32| if slot >> axis & 1 == 1 { x } else { -x };
-            // Where boxes are so large that nothing is finite, any slot does.
-            *agreement = (toward(0, x) + toward(1, y) + toward(2, z)).max(f32::MIN);
-        }
+        let [x, y, z] =
+            [SIDE[0] * F32x8::splat(x), SIDE[1] * F32x8::splat(y), SIDE[2] * F32x8::splat(z)];
+        // Where boxes are so large that nothing is finite, any slot does.
+        *row = Lanes::max(x + y + z, F32x8::splat(f32::MIN));
+        *best = first_greatest(*row);
     }
-    let mut best = agreement.map(|row| first_greatest(&row));
     let mut slots = [WIDTH; WIDTH];
     for _ in boxes {
-        let (child, _) = first_greatest(&best.map(|(_, agreement)| agreement));
+        let mut child = 0;
+        for other in 1..WIDTH {
+            child = if best[other].1 > best[child].1 { other } else { child };
+        }
         let slot = best[child].0;
         slots[child] = slot;
-        agreement[child] = [f32::NEG_INFINITY; WIDTH];
-        for (row, best) in agreement.iter_mut().zip(&mut best) {
-            row[slot] = f32::NEG_INFINITY;
-            if best.0 == slot {
-                *best = first_greatest(row);
+        best[child].1 = f32::NEG_INFINITY;
+        let taken = F32x8::lanes(1 << slot);
+        for (child, row) in agreement.iter_mut().enumerate().take(boxes.len()) {
+            *row = Lanes::select(taken, none, *row);
+            if best[child].0 == slot && slots[child] == WIDTH {
+                best[child] = first_greatest(*row);
             }
         }
     }
@@ -74,19 +92,17 @@ pub(super) fn slots(boxes: &[Bounds]) -> [usize; WIDTH] {
 }
 
 /// Returns the place and the value of the first of the greatest values of a row.
-fn first_greatest(row: &[f32; WIDTH]) -> (usize, f32) {
-    let mut best = (0, row[0]);
-    for (i, &x) in row.iter().enumerate() {
-        if x > best.1 {
-            best = (i, x);
-        }
-    }
-    best
+#[inline(always)]
+fn first_greatest(row: F32x8) -> (usize, f32) {
+    let greatest = row.greatest();
+    let places = F32x8::splat(greatest).le(row).bits();
+    (places.trailing_zeros() as usize % WIDTH, greatest)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::numbered;
     use glam::Vec3;
 
     #[test]
@@ -99,6 +115,35 @@ mod tests {
                 assert!(slots.iter().all(|slot| hit >> slot & 1 == 1), "{octant} {hit:b}");
                 assert!(slots.windows(2).all(|pair| pair[0] ^ octant > pair[1] ^ octant));
             }
+        }
+    }
+
+    /// The pair that agrees best of all that are left, and so on.
+    #[test]
+    fn slots_are_those_of_a_search_over_all_pairs() {
+        for (seed, count) in (0..1000).zip((1..=WIDTH).cycle()) {
+            let number = |i: usize, k| numbered(seed * 64 + i as u64, k);
+            let corner = |i, k| Vec3::new(number(i, k), number(i, k + 1), number(i, k + 2));
+            let cube = |i| Bounds { low: corner(i, 0) - 1.0, high: corner(i, 3) };
+            let boxes: Vec<_> = (0..count).map(cube).collect();
+            let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
+            let mut expected = [WIDTH; WIDTH];
+            for _ in 0..count {
+                let mut best = (f32::NEG_INFINITY, 0, 0);
+                for (child, slot) in (0..count).flat_map(|i| (0..WIDTH).map(move |slot| (i, slot)))
+                {
+                    let bounds = &boxes[child];
+                    let from_middle = (bounds.low - all.low) + (bounds.high - all.high);
+                    let toward = |a: usize| if slot >> a & 1 == 1 { 1.0 } else { -1.0 };
+                    let agreement = (0..3).map(|a| from_middle[a] * toward(a)).sum::<f32>();
+                    let is_free = expected[child] == WIDTH && !expected.contains(&slot);
+                    if is_free && agreement > best.0 {
+                        best = (agreement, child, slot);
+                    }
+                }
+                expected[best.1] = best.2;
+            }
+            assert_eq!(slots(&boxes), expected, "{seed}");
         }
     }
 

@@ -17,7 +17,7 @@ mod surface;
 pub use columns::{Hit, Hits, NOTHING, RayColumns, Surface, Tally};
 
 use crate::bvh::Bvh;
-use crate::bvh::builders::{Builder, build};
+use crate::bvh::builders::{Builder, Item, Precise, build_items, collected};
 use crate::bvh::{Any, ClosestRounded, Tree};
 use crate::elementary;
 use crate::spheres::Spheres;
@@ -25,7 +25,13 @@ use crate::vec3::Vec3 as Coordinates;
 use batch::Occlusion;
 use columns::same_length;
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 use scaled_ray::{REACH, REACH_IN_LEAVES};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use strays::Largest;
+
+/// Number of spheres that are worth a task.
+const TASK: usize = 1 << 12;
 
 /// Spheres, ready for exact queries.
 #[derive(Clone, Debug)]
@@ -86,56 +92,77 @@ impl SphereTree {
         Self::build(rows.len(), |i| rows[i])
     }
 
-    fn build(count: usize, row: impl Fn(usize) -> [f32; 4]) -> Result<Self, QueryError> {
+    fn build(count: usize, row: impl Fn(usize) -> [f32; 4] + Sync) -> Result<Self, QueryError> {
         if count > Spheres::MAX {
             return Err(QueryError::TooMany(count));
         }
-        let valid = |i: usize| {
-            let [x, y, z, radius] = row(i);
+        let is_valid = |[x, y, z, radius]: [f32; 4]| {
             x.is_finite()
                 && y.is_finite()
                 && z.is_finite()
                 && radius > 0.0
                 && radius < f32::INFINITY
         };
-        let wide = |i: usize| row(i).map(f64::from);
-        let extent = |i: usize| {
-            let [x, y, z, radius] = wide(i);
-            DVec3::new(x, y, z).abs().max_element() + radius
+        let extent = |[x, y, z, radius]: [f32; 4]| {
+            f64::from(x.abs().max(y.abs()).max(z.abs())) + f64::from(radius)
         };
-        let extents = || (0..count).filter(|&i| valid(i)).map(extent);
-        let largest = strays::largest_of_most(extents());
-        let [scale, unscale] = scale_of(largest);
-        let scaled = |i: usize| wide(i).map(|value| value * scale);
-        let mut spheres = Spheres::with_capacity(count);
-        let mut strays = Vec::new();
-        let mut rounded = false;
-        for i in (0..count).filter(|&i| valid(i)) {
-            if extent(i) > largest {
-                strays.push((wide(i), i as u32));
-                continue;
+        // The largest extents, and how many spheres are valid.
+        let census = |chunk: usize| {
+            let rows = (chunk * TASK..count.min((chunk + 1) * TASK)).map(&row);
+            rows.filter(|&row| is_valid(row)).fold(
+                (Largest::NONE, 0),
+                |(mut largest, valid), row| {
+                    largest.add(extent(row));
+                    (largest, valid + 1)
+                },
+            )
+        };
+        let sum = |a: (Largest, usize), b: (Largest, usize)| (a.0.union(&b.0), a.1 + b.1);
+        let chunks = (0..count.div_ceil(TASK)).into_par_iter();
+        let (largest, valid) = chunks.map(census).reduce(|| (Largest::NONE, 0), sum);
+        let most = largest.of_most();
+        let [scale, unscale] = scale_of(most);
+        let stray_scale = scale_of(largest.of_all());
+        let scaled = |i: usize| row(i).map(|value| f64::from(value) * scale);
+        let (is_rounded, is_fine) = (AtomicBool::new(false), AtomicBool::new(false));
+        let item = |i: usize| {
+            let scaled = scaled(i);
+            let sphere = scaled.map(|value| value as f32);
+            if sphere.map(f64::from) != scaled {
+                is_rounded.store(true, Relaxed);
             }
-            let single = scaled(i).map(|value| value as f32);
-            rounded |= single.map(f64::from) != scaled(i);
-            let [x, y, z, radius] = single;
-            spheres.push(Vec3::new(x, y, z), radius, i as u32);
-        }
-        if rounded {
-            // Scales so far apart that the smallest numbers leave single precision.
-            spheres.precise = spheres.id.iter().map(|&i| split(scaled(i as usize))).collect();
-        }
-        let stray_scale = scale_of(extents().fold(0.0, f64::max));
-        let stray = |(row, id): ([f64; 4], u32)| {
-            let (center, radius) = split(row.map(|value| value * stray_scale[0]));
-            (center, radius, id)
+            if !Coordinates::from(Vec3::from_slice(&sphere[..3])).is_coarse() {
+                is_fine.store(true, Relaxed);
+            }
+            Item { sphere, id: i as u32 }
         };
-        let strays: Vec<_> = strays.into_iter().map(stray).collect();
-        let invalid = count - spheres.len() - strays.len();
-        let bvh = build(&mut spheres, Builder::default());
-        spheres.coarse = !rounded
-            && (0..spheres.len()).all(|i| Coordinates::from(spheres.center(i)).is_coarse());
+        let mut strays = Vec::new();
+        let items = if valid == count && most == largest.of_all() {
+            collected(count, item)
+        } else {
+            let mut items = Vec::with_capacity(valid);
+            for i in (0..count).filter(|&i| is_valid(row(i))) {
+                if extent(row(i)) > most {
+                    let wide = row(i).map(|value| f64::from(value) * stray_scale[0]);
+                    let (center, radius) = split(wide);
+                    strays.push((center, radius, i as u32));
+                } else {
+                    items.push(item(i));
+                }
+            }
+            items
+        };
+        let mut precise = Precise::default();
+        let is_rounded = is_rounded.into_inner();
+        if is_rounded {
+            // Scales so far apart that the smallest numbers leave single precision.
+            precise.id = items.iter().map(|item| item.id).collect();
+            precise.sphere = precise.id.iter().map(|&i| split(scaled(i as usize))).collect();
+        }
+        let (mut spheres, bvh) = build_items(items, &precise, Builder::default());
+        spheres.coarse = !is_rounded && !is_fine.into_inner();
         let reach = (f64::from(bvh.mean_leaf_extent()) * REACH_IN_LEAVES).clamp(4.0, REACH);
-        let scale = [scale, unscale];
+        let (scale, invalid) = ([scale, unscale], count - valid);
         Ok(Self { spheres, bvh, scale, reach, strays, stray_scale, invalid })
     }
 

@@ -52,6 +52,7 @@ fn scenes() -> Vec<(&'static str, Vec<(Vec3, f32)>)> {
         ("denormal", many(900, |i| (point(i) * 1e-42, 1e-44))),
         ("shells", many(900, |i| (Vec3::ZERO, 0.5 + 1e-5 * i as f32))),
         ("places", many(900, |i| (point(i % 30), 0.1 + 1e-4 * i as f32))),
+        ("crowds", many(900, |i| (point(i % 9), 0.1 + 1e-4 * i as f32))),
         (
             "lattice",
             many(4096, |i| {

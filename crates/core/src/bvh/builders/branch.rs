@@ -4,7 +4,8 @@
 //! of the second. So every branch has its place before anything is known of the others, and threads
 //! need not wait for each other.
 
-use super::item::{Item, along, bounds};
+use super::item::{Extent, along};
+use super::segment::Segment;
 use super::{Cut, PARALLEL};
 use crate::bvh::{Bounds, DEPTH, WIDTH};
 use crate::spheres::LEAF;
@@ -38,8 +39,8 @@ impl Branch {
 }
 
 impl Top {
-    pub(super) fn leaf(items: impl Iterator<Item = Item>) -> Self {
-        Self { bounds: bounds(items), ..Branch::NONE.top }
+    pub(super) fn leaf(extent: &Extent) -> Self {
+        Self { bounds: extent.bounds(), ..Branch::NONE.top }
     }
 
     /// Joins two parts.
@@ -71,29 +72,30 @@ pub(super) fn best(a: &Top, b: &Top, roots: usize) -> (usize, f32) {
 /// come before them and `depth` branches above.
 pub(super) fn grow(
     cut: &impl Cut,
-    items: &mut [Item],
+    mut segment: Segment,
     branches: &mut [Branch],
     (first, depth): (usize, usize),
 ) -> Top {
-    let leaves = items.len().div_ceil(LEAF);
-    if leaves > 1 && cut.finishes(items.len()) && depth + leaves <= HEIGHT {
-        return cut.finish(items, branches);
+    let leaves = segment.len().div_ceil(LEAF);
+    if leaves > 1 && cut.finishes(segment.len()) && depth + leaves <= HEIGHT {
+        return cut.finish(segment, branches);
     }
     let Some((root, below)) = branches.split_first_mut() else {
+        let items = segment.settle();
         items.sort_unstable_by(|a, b| along(0, a, b));
-        return Top::leaf(items.iter().copied());
+        return Top::leaf(&Extent::around(items.iter().copied()));
     };
     let least_height = (leaves - 1).ilog2() as usize + 1;
     let place = if depth + 1 + least_height <= HEIGHT {
-        cut.cut(items, first)
+        cut.cut(&mut segment, first)
     } else {
-        cut.median().cut(items, first)
+        cut.median().cut(&mut segment, first)
     };
-    let (parallel, second) = (items.len() >= PARALLEL, (first + place, depth + 1));
-    let (left, right) = items.split_at_mut(place);
+    let (parallel, second) = (segment.len() >= PARALLEL, (first + place, depth + 1));
+    let (left, right) = segment.split_at(place);
     let (below_left, below_right) = below.split_at_mut(place / LEAF - 1);
-    let mut left = || grow(cut, left, below_left, (first, depth + 1));
-    let mut right = || grow(cut, right, below_right, second);
+    let left = || grow(cut, left, below_left, (first, depth + 1));
+    let right = || grow(cut, right, below_right, second);
     let (a, b) = if parallel { rayon::join(left, right) } else { (left(), right()) };
     *root = Branch { top: Top::join(&a, &b), first: (place / LEAF) as u32 };
     root.top

@@ -5,11 +5,12 @@
 //! shallow.
 
 use super::branch::{self, Branch, Top};
-use super::item::{Item, bounds};
+use super::item::{Extent, Item};
 use super::{PARALLEL, freeing};
 use crate::bvh::{Bounds, Child, DEPTH, Node, WIDTH, child_order};
 use crate::spheres::{LEAF, Spheres};
 use rayon::prelude::*;
+use std::ops::Deref;
 
 /// A part of the binary tree.
 #[derive(Clone, Copy)]
@@ -38,6 +39,37 @@ impl<'a> Part<'a> {
     }
 }
 
+/// The children of a node.
+struct Parts<'a> {
+    part: [Part<'a>; WIDTH],
+    count: usize,
+}
+
+impl<'a> Parts<'a> {
+    const NONE: Self = Self { part: [Part { branches: &[], block: 0 }; WIDTH], count: 0 };
+
+    /// Appends one of at most [`WIDTH`].
+    fn push(&mut self, part: Part<'a>) {
+        self.part[self.count] = part;
+        self.count += 1;
+    }
+
+    /// Puts two in the place of one.
+    fn divide(&mut self, i: usize, [first, second]: [Part<'a>; 2]) {
+        self.part.copy_within(i..self.count, i + 1);
+        (self.part[i], self.part[i + 1]) = (first, second);
+        self.count += 1;
+    }
+}
+
+impl<'a> Deref for Parts<'a> {
+    type Target = [Part<'a>];
+
+    fn deref(&self) -> &[Part<'a>] {
+        &self.part[..self.count]
+    }
+}
+
 /// Nodes in a row, as one task made them.
 struct Run {
     nodes: Vec<Node>,
@@ -52,7 +84,7 @@ pub(super) fn nodes(branches: Vec<Branch>, spheres: &Spheres) -> Vec<Node> {
         return Vec::new();
     }
     if branches.is_empty() {
-        return vec![node(&[(root, box_of(root, spheres))], |_| Child::leaf(0))];
+        return vec![over(&[root], spheres, |_| 0)];
     }
     let runs = runs(root, spheres, DEPTH);
     freeing(branches, || joined(runs))
@@ -61,7 +93,8 @@ pub(super) fn nodes(branches: Vec<Branch>, spheres: &Spheres) -> Vec<Node> {
 /// The nodes of a part that is at most `levels` deep, in the order in which they are to be.
 fn runs(part: Part, spheres: &Spheres, levels: usize) -> Vec<Run> {
     if part.branches.len() * LEAF < PARALLEL {
-        let mut nodes = Vec::new();
+        // Most nodes have six children and more.
+        let mut nodes = Vec::with_capacity(part.branches.len() / 5 + 1);
         emit(part, spheres, levels, &mut nodes);
         return vec![Run { nodes, base: 0 }];
     }
@@ -111,7 +144,7 @@ fn emit(part: Part, spheres: &Spheres, levels: usize, nodes: &mut Vec<Node>) {
     let index = nodes.len();
     nodes.push(Node::EMPTY);
     let mut begins = [0; WIDTH];
-    for (begin, &part) in begins.iter_mut().zip(&parts) {
+    for (begin, &part) in begins.iter_mut().zip(&*parts) {
         *begin = nodes.len();
         if !part.branches.is_empty() {
             emit(part, spheres, levels - 1, nodes);
@@ -122,29 +155,29 @@ fn emit(part: Part, spheres: &Spheres, levels: usize, nodes: &mut Vec<Node>) {
 
 /// The node over some parts, where those that are not leaves begin at certain nodes.
 fn over(parts: &[Part], spheres: &Spheres, begin: impl Fn(usize) -> usize) -> Node {
-    let boxed: Vec<_> = parts.iter().map(|&part| (part, box_of(part, spheres))).collect();
-    node(&boxed, |i| match parts[i] {
-        Part { branches: [], block } => Child::leaf(block),
-        _ => Child::node(begin(i)),
-    })
+    let mut boxes = [Bounds::EMPTY; WIDTH];
+    for (bounds, &part) in boxes.iter_mut().zip(parts) {
+        *bounds = box_of(part, spheres);
+    }
+    let mut node = Node::EMPTY;
+    let slots = child_order::slots(&boxes[..parts.len()]);
+    for (i, (part, slot)) in parts.iter().zip(slots).enumerate() {
+        let child = match part {
+            Part { branches: [], block } => Child::leaf(*block),
+            _ => Child::node(begin(i)),
+        };
+        node.set(slot, child, &boxes[i]);
+    }
+    node
 }
 
 fn box_of(part: Part, spheres: &Spheres) -> Bounds {
     let leaf = || {
         let first = part.block * LEAF;
-        bounds((first..spheres.len().min(first + LEAF)).map(|row| Item::of(spheres, row)))
+        let rows = first..spheres.len().min(first + LEAF);
+        Extent::around(rows.map(|row| Item::of(spheres, row))).bounds()
     };
     part.branches.first().map_or_else(leaf, |root| root.top.bounds)
-}
-
-/// A node of some children.
-fn node(boxed: &[(Part, Bounds)], child: impl Fn(usize) -> Child) -> Node {
-    let mut node = Node::EMPTY;
-    let boxes: Vec<_> = boxed.iter().map(|part| part.1).collect();
-    for (i, slot) in child_order::slots(&boxes).into_iter().take(boxes.len()).enumerate() {
-        node.set(slot, child(i), &boxes[i]);
-    }
-    node
 }
 
 /// A node of which the first of its tree is not the first of all, but the one after `base`.
@@ -158,22 +191,23 @@ fn moved(mut node: Node, base: usize) -> Node {
 }
 
 /// The children of a node that may be `levels` deep: two to [`WIDTH`].
-fn children(part: Part, levels: usize) -> Vec<Part> {
-    let mut parts = Vec::with_capacity(WIDTH);
+fn children(part: Part, levels: usize) -> Parts {
+    let mut parts = Parts::NONE;
     share(part, WIDTH, &mut parts);
     if parts.iter().any(|part| part.height() > 3 * (levels - 1)) {
-        parts = vec![part];
+        parts = Parts::NONE;
+        parts.push(part);
         while parts.len() < WIDTH {
             let tallest = (0..parts.len()).rev().max_by_key(|&i| parts[i].height()).unwrap_or(0);
             let Some(halves) = parts[tallest].halves() else { break };
-            parts.splice(tallest..=tallest, halves);
+            parts.divide(tallest, halves);
         }
     }
     parts
 }
 
 /// Shares `roots` children of a wide node among the halves of a part.
-fn share<'a>(part: Part<'a>, roots: usize, parts: &mut Vec<Part<'a>>) {
+fn share<'a>(part: Part<'a>, roots: usize, parts: &mut Parts<'a>) {
     let Some([left, right]) = part.halves().filter(|_| roots > 1) else {
         return parts.push(part);
     };

@@ -1,9 +1,10 @@
 //! A sphere while the tree is built.
 
 use crate::bvh::Bounds;
+use crate::lanes::{F32x8, Lanes};
 use crate::slabs::MARGIN;
 use crate::spheres::Spheres;
-use glam::Vec4;
+use glam::{Vec3, Vec3A, Vec3Swizzles, Vec4};
 use std::cmp::Ordering;
 
 /// The axes on which spheres may be parted: where they are, and as the last one how large they are.
@@ -11,11 +12,11 @@ pub(super) const AXES: usize = 4;
 
 /// A sphere while the tree is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Item {
+pub(crate) struct Item {
     /// Center and radius.
-    pub(super) sphere: [f32; AXES],
+    pub(crate) sphere: [f32; AXES],
     /// The sphere's place in the user's scene.
-    pub(super) id: u32,
+    pub(crate) id: u32,
 }
 
 impl Item {
@@ -43,59 +44,97 @@ pub(super) fn along(axis: usize, a: &Item, b: &Item) -> Ordering {
     on(axis).then_with(by_place).then_with(|| a.id.cmp(&b.id))
 }
 
-/// A box that grows; what is in its last lane means nothing.
+/// A box that grows. Its lower corner is negated, so that one operation on eight lanes extends both
+/// corners: the box is -`x`, -`y`, -`z` of the lower one, a lane that is not used, and `x`, `y`, `z` of the upper one. In
+/// the extent of centers the fourth lanes are those of the radii.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
-    pub(super) low: Vec4,
-    pub(super) high: Vec4,
-}
+pub(super) struct Extent(F32x8);
 
 impl Extent {
-    pub(super) const EMPTY: Self =
-        Self { low: Vec4::splat(f32::INFINITY), high: Vec4::splat(f32::NEG_INFINITY) };
+    pub(super) const EMPTY: Self = Self(F32x8::new([f32::NEG_INFINITY; 8]));
 
     /// About a sphere, but for rounding.
     #[inline(always)]
     pub(super) fn of(item: &Item) -> Self {
-        let (center, radius) = (item.vector(), Vec4::splat(item.sphere[3]));
-        Self { low: center - radius, high: center + radius }
+        let [x, y, z, radius] = item.sphere;
+        Self(F32x8::new([-x, -y, -z, -radius, x, y, z, radius]) + F32x8::splat(radius))
+    }
+
+    /// About some spheres.
+    pub(super) fn around(items: impl Iterator<Item = Item>) -> Self {
+        items.fold(Self::EMPTY, |all, item| all.union(&Self::of(&item)))
     }
 
     #[inline(always)]
     pub(super) fn union(&self, other: &Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+        Self(Lanes::max(self.0, other.0))
+    }
+
+    /// The lower corner.
+    pub(super) fn low(&self) -> Vec4 {
+        let [low, _]: [Vec4; 2] = bytemuck::cast(self.0);
+        -low
+    }
+
+    /// The length on each axis.
+    #[inline(always)]
+    pub(super) fn size(&self) -> Vec4 {
+        let [low, high]: [Vec4; 2] = bytemuck::cast(self.0);
+        high + low
     }
 
     /// Half of the surface, with lengths multiplied by `scale`.
     #[inline(always)]
     pub(super) fn half_area(&self, scale: f32) -> f32 {
-        let size = (self.high - self.low).truncate() * scale;
-        size.x * size.y + size.y * size.z + size.z * size.x
+        let size = Vec3A::from_vec4(self.size()) * scale;
+        size.dot(size.yzx())
     }
 
     /// One over the longest side, so that areas neither vanish nor overflow.
     pub(super) fn unit(&self) -> f32 {
-        (1.0 / (self.high - self.low).truncate().max_element()).min(f32::MAX)
+        (1.0 / self.size().truncate().max_element()).min(f32::MAX)
+    }
+
+    /// A box that holds the spheres for certain: rounding the difference may fall on the inner side of
+    /// the true bound, the next number cannot.
+    #[inline(always)]
+    pub(super) fn bounds(&self) -> Bounds {
+        let mut sides: [f32; 8] = (self.0 + F32x8::splat(MARGIN)).to_array();
+        for side in &mut sides {
+            *side = next_up(*side);
+        }
+        let [x0, y0, z0, _, x1, y1, z1, _] = sides;
+        Bounds { low: Vec3::new(-x0, -y0, -z0), high: Vec3::new(x1, y1, z1) }
     }
 }
 
-/// The bounds of centers and radii.
-pub(super) fn spread(items: &[Item]) -> Extent {
-    let around = |all: Extent, item: &Item| {
-        let place = item.vector();
-        all.union(&Extent { low: place, high: place })
-    };
-    items.iter().fold(Extent::EMPTY, around)
+/// The next number, as [`f32::next_up`] but for NaN, without branches.
+#[inline(always)]
+fn next_up(x: f32) -> f32 {
+    // Adding 0 makes -0 the same as 0.
+    let bits = (x.min(f32::MAX) + 0.0).to_bits();
+    f32::from_bits(bits.wrapping_add_signed(bits as i32 >> 31 | 1))
 }
 
-/// A box that holds the spheres for certain: rounding the difference may fall on the inner side of
-/// the true bound, the next number cannot.
-pub(super) fn bounds(items: impl Iterator<Item = Item>) -> Bounds {
-    let margin = Vec4::splat(MARGIN);
-    let all = items.fold(Extent::EMPTY, |all, item| {
-        let Extent { low, high } = Extent::of(&item);
-        all.union(&Extent { low: low - margin, high: high + margin })
-    });
-    let (low, high) = (all.low.truncate().to_array(), all.high.truncate().to_array());
-    Bounds { low: low.map(f32::next_down).into(), high: high.map(f32::next_up).into() }
+/// The extent of centers and radii.
+pub(super) fn spread(items: &[Item]) -> Extent {
+    let (mut low, mut high) = (Vec4::INFINITY, Vec4::NEG_INFINITY);
+    for item in items {
+        let place = item.vector();
+        (low, high) = (low.min(place), high.max(place));
+    }
+    Extent(bytemuck::cast([-low, high]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_number_is_that_of_the_standard_library() {
+        let positive = [0.0, 1e-45, 1.1e-38, 0.75, 1.0, 3e38, f32::MAX, f32::INFINITY];
+        for x in positive.into_iter().flat_map(|x| [x, -x]) {
+            assert_eq!(next_up(x).to_bits(), x.next_up().to_bits(), "{x}");
+        }
+    }
 }

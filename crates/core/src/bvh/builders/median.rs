@@ -2,8 +2,8 @@
 //!
 //! (Kay & Kajiya, "Ray Tracing Complex Scenes", SIGGRAPH 1986.)
 
-use super::item::Item;
 use super::partition::Grid;
+use super::segment::Segment;
 use super::{CROWD, Cut};
 use crate::bvh::WIDTH;
 use crate::spheres::LEAF;
@@ -17,8 +17,8 @@ pub(super) struct Median {
 }
 
 impl Cut for Median {
-    fn cut(&self, items: &mut [Item], _first: usize) -> usize {
-        self.cut_on(items, &Grid::over(items))
+    fn cut(&self, segment: &mut Segment, _first: usize) -> usize {
+        self.cut_on(segment, &Grid::over(segment.items))
     }
 
     fn median(&self) -> &Median {
@@ -28,14 +28,14 @@ impl Cut for Median {
 
 impl Median {
     /// Cuts where the grid over the items is known already.
-    pub(super) fn cut_on(&self, items: &mut [Item], grid: &Grid) -> usize {
-        let width = grid.width();
-        if width.truncate().max_element() <= 0.0 && items.len() >= CROWD {
+    pub(super) fn cut_on(&self, segment: &mut Segment, grid: &Grid) -> usize {
+        let width = grid.spread.size();
+        if width.truncate().max_element() <= 0.0 && segment.len() >= CROWD {
             self.crowded.store(true, Relaxed);
         }
         let axis = width.truncate().max_position();
-        let place = half(items.len().div_ceil(LEAF)) * LEAF;
-        grid.part(items, axis, &grid.count(items, axis), place);
+        let place = half(segment.len().div_ceil(LEAF)) * LEAF;
+        grid.part(segment, axis, &grid.count(segment.items, axis), place);
         place
     }
 }

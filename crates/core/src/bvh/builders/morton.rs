@@ -6,7 +6,8 @@
 
 use super::item::{Extent, Item, along, spread};
 use super::median::Median;
-use super::{Cut, snapped};
+use super::segment::Segment;
+use super::{Cut, collected, snapped};
 use crate::radix::{sort_by_digits, spaced};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -37,9 +38,14 @@ impl Morton {
     /// Puts spheres into the order on the curve; and memory that is not needed any more.
     pub(super) fn sort(items: &mut [Item]) -> (Self, Vec<Item>) {
         let cells = Cells::over(items);
+        let mut codes = collected(items.len(), |_| 0);
+        // One stretch, whose keys are compared.
+        if items.len() < BY_DIGITS.start {
+            let spare = items.to_vec();
+            cells.sort(&spare, items, &mut codes);
+            return (Self { codes, median: Median::default() }, spare);
+        }
         let (mut spare, counts) = cells.spread_out(items);
-        let count = items.len();
-        let mut codes: Vec<_> = (0..count).into_par_iter().with_min_len(CHUNK).map(|_| 0).collect();
         let (mut to, mut from, mut to_codes) = (items, &mut *spare, &mut *codes);
         let mut stretches = Vec::with_capacity(STRETCHES);
         for count in counts.into_iter().filter(|&count| count > 0) {
@@ -53,15 +59,15 @@ impl Morton {
 }
 
 impl Cut for Morton {
-    fn cut(&self, items: &mut [Item], first: usize) -> usize {
-        let codes = &self.codes[first..first + items.len()];
+    fn cut(&self, segment: &mut Segment, first: usize) -> usize {
+        let codes = &self.codes[first..first + segment.len()];
         let differ = codes[0] ^ codes[codes.len() - 1];
         if differ == 0 {
-            return self.median.cut(items, first);
+            return self.median.cut(segment, first);
         }
         let bit = 1 << differ.ilog2();
         let place = codes.partition_point(|code| code & bit == 0);
-        snapped(place, items.len())
+        snapped(place, segment.len())
     }
 
     fn median(&self) -> &Median {
@@ -79,8 +85,8 @@ struct Cells {
 impl Cells {
     fn over(items: &[Item]) -> Self {
         let all = items.par_chunks(CHUNK).map(spread).reduce(|| Extent::EMPTY, |a, b| a.union(&b));
-        let width = (all.high - all.low).truncate().max_element();
-        Self { low: all.low.truncate(), scale: ((1 << BITS) as f32 / width).min(f32::MAX) }
+        let width = all.size().truncate().max_element();
+        Self { low: all.low().truncate(), scale: ((1 << BITS) as f32 / width).min(f32::MAX) }
     }
 
     /// The place on the curve of a sphere's center.
@@ -158,16 +164,19 @@ mod tests {
     #[test]
     fn spheres_are_sorted_by_morton_code() {
         // All over the curve, most of them on one stretch, all at one place.
-        for power in [1, 9, 200] {
+        let scenes = [1, 9, 200]
+            .into_iter()
+            .flat_map(|power| [900, 3000, 70_000].map(|count| (power, count)));
+        for (power, count) in scenes {
             let number = |i, axis| numbered(i, axis).powi(power);
             let sphere = |i| std::array::from_fn(|axis| number(i, axis as u64));
             let mut items: Vec<_> =
-                (0..70_000).map(|id| Item { sphere: sphere(u64::from(id) / 2), id }).collect();
+                (0..count).map(|id| Item { sphere: sphere(u64::from(id) / 2), id }).collect();
             let cells = Cells::over(&items);
             let mut sorted = items.clone();
             sorted.sort_by(|a, b| cells.code(a).cmp(&cells.code(b)).then(along(0, a, b)));
             let (morton, _) = Morton::sort(&mut items);
-            assert!(items == sorted, "{power}");
+            assert!(items == sorted, "{power}, {count}");
             assert!(morton.codes.into_iter().eq(items.iter().map(|item| cells.code(item))));
         }
     }

@@ -1,9 +1,10 @@
 //! Parting spheres at a place in their order on an axis, in time proportional to their number.
 //!
 //! A histogram over [`BINS`] intervals says in which of them the place is, and so on in that one; only
-//! when spheres are few are they ordered. All of it is done in place, and by many threads where there is much of it.
+//! when spheres are few are they ordered. Many threads do it where there is much of it.
 
 use super::item::{AXES, Extent, Item, along, spread};
+use super::segment::Segment;
 use glam::Vec4;
 use rayon::prelude::*;
 
@@ -11,14 +12,35 @@ use rayon::prelude::*;
 pub(super) const BINS: usize = 16;
 
 /// Number of spheres that are worth a task; independent of the number of threads.
-const CHUNK: usize = 1 << 14;
+pub(super) const CHUNK: usize = 1 << 14;
+
+/// Number of spheres in each bin of an axis.
+pub(super) type Counts = [u32; BINS];
+
+/// Number of spheres in each bin of an axis, of all spheres and of each chunk of them.
+pub(super) struct BinCounts {
+    pub(super) all: Counts,
+    /// Empty if there is one.
+    pub(super) chunks: Vec<Counts>,
+}
 
 /// Intervals of equal width on every axis, over the spread of some spheres' centers and radii.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
     pub(super) spread: Extent,
+    low: Vec4,
     scale: Vec4,
 }
+
+/// With fewer spheres comparing them is faster.
+const FEW: usize = 256;
+
+/// Adding this to a number up to [`BINS`] moves its integer part to [`BIN_SHIFT`] in its bits; rounding to the
+/// 2048th part does not matter. (Conversions to integers take care of what does not occur here.)
+const BIN_OFFSET: f32 = (1 << (f32::MANTISSA_DIGITS - 1 - BIN_SHIFT)) as f32;
+
+/// Place of the integer part.
+const BIN_SHIFT: u32 = 11;
 
 impl Grid {
     pub(super) fn over(items: &[Item]) -> Self {
@@ -30,127 +52,120 @@ impl Grid {
         };
         // Where the width is so small that this is infinite, or 0, there are fewer intervals, or
         // one.
-        let scale = Vec4::splat(BINS as f32) / (spread.high - spread.low);
-        Self { spread, scale: scale.min(Vec4::splat(f32::MAX)) }
-    }
-
-    /// Returns the extent of the spheres' centers.
-    pub(super) fn width(&self) -> Vec4 {
-        self.spread.high - self.spread.low
+        let scale = Vec4::splat(BINS as f32) / spread.size();
+        Self { spread, low: spread.low(), scale: scale.min(Vec4::splat(f32::MAX)) }
     }
 
     /// Returns the bin of a sphere on each axis.
     #[inline(always)]
     pub(super) fn bins(&self, item: &Item) -> [usize; AXES] {
-        let place = (item.vector() - self.spread.low) * self.scale;
+        let place = (item.vector() - self.low) * self.scale;
         let last = Vec4::splat((BINS - 1) as f32);
-        place.min(last).to_array().map(|bin| bin as usize % BINS)
+        let shifted = place.min(last) + Vec4::splat(BIN_OFFSET);
+        shifted.to_array().map(|place| (place.to_bits() >> BIN_SHIFT) as usize % BINS)
+    }
+
+    /// Returns the bin of a sphere on one axis.
+    #[inline(always)]
+    fn bin(&self, item: &Item, axis: usize) -> usize {
+        let place = (item.sphere[axis] - self.low[axis]) * self.scale[axis];
+        let shifted = place.min((BINS - 1) as f32) + BIN_OFFSET;
+        (shifted.to_bits() >> BIN_SHIFT) as usize % BINS
     }
 
     /// Counts the spheres in each bin of an axis.
-    pub(super) fn count(&self, items: &[Item], axis: usize) -> [usize; BINS] {
+    pub(super) fn count(&self, items: &[Item], axis: usize) -> BinCounts {
         let count = |items: &[Item]| {
             let mut counts = [0; BINS];
             for item in items {
-                counts[self.bins(item)[axis]] += 1;
+                counts[self.bin(item, axis)] += 1;
             }
             counts
         };
         if items.len() <= CHUNK {
-            return count(items);
+            return BinCounts { all: count(items), chunks: Vec::new() };
         }
-        let sum = |a: [usize; BINS], b: [usize; BINS]| std::array::from_fn(|i| a[i] + b[i]);
-        items.par_chunks(CHUNK).map(count).reduce(|| [0; BINS], sum)
+        let chunks: Vec<_> = items.par_chunks(CHUNK).map(count).collect();
+        let all = std::array::from_fn(|bin| chunks.iter().map(|counts| counts[bin]).sum());
+        BinCounts { all, chunks }
     }
 
     /// Puts the first `place` spheres on an axis before all others; `counts` is how many are in
     /// each of its intervals.
     pub(super) fn part(
         &self,
-        items: &mut [Item],
+        segment: &mut Segment,
         axis: usize,
-        counts: &[usize; BINS],
+        counts: &BinCounts,
         place: usize,
     ) {
+        if segment.spare.is_empty() {
+            let mut spare = segment.items.to_vec();
+            let mut all = Segment::new(segment.items, &mut spare);
+            self.part(&mut all, axis, counts, place);
+            all.settle();
+            return;
+        }
         let (mut bin, mut below) = (0, 0);
-        while bin < BINS - 1 && below + counts[bin] <= place {
-            below += counts[bin];
+        while bin < BINS - 1 && below + counts.all[bin] as usize <= place {
+            below += counts.all[bin] as usize;
             bin += 1;
         }
-        partition(items, |item| self.bins(item)[axis] < bin);
+        let inside = below..below + counts.all[bin] as usize;
+        // Before the bin, in it, or behind it.
+        let side = |item: &Item| {
+            let of_item = self.bin(item, axis);
+            usize::from(of_item >= bin) + usize::from(of_item > bin)
+        };
+        let (before, spare) = segment.spare.split_at_mut(inside.start);
+        let (within, behind) = spare.split_at_mut(inside.len());
+        let mut places = [before, within, behind];
+        if counts.chunks.is_empty() {
+            distribute(segment.items, places, side);
+        } else {
+            let taken = |counts: &Counts| {
+                let [below, above] = [&counts[..bin], &counts[bin + 1..]];
+                let mut counts = [below, &counts[bin..=bin], above].into_iter();
+                places.each_mut().map(|places| {
+                    let count = counts.next().map_or(0, |counts| counts.iter().sum::<u32>());
+                    places.split_off_mut(..count as usize).unwrap_or_default()
+                })
+            };
+            let places: Vec<_> = counts.chunks.iter().map(taken).collect();
+            let chunks = segment.items.par_chunks(CHUNK).zip(places);
+            chunks.for_each(|(items, places)| distribute(items, places, side));
+        }
+        segment.exchange();
         if below < place {
-            let rest = &mut items[below..];
-            partition(rest, |item| self.bins(item)[axis] == bin);
-            part_some(&mut rest[..counts[bin]], axis, place - below);
+            let (items, spare) = (&mut segment.items[inside.clone()], &mut segment.spare[inside]);
+            part_some(Segment::new(items, spare), axis, place - below);
         }
     }
 }
 
-/// Partitions the spheres of one bin: with all threads and bins of its own if they are many.
-fn part_some(items: &mut [Item], axis: usize, place: usize) {
-    if items.len() > CHUNK {
-        let grid = Grid::over(items);
-        let counts = grid.count(items, axis);
-        if counts.iter().all(|&count| count < items.len()) {
-            return grid.part(items, axis, &counts, place);
+/// Parts the spheres of one bin: with all threads and bins of its own if they are many.
+fn part_some(mut segment: Segment, axis: usize, place: usize) {
+    if segment.len() > FEW {
+        let grid = Grid::over(segment.items);
+        let counts = grid.count(segment.items, axis);
+        if counts.all.iter().all(|&count| (count as usize) < segment.len()) {
+            grid.part(&mut segment, axis, &counts, place);
+            segment.settle();
+            return;
         }
     }
-    items.select_nth_unstable_by(place, |a, b| along(axis, a, b));
+    segment.items.select_nth_unstable_by(place, |a, b| along(axis, a, b));
 }
 
-/// Puts what satisfies a condition first; returns how many do.
-fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool + Sync) -> usize {
-    if items.len() <= CHUNK {
-        return partition_chunk(items, &first);
-    }
-    let counts: Vec<usize> =
-        items.par_chunks_mut(CHUNK).map(|chunk| partition_chunk(chunk, &first)).collect();
-    let total = counts.iter().sum();
-    let (mut ahead, mut behind) = misplaced(items, &counts, total);
-    let mut swaps = Vec::new();
-    while let (Some(a), Some(b)) = (ahead.pop(), behind.pop()) {
-        let length = a.len().min(b.len());
-        let ((a, rest_a), (b, rest_b)) = (a.split_at_mut(length), b.split_at_mut(length));
-        swaps.push((a, b));
-        ahead.extend((!rest_a.is_empty()).then_some(rest_a));
-        behind.extend((!rest_b.is_empty()).then_some(rest_b));
-    }
-    swaps.into_par_iter().for_each(|(a, b)| a.swap_with_slice(b));
-    total
-}
-
-/// Partitions few spheres, without a branch on the condition, which is hard to predict.
-fn partition_chunk(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
-    let mut count = 0;
-    for i in 0..items.len() {
-        let is_first = first(&items[i]);
-        items.swap(i, count);
-        count += usize::from(is_first);
-    }
-    count
-}
-
-/// Returns the parts of chunks that are on the wrong side of `total`: as many before as after it.
-fn misplaced<'a>(
-    mut items: &'a mut [Item],
-    counts: &[usize],
-    total: usize,
-) -> (Vec<&'a mut [Item]>, Vec<&'a mut [Item]>) {
-    let (mut ahead, mut behind) = (Vec::new(), Vec::new());
-    let mut start = 0;
-    for &count in counts {
-        let (chunk, rest) = items.split_at_mut(CHUNK.min(items.len()));
-        items = rest;
-        let end = start + chunk.len();
-        let border = total.clamp(start, end) - start;
-        if border > count {
-            ahead.push(&mut chunk[count..border]);
-        } else if border < count {
-            behind.push(&mut chunk[border..count]);
+/// Writes each of some spheres to the one of three places that `side` tells, without a branch on it, which is hard to
+/// predict.
+fn distribute(items: &[Item], places: [&mut [Item]; 3], side: impl Fn(&Item) -> usize) {
+    let mut places = places.map(|places| places.iter_mut());
+    for item in items {
+        if let Some(place) = places[side(item)].next() {
+            *place = *item;
         }
-        start = end;
     }
-    (ahead, behind)
 }
 
 #[cfg(test)]
@@ -181,13 +196,18 @@ mod tests {
             for (axis, place) in (0..AXES).flat_map(|axis| [(axis, 8), (axis, 600)]) {
                 let mut sorted = items.clone();
                 sorted.sort_by(|a, b| along(axis, a, b));
-                let mut parted = items.clone();
+                let (mut parted, mut spare) = (items.clone(), items.clone());
                 let grid = Grid::over(&parted);
                 let counts = grid.count(&parted, axis);
-                grid.part(&mut parted, axis, &counts, place);
-                parted[..place].sort_by(|a, b| along(axis, a, b));
-                parted[place..].sort_by(|a, b| along(axis, a, b));
-                assert!(parted == sorted, "{name}, {count}, axis {axis} at {place}");
+                for spare in [&mut *spare, &mut []] {
+                    parted.copy_from_slice(&items);
+                    let mut segment = Segment::new(&mut parted, spare);
+                    grid.part(&mut segment, axis, &counts, place);
+                    segment.settle();
+                    parted[..place].sort_by(|a, b| along(axis, a, b));
+                    parted[place..].sort_by(|a, b| along(axis, a, b));
+                    assert!(parted == sorted, "{name}, {count}, axis {axis} at {place}");
+                }
             }
         }
     }
