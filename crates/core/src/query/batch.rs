@@ -138,7 +138,7 @@ impl SphereTree {
                 let Some(surfaces) = answers.surfaces() else { continue };
                 let pair = Pair { row: row as u32, sphere: hit.sphere as u32 };
                 if !self.spheres.precise.is_empty() {
-                    surfaces[i] = self.surface(columns.row(i), &hit);
+                    surfaces[i] = self.surface_of_ray(columns.row(i), &hit);
                 } else if pending.push(pair, i) {
                     self.flush_surfaces(&mut pending, (rays, hits), (columns, unit), surfaces);
                 }
@@ -155,7 +155,7 @@ impl SphereTree {
                 let Some(hit) = hit else { continue };
                 answers.set(i, &hit);
                 if let Some(surfaces) = answers.surfaces() {
-                    surfaces[i] = self.surface(ray, &hit);
+                    surfaces[i] = self.surface_of_ray(ray, &hit);
                 }
             }
         }

@@ -64,13 +64,25 @@ impl SphereTree {
             tally.invalid += 1;
             return None;
         };
-        let hit = self.trace_scaled::<Q>(&scaled, bound, tally);
+        self.trace_scaled::<Q>(ray, &scaled, bound, tally)
+    }
+
+    /// Traces one ray, which is given in the tree's units as well.
+    #[inline(always)]
+    pub(super) fn trace_scaled<Q: Query>(
+        &self,
+        ray: ([f32; 3], [f32; 3]),
+        scaled: &ScaledRay,
+        bound: f64,
+        tally: &mut Tally,
+    ) -> Option<FoundHit> {
+        let hit = self.trace_tree::<Q>(scaled, bound, tally);
         if self.strays.is_empty() { hit } else { self.with_strays::<Q>(ray, bound, hit, tally) }
     }
 
     /// Finds the hit of a ray among the spheres of the tree.
     #[inline(always)]
-    fn trace_scaled<Q: Query>(
+    fn trace_tree<Q: Query>(
         &self,
         scaled: &ScaledRay,
         bound: f64,

@@ -8,6 +8,7 @@ use crate::intersect::{Pair, Pairs};
 use crate::lanes::{Doubles, F64x8, Mask, set_bits};
 use crate::ray::{Hits, Rays};
 use crate::vec3::Vec3;
+use glam::DVec3;
 
 /// Beyond this many radii from a sphere, double precision shows its limits.
 const FAR: f64 = (1 << 20) as f64;
@@ -38,21 +39,29 @@ impl PendingSurfaces {
 }
 
 impl SphereTree {
-    /// Returns the surface where a ray has hit a sphere.
-    pub(super) fn surface(&self, ray: ([f32; 3], [f32; 3]), found: &FoundHit) -> Surface {
+    /// Returns the surface where a ray has hit a sphere; the ray is given in the tree's units as well.
+    #[inline(always)]
+    pub(super) fn surface(
+        &self,
+        ray: ([f32; 3], [f32; 3]),
+        scaled: &ScaledRay,
+        found: &FoundHit,
+    ) -> Surface {
         // Strays have units of their own.
-        let stray = found.sphere.checked_sub(self.spheres.len()).map(|i| self.strays[i]);
-        let ((center, radius), scale) = match stray {
-            Some((center, radius, _)) => ((center, radius), self.stray_scale),
-            None => (self.spheres.exact(found.sphere), self.scale),
+        let Some(stray) = found.sphere.checked_sub(self.spheres.len()) else {
+            return surface_of(scaled, self.spheres.exact(found.sphere), found.t, self.scale);
         };
-        let Some(ScaledRay { ray, unit }) = ScaledRay::new(ray, scale) else {
-            return Surface::default();
-        };
-        let (clear, normal) = normals(&Pairs::one(&ray, center, radius), found.t / unit);
-        let normal = if clear { normal } else { exact::normal(&ray, center, radius).into() };
-        let point = (normal * radius + center.into()) * scale[1];
-        Surface { point: point.into(), normal: normal.into() }
+        let (center, radius, _) = self.strays[stray];
+        let scaled = ScaledRay::new(ray, self.stray_scale);
+        let of = |scaled| surface_of(&scaled, (center, radius), found.t, self.stray_scale);
+        scaled.map_or(Surface::default(), of)
+    }
+
+    /// Returns what [`SphereTree::surface`] does.
+    #[inline(never)]
+    pub(super) fn surface_of_ray(&self, ray: ([f32; 3], [f32; 3]), found: &FoundHit) -> Surface {
+        let scaled = ScaledRay::new(ray, self.scale);
+        scaled.map_or(Surface::default(), |scaled| self.surface(ray, &scaled, found))
     }
 
     /// Writes the surfaces of pending hits to the caller's rows.
@@ -85,9 +94,23 @@ impl SphereTree {
             let (Pair { row, sphere }, of) = (pending.pairs[lane], pending.of[lane]);
             let t = hits.t[row as usize] * unit(row as usize);
             let found = FoundHit { sphere: sphere as usize, id: 0, t };
-            surfaces[of] = self.surface(columns.row(of), &found);
+            surfaces[of] = self.surface_of_ray(columns.row(of), &found);
         }
     }
+}
+
+/// Returns the surface where a ray hits a sphere at a distance in the user's units.
+#[inline(always)]
+fn surface_of(
+    ScaledRay { ray, unit }: &ScaledRay,
+    (center, radius): (DVec3, f64),
+    t: f64,
+    [_, unscale]: [f64; 2],
+) -> Surface {
+    let (clear, normal) = normals(&Pairs::one(ray, center, radius), t / unit);
+    let normal = if clear { normal } else { exact::normal(ray, center, radius).into() };
+    let point = (normal * radius + center.into()) * unscale;
+    Surface { point: point.into(), normal: normal.into() }
 }
 
 /// Returns the outward unit normals where rays hit spheres at distances `t`, in lanes in which double precision
