@@ -87,6 +87,7 @@ pub fn measure(
 }
 
 /// What one build took.
+#[derive(Clone, Copy)]
 struct Taken {
     seconds: f64,
     bytes: usize,
