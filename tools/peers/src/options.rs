@@ -14,6 +14,7 @@ const USUAL: [&str; 7] =
 /// Measures Embree beside Spherule: the same rays, one run, one thread.
 #[derive(Debug, Parser)]
 #[command(version, about)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub struct Options {
     /// Embree's library, 4.4 or later 4.x: `libembree4.so` or the like.
     #[arg(long, value_name = "FILE")]
