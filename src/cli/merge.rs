@@ -95,7 +95,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
     picture_file::check_size("merge", region, format)?;
     let Caption { title, looks, .. } = &merged.caption;
     let subject = Subject { title, settings, region, looks };
-    let options = subject.write_options(&args.encoding, format, &render);
+    let options = subject.write_options(&args.encoding, format, &render, None);
     let file = render.image.encode(format, &channels, &options)?;
     write_file(&args.output, &file)?;
     let mut listed = settings::list(settings, region);

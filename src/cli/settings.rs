@@ -19,6 +19,8 @@ pub(super) fn list(settings: &Settings, region: Region) -> List {
         let value = match setting.get(settings) {
             // Flags are on unless they are listed.
             settings::Value::None | settings::Value::Flag(true) => continue,
+            // Images are not denoised unless it is listed.
+            settings::Value::Word("auto" | "off") if setting.name == "denoise" => continue,
             settings::Value::Size([width, height]) => {
                 list.insert("width".to_owned(), json!(width));
                 list.insert("height".to_owned(), json!(height));

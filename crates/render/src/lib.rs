@@ -37,6 +37,7 @@ pub mod integrator;
 pub mod shade;
 
 pub mod checkpoint;
+pub mod denoise;
 pub mod film;
 pub mod layers;
 pub mod noise;

@@ -51,6 +51,23 @@ pub struct Settings {
     pub exposure: f64,
     /// Tone curve, applied before the sRGB curve.
     pub tone: Tone,
+    /// Denoising of the finished picture, by the program: [`render()`](crate::render::render()) leaves pictures as they
+    /// are.
+    pub denoise: Denoise,
+    /// True if the user chose `spp`, `until_error` or `time`. If not, the program decides when a render stops.
+    pub stop_given: bool,
+}
+
+/// Whether a finished picture is denoised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Denoise {
+    /// Unless the user chose the number of samples or the error, and only if it lowers the measured error.
+    #[default]
+    Auto,
+    /// Always; the error target is then that of the denoised picture.
+    On,
+    /// Never.
+    Off,
 }
 
 /// The rendering algorithm.
@@ -198,6 +215,8 @@ impl Default for Settings {
             caustics: true,
             exposure: 0.0,
             tone: Tone::Linear,
+            denoise: Denoise::Auto,
+            stop_given: false,
         }
     }
 }
@@ -231,6 +250,8 @@ mod tests {
             caustics: true,
             exposure: 0.5,
             tone: Tone::Linear,
+            denoise: Denoise::On,
+            stop_given: true,
         };
         integrators.into_iter().zip(roulettes).map(settings).collect()
     }

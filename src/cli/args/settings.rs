@@ -38,6 +38,8 @@ impl<const DISPLAY: bool> SettingArgs<DISPLAY> {
                 setting.set(settings, *value);
             }
         }
+        let stops = ["spp", "until_error", "time"];
+        settings.stop_given |= stops.into_iter().any(|name| self.value(name).is_some());
         if !DISPLAY && self.value("spp").is_none() {
             settings.spp = match (had_target, settings.has_target()) {
                 (false, true) => Settings::HARD_SAMPLES,

@@ -24,6 +24,9 @@ const OVERLAY: u64 = 16;
 /// spheres.
 const MATTE: u64 = 50;
 
+/// Bytes per pixel of the denoised image, and of its tiles.
+const DENOISED: u64 = 32;
+
 /// Estimated peak memory of a render, without the scene's columns, which are loaded already.
 #[derive(Clone, Debug)]
 pub(crate) struct Estimate {
@@ -47,7 +50,7 @@ pub(crate) struct Estimate {
 
 impl Estimate {
     /// Estimates the memory needed in addition to a loaded scene.
-    pub(super) fn new(scene: &Scene, region: Region, job: &Job) -> Self {
+    pub(super) fn new(scene: &Scene, region: Region, job: &Job, denoised: bool) -> Self {
         let footprint = Footprint::of(scene);
         Self {
             region,
@@ -56,8 +59,12 @@ impl Estimate {
             build: footprint.peak().saturating_sub(footprint.scene()),
             scene: footprint.scene(),
             world: footprint.resident(),
-            film: Film::bytes(region, need_statistics(job)),
-            output: output(job, &scene.look, region),
+            film: Film::bytes(region, need_statistics(job) || denoised),
+            output: output(job, &scene.look, region).max(if denoised {
+                denoising(region)
+            } else {
+                0
+            }),
             threads: job.threads as u64 * WORKSPACE,
         }
     }
@@ -99,6 +106,12 @@ impl Estimate {
         };
         format!("{self} need {shortage}; {hint}")
     }
+}
+
+/// Bytes of the layers, the denoised image, its tiles and its error.
+fn denoising(region: Region) -> u64 {
+    let pixels = u64::from(region.width) * u64::from(region.height);
+    Layers::bytes(region) + pixels * DENOISED
 }
 
 /// Bytes of the layers or of the encoded file, whichever is more, because layers are dropped before the file

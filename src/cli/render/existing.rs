@@ -1,13 +1,13 @@
 //! Detection of existing images for `--skip-existing`, by their metadata.
 
 use super::job::Job;
-use super::metadata::{self, INTERRUPTED, SAMPLES_TAKEN, SCENE};
+use super::metadata::{self, BEFORE, DENOISED, INTERRUPTED, SAMPLES_TAKEN, SCENE};
 use super::prepare::PlacedScene;
 use crate::cli::output;
 use spherule_render::image::{Image, Metadata, read_metadata};
 
 /// Metadata keys of results, which are not compared.
-const RESULTS: [&str; 4] = ["rounds", SAMPLES_TAKEN, "error", "error bound"];
+const RESULTS: [&str; 6] = ["rounds", SAMPLES_TAKEN, "error", "error bound", DENOISED, BEFORE];
 
 /// Returns whether the output file already is the image to render. Prints the reason if it exists but is
 /// another image.

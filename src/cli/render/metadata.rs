@@ -10,6 +10,7 @@ use crate::cli::appearance::BarPlace;
 use crate::cli::args::EncodingArgs;
 use crate::cli::settings::{self, List};
 use serde_json::Value;
+use spherule_render::denoise::Judged;
 use spherule_render::film::Region;
 use spherule_render::image::{Format, Metadata, QUALITY, WriteOptions};
 use spherule_render::layers::Layer;
@@ -34,18 +35,27 @@ pub(super) const SCENE: &str = "scene";
 /// Metadata key of the number of samples, if it does not follow from the settings.
 pub(super) const SAMPLES_TAKEN: &str = "samples taken";
 
+/// Metadata keys of denoising: whether it was used, and the error without it.
+pub(super) const DENOISED: &str = "denoised";
+pub(super) const BEFORE: &str = "error before denoising";
+
 /// Metadata key of an incomplete image.
 pub(super) const INTERRUPTED: &str = "interrupted";
 
 /// Returns the encoding options and metadata of the image file.
-pub(super) fn write_options(job: &Job, prepared: &Prepared, render: &Render) -> WriteOptions {
+pub(super) fn write_options(
+    job: &Job,
+    prepared: &Prepared,
+    render: &Render,
+    judged: Option<&Judged>,
+) -> WriteOptions {
     let subject = Subject {
         title: &prepared.title,
         settings: &prepared.scene.settings,
         region: prepared.region,
         looks: &prepared.looks(job),
     };
-    subject.write_options(job.encoding, job.format, render)
+    subject.write_options(job.encoding, job.format, render, judged)
 }
 
 /// Returns the metadata of a complete image, without results of the render.
@@ -106,9 +116,10 @@ impl Subject<'_> {
         typed: &EncodingArgs,
         format: Format,
         render: &Render,
+        judged: Option<&Judged>,
     ) -> WriteOptions {
         let mut options = self.encoding(typed, format);
-        options.metadata = self.metadata(format, &options, render);
+        options.metadata = self.metadata(format, &options, render, judged);
         options
     }
 
@@ -142,7 +153,13 @@ impl Subject<'_> {
         metadata
     }
 
-    fn metadata(&self, format: Format, options: &WriteOptions, render: &Render) -> Metadata {
+    fn metadata(
+        &self,
+        format: Format,
+        options: &WriteOptions,
+        render: &Render,
+        judged: Option<&Judged>,
+    ) -> Metadata {
         let mut metadata = self.describe(format, options);
         if self.settings.has_target() {
             metadata.push("rounds", render.samples.rounds.to_string());
@@ -159,9 +176,15 @@ impl Subject<'_> {
         if !render.complete {
             metadata.push(INTERRUPTED, "true");
         }
-        if let Some(noise) = render.noise {
+        if let Some(noise) = judged.map(|judged| judged.noise).or(render.noise) {
             metadata.push("error", noise.error.to_string());
             metadata.push("error bound", noise.bound.to_string());
+        }
+        if let Some(Judged { denoised, before, .. }) = judged {
+            metadata.push(DENOISED, denoised.is_some().to_string());
+            if denoised.is_some() {
+                metadata.push(BEFORE, before.error.to_string());
+            }
         }
         metadata
     }

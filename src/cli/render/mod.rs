@@ -18,6 +18,7 @@ mod prepare;
 mod prepared_file;
 mod resume;
 mod sequence;
+mod stop;
 mod summary;
 mod survey;
 mod terminal;
@@ -44,8 +45,10 @@ use super::progress::Meter;
 use super::views::draw_over as draw_look;
 use super::write_file::write_file;
 use super::{Failure, output, picture_file, processor, signals};
+use spherule_render::denoise::{Denoiser, Judged};
+use spherule_render::film::Film;
 use spherule_render::overlay::Matte;
-use spherule_render::render::{End, Options, Render, RenderError, ResumableRender};
+use spherule_render::render::{End, Judge, Options, Render, RenderError, ResumableRender};
 use spherule_render::scene::Scene;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -54,6 +57,8 @@ use std::time::{Duration, Instant};
 /// Result of a render, complete or not.
 struct Traced {
     render: ResumableRender,
+    /// The denoised image, and its error.
+    judged: Option<Judged>,
     /// Exit code, if a signal ended it.
     signal: Option<u8>,
     /// Command that resumes it, if a checkpoint was written.
@@ -204,7 +209,10 @@ fn finish_traced(
         return Ok(());
     }
     let mut render = traced.render.render();
-    write(job, prepared, session, &mut render)?;
+    if let Some(Judged { denoised: Some(denoised), .. }) = &traced.judged {
+        render.image.clone_from(&denoised.image);
+    }
+    write(job, prepared, session, &mut render, traced.judged.as_ref())?;
     traced.report(job, prepared, &render);
     Ok(())
 }
@@ -215,16 +223,17 @@ fn write(
     prepared: &mut Prepared,
     session: &mut Session,
     render: &mut Render,
+    judged: Option<&Judged>,
 ) -> Result<(), Failure> {
     let matte = draw_over(prepared, render)?;
-    let options = metadata::write_options(job, prepared, render);
+    let options = metadata::write_options(job, prepared, render, judged);
     let mut channels = layers::channels(job, prepared, render)?;
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
     match &mut session.video {
         Some(video) => video.add(&render.image, &options)?,
         None => write_file(&job.output, &render.image.encode(job.format, &channels, &options)?)?,
     }
-    Summary::new(job, prepared, render, &options).report(job.report, &mut session.notices);
+    Summary::new(job, prepared, render, judged, &options).report(job.report, &mut session.notices);
     Ok(())
 }
 
@@ -250,12 +259,18 @@ fn trace(
     let options = Options {
         tracer: job.tracer,
         region: Some(prepared.region),
-        statistics: layers::need_statistics(job),
+        statistics: layers::need_statistics(job) || prepared.denoise.is_some(),
         cancel: Some(signals::stop()),
         ..Options::default()
     };
     signals::catch();
     let (world, settings) = (&prepared.world, &prepared.scene.settings);
+    let denoiser = prepared
+        .denoise
+        .map(|choice| Denoiser::new(world, settings, &options, choice))
+        .transpose()?;
+    let judge = |film: &Film| denoiser.as_ref().and_then(|denoiser| denoiser.judge(film));
+    let options = Options { judge: denoiser.is_some().then_some(&judge as &Judge), ..options };
     let begin = || ResumableRender::begin_part(world, settings, &options, prepared.part.clone());
     let mut render = unfinished.map_or_else(begin, Ok)?;
     let caption = part::caption(job, prepared);
@@ -288,7 +303,8 @@ fn trace(
     };
     meter.finish();
     let resume_command = writer.filter(|_| kept).map(CheckpointWriter::resume_command);
-    Ok(Traced { render, signal, resume_command })
+    let judged = denoiser.and_then(|denoiser| denoiser.finish(render.film()));
+    Ok(Traced { render, judged, signal, resume_command })
 }
 
 impl Traced {

@@ -3,6 +3,7 @@
 use super::prepare::Prepared;
 use crate::cli::output;
 use serde::Serialize;
+use spherule_render::denoise::Judged;
 use spherule_render::film::Region;
 use spherule_render::noise::CONFIDENCE;
 use spherule_render::render::{End, Render, Samples};
@@ -16,6 +17,10 @@ pub(super) struct NoiseSummary {
     confidence: f64,
     /// Fraction of the squared error that no probe has found.
     expected_share: f64,
+    /// True if the image was denoised; then the error is that of the denoised image.
+    denoised: bool,
+    /// Estimated error without denoising.
+    error_before_denoising: Option<f64>,
     ended_by: &'static str,
     rounds: u32,
     least_samples: u32,
@@ -24,14 +29,21 @@ pub(super) struct NoiseSummary {
 }
 
 impl NoiseSummary {
-    pub(super) fn new(prepared: &Prepared, render: &Render) -> Option<Self> {
+    pub(super) fn new(
+        prepared: &Prepared,
+        render: &Render,
+        judged: Option<&Judged>,
+    ) -> Option<Self> {
         let Region { width, height, .. } = prepared.region;
         let Samples { total, least, most, rounds } = render.samples;
-        render.noise.map(|noise| Self {
+        let denoised = judged.filter(|judged| judged.denoised.is_some());
+        judged.map(|judged| judged.noise).or(render.noise).map(|noise| Self {
             error: noise.error,
             bound: noise.bound,
             confidence: CONFIDENCE,
             expected_share: noise.expected,
+            denoised: denoised.is_some(),
+            error_before_denoising: denoised.map(|judged| judged.before.error),
             ended_by: match render.end {
                 End::Samples => "samples",
                 End::Error => "error",
@@ -48,8 +60,11 @@ impl NoiseSummary {
     /// Formats the estimate as a line.
     pub(super) fn print(&self) {
         let percent = |fraction: f64| two_digits(100.0 * fraction);
+        let before = self
+            .error_before_denoising
+            .map_or_else(String::new, |before| format!(", denoised from {} %", percent(before)));
         output::print(format_args!(
-            "error   {} % (below {} % with {:.0} % confidence), {} samples per pixel ({} to {})",
+            "error   {} % (below {} % with {:.0} % confidence){before}, {} samples per pixel ({} to {})",
             percent(self.error),
             percent(self.bound),
             100.0 * self.confidence,
@@ -67,9 +82,18 @@ impl NoiseSummary {
 }
 
 /// Returns a warning if the render ended without reaching the target.
-pub(super) fn missed(render: &Render, settings: &Settings) -> Option<String> {
+pub(super) fn missed(
+    render: &Render,
+    judged: Option<&Judged>,
+    settings: &Settings,
+) -> Option<String> {
     let target = settings.until_error.filter(|_| render.end == End::Samples)?;
-    let bound = render.noise.map(|noise| noise.bound).filter(|bound| *bound > target)?;
+    let noise = judged.map(|judged| judged.noise).or(render.noise);
+    let bound = noise.map(|noise| noise.bound).filter(|bound| *bound > target)?;
+    if !settings.stop_given {
+        // The limit is the program's own.
+        return None;
+    }
     Some(format!(
         "the error is at most {} % instead of {} %: {} samples per pixel are too few; increase --spp",
         two_digits(100.0 * bound),

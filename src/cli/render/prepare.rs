@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
-use super::{appearance, metadata, part, visibility};
+use super::{appearance, metadata, part, stop, visibility};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -13,6 +13,7 @@ use crate::cli::source::Source;
 use glam::DVec3;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
+use spherule_render::denoise::Choice;
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
@@ -47,6 +48,8 @@ pub(super) struct Prepared {
     looks: Option<Vec<(String, String)>>,
     /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
+    /// Whether and when the image is denoised.
+    pub(super) denoise: Option<Choice>,
     /// Warnings about the input.
     pub(super) warnings: Vec<String>,
     /// Reason why the image shows no sphere, if it shows none.
@@ -92,6 +95,8 @@ pub(super) struct PlacedScene {
     pub(super) region: Region,
     /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
+    /// Whether and when the image is denoised.
+    pub(super) denoise: Option<Choice>,
     /// The world, if the scene is a prepared one.
     pub(super) stored: Option<Box<PreparedScene>>,
     load: Duration,
@@ -114,9 +119,11 @@ impl PlacedScene {
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
         }
+        let spheres = scene.spheres.len();
+        let denoise = stop::choose(job, &mut scene.settings, region, spheres)?;
         let asked = job.checkpoints.file().is_some() || job.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
-        Ok(Self { scene, legend, region, identity, stored: None, load })
+        Ok(Self { scene, legend, region, identity, denoise, stored: None, load })
     }
 
     /// Opens a prepared scene, and applies the job's settings.
@@ -135,16 +142,19 @@ impl PlacedScene {
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
         }
+        let denoise = stop::choose(job, &mut scene.settings, region, stored.sphere_count())?;
         let identity = Some(stored.identity.clone());
-        Ok(Self { scene, legend: None, region, identity, stored: Some(Box::new(stored)), load })
+        let stored = Some(Box::new(stored));
+        Ok(Self { scene, legend: None, region, identity, denoise, stored, load })
     }
 
     /// Builds the world, unless its estimated memory exceeds the limit.
     pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
-        let Self { mut scene, legend, region, identity, stored, load } = self;
+        let Self { mut scene, legend, region, identity, denoise, stored, load } = self;
         let image_part = part::image_part(job, region, &scene)?;
-        let estimate =
-            Estimate::new(&scene, region, job).of_tiles(image_part.tiles.len()).check()?;
+        let estimate = Estimate::new(&scene, region, job, denoise.is_some())
+            .of_tiles(image_part.tiles.len())
+            .check()?;
         let start = Instant::now();
         let name = || job.source.name().into_owned();
         let mut looks = None;
@@ -182,6 +192,7 @@ impl PlacedScene {
             legend,
             looks,
             identity,
+            denoise,
             warnings,
             empty,
         })

@@ -14,6 +14,7 @@ use crate::cli::settings::{self, List};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::bvh::builders::Builder;
+use spherule_render::denoise::Judged;
 use spherule_render::image::WriteOptions;
 use spherule_render::integrator::clock::{Stage, Times};
 use spherule_render::integrator::counters::Counters;
@@ -98,12 +99,13 @@ impl<'a> Summary<'a> {
         job: &Job,
         prepared: &'a Prepared,
         render: &Render,
+        judged: Option<&Judged>,
         options: &WriteOptions,
     ) -> Self {
         let mut listed = settings::list(&prepared.scene.settings, prepared.region);
         listed.extend(settings::list_encoding(job.format, options));
         let mut new_warnings = warnings(&render.counters, &prepared.scene.settings);
-        new_warnings.extend(missed(render, &prepared.scene.settings));
+        new_warnings.extend(missed(render, judged, &prepared.scene.settings));
         let known = prepared.warnings.iter().chain(&prepared.empty);
         Self {
             program: "spherule",
@@ -114,7 +116,7 @@ impl<'a> Summary<'a> {
             settings: listed,
             tracer: TracerSummary::new(job, prepared.builder),
             statistics: Statistics::new(prepared, render),
-            noise: NoiseSummary::new(prepared, render),
+            noise: NoiseSummary::new(prepared, render, judged),
             found: found(&prepared.world),
             skipped: prepared.world.features.skipped(),
             notes: &prepared.notes,

@@ -13,7 +13,7 @@ mod tile;
 
 pub use chance::{ChanceLight, ChanceVariance, Term};
 pub use exact::ExactSums;
-pub use probes::{Density, Pilot, Probes, Reading, Role};
+pub use probes::{Density, Pilot, ProbePair, Probes, Reading, Role};
 pub(crate) use saved::TileHeader;
 pub use sums::Sums;
 pub use tile::{TILE, Tile, View};

@@ -75,6 +75,19 @@ pub struct Pilot {
     pub variance: f64,
 }
 
+/// A probe's pixel and the means of its two streams.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProbePair {
+    /// Column of the picture.
+    pub x: u32,
+    /// Row of the picture.
+    pub y: u32,
+    /// Number of pixels that the probe represents.
+    pub weight: f64,
+    /// Mean radiance of each stream, by channel.
+    pub means: [[f64; 3]; PAIR],
+}
+
 /// The reading of one probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
@@ -146,6 +159,15 @@ impl Probes {
         self.rays += other.rays;
         self.chance.merge(&other.chance);
         self.list.len() == other.list.len() && self.sums.merge(&other.sums)
+    }
+
+    /// Returns the pixels and means of the probes of one role.
+    pub fn pairs(&self, role: Role) -> impl Iterator<Item = ProbePair> + '_ {
+        let means: Vec<_> = self.sums.means(self.samples).collect();
+        (role as usize..self.list.len()).step_by(2).map(move |index| {
+            let Probe { x, y, weight } = self.list[index];
+            ProbePair { x, y, weight, means: [means[PAIR * index], means[PAIR * index + 1]] }
+        })
     }
 
     /// Returns the readings of the probes of one role.

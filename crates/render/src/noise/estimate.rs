@@ -1,6 +1,7 @@
 //! Estimates of the error of a picture, from probes.
 
 use crate::film::{Film, Pilot, Reading, Role, Tile};
+use crate::image::Image;
 use std::ops::Add;
 
 /// Minimum fraction of renders whose error is below [`Noise::bound`].
@@ -52,21 +53,23 @@ impl Noise {
     /// radiance. A picture without error has an error of 0 even if it is black.
     pub fn new(squared: SquaredError, pixels: u64, mean: Estimate) -> Self {
         let SquaredError { all: squared, expected } = squared;
-        if squared.value == 0.0 {
+        if squared.value == 0.0 && squared.variance == 0.0 {
             return Self { error: 0.0, bound: 0.0, expected: 0.0 };
         }
-        let expected = expected / squared.value;
+        // An estimate from products of two signs may be below 0 by chance.
+        let value = squared.value.max(0.0);
+        let expected = if value > 0.0 { expected / value } else { 0.0 };
         if mean.value == 0.0 {
             return Self { error: f64::INFINITY, bound: f64::INFINITY, expected };
         }
-        let ratio = squared.value / pixels as f64 / mean.value.powi(2);
-        // Relative variances of the sum and of the squared mean.
-        let variance =
-            squared.variance / squared.value.powi(2) + 4.0 * mean.variance / mean.value.powi(2);
+        let relative = |squared: f64| (squared / pixels as f64).sqrt() / mean.value;
+        // The variances of the sum and of the squared mean.
+        let of_mean = 4.0 * mean.variance / mean.value.powi(2);
+        let deviation = (squared.variance + value * value * of_mean).sqrt();
         // Skewness correction of Cornish and Fisher, for terms of which few are large.
-        let skew = squared.third / squared.variance.max(f64::MIN_POSITIVE) / squared.value;
-        let bound = ratio * (1.0 + DEVIATIONS * variance.sqrt() + SKEW * skew);
-        Self { error: ratio.sqrt(), bound: bound.sqrt(), expected }
+        let skew = squared.third / squared.variance.max(f64::MIN_POSITIVE);
+        let bound = value + DEVIATIONS * deviation + SKEW * skew;
+        Self { error: relative(value), bound: relative(bound), expected }
     }
 }
 
@@ -110,6 +113,13 @@ pub fn squared_error(film: &Film) -> SquaredError {
     let readings = film.tiles.iter().flat_map(|tile| tile.probes.readings(Role::Judge));
     let measured =
         readings.map(|reading| Estimate::of_squared(&reading)).fold(Estimate::default(), Add::add);
+    let missing = missing(film);
+    SquaredError { all: measured + missing, expected: missing.value }
+}
+
+/// Estimates the part of the sum of squared errors that is due to light which near misses predict and judging probes
+/// have not found.
+pub fn missing(film: &Film) -> Estimate {
     let (mut expected, mut found, mut variance) = (0.0, 0.0, 0.0);
     for tile in &film.tiles {
         let (chance, pixels) = (tile.probes.chance_variance(Role::Judge), f64::from(tile.len()));
@@ -120,8 +130,29 @@ pub fn squared_error(film: &Film) -> SquaredError {
     }
     let missing = f64::max(expected - found, 0.0);
     let variance = if missing > 0.0 { variance } else { 0.0 };
-    let chance = Estimate { value: missing, variance, third: 0.0 };
-    SquaredError { all: measured + chance, expected: missing }
+    Estimate { value: missing, variance, third: 0.0 }
+}
+
+/// Estimates the sum of the squared errors of any image of the film's region that does not depend on the samples of its
+/// probes of this role.
+///
+/// The two streams of a probe are independent, so the product of their differences from the image's pixel is an
+/// unbiased estimate of its squared error. Single products, and even their sum, may be negative.
+pub fn squared_error_of(film: &Film, image: &Image, role: Role) -> Estimate {
+    let pairs = film.tiles.iter().flat_map(|tile| tile.probes.pairs(role));
+    let products = pairs.map(|pair| {
+        let (x, y) = (pair.x - film.region.x, pair.y - film.region.y);
+        let pixel = image.pixels[y as usize * image.width as usize + x as usize];
+        let [a, b] = pair.means;
+        let product = |channel: usize| {
+            let pixel = f64::from(pixel[channel]);
+            (pixel - a[channel]) * (pixel - b[channel])
+        };
+        let value = pair.weight * (0..3).map(product).sum::<f64>() / 3.0;
+        // Products of both signs: their third moments cancel, or add to the upper tail.
+        Estimate { value, variance: value * value, third: value.powi(3).max(0.0) }
+    });
+    products.fold(Estimate::default(), Add::add)
 }
 
 /// Estimates the mean radiance over pixels and channels from pilot and probes, independently of the

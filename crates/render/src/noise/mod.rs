@@ -48,7 +48,10 @@ mod estimate;
 mod plan;
 mod stop_condition;
 
-pub use estimate::{CONFIDENCE, Estimate, Noise, SquaredError, gain, mean_radiance, squared_error};
+pub use estimate::{
+    CONFIDENCE, Estimate, Noise, SquaredError, gain, mean_radiance, missing, squared_error,
+    squared_error_of,
+};
 pub use plan::{Slope, next_round, steering_variance, work};
 pub(crate) use stop_condition::FIRST_SAMPLES;
 pub use stop_condition::StopCondition;

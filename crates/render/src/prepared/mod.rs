@@ -62,6 +62,11 @@ pub struct PreparedScene {
 }
 
 impl PreparedScene {
+    /// Returns the number of spheres.
+    pub fn sphere_count(&self) -> usize {
+        self.parts.spheres.len()
+    }
+
     /// Builds the world of the prepared scene.
     ///
     /// # Errors

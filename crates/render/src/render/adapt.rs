@@ -23,6 +23,8 @@ const CLOCK_CHECKS: (f64, f64) = (0.02, 0.1);
 /// Renders until the target is met.
 pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) -> End {
     start(job, state, stop, watch);
+    let judge = watch.judge().filter(|_| stop.until_error.is_some());
+    let mut judged = None;
     let pause = stop.time.map(|time| (CLOCK_CHECKS.0 * time.as_secs_f64()).max(CLOCK_CHECKS.1));
     loop {
         if watch.cancelled() {
@@ -35,7 +37,14 @@ pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Wa
             return End::Time;
         }
         if state.plan.is_empty() {
-            let noise = state.noise(stop.until_error.is_some());
+            let noise = match judge {
+                Some(judge) => judge(&state.film),
+                None => state.noise(stop.until_error.is_some()),
+            };
+            judged = noise;
+            if watch.cancelled() {
+                return End::Cancelled;
+            }
             if noise.is_some_and(|noise| stop.is_met(noise, state.least_samples(), state.round)) {
                 return End::Error;
             }
@@ -43,7 +52,8 @@ pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Wa
                 return End::Samples;
             }
         }
-        refine(job, state, stop, watch, pause);
+        let noise = if judge.is_some() { judged } else { state.noise(stop.until_error.is_some()) };
+        refine(job, state, (stop, noise), watch, pause);
     }
 }
 
@@ -77,8 +87,13 @@ fn start(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) {
 }
 
 /// Makes the next steps of the plan: all of them, or as many as fit into an interval.
-fn refine(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch, pause: Option<f64>) {
-    let noise = state.noise(stop.until_error.is_some());
+fn refine(
+    job: &Job,
+    state: &mut State,
+    (stop, noise): (&StopCondition, Option<Noise>),
+    watch: &Watch,
+    pause: Option<f64>,
+) {
     let spent = state.work();
     let rate = spent / watch.elapsed().as_secs_f64();
     let mut budget = pause.filter(|_| spent > 0.0).map_or(f64::INFINITY, |pause| pause * rate);

@@ -34,11 +34,11 @@ pub use tasks::Tasks;
 pub use watch::Totals;
 
 use self::pass::PASS;
-use crate::film::Region;
+use crate::film::{Film, Region};
 use crate::image::Image;
 use crate::integrator::clock::Times;
 use crate::integrator::counters::Counters;
-use crate::noise::{Noise, StopCondition};
+use crate::noise::{self, Noise, StopCondition};
 use crate::scene::Settings;
 use crate::trace::Tracer;
 use crate::world::World;
@@ -61,9 +61,17 @@ pub struct Options<'a> {
     pub cancel: Option<&'a AtomicBool>,
     /// True if [`Render::statistics`] are computed, which needs probes and so takes time.
     pub statistics: bool,
+    /// Estimates the error that is compared with the target, in place of that of the picture itself:
+    /// that of the denoised picture, say. `None` from it stands for an estimate that was cancelled.
+    ///
+    /// It must be a function of the film and the scene alone.
+    pub judge: Option<&'a Judge<'a>>,
     /// Work that may be omitted without changing the image; the default is all.
     pub elisions: Elisions,
 }
+
+/// An estimate of an error from a film: see [`Options::judge`].
+pub type Judge<'a> = dyn Fn(&Film) -> Option<Noise> + Sync + 'a;
 
 /// Progress of a render.
 #[derive(Clone, Copy, Debug)]
@@ -129,6 +137,14 @@ pub struct Statistics {
     pub variance: Image,
     /// Number of samples.
     pub samples: Vec<u32>,
+}
+
+impl Statistics {
+    /// Returns the statistics of a film with sums of squares.
+    pub fn of(film: &Film) -> Self {
+        let variance = film.variance(|tile| noise::gain(film, tile));
+        Self { variance, samples: film.samples() }
+    }
 }
 
 /// Renders `world` with the threads of the current rayon pool.

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::film::{Film, Region};
 use crate::integrator::Job;
-use crate::noise::{self, FIRST_SAMPLES, StopCondition};
+use crate::noise::{FIRST_SAMPLES, StopCondition};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::trace::Traversal;
@@ -171,10 +171,7 @@ impl ResumableRender {
     /// Returns the image so far with its statistics.
     pub fn render(&self) -> Render {
         let (film, settings) = (&self.state.film, &self.settings);
-        let statistics = self.statistics.then(|| Statistics {
-            variance: film.variance(|tile| noise::gain(film, tile)),
-            samples: film.samples(),
-        });
+        let statistics = self.statistics.then(|| Statistics::of(film));
         let measured = settings.has_target() || self.statistics;
         let Totals { counters, times, tasks, elapsed } = self.totals;
         Render {

@@ -2,7 +2,7 @@
 
 use super::schedule::Pass;
 use super::tasks::Tasks;
-use super::{Options, Progress};
+use super::{Judge, Options, Progress};
 use crate::integrator::clock::Times;
 use crate::integrator::counters::Counters;
 use crate::integrator::workspace::Workspace;
@@ -55,6 +55,11 @@ impl<'a> Watch<'a> {
             rays: AtomicU64::new(totals.counters.rays()),
             totals: Mutex::new(*totals),
         }
+    }
+
+    /// Returns the estimate that is compared with the target, if it is not that of the picture itself.
+    pub(super) fn judge(&self) -> Option<&'a Judge<'a>> {
+        self.options.judge
     }
 
     /// Returns the rendering time, without interruptions.

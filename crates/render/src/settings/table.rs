@@ -5,7 +5,8 @@
 //! rows.
 
 use super::{
-    Filter, Integrator, InvalidSetting, LightChoice, Limits, Roulette, SamplerKind, Settings, Tone,
+    Denoise, Filter, Integrator, InvalidSetting, LightChoice, Limits, Roulette, SamplerKind,
+    Settings, Tone,
 };
 use std::fmt::{self, Display};
 use std::mem::discriminant;
@@ -183,6 +184,17 @@ pub const TONES: Names<Tone> = Names(&[
     ("filmic", Tone::Filmic, "Filmic curve that compresses highlights"),
 ]);
 
+/// Kinds of denoising.
+const DENOISE: Names<Denoise> = Names(&[
+    (
+        "auto",
+        Denoise::Auto,
+        "Unless samples or an error are chosen, and only if that lowers the measured error",
+    ),
+    ("on", Denoise::On, "Always; an error target is then that of the denoised image"),
+    ("off", Denoise::Off, "Never"),
+]);
+
 /// Samples per pixel, or per light.
 const SAMPLES: Kind =
     whole(*Settings::SAMPLES.start() as u64, *Settings::SAMPLES.end() as u64, &[]);
@@ -235,6 +247,16 @@ pub const SETTINGS: &[Setting] = &[
         set: |settings, value| {
             settings.time = value.optional_number().map(Duration::from_secs_f64);
         },
+    },
+    Setting {
+        name: "denoise",
+        help: "Denoise the finished image",
+        kind: Kind::Choice(|| DENOISE.list()),
+        scope: Scope::All,
+        need: Need::Nothing,
+        role: Role::Stop,
+        get: |settings| Value::Word(DENOISE.name(&settings.denoise)),
+        set: |settings, value| settings.denoise = value.named(&DENOISE),
     },
     Setting {
         name: "depth",
@@ -582,7 +604,11 @@ pub fn manual() -> String {
             Value::None => "none".to_owned(),
             Value::Word(word) => format!("`\"{word}\"`"),
             Value::Whole(16) if *name == "spp" => {
-                format!("16; {} if an error or a time stops the render", Settings::HARD_SAMPLES)
+                format!(
+                    "{} if an error or a time stops the render; if neither is given, [the error of the denoised \
+                     image](../docs/long-renders.md#when-nothing-is-said), or 16 without denoising",
+                    Settings::HARD_SAMPLES
+                )
             }
             value => format!("`{value}`"),
         };
@@ -657,13 +683,16 @@ mod tests {
             caustics,
             exposure,
             tone,
+            denoise,
+            // Follows from others.
+            stop_given: _,
         } = all;
         assert!((width, height) == (17, 19) && spp != usual.spp && seed != usual.seed);
         assert!(until_error.is_some() && time.is_some() && depth.is_some());
         assert!(integrator != usual.integrator && sampler != usual.sampler);
         assert!(filter != usual.filter && roulette != usual.roulette && tone != usual.tone);
         assert!(light_choice != usual.light_choice && caustics != usual.caustics);
-        assert!(exposure != usual.exposure);
+        assert!(exposure != usual.exposure && denoise != usual.denoise);
     }
 
     #[test]

@@ -15,6 +15,7 @@ pub(super) fn read(block: &Block) -> Result<Settings, FileError> {
             setting.set(&mut settings, read_value(&value, &setting.kind)?);
         }
     }
+    settings.stop_given = ["spp", "until_error", "time"].into_iter().any(|name| block.has(name));
     if settings.has_target() && !block.has("spp") {
         settings.spp = Settings::HARD_SAMPLES;
     }

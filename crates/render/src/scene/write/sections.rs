@@ -12,10 +12,17 @@ pub(super) fn render(settings: &Settings) -> String {
     let line = |setting: &Setting| match setting.get(settings) {
         // Without the key there is no limit.
         Value::None | Value::Word("inf") => String::new(),
+        // Nor does it decide when the render stops.
+        _ if setting.name == "spp" && is_undecided(settings) => String::new(),
         Value::Word(word) => format!("{} = \"{word}\"\n", setting.name),
         value => format!("{} = {value}\n", setting.name),
     };
     format!("[render]\n{}\n", SETTINGS.iter().map(line).collect::<String>())
+}
+
+/// Returns whether it is left to the program when a render stops.
+fn is_undecided(settings: &Settings) -> bool {
+    !settings.stop_given && !settings.has_target() && settings.spp == Settings::default().spp
 }
 
 pub(in crate::scene) fn camera(camera: &Camera) -> String {

@@ -1,0 +1,162 @@
+//! Columns of a tile's pixels and of those around it, for the regression.
+
+use super::regression::REGRESSORS;
+use super::tile::Input;
+use crate::film::Region;
+use crate::layers::Features;
+
+/// Columns and rows of pixels around a tile that its result depends on, and a few columns more, so that rows of lanes
+/// fit.
+pub(super) const MARGIN: [usize; 2] = [16, 11];
+
+/// Least albedo that radiance is divided by: darker surfaces reflect too little light for a ratio.
+const MIN_ALBEDO: f32 = 0.02;
+
+/// Weight of a pixel with average variance over that of one without. Pixels of higher variance than their neighbors
+/// are rare paths of much light, which would show as stains.
+const OUTLIERS: f32 = 4.0;
+
+/// Distance within which the variance of neighbors is averaged.
+const VARIANCE_RADIUS: usize = 3;
+
+/// Pixels of a tile and its margins, row by row. Pixels outside of the picture have no weight.
+#[derive(Debug, Default)]
+pub(super) struct Columns {
+    /// Number of pixels in a row, margins included.
+    pub(super) stride: usize,
+    pub(super) rows: usize,
+    /// Normal and coverage.
+    pub(super) features: [Vec<f32>; REGRESSORS - 1],
+    /// The sphere at the pixel's center.
+    pub(super) id: Vec<f32>,
+    /// Mean albedo; 1 for the background, whose radiance is its color.
+    pub(super) albedo: [Vec<f32>; 3],
+    /// Mean radiance over albedo.
+    pub(super) irradiance: [Vec<f32>; 3],
+    /// Variance of the same.
+    pub(super) variance: [Vec<f32>; 3],
+    /// Reliability of the pixel: 0 outside of the picture, 1 without noise.
+    pub(super) weight: Vec<f32>,
+    /// Variance over channels.
+    mean_variance: Vec<f32>,
+    /// Number of pixels: 1 inside of the picture.
+    inside: Vec<f32>,
+    /// Sums over windows.
+    sums: [Vec<f32>; 2],
+    scratch: Vec<f32>,
+}
+
+impl Columns {
+    /// Returns the index of a tile's first pixel.
+    pub(super) fn origin(&self) -> usize {
+        MARGIN[1] * self.stride + MARGIN[0]
+    }
+
+    /// Fills the columns with the pixels of a tile, at most `width` wide, and those around it.
+    pub(super) fn fill(&mut self, input: &Input, tile: Region, width: usize) {
+        (self.stride, self.rows) = (width + 2 * MARGIN[0], tile.height as usize + 2 * MARGIN[1]);
+        let count = self.stride * self.rows;
+        let columns = [&mut self.id, &mut self.weight, &mut self.mean_variance, &mut self.inside];
+        let columns = columns.into_iter().chain(&mut self.features).chain(&mut self.albedo);
+        for column in columns.chain(&mut self.irradiance).chain(&mut self.variance) {
+            column.clear();
+            column.resize(count, 0.0);
+        }
+        let (image_width, image_height) = (input.image.width as usize, input.image.height as usize);
+        let (left, top) = (tile.x as usize, tile.y as usize);
+        let columns = left.saturating_sub(MARGIN[0])..(left + width + MARGIN[0]).min(image_width);
+        let rows = top.saturating_sub(MARGIN[1])..(top + self.rows - MARGIN[1]).min(image_height);
+        for y in rows {
+            for x in columns.clone() {
+                let at = (y + MARGIN[1] - top) * self.stride + x + MARGIN[0] - left;
+                self.set(at, input, y * image_width + x);
+            }
+        }
+        self.weigh();
+    }
+
+    /// Sets pixel `at` to that of the picture.
+    fn set(&mut self, at: usize, input: &Input, pixel: usize) {
+        let features: &Features = &input.features[pixel];
+        let [x, y, z] = features.normal;
+        for (column, feature) in self.features.iter_mut().zip([x, y, z, features.coverage]) {
+            column[at] = feature;
+        }
+        // Compared by its bits only.
+        self.id[at] = f32::from_bits(features.id);
+        let mut sum = 0.0;
+        for channel in 0..3 {
+            let albedo = (features.albedo[channel] + 1.0 - features.coverage).max(MIN_ALBEDO);
+            let variance = input.variance.pixels[pixel][channel] / (albedo * albedo);
+            self.albedo[channel][at] = albedo;
+            self.irradiance[channel][at] = input.image.pixels[pixel][channel] / albedo;
+            self.variance[channel][at] = variance;
+            sum += variance;
+        }
+        self.mean_variance[at] = sum / 3.0;
+        self.inside[at] = 1.0;
+    }
+
+    /// Computes the weights, by the variance of each pixel beside that of its neighbors.
+    fn weigh(&mut self) {
+        let [variance, count] = &mut self.sums;
+        for (sums, values) in [(&mut *variance, &self.mean_variance), (&mut *count, &self.inside)] {
+            box_sums(values, self.stride, VARIANCE_RADIUS, sums, &mut self.scratch);
+        }
+        let around = variance.iter().zip(count.iter());
+        let pixels = self.inside.iter().zip(&self.mean_variance).zip(around);
+        for (weight, ((&inside, &variance), (&sum, &count))) in self.weight.iter_mut().zip(pixels) {
+            let usual = OUTLIERS * sum / count.max(1.0) + f32::MIN_POSITIVE;
+            *weight = inside * usual / (usual + variance);
+        }
+    }
+}
+
+/// Computes the sums over squares of `2 radius + 1` pixels, of rows of `stride` pixels. Those nearer than `radius` to a
+/// side are undefined.
+pub(super) fn box_sums(
+    values: &[f32],
+    stride: usize,
+    radius: usize,
+    sums: &mut Vec<f32>,
+    scratch: &mut Vec<f32>,
+) {
+    add_shifted(values, radius, 1, scratch);
+    add_shifted(scratch, radius, stride, sums);
+}
+
+/// Computes the sums of `2 radius + 1` values, each `step` apart. At the ends, where there are fewer, they are 0.
+fn add_shifted(values: &[f32], radius: usize, step: usize, sums: &mut Vec<f32>) {
+    let span = 2 * radius * step;
+    sums.clear();
+    sums.resize(values.len(), 0.0);
+    let Some(count) = values.len().checked_sub(span) else { return };
+    for shift in 0..=2 * radius {
+        let shifted = &values[shift * step..][..count];
+        for (sum, value) in sums[radius * step..][..count].iter_mut().zip(shifted) {
+            *sum += value;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn box_sums_are_those_of_squares() {
+        let (stride, rows) = (9, 8);
+        let values: Vec<f32> = (0..stride * rows).map(|i| (i * i % 17) as f32).collect();
+        let (mut sums, mut scratch) = (Vec::new(), Vec::new());
+        for radius in [0, 1, 3] {
+            box_sums(&values, stride, radius, &mut sums, &mut scratch);
+            for (y, x) in
+                (radius..rows - radius).flat_map(|y| (radius..stride - radius).map(move |x| (y, x)))
+            {
+                let window = (y - radius..=y + radius)
+                    .flat_map(|v| values[v * stride + x - radius..=v * stride + x + radius].iter());
+                assert_eq!(sums[y * stride + x], window.sum::<f32>(), "{radius} {x} {y}");
+            }
+        }
+    }
+}

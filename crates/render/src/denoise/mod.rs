@@ -1,0 +1,120 @@
+//! Denoising: local regression of radiance on features that have no noise of light.
+//!
+//! # The filter
+//!
+//! Within a small window, irradiance is nearly a linear function of the normal and of the fraction of the pixel that
+//! is covered. So each pixel is replaced by the prediction of a weighted linear regression on its neighbors (Moon et
+//! al., "Adaptive Rendering Based on Weighted Local Regression", TOG 2014; Bitterli et al., "Nonlinearly Weighted
+//! First-Order Regression for Denoising Monte Carlo Renderings", CGF 2016). Radiance is divided by the albedo before,
+//! and multiplied by it after, so that colors are not blurred. Features come from camera rays of the picture's own
+//! samples, so they have its silhouettes, including its lens blur and pixel filter.
+//!
+//! # The choice of the window
+//!
+//! Each pixel has a prediction for each of three windows, and stays as it is where none is better. The squared error
+//! of a prediction that is linear in the radiance is estimated without a reference (Stein, "Estimation of the Mean of
+//! a Multivariate Normal Distribution", 1981; Li et al., "SURE-Based Optimization for Adaptive Sampling and
+//! Reconstruction", TOG 2012):
+//!
+//! ```text
+//! (prediction - mean)^2 + (2 leverage - 1) variance of the mean
+//! ```
+//!
+//! where the leverage is the derivative of the prediction by the pixel's own mean. The window with the least error,
+//! averaged over neighbors, is taken. As samples increase, the variance vanishes, and with it the denoising.
+//!
+//! # The stated error
+//!
+//! The error above chooses, but does not judge. The error of the denoised picture, bias included, is measured by
+//! [`Probes`](crate::film::Probes): the means `a` and `b` of a probe's two streams are independent of each other and of
+//! the denoised pixel `d`, so the expectation of `(d - a)(d - b)` is the squared error of `d`.
+//! [`crate::noise`] has the bound.
+
+mod columns;
+mod regression;
+mod target;
+mod tile;
+
+pub use target::{Choice, Denoiser, Judged, MAX_ERROR, max_samples};
+
+use self::tile::{Workspace, tiles};
+use crate::film::{Film, Region, Role};
+use crate::image::Image;
+use crate::layers::Layers;
+use crate::noise::{self, Noise};
+use crate::render::Statistics;
+use rayon::prelude::*;
+
+/// A denoised picture, or a region of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Denoised {
+    /// Radiance.
+    pub image: Image,
+    /// Estimated squared error of each pixel, averaged over channels, row by row. Those of single pixels are
+    /// uncertain: means over many are meant.
+    pub squared_error: Vec<f32>,
+}
+
+/// Denoises a picture, by the variance of its pixels and their features. All three must have the same size.
+///
+/// The result has the same bytes for any number of threads. Pixels depend on others up to seven pixels away.
+///
+/// # Panics
+/// The sizes differ.
+pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoised {
+    let (width, height) = (image.width, image.height);
+    let pixels = image.pixels.len();
+    assert_eq!((layers.width, layers.height), (width, height), "layers of another size");
+    assert!(statistics.variance.pixels.len() == pixels && layers.pixels.len() == pixels);
+    let input = tile::Input {
+        image,
+        variance: &statistics.variance,
+        features: &layers.pixels,
+        // The unit of relative errors, so that a picture of another brightness is treated alike.
+        floor: mean_square(image),
+    };
+    let regions: Vec<Region> = tiles(width, height).collect();
+    let done: Vec<_> = regions
+        .into_par_iter()
+        .map_init(Workspace::default, |work, region| (region, work.denoise(&input, region)))
+        .collect();
+    let mut denoised = Denoised { image: image.clone(), squared_error: vec![0.0; pixels] };
+    for (region, pixels) in done {
+        let rows = pixels.chunks(region.width as usize).zip(region.y..);
+        for (row, y) in rows {
+            let first = (y * width + region.x) as usize;
+            for (at, &(radiance, squared_error)) in (first..).zip(row) {
+                denoised.image.pixels[at] = radiance;
+                denoised.squared_error[at] = squared_error;
+            }
+        }
+    }
+    denoised
+}
+
+/// Returns whether denoising lowered the error of a picture of this film, by its steering probes.
+pub fn is_better(film: &Film, image: &Image, denoised: &Image) -> bool {
+    let error = |image| noise::squared_error_of(film, image, Role::Steer).value;
+    error(denoised) < error(image)
+}
+
+/// Estimates the relative error of an image of the film's region that depends on the film's own samples, but not on its
+/// judging probes.
+pub fn error_of(film: &Film, image: &Image) -> Noise {
+    let mean = noise::Estimate { value: film.mean(), ..noise::Estimate::default() };
+    let measured = noise::squared_error_of(film, image, Role::Judge);
+    // Light that neither samples nor probes have found is missing in the denoised picture, too.
+    let missing = noise::missing(film);
+    let all = measured + missing;
+    let expected = missing.value;
+    Noise::new(noise::SquaredError { all, expected }, film.pixels(), mean)
+}
+
+/// Returns the mean square of the picture's radiance, over pixels and channels.
+fn mean_square(image: &Image) -> f32 {
+    let squares = image.pixels.iter().flatten().map(|&x| f64::from(x).powi(2));
+    (squares.sum::<f64>() / (3 * image.pixels.len()) as f64) as f32
+}
+
+#[cfg(test)]
+mod tests;

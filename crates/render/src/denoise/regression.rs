@@ -1,0 +1,232 @@
+//! Weighted linear regression in square windows: a row of lanes is a row of pixels.
+
+use super::columns::Columns;
+use crate::lanes::Lanes;
+
+/// Number of regressors: a constant, the normal and the coverage.
+pub(super) const REGRESSORS: usize = 5;
+
+/// Radii of the windows.
+pub(super) const RADII: [usize; 2] = [1, 3];
+
+/// Weight of a neighbor of another sphere.
+const OTHER_SPHERE: f32 = 0.5;
+
+/// Variance of a regressor in the window, below which its slope is taken as 0.
+const RIDGE: f32 = 1e-3;
+
+/// The prediction of a window for the pixel in its middle.
+#[derive(Clone, Copy)]
+pub(super) struct Prediction<L> {
+    /// Irradiance, by channel.
+    pub(super) irradiance: [L; 3],
+    /// Derivative of the prediction by the pixel's own irradiance, which is the weight of its own noise.
+    pub(super) leverage: L,
+}
+
+/// Number of pixels in the largest window.
+const PIXELS: usize = (2 * RADII[RADII.len() - 1] + 1).pow(2);
+
+/// Offsets of a window's pixels, from the middle outward.
+static OFFSETS: [[isize; 2]; PIXELS] = {
+    let mut offsets = [[0; 2]; PIXELS];
+    let (mut count, mut radius) = (0, 0);
+    while count < PIXELS {
+        let mut at = 0;
+        while at < (2 * radius + 1) * (2 * radius + 1) {
+            let (x, y): (isize, isize) =
+                (at % (2 * radius + 1) - radius, at / (2 * radius + 1) - radius);
+            if x.abs() == radius || y.abs() == radius {
+                offsets[count] = [x, y];
+                count += 1;
+            }
+            at += 1;
+        }
+        radius += 1;
+    }
+    offsets
+};
+
+/// Fits the windows around the pixels from `at` on, one in each lane.
+///
+/// The first pass over a window adds up its normal equations, which give the coefficient of each neighbor's irradiance;
+/// the second applies them. So the sums of a pass stay in registers.
+#[inline(always)]
+pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>; RADII.len()] {
+    let zero = L::splat(0.0);
+    let there = |[x, y]: [isize; 2]| at.wrapping_add_signed(y * columns.stride as isize + x);
+    let middle = columns.features.each_ref().map(|column| L::load(&column[at..]));
+    let id = L::load(&columns.id[at..]);
+    let mut products = [[zero; REGRESSORS]; REGRESSORS];
+    let mut weights = [zero; PIXELS];
+    let mut solutions = [[zero; REGRESSORS]; RADII.len()];
+    let mut first = 0;
+    for (radius, solution) in RADII.iter().zip(&mut solutions) {
+        let end = (2 * radius + 1).pow(2);
+        for (weight, &offset) in weights[first..end].iter_mut().zip(&OFFSETS[first..end]) {
+            let neighbor = there(offset);
+            let differences = differences(columns, &middle, neighbor);
+            *weight = weigh(columns, id, &differences, neighbor);
+            add_products(&mut products, &differences, *weight);
+        }
+        *solution = solve(&products);
+        first = end;
+    }
+    let mut irradiance = [[zero; 3]; RADII.len()];
+    for ((&weight, &offset), place) in weights.iter().zip(&OFFSETS).zip(0..) {
+        let neighbor = there(offset);
+        let differences = differences(columns, &middle, neighbor);
+        let light = columns.irradiance.each_ref().map(|column| L::load(&column[neighbor..]));
+        let windows = RADII.iter().zip(&solutions).zip(&mut irradiance);
+        for ((_, [constant, slopes @ ..]), sums) in
+            windows.filter(|((radius, _), _)| place < (2 * *radius + 1).pow(2))
+        {
+            let mut coefficient = *constant;
+            for (slope, difference) in slopes.iter().zip(&differences) {
+                coefficient = slope.mul_add(*difference, coefficient);
+            }
+            coefficient = coefficient * weight;
+            for (sum, light) in sums.iter_mut().zip(&light) {
+                *sum = coefficient.mul_add(*light, *sum);
+            }
+        }
+    }
+    std::array::from_fn(|window| Prediction {
+        irradiance: irradiance[window],
+        leverage: solutions[window][0] * weights[0],
+    })
+}
+
+/// Returns the differences of a neighbor's features from those of the middle.
+#[inline(always)]
+fn differences<L: Lanes>(
+    columns: &Columns,
+    middle: &[L; REGRESSORS - 1],
+    neighbor: usize,
+) -> [L; REGRESSORS - 1] {
+    let mut differences = *middle;
+    for (difference, column) in differences.iter_mut().zip(&columns.features) {
+        *difference = L::load(&column[neighbor..]) - *difference;
+    }
+    differences
+}
+
+/// Returns the weight of a neighbor, which falls with the distance of its features.
+#[inline(always)]
+fn weigh<L: Lanes>(
+    columns: &Columns,
+    id: L,
+    differences: &[L; REGRESSORS - 1],
+    neighbor: usize,
+) -> L {
+    let one = L::splat(1.0);
+    let mut closeness = one;
+    for &difference in differences {
+        closeness = (-difference).mul_add(difference, closeness);
+    }
+    let closeness = Lanes::max(closeness, L::splat(0.0));
+    let same = L::load(&columns.id[neighbor..]).has_bits_of(id);
+    let sphere = L::select(same, one, L::splat(OTHER_SPHERE));
+    closeness * closeness * sphere * L::load(&columns.weight[neighbor..])
+}
+
+/// Adds a neighbor to the upper triangle of the normal equations.
+#[inline(always)]
+fn add_products<L: Lanes>(
+    products: &mut [[L; REGRESSORS]; REGRESSORS],
+    differences: &[L; REGRESSORS - 1],
+    weight: L,
+) {
+    products[0][0] = products[0][0] + weight;
+    for row in 1..REGRESSORS {
+        let weighted = weight * differences[row - 1];
+        products[0][row] = products[0][row] + weighted;
+        for column in row..REGRESSORS {
+            let sum = &mut products[row][column];
+            *sum = weighted.mul_add(differences[column - 1], *sum);
+        }
+    }
+}
+
+/// Returns the first row of the inverse of the normal equations: the prediction where all differences are 0 has these
+/// coefficients.
+///
+/// By a decomposition into triangles and a diagonal (Golub and Van Loan, "Matrix Computations", 4.1).
+#[inline(always)]
+fn solve<L: Lanes>(products: &[[L; REGRESSORS]; REGRESSORS]) -> [L; REGRESSORS] {
+    let (zero, one, least) = (L::splat(0.0), L::splat(1.0), L::splat(f32::MIN_POSITIVE));
+    let ridge = products[0][0] * L::splat(RIDGE);
+    let mut lower = [[zero; REGRESSORS]; REGRESSORS];
+    let (mut diagonal, mut inverse) = ([zero; REGRESSORS], [one; REGRESSORS]);
+    for row in 0..REGRESSORS {
+        let mut pivot = products[row][row];
+        if row > 0 {
+            pivot = pivot + ridge;
+        }
+        for k in 0..row {
+            pivot = (-lower[row][k] * lower[row][k]).mul_add(diagonal[k], pivot);
+        }
+        diagonal[row] = Lanes::max(pivot, least);
+        inverse[row] = one / diagonal[row];
+        for below in row + 1..REGRESSORS {
+            let mut sum = products[row][below];
+            for k in 0..row {
+                sum = (-lower[below][k] * lower[row][k]).mul_add(diagonal[k], sum);
+            }
+            lower[below][row] = sum * inverse[row];
+        }
+    }
+    let mut solution = [zero; REGRESSORS];
+    solution[0] = one;
+    for row in 1..REGRESSORS {
+        for k in 0..row {
+            solution[row] = (-lower[row][k]).mul_add(solution[k], solution[row]);
+        }
+    }
+    for row in (0..REGRESSORS).rev() {
+        solution[row] = solution[row] * inverse[row];
+        for k in row + 1..REGRESSORS {
+            solution[row] = (-lower[k][row]).mul_add(solution[k], solution[row]);
+        }
+    }
+    solution
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offsets_go_from_the_middle_outward() {
+        for (radius, count) in [(0, 1), (1, 9), (2, 25), (3, 49)] {
+            let near = |offset: &&[isize; 2]| offset.iter().all(|x| x.abs() <= radius);
+            assert_eq!(OFFSETS[..count].iter().filter(near).count(), count);
+        }
+        let mut all = OFFSETS;
+        all.sort_unstable();
+        assert!(all.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+
+    #[test]
+    fn solutions_are_the_first_row_of_the_inverse() {
+        // Sums over some neighbors whose regressors are independent.
+        let mut products = [[0.0_f32; REGRESSORS]; REGRESSORS];
+        let random = |i: u32| (i.wrapping_mul(2_654_435_761) >> 8) as f32 / 4096.0 % 1.0 - 0.5;
+        for i in 0..40 {
+            let differences = std::array::from_fn(|k| random(7 * i + k as u32));
+            add_products(&mut products, &differences, 1.0 + random(i));
+        }
+        let solution = solve(&products);
+        let ridge = products[0][0] * RIDGE;
+        for row in 0..REGRESSORS {
+            let sum: f32 = (0..REGRESSORS)
+                .map(|k| {
+                    let product = products[row.min(k)][row.max(k)];
+                    let product = if row == k && k > 0 { product + ridge } else { product };
+                    product * solution[k]
+                })
+                .sum();
+            assert!((sum - f32::from(u8::from(row == 0))).abs() < 1e-4, "{row} {sum}");
+        }
+    }
+}

@@ -1,0 +1,207 @@
+use super::*;
+use crate::denoise::columns::Columns;
+use crate::denoise::regression::predict;
+use crate::lanes::{F32x16, Lanes, MAX_LANES};
+use crate::layers::{Features, Layer, layers};
+use crate::noise::CONFIDENCE;
+use crate::render::{Options, ResumableRender, render};
+use crate::sampling::{mix, unit};
+use crate::scene::generate::default_scene;
+use crate::scene::{Scene, Settings};
+use crate::world::World;
+
+const WIDTH: u32 = 150;
+const HEIGHT: u32 = 70;
+
+/// Returns a number in -1/2..1/2 for a pixel.
+fn noise_at(pixel: u32) -> f32 {
+    unit(mix(pixel.into()) as u32) - 0.5
+}
+
+/// A picture of two surfaces, on the left and on the right, with noise of this size.
+fn picture(noise: f32) -> (Image, Statistics, Layers) {
+    let pixels: Vec<u32> = (0..WIDTH * HEIGHT).collect();
+    let is_left = |pixel: u32| pixel % WIDTH < WIDTH / 2;
+    let radiance = |&pixel: &u32| {
+        let light = 1.0 + noise * noise_at(pixel);
+        if is_left(pixel) { [0.5 * light, 0.1 * light, 0.0] } else { [0.25 * light; 3] }
+    };
+    let features = |&pixel: &u32| {
+        let (albedo, normal) = if is_left(pixel) {
+            ([1.0, 0.2, 0.0], [1.0, 0.0, 0.0])
+        } else {
+            ([0.5; 3], [0.0, 0.0, 1.0])
+        };
+        let id = u32::from(is_left(pixel));
+        Features { albedo, normal, depth: 1.0, coverage: 1.0, ground: 0.0, id }
+    };
+    let image =
+        Image { width: WIDTH, height: HEIGHT, pixels: pixels.iter().map(radiance).collect() };
+    let of_pixel = |pixel: &[f32; 3]| pixel.map(|x| (noise * x).powi(2) / 12.0);
+    let variance = Image { pixels: image.pixels.iter().map(of_pixel).collect(), ..image.clone() };
+    let statistics = Statistics { variance, samples: vec![16; pixels.len()] };
+    let features = pixels.iter().map(features).collect();
+    let layers = Layers { width: WIDTH, height: HEIGHT, pixels: features, statistics: None };
+    (image, statistics, layers)
+}
+
+#[test]
+fn pictures_without_noise_stay_as_they_are() {
+    let (image, statistics, layers) = picture(0.0);
+    let denoised = denoise(&image, &statistics, &layers);
+    assert_eq!(denoised.image, image);
+    assert!(denoised.squared_error.iter().all(|&error| error == 0.0));
+}
+
+#[test]
+fn noise_falls_and_edges_stay() {
+    let (truth, ..) = picture(0.0);
+    let (image, statistics, layers) = picture(0.4);
+    let denoised = denoise(&image, &statistics, &layers);
+    let error = |image: &Image| {
+        let pairs = image.pixels.as_flattened().iter().zip(truth.pixels.as_flattened());
+        pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / f64::from(3 * WIDTH * HEIGHT)
+    };
+    let (before, after) = (error(&image), error(&denoised.image));
+    assert!(after < before / 20.0, "{before} {after}");
+    // The surfaces differ in both features, so neither pixel beside the edge has any of the other's green.
+    let column = (WIDTH / 2) as usize;
+    for row in denoised.image.pixels.chunks(WIDTH as usize) {
+        assert!((row[column - 1][1] - 0.1).abs() < 0.03 && (row[column][1] - 0.25).abs() < 0.06);
+        assert_eq!(row[column - 1][2], 0.0);
+    }
+    let stated = denoised.squared_error.iter().map(|&x| f64::from(x)).sum::<f64>();
+    let stated = stated / f64::from(WIDTH * HEIGHT);
+    assert!(stated > after / 2.0 && stated < 2.0 * after, "{stated} {after}");
+}
+
+#[test]
+fn rare_bright_pixels_leave_no_stain() {
+    let (mut image, mut statistics, layers) = picture(0.1);
+    let at = (40 * WIDTH + 100) as usize;
+    image.pixels[at] = [50.0; 3];
+    // One bright sample of sixteen, of a sequence with less noise than independent samples.
+    statistics.variance.pixels[at] = [0.4 * 50.0 * 50.0; 3];
+    let denoised = denoise(&image, &statistics, &layers).image;
+    assert!(denoised.pixels.iter().all(|pixel| pixel.iter().all(|&x| x < 1.0)));
+}
+
+#[test]
+fn lanes_do_not_change_predictions() {
+    let (image, statistics, layers) = picture(0.3);
+    let input = tile::Input {
+        image: &image,
+        variance: &statistics.variance,
+        features: &layers.pixels,
+        floor: mean_square(&image),
+    };
+    let mut columns = Columns::default();
+    columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 }, 120);
+    for first in [0, 64, 96] {
+        let at = columns.origin() + 30 * columns.stride + first;
+        let wide = predict::<F32x16>(&columns, at);
+        for lane in 0..MAX_LANES {
+            let one = predict::<f32>(&columns, at + lane);
+            for (wide, one) in wide.iter().zip(one) {
+                let mut row = [0.0; MAX_LANES];
+                Lanes::store(wide.leverage, &mut row);
+                assert_eq!(row[lane].to_bits(), one.leverage.to_bits());
+                Lanes::store(wide.irradiance[0], &mut row);
+                assert_eq!(row[lane].to_bits(), one.irradiance[0].to_bits());
+            }
+        }
+    }
+}
+
+/// Returns the root mean square of the differences, relative to the mean of `b`.
+fn difference(a: &Image, b: &Image) -> f64 {
+    let values = |image: &Image| image.pixels.iter().flatten().copied().map(f64::from).collect();
+    let [a, b]: [Vec<f64>; 2] = [values(a), values(b)];
+    let squares: f64 = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum();
+    (squares / b.len() as f64).sqrt() / (b.iter().sum::<f64>() / b.len() as f64)
+}
+
+fn scene() -> (Scene, World) {
+    let mut scene = default_scene(4);
+    (scene.settings.width, scene.settings.height) = (72, 54);
+    let world = World::build(&scene).unwrap();
+    (scene, world)
+}
+
+/// Renders, denoises, and returns the image, its error and that of the picture before.
+fn judged(world: &World, settings: &Settings) -> (Image, Noise, Noise) {
+    let options = Options { statistics: true, ..Options::default() };
+    let denoiser = Denoiser::new(world, settings, &options, Choice::Always).unwrap();
+    let mut render = ResumableRender::begin(world, settings, &options).unwrap();
+    render.run(world, &options);
+    let Judged { denoised, before, noise } = denoiser.finish(render.film()).unwrap();
+    (denoised.unwrap().image, noise, before)
+}
+
+#[test]
+fn stated_errors_hold() {
+    const RUNS: u64 = 24;
+    let (scene, world) = scene();
+    let settings = |seed, spp| Settings { seed, spp, ..scene.settings.clone() };
+    let truth = render(&world, &settings(1 << 40, 2048), &Options::default()).unwrap().image;
+    let (mut held, mut squares) = (0, [0.0; 2]);
+    for seed in 0..RUNS {
+        let (image, noise, _) = judged(&world, &settings(seed, 8));
+        let error = difference(&image, &truth);
+        held += u64::from(error <= noise.bound);
+        squares[0] += noise.error.powi(2);
+        squares[1] += error.powi(2);
+    }
+    assert!(held as f64 >= CONFIDENCE * RUNS as f64 - 1.0, "{held} of {RUNS}");
+    let ratio = (squares[0] / squares[1]).sqrt();
+    assert!((0.7..1.4).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn targets_are_those_of_the_denoised_picture() {
+    let (scene, world) = scene();
+    let settings = Settings { until_error: Some(0.04), spp: 4096, ..scene.settings.clone() };
+    let options = Options { statistics: true, ..Options::default() };
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let denoiser = Denoiser::new(&world, &settings, &options, Choice::Better).unwrap();
+            let judge = |film: &Film| denoiser.judge(film);
+            let options = Options { judge: Some(&judge), ..options };
+            let mut render = ResumableRender::begin(&world, &settings, &options).unwrap();
+            render.run(&world, &options);
+            (denoiser.finish(render.film()).unwrap(), render.samples().total)
+        })
+    };
+    let (one, samples) = run(1);
+    assert!(one.noise.bound <= 0.04 && one.before.error > one.noise.error);
+    let (three, same) = run(3);
+    assert_eq!((three.denoised.unwrap(), same), (one.denoised.unwrap(), samples));
+    let raw = render(&world, &settings, &Options::default()).unwrap();
+    assert!(raw.samples.total > samples, "{} {samples}", raw.samples.total);
+}
+
+#[test]
+fn more_samples_leave_less_to_denoise() {
+    let (scene, world) = scene();
+    let change = |spp: u32| {
+        let settings = Settings { spp, ..scene.settings.clone() };
+        let options = Options { statistics: true, ..Options::default() };
+        let picture = render(&world, &settings, &options).unwrap();
+        let features = layers(&world, &settings, &options, &[Layer::Normal]).unwrap();
+        let denoised = denoise(&picture.image, &picture.statistics.unwrap(), &features).image;
+        difference(&denoised, &picture.image)
+    };
+    let [few, many] = [4, 256].map(change);
+    assert!(many < few / 4.0, "{few} {many}");
+}
+
+#[test]
+fn limits_depend_on_size_and_spheres() {
+    let region = |width, height| Region { x: 0, y: 0, width, height };
+    assert_eq!(max_samples(region(960, 540), 400), 64);
+    assert_eq!(max_samples(region(1, 1), 1), 1024);
+    assert_eq!(max_samples(region(4000, 4000), 1), 16);
+    let more = [1, 1 << 10, 1 << 14, 1 << 20].map(|spheres| max_samples(region(512, 512), spheres));
+    assert!(more.is_sorted_by(|a, b| a >= b) && more[0] > more[3], "{more:?}");
+}

@@ -1,0 +1,197 @@
+//! Denoising of a tile: predictions, their errors, and the choice among them.
+
+use super::columns::{Columns, MARGIN, box_sums};
+use super::regression::{Prediction, RADII, predict};
+use crate::film::Region;
+use crate::image::Image;
+use crate::lanes::{F32x16, Lanes, MAX_LANES};
+use crate::layers::Features;
+
+/// Size of a tile. Predictions are also needed for [`BORDER`] pixels around it, which together fill rows of lanes.
+const TILE: [u32; 2] = [120, 64];
+
+/// Distance within which errors are averaged before the choice, and choices after it.
+const ERROR_RADIUS: usize = 3;
+const CHOICE_RADIUS: usize = 1;
+
+/// Distance of the pixels whose predictions a tile needs.
+const BORDER: usize = ERROR_RADIUS + CHOICE_RADIUS;
+
+/// Fraction of the picture's mean square that is added to the square of radiance in relative errors.
+const FLOOR: f32 = 0.3;
+
+/// Number of choices: the pixel itself, and the prediction of each window.
+const CHOICES: usize = 1 + RADII.len();
+
+/// The picture that is denoised.
+pub(super) struct Input<'a> {
+    pub(super) image: &'a Image,
+    /// Variance of each pixel's mean.
+    pub(super) variance: &'a Image,
+    pub(super) features: &'a [Features],
+    /// Mean square of the radiance.
+    pub(super) floor: f32,
+}
+
+/// Columns of a tile and its margins.
+#[derive(Debug, Default)]
+pub(super) struct Workspace {
+    columns: Columns,
+    /// Irradiance by each window.
+    predictions: [[Vec<f32>; 3]; RADII.len()],
+    /// Relative squared error of each choice, times the pixel's weight.
+    errors: [Vec<f32>; CHOICES],
+    /// Their sums over neighbors.
+    sums: [Vec<f32>; CHOICES],
+    /// The square that relative errors are relative to.
+    scale: Vec<f32>,
+    /// For each choice, 1 where it is the best.
+    best: [Vec<f32>; CHOICES],
+    /// Least sum of errors.
+    least: Vec<f32>,
+    /// Sum of the weights of errors.
+    weights: Vec<f32>,
+    scratch: Vec<f32>,
+}
+
+/// Returns the tiles of a picture.
+pub(super) fn tiles(width: u32, height: u32) -> impl Iterator<Item = Region> {
+    let steps = |count: u32, size: u32| {
+        (0..count).step_by(size as usize).map(move |from| (from, size.min(count - from)))
+    };
+    steps(height, TILE[1]).flat_map(move |(y, height)| {
+        steps(width, TILE[0]).map(move |(x, width)| Region { x, y, width, height })
+    })
+}
+
+impl Workspace {
+    /// Returns radiance and squared error of a tile's pixels, row by row.
+    pub(super) fn denoise(&mut self, input: &Input, tile: Region) -> Vec<([f32; 3], f32)> {
+        self.columns.fill(input, tile, TILE[0] as usize);
+        self.predict(input.floor * FLOOR, tile);
+        self.choose();
+        self.blend(input, tile)
+    }
+
+    /// Computes predictions and errors of the tile's pixels and those around it.
+    fn predict(&mut self, floor: f32, tile: Region) {
+        let count = self.columns.stride * self.columns.rows;
+        let all = self.predictions.iter_mut().flatten().chain(&mut self.errors);
+        for column in all.chain([&mut self.scale]) {
+            column.clear();
+            column.resize(count, 0.0);
+        }
+        let first = self.columns.origin() - BORDER * self.columns.stride - BORDER;
+        for row in 0..tile.height as usize + 2 * BORDER {
+            for column in (0..TILE[0] as usize + 2 * BORDER).step_by(MAX_LANES) {
+                self.predict_row(floor, first + row * self.columns.stride + column);
+            }
+        }
+    }
+
+    /// Does the same for a row of lanes.
+    #[inline(always)]
+    fn predict_row(&mut self, floor: f32, at: usize) {
+        type L = F32x16;
+        let columns = &self.columns;
+        let load = |columns: &[Vec<f32>; 3]| -> [L; 3] {
+            std::array::from_fn(|channel| L::load(&columns[channel][at..]))
+        };
+        let predictions = predict::<L>(columns, at);
+        let [albedo, irradiance] = [load(&columns.albedo), load(&columns.irradiance)];
+        let variance = load(&columns.variance);
+        let [.., widest] = &predictions;
+        let mut scale = L::splat(floor);
+        let mut own = L::splat(0.0);
+        for channel in 0..3 {
+            let radiance = widest.irradiance[channel] * albedo[channel];
+            let noise = variance[channel] * albedo[channel] * albedo[channel];
+            scale = radiance.mul_add(radiance, scale + noise);
+            own = own + noise;
+        }
+        // Black pictures have no error.
+        scale = Lanes::max(scale, L::splat(f32::MIN_POSITIVE));
+        scale.store(&mut self.scale[at..]);
+        // Rare bright paths would keep themselves: their variance is not that of well-distributed samples.
+        let weight = L::load(&columns.weight[at..]) / scale;
+        (weight * own).store(&mut self.errors[0][at..]);
+        for (window, Prediction { irradiance: predicted, leverage }) in
+            predictions.iter().enumerate()
+        {
+            let penalty = L::splat(2.0) * *leverage - L::splat(1.0);
+            let mut error = L::splat(0.0);
+            for channel in 0..3 {
+                let squared = albedo[channel] * albedo[channel];
+                let change = predicted[channel] - irradiance[channel];
+                let risk = change.mul_add(change, penalty * variance[channel]);
+                error = squared.mul_add(risk, error);
+                predicted[channel].store(&mut self.predictions[window][channel][at..]);
+            }
+            (weight * error).store(&mut self.errors[1 + window][at..]);
+        }
+    }
+
+    /// Finds the choice with the least error around each pixel.
+    fn choose(&mut self) {
+        let stride = self.columns.stride;
+        for (sums, errors) in self.sums.iter_mut().zip(&self.errors) {
+            box_sums(errors, stride, ERROR_RADIUS, sums, &mut self.scratch);
+        }
+        let weight = &self.columns.weight;
+        box_sums(weight, stride, ERROR_RADIUS, &mut self.weights, &mut self.scratch);
+        let [own, windows @ ..] = &self.sums;
+        self.least.clone_from(own);
+        for sums in windows {
+            self.least.iter_mut().zip(sums).for_each(|(least, &sum)| *least = least.min(sum));
+        }
+        let mut open = std::mem::take(&mut self.scratch);
+        open.clear();
+        open.resize(self.least.len(), 1.0);
+        for (best, sums) in self.best.iter_mut().zip(&self.sums) {
+            best.clear();
+            // The first of equals.
+            best.extend(sums.iter().zip(&self.least).zip(&mut open).map(|((sum, least), open)| {
+                let best = if sum <= least { *open } else { 0.0 };
+                *open -= best;
+                best
+            }));
+        }
+        self.scratch = open;
+    }
+
+    /// Blends the choices of neighbors, so that they leave no edges.
+    fn blend(&mut self, input: &Input, tile: Region) -> Vec<([f32; 3], f32)> {
+        let Self { columns, sums, best, scratch, .. } = self;
+        let stride = columns.stride;
+        for (shares, best) in sums.iter_mut().zip(best.iter()) {
+            box_sums(best, stride, CHOICE_RADIUS, shares, scratch);
+        }
+        let all = (2 * CHOICE_RADIUS + 1).pow(2) as f32;
+        let mut pixels = Vec::with_capacity((tile.width * tile.height) as usize);
+        for row in 0..tile.height as usize {
+            let first = columns.origin() + row * stride;
+            for at in first..first + tile.width as usize {
+                let pixel = (tile.y as usize + row) * input.image.width as usize
+                    + tile.x as usize
+                    + (at - first);
+                let radiance = std::array::from_fn(|channel| {
+                    if sums[0][at] == all {
+                        return input.image.pixels[pixel][channel];
+                    }
+                    let own = sums[0][at] * columns.irradiance[channel][at];
+                    let windows = sums[1..].iter().zip(&self.predictions);
+                    let mixed = windows.fold(own, |sum, (shares, prediction)| {
+                        sum + shares[at] * prediction[channel][at].max(0.0)
+                    });
+                    mixed / all * columns.albedo[channel][at]
+                });
+                let error = self.least[at] / (3.0 * self.weights[at]) * self.scale[at];
+                pixels.push((radiance, error.max(0.0)));
+            }
+        }
+        pixels
+    }
+}
+
+const _: () = assert!((TILE[0] as usize + 2 * BORDER).is_multiple_of(MAX_LANES));
+const _: () = assert!(BORDER + RADII[RADII.len() - 1] + 3 <= MARGIN[1]);
