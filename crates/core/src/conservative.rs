@@ -289,6 +289,18 @@ impl<L: Lanes> Chord<L> {
     }
 }
 
+impl Margin<f32> {
+    /// Returns the margin in every lane.
+    #[inline(always)]
+    pub fn splat<L: Lanes>(&self) -> Margin<L> {
+        Margin {
+            inverse_band: L::splat(self.inverse_band),
+            least: L::splat(self.least),
+            per_radius: L::splat(self.per_radius),
+        }
+    }
+}
+
 impl<L: Lanes> Margin<L> {
     #[inline(always)]
     fn about(&self, radius: L) -> L {

@@ -54,7 +54,7 @@
 mod rounding;
 mod terms;
 
-pub use self::rounding::{nearest, nearest_closely, nearest_quickly};
+pub use self::rounding::{nearest, nearest_closely, nearest_or_exact, nearest_quickly};
 use self::terms::Terms;
 use crate::exact;
 use crate::lanes::{Doubles, F64x8, load_doubles};

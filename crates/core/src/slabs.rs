@@ -61,6 +61,13 @@ pub trait Slabs: Copy {
     /// Never omits a box that contains a point of the ray.
     #[inline(always)]
     fn enters(&self, planes: &Planes, t_max: f32) -> (u32, F32x8) {
+        let (entered, near) = self.entered(planes, t_max);
+        (entered.bits(), near)
+    }
+
+    /// Does what [`Slabs::enters`] does, with a mask of the boxes. Distances are not below 0.
+    #[inline(always)]
+    fn entered(&self, planes: &Planes, t_max: f32) -> (<F32x8 as Lanes>::Mask, F32x8) {
         let mut near = F32x8::splat(0.0);
         let mut far = F32x8::splat(t_max);
         for (axis, sides) in planes.iter().enumerate() {
@@ -74,7 +81,7 @@ pub trait Slabs: Copy {
             far = Lanes::min(distance(1 - negative, leave), far);
         }
         let near = near * F32x8::splat(SOONER);
-        (near.le(far).bits(), near)
+        (near.le(far), near)
     }
 }
 
@@ -125,7 +132,12 @@ impl RaySlabs {
     /// For one ray.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
-        let (origin, direction) = (row(origin), row(direction));
+        Self::of_row(row(origin), row(direction))
+    }
+
+    /// For one ray, whose coordinates are in the first three lanes.
+    #[inline(always)]
+    pub fn of_row(origin: F32x4, direction: F32x4) -> Self {
         let inverse = inverse(direction);
         let negative = direction.is_negative().bits();
         let sign = |axis: u32| (negative >> axis & 1) as u8;

@@ -8,7 +8,6 @@ use serde::Serialize;
 use spherule_core::SphereTree;
 use spherule_core::internals::bvh::builders::{self, Builder};
 use spherule_core::internals::spheres::Spheres;
-use spherule_measure::workload::SphereScene;
 use std::error::Error;
 use std::time::Instant;
 
@@ -28,9 +27,9 @@ pub struct Cost {
 }
 
 /// Builds over one scene, in one order of its spheres.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Builds {
-    pub scene: &'static str,
+    pub scene: String,
     /// True if the spheres are sorted along a Morton curve, not as in the file.
     pub sorted: bool,
     pub spheres: usize,
@@ -49,7 +48,7 @@ const ENOUGH: usize = 2_000_000;
 /// Embree or a thread does not start, or spheres cannot be built over.
 pub fn measure(
     options: &Options,
-    scene: SphereScene,
+    scene: &str,
     (spheres, sorted): (&Columns, bool),
 ) -> Result<Builds, Box<dyn Error>> {
     let rows: Vec<_> = (0..spheres.len()).map(|row| spheres.row(row)).collect();
@@ -83,7 +82,7 @@ pub fn measure(
             morton.keep(rows.len(), threads, Taken { bytes, ..taken });
         }
     }
-    Ok(Builds { scene: scene.name, sorted, spheres: rows.len(), embree, spherule, morton })
+    Ok(Builds { scene: scene.to_owned(), sorted, spheres: rows.len(), embree, spherule, morton })
 }
 
 /// What one build took.

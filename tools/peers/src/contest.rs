@@ -8,8 +8,7 @@ use crate::scenes::Columns;
 use cpu_time::ThreadTime;
 use serde::Serialize;
 use spherule_core::SphereTree;
-use spherule_core::{Hits, NOTHING, QueryError, Surface};
-use spherule_measure::workload::SphereScene;
+use spherule_core::{Hit, Hits, NOTHING, QueryError, Surface};
 use std::error::Error;
 use std::time::Duration;
 
@@ -29,7 +28,7 @@ pub struct Entry {
 /// What was measured for one class of rays in one scene; rates in million rays per second.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
-    pub scene: &'static str,
+    pub scene: String,
     pub class: Class,
     pub order: Order,
     pub rays: usize,
@@ -61,7 +60,7 @@ pub struct SingleCalls {
 
 /// Who competes in a scene.
 pub struct Contest<'a> {
-    pub scene: SphereScene,
+    pub scene: &'a str,
     pub spheres: &'a Columns,
     pub tree: &'a SphereTree,
     /// The rows of spheres along a Morton curve.
@@ -162,7 +161,7 @@ impl Contest<'_> {
         let (fastest, seconds) = ranked[0];
         let (verdicts, hits) = self.judge(class, rays, fastest)?;
         Ok(Outcome {
-            scene: self.scene.name,
+            scene: self.scene.to_owned(),
             class,
             order,
             rays: rays.len(),
@@ -184,14 +183,14 @@ impl Contest<'_> {
     /// Seconds that Embree takes.
     fn embree(&self, class: Class, rays: &Rays, entry: Entry, answers: &mut Answers) -> f64 {
         let scene = &self.embree[entry.configuration][usize::from(entry.sorted)];
-        let (columns, call) = (rays.columns(), entry.call());
+        let call = entry.call();
         let mut clock = Clock::default();
         while clock.goes_on() {
             clock.time(|| {
                 if class.is_any() {
-                    scene.occluded(&columns, call, &mut answers.occluded);
+                    scene.occluded(rays, call, &mut answers.occluded);
                 } else {
-                    scene.intersect(&columns, call, &mut answers.spheres, &mut answers.embree_t);
+                    scene.intersect(rays, call, &mut answers.spheres, &mut answers.embree_t);
                 }
             });
         }
@@ -216,10 +215,12 @@ impl Contest<'_> {
                 for i in 0..rays.len() {
                     let (origin, direction) = rays.row(i);
                     let (origin, direction) = (origin.into(), direction.into());
+                    let bound = f64::from(rays.bound(i));
+                    let nearer = |hit: &Hit| hit.t < bound;
                     if class.is_any() {
-                        let occluded = self.tree.occluded(origin, direction, f64::INFINITY);
-                        answers.occluded[i] = occluded;
-                    } else if let Some(hit) = self.tree.intersect(origin, direction) {
+                        answers.occluded[i] = self.tree.occluded(origin, direction, bound);
+                    } else if let Some(hit) = self.tree.intersect(origin, direction).filter(nearer)
+                    {
                         let surface = Surface { point: hit.point, normal: hit.normal };
                         (answers.spheres[i], answers.spherule_t[i]) = (hit.sphere, hit.t);
                         answers.surfaces[i] = surface;
@@ -263,7 +264,7 @@ impl Contest<'_> {
         one.push(origin, direction);
         let (mut embree, mut t) = ([NOTHING], [0.0]);
         let call = Call { width: 1, coherent: false };
-        self.embree[0][0].intersect(&one.columns(), call, &mut embree, &mut t);
+        self.embree[0][0].intersect(&one, call, &mut embree, &mut t);
         [embree[0], spherule.map_or(NOTHING, |hit| hit.sphere)]
     }
 
@@ -293,7 +294,7 @@ pub fn spherule(
     let (mut clock, mut exact) = (Clock::default(), 0);
     while clock.goes_on() {
         let tally = clock.time(|| {
-            t.fill(f64::INFINITY);
+            rays.fill_bounds(t);
             if class.is_any() {
                 tree.occluded_columns(&columns, t, occluded)
             } else {

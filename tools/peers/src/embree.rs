@@ -6,10 +6,10 @@
 
 mod packet;
 
+use crate::rays::Rays;
 use libloading::Library;
 pub use packet::Call;
 use packet::{Answers, Any, Arguments, Closest, Packet, Valid};
-use spherule_core::RayColumns;
 use std::ffi::{CString, c_char, c_void};
 use std::mem::ManuallyDrop;
 use std::path::Path;
@@ -236,14 +236,14 @@ impl Drop for Scene<'_> {
 impl Scene<'_> {
     /// The row of the sphere that each ray hits first, or [`spherule_core::NOTHING`], and its
     /// distance; `spheres` and `t` are as long as the columns of rays.
-    pub fn intersect(&self, rays: &RayColumns, call: Call, spheres: &mut [u32], t: &mut [f32]) {
+    pub fn intersect(&self, rays: &Rays, call: Call, spheres: &mut [u32], t: &mut [f32]) {
         let calls = &self.device.calls;
         let several = [calls.intersect4, calls.intersect8, calls.intersect16];
         self.dispatch(rays, call, (calls.intersect1, several), Closest { spheres, t });
     }
 
     /// Whether each ray hits anything; `occluded` is as long as the columns of rays.
-    pub fn occluded(&self, rays: &RayColumns, call: Call, occluded: &mut [bool]) {
+    pub fn occluded(&self, rays: &Rays, call: Call, occluded: &mut [bool]) {
         let calls = &self.device.calls;
         let several = [calls.occluded4, calls.occluded8, calls.occluded16];
         self.dispatch(rays, call, (calls.occluded1, several), Any(occluded));
@@ -251,7 +251,7 @@ impl Scene<'_> {
 
     fn dispatch(
         &self,
-        rays: &RayColumns,
+        rays: &Rays,
         call: Call,
         (single, several): (Single, [Several; 3]),
         answers: impl Answers,
@@ -264,11 +264,12 @@ impl Scene<'_> {
         }
     }
 
-    fn trace_one(&self, rays: &RayColumns, call: Call, single: Single, mut answers: impl Answers) {
+    fn trace_one(&self, rays: &Rays, call: Call, single: Single, mut answers: impl Answers) {
         let mut arguments = Arguments::new(call);
         let mut packet = Packet::<1>::new();
-        for first in 0..rays.origin[0].len() {
-            packet.fill(rays, first, 1);
+        let (columns, bounds) = (rays.columns(), rays.bounds());
+        for first in 0..rays.len() {
+            packet.fill(&columns, bounds, (first, 1));
             // SAFETY: scene and packet are valid; one ray's call reads and writes this layout.
             unsafe { single(self.handle, (&raw mut packet).cast(), &raw mut arguments) };
             answers.take(&packet, first, 1);
@@ -277,17 +278,17 @@ impl Scene<'_> {
 
     fn trace<const N: usize>(
         &self,
-        rays: &RayColumns,
+        rays: &Rays,
         call: Call,
         several: Several,
         mut answers: impl Answers,
     ) {
         let mut arguments = Arguments::new(call);
         let mut packet = Packet::<N>::new();
-        let count = rays.origin[0].len();
+        let (columns, bounds, count) = (rays.columns(), rays.bounds(), rays.len());
         for first in (0..count).step_by(N) {
             let filled = N.min(count - first);
-            packet.fill(rays, first, filled);
+            packet.fill(&columns, bounds, (first, filled));
             let valid = Valid::<N>::first(filled);
             let rows = (&raw mut packet).cast();
             // SAFETY: scene, mask and packet are valid, and as wide and aligned as this call's.

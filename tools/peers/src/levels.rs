@@ -7,7 +7,6 @@
 use crate::contest::{Answers, spherule};
 use crate::options::Options;
 use crate::rays::{Class, Order, Rays, Seen};
-use crate::report::name;
 use crate::scenes::Columns;
 use clap::ValueEnum;
 use spherule_core::SphereTree;
@@ -86,7 +85,7 @@ impl Runner {
         (class, order): (Class, Order),
         rays: &Rays,
     ) -> Result<(), Box<dyn Error>> {
-        let theirs = self.ask(&format!("rays {} {}", name(&class), name(&order)))?;
+        let theirs = self.ask(&format!("rays {} {}", class.name(), order.name()))?;
         if theirs == hash_of_rays(rays).to_string() { Ok(()) } else { Err(self.differs("rays")) }
     }
 

@@ -3,6 +3,7 @@
 mod builds;
 mod contest;
 mod embree;
+mod files;
 mod levels;
 mod options;
 mod rays;
@@ -16,7 +17,7 @@ use contest::{Contest, Entry, Outcome};
 use embree::{Device, EmbreeError, Scene};
 use levels::Runner;
 use options::Options;
-use rays::Seen;
+use rays::{Class, Order, Rays, Seen};
 use scenes::Columns;
 use spherule_core::SphereTree;
 use spherule_measure::workload::SphereScene;
@@ -48,14 +49,24 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let runners = options.level.iter().map(|program| Runner::start(program, options));
     let mut runners = runners.collect::<Result<Vec<_>, _>>()?;
     let (mut outcomes, mut builds) = (Vec::new(), Vec::new());
-    for &scene in &options.scenes {
-        let spheres = Columns::of(scene)?;
-        if !options.no_builds {
-            writeln!(stderr(), "{}: builds", scene.name)?;
-            builds.push(builds::measure(options, scene, (&spheres, false))?);
-            builds.push(builds::measure(options, scene, (&spheres.sorted(), true))?);
+    if let (Some(spheres), Some(rays)) = (&options.spheres, &options.rays) {
+        let (spheres, rays) = (files::spheres(spheres)?, files::rays(rays)?);
+        build(options, ("file", &spheres), &mut builds)?;
+        compare(options, ("file", &spheres), |contest, entries| {
+            for (order, rays) in [(Order::File, &rays), (Order::Random, &rays.shuffled())] {
+                let of = (options.query, order, rays);
+                outcomes.push(run_class(options, of, (contest, entries), &mut [])?);
+            }
+            Ok(())
+        })?;
+    } else {
+        for &scene in &options.scenes {
+            let spheres = Columns::of(scene)?;
+            build(options, (scene.name, &spheres), &mut builds)?;
+            compare(options, (scene.name, &spheres), |contest, entries| {
+                trace(options, scene, (contest, entries), &mut runners, &mut outcomes)
+            })?;
         }
-        trace(options, (scene, &spheres), &mut runners, &mut outcomes)?;
     }
     report::write(&mut stdout().lock(), options, &outcomes, &builds)?;
     if let Some(path) = &options.json {
@@ -65,12 +76,25 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Measures all classes of rays in a scene.
-fn trace(
+/// Measures builds, if they are asked for.
+fn build(
     options: &Options,
-    (scene, spheres): (SphereScene, &Columns),
-    runners: &mut [Runner],
-    outcomes: &mut Vec<Outcome>,
+    (name, spheres): (&str, &Columns),
+    builds: &mut Vec<Builds>,
+) -> Result<(), Box<dyn Error>> {
+    if !options.no_builds {
+        writeln!(stderr(), "{name}: builds")?;
+        builds.push(builds::measure(options, name, (spheres, false))?);
+        builds.push(builds::measure(options, name, (&spheres.sorted(), true))?);
+    }
+    Ok(())
+}
+
+/// Builds both systems' trees over spheres, and calls `run` with them and all ways to ask Embree.
+fn compare(
+    options: &Options,
+    (name, spheres): (&str, &Columns),
+    run: impl FnOnce(&Contest, &[Entry]) -> Result<(), Box<dyn Error>>,
 ) -> Result<(), Box<dyn Error>> {
     let Columns { x, y, z, radius } = spheres;
     let tree = SphereTree::from_columns(x, y, z, radius)?;
@@ -88,34 +112,48 @@ fn trace(
     let embree = devices.iter().map(build).collect::<Result<Vec<_>, _>>()?;
     let hits_only = options.hits_only;
     let contest =
-        Contest { scene, spheres, tree: &tree, order: &order, hits_only, embree: &embree };
-    let entries = Entry::all(embree.len(), &options.calls);
+        Contest { scene: name, spheres, tree: &tree, order: &order, hits_only, embree: &embree };
+    run(&contest, &Entry::all(embree.len(), &options.calls))
+}
+
+/// Measures all classes of rays in a scene.
+fn trace(
+    options: &Options,
+    scene: SphereScene,
+    (contest, entries): (&Contest, &[Entry]),
+    runners: &mut [Runner],
+    outcomes: &mut Vec<Outcome>,
+) -> Result<(), Box<dyn Error>> {
     for runner in &mut *runners {
         runner.load(scene)?;
     }
     for &order in &options.orders {
         let picture = (options.side.next_multiple_of(4), order);
-        let seen = Seen::new(scene.flat, spheres, &tree, picture)?;
+        let seen = Seen::new(scene.flat, contest.spheres, contest.tree, picture)?;
         for &class in &options.classes {
-            writeln!(
-                stderr(),
-                "{}: {} rays, {}",
-                scene.name,
-                report::name(&class),
-                report::name(&order)
-            )?;
             let rays = seen.rays(class, order);
-            if rays.len() == 0 {
-                continue;
+            if rays.len() > 0 {
+                let of = (class, order, &*rays);
+                outcomes.push(run_class(options, of, (contest, entries), runners)?);
             }
-            let limits = (options.rounds, options.finalists);
-            for runner in &mut *runners {
-                runner.make_rays((class, order), &rays)?;
-            }
-            outcomes.push(contest.run((class, order, &rays), &entries, limits, runners)?);
         }
     }
     Ok(())
+}
+
+/// Measures rays.
+fn run_class(
+    options: &Options,
+    (class, order, rays): (Class, Order, &Rays),
+    (contest, entries): (&Contest, &[Entry]),
+    runners: &mut [Runner],
+) -> Result<Outcome, Box<dyn Error>> {
+    writeln!(stderr(), "{}: {} rays, {}", contest.scene, class.name(), order.name())?;
+    for runner in &mut *runners {
+        runner.make_rays((class, order), rays)?;
+    }
+    let limits = (options.rounds, options.finalists);
+    contest.run((class, order, rays), entries, limits, runners)
 }
 
 fn json(

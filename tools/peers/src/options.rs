@@ -3,6 +3,7 @@
 use crate::embree::{Build, Device, EmbreeError};
 use crate::levels::Program;
 use crate::rays::{Class, Order};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use spherule_measure::workload::SphereScene;
 use std::path::PathBuf;
@@ -23,6 +24,30 @@ pub struct Options {
     /// Scenes, separated by commas.
     #[arg(long, value_delimiter = ',', default_values = USUAL, value_parser = scene)]
     pub scenes: Vec<SphereScene>,
+
+    /// Spheres of a file in place of scenes: an NPY array of x, y, z and radius, raw numbers of single precision (.raw), or a
+    /// particle file with radii.
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "rays",
+        conflicts_with_all = ["scenes", "classes", "side", "orders", "level"]
+    )]
+    pub spheres: Option<PathBuf>,
+
+    /// Rays of a file: an NPY array of origin x, y, z and direction x, y, z; after these `t_max`, or `t_min` and
+    /// `t_max`.
+    #[arg(long, value_name = "FILE", requires = "spheres")]
+    pub rays: Option<PathBuf>,
+
+    /// What is asked about the rays of a file: what is hit first, or whether anything is hit.
+    #[arg(
+        long,
+        requires = "rays",
+        default_value = "closest",
+        value_parser = PossibleValuesParser::new(["closest", "any"]).map(|text| query(&text))
+    )]
+    pub query: Class,
 
     /// Classes of rays, separated by commas; all by default.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = Class::value_variants().to_vec())]
@@ -105,6 +130,10 @@ fn scene(text: &str) -> Result<SphereScene, String> {
     let names = || SphereScene::ALL.map(|scene| scene.name).join(", ");
     SphereScene::named(text)
         .ok_or_else(|| format!("there is no such scene; give some of {}", names()))
+}
+
+fn query(text: &str) -> Class {
+    if text == "any" { Class::Any } else { Class::Closest }
 }
 
 fn width(text: &str) -> Result<usize, String> {

@@ -22,6 +22,12 @@ pub enum Class {
     Ao,
     /// One from what the camera sees, cosine-distributed: what is hit first.
     Diffuse,
+    /// From a file: what is hit first.
+    #[value(skip)]
+    Closest,
+    /// From a file: whether anything is hit.
+    #[value(skip)]
+    Any,
 }
 
 /// Order of all rays.
@@ -34,6 +40,9 @@ pub enum Order {
     Rows,
     /// Shuffled.
     Random,
+    /// As in the file.
+    #[value(skip)]
+    File,
 }
 
 /// Rays in columns.
@@ -41,6 +50,8 @@ pub enum Order {
 pub struct Rays {
     origin: [Vec<f32>; 3],
     direction: [Vec<f32>; 3],
+    /// Distances at which searches end; empty if none does.
+    t_max: Vec<f32>,
 }
 
 /// What the camera sees.
@@ -60,7 +71,19 @@ struct Point {
 impl Class {
     /// Whether it is only asked whether anything is hit.
     pub fn is_any(self) -> bool {
-        matches!(self, Self::Shadow | Self::Ao)
+        matches!(self, Self::Shadow | Self::Ao | Self::Any)
+    }
+
+    /// The name in tables and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Primary => "primary",
+            Self::Shadow => "shadow",
+            Self::Ao => "ao",
+            Self::Diffuse => "diffuse",
+            Self::Closest => "closest",
+            Self::Any => "any",
+        }
     }
 }
 
@@ -82,18 +105,48 @@ impl Rays {
         (row(&self.origin), row(&self.direction))
     }
 
+    /// The distance at which the search of ray `i` ends, in units of its direction's length.
+    pub fn bound(&self, i: usize) -> f32 {
+        self.t_max.get(i).copied().unwrap_or(f32::INFINITY)
+    }
+
+    /// The distances at which searches end; empty if none does.
+    pub fn bounds(&self) -> &[f32] {
+        &self.t_max
+    }
+
+    /// Fills a column with the distances at which searches end.
+    pub fn fill_bounds(&self, t: &mut [f64]) {
+        if self.t_max.is_empty() {
+            t.fill(f64::INFINITY);
+        }
+        for (t, &bound) in t.iter_mut().zip(&self.t_max) {
+            *t = f64::from(bound);
+        }
+    }
+
     /// The same rays in a random order.
-    fn shuffled(&self) -> Self {
+    pub fn shuffled(&self) -> Self {
         let mut rows: Vec<usize> = (0..self.len()).collect();
         let mut random = Random::new(4);
         for last in (1..rows.len()).rev() {
             rows.swap(last, random.index(last + 1));
         }
         let mut rays = Self::default();
-        for (origin, direction) in rows.into_iter().map(|row| self.row(row)) {
-            rays.push(origin, direction);
+        for row in rows {
+            let (origin, direction) = self.row(row);
+            rays.push_bounded(origin, direction, self.bound(row));
         }
         rays
+    }
+
+    /// Appends a ray whose search ends at a distance.
+    pub fn push_bounded(&mut self, origin: Vec3, direction: Vec3, t_max: f32) {
+        if t_max < f32::INFINITY || !self.t_max.is_empty() {
+            self.t_max.resize(self.len(), f32::INFINITY);
+            self.t_max.push(t_max);
+        }
+        self.push(origin, direction);
     }
 
     /// Appends a ray.
@@ -131,7 +184,7 @@ impl Seen {
     /// The rays of a class; those that come by pixels come as the picture's do.
     pub fn rays(&self, class: Class, order: Order) -> Cow<'_, Rays> {
         let rays = match class {
-            Class::Primary => Cow::Borrowed(&self.primary),
+            Class::Primary | Class::Closest | Class::Any => Cow::Borrowed(&self.primary),
             Class::Shadow => Cow::Owned(self.toward(LIGHT.normalize())),
             Class::Ao => Cow::Owned(self.scattered(2, 4)),
             Class::Diffuse => Cow::Owned(self.scattered(3, 1)),
@@ -191,11 +244,21 @@ fn camera(flat: bool, spheres: &Columns, side: u32, order: Order) -> Rays {
 }
 
 impl Order {
+    /// The name in tables and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Blocks => "blocks",
+            Self::Rows => "rows",
+            Self::Random => "random",
+            Self::File => "file order",
+        }
+    }
+
     /// Column and row of pixel `i`; `side` is a multiple of 4.
     fn pixel(self, i: u32, side: u32) -> (u32, u32) {
         match self {
             Self::Rows => (i % side, i / side),
-            Self::Blocks | Self::Random => View::in_blocks(i, side),
+            Self::Blocks | Self::Random | Self::File => View::in_blocks(i, side),
         }
     }
 }

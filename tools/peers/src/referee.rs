@@ -86,8 +86,12 @@ impl Referee<'_> {
 
     fn hits(&self, ray: usize, sphere: u32) -> bool {
         sphere != NOTHING && {
-            let (center, radius) = self.sphere(sphere);
-            exact::hit(&self.ray(ray), center, radius).is_some()
+            let ((center, radius), exact_ray) = (self.sphere(sphere), self.ray(ray));
+            let bound = Distance::Number(f64::from(self.rays.bound(ray)));
+            let is_before =
+                || exact::compare(&exact_ray, &Distance::Hit(center, radius), &bound).is_lt();
+            exact::hit(&exact_ray, center, radius).is_some()
+                && (self.rays.bounds().is_empty() || is_before())
         }
     }
 
@@ -126,6 +130,17 @@ mod tests {
         let verdicts = referee.closest(&embree, &spherule);
         assert_eq!((verdicts.differ, verdicts.ties), (5, 1));
         assert_eq!((verdicts.embree_wrong, verdicts.spherule_wrong), (3, 1));
+    }
+
+    #[test]
+    fn what_is_beyond_the_bound_is_not_hit() {
+        let (mut rays, spheres) = (Rays::default(), spheres());
+        // The nearest is hit a bit after 2.
+        for bound in [f32::INFINITY, 2.0, 2.5] {
+            rays.push_bounded(Vec3::ZERO, Vec3::X, bound);
+        }
+        let verdicts = Referee { rays: &rays, spheres: &spheres }.closest(&[0; 3], &[NOTHING; 3]);
+        assert_eq!((verdicts.embree_wrong, verdicts.spherule_wrong), (1, 2));
     }
 
     #[test]

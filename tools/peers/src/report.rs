@@ -3,8 +3,6 @@
 use crate::builds::Builds;
 use crate::contest::{Entry, Outcome, SingleCalls};
 use crate::options::Options;
-use crate::rays::{Class, Order};
-use clap::ValueEnum;
 use spherule_core::internals::elementary::{exp, ln};
 use std::io::{self, Write};
 
@@ -78,16 +76,14 @@ fn means(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {
     Ok(())
 }
 
-/// Outcomes by order and class, and all.
+/// Outcomes by order and class, in the order of their first, and all.
 fn groups(outcomes: &[Outcome]) -> Vec<(String, Vec<&Outcome>)> {
-    let mut groups = Vec::new();
-    for order in Order::value_variants() {
-        for class in Class::value_variants() {
-            let is_in = |outcome: &&Outcome| (outcome.class, outcome.order) == (*class, *order);
-            groups.push((
-                format!("{}, {}", name(class), name(order)),
-                outcomes.iter().filter(is_in).collect::<Vec<_>>(),
-            ));
+    let mut groups: Vec<(String, Vec<&Outcome>)> = Vec::new();
+    for outcome in outcomes {
+        let name = format!("{}, {}", outcome.class.name(), outcome.order.name());
+        match groups.iter_mut().find(|group| group.0 == name) {
+            Some((_, of)) => of.push(outcome),
+            None => groups.push((name, vec![outcome])),
         }
     }
     groups.push(("all".to_owned(), outcomes.iter().collect()));
@@ -98,7 +94,7 @@ fn groups(outcomes: &[Outcome]) -> Vec<(String, Vec<&Outcome>)> {
 impl Outcome {
     /// Scene, class and order.
     fn name(&self) -> String {
-        format!("{}, {}, {}", self.scene, name(&self.class), name(&self.order))
+        format!("{}, {}, {}", self.scene, self.class.name(), self.order.name())
     }
 
     fn ratio(&self) -> f64 {
@@ -186,9 +182,4 @@ fn call(options: &Options, entry: Entry) -> String {
     let configuration = options.configuration.get(entry.configuration);
     let value = configuration.and_then(|text| text.rsplit('=').next()).unwrap_or_default();
     format!("{} {flag}{}, {value}", entry.width, if entry.sorted { ", sorted" } else { "" })
-}
-
-/// As on the command line.
-pub fn name(value: &impl ValueEnum) -> String {
-    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }

@@ -46,7 +46,21 @@ impl Nearest {
     }
 }
 
-impl<Q: Query> Decision<'_, Q> {
+impl<'a, Q: Query> Decision<'a, Q> {
+    /// No hit yet, for a ray that starts in empty space; hits at `bound` or beyond do not count.
+    #[inline(always)]
+    pub(super) fn of_ray(spheres: &'a Spheres, ray: &ExactRay, bound: f64) -> Self {
+        Self {
+            spheres,
+            ray: *ray,
+            own: MISS,
+            target: MISS,
+            nearest: Nearest { t: bound, error: 0.0, sphere: MISS },
+            exact: 0,
+            query: PhantomData,
+        }
+    }
+
     /// Returns bounds of the distance at which the search ends; [`DONE`] if it has ended.
     #[inline(always)]
     pub(super) fn bounds(&self) -> (f32, f32) {

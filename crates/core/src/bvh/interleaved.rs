@@ -10,7 +10,9 @@ use super::child_order::{farthest_first, in_order};
 use super::resolver::{DONE, HitResolver};
 use super::traversal::Query;
 use super::{Bvh, Child, DEPTH, Node, WIDTH};
-use crate::lanes::{F32x8, Lanes, MAX_LANES, Mask, U32x16, set_bits, shuffle, shuffle_numbers};
+use crate::lanes::{
+    F32x8, Lanes, MAX_LANES, Mask, U32x16, least_lane, set_bits, shuffle, shuffle_numbers,
+};
 use crate::slabs::Slabs;
 use crate::spheres::{LEAF, SphereBlock};
 
@@ -238,18 +240,27 @@ impl<S: Slabs, G: Copy> TraversalState<S, G> {
         }
     }
 
-    /// Pushes the children of a node whose boxes are entered, the nearest last, and pops the next child.
+    /// Pushes the children of a node whose boxes are entered, and returns the child that is visited next: for the first hit
+    /// the one that is entered first, for any hit the first in the order of the octant.
     #[inline(always)]
     fn visit_node<Q: Query>(&mut self, node: &Node) -> Child {
-        let (hit, near) = self.slabs.enters(&node.planes, self.t_far);
-        let order = farthest_first(self.slabs.octant(), hit);
-        self.stack.put(self.top as usize, bytemuck::cast_ref(&node.child), order);
-        if !Q::ANY {
-            let top = self.top as usize;
-            shuffle(near, order).store(&mut self.stack.near[top..top + WIDTH]);
+        let (entered, near) = self.slabs.entered(&node.planes, self.t_far);
+        let (hit, top) = (entered.bits(), self.top as usize);
+        if Q::ANY {
+            let order = farthest_first(self.slabs.octant(), hit);
+            self.stack.put(top, bytemuck::cast_ref(&node.child), order);
+            self.top += hit.count_ones();
+            return self.pop();
         }
-        self.top += hit.count_ones();
-        self.pop()
+        let nearest = least_lane(near, entered);
+        let rest = hit & !(1 << nearest);
+        let last = self.stack.child[top - 1];
+        let order = farthest_first(self.slabs.octant(), rest);
+        self.stack.put(top, bytemuck::cast_ref(&node.child), order);
+        shuffle(near, order).store(&mut self.stack.near[top..top + WIDTH]);
+        // Without a branch: the last of the stack if nothing is entered.
+        self.top = self.top + rest.count_ones() - u32::from(hit == 0);
+        if hit == 0 { last } else { node.child[nearest] }
     }
 
     /// Pops the child that is visited next.

@@ -13,6 +13,7 @@ mod interleaved;
 mod nearest;
 mod one_ray;
 mod packet;
+mod plain_ray;
 mod ray_setup;
 mod resolver;
 mod rows;
@@ -21,6 +22,7 @@ mod traversal;
 
 pub use beam::Beam;
 pub use one_ray::{OneHit, trace_far, trace_one};
+pub use plain_ray::{PlainAnswer, PlainHit, PlainRay};
 pub use rows::NodeRow;
 pub use traversal::{
     Any, Closest, ClosestRounded, PacketWidth, Query, Tracer, Traversal, Unverified, Visits,

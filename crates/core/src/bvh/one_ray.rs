@@ -2,6 +2,10 @@
 //!
 //! [`interleaved`](super::interleaved) takes its time to set up many rays; the time of one is less than that.
 //!
+//! The child whose box is entered first is visited next, and the others of a node in the order of
+//! [`child_order`](super::child_order): first hits take a fifth of the nodes and a third of the leaves less than in that order
+//! alone, and hardly more than in the order of all distances.
+//!
 //! # Rays from far away
 //!
 //! Bounds of the conservative tests grow with the distance of the origin ([`Slabs`],
@@ -18,17 +22,16 @@ use super::single::{certainly_hits, chords};
 use super::traversal::Query;
 use super::{Child, DEPTH, Tree, WIDTH};
 use crate::conservative::ConservativeRay;
-use crate::lanes::{F32x8, Lanes, Mask, set_bits, shuffle, shuffle_numbers};
+use crate::lanes::{F32x8, Lanes, Mask, least_lane, set_bits, shuffle, shuffle_numbers};
 use crate::ray::{ExactRay, MISS};
 use crate::slabs::{RaySlabs, Slabs};
-use crate::spheres::LEAF;
-use std::marker::PhantomData;
+use crate::spheres::{LEAF, SphereBlock};
 
 /// Capacity of a stack that every tree needs: the children still to visit, and a whole row of them after the last.
 const STACK: usize = DEPTH * (WIDTH - 1) + 2 * WIDTH;
 
 /// Capacity of a stack that suffices for about all rays: what is not there is not zeroed.
-const SMALL_STACK: usize = 64;
+pub(super) const SMALL_STACK: usize = 64;
 
 /// The hit of one ray.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +48,8 @@ pub struct OneHit {
 #[inline(always)]
 pub fn trace_one<Q: Query>(tree: Tree, ray: &ExactRay, bound: f64) -> OneHit {
     let near = MovedRay { origin: ray.origin.as_vec3(), shift: 0.0, slack: 0.0 };
-    let hit = walk::<Q, SMALL_STACK, false>(tree, ray, &near, bound);
-    hit.unwrap_or_else(|| walk_deeply::<Q, false>(tree, ray, &near, bound))
+    let hit = decide::<Q, SMALL_STACK, false>(tree, ray, &near, bound);
+    hit.unwrap_or_else(|| decide_deeply::<Q, false>(tree, ray, &near, bound))
 }
 
 /// Finds what [`trace_one`] does for a ray whose origin is far from the scene, which lies in the cube from -1 to 1: its
@@ -60,7 +63,7 @@ pub fn trace_far<Q: Query>(tree: Tree, ray: &ExactRay, bound: f64) -> OneHit {
     let slack = (ray.origin.abs().max_element() + 1.0) * (1.0 / (1_u64 << 48) as f64)
         + (origin.abs().max_element() + 1.0) * (1.0 / (1 << 22) as f64);
     let moved = MovedRay { origin: origin.as_vec3(), shift, slack };
-    walk_deeply::<Q, true>(tree, ray, &moved, bound)
+    decide_deeply::<Q, true>(tree, ray, &moved, bound)
 }
 
 /// The start of a ray for the conservative tests.
@@ -74,93 +77,160 @@ struct MovedRay {
 }
 
 #[inline(never)]
-fn walk_deeply<Q: Query, const MOVED: bool>(
+fn decide_deeply<Q: Query, const MOVED: bool>(
     tree: Tree,
     ray: &ExactRay,
     moved: &MovedRay,
     bound: f64,
 ) -> OneHit {
     let miss = OneHit { t: bound, sphere: MISS, exact: 0 };
-    walk::<Q, STACK, MOVED>(tree, ray, moved, bound).unwrap_or(miss)
+    decide::<Q, STACK, MOVED>(tree, ray, moved, bound).unwrap_or(miss)
 }
 
-/// Passes the tree with a stack of so many places; `None` if they do not suffice.
+/// Finds a hit with a stack of so many places; `None` if they do not suffice.
 #[inline(always)]
-fn walk<Q: Query, const PLACES: usize, const MOVED: bool>(
+fn decide<Q: Query, const PLACES: usize, const MOVED: bool>(
     tree: Tree,
     ray: &ExactRay,
     moved: &MovedRay,
     bound: f64,
 ) -> Option<OneHit> {
     let direction = ray.direction.as_vec3();
-    let single = ConservativeRay::new(moved.origin.into(), direction.into());
     let mut slabs = RaySlabs::new(moved.origin, direction);
     if MOVED {
         slabs = slabs.widened(moved.slack as f32);
     }
-    let mut decision = Decision::<Q> {
-        spheres: tree.spheres,
-        ray: *ray,
-        own: MISS,
-        target: MISS,
-        nearest: Nearest { t: bound, error: 0.0, sphere: MISS },
-        exact: 0,
-        query: PhantomData,
+    let mut search = DecidedSearch::<Q, MOVED> {
+        ray: ConservativeRay::new(moved.origin.into(), direction.into()),
+        moved,
+        decision: Decision::of_ray(tree.spheres, ray, bound),
+        t_far: 0.0,
     };
-    // The distance beyond which nothing counts, from the moved origin.
-    let bound_of = |nearest: Nearest| {
-        let Nearest { t, error, .. } = nearest;
-        if MOVED {
-            rounded_out((t + error - moved.shift + moved.slack) as f32).1
-        } else {
-            nearest.bounds().1
-        }
-    };
-    let mut t_far = bound_of(decision.nearest);
+    search.update_bound();
+    walk::<_, PLACES>(tree, &slabs, &mut search)?;
+    let Nearest { t, sphere, .. } = search.decision.nearest;
+    Some(OneHit { t, sphere, exact: search.decision.exact })
+}
+
+/// A search for the hit of a ray, block by block.
+pub(super) trait Search {
+    /// True if the search ends at the first hit: until then its bound does not change.
+    const ANY: bool;
+
+    /// Returns the distance beyond which nothing counts.
+    fn t_far(&self) -> f32;
+
+    /// Tests the spheres of the block at `index`. Returns whether the search has ended.
+    fn test_block(&mut self, index: usize, block: &SphereBlock) -> bool;
+}
+
+/// Passes the tree with a stack of so many places; `None` if they do not suffice.
+#[inline(always)]
+pub(super) fn walk<S: Search, const PLACES: usize>(
+    tree: Tree,
+    slabs: &RaySlabs,
+    search: &mut S,
+) -> Option<()> {
+    let (nodes, blocks) = (tree.bvh.nodes(), tree.spheres.blocks());
+    if nodes.is_empty() {
+        return Some(());
+    }
     let (mut child, mut near) = ([Child::NONE; PLACES], [0.0_f32; PLACES]);
-    child[0] = Child::node(0);
-    let mut top = usize::from(!tree.bvh.is_empty());
-    while top > 0 {
-        top -= 1;
-        let next = child[top];
-        if near[top] > t_far {
-            continue;
-        }
+    let (mut next, mut top) = (Child::node(0), 0);
+    loop {
         if next.kind() == Child::NODE {
-            if top + WIDTH > PLACES {
-                return None;
-            }
-            let node = &tree.bvh.nodes()[next.index()];
-            let (hit, enters) = slabs.enters(&node.planes, t_far);
-            let order = farthest_first(slabs.octant(), hit);
-            let row: [u32; WIDTH] = shuffle_numbers(bytemuck::cast_ref(&node.child), order);
-            child[top..top + WIDTH].copy_from_slice(bytemuck::cast_ref::<_, [Child; WIDTH]>(&row));
-            shuffle(enters, order).store(&mut near[top..top + WIDTH]);
-            top += hit.count_ones() as usize;
-            continue;
-        }
-        let block = &tree.spheres.blocks()[next.index()];
-        let chord = chords(&single, block, MOVED.then_some(moved.slack as f32));
-        let enters = chord.near().to_array();
-        for lane in set_bits(chord.may_hit(F32x8::splat(t_far)).bits()) {
-            if enters[lane] > t_far {
+            let node = &nodes[next.index()];
+            let (entered, enters) = slabs.entered(&node.planes, search.t_far());
+            let hit = entered.bits();
+            if hit != 0 {
+                if top + WIDTH > PLACES {
+                    return None;
+                }
+                // The nearest is not read from the stack, which would wait for what was just written.
+                let nearest = least_lane(enters, entered);
+                next = node.child[nearest];
+                let rest = hit & !(1 << nearest);
+                let order = farthest_first(slabs.octant(), rest);
+                let row = shuffle_numbers(bytemuck::cast_ref(&node.child), order);
+                let row: [Child; WIDTH] = bytemuck::cast(row);
+                child[top..top + WIDTH].copy_from_slice(&row);
+                if !S::ANY {
+                    shuffle(enters, order).store(&mut near[top..top + WIDTH]);
+                }
+                top += rest.count_ones() as usize;
                 continue;
             }
-            let row = next.index() * LEAF + lane;
-            let sphere = || (tree.spheres.center(row), tree.spheres.radius(row));
-            if !MOVED && Q::ANY && certainly_hits(&single, sphere(), decision.bounds().0) {
-                return Some(OneHit { t: bound, sphere: row as u32, exact: decision.exact });
+        } else if search.test_block(next.index(), &blocks[next.index()]) {
+            return Some(());
+        }
+        loop {
+            if top == 0 {
+                return Some(());
+            }
+            top -= 1;
+            if S::ANY || near[top] <= search.t_far() {
+                break;
+            }
+        }
+        next = child[top];
+    }
+}
+
+/// A search that decides each candidate at once.
+struct DecidedSearch<'a, Q, const MOVED: bool> {
+    ray: ConservativeRay<f32>,
+    moved: &'a MovedRay,
+    decision: Decision<'a, Q>,
+    t_far: f32,
+}
+
+impl<Q: Query, const MOVED: bool> DecidedSearch<'_, Q, MOVED> {
+    /// Computes the distance beyond which nothing counts, from the moved origin.
+    #[inline(always)]
+    fn update_bound(&mut self) {
+        let Nearest { t, error, .. } = self.decision.nearest;
+        let MovedRay { shift, slack, .. } = self.moved;
+        self.t_far = if MOVED {
+            rounded_out((t + error - shift + slack) as f32).1
+        } else {
+            self.decision.nearest.bounds().1
+        };
+    }
+}
+
+impl<Q: Query, const MOVED: bool> Search for DecidedSearch<'_, Q, MOVED> {
+    const ANY: bool = Q::ANY;
+
+    #[inline(always)]
+    fn t_far(&self) -> f32 {
+        self.t_far
+    }
+
+    #[inline(always)]
+    fn test_block(&mut self, index: usize, block: &SphereBlock) -> bool {
+        let spheres = self.decision.spheres;
+        let chord = chords(&self.ray, block, MOVED.then_some(self.moved.slack as f32));
+        let enters = chord.near().to_array();
+        for lane in set_bits(chord.may_hit(F32x8::splat(self.t_far)).bits()) {
+            if enters[lane] > self.t_far {
+                continue;
+            }
+            let row = index * LEAF + lane;
+            let sphere = || (spheres.center(row), spheres.radius(row));
+            let decision = &mut self.decision;
+            if !MOVED && Q::ANY && certainly_hits(&self.ray, sphere(), decision.bounds().0) {
+                decision.nearest.sphere = row as u32;
+                return true;
             }
             let nearer =
                 if MOVED { decision.test_sphere_from_afar(row) } else { decision.test_sphere(row) };
             if nearer {
                 if Q::ANY {
-                    return Some(OneHit { t: bound, sphere: row as u32, exact: decision.exact });
+                    return true;
                 }
-                t_far = bound_of(decision.nearest);
+                self.update_bound();
             }
         }
+        false
     }
-    let Nearest { t, sphere, .. } = decision.nearest;
-    Some(OneHit { t, sphere, exact: decision.exact })
 }

@@ -14,7 +14,7 @@ use crate::conservative::{Chord, ConservativeRay};
 use crate::lanes::{F32x8, Lanes, Mask, bits, set_bits};
 use crate::ray::MISS;
 use crate::slabs::{RaySlabs, Slabs};
-use crate::spheres::{LEAF, SphereBlock};
+use crate::spheres::{LEAF, SphereBlock, Spheres};
 use crate::vec3::Vec3;
 
 /// The sphere that a ray starts on, and never hits.
@@ -142,15 +142,72 @@ pub(super) fn certainly_hits(
     chord.enters(ray, radius, &margin) && chord.near_at_most(radius, &margin) < before
 }
 
+/// The nearest candidate of a ray so far, and the bound of all others.
+#[derive(Clone, Copy)]
+pub(super) struct DeferredHit {
+    pub(super) nearest: NearestHit<f32>,
+    /// A distance before which no other sphere is hit, and the search does not end.
+    pub(super) runner_up: f32,
+}
+
+impl DeferredHit {
+    /// No candidate yet, between bounds of the distance at which the search ends.
+    #[inline(always)]
+    pub(super) fn new<Q: Query>(bounds: (f32, f32)) -> Self {
+        Self { nearest: NearestHit::new::<Q>(bounds), runner_up: bounds.0 }
+    }
+
+    /// Tests spheres of the block that begins with sphere `first`: a bit of `lanes` for each, which is not hit before
+    /// its distance in `near`. The ray never hits sphere `target`.
+    #[inline(always)]
+    pub(super) fn test_spheres<Q: Query>(
+        &mut self,
+        (ray, target): (&ConservativeRay<f32>, u32),
+        (spheres, first): (&Spheres, usize),
+        (lanes, near): (u32, &[f32; LEAF]),
+    ) {
+        for lane in set_bits(lanes) {
+            let (sphere, near) = (first + lane, near[lane]);
+            let (number, counts) = (bits(sphere as u32), near <= self.nearest.t_max);
+            if !Q::EXACT {
+                self.nearest.accept_unverified::<Q>(counts && near >= 0.0, near, number);
+            } else if near < 0.0 || target == sphere as u32 {
+                // By value: what a call may write does not stay in registers.
+                *self = self.test_sphere_closely::<Q>((*ray, target), spheres, sphere);
+            } else {
+                let far = likely_distance(near, spheres.radius(sphere));
+                self.nearest.update_nearest(&mut self.runner_up, counts, [near, far], number);
+            }
+        }
+    }
+
+    /// Tests a sphere that the ray may start in, or that it is aimed at.
+    #[inline(always)]
+    fn test_sphere_closely<Q: Query>(
+        mut self,
+        (ray, target): (ConservativeRay<f32>, u32),
+        spheres: &Spheres,
+        sphere: usize,
+    ) -> Self {
+        let (center, radius) = (spheres.center(sphere), spheres.radius(sphere));
+        let lanes = SphereLanes::splat([center.x, center.y, center.z, radius]);
+        let chord = Chord::new(&ray, lanes.center, radius);
+        let allowed = target != sphere as u32;
+        let candidate = Candidate { number: bits(sphere as u32), allowed, sphere: lanes, chord };
+        let mut runner_up = RunnerUp { sphere: lanes, near: self.runner_up };
+        self.nearest.update::<Q>(&mut runner_up, (&ray, &ray.margin()), &candidate);
+        self.runner_up = runner_up.near;
+        self
+    }
+}
+
 /// A ray whose first hit is decided at the end.
 #[derive(Clone, Copy)]
 pub(super) struct DeferredRay {
     row: u32,
     own: OwnSphere,
     ray: ConservativeRay<f32>,
-    nearest: NearestHit<f32>,
-    /// A distance before which no other sphere is hit, and the search does not end.
-    runner_up: f32,
+    hit: DeferredHit,
     /// Distances before which the spheres of the last block are not hit.
     near: [f32; LEAF],
 }
@@ -165,8 +222,7 @@ impl<Q: Query> RayGroup<Q> for DeferredRay {
             row: 0,
             own: OwnSphere::NONE,
             ray: ConservativeRay::IDLE,
-            nearest: NearestHit::new::<Q>((DONE, DONE)),
-            runner_up: DONE,
+            hit: DeferredHit::new::<Q>((DONE, DONE)),
             near: [0.0; LEAF],
         }
     }
@@ -182,8 +238,7 @@ impl<Q: Query> RayGroup<Q> for DeferredRay {
         self.row = start.row as u32;
         self.own = OwnSphere::new(resolver.rays.own[start.row]);
         self.ray = ray;
-        self.nearest = NearestHit::new::<Q>(bounds);
-        self.runner_up = bounds.0;
+        self.hit = DeferredHit::new::<Q>(bounds);
         bounds.1
     }
 
@@ -197,47 +252,22 @@ impl<Q: Query> RayGroup<Q> for DeferredRay {
     #[inline(always)]
     fn test_spheres(&mut self, resolver: &mut HitResolver<Q>, first: usize, spheres: u32) {
         let target = resolver.rays.target[self.row as usize];
-        for lane in set_bits(spheres) {
-            let (sphere, near) = (first + lane, self.near[lane]);
-            let (number, counts) = (bits(sphere as u32), near <= self.nearest.t_max);
-            if !Q::EXACT {
-                self.nearest.accept_unverified::<Q>(counts && near >= 0.0, near, number);
-            } else if near < 0.0 || target == sphere as u32 {
-                self.test_sphere_closely(resolver, sphere);
-            } else {
-                let far = likely_distance(near, resolver.spheres.radius(sphere));
-                self.nearest.update_nearest(&mut self.runner_up, counts, [near, far], number);
-            }
-        }
+        let Self { hit, ray, near, .. } = self;
+        hit.test_spheres::<Q>((ray, target), (resolver.spheres, first), (spheres, near));
     }
 
     #[inline(always)]
     fn t_far(&self, _: &HitResolver<Q>) -> f32 {
-        self.nearest.t_max
+        self.hit.nearest.t_max
     }
 
     #[inline(always)]
     fn commit(&self, resolver: &mut HitResolver<Q>) {
-        resolver.push_pending(self.row, &self.nearest, self.runner_up);
+        resolver.push_pending(self.row, &self.hit.nearest, self.hit.runner_up);
     }
 
     #[inline(always)]
     fn flush(resolver: &mut HitResolver<Q>) {
         resolver.flush_pending();
-    }
-}
-
-impl DeferredRay {
-    /// Tests a sphere that the ray may start in, or that it is aimed at.
-    #[inline(never)]
-    fn test_sphere_closely<Q: Query>(&mut self, resolver: &HitResolver<Q>, sphere: usize) {
-        let (center, radius) = (resolver.spheres.center(sphere), resolver.spheres.radius(sphere));
-        let lanes = SphereLanes::splat([center.x, center.y, center.z, radius]);
-        let chord = Chord::new(&self.ray, lanes.center, radius);
-        let allowed = resolver.rays.target[self.row as usize] != sphere as u32;
-        let candidate = Candidate { number: bits(sphere as u32), allowed, sphere: lanes, chord };
-        let mut runner_up = RunnerUp { sphere: lanes, near: self.runner_up };
-        self.nearest.update::<Q>(&mut runner_up, (&self.ray, &self.ray.margin()), &candidate);
-        self.runner_up = runner_up.near;
     }
 }

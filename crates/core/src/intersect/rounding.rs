@@ -129,8 +129,9 @@ pub fn nearest(ray: &ExactRay, (center, radius): (DVec3, f64), t: f64, coarse: b
     nearest_or_exact(&pairs, ray, t)
 }
 
+/// Does what [`nearest`] does for coordinates that are not coarse.
 #[inline(never)]
-fn nearest_or_exact(pairs: &Pairs<f64>, ray: &ExactRay, t: f64) -> f64 {
+pub fn nearest_or_exact(pairs: &Pairs<f64>, ray: &ExactRay, t: f64) -> f64 {
     let (certain, rounded) = nearest_closely(pairs, t);
     if certain {
         return rounded;

@@ -1,6 +1,6 @@
 //! Permutations: values move from lane to lane, and bits from place to place.
 
-use super::{F32x4, F32x8, F32x16, Lanes, U32x16};
+use super::{F32x4, F32x8, F32x16, Lanes, U32x16, WideMask};
 
 /// In lane `i` the greatest lane of `row[i]`; anything in the last.
 #[inline(always)]
@@ -45,6 +45,20 @@ pub fn shuffle_numbers(row: &[u32; 8], order: u32) -> [u32; 8] {
 pub fn shuffle(row: F32x8, order: u32) -> F32x8 {
     let row: [u32; 8] = bytemuck::cast(row);
     bytemuck::cast(shuffle_numbers(&row, order))
+}
+
+/// Returns the lane of the least of eight numbers that are not negative, among the lanes in which `mask` is true; of numbers
+/// that differ in their last three bits only, that of the first lane. Anything if `mask` is false in all.
+#[inline(always)]
+pub fn least_lane(row: F32x8, mask: WideMask<F32x8>) -> usize {
+    const LANES: wide::u32x8 = wide::u32x8::new([0, 1, 2, 3, 4, 5, 6, 7]);
+    // Numbers that are not negative are in the order of their bits.
+    let bits: wide::u32x8 = bytemuck::cast(row);
+    let others: wide::u32x8 = bytemuck::cast(!mask.0);
+    let keys = bits & wide::u32x8::splat(!7) | LANES | others;
+    let [low, high]: [wide::u32x4; 2] = bytemuck::cast(keys);
+    let [a, b, c, d] = low.min(high).to_array();
+    a.min(c).min(b.min(d)) as usize & 7
 }
 
 /// For every set of eight lanes, their numbers in order, in four bits each.
@@ -208,6 +222,19 @@ mod tests {
         assert_eq!(shuffle_numbers(&row, 0x0123_4567), [17, 16, 15, 14, 13, 12, 11, 10]);
         let lanes = F32x8::new(row.map(|x| x as f32));
         assert_eq!(shuffle(lanes, 0x52).to_array()[..2], [12.0, 15.0]);
+    }
+
+    #[test]
+    fn the_least_lane_is_the_first_of_those_that_count() {
+        let rows = [[0.0, 1.0, 0.0, 2.0, f32::MAX, 1e-30, f32::INFINITY, 0.5], [3.0; 8]];
+        for row in rows {
+            for lanes in 1..=u32::from(u8::MAX) {
+                let counted = super::super::set_bits(lanes);
+                let least = counted.reduce(|a, b| if row[b] < row[a] { b } else { a });
+                let found = least_lane(F32x8::new(row), F32x8::lanes(lanes));
+                assert_eq!(Some(found), least, "{lanes:b}");
+            }
+        }
     }
 
     #[test]

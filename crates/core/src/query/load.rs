@@ -13,7 +13,7 @@ use glam::Vec3 as Point;
 pub(super) const PACKET: usize = F32x16::WIDTH;
 
 /// No direction with a larger coordinate than this, or none larger than its reciprocal, is plain.
-const LONGEST: f32 = (1_u128 << 126) as f32;
+pub(super) const LONGEST: f32 = (1_u128 << 126) as f32;
 
 /// Rays in the units of the tree.
 pub(super) struct LoadedRays {
@@ -35,10 +35,8 @@ impl SphereTree {
         hits: &mut Hits,
     ) -> LoadedRays {
         let mut loaded = LoadedRays { plain: [0; CHUNK / PACKET], shrink: [1.0; CHUNK] };
-        let scale = self.scale[0] as f32;
-        let scalable =
-            f64::from(scale) == self.scale[0] && scale.is_normal() && scale.recip().is_normal();
-        let unscale = F32x16::splat(scale.recip());
+        let [scale, unscale] = self.single_scale.map(|x| F32x16::splat(x.to_array()[0]));
+        let reach = F32x16::splat(self.reach.to_array()[0]);
         let mut coarse = u32::MAX;
         rays.truncate(0);
         for (packet, first) in (0..chunk.len()).step_by(PACKET).enumerate() {
@@ -49,14 +47,14 @@ impl SphereTree {
             loaded.shrink[first..][..PACKET].copy_from_slice(&shrink);
             // The reciprocal of a power of two is one.
             let stretch = F32x16::new(shrink.map(f32::recip));
-            let moved = origin.map(|x| x * F32x16::splat(scale));
+            let moved = origin.map(|x| x * scale);
             let turned = direction.map(|x| x * F32x16::new(shrink));
             let mut all =
                 F32x16::splat(LONGEST.recip()).le(longest) & longest.le(F32x16::splat(LONGEST));
             for axis in 0..3 {
                 all = all & is_exact(moved[axis], origin[axis], unscale);
                 all = all & is_exact(turned[axis], direction[axis], stretch);
-                all = all & Lanes::abs(moved[axis]).le(F32x16::splat(self.reach as f32));
+                all = all & Lanes::abs(moved[axis]).le(reach);
             }
             let (t, sphere) = (&mut hits.t[first..][..PACKET], &mut hits.sphere[first..][..PACKET]);
             sphere.fill(MISS);
@@ -65,7 +63,7 @@ impl SphereTree {
                 t[lane] = bound[lane] * self.scale[0] * f64::from(shrink[lane].recip());
                 numbers |= u32::from(!bound[lane].is_nan()) << lane;
             }
-            let plain = if scalable { all.bits() & numbers } else { 0 };
+            let plain = all.bits() & numbers;
             loaded.plain[packet] = plain;
             let [x, y, z] = moved;
             coarse &= Vec3::new(x, y, z).is_coarse().bits() | !plain;
@@ -82,13 +80,15 @@ impl SphereTree {
 }
 
 /// The reciprocal of the largest power of two that is not above a number within [`LONGEST`].
-fn reciprocal_power(x: f32) -> f32 {
+#[inline(always)]
+pub(super) fn reciprocal_power(x: f32) -> f32 {
     const EXPONENT: u32 = 0xff << 23;
     f32::from_bits((254_u32 << 23).wrapping_sub(x.to_bits() & EXPONENT))
 }
 
 /// The lanes in which a product by a power of two is exact; `inverse` is that of the power.
-fn is_exact(product: F32x16, of: F32x16, inverse: F32x16) -> <F32x16 as Lanes>::Mask {
+#[inline(always)]
+pub(super) fn is_exact<L: Lanes>(product: L, of: L, inverse: L) -> L::Mask {
     let back = product * inverse;
     back.le(of) & of.le(back)
 }

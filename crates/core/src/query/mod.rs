@@ -9,6 +9,7 @@ mod batch;
 mod chunk;
 mod columns;
 mod load;
+mod plain_ray;
 mod reorder;
 mod scaled_ray;
 mod strays;
@@ -20,6 +21,7 @@ use crate::bvh::Bvh;
 use crate::bvh::builders::{Builder, Item, Precise, build_items, collected};
 use crate::bvh::{Any, ClosestRounded, Tree};
 use crate::elementary;
+use crate::lanes::F32x4;
 use crate::spheres::Spheres;
 use crate::vec3::Vec3 as Coordinates;
 use batch::Occlusion;
@@ -40,8 +42,10 @@ pub struct SphereTree {
     bvh: Bvh,
     /// A power of two, which makes the largest coordinate in the tree about 1, and its reciprocal.
     scale: [f64; 2],
-    /// No ray in the tree's units is traced with others whose origin has a larger coordinate.
-    reach: f64,
+    /// [`SphereTree::scale`] in single precision, in lanes; NaN if it is beyond that, so that no product is exact.
+    single_scale: [F32x4; 2],
+    /// No ray in the tree's units is traced with others whose origin has a larger coordinate; in lanes.
+    reach: F32x4,
     /// Centers, radii and ids of the spheres that are not in the tree ([`strays`]), in their own units.
     strays: Vec<(DVec3, f64, u32)>,
     /// A power of two, which makes their largest coordinate about 1, and its reciprocal.
@@ -161,9 +165,10 @@ impl SphereTree {
         }
         let (mut spheres, bvh) = build_items(items, &precise, Builder::default());
         spheres.coarse = !is_rounded && !is_fine.into_inner();
-        let reach = (f64::from(bvh.mean_leaf_extent()) * REACH_IN_LEAVES).clamp(4.0, REACH);
+        let reach = (bvh.mean_leaf_extent() * REACH_IN_LEAVES).clamp(4.0, REACH);
         let (scale, invalid) = ([scale, unscale], count - valid);
-        Ok(Self { spheres, bvh, scale, reach, strays, stray_scale, invalid })
+        let (single_scale, reach) = (single_scale(scale).map(F32x4::splat), F32x4::splat(reach));
+        Ok(Self { spheres, bvh, scale, single_scale, reach, strays, stray_scale, invalid })
     }
 
     /// Number of spheres that can be hit.
@@ -192,7 +197,23 @@ impl SphereTree {
 
     /// Returns the first hit of a ray: of spheres at equal distances, the one of the lowest row. `None`
     /// if the ray hits nothing, or is invalid.
-    pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
+    #[inline]
+    pub fn intersect(&self, [x, y, z]: [f32; 3], [dx, dy, dz]: [f32; 3]) -> Option<Hit> {
+        self.intersect_numbers(x, y, z, dx, dy, dz)
+    }
+
+    /// [`SphereTree::intersect`] for numbers in registers: arrays would go through memory, where what was written one by
+    /// one cannot be read at once without delay.
+    #[inline(never)]
+    fn intersect_numbers(&self, x: f32, y: f32, z: f32, dx: f32, dy: f32, dz: f32) -> Option<Hit> {
+        let (origin, direction) = ([x, y, z], [dx, dy, dz]);
+        let hit = self.intersect_plain(origin, direction);
+        hit.unwrap_or_else(|_| self.intersect_closely(origin, direction))
+    }
+
+    /// Does what [`SphereTree::intersect`] does for any ray.
+    #[inline(never)]
+    fn intersect_closely(&self, origin: [f32; 3], direction: [f32; 3]) -> Option<Hit> {
         let ray = (origin, direction);
         let scaled = ScaledRay::new(ray, self.scale)?;
         let tally = &mut Tally::default();
@@ -203,7 +224,33 @@ impl SphereTree {
 
     /// Returns whether a ray hits anything at a distance less than `t_max`, in units of the
     /// direction's length.
+    #[inline]
     pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> bool {
+        let ([x, y, z], [dx, dy, dz]) = (origin, direction);
+        self.occluded_numbers(x, y, z, dx, dy, dz, t_max)
+    }
+
+    /// [`SphereTree::occluded`] for numbers in registers, as [`SphereTree::intersect_numbers`].
+    #[inline(never)]
+    #[expect(clippy::too_many_arguments, reason = "a struct would go through memory")]
+    fn occluded_numbers(
+        &self,
+        x: f32,
+        y: f32,
+        z: f32,
+        dx: f32,
+        dy: f32,
+        dz: f32,
+        t_max: f64,
+    ) -> bool {
+        let (origin, direction) = ([x, y, z], [dx, dy, dz]);
+        let occluded = self.occluded_plain(origin, direction, t_max);
+        occluded.unwrap_or_else(|| self.occluded_closely(origin, direction, t_max))
+    }
+
+    /// Does what [`SphereTree::occluded`] does for any ray.
+    #[inline(never)]
+    fn occluded_closely(&self, origin: [f32; 3], direction: [f32; 3], t_max: f64) -> bool {
         self.trace_one::<Any>((origin, direction), t_max, &mut Tally::default()).is_some()
     }
 
@@ -246,6 +293,13 @@ impl SphereTree {
 fn scale_of(largest: f64) -> [f64; 2] {
     let exponent = if largest > 0.0 { elementary::ceil_log2(largest) } else { 0 };
     [-exponent, exponent].map(elementary::power_of_two)
+}
+
+/// A scale and its reciprocal in single precision; NaN if they are beyond that.
+fn single_scale(scale: [f64; 2]) -> [f32; 2] {
+    let single = scale.map(|x| x as f32);
+    let holds = single.map(f64::from) == scale && single.iter().all(|x| x.is_normal());
+    if holds { single } else { [f32::NAN; 2] }
 }
 
 fn split([x, y, z, radius]: [f64; 4]) -> (DVec3, f64) {

@@ -6,7 +6,7 @@ use super::{RayColumns, SphereTree, Surface};
 use crate::exact;
 use crate::intersect::{Pair, Pairs};
 use crate::lanes::{Doubles, F64x8, Mask, set_bits};
-use crate::ray::{Hits, Rays};
+use crate::ray::{ExactRay, Hits, Rays};
 use crate::vec3::Vec3;
 use glam::DVec3;
 
@@ -49,11 +49,11 @@ impl SphereTree {
     ) -> Surface {
         // Strays have units of their own.
         let Some(stray) = found.sphere.checked_sub(self.spheres.len()) else {
-            return surface_of(scaled, self.spheres.exact(found.sphere), found.t, self.scale);
+            return scaled.surface(self.spheres.exact(found.sphere), found.t, self.scale[1]);
         };
         let (center, radius, _) = self.strays[stray];
         let scaled = ScaledRay::new(ray, self.stray_scale);
-        let of = |scaled| surface_of(&scaled, (center, radius), found.t, self.stray_scale);
+        let of = |scaled: ScaledRay| scaled.surface((center, radius), found.t, self.stray_scale[1]);
         scaled.map_or(Surface::default(), of)
     }
 
@@ -99,17 +99,30 @@ impl SphereTree {
     }
 }
 
-/// Returns the surface where a ray hits a sphere at a distance in the user's units.
+impl ScaledRay {
+    /// Returns the surface where the ray hits a sphere at a distance in the user's units.
+    fn surface(&self, sphere: (DVec3, f64), t: f64, unscale: f64) -> Surface {
+        let pair = Pairs::one(&self.ray, sphere.0, sphere.1);
+        surface_of(&pair, || (self.ray, sphere), t / self.unit, unscale)
+    }
+}
+
+/// Returns the surface where a ray hits a sphere, at a distance in their units; `of` returns both again.
 #[inline(always)]
-fn surface_of(
-    ScaledRay { ray, unit }: &ScaledRay,
-    (center, radius): (DVec3, f64),
+pub(super) fn surface_of(
+    pair: &Pairs<f64>,
+    of: impl Fn() -> (ExactRay, (DVec3, f64)),
     t: f64,
-    [_, unscale]: [f64; 2],
+    unscale: f64,
 ) -> Surface {
-    let (clear, normal) = normals(&Pairs::one(ray, center, radius), t / unit);
-    let normal = if clear { normal } else { exact::normal(ray, center, radius).into() };
-    let point = (normal * radius + center.into()) * unscale;
+    let (clear, normal) = normals(pair, t);
+    let normal = if clear {
+        normal
+    } else {
+        let (ray, (center, radius)) = of();
+        exact::normal(&ray, center, radius).into()
+    };
+    let point = (normal * pair.radius + pair.center) * unscale;
     Surface { point: point.into(), normal: normal.into() }
 }
 
