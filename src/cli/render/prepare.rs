@@ -16,7 +16,7 @@ use spherule_render::bvh::builders::Builder;
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
-use spherule_render::scene::particles::{Cell, Legend, Particles};
+use spherule_render::scene::particles::{Cell, Legend, Orientation, Particles};
 use spherule_render::scene::{Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -43,6 +43,8 @@ pub(super) struct Prepared {
     pub(super) notes: Vec<String>,
     /// The color scale, if colors represent numbers.
     pub(super) legend: Option<Legend>,
+    /// What is up, if the scene is of particles.
+    orientation: Option<Orientation>,
     /// Settings for particles from a prepared scene, for the image's metadata.
     looks: Option<Vec<(String, String)>>,
     /// Identity of the scene, if the image or a checkpoint records it.
@@ -59,6 +61,8 @@ pub(super) struct Staged {
     /// Normals of the slices that cut anything, toward what is cut away.
     pub(super) cuts: Vec<DVec3>,
     pub(super) legend: Option<Legend>,
+    /// What is up, if the scene is of particles.
+    pub(super) orientation: Option<Orientation>,
     load: Duration,
 }
 
@@ -66,14 +70,15 @@ impl Staged {
     /// Loads the scene; `given` are its particles, if they are already loaded.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let appearance::Loaded { mut scene, legend, cell } = appearance::load(job, given)?;
+        let appearance::Loaded { mut scene, legend, cell, orientation } =
+            appearance::load(job, given)?;
         scene.color_bar = appearance::color_bar(job, legend.as_ref()).or(scene.color_bar);
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
         check_region(job, &scene)?;
         let load = start.elapsed();
-        job.style.set(&mut scene);
+        job.style.set(job.preset(), &mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
         check_alpha(&scene.look, job.format)?;
         job.picture.settings.apply(&mut scene.settings);
@@ -81,7 +86,7 @@ impl Staged {
             // The image is written elsewhere, with the settings of the part.
             job.encoding.display.apply(&mut scene.settings);
         }
-        Ok(Self { scene, cuts, legend, load })
+        Ok(Self { scene, cuts, legend, orientation, load })
     }
 }
 
@@ -89,6 +94,8 @@ impl Staged {
 pub(super) struct PlacedScene {
     pub(super) scene: Scene,
     pub(super) legend: Option<Legend>,
+    /// What is up, if the scene is of particles.
+    orientation: Option<Orientation>,
     pub(super) region: Region,
     /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
@@ -104,9 +111,12 @@ impl PlacedScene {
         if let Source::Prepared(path) = &job.source {
             return Self::open(job, path);
         }
-        let Staged { mut scene, cuts, legend, load } = Staged::load(job, given)?;
-        place_camera(job, &mut scene, &cuts)?;
-        job.style.light(&mut scene);
+        let Staged { mut scene, cuts, legend, orientation, load } = Staged::load(job, given)?;
+        place_camera(job, &mut scene, orientation.as_ref(), &cuts)?;
+        if let Some(preset) = job.preset() {
+            let vertical = job.views.vertical(&scene.camera, orientation.as_ref());
+            preset.light(&mut scene, vertical);
+        }
         if let (Some(ground), Some(common)) = (&mut scene.ground, &job.common) {
             ground.height = common.ground.unwrap_or(ground.height);
         }
@@ -116,7 +126,7 @@ impl PlacedScene {
         }
         let asked = job.checkpoints.file().is_some() || job.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
-        Ok(Self { scene, legend, region, identity, stored: None, load })
+        Ok(Self { scene, legend, orientation, region, identity, stored: None, load })
     }
 
     /// Opens a prepared scene, and applies the job's settings.
@@ -136,12 +146,13 @@ impl PlacedScene {
             picture_file::check_size("render", region, job.format)?;
         }
         let identity = Some(stored.identity.clone());
-        Ok(Self { scene, legend: None, region, identity, stored: Some(Box::new(stored)), load })
+        let stored = Some(Box::new(stored));
+        Ok(Self { scene, legend: None, orientation: None, region, identity, stored, load })
     }
 
     /// Builds the world, unless its estimated memory exceeds the limit.
     pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
-        let Self { mut scene, legend, region, identity, stored, load } = self;
+        let Self { mut scene, legend, orientation, region, identity, stored, load } = self;
         let image_part = part::image_part(job, region, &scene)?;
         let estimate =
             Estimate::new(&scene, region, job).of_tiles(image_part.tiles.len()).check()?;
@@ -180,6 +191,7 @@ impl PlacedScene {
             build,
             estimate,
             legend,
+            orientation,
             looks,
             identity,
             warnings,
@@ -211,6 +223,12 @@ impl Prepared {
             return;
         }
         self.notes.iter().for_each(|text| notices.note(text));
+        if let Some(orientation) = &self.orientation
+            && let Some(text) = job.views.explain_up(orientation)
+            && (job.report.verbose || orientation.reason.is_evident())
+        {
+            notices.note(&text);
+        }
         if job.report.verbose {
             output::note(format_args!("found: {}", found(&self.world).join(", ")));
             for skipped in self.world.features.skipped() {
@@ -240,13 +258,18 @@ fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Places the camera for this scene, or for all images of its sequence.
-fn place_camera(job: &Job, scene: &mut Scene, cuts: &[DVec3]) -> Result<(), Failure> {
+fn place_camera(
+    job: &Job,
+    scene: &mut Scene,
+    orientation: Option<&Orientation>,
+    cuts: &[DVec3],
+) -> Result<(), Failure> {
     match &job.common {
         Some(common) => {
             scene.camera = common.camera.clone();
             Ok(())
         }
-        None => job.views.frame(scene, job.turn, cuts),
+        None => job.views.frame(scene, orientation, job.turn, cuts),
     }
 }
 
