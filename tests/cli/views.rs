@@ -124,7 +124,7 @@ fn settings_without_effect_are_refused() {
         ("render a.xyz --replicate 2,2", 2, "three integers"),
         ("render a.xyz --view top", 2, "sides are"),
         ("render a.xyz --up top", 2, "directions are"),
-        ("render a.xyz --up +z", 2, "directions are"),
+        ("render a.xyz --up +z", 2, "did you mean `-z`"),
         ("render a.toml --up z", 2, "particle files"),
         ("render --up z", 2, "particle files"),
         ("render a.xyz --margin 1", 2, "0 to 0.9"),
