@@ -76,7 +76,9 @@ fn parts_have_presets_and_colored_backgrounds() {
         folder.succeed(&[&["merge", "-q", "-o", "a.png"], &parts[..]].concat());
         let merged = folder.read("a.png");
         assert!(merged == folder.picture("a.png", &all), "{args:?}");
-        parts.map(|part| fs::remove_file(folder.path(part)).expect("it is there"));
+        for part in parts {
+            fs::remove_file(folder.path(part)).expect("it is there");
+        }
     }
 }
 

@@ -80,13 +80,14 @@ impl ViewArgs {
 
     /// Returns a sentence on what is up and why; `None` if the view does not depend on it.
     pub(in crate::cli) fn explain_up(&self, orientation: &Orientation) -> Option<String> {
-        let Orientation { up, reason, .. } = orientation;
-        let free = self.view == Some(View::Auto) && !reason.is_evident();
-        let chosen = *reason == UpReason::Chosen;
-        (!free && !chosen).then(|| {
-            let other = "--up chooses another direction";
-            format!("{} is up: {reason}; {other}", up.name())
-        })
+        let reason = orientation.reason;
+        let up = match self.view {
+            Some(View::Auto) if !reason.is_evident() => return None,
+            Some(View::Iso | View::Side(_)) => orientation.up_of_sides(),
+            Some(View::Auto) | None => orientation.up,
+        };
+        let chosen = reason == UpReason::Chosen;
+        (!chosen).then(|| format!("{} is up: {reason}; --up chooses another direction", up.name()))
     }
 
     /// Places the camera of a scene whose image size is set, for image `turn` of a turntable. `normals` are
