@@ -131,7 +131,7 @@ fn settings_without_effect_are_refused() {
         ("render a.xyz --turntable 0", 2, "1..=100000"),
         ("render - --turntable 2", 2, "standard input"),
         ("render --cell", 2, "particle file"),
-        ("render a.xyz --preset pretty", 2, "presets are: chalk"),
+        ("render a.xyz --preset pretty", 2, "presets are: figure"),
         ("render a.xyz --preset studo", 2, "did you mean `studio`"),
         ("render a.xyz --view ISO", 2, "did you mean `iso`"),
         ("render a.xyz --background whit", 2, "did you mean `white`"),
