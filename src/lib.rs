@@ -95,11 +95,11 @@ pub mod color {
 pub mod scene {
     #[doc(inline)]
     pub use spherule_render::scene::{
-        Background, Camera, ColorBar, ConductorFresnel, Corner, Environment, EnvironmentMap,
-        FileError, Filter, Footprint, Ground, Header, Identity, Integrator, InvalidSetting, Lens,
-        Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset, Projection, Rgb,
-        Roulette, SamplerKind, Scene, Settings, Slice, SliceMode, SlicePlane, Spheres, Tone, write,
-        write_as,
+        Background, Camera, ColorBar, ConductorFresnel, Corner, Denoise, Environment,
+        EnvironmentMap, FileError, Filter, Footprint, Ground, Header, Identity, Integrator,
+        InvalidSetting, Lens, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose,
+        Preset, Projection, Rgb, Roulette, SamplerKind, Scene, Settings, Slice, SliceMode,
+        SlicePlane, Spheres, Tone, write, write_as,
     };
 
     /// Generators of spheres.
@@ -131,16 +131,24 @@ pub mod world {
 /// Renders: passes over tiles, tiles over threads; renders that can be stopped and resumed.
 pub mod render {
     #[doc(inline)]
-    pub use spherule_render::film::{Region, RegionError};
+    pub use spherule_render::film::{Film, Region, RegionError};
     #[doc(inline)]
     pub use spherule_render::noise::{Noise, StopCondition};
     #[doc(inline)]
     pub use spherule_render::render::{
-        Elisions, End, ImagePart, IncompatibleSettings, Options, Progress, Render, RenderError,
-        ResumableRender, Samples, Statistics, Status, Tasks, Totals, render,
+        Elisions, End, ImagePart, IncompatibleSettings, Judge, Options, Progress, Render,
+        RenderError, ResumableRender, Samples, Statistics, Status, Tasks, Totals, render,
     };
     #[doc(inline)]
     pub use spherule_render::trace::{PacketWidth, Tracer, Traversal};
+}
+
+/// Denoising, and the error of its result.
+pub mod denoise {
+    #[doc(inline)]
+    pub use spherule_render::denoise::{
+        Choice, Denoised, Denoiser, Judged, MAX_ERROR, denoise, max_samples,
+    };
 }
 
 /// Files of unfinished renders.

@@ -27,7 +27,8 @@ Examples:
   spherule render salt.xyz --type Na:radius=1,material=glass --type Cl:color=#30a030
   spherule render crystal.cif --wrap --replicate 3,3,2 --cell --view auto -o crystal.png
   spherule render protein.pdb --projection orthographic --turntable 90 -o turn.png
-  spherule render protein.pdb --preset outline --background white -o outline.png
+  spherule render protein.pdb --preset outline -o outline.png
+  spherule render grains.csv --preset studio --up y -o grains.png
   spherule render grains.data --slice 'z>50%' --slice-mode caps -o section.png
   spherule render scene.toml -o - --output-format jpeg | display
   spherule render scene.toml --region 100,50,64x64 -o detail.png

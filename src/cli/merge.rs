@@ -198,7 +198,8 @@ fn report(args: &Args, merged: &Merged, render: &Render, settings: List) {
     warnings(&render.counters, merged.whole.settings()).iter().for_each(output::warn);
     if merged.caption.drawn_over {
         output::warn(
-            "--cell, --background and --color-bar inside need the scene, and are left out",
+            "--cell, --background transparent, depth cue, outlines and --color-bar inside need the scene, and are \
+             left out",
         );
     }
     for missing in &summary.missing {

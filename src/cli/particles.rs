@@ -9,7 +9,8 @@ use indicatif::HumanCount;
 use serde::Serialize;
 use serde_json::json;
 use spherule_render::scene::particles::{
-    Columns, Element, Format, FrameChoice, LengthUnit, Particles, Radii, ReadOptions, count_frames,
+    Columns, Element, Format, FrameChoice, LengthUnit, Orientation, Particles, Radii, ReadOptions,
+    count_frames,
 };
 use spherule_render::suggest;
 use std::path::Path;
@@ -124,6 +125,8 @@ pub(super) struct ParticleInfo {
     types: Vec<TypeInfo>,
     /// Null if the file has none.
     cell: Option<CellInfo>,
+    /// The direction that is up in the image.
+    up: UpInfo,
     /// Null if they are not asked for.
     pub(super) rows: Option<RowInfo>,
 }
@@ -133,6 +136,12 @@ struct TypeInfo {
     name: String,
     element: Option<&'static str>,
     spheres: u64,
+}
+
+#[derive(Serialize)]
+struct UpInfo {
+    axis: &'static str,
+    reason: String,
 }
 
 #[derive(Serialize)]
@@ -147,6 +156,7 @@ const SHOWN: usize = 12;
 
 impl ParticleInfo {
     pub(super) fn new(path: &Path, options: &ReadOptions, particles: &Particles) -> Self {
+        let Orientation { up, reason, .. } = Orientation::of(particles);
         let kinds = &particles.kinds;
         let mut counts = vec![0; kinds.table.len()];
         (0..kinds.codes.len()).for_each(|row| counts[kinds.codes.code(row) as usize] += 1);
@@ -172,6 +182,7 @@ impl ParticleInfo {
                 vectors: cell.vectors.map(|vector| vector.to_array()),
                 periodic: cell.periodic,
             }),
+            up: UpInfo { axis: up.name(), reason: reason.to_string() },
             rows: None,
         }
     }
@@ -202,6 +213,7 @@ impl ParticleInfo {
         if let Some(CellInfo { origin, vectors: [a, b, c], .. }) = &self.cell {
             output::print(format_args!("cell         {a:?}, {b:?}, {c:?} from {origin:?}"));
         }
+        output::print(format_args!("up           {}: {}", self.up.axis, self.up.reason));
         self.rows.iter().for_each(RowInfo::print);
     }
 }

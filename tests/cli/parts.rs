@@ -66,6 +66,23 @@ fn pictures_of_parts_are_those_of_the_whole_in_every_format() {
 }
 
 #[test]
+fn parts_have_presets_and_colored_backgrounds() {
+    let folder = Folder::new();
+    folder.write("a.xyz", "2\n\nH 0 0 0\nO 1 0 0\n");
+    for args in [&[][..], &["--preset", "studio"], &["--background", "steelblue"]] {
+        let all = [&["a.xyz"], args].concat();
+        render(&folder, &[&["-o", "a.png"], &all[..]].concat(), &["1/2", "2/2"]);
+        let parts = ["a.1-of-2.part", "a.2-of-2.part"];
+        folder.succeed(&[&["merge", "-q", "-o", "a.png"], &parts[..]].concat());
+        let merged = folder.read("a.png");
+        assert!(merged == folder.picture("a.png", &all), "{args:?}");
+        for part in parts {
+            fs::remove_file(folder.path(part)).expect("it is there");
+        }
+    }
+}
+
+#[test]
 fn the_environment_selects_parts() {
     let folder = Folder::new();
     let run = |task: &str, count: &str| {
@@ -165,7 +182,7 @@ fn options_that_parts_do_not_support_are_refused() {
         ("--part 1/2 --time 5s", &["--part", "--time none"]),
         ("--part 1/9", &["9 parts", "4 samples", "6 parts or fewer"]),
         ("--part 1/5 --split samples", &["5 parts", "by tiles"]),
-        ("--part 1/2 --background white", &["--background", "--part"]),
+        ("--part 1/2 --background transparent", &["--background", "--part"]),
         ("--part 1/2 --checkpoint c", &["--checkpoint", "--part"]),
         ("a.xyz --part 1/2 --turntable 3 --split tiles", &["--split", "whole"]),
     ];

@@ -68,6 +68,31 @@ fn sides_and_projections_frame_everything() {
 }
 
 #[test]
+fn what_is_up_follows_the_cell_or_the_option() {
+    let folder = folder();
+    // The cell is periodic along a and b, so z is up.
+    let found = picture(&folder, "found.png", &[]);
+    assert_eq!(found, picture(&folder, "z.png", &["--up", "z"]));
+    assert_eq!(found, picture(&folder, "auto.png", &["--up", "auto"]));
+    let mut pictures = vec![found];
+    for args in [&["--up", "y"][..], &["--up", "-z"], &["--up", "y", "--view", "x"]] {
+        let image = picture(&folder, "up.png", args);
+        assert!(!pictures.contains(&image), "{args:?}");
+        pictures.push(image);
+    }
+    let sides = ["--view", "x", "--up"];
+    let side = picture(&folder, "side.png", &["--view", "x"]);
+    assert_eq!(side, picture(&folder, "up.png", &[&sides[..], &["z"]].concat()));
+    let info = folder.json(&["info", "a.xyz", "--radii", "0.3", "--json"]);
+    assert_eq!(info["particles"]["up"]["axis"], "z");
+    let reason = info["particles"]["up"]["reason"].as_str().expect("a reason");
+    assert!(reason.contains("periodic"), "{reason}");
+    let output = folder.run(&["render", "a.xyz", "--radii", "0.3", "--size", "9x9", "--spp", "1"]);
+    let stderr = text(&output.stderr);
+    assert!(stderr.contains("z is up: the cell is periodic"), "{stderr}");
+}
+
+#[test]
 fn turns_are_numbered_pictures_that_differ() {
     let folder = folder();
     let args = ["a.xyz", "--radii", "0.3", "--turntable", "3", "-o", "turn.png"];
@@ -98,11 +123,15 @@ fn settings_without_effect_are_refused() {
         ("render a.xyz --replicate 60000,60000,1", 1, "at most"),
         ("render a.xyz --replicate 2,2", 2, "three integers"),
         ("render a.xyz --view top", 2, "sides are"),
+        ("render a.xyz --up top", 2, "directions are"),
+        ("render a.xyz --up +z", 2, "did you mean `-z`"),
+        ("render a.toml --up z", 2, "particle files"),
+        ("render --up z", 2, "particle files"),
         ("render a.xyz --margin 1", 2, "0 to 0.9"),
         ("render a.xyz --turntable 0", 2, "1..=100000"),
         ("render - --turntable 2", 2, "standard input"),
         ("render --cell", 2, "particle file"),
-        ("render a.xyz --preset pretty", 2, "presets are: chalk"),
+        ("render a.xyz --preset pretty", 2, "presets are: figure"),
         ("render a.xyz --preset studo", 2, "did you mean `studio`"),
         ("render a.xyz --view ISO", 2, "did you mean `iso`"),
         ("render a.xyz --background whit", 2, "did you mean `white`"),
@@ -123,11 +152,12 @@ fn settings_without_effect_are_refused() {
 fn looks_and_backgrounds_differ() {
     let folder = folder();
     let mut pictures = Vec::new();
-    for look in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
+    for look in ["figure", "chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
         let image = picture(&folder, "look.png", &["--preset", look, "--wrap"]);
-        // The corner is background or, in the studio, ground of the same color.
+        // The corner is background or, in the studio, ground of the same light gray.
         let corner = image.pixel(0, 0).unwrap();
-        assert!(corner.iter().all(|&value| value > 0.9), "{look}: {corner:?}");
+        let white = if look == "studio" { 0.8 } else { 1.0 };
+        assert!(corner.iter().all(|&value| value >= white), "{look}: {corner:?}");
         assert!(image.pixels.iter().any(|pixel| pixel[1] < 0.7), "{look}");
         assert!(!pictures.contains(&image), "{look}");
         pictures.push(image);
@@ -135,6 +165,10 @@ fn looks_and_backgrounds_differ() {
     let blue = picture(&folder, "blue.png", &["--background", "#0000ff", "--view", "z"]);
     assert_eq!(blue.pixel(0, 0), Some([0.0, 0.0, 1.0]));
     let white = picture(&folder, "white.png", &["--view", "z"]);
-    let again = picture(&folder, "again.png", &["--view", "z", "--background", "white"]);
-    assert_eq!(white, again, "the sky is white");
+    for args in [["--background", "white"], ["--preset", "figure"]] {
+        let again = picture(&folder, "again.png", &[&["--view", "z"], &args[..]].concat());
+        assert_eq!(white, again, "{args:?} is the default");
+    }
+    let sky = picture(&folder, "sky.png", &["--view", "z", "--background", "sky"]);
+    assert!(sky.pixel(0, 0).unwrap()[0] < 0.5, "the sky is dark behind the particles");
 }

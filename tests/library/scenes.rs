@@ -37,6 +37,66 @@ fn every_scene_renders_and_shows_something() {
     assert!(count >= 14, "{count} scenes");
 }
 
+/// A background hides the sky and the suns behind a sphere, and nothing else: not their light, their images
+/// in mirrors, or the ground.
+#[test]
+fn backgrounds_are_seen_and_do_not_light() {
+    let text = "[camera]\nprojection = \"orthographic\"\nheight = 4\neye = [0, 0, 5]\n\
+                target = [0, 0, 0]\n[environment]\nkind = \"gradient\"\n\
+                [[light]]\nkind = \"sun\"\ndirection = [0, 0.2, -1]\nirradiance = 2\n\
+                angular_radius = 60\n[material.mirror]\nkind = \"conductor\"\ncolor = 0.9\n\
+                [[sphere]]\ncenter = [-0.9, 0, 0]\nradius = 0.8\n\
+                [[sphere]]\ncenter = [0.9, 0, 0]\nradius = 0.8\nmaterial = \"mirror\"\n";
+    for (integrator, ground) in ["path", "whitted", "ao"]
+        .into_iter()
+        .flat_map(|name| ["", "[ground]\nheight = -1\n"].map(|ground| (name, ground)))
+    {
+        let image = |look: &str| {
+            let text = format!(
+                "[render]\nsize = [80, 60]\nspp = 4\nfilter = \"box\"\nintegrator = \
+                 \"{integrator}\"\n{look}\n{text}{ground}"
+            );
+            let scene = Scene::parse(&text, "test", Path::new("")).expect("a scene");
+            let world = World::build(&scene).expect("a world");
+            render(&world, &scene.settings, &Options::default()).expect("settings").image
+        };
+        let (sky, blue) = (image(""), image("[look]\nbackground = [0, 0, 1]"));
+        for y in 0..60 {
+            for x in 0..80 {
+                let (seen, other) = (blue.pixel(x, y), sky.pixel(x, y));
+                let near =
+                    |column: f64| (f64::from(x) + 0.5 - column).hypot(f64::from(y) + 0.5 - 30.0);
+                let nearest = near(26.5).min(near(53.5));
+                if nearest < 11.0 {
+                    assert_eq!(seen, other, "{integrator} {x} {y}");
+                } else if nearest > 13.0 && ground.is_empty() {
+                    assert_eq!(seen, Some([0.0, 0.0, 1.0]), "{integrator} {x} {y}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn glass_shows_the_background_behind_it() {
+    for integrator in ["path", "whitted"] {
+        let text = format!(
+            "[render]\nsize = [40, 40]\nspp = 16\nintegrator = \"{integrator}\"\n\
+             [look]\nbackground = [0, 0, 1]\n[environment]\ncolor = 0.25\n\
+             [camera]\nprojection = \"orthographic\"\n\
+             [material.glass]\nkind = \"dielectric\"\n\
+             [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"glass\"\n"
+        );
+        let scene = Scene::parse(&text, "test", Path::new("")).expect("a scene");
+        let world = World::build(&scene).expect("a world");
+        let image = render(&world, &scene.settings, &Options::default()).expect("settings").image;
+        for pixel in &image.pixels {
+            let near = pixel.iter().zip([0.0, 0.0, 1.0]).all(|(a, b)| (a - b).abs() < 1e-5);
+            assert!(near, "{integrator} {pixel:?}");
+        }
+    }
+}
+
 #[test]
 fn the_quartz_of_the_gallery_is_complete() {
     let path = folder().join("gallery/quartz.cif");

@@ -10,7 +10,9 @@ use spherule_render::atomic::check_destination;
 use spherule_render::drawing::{DrawingError, Picture};
 use spherule_render::image::Image;
 use spherule_render::overlay::color_bar::{Bar, Direction};
-use spherule_render::scene::particles::{self, Cell, Legend, ParticleStyle, Particles};
+use spherule_render::scene::particles::{
+    self, Cell, Legend, Orientation, ParticleStyle, Particles,
+};
 use spherule_render::scene::{ColorBar, Rgb, Scene};
 
 /// Length of a color bar as a fraction of the image's height.
@@ -38,6 +40,8 @@ pub(super) struct Loaded {
     /// The color scale, if colors represent numbers.
     pub(super) legend: Option<Legend>,
     pub(super) cell: Option<Cell>,
+    /// What is up, if the scene is of particles.
+    pub(super) orientation: Option<Orientation>,
 }
 
 /// Loads the scene, with colors, materials and replicas of particles.
@@ -46,7 +50,8 @@ pub(super) struct Loaded {
 pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failure> {
     let Source::Particles(path, options) = &job.source else {
         job.views.refuse_cells()?;
-        return Ok(Loaded { scene: job.source.load()?, legend: None, cell: None });
+        let scene = job.source.load()?;
+        return Ok(Loaded { scene, legend: None, cell: None, orientation: None });
     };
     let mut particles = match given {
         Some(particles) => particles,
@@ -54,8 +59,11 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
     };
     let legend = job.looks.apply(path, &mut particles)?;
     let cell = job.views.repeat(path, &mut particles)?;
+    let shared = job.common.as_ref().and_then(|common| common.orientation);
+    let orientation = shared.unwrap_or_else(|| job.views.orientation(&particles));
     let title = job.source.title(&Scene::default()).into_owned();
-    Ok(Loaded { scene: job.style.scene(particles, &title), legend, cell })
+    let scene = job.preset().unwrap_or_default().scene(particles, &title, &orientation);
+    Ok(Loaded { scene, legend, cell, orientation: Some(orientation) })
 }
 
 /// Checks that the color bar can be written, without changing anything.

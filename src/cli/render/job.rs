@@ -22,7 +22,7 @@ use spherule_render::bvh::builders::Builder;
 use spherule_render::film::Region;
 use spherule_render::image::Format;
 use spherule_render::scene::particles::ParticleStyle;
-use spherule_render::scene::{Look, Settings};
+use spherule_render::scene::{Look, Preset, Settings};
 use spherule_render::split::{Part, Split};
 use spherule_render::trace::Tracer;
 use std::path::PathBuf;
@@ -125,6 +125,10 @@ impl<'a> Job<'a> {
             let message = "--preset applies only to particle files; a scene defines its own style";
             return Err(Failure::usage("render", message));
         }
+        if args.views.sets_up() && !matches!(source, Source::Particles(..)) {
+            let message = "--up applies only to particle files; a scene's [camera] says what is up";
+            return Err(Failure::usage("render", message));
+        }
         args.checkpoints.check()?;
         let part = args.part.resolved();
         let (part, deal) = if args.is_sequence() { (None, part) } else { (part, None) };
@@ -159,6 +163,12 @@ impl<'a> Job<'a> {
             threads: threads::count(args.speed.threads),
             report: args.report,
         })
+    }
+
+    /// Returns the preset: that of `--preset`, or the default of particle files.
+    pub(in crate::cli) fn preset(&self) -> Option<Preset> {
+        let particles = matches!(self.source, Source::Particles(..));
+        self.style.preset().or(particles.then(Preset::default))
     }
 
     /// Returns whether the image is part of a sequence.

@@ -83,8 +83,8 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
     }
     if !scene.look.is_plain() || scene.color_bar.is_some() {
         return refuse(
-            &"--cell, --background (also of presets), a scene's [look] and [color_bar], and --color-bar \
-              inside need the whole image; remove them with --part",
+            &"--cell, --background transparent, --preset depthcue and outline, --color-bar inside, and the \
+              same in a scene's [look] and [color_bar] need the whole image; remove them with --part",
         );
     }
     part.of_image(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))

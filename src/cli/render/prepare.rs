@@ -17,7 +17,7 @@ use spherule_render::denoise::Choice;
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
-use spherule_render::scene::particles::{Cell, Legend, Particles};
+use spherule_render::scene::particles::{Cell, Legend, Orientation, Particles};
 use spherule_render::scene::{Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -44,6 +44,8 @@ pub(super) struct Prepared {
     pub(super) notes: Vec<String>,
     /// The color scale, if colors represent numbers.
     pub(super) legend: Option<Legend>,
+    /// What is up, if the scene is of particles.
+    orientation: Option<Orientation>,
     /// Settings for particles from a prepared scene, for the image's metadata.
     looks: Option<Vec<(String, String)>>,
     /// Identity of the scene, if the image or a checkpoint records it.
@@ -62,6 +64,8 @@ pub(super) struct Staged {
     /// Normals of the slices that cut anything, toward what is cut away.
     pub(super) cuts: Vec<DVec3>,
     pub(super) legend: Option<Legend>,
+    /// What is up, if the scene is of particles.
+    pub(super) orientation: Option<Orientation>,
     load: Duration,
 }
 
@@ -69,14 +73,15 @@ impl Staged {
     /// Loads the scene; `given` are its particles, if they are already loaded.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let appearance::Loaded { mut scene, legend, cell } = appearance::load(job, given)?;
+        let appearance::Loaded { mut scene, legend, cell, orientation } =
+            appearance::load(job, given)?;
         scene.color_bar = appearance::color_bar(job, legend.as_ref()).or(scene.color_bar);
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
         check_region(job, &scene)?;
         let load = start.elapsed();
-        job.style.set(&mut scene);
+        job.style.set(job.preset(), &mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
         check_alpha(&scene.look, job.format)?;
         job.picture.settings.apply(&mut scene.settings);
@@ -84,7 +89,7 @@ impl Staged {
             // The image is written elsewhere, with the settings of the part.
             job.encoding.display.apply(&mut scene.settings);
         }
-        Ok(Self { scene, cuts, legend, load })
+        Ok(Self { scene, cuts, legend, orientation, load })
     }
 }
 
@@ -92,6 +97,8 @@ impl Staged {
 pub(super) struct PlacedScene {
     pub(super) scene: Scene,
     pub(super) legend: Option<Legend>,
+    /// What is up, if the scene is of particles.
+    orientation: Option<Orientation>,
     pub(super) region: Region,
     /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
@@ -109,9 +116,12 @@ impl PlacedScene {
         if let Source::Prepared(path) = &job.source {
             return Self::open(job, path);
         }
-        let Staged { mut scene, cuts, legend, load } = Staged::load(job, given)?;
-        place_camera(job, &mut scene, &cuts)?;
-        job.style.light(&mut scene);
+        let Staged { mut scene, cuts, legend, orientation, load } = Staged::load(job, given)?;
+        place_camera(job, &mut scene, orientation.as_ref(), &cuts)?;
+        if let Some(preset) = job.preset() {
+            let vertical = job.views.vertical(&scene.camera, orientation.as_ref());
+            preset.light(&mut scene, vertical);
+        }
         if let (Some(ground), Some(common)) = (&mut scene.ground, &job.common) {
             ground.height = common.ground.unwrap_or(ground.height);
         }
@@ -123,7 +133,7 @@ impl PlacedScene {
         let denoise = stop::choose(job, &mut scene.settings, region, spheres)?;
         let asked = job.checkpoints.file().is_some() || job.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
-        Ok(Self { scene, legend, region, identity, denoise, stored: None, load })
+        Ok(Self { scene, legend, orientation, region, identity, denoise, stored: None, load })
     }
 
     /// Opens a prepared scene, and applies the job's settings.
@@ -145,12 +155,12 @@ impl PlacedScene {
         let denoise = stop::choose(job, &mut scene.settings, region, stored.sphere_count())?;
         let identity = Some(stored.identity.clone());
         let stored = Some(Box::new(stored));
-        Ok(Self { scene, legend: None, region, identity, denoise, stored, load })
+        Ok(Self { scene, legend: None, orientation: None, region, identity, denoise, stored, load })
     }
 
     /// Builds the world, unless its estimated memory exceeds the limit.
     pub(super) fn build(self, job: &Job) -> Result<Prepared, Failure> {
-        let Self { mut scene, legend, region, identity, denoise, stored, load } = self;
+        let Self { mut scene, legend, orientation, region, identity, denoise, stored, load } = self;
         let image_part = part::image_part(job, region, &scene)?;
         let estimate = Estimate::new(&scene, region, job, denoise.is_some())
             .of_tiles(image_part.tiles.len())
@@ -190,6 +200,7 @@ impl PlacedScene {
             build,
             estimate,
             legend,
+            orientation,
             looks,
             identity,
             denoise,
@@ -222,6 +233,12 @@ impl Prepared {
             return;
         }
         self.notes.iter().for_each(|text| notices.note(text));
+        if let Some(orientation) = &self.orientation
+            && let Some(text) = job.views.explain_up(orientation)
+            && (job.report.verbose || orientation.reason.is_evident())
+        {
+            notices.note(&text);
+        }
         if job.report.verbose {
             output::note(format_args!("found: {}", found(&self.world).join(", ")));
             for skipped in self.world.features.skipped() {
@@ -251,13 +268,18 @@ fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Places the camera for this scene, or for all images of its sequence.
-fn place_camera(job: &Job, scene: &mut Scene, cuts: &[DVec3]) -> Result<(), Failure> {
+fn place_camera(
+    job: &Job,
+    scene: &mut Scene,
+    orientation: Option<&Orientation>,
+    cuts: &[DVec3],
+) -> Result<(), Failure> {
     match &job.common {
         Some(common) => {
             scene.camera = common.camera.clone();
             Ok(())
         }
-        None => job.views.frame(scene, job.turn, cuts),
+        None => job.views.frame(scene, orientation, job.turn, cuts),
     }
 }
 

@@ -7,7 +7,8 @@ use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::views::corners;
 use spherule_render::scene::particles::{
-    Coloring, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions, SharedNames, of_frame,
+    Coloring, Orientation, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions,
+    SharedNames, of_frame,
 };
 use spherule_render::scene::{Camera, FileError};
 use spherule_render::world::WorldError;
@@ -18,6 +19,8 @@ use std::path::Path;
 #[derive(Clone)]
 pub(in crate::cli) struct Common {
     pub(in crate::cli) camera: Camera,
+    /// What is up in the first frame that shows a sphere.
+    pub(in crate::cli) orientation: Option<Orientation>,
     /// Height of the preset's ground, below all frames.
     pub(in crate::cli) ground: Option<f64>,
     /// True if the camera is placed for all images, and not only for the first.
@@ -28,6 +31,7 @@ pub(in crate::cli) struct Common {
 #[derive(Default)]
 pub(super) struct Survey {
     bounds: Option<SequenceBounds>,
+    orientation: Option<Orientation>,
     /// Color range: the minimum and the maximum over all frames.
     ends: Option<[f64; 2]>,
     /// True if colors represent numbers, also if no frame has a finite one.
@@ -74,7 +78,8 @@ impl Survey {
         if let Coloring::Column(colors) = &job.looks.coloring {
             self.numeric |= colors.is_numeric(&particles);
         }
-        let Staged { mut scene, cuts, legend, .. } = Staged::load(job, Some(particles))?;
+        let Staged { mut scene, cuts, legend, orientation, .. } =
+            Staged::load(job, Some(particles))?;
         if scene.spheres.is_empty() {
             return Ok(());
         }
@@ -82,7 +87,8 @@ impl Survey {
         if self.shown == 1 {
             self.radius = radius;
             self.warnings = std::mem::take(&mut scene.warnings);
-            job.views.choose(&mut scene, &cuts)?;
+            job.views.choose(&mut scene, orientation.as_ref(), &cuts)?;
+            self.orientation = orientation;
             self.bounds = SequenceBounds::new(&scene);
         }
         if let Some(legend) = legend {
@@ -137,10 +143,13 @@ impl Survey {
         };
         // The ground is below all frames, for every view.
         let mut still = view(None)?;
-        job.style.light(&mut still);
+        if let Some(preset) = job.preset() {
+            let vertical = job.views.vertical(&still.camera, self.orientation.as_ref());
+            preset.light(&mut still, vertical);
+        }
         let ground = still.ground.map(|ground| ground.height);
         let camera = if angle.is_none() { still.camera } else { view(angle)?.camera };
-        Ok(Common { camera, ground, frames_all: self.all })
+        Ok(Common { camera, orientation: self.orientation, ground, frames_all: self.all })
     }
 }
 

@@ -27,6 +27,8 @@ pub(super) struct CameraControl {
     vertical: DVec3,
     /// Radius of the bounding sphere of the scene, greater than 0.
     size: f64,
+    /// Field of view of the last perspective projection, in degrees.
+    fov: f64,
 }
 
 /// Unit axes of the image.
@@ -45,7 +47,11 @@ impl CameraControl {
             Pose::LookAt { target, .. } => target,
             Pose::Fit { .. } => DVec3::ZERO,
         };
-        Self { camera, pivot, vertical, size: size.max(f64::MIN_POSITIVE) }
+        let fov = match camera.projection {
+            Projection::Perspective { fov } => fov,
+            Projection::Orthographic { .. } => Camera::LONG_FOV,
+        };
+        Self { camera, pivot, vertical, size: size.max(f64::MIN_POSITIVE), fov }
     }
 
     /// Sets the size of the scene.
@@ -177,18 +183,16 @@ impl CameraControl {
     /// Toggles between perspective and orthographic projection; objects at the pivot keep their size.
     pub(super) fn toggle_projection(&mut self) {
         let (height, Axes { forward, .. }) = (self.height(), self.axes());
-        if let Projection::Perspective { .. } = self.camera.projection {
+        if let Projection::Perspective { fov } = self.camera.projection {
+            self.fov = fov;
             self.camera.projection = Projection::Orthographic { height: Some(height) };
             return;
         }
-        let default = Camera::default().projection;
-        self.camera.projection = default;
-        if let Projection::Perspective { fov } = default {
-            let distance = height / 2.0 / tan(fov.to_radians() / 2.0);
-            let target = self.eye() + forward * self.distance();
-            self.pivot = target;
-            self.place(target - forward * distance, forward, distance);
-        }
+        self.camera.projection = Projection::Perspective { fov: self.fov };
+        let distance = height / 2.0 / tan(self.fov.to_radians() / 2.0);
+        let target = self.eye() + forward * self.distance();
+        self.pivot = target;
+        self.place(target - forward * distance, forward, distance);
     }
 
     /// Sets the pivot.

@@ -144,8 +144,13 @@ impl Viewer {
     }
 
     fn next_preset(&mut self, step: i8) -> Action {
-        let now = self.content.preset.as_ref().map(|preset| preset.0);
-        let next = next_value(&Preset::ALL, now.as_ref(), step).copied();
+        let now = self.content.preset.as_ref().map(|preset| preset.0).or(self.facts.preset);
+        let next = match next_value(&Preset::ALL, now.as_ref(), step) {
+            // Particles always have a preset.
+            None if self.facts.preset.is_some() => next_value(&Preset::ALL, None, step),
+            next => next,
+        };
+        let next = next.copied();
         let name = next.map_or("style of the scene", Preset::name);
         self.show_message(name);
         self.touched = LookChanges::default();

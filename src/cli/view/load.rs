@@ -8,13 +8,12 @@ use super::viewer::Facts;
 use crate::cli::failure::Failure;
 use crate::cli::render::{Job, check_legend, color_bar};
 use crate::cli::source::Source;
-use crate::cli::views::scene_of_particles;
 use glam::DVec3;
 use rayon::prelude::*;
 use spherule_render::World;
 use spherule_render::scene::particles::{
     self, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend, NumberColumn,
-    ParticleStyle, Particles, ReadOptions, ReadProgress, Role, TextColumn,
+    Orientation, ParticleStyle, Particles, ReadOptions, ReadProgress, Role, TextColumn,
 };
 use spherule_render::scene::{Rgb, Scene, Spheres};
 use spherule_render::world::framing;
@@ -163,6 +162,8 @@ struct StyledScene {
     labels: Labels,
     legend: Option<Legend>,
     cell: Option<Cell>,
+    /// What is up, if the scene is of particles.
+    orientation: Option<Orientation>,
 }
 
 impl StyledScene {
@@ -179,14 +180,17 @@ impl StyledScene {
             numbers: std::mem::take(&mut particles.numbers),
             texts: std::mem::take(&mut particles.texts),
         };
+        let mut orientation = None;
         let scene = if let Some(scene) = scene {
             Scene { spheres: particles.spheres, ..scene }
         } else {
             let preset = content.preset.as_ref().map(|(preset, _)| *preset);
+            let found = job.views.orientation(&particles);
             let title = job.source.title(&Scene::default()).into_owned();
-            scene_of_particles(preset.or(job.style.preset()), particles, &title)
+            orientation = Some(found);
+            preset.or(job.preset()).unwrap_or_default().scene(particles, &title, &found)
         };
-        Ok(Self { scene, labels, legend, cell })
+        Ok(Self { scene, labels, legend, cell, orientation })
     }
 }
 
@@ -226,7 +230,7 @@ impl Loader {
             self.base = Some(read);
             parts
         };
-        let StyledScene { mut scene, labels, legend, cell } =
+        let StyledScene { mut scene, labels, legend, cell, orientation } =
             StyledScene::new(job, content, particles, scene)?;
         if first {
             check_legend(job, legend.as_ref())?;
@@ -237,27 +241,24 @@ impl Loader {
             cell.map(|cell| cell.bounds()),
             false,
         )?;
-        job.style.set(&mut scene);
+        job.style.set(job.preset(), &mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
         scene.color_bar = color_bar(job, legend.as_ref()).or(scene.color_bar);
         job.picture.settings.apply(&mut scene.settings);
-        job.views.frame(&mut scene, None, &cuts)?;
+        job.views.frame(&mut scene, orientation.as_ref(), None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
-        let up = scene.camera.up;
         framing::include_points(&mut scene, &[]).map_err(failed)?;
-        // The scene's up direction, about which the camera orbits, not that of the image, which may be
-        // tilted.
-        scene.camera.up = up;
         if let Some((preset, camera)) = &content.preset {
             let home = std::mem::replace(&mut scene.camera, camera.clone());
             if has_scene {
                 preset.replace_materials(&mut scene);
             }
-            preset.light(&mut scene);
+            preset.light(&mut scene, camera.up);
             scene.camera = home;
             scene.look = job.style.look(Some(*preset), scene.look);
-        } else {
-            job.style.light(&mut scene);
+        } else if let Some(preset) = job.preset() {
+            let vertical = job.views.vertical(&scene.camera, orientation.as_ref());
+            preset.light(&mut scene, vertical);
         }
         let count = scene.spheres.len();
         let facts = Facts {
@@ -266,6 +267,8 @@ impl Loader {
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
             size: size(&scene.spheres),
             look: scene.look,
+            preset: job.preset(),
+            orientation,
             color_bar: scene.color_bar.is_some(),
             legend,
             ..facts

@@ -16,7 +16,7 @@ use spherule_render::bvh::builders::Builder;
 use spherule_render::film::Region;
 use spherule_render::layers::{Layer, layers};
 use spherule_render::render::{End, Options, RenderError, ResumableRender};
-use spherule_render::scene::{Camera, ColorBar, Scene, Settings};
+use spherule_render::scene::{Background, Camera, ColorBar, Scene, Settings};
 use spherule_render::trace::Tracer;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
@@ -27,7 +27,7 @@ pub(super) struct Renderer {
     pub(super) stage: LoadedScene,
     pub(super) tracer: Tracer,
     pub(super) builder: Builder,
-    /// Camera and settings of the world, without its spheres.
+    /// Camera, settings and background of the world, without its spheres.
     view: Scene,
     /// The render of the current camera and settings.
     state: Option<(Camera, ResumableRender)>,
@@ -50,13 +50,13 @@ pub(super) struct Picked {
 impl Renderer {
     pub(super) fn new(stage: LoadedScene, tracer: Tracer, builder: Builder) -> Self {
         let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
-        let color_bar = scene.color_bar.clone();
+        let (color_bar, look) = (scene.color_bar.clone(), scene.look);
         drop(scene);
         Self {
             stage,
             tracer,
             builder,
-            view: Scene::default(),
+            view: Scene { look, ..Scene::default() },
             state: None,
             overlay: OverlayCache::default(),
             tone_mapper: ToneMapper::default(),
@@ -79,6 +79,7 @@ impl Renderer {
         cancel: &AtomicBool,
     ) -> Result<Option<Picture>, Failure> {
         self.set_camera(&request.camera, &request.settings)?;
+        self.set_background(request.look.background);
         let start = Instant::now();
         let options = Options { tracer: self.tracer, cancel: Some(cancel), ..Options::default() };
         let mut state = self.state.take().filter(|(camera, _)| *camera == request.camera);
@@ -147,6 +148,7 @@ impl Renderer {
         }
         let mut scene = self.stage.scene.write().unwrap_or_else(PoisonError::into_inner);
         (scene.camera, scene.settings) = (camera.clone(), settings.clone());
+        scene.look.background = self.view.look.background;
         let built = match &self.stage.origin {
             None => World::build_with(&scene, self.builder),
             Some(origin) => {
@@ -157,6 +159,14 @@ impl Renderer {
         self.stage.world = built.map_err(failed)?;
         self.overlay = OverlayCache::default();
         Ok(())
+    }
+
+    /// Sets the background of the world.
+    fn set_background(&mut self, background: Background) {
+        if std::mem::replace(&mut self.view.look.background, background) != background {
+            self.state = None;
+            self.stage.world.set_background(background);
+        }
     }
 
     /// Picks the sphere at a pixel of the full-size image; `None` for ground and background.

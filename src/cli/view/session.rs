@@ -9,7 +9,6 @@ use super::viewer::Viewer;
 use crate::cli::output;
 use crate::cli::render::Job;
 use crate::cli::views::{corners, from_side};
-use glam::DVec3;
 use spherule_render::scene::{Camera, Pose, Projection, Scene, Settings};
 use spherule_render::world::framing;
 use std::sync::{PoisonError, RwLock, TryLockError};
@@ -103,19 +102,20 @@ pub(super) fn frame(viewer: &mut Viewer, scene: &RwLock<Scene>, side: Option<&st
     scene.camera = viewer.control.camera.clone();
     scene.settings = viewer.settings.clone();
     scene.look = viewer.look();
-    match side.and_then(|side| from_side(side, &scene)) {
-        Some(camera) => scene.camera = camera,
+    let orientation = viewer.facts.orientation;
+    let seen = side.and_then(|side| from_side(side, &scene, orientation.as_ref()));
+    let up = seen.as_ref().map(|(_, up)| *up);
+    match seen {
+        Some((camera, _)) => scene.camera = camera,
         None => fit(&mut scene.camera),
     }
-    let (up, corners) = (scene.camera.up, corners(&scene));
+    let corners = corners(&scene);
     if framing::include_points(&mut scene, &corners).is_err() {
         return viewer.show_message("no spheres to fit into view");
     }
-    // The scene's up direction, about which the camera orbits, not that of the image, which may be tilted.
-    scene.camera.up = up;
     viewer.set_camera(scene.camera.clone());
-    if side.is_some_and(|side| side != "auto") {
-        viewer.control.set_vertical(DVec3::Z);
+    if let Some(up) = up.filter(|_| side != Some("auto")) {
+        viewer.control.set_vertical(up.vector());
     }
 }
 

@@ -10,8 +10,8 @@ use super::keys;
 use super::loading::Loading;
 use glam::DVec2;
 use spherule_render::elementary::pow;
-use spherule_render::scene::particles::Legend;
-use spherule_render::scene::{Background, Camera, Look, Settings};
+use spherule_render::scene::particles::{Legend, Orientation};
+use spherule_render::scene::{Background, Camera, Look, Preset, Settings};
 
 /// Minimum and maximum side of the window in pixels.
 const SIDES: (u32, u32) = (16, 16_384);
@@ -49,6 +49,10 @@ pub(super) struct Facts {
     pub(super) size: f64,
     /// The scene's look.
     pub(super) look: Look,
+    /// The preset of the command line, or the default one of particles.
+    pub(super) preset: Option<Preset>,
+    /// What is up, if the scene is of particles.
+    pub(super) orientation: Option<Orientation>,
     /// True if particles have their own materials, which presets do not replace.
     pub(super) own_materials: bool,
     /// The color scale, if colors represent numbers, and whether the image has its own color bar.

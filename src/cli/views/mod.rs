@@ -5,19 +5,20 @@ mod overlay;
 mod periodic;
 mod style;
 
-use self::camera::View;
 pub(super) use self::camera::corners;
+use self::camera::{UpArg, View};
 pub(super) use self::overlay::{Canvas, draw_over, settings_of_layers};
-pub(super) use self::style::{StyleArgs, scene_of_particles};
+pub(super) use self::style::StyleArgs;
 use super::names::{self, Names};
 use super::settings::List;
 use clap::value_parser;
 use serde_json::json;
-use spherule_render::scene::{Camera, Projection, Scene};
+use spherule_render::scene::particles::Orientation;
+use spherule_render::scene::{Axis, Camera, Projection, Scene};
 
 /// Projections, with their default parameters.
 const PROJECTIONS: Names<Projection> = Names(&[
-    ("perspective", Projection::Perspective { fov: 40.0 }, "Closer objects appear larger"),
+    ("perspective", Camera::LONG_LENS, "Closer objects appear larger"),
     (
         "orthographic",
         Projection::Orthographic { height: None },
@@ -26,9 +27,15 @@ const PROJECTIONS: Names<Projection> = Names(&[
     ),
 ]);
 
-/// The camera that frames all of a scene from a side of `--view`; `None` for another word.
-pub(super) fn from_side(side: &str, scene: &Scene) -> Option<Camera> {
-    camera::view(side).ok().map(|view| camera::of_view(view, scene))
+/// The camera that frames all of a scene from a side of `--view`, and the direction that is up there; `None`
+/// for another word.
+pub(super) fn from_side(
+    side: &str,
+    scene: &Scene,
+    orientation: Option<&Orientation>,
+) -> Option<(Camera, Axis)> {
+    let view = camera::view(side).ok()?;
+    Some((camera::of_view(view, scene, orientation), camera::up_of_sides(orientation)))
 }
 
 /// Range of the number of images of a turntable.
@@ -47,6 +54,10 @@ pub(super) struct ViewArgs {
     /// Draw the cell's edges
     #[arg(long)]
     cell: bool,
+    /// Direction of particles that is up in the image: x, y, z, -x, -y, -z, or auto, which decides by the
+    /// particles, their cell and the file format [default: auto]
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = camera::up)]
+    up: Option<UpArg>,
     /// Place the camera to show everything from a side: auto (along the principal axis of least extent), x,
     /// y, z (from that end of the axis), -x, -y, -z, or iso
     #[arg(long, value_name = "SIDE", allow_hyphen_values = true, value_parser = camera::view)]
@@ -57,7 +68,7 @@ pub(super) struct ViewArgs {
     /// Margin around the particles as a fraction of the image, 0 to 0.9, when the camera shows everything
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = camera::margin)]
     margin: Option<f64>,
-    /// Render N images of a full turn around the vertical axis, NAME-000.png and so on; with a range of
+    /// Render N images of a full turn around the axis that is up, NAME-000.png and so on; with a range of
     /// frames, they are spread evenly over the N images
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(PICTURES))]
     turntable: Option<u32>,
@@ -74,6 +85,11 @@ impl ViewArgs {
         self.wrap || self.cell || self.replicate.is_some()
     }
 
+    /// Returns whether `--up` is given, which needs a particle file.
+    pub(super) fn sets_up(&self) -> bool {
+        self.up.is_some()
+    }
+
     /// Settings for the image's metadata.
     pub(super) fn list(&self) -> List {
         let mut list = List::new();
@@ -85,6 +101,9 @@ impl ViewArgs {
         }
         if self.cell {
             list.insert("cell".to_owned(), json!(true));
+        }
+        if let Some(up) = self.up {
+            list.insert("up".to_owned(), json!(up.name()));
         }
         if let Some(view) = self.view {
             list.insert("view".to_owned(), json!(view.name()));

@@ -2,7 +2,6 @@
 
 use crate::cli::settings::List;
 use serde_json::json;
-use spherule_render::scene::particles::Particles;
 use spherule_render::scene::{Background, Look, Preset, Scene};
 use spherule_render::{color, suggest};
 
@@ -10,13 +9,13 @@ use spherule_render::{color, suggest};
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Style")]
 pub(in crate::cli) struct StyleArgs {
-    /// Preset of material, light and outlines for particle files: chalk, studio, cloudy, glossy, depthcue or
-    /// outline. Radii, colors and materials of --type override it
+    /// Preset of material, light and outlines for particle files: figure, chalk, studio, cloudy, glossy,
+    /// depthcue or outline. Radii, colors and materials of --type override it [default: figure]
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<Preset>,
     /// Background: a CSS color such as white or #rrggbb, before --exposure; transparent, for PNG, EXR, TIFF
     /// and WebP, where the ground shows only shadows; or sky. The sky lights the scene in any case [default:
-    /// white with --preset, or else the scene's background]
+    /// white for particle files, or else the scene's background]
     #[arg(long, value_name = "COLOR", value_parser = background)]
     background: Option<BackgroundArg>,
 }
@@ -26,18 +25,6 @@ pub(in crate::cli) struct StyleArgs {
 struct BackgroundArg {
     text: String,
     background: Background,
-}
-
-/// Creates a scene of particles; particles without a material get that of the preset.
-pub(in crate::cli) fn scene_of_particles(
-    preset: Option<Preset>,
-    particles: Particles,
-    title: &str,
-) -> Scene {
-    match preset {
-        Some(preset) => Scene::of_particles_with(particles, title, &preset.material()),
-        None => Scene::of_particles(particles, title),
-    }
 }
 
 fn preset(name: &str) -> Result<Preset, String> {
@@ -63,13 +50,9 @@ fn background(text: &str) -> Result<BackgroundArg, String> {
 }
 
 impl StyleArgs {
+    /// Returns the preset that is given.
     pub(in crate::cli) fn preset(&self) -> Option<Preset> {
         self.preset
-    }
-
-    /// Creates a scene of particles; particles without a material get that of the preset.
-    pub(in crate::cli) fn scene(&self, particles: Particles, title: &str) -> Scene {
-        scene_of_particles(self.preset, particles, title)
     }
 
     /// Returns the look: that of the preset or else of the scene, with the scene's cell, and with the
@@ -80,19 +63,12 @@ impl StyleArgs {
         Look { background: typed.unwrap_or(look.background), cell: own.cell, ..look }
     }
 
-    /// Applies the preset's settings and look, before options override them.
-    pub(in crate::cli) fn set(&self, scene: &mut Scene) {
-        if let Some(preset) = self.preset {
+    /// Applies a preset's settings and look, before options override them.
+    pub(in crate::cli) fn set(&self, preset: Option<Preset>, scene: &mut Scene) {
+        if let Some(preset) = preset {
             preset.set(scene);
         }
-        scene.look = self.look(self.preset, scene.look);
-    }
-
-    /// Lights a scene whose camera is placed.
-    pub(in crate::cli) fn light(&self, scene: &mut Scene) {
-        if let Some(preset) = self.preset {
-            preset.light(scene);
-        }
+        scene.look = self.look(preset, scene.look);
     }
 
     /// Settings for the image's metadata.

@@ -2,7 +2,7 @@
 //! limit.
 //!
 //! Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", EGWR 1998. Surfaces are tinted by
-//! their color, whatever their material; rays that hit nothing see the environment.
+//! their color, whatever their material; rays that hit nothing see the background.
 
 use super::Job;
 use super::shading_row::{ShadingRow, SurfaceRow};
@@ -21,8 +21,10 @@ use crate::world::{LightRow, ROW};
 pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
     stages::intersect(job, work);
     for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
+        let environment = &job.world.environment;
         let direction = work.rays.direction.row(row);
-        work.paths.radiance[work.states.path(row)] = job.world.environment.radiance(direction);
+        let seen = environment.background.unwrap_or_else(|| environment.radiance(direction));
+        work.paths.radiance[work.states.path(row)] = seen;
     }
     for kind in MaterialKind::ALL {
         let Some(queue) = work.queues.take(kind) else { continue };

@@ -14,11 +14,17 @@ use crate::shade::MaterialKind;
 use crate::vec3::Vec3;
 use crate::world::{CausticSource, Receiver, ReceiverRow, SkyLight};
 
-/// Adds the light of the environment and the suns to paths that leave the scene.
-pub(super) fn add_environment(job: &Job, work: &mut Workspace) {
+/// Adds the light of the environment and the suns to paths that leave the scene. The camera may see a
+/// background instead: in place of both, or behind glass in place of the environment.
+pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
     let (environment, lights) = (&job.world.environment, &job.world.lights);
+    if let Some(background) = environment.background.filter(|_| bounce == 0) {
+        return add_background(work, background);
+    }
     let sampled = lights.sky_parts > 0 || lights.suns_have_discs();
-    if environment.is_black() && !sampled {
+    let has_glass = job.world.features.has(MaterialKind::Dielectric);
+    let behind_glass = environment.background.filter(|_| has_glass);
+    if environment.is_black() && !sampled && behind_glass.is_none() {
         return;
     }
     let constant = environment.constant().filter(|_| !sampled);
@@ -37,10 +43,30 @@ pub(super) fn add_environment(job: &Job, work: &mut Workspace) {
             Some(color) => Vec3::splat(color.x, color.y, color.z),
             None => environment_light(job, work, (first, seen), &state),
         };
+        if let Some(Rgb { x, y, z }) = behind_glass {
+            let glass = F32x16::lanes(left_glass(job, work, first, lit & specular_only));
+            light = Vec3::select_lanes(glass, Vec3::splat(x, y, z), light);
+        }
         if lights.suns_have_discs() {
             add_suns(job, work, (first, lit), &mut light);
         }
         work.paths.add(state.path, state.throughput.times(light), lit);
+    }
+}
+
+/// Returns those of `lanes` of sixteen rows whose rays start on glass.
+fn left_glass(job: &Job, work: &Workspace, first: usize, lanes: u32) -> u32 {
+    let is_glass = |lane: &usize| {
+        let own = work.rays.own[first + lane];
+        own != MISS && job.world.material(own).kind() == MaterialKind::Dielectric
+    };
+    set_bits(lanes).filter(is_glass).fold(0, |lanes, lane| lanes | 1 << lane)
+}
+
+/// Adds the background to camera rays that hit nothing.
+fn add_background(work: &mut Workspace, background: Rgb) {
+    for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
+        work.paths.radiance[work.states.path(row)] += work.states.throughput(row) * background;
     }
 }
 

@@ -33,7 +33,7 @@ pub fn integrate(job: &Job, work: &mut Workspace) {
     for bounce in 0.. {
         stages::intersect(job, work);
         near_misses::record(job, work, bounce);
-        emission::add_environment(job, work);
+        emission::add_environment(job, work, bounce);
         emission::add_emitted(job, work);
         if bounce == job.depth() {
             work.counters.cut_paths += work.queues.hit_count();

@@ -35,7 +35,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
     for bounce in 0.. {
         stages::intersect(job, work);
         near_misses::record(job, work, bounce);
-        add_environment(job, work);
+        add_environment(job, work, bounce);
         add_emitted(job, work);
         if bounce == job.depth() {
             work.counters.cut_paths += work.queues.hit_count();
@@ -52,11 +52,19 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
 
 /// Adds environment and suns to paths that leave the scene. They have come from the camera by mirrors
 /// and glass alone, so there is no MIS weight.
-fn add_environment(job: &Job, work: &mut Workspace) {
+fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
+    let environment = &job.world.environment;
     for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
         let direction = work.rays.direction.row(row);
         let suns: Rgb = job.world.lights.suns_toward(direction).map(|(_, radiance)| radiance).sum();
-        let light = job.world.environment.radiance(direction) + suns;
+        let own = work.rays.own[row];
+        let light = match environment.background {
+            Some(background) if bounce == 0 => background,
+            Some(background) if job.world.material(own).kind() == MaterialKind::Dielectric => {
+                background + suns
+            }
+            _ => environment.radiance(direction) + suns,
+        };
         work.paths.radiance[work.states.path(row)] += work.states.throughput(row) * light;
     }
 }

@@ -2,10 +2,10 @@
 
 use super::{Ground, Matte, Overlay, Pen, draw_over};
 use crate::image::Image;
-use crate::scene::{Background, Look};
+use crate::scene::Look;
 
 /// Opacity of the depth cue at the farthest sphere.
-const MAX_FADE: f32 = 0.85;
+const MAX_FADE: f32 = 0.75;
 
 /// Height of a picture in which lines are 1.5 pixels wide.
 const ROWS: f64 = 600.0;
@@ -20,9 +20,6 @@ impl Overlay<'_> {
         look: &Look,
         ground: Option<Ground>,
     ) -> Option<Matte> {
-        if let Background::Color(color) = look.background {
-            self.replace_sky(image, color.to_array());
-        }
         if look.depth_cue {
             self.fade(image, look.haze().to_array(), MAX_FADE);
         }

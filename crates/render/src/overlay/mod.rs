@@ -1,5 +1,5 @@
-//! Overlays on a finished picture: lines in the scene, contours of spheres, depth cue, and other
-//! backgrounds or none.
+//! Overlays on a finished picture: lines in the scene, contours of spheres, depth cue, and removal of
+//! the background.
 //!
 //! Lines have no thickness in the scene, so no rays are traced for them. They are projected through the
 //! camera, drawn in pixels with smooth edges, and hidden by nearer objects according to the

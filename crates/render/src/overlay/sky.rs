@@ -1,29 +1,10 @@
-//! Backgrounds: replacement of the environment by a color, and depth cue.
+//! Depth cue, and the environment that the camera sees.
 
 use super::{Overlay, PIXELS};
 use crate::image::Image;
 use rayon::prelude::*;
 
 impl Overlay<'_> {
-    /// Replaces the environment by a color; the lighting does not change. In pixels that spheres cover
-    /// partly, the remainder changes, so the layers should have the picture's samples.
-    ///
-    /// If the environment is not uniform, its radiance at the pixel's center is subtracted.
-    pub fn replace_sky(&self, image: &mut Image, color: [f32; 3]) {
-        let width = self.region.width as usize;
-        let pixels = image.pixels.par_iter_mut().zip(&self.layers.pixels).enumerate();
-        pixels.with_min_len(PIXELS).for_each(|(row, (pixel, seen))| {
-            let background = 1.0 - seen.coverage;
-            if background >= 1.0 {
-                *pixel = color;
-            } else if background > 0.0 {
-                let sky = self.sky(row % width, row / width);
-                let change = |i: usize| pixel[i] + background * (color[i] - sky[i]);
-                *pixel = std::array::from_fn(|i| change(i).max(0.0));
-            }
-        });
-    }
-
     /// Returns the environment's radiance at the center of a pixel.
     pub(super) fn sky(&self, x: usize, y: usize) -> [f32; 3] {
         let at = |first: u32, offset: usize| f64::from(first) + offset as f64 + 0.5;
@@ -84,17 +65,6 @@ mod tests {
         let mut after = before.clone();
         draw(&Overlay { world: &world, region: WHOLE, layers: &layers, depths: None }, &mut after);
         [before, after]
-    }
-
-    #[test]
-    fn the_sky_changes_and_spheres_do_not() {
-        let [before, after] = drawn(|overlay, image| overlay.replace_sky(image, [0.0, 0.5, 1.0]));
-        assert_eq!(after.pixel(0, 0), Some([0.0, 0.5, 1.0]));
-        assert_eq!(after.pixel(6, 12), before.pixel(6, 12));
-        let [before, after] = drawn(|overlay, image| overlay.replace_sky(image, [1.0; 3]));
-        for (old, new) in before.pixels.iter().zip(&after.pixels) {
-            assert!(old.iter().zip(new).all(|(old, new)| (old - new).abs() < 1e-5));
-        }
     }
 
     #[test]

@@ -32,8 +32,9 @@ pub(super) fn uniform_radiance(world: &World, tile: &Tile) -> Option<Rgb> {
 }
 
 fn uniform_view(world: &World, view: View) -> Option<Rgb> {
-    let only = world.ground.is_none() && !world.lights.suns_have_discs();
-    world.environment.constant().filter(|_| only && view == View::Background)
+    let sky = world.environment.constant().filter(|_| !world.lights.suns_have_discs());
+    let seen = world.environment.background.or(sky);
+    seen.filter(|_| world.ground.is_none() && view == View::Background)
 }
 
 /// The data of a tile that its camera rays need.

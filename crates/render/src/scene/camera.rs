@@ -1,5 +1,6 @@
 //! Cameras: projection, pose and lens.
 
+use super::Axis;
 use glam::DVec3;
 
 /// A camera.
@@ -67,6 +68,16 @@ impl Camera {
     pub const FIT_DIRECTION: DVec3 = DVec3::new(-0.6, -0.4, -1.0);
     /// Default margin of such a camera.
     pub const FIT_MARGIN: f64 = 0.05;
+    /// Vertical field of view of [`Camera::LONG_LENS`], degrees.
+    pub const LONG_FOV: f64 = 20.0;
+    /// Default projection for particle files: distant objects are hardly smaller than near ones.
+    pub const LONG_LENS: Projection = Projection::Perspective { fov: Self::LONG_FOV };
+
+    /// Returns the default view direction with this direction up: [`Camera::FIT_DIRECTION`] if it is y.
+    pub fn fit_direction(up: Axis) -> DVec3 {
+        let ([right, toward], DVec3 { x, y, z }) = (up.front(), Self::FIT_DIRECTION);
+        right * x + up.vector() * y + toward * z
+    }
 }
 
 impl Default for Camera {

@@ -59,9 +59,10 @@ impl Identity {
             ("materials", &self.materials),
             ("ground", &self.ground),
             ("slices", &self.slices),
+            // Lights of presets follow the camera.
+            ("camera", &self.camera),
             ("lights", &self.lights),
             ("environment", &self.environment),
-            ("camera", &self.camera),
             ("look", &self.look),
         ]
     }

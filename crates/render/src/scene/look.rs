@@ -10,10 +10,10 @@ const INK: Rgb = Rgb::splat(0.02);
 const LIGHT_INK: Rgb = Rgb::splat(0.6);
 const DARK: f32 = 0.2;
 
-/// Overlays and background, drawn after rendering by [`crate::overlay`]; the default is none.
+/// Overlays, drawn after rendering by [`crate::overlay`], and background; the default is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Look {
-    /// Replaces the environment where the camera sees it; the scene's lighting does not change.
+    /// What the camera sees behind everything; the scene's lighting does not change.
     pub background: Background,
     /// True if far objects fade into the background, or into white if it has no color.
     pub depth_cue: bool,
@@ -37,9 +37,10 @@ pub enum Background {
 }
 
 impl Look {
-    /// Returns whether nothing is drawn.
+    /// Returns whether nothing is drawn over the picture, and nothing is removed from it.
     pub fn is_plain(&self) -> bool {
-        *self == Self::default()
+        let Self { background: _, depth_cue, outline, cell } = self;
+        !(*depth_cue || *outline || cell.is_some() || self.is_transparent())
     }
 
     /// Returns whether pictures have alpha.

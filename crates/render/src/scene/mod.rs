@@ -5,6 +5,7 @@
 //! own unit, angles in degrees, colors linear RGB with the primaries of sRGB. [`write`](write())
 //! puts a scene into files that load as the same scene.
 
+mod axis;
 mod camera;
 mod color_bar;
 pub mod file;
@@ -22,8 +23,9 @@ pub(crate) mod write;
 
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use crate::settings::{
-    Filter, Integrator, InvalidSetting, LightChoice, Roulette, SamplerKind, Settings, Tone,
+    Denoise, Filter, Integrator, InvalidSetting, LightChoice, Roulette, SamplerKind, Settings, Tone,
 };
+pub use axis::Axis;
 pub use camera::{Camera, Lens, Pose, Projection};
 pub use color_bar::{ColorBar, Corner};
 pub use file::included_files;

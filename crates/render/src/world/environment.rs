@@ -6,7 +6,7 @@ mod region;
 pub(super) use picture::luminance;
 pub use picture::{PartBounds, Picture, SkyLight, SkySamples};
 
-use crate::scene::{self, EnvironmentMap, Rgb};
+use crate::scene::{self, Background, EnvironmentMap, Look, Rgb};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -18,6 +18,9 @@ pub struct Environment {
     /// True if it lights diffuse surfaces: otherwise it is a backdrop for the camera, mirrors and
     /// glass.
     pub illuminates: bool,
+    /// Radiance that the camera sees instead of environment and suns, and behind glass instead of the
+    /// environment.
+    pub background: Option<Rgb>,
 }
 
 /// Radiance by direction.
@@ -47,7 +50,7 @@ impl Environment {
         }
     }
 
-    pub(super) fn build(scene: &scene::Environment) -> Self {
+    pub(super) fn build(scene: &scene::Environment, look: &Look) -> Self {
         let radiance = match &scene.map {
             EnvironmentMap::Constant(color) => Radiance::Constant(*color),
             EnvironmentMap::Gradient { bottom, top, up } => Radiance::Gradient {
@@ -59,7 +62,17 @@ impl Environment {
                 Picture::new(image.clone(), *up, rotation.to_radians(), *scale),
             )),
         };
-        Self { radiance, illuminates: scene.illuminates }
+        let mut environment = Self { radiance, illuminates: scene.illuminates, background: None };
+        environment.set_background(look.background);
+        environment
+    }
+
+    /// Sets what the camera sees directly.
+    pub(super) fn set_background(&mut self, background: Background) {
+        self.background = match background {
+            Background::Color(color) => Some(color),
+            Background::Sky | Background::Transparent => None,
+        };
     }
 
     /// Returns the radiance from unit direction `toward`.

@@ -42,7 +42,6 @@ pub fn include_points(scene: &mut Scene, points: &[DVec3]) -> Result<(), WorldEr
     let camera = &mut scene.camera;
     camera.pose =
         Pose::LookAt { eye: placed.eye, target: placed.eye + placed.axes.forward * distance };
-    camera.up = placed.axes.up;
     if let Projection::Orthographic { height } = &mut camera.projection {
         *height = Some(2.0 * placed.half_height);
     }
@@ -107,13 +106,19 @@ fn bounding_sphere(spheres: &Spheres, points: &[DVec3]) -> (DVec3, f64) {
 }
 
 /// Returns the camera with the broadest view of the spheres: along the axis of least variance of the
-/// centers, with the axis of greatest variance to the right.
-pub fn broadside(spheres: &Spheres, camera: &Camera) -> Camera {
-    let [right, up, _] = principal_axes(spheres);
+/// centers, with the axis of greatest variance to the right. If `up` is given, a unit vector, it is up,
+/// and only horizontal axes count.
+pub fn broadside(spheres: &Spheres, camera: &Camera, up: Option<DVec3>) -> Camera {
     // Of the two directions along an axis, the one nearer to the default camera's.
     let toward = |axis: DVec3, like: DVec3| if axis.dot(like) < 0.0 { -axis } else { axis };
+    let (right, up) = if let Some(up) = up {
+        let [across, ..] = eigenvectors(flattened(covariance(spheres), up));
+        (across.reject_from_normalized(up).normalize(), up)
+    } else {
+        let [right, up, _] = principal_axes(spheres);
+        (right, toward(up, DVec3::new(0.01, 1.0, 0.1)))
+    };
     let right = toward(right, DVec3::new(1.0, 0.1, 0.01));
-    let up = toward(up, DVec3::new(0.01, 1.0, 0.1));
     let margin = match camera.pose {
         Pose::Fit { margin, .. } => margin,
         Pose::LookAt { .. } => Camera::FIT_MARGIN,
@@ -155,6 +160,11 @@ fn sign(bits: u32, axis: u32) -> f64 {
 /// centers, the eigenvectors of their covariance. If variances are equal, the axes are arbitrary among
 /// the valid ones.
 pub fn principal_axes(spheres: &Spheres) -> [DVec3; 3] {
+    eigenvectors(covariance(spheres))
+}
+
+/// Returns the covariance of the centers, in units of the square of their largest deviation.
+fn covariance(spheres: &Spheres) -> DMat3 {
     let count = spheres.len().max(1) as f64;
     let centers = || (0..spheres.len()).map(|row| spheres.center(row));
     let mean = centers().sum::<DVec3>() / count;
@@ -165,7 +175,14 @@ pub fn principal_axes(spheres: &Spheres) -> [DVec3; 3] {
         let offset = (center - mean) * scale;
         covariance += DMat3::from_cols(offset * offset.x, offset * offset.y, offset * offset.z);
     }
-    eigenvectors(covariance * count.recip())
+    covariance * count.recip()
+}
+
+/// Returns the covariance without variance along `up`, a unit vector. Across it, 1 is added, so that the
+/// eigenvectors of the two greatest eigenvalues are across it.
+fn flattened(covariance: DMat3, up: DVec3) -> DMat3 {
+    let across = DMat3::IDENTITY - DMat3::from_cols(up * up.x, up * up.y, up * up.z);
+    across * covariance * across + across
 }
 
 /// Returns the eigenvectors of a symmetric matrix, greatest eigenvalue first, by Jacobi's rotations.
@@ -241,12 +258,28 @@ mod tests {
 
     #[test]
     fn a_broadside_view_is_along_the_thin_axis_with_the_long_one_across() {
-        let camera = broadside(&slab(turned()), &Camera::default());
+        let camera = broadside(&slab(turned()), &Camera::default(), None);
         let Pose::Fit { direction, .. } = camera.pose else { panic!("it frames the slab") };
         assert!(direction.dot(turned()[2]).abs() > 0.98 && camera.up.dot(turned()[1]).abs() > 0.98);
         // Of the two sides, the one with x to the right and y up.
         let right = direction.cross(camera.up);
         assert!(right.dot(DVec3::X) > 0.0 && camera.up.dot(DVec3::Y) > 0.0, "{right}");
+    }
+
+    #[test]
+    fn a_broadside_view_keeps_what_is_up() {
+        for axes in [turned(), [DVec3::Z, DVec3::X, DVec3::Y]] {
+            for up in [DVec3::X, DVec3::Y, DVec3::NEG_Z, axes[1]] {
+                let camera = broadside(&slab(axes), &Camera::default(), Some(up));
+                let Pose::Fit { direction, .. } = camera.pose else { panic!("it frames the slab") };
+                assert_eq!(camera.up, up);
+                assert!(direction.dot(up).abs() < 1e-12 && direction.is_normalized());
+                let across = axes[0].reject_from(up);
+                if across.length() > 0.9 {
+                    assert!(direction.dot(across).abs() < 0.3, "{up} {direction}");
+                }
+            }
+        }
     }
 
     #[test]

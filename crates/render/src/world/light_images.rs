@@ -158,7 +158,9 @@ fn direct_images(world: &World) -> Vec<LightImage> {
         let image = circle(world, rim(center - eye, radius / distance).map(|rim| eye + rim));
         Some((CausticSource::Sphere(row), image.filter(|_| distance > radius)?))
     });
-    let suns = lights.suns.iter().enumerate().filter_map(|(index, sun)| {
+    // A background hides suns.
+    let suns = if world.environment.background.is_none() { &lights.suns[..] } else { &[] };
+    let suns = suns.iter().enumerate().filter_map(|(index, sun)| {
         let height = f64::from(sun.disc?.height());
         let sine = (height * (2.0 - height)).sqrt();
         // So far away that a lens does not matter more than for a sun.

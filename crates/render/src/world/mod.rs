@@ -47,7 +47,7 @@ use crate::bvh::Bvh;
 use crate::bvh::builders::Builder;
 use crate::memory::Shortage;
 use crate::ray::GROUND;
-use crate::scene::{self, Footprint, Rgb, Scene};
+use crate::scene::{self, Background, Footprint, Rgb, Scene};
 use crate::settings::{InvalidSetting, Settings};
 use crate::shade::{MaterialId, MaterialKind, Materials};
 use crate::spheres::Spheres;
@@ -216,7 +216,7 @@ impl World {
         let materials = Materials::build(&scene.materials);
         let cut = Cut::build(&scene.slices, &transform);
         let camera = Camera::build(scene, &placement, &transform);
-        let environment = Environment::build(&scene.environment);
+        let environment = Environment::build(&scene.environment, &scene.look);
         let ground =
             scene.ground.as_ref().map(|ground| Ground::build(ground, &transform, &materials));
         let lights = Lights::build(
@@ -292,6 +292,12 @@ impl World {
         self.features = std::mem::take(&mut self.features).with_camera_of(self);
         self.light_images = LightImages::find(self);
         Ok(true)
+    }
+
+    /// Replaces the background that the camera sees; the light of the environment does not change.
+    pub fn set_background(&mut self, background: Background) {
+        self.environment.set_background(background);
+        self.light_images = LightImages::find(self);
     }
 
     /// Returns whether paths sample the light that specular spheres pass on: caustics, or emitters that

@@ -19,10 +19,10 @@ mod value;
 
 use self::block::{Block, Source};
 use self::materials::Materials;
-use super::particles::{self, Particles, ReadOptions, TypeMaterial};
+use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
-    Camera, Environment, EnvironmentMap, FileError, Light, Look, Material, NamedMaterial, Rgb,
-    Scene, Settings, Spheres,
+    Camera, Environment, EnvironmentMap, FileError, Light, Look, Material, NamedMaterial, Preset,
+    Rgb, Scene, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
 use memchr::memchr_iter;
@@ -107,8 +107,8 @@ impl Scene {
         read(&source, &root)
     }
 
-    /// Reads a particle file into a scene with default settings: plastic in the file's colors under a
-    /// white environment, with a camera that frames all particles.
+    /// Reads a particle file into a scene with default settings and the look of the default [`Preset`],
+    /// with a camera that frames all particles.
     ///
     /// # Errors
     ///
@@ -120,10 +120,15 @@ impl Scene {
 
     /// Makes the same scene of particles that were read before.
     pub fn of_particles(particles: Particles, title: &str) -> Self {
-        Self::of_particles_with(particles, title, &TypeMaterial::Plastic.material(Rgb::ONE))
+        let orientation = Orientation::of(&particles);
+        let preset = Preset::default();
+        let mut scene = preset.scene(particles, title, &orientation);
+        preset.light(&mut scene, orientation.up.vector());
+        scene
     }
 
-    /// Makes the same scene with another material for particles without one. Those whose material comes
+    /// Makes a scene with this material for particles without one, with the default camera under a white
+    /// sky. Those whose material comes
     /// from a [`TypeStyle`](particles::TypeStyle), or from a file's column with names of
     /// [`TypeMaterial`], keep it.
     pub fn of_particles_with(mut particles: Particles, title: &str, usual: &Material) -> Self {

@@ -3,12 +3,14 @@
 //! The package `spherule-particles` reads files into a [`ParticleFrame`]; here it becomes [`Particles`],
 //! whose spheres have radii and colors.
 
+mod orientation;
 mod periodic;
 mod radii;
 mod select;
 mod spheres;
 mod style;
 
+pub use orientation::{Orientation, UpReason};
 pub use periodic::PeriodicError;
 pub use select::{Fault, Selection};
 pub use spheres::Particles;

@@ -54,7 +54,7 @@ pub(in crate::scene) fn camera(camera: &Camera) -> String {
 
 /// Nothing if nothing is drawn over the picture.
 pub(in crate::scene) fn look(look: &Look) -> String {
-    if look.is_plain() {
+    if *look == Look::default() {
         return String::new();
     }
     let background = match look.background {

@@ -117,7 +117,7 @@ fn particles_are_a_scene_of_their_own() {
     assert_eq!((scene.spheres.len(), scene.title.as_str()), (2, "p.xyz"));
     assert_eq!(scene.spheres.radius, [1.5, 1.2]);
     assert_eq!((scene.materials.len(), scene.spheres.material_of(1)), (1, 0));
-    assert!(matches!(scene.materials[0].material, Material::Plastic { .. }));
+    assert!(matches!(scene.materials[0].material, Material::Lambertian { .. }));
     crate::scene::write(&scene, &folder.path().join("p.toml")).expect("it can be written");
     fs::write(&path, "x,y,z,r,material\n0,0,0,1,a\n0,0,0,1,\n0,0,0,1,b\n").expect("a file");
     let scene = Scene::from_particles(&path, &ReadOptions::default()).expect("a scene");

@@ -166,7 +166,7 @@ fn types_have_styles_of_their_own() {
     let scene = Scene::of_particles(particles, "water");
     let material = |row| &scene.materials[scene.spheres.material_of(row) as usize].material;
     assert!(matches!(material(0), Material::Dielectric { .. }));
-    assert!(matches!(material(1), Material::Plastic { .. }));
+    assert!(matches!(material(1), Material::Lambertian { .. }));
 }
 
 #[test]

@@ -20,7 +20,7 @@ const ALBEDO: f32 = 0.8;
 pub enum TypeMaterial {
     /// Ideally diffuse.
     Lambertian,
-    /// Diffuse under a smooth coat of index 1.5; the default.
+    /// Diffuse under a smooth coat of index 1.5.
     Plastic,
     /// Brushed metal: GGX of alpha 0.2.
     Metal,
