@@ -1,4 +1,5 @@
-//! Drawing of lines, areas and letters, for charts and color bars.
+//! Drawing of lines, areas and letters, for charts. Annotations of pictures are drawn by
+//! [`graphics`](crate::graphics).
 //!
 //! A [`Picture`] is drawn by the same code for pixels and vectors. The font is included in the program,
 //! since the system may have none.

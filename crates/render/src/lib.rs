@@ -47,6 +47,8 @@ pub mod split;
 
 #[cfg(feature = "drawing")]
 pub mod drawing;
+#[cfg(feature = "drawing")]
+pub mod graphics;
 
 pub mod atomic;
 pub mod image;

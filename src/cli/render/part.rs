@@ -81,9 +81,9 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
               none and --spp",
         );
     }
-    if !scene.look.is_plain() || scene.color_bar.is_some() {
+    if !scene.look.is_plain() || !scene.annotations.is_empty() {
         return refuse(
-            &"--cell, --background (also of presets), a scene's [look] and [color_bar], and --color-bar \
+            &"--cell, --background (also of presets), a scene's [look], and annotations such as --color-bar \
               inside need the whole image; remove them with --part",
         );
     }
@@ -94,8 +94,8 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
 pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
     let layers = layers::wanted(&job.encoding.layers);
     let title = prepared.title.clone();
-    let Scene { look, color_bar, .. } = &prepared.scene;
-    let drawn_over = !look.is_plain() || color_bar.is_some();
+    let Scene { look, annotations, .. } = &prepared.scene;
+    let drawn_over = !look.is_plain() || !annotations.is_empty();
     Caption { title, looks: prepared.looks(job), drawn_over, layers, ..Caption::default() }
 }
 

@@ -5,6 +5,7 @@ use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
 use super::{appearance, metadata, part, visibility};
+use crate::cli::annotations::{self, FrameFacts, annotate};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -16,7 +17,7 @@ use spherule_render::bvh::builders::Builder;
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
-use spherule_render::scene::particles::{Cell, Legend, Particles};
+use spherule_render::scene::particles::{Category, Cell, Legend, Particles};
 use spherule_render::scene::{Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -59,6 +60,10 @@ pub(super) struct Staged {
     /// Normals of the slices that cut anything, toward what is cut away.
     pub(super) cuts: Vec<DVec3>,
     pub(super) legend: Option<Legend>,
+    /// The names that colors stand for, if they are asked for.
+    pub(super) categories: Option<Vec<Category>>,
+    /// Center of the particle in focus, if the focus is a particle.
+    focus: Option<DVec3>,
     load: Duration,
 }
 
@@ -66,11 +71,15 @@ impl Staged {
     /// Loads the scene; `given` are its particles, if they are already loaded.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let appearance::Loaded { mut scene, legend, cell } = appearance::load(job, given)?;
-        scene.color_bar = appearance::color_bar(job, legend.as_ref()).or(scene.color_bar);
+        let appearance::Loaded { mut scene, legend, cell, mut facts, focus } =
+            appearance::load(job, given)?;
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
+        if let Some(common) = &job.common {
+            facts.categories.clone_from(&common.categories);
+        }
+        annotate(job, &mut scene, legend.as_ref(), &facts)?;
         check_region(job, &scene)?;
         let load = start.elapsed();
         job.style.set(&mut scene);
@@ -81,7 +90,8 @@ impl Staged {
             // The image is written elsewhere, with the settings of the part.
             job.encoding.display.apply(&mut scene.settings);
         }
-        Ok(Self { scene, cuts, legend, load })
+        let FrameFacts { categories, .. } = facts;
+        Ok(Self { scene, cuts, legend, categories, focus, load })
     }
 }
 
@@ -104,8 +114,9 @@ impl PlacedScene {
         if let Source::Prepared(path) = &job.source {
             return Self::open(job, path);
         }
-        let Staged { mut scene, cuts, legend, load } = Staged::load(job, given)?;
+        let Staged { mut scene, cuts, legend, focus, load, .. } = Staged::load(job, given)?;
         place_camera(job, &mut scene, &cuts)?;
+        job.views.set_lens(&mut scene, focus)?;
         job.style.light(&mut scene);
         if let (Some(ground), Some(common)) = (&mut scene.ground, &job.common) {
             ground.height = common.ground.unwrap_or(ground.height);
@@ -168,9 +179,11 @@ impl PlacedScene {
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
         let empty = visibility::explain_empty(&world, region, scene.settings.spp);
+        let mut notes = notes(job, &scene, &world);
+        notes.extend(annotations::notes(&scene.annotations));
         Ok(Prepared {
             title: job.source.title(&scene).into_owned(),
-            notes: notes(job, &scene.settings, &world),
+            notes,
             scene,
             world,
             region,
@@ -230,12 +243,12 @@ impl Prepared {
     }
 }
 
-/// Rejects a color bar inside a region of an image.
+/// Rejects annotations of a region of an image.
 fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
-    if scene.color_bar.is_none() || job.picture.region.is_none() {
+    if scene.annotations.is_empty() || job.picture.region.is_none() {
         return Ok(());
     }
-    let message = "a color bar inside the image needs the whole image; remove --region";
+    let message = "annotations inside the image need the whole image; remove --region";
     Err(Failure::usage("render", message))
 }
 

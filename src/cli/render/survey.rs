@@ -7,7 +7,8 @@ use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::views::corners;
 use spherule_render::scene::particles::{
-    Coloring, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions, SharedNames, of_frame,
+    Category, Coloring, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions, SharedNames,
+    of_frame,
 };
 use spherule_render::scene::{Camera, FileError};
 use spherule_render::world::WorldError;
@@ -22,6 +23,8 @@ pub(in crate::cli) struct Common {
     pub(in crate::cli) ground: Option<f64>,
     /// True if the camera is placed for all images, and not only for the first.
     pub(in crate::cli) frames_all: bool,
+    /// The names that colors stand for in all frames, if they are asked for.
+    pub(in crate::cli) categories: Option<Vec<Category>>,
 }
 
 /// Results of the survey, with memory independent of the number of frames.
@@ -36,6 +39,8 @@ pub(super) struct Survey {
     names: SharedNames,
     /// The common radius of particles before scaling, if it may have been guessed.
     radius: Option<f64>,
+    /// The names that colors stand for, if they are asked for.
+    categories: Option<Vec<Category>>,
     /// Warnings about the first frame that shows a sphere.
     pub(super) warnings: Vec<String>,
     frames: u64,
@@ -74,11 +79,21 @@ impl Survey {
         if let Coloring::Column(colors) = &job.looks.coloring {
             self.numeric |= colors.is_numeric(&particles);
         }
-        let Staged { mut scene, cuts, legend, .. } = Staged::load(job, Some(particles))?;
+        let staged = Staged::load(job, Some(particles))?;
+        let Staged { mut scene, cuts, legend, categories, .. } = staged;
         if scene.spheres.is_empty() {
             return Ok(());
         }
         self.shown += 1;
+        for category in categories.into_iter().flatten() {
+            let known = self.categories.get_or_insert_default();
+            let same =
+                |own: &&mut Category| own.name == category.name && own.color == category.color;
+            match known.iter_mut().find(same) {
+                Some(own) => own.count += category.count,
+                None => known.push(category),
+            }
+        }
         if self.shown == 1 {
             self.radius = radius;
             self.warnings = std::mem::take(&mut scene.warnings);
@@ -140,7 +155,7 @@ impl Survey {
         job.style.light(&mut still);
         let ground = still.ground.map(|ground| ground.height);
         let camera = if angle.is_none() { still.camera } else { view(angle)?.camera };
-        Ok(Common { camera, ground, frames_all: self.all })
+        Ok(Common { camera, ground, frames_all: self.all, categories: self.categories.clone() })
     }
 }
 

@@ -5,8 +5,9 @@ use super::content::Content;
 use super::digits;
 use super::loading::{Progress, Step};
 use super::viewer::Facts;
+use crate::cli::annotations::{FrameFacts, annotate};
 use crate::cli::failure::Failure;
-use crate::cli::render::{Job, check_legend, color_bar};
+use crate::cli::render::{Job, check_legend, focus};
 use crate::cli::source::Source;
 use crate::cli::views::scene_of_particles;
 use glam::DVec3;
@@ -163,6 +164,9 @@ struct StyledScene {
     labels: Labels,
     legend: Option<Legend>,
     cell: Option<Cell>,
+    facts: FrameFacts,
+    /// Center of the particle in focus, if the focus is a particle.
+    focus: Option<DVec3>,
 }
 
 impl StyledScene {
@@ -174,6 +178,12 @@ impl StyledScene {
     ) -> Result<Self, Failure> {
         let legend = apply_style(job, content, &mut particles)?;
         let cell = particles.cell;
+        let name = job.source.name();
+        let focus = focus(job, Path::new(name.as_ref()), &particles)?;
+        let facts = match scene {
+            Some(_) => FrameFacts::default(),
+            None => FrameFacts::of(job, &particles),
+        };
         let labels = Labels {
             kinds: std::mem::take(&mut particles.kinds),
             numbers: std::mem::take(&mut particles.numbers),
@@ -186,7 +196,7 @@ impl StyledScene {
             let title = job.source.title(&Scene::default()).into_owned();
             scene_of_particles(preset.or(job.style.preset()), particles, &title)
         };
-        Ok(Self { scene, labels, legend, cell })
+        Ok(Self { scene, labels, legend, cell, facts, focus })
     }
 }
 
@@ -226,7 +236,7 @@ impl Loader {
             self.base = Some(read);
             parts
         };
-        let StyledScene { mut scene, labels, legend, cell } =
+        let StyledScene { mut scene, labels, legend, cell, facts: frame_facts, focus } =
             StyledScene::new(job, content, particles, scene)?;
         if first {
             check_legend(job, legend.as_ref())?;
@@ -239,12 +249,13 @@ impl Loader {
         )?;
         job.style.set(&mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
-        scene.color_bar = color_bar(job, legend.as_ref()).or(scene.color_bar);
+        annotate(job, &mut scene, legend.as_ref(), &frame_facts)?;
         job.picture.settings.apply(&mut scene.settings);
         job.views.frame(&mut scene, None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         let up = scene.camera.up;
         framing::include_points(&mut scene, &[]).map_err(failed)?;
+        job.views.set_lens(&mut scene, focus)?;
         // The scene's up direction, about which the camera orbits, not that of the image, which may be
         // tilted.
         scene.camera.up = up;
@@ -266,7 +277,7 @@ impl Loader {
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
             size: size(&scene.spheres),
             look: scene.look,
-            color_bar: scene.color_bar.is_some(),
+            color_bar: scene.annotations.color_bar.is_some(),
             legend,
             ..facts
         };
@@ -396,8 +407,8 @@ fn apply_style(
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
     let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
-    let looks =
-        ParticleStyle { select, coloring, types: job.looks.types.clone(), allow_empty: false };
+    let (types, ids) = (job.looks.types.clone(), job.looks.ids);
+    let looks = ParticleStyle { select, coloring, types, ids, allow_empty: false };
     let name = job.source.name();
     Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }
