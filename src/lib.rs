@@ -95,11 +95,12 @@ pub mod color {
 pub mod scene {
     #[doc(inline)]
     pub use spherule_render::scene::{
-        Background, Camera, ColorBar, ConductorFresnel, Corner, Denoise, Environment,
-        EnvironmentMap, FileError, Filter, Footprint, Ground, Header, Identity, Integrator,
-        InvalidSetting, Lens, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose,
-        Preset, Projection, Rgb, Roulette, SamplerKind, Scene, Settings, Slice, SliceMode,
-        SlicePlane, Spheres, Tone, write, write_as,
+        Anchor, Annotations, AxisTripod, Background, Camera, ColorBar, ColorLegend,
+        ConductorFresnel, Denoise, Environment, EnvironmentMap, FileError, Filter, Footprint,
+        Ground, Header, Identity, Insets, Integrator, InvalidSetting, Label, Lens, Lettering,
+        Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset, Projection, Rgb,
+        Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode, SlicePlane, Spheres,
+        Tone, write, write_as,
     };
 
     /// Generators of spheres.

@@ -5,8 +5,8 @@ use super::with_text::{self, WithText};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde_json::{Value, json};
 use spherule_render::color::{Map, Spacing};
-use spherule_render::drawing::Format;
-use spherule_render::scene::Corner;
+use spherule_render::graphics::Format;
+use spherule_render::scene::Anchor;
 use spherule_render::scene::particles::{
     Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, Selection, TypeStyle,
 };
@@ -55,11 +55,11 @@ pub(super) struct AppearanceArgs {
         value_parser = |text: &str| text.parse::<WithText<TypeStyle>>()
     )]
     types: Vec<WithText<TypeStyle>>,
-    /// Draw a color bar: to a .png or .svg file, or inside the image, in its lower right corner or with
-    /// inside:CORNER in one of top-left, top-right, bottom-left and bottom-right
+    /// Draw a color bar: to a .png, .svg or .pdf file, or inside the image at a position: top-left, top,
+    /// top-right, left, right, bottom-left, bottom, bottom-right, or inside, which is bottom-right
     #[arg(
         long,
-        value_name = "FILE|inside[:CORNER]",
+        value_name = "FILE|POSITION",
         requires = "color_by",
         value_parser = bar
     )]
@@ -71,8 +71,8 @@ pub(super) struct AppearanceArgs {
 pub(super) enum BarPlace {
     /// A separate file.
     File(PathBuf, Format),
-    /// A corner of the image.
-    Inside(Corner),
+    /// A position in the image.
+    Inside(Anchor),
 }
 
 /// Color schemes for elements.
@@ -132,26 +132,28 @@ fn ends(text: &str) -> Result<Ends, String> {
         .ok_or_else(|| "give two numbers, the lower one first, as in -1,2.5, or auto".to_owned())
 }
 
-/// `inside`, with or without a corner, or a name that ends in `.png` or `.svg`.
+/// A position, perhaps after `inside:`, or a name that ends in `.png`, `.svg` or `.pdf`.
 fn bar(text: &str) -> Result<BarPlace, String> {
-    let corner = match text.strip_prefix("inside") {
-        Some("") => Some(Corner::default()),
-        Some(rest) => rest.strip_prefix(':').and_then(Corner::named),
-        None => None,
-    };
+    let name = text.strip_prefix("inside:").unwrap_or(text);
+    let inside = if text == "inside" { Some(Anchor::default()) } else { Anchor::named(name) };
     let path = PathBuf::from(text);
-    match (corner, Format::of_suffix(&path)) {
-        (Some(corner), _) => Ok(BarPlace::Inside(corner)),
+    match (inside, Format::of_suffix(&path)) {
+        (Some(position), _) => Ok(BarPlace::Inside(position)),
         (None, Some(format)) => Ok(BarPlace::File(path, format)),
         (None, None) => {
-            let names = Corner::ALL.map(|(name, _)| name);
-            let near = text.strip_prefix("inside:").map(|corner| suggest::question(corner, names));
-            let (near, names) = (near.unwrap_or_default(), names.join(", "));
+            let names = Anchor::ALL.map(|(name, _)| name);
+            let (near, names) = (suggest::question(name, names), names.join(", "));
             Err(format!(
-                "give a name that ends in .png or .svg, or inside, or inside:CORNER with one of \
-                 {names}{near}"
+                "give a name that ends in .png, .svg or .pdf, or a position: inside, {names}{near}"
             ))
         }
+    }
+}
+
+impl BarPlace {
+    /// Returns whether the text of an option is a position, not a file.
+    pub(super) fn is_inside(text: &str) -> bool {
+        matches!(bar(text), Ok(Self::Inside(_)))
     }
 }
 
@@ -162,7 +164,8 @@ impl AppearanceArgs {
         let radii = types.iter_mut().filter_map(|look| look.radius.as_mut());
         radii.for_each(|radius| *radius *= radius_scale);
         let select = self.select.as_deref().cloned();
-        ParticleStyle { select, coloring: self.coloring(), types, allow_empty: false }
+        let coloring = self.coloring();
+        ParticleStyle { select, coloring, types, ..ParticleStyle::default() }
     }
 
     /// Settings for the image's metadata; the color range is that of the `legend`.
@@ -209,13 +212,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn color_bars_go_to_files_and_corners() {
-        let corner = |top, left| Ok(BarPlace::Inside(Corner { top, left }));
-        assert_eq!(bar("inside"), corner(false, false));
-        assert_eq!(bar("inside:top-left"), corner(true, true));
-        assert_eq!(bar("inside:top-right"), corner(true, false));
+    fn color_bars_go_to_files_and_positions() {
+        let at = |position| Ok(BarPlace::Inside(position));
+        assert_eq!(bar("inside"), at(Anchor::BottomRight));
+        assert_eq!(bar("inside:top-left"), at(Anchor::TopLeft));
+        assert_eq!((bar("right"), bar("bottom")), (at(Anchor::Right), at(Anchor::Bottom)));
+        assert_eq!(bar("a.pdf"), Ok(BarPlace::File("a.pdf".into(), Format::Pdf)));
         assert_eq!(bar("inside.svg"), Ok(BarPlace::File("inside.svg".into(), Format::Svg)));
-        assert!(bar("inside:left").is_err() && bar("a.pdf").is_err() && bar("insider").is_err());
+        for text in ["inside:middle", "a.exr", "insider", "inside:inside", ""] {
+            assert!(bar(text).is_err(), "{text}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub(super) use field::{FieldArgs, Kind, ParameterArgs};
 pub(super) use picture::{EncodingArgs, PictureArgs, ReportArgs, SpeedArgs};
 pub(super) use settings::option_name;
 
+use super::annotations::AnnotationArgs;
 use super::appearance::AppearanceArgs;
 use super::checkpoint::CheckpointArgs;
 use super::command_line::command_line;
@@ -89,7 +90,7 @@ pub(super) struct RenderArgs {
         long,
         value_name = "FILE",
         default_value = "spherule.png",
-        help = picture_help()
+        help = page_help()
     )]
     pub(super) output: PathBuf,
     #[command(flatten)]
@@ -102,6 +103,8 @@ pub(super) struct RenderArgs {
     pub(super) views: ViewArgs,
     #[command(flatten)]
     pub(super) style: StyleArgs,
+    #[command(flatten)]
+    pub(super) annotations: AnnotationArgs,
     #[command(flatten)]
     pub(super) picture: PictureArgs,
     #[command(flatten)]
@@ -169,6 +172,11 @@ pub(super) fn picture_help() -> String {
         "Output image: a name that ends in {}, or - for standard output",
         Format::written_suffixes()
     )
+}
+
+/// Help of the option that names the output image or page.
+fn page_help() -> String {
+    format!("{}; .svg and .pdf hold the image with annotations as vectors and text", picture_help())
 }
 
 /// Help of an argument that names an input image.

@@ -23,6 +23,8 @@ Examples:
   spherule render run.lammpstrj.gz --frame all --turntable 360 --fps 24 -o video.mp4
   spherule render run.lammpstrj.gz --frame all -o frame-%04d.png --skip-existing --part 2/4
   spherule render run.dump --color-by c_pe --color-map inferno --color-bar energy.svg
+  spherule render run.gro --legend --axes --scale-bar --label 't = {time} ps' -o figure.pdf
+  spherule render protein.pdb --aperture 6 --focus id:1234 -o depth-of-field.png
   spherule render protein.pdb --select 'element != H and chain == A' -o chain.png
   spherule render salt.xyz --type Na:radius=1,material=glass --type Cl:color=#30a030
   spherule render crystal.cif --wrap --replicate 3,3,2 --cell --view auto -o crystal.png

@@ -10,6 +10,7 @@ use memchr::{memchr, memrchr};
 use spherule_measure::bench::BenchError;
 use spherule_render::checkpoint::{CheckpointError, LockError};
 use spherule_render::drawing::DrawingError;
+use spherule_render::graphics::PageError;
 use spherule_render::image::{CompareError, ImageError};
 use spherule_render::memory::Shortage;
 use spherule_render::prepared::{PrepareError, PreparedError};
@@ -76,6 +77,8 @@ pub(crate) enum Failure {
     Resume(PathBuf, String),
     #[error("{0}")]
     Drawing(#[from] DrawingError),
+    #[error("{0}")]
+    Page(#[from] PageError),
     #[error("{0}")]
     Bench(BenchError),
     #[error("{}", .0.message(.1))]

@@ -1,5 +1,6 @@
 //! The options of a command line, stored in checkpoints and combined with later ones by `--resume`.
 
+use super::appearance::BarPlace;
 use super::args::Args;
 use super::command_line::command_line;
 use clap::parser::ValueSource;
@@ -82,7 +83,7 @@ impl CommandOptions {
         for value in paths.flat_map(|(_, values)| values) {
             // `-` is standard input, and a color bar may be inside the image.
             let text = value.to_str().unwrap_or_default();
-            if text != "-" && text != "inside" && !text.starts_with("inside:") {
+            if text != "-" && !BarPlace::is_inside(text) {
                 *value = folder.join(&*value).into();
             }
         }

@@ -1,5 +1,6 @@
 //! The command line: arguments, commands, messages and exit codes.
 
+mod annotations;
 mod appearance;
 mod args;
 mod bench;

@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
 #![cfg(feature = "cli")]
 
+mod annotations;
 mod bench;
 mod documents;
 mod figures;

@@ -33,6 +33,7 @@ const STATISTICS: Options = Options {
     progress: None,
     cancel: None,
     statistics: true,
+    judge: None,
     elisions: spherule_render::render::Elisions::ALL,
 };
 

@@ -108,6 +108,7 @@ pub mod internals {
     }
     pub use crate::schema::unknown_column;
     pub use crate::srgb::{linear_from_srgb, srgb};
+    pub use crate::xyz::pairs;
     /// Suggestions for misspelled words.
     pub mod suggest {
         pub use crate::suggest::*;

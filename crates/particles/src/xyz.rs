@@ -224,8 +224,8 @@ fn periodic(value: &str) -> [bool; 3] {
     [(); 3].map(|()| !fields.next().is_some_and(|field| field.starts_with(['F', 'f', '0'])))
 }
 
-/// Returns all `key=value` pairs of a comment; quoted values may contain blanks.
-fn pairs(text: &str) -> Vec<(String, String)> {
+/// Returns all `key=value` pairs of a comment, in order; quoted values may contain blanks.
+pub fn pairs(text: &str) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     let mut letters = text.chars().peekable();
     while letters.peek().is_some() {

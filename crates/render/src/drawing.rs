@@ -1,4 +1,5 @@
-//! Drawing of lines, areas and letters, for charts and color bars.
+//! Drawing of lines, areas and letters, for charts. Annotations of pictures are drawn by
+//! [`graphics`](crate::graphics).
 //!
 //! A [`Picture`] is drawn by the same code for pixels and vectors. The font is included in the program,
 //! since the system may have none.
@@ -19,7 +20,7 @@ pub type Area<B> = DrawingArea<B, Shift>;
 pub type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
 /// The background: white.
-pub const PAPER: RGBColor = RGBColor(255, 255, 255);
+const PAPER: RGBColor = RGBColor(255, 255, 255);
 
 /// The color of letters and lines: nearly black.
 pub const INK: RGBColor = RGBColor(40, 40, 40);
@@ -70,38 +71,34 @@ impl Format {
 /// [`DrawingError`].
 pub fn file(picture: &impl Picture, format: Format) -> Result<Vec<u8>, DrawingError> {
     match format {
-        Format::Png => encode(&codes(picture, PAPER)?, picture.size()),
+        Format::Png => encode(&codes(picture)?, picture.size()),
         Format::Svg => {
             register_included_font()?;
             let mut text = String::new();
             let area = SVGBackend::with_string(&mut text, picture.size()).into_drawing_area();
-            on_paper(picture, &area, PAPER).map_err(drawing_error)?;
+            on_paper(picture, &area).map_err(drawing_error)?;
             drop(area);
             Ok(text.into_bytes())
         }
     }
 }
 
-/// Returns the pixels of a picture on a background: sRGB codes, three bytes each, row by row.
+/// Returns the pixels of a picture on a white background: sRGB codes, three bytes each, row by row.
 ///
 /// # Errors
 /// [`DrawingError`].
-pub fn codes(picture: &impl Picture, paper: RGBColor) -> Result<Vec<u8>, DrawingError> {
+pub fn codes(picture: &impl Picture) -> Result<Vec<u8>, DrawingError> {
     register_included_font()?;
     let (width, height) = picture.size();
     let mut codes = vec![0; width as usize * height as usize * 3];
     let area = BitMapBackend::with_buffer(&mut codes, (width, height)).into_drawing_area();
-    on_paper(picture, &area, paper).map_err(drawing_error)?;
+    on_paper(picture, &area).map_err(drawing_error)?;
     drop(area);
     Ok(codes)
 }
 
-fn on_paper<B: DrawingBackend>(
-    picture: &impl Picture,
-    area: &Area<B>,
-    paper: RGBColor,
-) -> Drawn<B> {
-    area.fill(&paper)?;
+fn on_paper<B: DrawingBackend>(picture: &impl Picture, area: &Area<B>) -> Drawn<B> {
+    area.fill(&PAPER)?;
     picture.draw(area)?;
     area.present()
 }

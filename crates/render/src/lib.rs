@@ -48,6 +48,8 @@ pub mod split;
 
 #[cfg(feature = "drawing")]
 pub mod drawing;
+#[cfg(feature = "drawing")]
+pub mod graphics;
 
 pub mod atomic;
 pub mod image;

@@ -1,22 +1,22 @@
 //! Loading of particles with the colors and materials of the options.
 
 use super::job::Job;
+use crate::cli::annotations::FrameFacts;
 use crate::cli::appearance::BarPlace;
 use crate::cli::failure::Failure;
 use crate::cli::source::Source;
 use crate::cli::views::Canvas;
 use crate::cli::write_file::write_file;
+use glam::DVec3;
+use spherule_render::World;
 use spherule_render::atomic::check_destination;
-use spherule_render::drawing::{DrawingError, Picture};
-use spherule_render::image::Image;
-use spherule_render::overlay::color_bar::{Bar, Direction};
+use spherule_render::overlay::annotations::{self, AnnotationDrawing};
+use spherule_render::overlay::color_bar::Bar;
 use spherule_render::scene::particles::{
     self, Cell, Legend, Orientation, ParticleStyle, Particles,
 };
-use spherule_render::scene::{ColorBar, Rgb, Scene};
-
-/// Length of a color bar as a fraction of the image's height.
-const BAR_SHARE: f64 = 0.35;
+use spherule_render::scene::{Annotations, FileError, Look, Scene};
+use std::path::Path;
 
 /// Returns the source, with the columns that colors and selections need; an error if it has no particles.
 pub(super) fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Source, Failure> {
@@ -42,6 +42,9 @@ pub(super) struct Loaded {
     pub(super) cell: Option<Cell>,
     /// What is up, if the scene is of particles.
     pub(super) orientation: Option<Orientation>,
+    pub(super) facts: FrameFacts,
+    /// Center of the particle in focus, if the focus is a particle.
+    pub(super) focus: Option<DVec3>,
 }
 
 /// Loads the scene, with colors, materials and replicas of particles.
@@ -50,8 +53,9 @@ pub(super) struct Loaded {
 pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failure> {
     let Source::Particles(path, options) = &job.source else {
         job.views.refuse_cells()?;
-        let scene = job.source.load()?;
-        return Ok(Loaded { scene, legend: None, cell: None, orientation: None });
+        let (facts, scene) = (FrameFacts::default(), job.source.load()?);
+        let (legend, cell, orientation, focus) = (None, None, None, None);
+        return Ok(Loaded { scene, legend, cell, orientation, facts, focus });
     };
     let mut particles = match given {
         Some(particles) => particles,
@@ -59,11 +63,33 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
     };
     let legend = job.looks.apply(path, &mut particles)?;
     let cell = job.views.repeat(path, &mut particles)?;
+    let focus = focus(job, path, &particles)?;
+    let facts = FrameFacts::of(job, &particles);
     let shared = job.common.as_ref().and_then(|common| common.orientation);
     let orientation = shared.unwrap_or_else(|| job.views.orientation(&particles));
     let title = job.source.title(&Scene::default()).into_owned();
     let scene = job.preset().unwrap_or_default().scene(particles, &title, &orientation);
-    Ok(Loaded { scene, legend, cell, orientation: Some(orientation) })
+    Ok(Loaded { scene, legend, cell, orientation: Some(orientation), facts, focus })
+}
+
+/// Returns the center of the particle in focus, if the focus is a particle.
+pub(in crate::cli) fn focus(
+    job: &Job,
+    path: &Path,
+    particles: &Particles,
+) -> Result<Option<DVec3>, FileError> {
+    let Some(id) = job.views.particle_in_focus() else { return Ok(None) };
+    if job.looks.allow_empty && particles.spheres.is_empty() {
+        return Ok(None);
+    }
+    let point = particles.position_of(id);
+    point.map(Some).ok_or_else(|| {
+        let error =
+            FileError::whole_file(path, format!("no particle that is drawn has the id {id}"));
+        error.with_help(
+            "--focus id:ID takes a value of the column id, or without one a number from 0",
+        )
+    })
 }
 
 /// Checks that the color bar can be written, without changing anything.
@@ -92,35 +118,22 @@ pub(in crate::cli) fn write_bar(
         return Ok(());
     };
     let Legend { scale, label } = legend;
-    let bar = Bar::new(scale, label, height, Direction::Up)?.file(*format)?;
+    let bar = Bar::file(scale, label, height, *format)?;
     write_file(path, &bar)
 }
 
-/// Returns the color bar that is drawn inside the image.
-pub(in crate::cli) fn color_bar(job: &Job, legend: Option<&Legend>) -> Option<ColorBar> {
-    let (Some(BarPlace::Inside(corner)), Some(Legend { scale, label })) = (job.color_bar, legend)
-    else {
-        return None;
-    };
-    Some(ColorBar { scale: *scale, label: label.clone(), corner: *corner })
-}
-
-/// Draws a scene's color bar into its corner.
-pub(in crate::cli) fn draw_bar(
-    color_bar: &ColorBar,
+/// Draws the annotations of a scene over an image; returns whether all of them have room.
+pub(in crate::cli) fn draw_annotations(
+    scene: (&Annotations, &Look),
+    world: &World,
     canvas: &mut Canvas,
-    ink: Rgb,
-) -> Result<(), DrawingError> {
-    let ColorBar { scale, label, corner } = color_bar;
-    let (width, height) = (canvas.image.width, canvas.image.height);
-    let length = (f64::from(height) * BAR_SHARE) as u32;
-    let bar = Bar::new(scale, label, length, Direction::Up)?;
-    let size = bar.size();
-    let x = if corner.left { 0 } else { width.saturating_sub(size.0) };
-    let y = if corner.top { 0 } else { height.saturating_sub(size.1) };
-    let draw = |image: &mut Image| bar.draw_over(image, (x, y), ink);
-    draw(&mut Image { width: 1, height: 1, pixels: vec![[0.0; 3]] })?;
-    // Cannot fail after it has succeeded once.
-    canvas.draw(|image| _ = draw(image));
-    Ok(())
+    turns: bool,
+) -> bool {
+    let (annotations, look) = scene;
+    if annotations.is_empty() {
+        return true;
+    }
+    let AnnotationDrawing { drawing, fits } = annotations::draw(annotations, world, look, turns);
+    canvas.draw(|image| drawing.draw_over(image));
+    fits
 }

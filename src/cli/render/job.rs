@@ -4,6 +4,7 @@ use super::appearance::with_columns;
 use super::prepared_file;
 use super::sequence::Common;
 use super::video::Container;
+use crate::cli::annotations::AnnotationArgs;
 use crate::cli::appearance::{AppearanceArgs, BarPlace};
 use crate::cli::args::{EncodingArgs, PictureArgs, RenderArgs, ReportArgs, SpeedArgs};
 use crate::cli::checkpoint::CheckpointArgs;
@@ -20,6 +21,7 @@ use crate::cli::views::{StyleArgs, ViewArgs};
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
 use spherule_render::film::Region;
+use spherule_render::graphics;
 use spherule_render::image::Format;
 use spherule_render::scene::particles::ParticleStyle;
 use spherule_render::scene::{Look, Preset, Settings};
@@ -45,11 +47,15 @@ pub(in crate::cli) struct Job<'a> {
     pub(in crate::cli) typed: (&'a ParticleArgs, &'a AppearanceArgs),
     pub(in crate::cli) color_bar: Option<&'a BarPlace>,
     pub(in crate::cli) output: PathBuf,
+    /// Format of the image, or of the image on the page.
     pub(in crate::cli) format: Format,
+    /// Format of the page with the image and its annotations as vectors, if the output is one.
+    pub(in crate::cli) page: Option<graphics::Format>,
     pub(in crate::cli) picture: &'a PictureArgs,
     pub(in crate::cli) slices: &'a SliceArgs,
     pub(in crate::cli) views: &'a ViewArgs,
     pub(in crate::cli) style: &'a StyleArgs,
+    pub(in crate::cli) annotations: &'a AnnotationArgs,
     /// Number of the turntable's image, from 0.
     pub(in crate::cli) turn: Option<u32>,
     /// Number of the trajectory frame.
@@ -87,9 +93,16 @@ impl<'a> Job<'a> {
             let message = "--fps applies only to videos; use an --output that ends in .mp4, .mov, .webm or .gif";
             return Err(Failure::usage("render", message));
         }
+        let page = graphics::Format::of_suffix(&args.output)
+            .filter(|page| *page != graphics::Format::Png)
+            .filter(|_| args.encoding.output_format.is_none());
+        if page.is_some() {
+            check_page(args)?;
+        }
         // Images of a video have 8 bits, as PPM files do.
         let format = match video {
             Some(_) => Format::Ppm,
+            None if page.is_some() => Format::Png,
             None => picture_file::format(&args.output, args.encoding.output_format)?,
         };
         if args.sequence.skip_existing && format == Format::Pfm {
@@ -108,6 +121,10 @@ impl<'a> Job<'a> {
         let inside = matches!(&args.looks.color_bar, Some(BarPlace::Inside(_)));
         if inside && args.picture.region.is_some() {
             let message = "--color-bar inside needs the whole image; remove --region";
+            return Err(Failure::usage("render", message));
+        }
+        if !args.annotations.is_empty() && args.picture.region.is_some() {
+            let message = "annotations need the whole image; remove --region";
             return Err(Failure::usage("render", message));
         }
         let source = match &args.scene {
@@ -132,7 +149,8 @@ impl<'a> Job<'a> {
         args.checkpoints.check()?;
         let part = args.part.resolved();
         let (part, deal) = if args.is_sequence() { (None, part) } else { (part, None) };
-        let looks = args.looks.looks(args.particles.options().radius_scale);
+        let mut looks = args.looks.looks(args.particles.options().radius_scale);
+        looks.ids = args.views.particle_in_focus().is_some();
         Ok(Self {
             source: with_columns(source, &looks)?,
             looks,
@@ -140,10 +158,12 @@ impl<'a> Job<'a> {
             color_bar: args.looks.color_bar.as_ref(),
             output: args.output.clone(),
             format,
+            page,
             picture: &args.picture,
             slices: &args.slices,
             views: &args.views,
             style: &args.style,
+            annotations: &args.annotations,
             turn: None,
             frame: None,
             common: None,
@@ -215,6 +235,20 @@ impl<'a> Job<'a> {
         );
         Err(Failure::usage("render", message))
     }
+}
+
+/// Rejects options that do not apply to pages.
+fn check_page(args: &RenderArgs) -> Result<(), Failure> {
+    let what = if !args.encoding.layers.is_empty() {
+        "--layers; use an --output that ends in .exr"
+    } else if args.sequence.skip_existing {
+        "metadata for --skip-existing; use an --output that ends in .png, .ppm or .exr"
+    } else if args.part.resolved().is_some() && !args.is_sequence() {
+        "parts of an image; use an --output that ends in .png"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::usage("render", format!("SVG and PDF files cannot store {what}")))
 }
 
 /// Rejects options that do not apply to videos.

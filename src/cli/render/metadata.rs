@@ -86,9 +86,6 @@ pub(super) fn looks(
     if !layers.is_empty() {
         listed.push(("layers".to_owned(), layers.join(",")));
     }
-    if let Some(BarPlace::Inside(corner)) = job.color_bar {
-        listed.push(("color_bar".to_owned(), format!("inside:{}", corner.name())));
-    }
     listed.push((SCENE.to_owned(), identity.to_string()));
     listed
 }
@@ -98,7 +95,11 @@ fn typed(job: &Job, legend: Option<&Legend>) -> Vec<(String, String)> {
     let (particles, looks) = job.typed;
     let listed = particles.list(job.frame).into_iter().chain(looks.list(legend));
     let listed = listed.chain(job.slices.list()).chain(job.views.list()).chain(job.style.list());
-    texts(listed.collect())
+    let mut listed = texts(listed.chain(job.annotations.list()).collect());
+    if let Some(BarPlace::Inside(position)) = job.color_bar {
+        listed.push(("color_bar".to_owned(), position.name().to_owned()));
+    }
+    listed
 }
 
 fn texts(list: List) -> Vec<(String, String)> {

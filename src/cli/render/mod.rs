@@ -13,6 +13,7 @@ mod noise;
 mod notes;
 mod notices;
 mod numbered_names;
+mod page;
 mod part;
 mod prepare;
 mod prepared_file;
@@ -25,7 +26,7 @@ mod terminal;
 mod video;
 mod visibility;
 
-pub(super) use self::appearance::{check_bar, check_legend, color_bar, draw_bar, write_bar};
+pub(super) use self::appearance::{check_bar, check_legend, draw_annotations, focus, write_bar};
 use self::checkpoint_writer::CheckpointWriter;
 pub(super) use self::estimate::Estimate;
 use self::files::files;
@@ -225,25 +226,38 @@ fn write(
     render: &mut Render,
     judged: Option<&Judged>,
 ) -> Result<(), Failure> {
-    let matte = draw_over(prepared, render)?;
+    let matte = draw_over(job, prepared, session, render)?;
     let options = metadata::write_options(job, prepared, render, judged);
     let mut channels = layers::channels(job, prepared, render)?;
     channels.extend(matte.map(|matte| alpha(&matte, job.format)));
-    match &mut session.video {
-        Some(video) => video.add(&render.image, &options)?,
-        None => write_file(&job.output, &render.image.encode(job.format, &channels, &options)?)?,
+    if let Some(video) = &mut session.video {
+        video.add(&render.image, &options)?;
+    } else {
+        let file = render.image.encode(job.format, &channels, &options)?;
+        write_file(&job.output, &page::file(job, prepared, file, &options)?)?;
     }
     Summary::new(job, prepared, render, judged, &options).report(job.report, &mut session.notices);
     Ok(())
 }
 
-/// Draws the look and the color bar over an image; returns the matte of a transparent background.
-fn draw_over(prepared: &mut Prepared, render: &mut Render) -> Result<Option<Matte>, Failure> {
-    let Scene { look, color_bar, settings, .. } = &prepared.scene;
+/// Draws the look and, unless they are vectors on a page, the annotations over an image; returns the matte
+/// of a transparent background.
+fn draw_over(
+    job: &Job,
+    prepared: &mut Prepared,
+    session: &mut Session,
+    render: &mut Render,
+) -> Result<Option<Matte>, Failure> {
+    let Scene { look, annotations, settings, .. } = &prepared.scene;
     let region = prepared.region;
     let mut canvas = draw_look(look, &mut prepared.world, settings, region, render)?;
-    if let Some(color_bar) = color_bar {
-        draw_bar(color_bar, &mut canvas, look.ink())?;
+    if job.page.is_none() {
+        let turns = job.turn.is_some();
+        if !draw_annotations((annotations, look), &prepared.world, &mut canvas, turns) {
+            session.notices.warn(
+                "annotations overlap: make the image larger, or use fewer or a smaller --text-size",
+            );
+        }
     }
     Ok(canvas.matte)
 }

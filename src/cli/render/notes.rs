@@ -3,8 +3,9 @@
 use super::job::Job;
 use crate::cli::args::option_name;
 use spherule_render::World;
+use spherule_render::graphics;
 use spherule_render::image::{Depth, Format};
-use spherule_render::scene::{Integrator, Settings, Tone};
+use spherule_render::scene::{Integrator, Scene, Settings, Tone};
 use spherule_render::settings::{INTEGRATORS, Need, Scope, Setting, Value};
 use spherule_render::trace::Traversal;
 
@@ -12,7 +13,8 @@ use spherule_render::trace::Traversal;
 const ROULETTE_BEGINS: u32 = 4;
 
 /// Returns a sentence for each option that has no effect.
-pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String> {
+pub(super) fn notes(job: &Job, scene: &Scene, world: &World) -> Vec<String> {
+    let settings = &scene.settings;
     let mut notes = Vec::new();
     let mut note = |asked: bool, idle: bool, name: &str, why: &str| {
         if asked && idle {
@@ -54,6 +56,12 @@ pub(super) fn notes(job: &Job, settings: &Settings, world: &World) -> Vec<String
     note(encoding.bits.is_some(), part, "--bits", "parts are not images; use it with merge");
     note(encoding.ppm.is_some(), part, "--ppm", "parts are not images; use it with merge");
     note(encoding.ppm.is_some(), job.format != Format::Ppm, "--ppm", "the output is not PPM");
+    let pdf = job.page == Some(graphics::Format::Pdf);
+    note(deep, pdf, "--bits", "PDF files store 8 bits");
+    note(job.views.has_idle_focus(scene), true, "--focus", "the lens is a pinhole; set --aperture");
+    let bare = scene.annotations.is_empty();
+    let letters = job.annotations.lettering();
+    note(letters.is_some(), bare, letters.unwrap_or_default(), "the image has no annotations");
     notes
 }
 

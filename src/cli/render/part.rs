@@ -81,10 +81,10 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
               none and --spp",
         );
     }
-    if !scene.look.is_plain() || scene.color_bar.is_some() {
+    if !scene.look.is_plain() || !scene.annotations.is_empty() {
         return refuse(
-            &"--cell, --background transparent, --preset depthcue and outline, --color-bar inside, and the \
-              same in a scene's [look] and [color_bar] need the whole image; remove them with --part",
+            &"--cell, --background transparent, --preset depthcue and outline, annotations such as --color-bar \
+              inside, and the same in a scene need the whole image; remove them with --part",
         );
     }
     part.of_image(&whole, job.split).or_else(|error| refuse(&format!("--part: {error}")))
@@ -94,8 +94,8 @@ pub(super) fn image_part(job: &Job, region: Region, scene: &Scene) -> Result<Ima
 pub(super) fn caption(job: &Job, prepared: &Prepared) -> Caption {
     let layers = layers::wanted(&job.encoding.layers);
     let title = prepared.title.clone();
-    let Scene { look, color_bar, .. } = &prepared.scene;
-    let drawn_over = !look.is_plain() || color_bar.is_some();
+    let Scene { look, annotations, .. } = &prepared.scene;
+    let drawn_over = !look.is_plain() || !annotations.is_empty();
     Caption { title, looks: prepared.looks(job), drawn_over, layers, ..Caption::default() }
 }
 

@@ -5,6 +5,7 @@ use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
 use super::{appearance, metadata, part, stop, visibility};
+use crate::cli::annotations::{self, FrameFacts, annotate};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -17,7 +18,7 @@ use spherule_render::denoise::Choice;
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
-use spherule_render::scene::particles::{Cell, Legend, Orientation, Particles};
+use spherule_render::scene::particles::{Category, Cell, Legend, Orientation, Particles};
 use spherule_render::scene::{Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -66,6 +67,10 @@ pub(super) struct Staged {
     pub(super) legend: Option<Legend>,
     /// What is up, if the scene is of particles.
     pub(super) orientation: Option<Orientation>,
+    /// The names that colors stand for, if they are asked for.
+    pub(super) categories: Option<Vec<Category>>,
+    /// Center of the particle in focus, if the focus is a particle.
+    focus: Option<DVec3>,
     load: Duration,
 }
 
@@ -73,12 +78,15 @@ impl Staged {
     /// Loads the scene; `given` are its particles, if they are already loaded.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let appearance::Loaded { mut scene, legend, cell, orientation } =
+        let appearance::Loaded { mut scene, legend, cell, orientation, mut facts, focus } =
             appearance::load(job, given)?;
-        scene.color_bar = appearance::color_bar(job, legend.as_ref()).or(scene.color_bar);
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
+        if let Some(common) = &job.common {
+            facts.categories.clone_from(&common.categories);
+        }
+        annotate(job, &mut scene, legend.as_ref(), &facts)?;
         check_region(job, &scene)?;
         let load = start.elapsed();
         job.style.set(job.preset(), &mut scene);
@@ -89,7 +97,8 @@ impl Staged {
             // The image is written elsewhere, with the settings of the part.
             job.encoding.display.apply(&mut scene.settings);
         }
-        Ok(Self { scene, cuts, legend, orientation, load })
+        let FrameFacts { categories, .. } = facts;
+        Ok(Self { scene, cuts, legend, orientation, categories, focus, load })
     }
 }
 
@@ -116,8 +125,10 @@ impl PlacedScene {
         if let Source::Prepared(path) = &job.source {
             return Self::open(job, path);
         }
-        let Staged { mut scene, cuts, legend, orientation, load } = Staged::load(job, given)?;
+        let Staged { mut scene, cuts, legend, orientation, focus, load, .. } =
+            Staged::load(job, given)?;
         place_camera(job, &mut scene, orientation.as_ref(), &cuts)?;
+        job.views.set_lens(&mut scene, focus)?;
         if let Some(preset) = job.preset() {
             let vertical = job.views.vertical(&scene.camera, orientation.as_ref());
             preset.light(&mut scene, vertical);
@@ -188,9 +199,11 @@ impl PlacedScene {
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
         let empty = visibility::explain_empty(&world, region, scene.settings.spp);
+        let mut notes = notes(job, &scene, &world);
+        notes.extend(annotations::notes(&scene.annotations));
         Ok(Prepared {
             title: job.source.title(&scene).into_owned(),
-            notes: notes(job, &scene.settings, &world),
+            notes,
             scene,
             world,
             region,
@@ -258,12 +271,12 @@ impl Prepared {
     }
 }
 
-/// Rejects a color bar inside a region of an image.
+/// Rejects annotations of a region of an image.
 fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
-    if scene.color_bar.is_none() || job.picture.region.is_none() {
+    if scene.annotations.is_empty() || job.picture.region.is_none() {
         return Ok(());
     }
-    let message = "a color bar inside the image needs the whole image; remove --region";
+    let message = "annotations inside the image need the whole image; remove --region";
     Err(Failure::usage("render", message))
 }
 

@@ -54,11 +54,12 @@ pub(super) fn refuse_sequence(args: &RenderArgs) -> Result<(), Failure> {
 pub(super) fn refuse_changes(args: &RenderArgs) -> Result<(), Failure> {
     let none = args.looks.list(None).is_empty() && args.looks.color_bar.is_none();
     let none = none && args.slices.list().is_empty() && args.style.list().is_empty();
-    let none = none && args.views.list().is_empty() && !args.is_sequence();
+    let none = none && args.views.list().is_empty() && args.annotations.is_empty();
+    let none = none && !args.is_sequence();
     if args.prepare.is_none() && none && !args.particles.any() {
         return Ok(());
     }
-    let message = "spheres, materials and camera of a prepared scene are fixed; use the file it was made \
+    let message = "spheres, materials, camera and annotations of a prepared scene are fixed; use the file it was made \
                    from, or remove options that change them";
     Err(Failure::usage("render", message))
 }

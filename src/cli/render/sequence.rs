@@ -128,7 +128,8 @@ fn survey_frames(
     let mut survey = Survey::new(!plan.is_stream());
     let add = |survey: &mut Survey, number: u64, frame| {
         let particles = survey.particles(path, frame, options)?;
-        survey.add(job, particles, options).map_err(|error| error.of_frame(number))
+        let job = Job { frame: Some(number), ..job.clone() };
+        survey.add(&job, particles, options).map_err(|error| error.of_frame(number))
     };
     if plan.count().is_none() {
         if let Some(number) = plan.shot(0).and_then(|shot| shot.frame)

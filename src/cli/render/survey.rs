@@ -7,7 +7,7 @@ use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::views::corners;
 use spherule_render::scene::particles::{
-    Coloring, Orientation, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions,
+    Category, Coloring, Orientation, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions,
     SharedNames, of_frame,
 };
 use spherule_render::scene::{Camera, FileError};
@@ -25,6 +25,8 @@ pub(in crate::cli) struct Common {
     pub(in crate::cli) ground: Option<f64>,
     /// True if the camera is placed for all images, and not only for the first.
     pub(in crate::cli) frames_all: bool,
+    /// The names that colors stand for in all frames, if they are asked for.
+    pub(in crate::cli) categories: Option<Vec<Category>>,
 }
 
 /// Results of the survey, with memory independent of the number of frames.
@@ -40,6 +42,8 @@ pub(super) struct Survey {
     names: SharedNames,
     /// The common radius of particles before scaling, if it may have been guessed.
     radius: Option<f64>,
+    /// The names that colors stand for, if they are asked for.
+    categories: Option<Vec<Category>>,
     /// Warnings about the first frame that shows a sphere.
     pub(super) warnings: Vec<String>,
     frames: u64,
@@ -78,12 +82,21 @@ impl Survey {
         if let Coloring::Column(colors) = &job.looks.coloring {
             self.numeric |= colors.is_numeric(&particles);
         }
-        let Staged { mut scene, cuts, legend, orientation, .. } =
-            Staged::load(job, Some(particles))?;
+        let staged = Staged::load(job, Some(particles))?;
+        let Staged { mut scene, cuts, legend, orientation, categories, .. } = staged;
         if scene.spheres.is_empty() {
             return Ok(());
         }
         self.shown += 1;
+        for category in categories.into_iter().flatten() {
+            let known = self.categories.get_or_insert_default();
+            let same =
+                |own: &&mut Category| own.name == category.name && own.color == category.color;
+            match known.iter_mut().find(same) {
+                Some(own) => own.count += category.count,
+                None => known.push(category),
+            }
+        }
         if self.shown == 1 {
             self.radius = radius;
             self.warnings = std::mem::take(&mut scene.warnings);
@@ -149,7 +162,8 @@ impl Survey {
         }
         let ground = still.ground.map(|ground| ground.height);
         let camera = if angle.is_none() { still.camera } else { view(angle)?.camera };
-        Ok(Common { camera, orientation: self.orientation, ground, frames_all: self.all })
+        let (orientation, categories) = (self.orientation, self.categories.clone());
+        Ok(Common { camera, orientation, ground, frames_all: self.all, categories })
     }
 }
 

@@ -5,8 +5,9 @@ use super::content::Content;
 use super::digits;
 use super::loading::{Progress, Step};
 use super::viewer::Facts;
+use crate::cli::annotations::{FrameFacts, annotate};
 use crate::cli::failure::Failure;
-use crate::cli::render::{Job, check_legend, color_bar};
+use crate::cli::render::{Job, check_legend, focus};
 use crate::cli::source::Source;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -164,6 +165,9 @@ struct StyledScene {
     cell: Option<Cell>,
     /// What is up, if the scene is of particles.
     orientation: Option<Orientation>,
+    facts: FrameFacts,
+    /// Center of the particle in focus, if the focus is a particle.
+    focus: Option<DVec3>,
 }
 
 impl StyledScene {
@@ -175,6 +179,12 @@ impl StyledScene {
     ) -> Result<Self, Failure> {
         let legend = apply_style(job, content, &mut particles)?;
         let cell = particles.cell;
+        let name = job.source.name();
+        let focus = focus(job, Path::new(name.as_ref()), &particles)?;
+        let facts = match scene {
+            Some(_) => FrameFacts::default(),
+            None => FrameFacts::of(job, &particles),
+        };
         let labels = Labels {
             kinds: std::mem::take(&mut particles.kinds),
             numbers: std::mem::take(&mut particles.numbers),
@@ -190,7 +200,7 @@ impl StyledScene {
             orientation = Some(found);
             preset.or(job.preset()).unwrap_or_default().scene(particles, &title, &found)
         };
-        Ok(Self { scene, labels, legend, cell, orientation })
+        Ok(Self { scene, labels, legend, cell, orientation, facts, focus })
     }
 }
 
@@ -230,7 +240,7 @@ impl Loader {
             self.base = Some(read);
             parts
         };
-        let StyledScene { mut scene, labels, legend, cell, orientation } =
+        let StyledScene { mut scene, labels, legend, cell, orientation, facts: frame_facts, focus } =
             StyledScene::new(job, content, particles, scene)?;
         if first {
             check_legend(job, legend.as_ref())?;
@@ -243,11 +253,12 @@ impl Loader {
         )?;
         job.style.set(job.preset(), &mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
-        scene.color_bar = color_bar(job, legend.as_ref()).or(scene.color_bar);
+        annotate(job, &mut scene, legend.as_ref(), &frame_facts)?;
         job.picture.settings.apply(&mut scene.settings);
         job.views.frame(&mut scene, orientation.as_ref(), None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
         framing::include_points(&mut scene, &[]).map_err(failed)?;
+        job.views.set_lens(&mut scene, focus)?;
         if let Some((preset, camera)) = &content.preset {
             let home = std::mem::replace(&mut scene.camera, camera.clone());
             if has_scene {
@@ -269,7 +280,7 @@ impl Loader {
             look: scene.look,
             preset: job.preset(),
             orientation,
-            color_bar: scene.color_bar.is_some(),
+            color_bar: scene.annotations.color_bar.is_some(),
             legend,
             ..facts
         };
@@ -399,8 +410,8 @@ fn apply_style(
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
     let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
-    let looks =
-        ParticleStyle { select, coloring, types: job.looks.types.clone(), allow_empty: false };
+    let (types, ids) = (job.looks.types.clone(), job.looks.ids);
+    let looks = ParticleStyle { select, coloring, types, ids, allow_empty: false };
     let name = job.source.name();
     Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }

@@ -7,7 +7,7 @@ use super::load::LoadedScene;
 use super::overlay::{OverlaidImage, OverlayCache};
 use super::tonemap::{ToneMapped, ToneMapper};
 use crate::cli::failure::Failure;
-use crate::cli::render::draw_bar;
+use crate::cli::render::draw_annotations;
 use crate::cli::views::Canvas;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use spherule_render::bvh::builders::Builder;
 use spherule_render::film::Region;
 use spherule_render::layers::{Layer, layers};
 use spherule_render::render::{End, Options, RenderError, ResumableRender};
-use spherule_render::scene::{Background, Camera, ColorBar, Scene, Settings};
+use spherule_render::scene::{Annotations, Background, Camera, Scene, Settings};
 use spherule_render::trace::Tracer;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
@@ -33,8 +33,8 @@ pub(super) struct Renderer {
     state: Option<(Camera, ResumableRender)>,
     overlay: OverlayCache,
     tone_mapper: ToneMapper,
-    /// The color bar of full-size images.
-    color_bar: Option<ColorBar>,
+    /// The annotations of full-size images.
+    annotations: Annotations,
 }
 
 /// A picked sphere.
@@ -50,7 +50,7 @@ pub(super) struct Picked {
 impl Renderer {
     pub(super) fn new(stage: LoadedScene, tracer: Tracer, builder: Builder) -> Self {
         let scene = stage.scene.read().unwrap_or_else(PoisonError::into_inner);
-        let (color_bar, look) = (scene.color_bar.clone(), scene.look);
+        let (annotations, look) = (scene.annotations.clone(), scene.look);
         drop(scene);
         Self {
             stage,
@@ -60,7 +60,7 @@ impl Renderer {
             state: None,
             overlay: OverlayCache::default(),
             tone_mapper: ToneMapper::default(),
-            color_bar,
+            annotations,
         }
     }
 
@@ -105,11 +105,11 @@ impl Renderer {
             }
         }
         let whole = (request.settings.width, request.settings.height) == request.display.size;
-        if let Some(bar) = self.color_bar.as_ref().filter(|_| whole) {
+        if whole && !self.annotations.is_empty() {
             let plain = || OverlaidImage { image: image.clone(), matte: None };
             let OverlaidImage { image, matte } = drawn.get_or_insert_with(plain);
             let mut canvas = Canvas { image, matte: matte.take() };
-            draw_bar(bar, &mut canvas, request.look.ink())?;
+            draw_annotations((&self.annotations, &request.look), world, &mut canvas, false);
             *matte = canvas.matte;
         }
         let (version, samples) = (request.version, request.settings.spp);

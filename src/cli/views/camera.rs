@@ -3,8 +3,9 @@
 use super::ViewArgs;
 use crate::cli::Failure;
 use glam::DVec3;
+use spherule_render::overlay::annotations;
 use spherule_render::scene::particles::{Orientation, Particles, UpReason};
-use spherule_render::scene::{Axis, Camera, Pose, Projection, Scene};
+use spherule_render::scene::{Axis, Camera, Insets, Pose, Projection, Scene};
 use spherule_render::suggest;
 use spherule_render::world::{WorldError, framing};
 use std::f64::consts::TAU;
@@ -118,9 +119,9 @@ impl ViewArgs {
         TAU * f64::from(turn) / f64::from(self.turntable.unwrap_or(1))
     }
 
-    /// Sets projection and direction of the camera of a scene, but not its position. `orientation` is that
-    /// of particles. The default view shows the caps of slices, whose `normals` point to the side that is
-    /// cut away.
+    /// Sets projection and direction of the camera of a scene, and leaves room for its annotations, but does
+    /// not set its position. `orientation` is that of particles. The default view shows the caps of slices,
+    /// whose `normals` point to the side that is cut away.
     pub(in crate::cli) fn choose(
         &self,
         scene: &mut Scene,
@@ -155,6 +156,9 @@ impl ViewArgs {
                 return Err(Failure::usage("render", message));
             }
             (_, None) => (),
+        }
+        if scene.camera.insets == Insets::default() {
+            scene.camera.insets = annotations::insets(scene, self.turntable.is_some());
         }
         Ok(())
     }

@@ -1,17 +1,21 @@
 //! Options for simulation cells, cameras and overlays.
 
 mod camera;
+mod lens;
 mod overlay;
 mod periodic;
 mod style;
 
 pub(super) use self::camera::corners;
 use self::camera::{UpArg, View};
+use self::lens::LensArgs;
 pub(super) use self::overlay::{Canvas, draw_over, settings_of_layers};
 pub(super) use self::style::StyleArgs;
+use super::Failure;
 use super::names::{self, Names};
 use super::settings::List;
 use clap::value_parser;
+use glam::DVec3;
 use serde_json::json;
 use spherule_render::scene::particles::Orientation;
 use spherule_render::scene::{Axis, Camera, Projection, Scene};
@@ -72,6 +76,8 @@ pub(super) struct ViewArgs {
     /// frames, they are spread evenly over the N images
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(PICTURES))]
     turntable: Option<u32>,
+    #[command(flatten)]
+    lens: LensArgs,
 }
 
 impl ViewArgs {
@@ -114,6 +120,23 @@ impl ViewArgs {
         if let Some(margin) = self.margin {
             list.insert("margin".to_owned(), json!(margin));
         }
+        list.extend(self.lens.list());
         list
+    }
+
+    /// Returns the id of the particle in focus, if the focus is a particle.
+    pub(super) fn particle_in_focus(&self) -> Option<f64> {
+        self.lens.particle()
+    }
+
+    /// Returns whether a focus is given that the scene's camera ignores.
+    pub(super) fn has_idle_focus(&self, scene: &Scene) -> bool {
+        self.lens.is_idle(scene)
+    }
+
+    /// Sets the lens of a scene's camera, whose view is chosen; `focus` is the center of the particle in
+    /// focus, if the focus is a particle.
+    pub(super) fn set_lens(&self, scene: &mut Scene, focus: Option<DVec3>) -> Result<(), Failure> {
+        self.lens.set(scene, focus)
     }
 }

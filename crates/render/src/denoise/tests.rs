@@ -142,7 +142,7 @@ fn judged(world: &World, settings: &Settings) -> (Image, Noise, Noise) {
 fn stated_errors_hold() {
     const RUNS: u64 = 24;
     let (scene, world) = scene();
-    let settings = |seed, spp| Settings { seed, spp, ..scene.settings.clone() };
+    let settings = |seed, spp| Settings { spp, seed, ..scene.settings.clone() };
     let truth = render(&world, &settings(1 << 40, 2048), &Options::default()).unwrap().image;
     let (mut held, mut squares) = (0, [0.0; 2]);
     for seed in 0..RUNS {

@@ -107,7 +107,7 @@ impl Workspace {
             let radiance = widest.irradiance[channel] * albedo[channel];
             let noise = variance[channel] * albedo[channel] * albedo[channel];
             scale = radiance.mul_add(radiance, scale + noise);
-            own = own + noise;
+            own += noise;
         }
         // Black pictures have no error.
         scale = Lanes::max(scale, L::splat(f32::MIN_POSITIVE));

@@ -1,19 +1,24 @@
 //! Color bars, which show the numbers that the colors of a picture stand for.
 
+use super::annotations::Block;
 use crate::color::{Rgb, Scale, Tick, ticks};
-use crate::drawing::{self, Area, DrawingError, Drawn, Format, Picture, letters};
-use crate::image::Image;
-use crate::image::tone::{srgb_decode, srgb_encode};
-use plotters::backend::DrawingBackend;
-use plotters::element::{PathElement, Polygon, Rectangle, Text};
-use plotters::style::text_anchor::HPos;
-use plotters::style::{Color, RGBColor};
+use crate::graphics::{Align, CAP_HEIGHT, Drawing, Format, PageError, Text, text_width};
+use glam::DVec2;
 
-/// Lengths of color bars in pixels.
+/// Lengths of color bars in files, in pixels.
 pub const LENGTHS: std::ops::RangeInclusive<u32> = 64..=8192;
 
 /// Maximum number of characters of a label.
 const MAX_LABEL: usize = 60;
+
+/// Number of stripes of one color.
+const STRIPES: u32 = 256;
+
+/// Color of letters and lines on white: nearly black.
+const INK: Rgb = Rgb::splat(0.02);
+
+/// Length of a bar in a file relative to the size of its letters.
+const LENGTH_PER_EM: f64 = 20.0;
 
 /// Direction of increasing numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -33,241 +38,171 @@ pub struct Bar {
     scale: Scale,
     label: String,
     ticks: Vec<Tick>,
+    /// Width of the widest number.
+    widest: f64,
     direction: Direction,
-    length: i32,
-    /// Height of letters in pixels.
-    letter: i32,
-    /// Top left corner of the colors.
-    corner: (i32, i32),
-    size: (u32, u32),
+    /// Length of the colors in pixels.
+    length: f64,
+    /// Size of the em square in pixels.
+    letter: f64,
 }
 
 impl Bar {
-    /// Creates a bar whose colors are `length` pixels long, clamped to 64 to 8192. Everything else is
-    /// in proportion. Of longer labels only the first 60 characters are shown.
+    /// Creates a bar whose colors are `length` pixels long, with letters of the size `letter`. Of longer
+    /// labels only the first 60 characters are shown.
+    pub fn new(scale: &Scale, label: &str, length: f64, letter: f64, direction: Direction) -> Self {
+        // Whole pixels, so that edges are sharp.
+        let length = length.round().max(1.0);
+        let label = label.chars().take(MAX_LABEL).collect();
+        let (ticks, widest) = choose_ticks(scale, length, letter, direction);
+        Self { scale: *scale, label, ticks, widest, direction, length, letter }
+    }
+
+    /// Returns the content of a file with a bar on white. Its colors are `length` pixels long, clamped to
+    /// 64 to 8192, and everything else is in proportion.
     ///
     /// # Errors
-    /// [`DrawingError`], an error of the program.
-    pub fn new(
+    /// [`PageError`], an error of the program or a lack of memory.
+    pub fn file(
         scale: &Scale,
         label: &str,
         length: u32,
-        direction: Direction,
-    ) -> Result<Self, DrawingError> {
-        let length = length.clamp(*LENGTHS.start(), *LENGTHS.end()) as i32;
-        let letter = (length / 18).max(11);
-        let mut bar = Self {
-            scale: *scale,
-            label: label.chars().take(MAX_LABEL).collect(),
-            ticks: Vec::new(),
-            direction,
-            length,
-            letter,
-            corner: (0, 0),
-            size: (0, 0),
-        };
-        bar.lay_out()?;
-        Ok(bar)
+        format: Format,
+    ) -> Result<Vec<u8>, PageError> {
+        let length = f64::from(length.clamp(*LENGTHS.start(), *LENGTHS.end()));
+        let letter = (length / LENGTH_PER_EM).max(10.0);
+        let Block { drawing, size } =
+            Self::new(scale, label, length, letter, Direction::Up).block(INK);
+        let mut page = Drawing::default();
+        page.append(drawing, DVec2::splat(letter));
+        let size = (size + 2.0 * letter).ceil();
+        page.file(format, (size.x as u32, size.y as u32))
     }
 
-    /// Chooses the numbers, and computes the size.
-    fn lay_out(&mut self) -> Result<(), DrawingError> {
-        let widest = self.choose_ticks()?;
-        let heading = if self.label.is_empty() { 0 } else { self.letter * 7 / 4 };
-        let [below, above] = [self.scale.below, self.scale.above].map(|end| self.arrow(end));
+    /// Returns the drawing of the bar, with letters of the linear color `ink`.
+    pub fn block(&self, ink: Rgb) -> Block {
+        let mut drawing = Drawing::default();
+        self.draw_colors(&mut drawing);
+        self.draw_ticks(&mut drawing, ink);
+        let position = DVec2::new(0.0, CAP_HEIGHT * self.letter);
+        let text = self.label.clone();
+        let (align, size) = (Align::Start, self.letter);
+        drawing.text(Text { text, position, align, size, color: ink });
+        Block { drawing, size: self.size() }
+    }
+
+    fn size(&self) -> DVec2 {
+        let title = text_width(&self.label, self.letter);
+        let corner = self.corner();
+        let below = self.arrow(self.scale.below);
+        let half_number = CAP_HEIGHT * self.letter / 2.0;
         let beyond = self.thickness() + self.gap();
-        let (left, right, top, bottom) = match self.direction {
-            Direction::Up => (0, beyond + widest, heading + above, self.length + below),
+        match self.direction {
+            Direction::Up => DVec2::new(
+                (beyond + self.widest).max(title),
+                corner.y + self.length + below.max(half_number),
+            ),
             Direction::Right => {
-                let half = widest / 2;
-                let (left, right) = (below.max(half), self.length + above.max(half));
-                (left, right, heading, beyond + self.letter)
-            }
-        };
-        let margin = self.letter;
-        self.corner = (margin + left, margin + top);
-        let title = drawing::width(&self.label, self.letter as u32)? as i32;
-        let width = (left + right).max(title) + 2 * margin;
-        self.size = (width as u32, (top + bottom + 2 * margin) as u32);
-        Ok(())
-    }
-
-    /// Chooses as many numbers as fit. Returns the width of the widest.
-    fn choose_ticks(&mut self) -> Result<i32, DrawingError> {
-        let mut widest = 0;
-        for most in (2..=8).rev() {
-            self.ticks = ticks(&self.scale.range, most);
-            widest = 0;
-            for tick in &self.ticks {
-                widest = widest.max(drawing::width(&tick.label, self.letter as u32)? as i32);
-            }
-            let room = widest + self.letter;
-            if self.direction == Direction::Up || room * self.ticks.len() as i32 <= self.length {
-                break;
+                let right = self.arrow(self.scale.above).max(self.widest / 2.0);
+                let width = (corner.x + self.length + right).max(title);
+                DVec2::new(width, corner.y + beyond + 2.0 * half_number)
             }
         }
-        Ok(widest)
     }
 
-    fn thickness(&self) -> i32 {
-        self.letter * 5 / 4
+    /// Returns the top left corner of the colors.
+    fn corner(&self) -> DVec2 {
+        let heading = if self.label.is_empty() { 0.0 } else { (CAP_HEIGHT + 0.8) * self.letter };
+        let [below, above] = [self.scale.below, self.scale.above].map(|end| self.arrow(end));
+        let corner = match self.direction {
+            Direction::Up => {
+                let number = CAP_HEIGHT * self.letter / 2.0;
+                let overhang = if self.label.is_empty() { number } else { 0.0 };
+                DVec2::new(0.0, heading + above.max(overhang))
+            }
+            Direction::Right => DVec2::new(below.max(self.widest / 2.0), heading),
+        };
+        corner.ceil()
+    }
+
+    fn thickness(&self) -> f64 {
+        (self.letter * 1.1).round()
     }
 
     /// Returns the distance from the colors to the numbers.
-    fn gap(&self) -> i32 {
-        self.letter * 2 / 3
+    fn gap(&self) -> f64 {
+        self.letter * 0.6
     }
 
     /// Returns the length of an arrow.
-    fn arrow(&self, color: Option<Rgb>) -> i32 {
-        color.map_or(0, |_| self.letter)
+    fn arrow(&self, color: Option<Rgb>) -> f64 {
+        color.map_or(0.0, |_| self.letter)
     }
 
     /// Returns the position `along` pixels from the low end and `across` pixels from the bar's near
     /// side.
-    fn position(&self, along: i32, across: i32) -> (i32, i32) {
-        let (x, y) = self.corner;
+    fn position(&self, along: f64, across: f64) -> DVec2 {
+        let corner = self.corner();
         match self.direction {
-            Direction::Up => (x + across, y + self.length - 1 - along),
-            Direction::Right => (x + along, y + across),
+            Direction::Up => corner + DVec2::new(across, self.length - along),
+            Direction::Right => corner + DVec2::new(along, across),
         }
     }
 
-    fn draw_colors<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
-        let last = self.length - 1;
-        for along in 0..=last {
-            let color = code(self.scale.at(f64::from(along) / f64::from(last)));
-            // Two pixels, so that vector images have no seams. The last row and column are exclusive.
-            let (a, b) = (self.position(along, 0), self.position((along + 1).min(last), 0));
-            let end = match self.direction {
-                Direction::Up => (a.0 + self.thickness(), a.1 + 1),
-                Direction::Right => (b.0 + 1, a.1 + self.thickness()),
-            };
-            area.draw(&Rectangle::new([(a.0, a.1.min(b.1)), end], color.filled()))?;
+    fn draw_colors(&self, drawing: &mut Drawing) {
+        let stripe = self.length / f64::from(STRIPES);
+        for index in 0..STRIPES {
+            let color = self.scale.at((f64::from(index) + 0.5) / f64::from(STRIPES));
+            // Stripes reach the high end, and later ones are drawn over earlier ones: there are no seams.
+            let from = f64::from(index) * stripe;
+            let [a, b] = [self.position(from, 0.0), self.position(self.length, self.thickness())];
+            drawing.rectangle(a.min(b), a.max(b), color);
         }
-        for (end, from, to) in [(self.scale.below, 0, -1), (self.scale.above, last, 1)] {
+        for (end, from, to) in [(self.scale.below, 0.0, -1.0), (self.scale.above, self.length, 1.0)]
+        {
             if let Some(color) = end {
-                let tip = from + to * self.arrow(end);
-                let corners = [(from, 0), (tip, self.thickness() / 2), (from, self.thickness())];
-                let corners = corners.map(|(along, across)| self.position(along, across));
-                area.draw(&Polygon::new(corners, code(color).filled()))?;
+                let (tip, wide) = (from + to * self.arrow(end), self.thickness());
+                let corners = [(from, 0.0), (tip, wide / 2.0), (from, wide)];
+                drawing
+                    .polygon(&corners.map(|(along, across)| self.position(along, across)), color);
             }
         }
-        Ok(())
     }
 
-    fn draw_ticks<B: DrawingBackend>(&self, area: &Area<B>, ink: RGBColor) -> Drawn<B> {
-        let stroke = ink.stroke_width((self.letter as u32 / 12).max(1));
+    fn draw_ticks(&self, drawing: &mut Drawing, ink: Rgb) {
+        let (wide, size) = (self.thickness(), self.letter);
         for Tick { value, label } in &self.ticks {
-            let along = self.scale.range.position(*value) * f64::from(self.length - 1);
-            let at = |across| self.position(along.round() as i32, across);
-            let ends = [at(self.thickness()), at(self.thickness() + self.letter / 3)];
-            area.draw(&PathElement::new(ends, stroke))?;
-            let (mut position, side) = match self.direction {
-                Direction::Up => (at(self.thickness() + self.gap()), HPos::Left),
-                Direction::Right => (at(self.thickness() + self.gap()), HPos::Center),
+            let along = self.scale.range.position(*value) * self.length;
+            let ends = [wide, wide + 0.3 * size].map(|across| self.position(along, across));
+            drawing.line(ends, (size / 12.0).max(1.0), ink);
+            let beside = self.position(along, wide + self.gap());
+            let (position, align) = match self.direction {
+                Direction::Up => (beside + DVec2::Y * (CAP_HEIGHT * size / 2.0), Align::Start),
+                Direction::Right => (beside + DVec2::Y * (CAP_HEIGHT * size), Align::Middle),
             };
-            if self.direction == Direction::Right {
-                position.1 += self.letter / 2;
-            }
-            area.draw(&Text::new(label.clone(), position, letters(self.letter as u32, ink, side)))?;
+            drawing.text(Text { text: label.clone(), position, align, size, color: ink });
         }
-        Ok(())
     }
+}
 
-    fn draw_in<B: DrawingBackend>(&self, area: &Area<B>, ink: RGBColor) -> Drawn<B> {
-        self.draw_colors(area)?;
-        self.draw_ticks(area, ink)?;
-        let style = letters(self.letter as u32, ink, HPos::Left);
-        let position = (self.letter, self.letter * 3 / 2);
-        area.draw(&Text::new(self.label.clone(), position, style))
-    }
-
-    /// Returns the content of a file with the bar on white.
-    ///
-    /// # Errors
-    /// [`DrawingError`], an error of the program.
-    pub fn file(&self, format: Format) -> Result<Vec<u8>, DrawingError> {
-        drawing::file(self, format)
-    }
-
-    /// Draws the bar over a picture, with its top left corner in column `x` and row `y`; parts outside
-    /// are cut off. Letters have the linear color `ink`.
-    ///
-    /// The colors are linear like the picture's: exposure and tone affect both.
-    ///
-    /// # Errors
-    /// [`DrawingError`], an error of the program.
-    pub fn draw_over(
-        &self,
-        image: &mut Image,
-        (x, y): (u32, u32),
-        ink: Rgb,
-    ) -> Result<(), DrawingError> {
-        let inked = Inked { bar: self, ink: code(ink) };
-        // The difference of the drawings on black and on white gives the coverage.
-        let [black, white] = [0, 255].map(|code| RGBColor(code, code, code));
-        let (dark, light) = (drawing::codes(&inked, black)?, drawing::codes(&inked, white)?);
-        let width = self.size.0;
-        for (i, (dark, light)) in dark.chunks_exact(3).zip(light.chunks_exact(3)).enumerate() {
-            let (column, row) = (x.checked_add(i as u32 % width), y.checked_add(i as u32 / width));
-            let (Some(column), Some(row)) = (column, row) else { continue };
-            if column >= image.width || row >= image.height {
-                continue;
-            }
-            let position = row as usize * image.width as usize + column as usize;
-            if let Some(pixel) = image.pixels.get_mut(position) {
-                for (channel, value) in pixel.iter_mut().enumerate() {
-                    *value = over(*value, dark[channel], light[channel]);
-                }
-            }
+/// Chooses as many numbers as fit. Returns them and the width of the widest.
+fn choose_ticks(scale: &Scale, length: f64, letter: f64, direction: Direction) -> (Vec<Tick>, f64) {
+    let mut chosen = (Vec::new(), 0.0);
+    for most in (2..=8).rev() {
+        let ticks = ticks(&scale.range, most);
+        let widths = ticks.iter().map(|tick| text_width(&tick.label, letter));
+        let widest = widths.fold(0.0, f64::max);
+        let room = match direction {
+            Direction::Up => 1.5 * letter,
+            Direction::Right => widest + letter,
+        };
+        let fits = room * ticks.len() as f64 <= length;
+        chosen = (ticks, widest);
+        if fits {
+            break;
         }
-        Ok(())
     }
-}
-
-/// Returns a linear value under a drawing that has these codes on black and on white.
-fn over(under: f32, dark: u8, light: u8) -> f32 {
-    let cover = 1.0 - f64::from(light.saturating_sub(dark)) / 255.0;
-    if cover == 0.0 {
-        return under;
-    }
-    let color = srgb_decode((f64::from(dark) / 255.0 / cover).min(1.0));
-    (cover * color + (1.0 - cover) * f64::from(under)) as f32
-}
-
-/// Returns the codes of a linear color.
-fn code(color: Rgb) -> RGBColor {
-    let [r, g, b] = color
-        .to_array()
-        .map(|value| (srgb_encode(f64::from(value.clamp(0.0, 1.0))) * 255.0).round() as u8);
-    RGBColor(r, g, b)
-}
-
-impl Picture for Bar {
-    fn size(&self) -> (u32, u32) {
-        self.size
-    }
-
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
-        self.draw_in(area, drawing::INK)
-    }
-}
-
-/// A bar with letters of another color.
-struct Inked<'a> {
-    bar: &'a Bar,
-    ink: RGBColor,
-}
-
-impl Picture for Inked<'_> {
-    fn size(&self) -> (u32, u32) {
-        self.bar.size
-    }
-
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
-        self.bar.draw_in(area, self.ink)
-    }
+    chosen
 }
 
 #[cfg(test)]

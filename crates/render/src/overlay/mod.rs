@@ -6,6 +6,8 @@
 //! [layers](crate::layers). Their coordinates are those of the scene.
 
 #[cfg(feature = "drawing")]
+pub mod annotations;
+#[cfg(feature = "drawing")]
 pub mod color_bar;
 mod contours;
 mod lines;

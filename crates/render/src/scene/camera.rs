@@ -17,6 +17,22 @@ pub struct Camera {
     pub lens: Option<Lens>,
     /// Rays start where they cross the plane at this distance along the view axis: 0 or more.
     pub near: f64,
+    /// Parts of the picture that a fitted camera leaves free, besides its margin.
+    pub insets: Insets,
+}
+
+/// Fractions of a picture at its edges: of the width at the left and the right, of the height at the
+/// bottom and the top; 0 or more, with less than 1 in each direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Insets {
+    /// At the left edge.
+    pub left: f64,
+    /// At the right edge.
+    pub right: f64,
+    /// At the bottom edge.
+    pub bottom: f64,
+    /// At the top edge.
+    pub top: f64,
 }
 
 /// Map from directions to pixels.
@@ -63,6 +79,13 @@ pub struct Lens {
     pub focus: Option<f64>,
 }
 
+impl Insets {
+    /// Returns the left, the right, the bottom and the top inset.
+    pub fn to_array(self) -> [f64; 4] {
+        [self.left, self.right, self.bottom, self.top]
+    }
+}
+
 impl Camera {
     /// Default view direction of a camera that frames all spheres: from the right, above and in front.
     pub const FIT_DIRECTION: DVec3 = DVec3::new(-0.6, -0.4, -1.0);
@@ -88,6 +111,7 @@ impl Default for Camera {
             up: DVec3::Y,
             lens: None,
             near: 0.0,
+            insets: Insets::default(),
         }
     }
 }

@@ -33,7 +33,7 @@ impl Identity {
             let normal = sections::vector(ground.normal);
             format!("{normal} {:?} {}", ground.height, ground.material)
         });
-        let color_bar = scene.color_bar.as_ref().map_or_else(String::new, sections::color_bar);
+        let annotations = sections::annotations(&scene.annotations);
         let hash = |text: String| *blake3::hash(text.as_bytes()).as_bytes();
         Self {
             spheres: spheres(&scene.spheres),
@@ -43,7 +43,7 @@ impl Identity {
             lights: hash(scene.lights.iter().map(sections::light).collect()),
             environment: environment(scene),
             camera: hash(sections::camera(&scene.camera)),
-            look: hash(sections::look(&scene.look) + &color_bar),
+            look: hash(sections::look(&scene.look) + &annotations),
         }
     }
 

@@ -5,9 +5,9 @@
 //! own unit, angles in degrees, colors linear RGB with the primaries of sRGB. [`write`](write())
 //! puts a scene into files that load as the same scene.
 
+mod annotations;
 mod axis;
 mod camera;
-mod color_bar;
 pub mod file;
 mod footprint;
 pub mod generate;
@@ -25,9 +25,11 @@ pub use crate::color::{Rgb, linear_from_srgb, srgb};
 pub use crate::settings::{
     Denoise, Filter, Integrator, InvalidSetting, LightChoice, Roulette, SamplerKind, Settings, Tone,
 };
+pub use annotations::{
+    Anchor, Annotations, AxisTripod, ColorBar, ColorLegend, Label, Lettering, ScaleBar,
+};
 pub use axis::Axis;
-pub use camera::{Camera, Lens, Pose, Projection};
-pub use color_bar::{ColorBar, Corner};
+pub use camera::{Camera, Insets, Lens, Pose, Projection};
 pub use file::included_files;
 pub use footprint::{ColorColumn, Footprint};
 pub use identity::Identity;
@@ -64,8 +66,8 @@ pub struct Scene {
     pub settings: Settings,
     /// Overlays and background.
     pub look: Look,
-    /// Color bar in the picture.
-    pub color_bar: Option<ColorBar>,
+    /// Annotations of the picture.
+    pub annotations: Annotations,
     /// Warnings for the user: one sentence each, such as how many rows of a particle file were dropped
     /// and why.
     pub warnings: Vec<String>,

@@ -28,6 +28,8 @@ pub struct Camera {
     lens_radius: f64,
     focus: f64,
     near: f64,
+    /// Distance of the target along the view axis.
+    target: f64,
 }
 
 impl Camera {
@@ -51,6 +53,7 @@ impl Camera {
                 .map_or(0.0, |lens| transform.length(lens.aperture / 2.0)),
             focus: transform.length(focus),
             near: transform.length(scene.camera.near),
+            target: transform.length(at.distance),
         }
     }
 
@@ -62,6 +65,18 @@ impl Camera {
     /// Returns whether rays are parallel, except for the lens.
     pub fn is_orthographic(&self) -> bool {
         self.orthographic
+    }
+
+    /// Returns the unit axes of the picture: to the right, upward, and into the scene.
+    pub fn axes(&self) -> [DVec3; 3] {
+        [self.right, self.up, self.forward]
+    }
+
+    /// Returns the length of a pixel's edge at the distance of the target, in the world's unit. The target
+    /// of a fitted camera is the middle of the spheres' bounds along the view axis.
+    pub fn pixel_at_target(&self) -> f64 {
+        let depth = if self.orthographic { 1.0 } else { self.target };
+        2.0 * self.half_height * depth / f64::from(self.height)
     }
 
     /// Returns the distance of a point from the camera, in the world's unit: from the eye in

@@ -94,7 +94,7 @@ fn direction(name: &str, vector: DVec3) -> Result<(), WorldError> {
 // Structs are destructured without `..`, so that fields that are added later are not forgotten.
 
 fn camera(camera: &Camera) -> Result<(), WorldError> {
-    let Camera { projection, pose, up, lens, near } = camera;
+    let Camera { projection, pose, up, lens, near, insets } = camera;
     match *projection {
         Projection::Perspective { fov } => {
             let holds = fov > 0.0 && fov < 180.0;
@@ -118,6 +118,10 @@ fn camera(camera: &Camera) -> Result<(), WorldError> {
     if let Some(Lens { aperture, focus }) = *lens {
         at_least_0("the camera's `aperture`", aperture)?;
         focus.map_or(Ok(()), |focus| more_than_0("the camera's `focus`", focus))?;
+    }
+    for inset in insets.to_array() {
+        let holds = (0.0..1.0).contains(&inset);
+        check_number(holds, "an inset of the camera", inset, "0 or more, less than 1")?;
     }
     direction("the camera's `up`", *up)?;
     at_least_0("the camera's `near`", *near)

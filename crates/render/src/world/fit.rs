@@ -2,8 +2,8 @@
 
 use super::WorldError;
 use crate::elementary::{atan, cos, sin, tan};
-use crate::scene::{Pose, Projection, Scene, Spheres};
-use glam::DVec3;
+use crate::scene::{Insets, Pose, Projection, Scene, Spheres};
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// The camera in the user's coordinates.
@@ -36,7 +36,7 @@ pub(crate) struct Axes {
 impl Axes {
     /// Creates the axes; `forward` need not be of unit length. If `up` is parallel to it, the
     /// coordinate axis along which it is smallest replaces `up`.
-    fn new(forward: DVec3, up: DVec3) -> Option<Self> {
+    pub(super) fn new(forward: DVec3, up: DVec3) -> Option<Self> {
         let forward = unit(forward)?;
         let up = unit(up)?;
         let right = forward.cross(up);
@@ -143,7 +143,9 @@ fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldE
     let axes = Axes::new(direction, scene.camera.up)
         .ok_or_else(|| camera_error(DVec3::ZERO, "its `direction` is zero; give it a length"))?;
     let extent = ViewBox::of(scene, &axes);
-    let used = 1.0 - margin;
+    let window = Window::of(scene.camera.insets, margin).ok_or_else(|| {
+        camera_error(DVec3::ZERO, "its margin and insets leave no room; make them smaller")
+    })?;
     let aspect = aspect(scene);
     let lens = lens_radius(scene) + scene.camera.near;
     let middle = (extent.low + extent.high) / 2.0;
@@ -151,18 +153,20 @@ fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldE
         Projection::Perspective { fov } => {
             let half_height = tan(fov.to_radians() / 2.0);
             let half_width = half_height * aspect;
-            let tangents = (half_width * used, half_height * used);
-            let at = nearest_eye(scene, &axes, tangents);
+            let at = nearest_eye(scene, &axes, &Sides::new(&window, half_width, half_height));
             let eye = axes.point(at);
             let distance = (middle.z - at.z).max(0.0);
             Placement { eye, axes, half_height, half_width, distance, reach: lens }
         }
         Projection::Orthographic { height } => {
             let size = (extent.high - extent.low) / 2.0;
-            let half_height =
-                height.map_or(size.y.max(size.x / aspect) / used, |height| height / 2.0);
+            let used = (window.high - window.low) / 2.0;
+            let half_height = height
+                .map_or((size.y / used.y).max(size.x / aspect / used.x), |height| height / 2.0);
             let depth = size.z.max(half_height);
-            let eye = axes.point(DVec3::new(middle.x, middle.y, extent.low.z - depth));
+            let shift = (window.low + window.high) / 2.0 * half_height;
+            let (x, y) = (middle.x - shift.x * aspect, middle.y - shift.y);
+            let eye = axes.point(DVec3::new(x, y, extent.low.z - depth));
             Placement {
                 eye,
                 axes,
@@ -173,6 +177,22 @@ fn fit(scene: &Scene, direction: DVec3, margin: f64) -> Result<Placement, WorldE
             }
         }
     })
+}
+
+/// The part of the picture that contains all spheres, from -1 to 1 to the right and upward.
+struct Window {
+    low: DVec2,
+    high: DVec2,
+}
+
+impl Window {
+    /// Creates the part within insets and a margin; `None` if nothing is left.
+    fn of(insets: Insets, margin: f64) -> Option<Self> {
+        let used = DVec2::splat(1.0 - margin);
+        let low = DVec2::new(insets.left, insets.bottom) * 2.0 - used;
+        let high = used - DVec2::new(insets.right, insets.top) * 2.0;
+        (high - low).cmpgt(DVec2::ZERO).all().then_some(Self { low, high })
+    }
 }
 
 /// Bounds of the spheres along the picture's axes.
@@ -195,14 +215,13 @@ impl ViewBox {
 }
 
 /// Returns the foremost eye, along right, up and forward, from which every sphere is between the planes
-/// of the frustum with these tangents of half the picture's width and height.
+/// of a frustum.
 ///
 /// A sphere is inside a plane through the eye with inward unit normal `n` if `n . eye <= n . center -
 /// radius`: the minimum of the right side over all spheres bounds the eye. The two planes of an axis
 /// give its coordinate, and each pair gives how far forward it may go.
-fn nearest_eye(scene: &Scene, axes: &Axes, tangents: (f64, f64)) -> DVec3 {
+fn nearest_eye(scene: &Scene, axes: &Axes, sides: &Sides) -> DVec3 {
     let spheres = &scene.spheres;
-    let sides = Sides::new(tangents);
     let mut slack = [f64::INFINITY; 4];
     for i in scene.shown() {
         let planes = sides.slack(axes.coordinates(center(spheres, i)), spheres.radius[i]);
@@ -210,40 +229,67 @@ fn nearest_eye(scene: &Scene, axes: &Axes, tangents: (f64, f64)) -> DVec3 {
             *slack = slack.min(plane);
         }
     }
-    let Sides { cos_x, sin_x, cos_y, sin_y } = sides;
-    DVec3::new(
-        (slack[0] - slack[1]) / (2.0 * cos_x),
-        (slack[2] - slack[3]) / (2.0 * cos_y),
-        ((slack[0] + slack[1]) / (2.0 * sin_x)).min((slack[2] + slack[3]) / (2.0 * sin_y)),
-    )
+    let [left, right, bottom, top] = sides.0;
+    let (across, upward) = ([left, right], [bottom, top]);
+    let (of_x, of_y) = ([slack[0], slack[1]], [slack[2], slack[3]]);
+    let forward = foremost(across, of_x).min(foremost(upward, of_y));
+    DVec3::new(between(across, of_x, forward), between(upward, of_y, forward), forward)
 }
 
-/// Normals of the four planes of a frustum at the sides of the picture.
-#[derive(Clone, Copy, Debug)]
-struct Sides {
-    cos_x: f64,
-    sin_x: f64,
-    cos_y: f64,
-    sin_y: f64,
+/// Returns how far forward two opposite planes allow the eye.
+fn foremost([low, high]: [Side; 2], slack: [f64; 2]) -> f64 {
+    if low == high {
+        return (slack[0] + slack[1]) / (2.0 * low.sin);
+    }
+    (slack[0] * high.cos + slack[1] * low.cos) / (low.sin * high.cos + high.sin * low.cos)
 }
+
+/// Returns the middle of the positions between two opposite planes, for an eye that is this far forward.
+fn between([low, high]: [Side; 2], slack: [f64; 2], forward: f64) -> f64 {
+    if low == high {
+        return (slack[0] - slack[1]) / (2.0 * low.cos);
+    }
+    let most = (slack[0] - low.sin * forward) / low.cos;
+    let least = (high.sin * forward - slack[1]) / high.cos;
+    least.midpoint(most)
+}
+
+/// The normal of a plane at a side of a frustum: inward and forward component.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Side {
+    cos: f64,
+    sin: f64,
+}
+
+/// Normals of the planes at the left, the right, the bottom and the top side of a frustum.
+#[derive(Clone, Copy, Debug)]
+struct Sides([Side; 4]);
 
 impl Sides {
-    /// Creates the normals from the tangents of half the picture's width and height.
-    fn new((tan_x, tan_y): (f64, f64)) -> Self {
-        let normal = |tangent: f64| (cos(atan(tangent)), sin(atan(tangent)));
-        let ((cos_x, sin_x), (cos_y, sin_y)) = (normal(tan_x), normal(tan_y));
-        Self { cos_x, sin_x, cos_y, sin_y }
+    /// Creates the normals for a part of a picture with these tangents of half its width and height.
+    fn new(window: &Window, half_width: f64, half_height: f64) -> Self {
+        let side = |tangent: f64| {
+            let angle = atan(tangent);
+            Side { cos: cos(angle), sin: sin(angle) }
+        };
+        let Window { low, high } = window;
+        Self([
+            side(half_width * -low.x),
+            side(half_width * high.x),
+            side(half_height * -low.y),
+            side(half_height * high.y),
+        ])
     }
 
     /// Returns the largest offset of each plane for which a sphere is inside of it; `c` is its center
     /// along right, up and forward.
     fn slack(&self, c: DVec3, r: f64) -> [f64; 4] {
-        let Self { cos_x, sin_x, cos_y, sin_y } = self;
+        let [left, right, bottom, top] = self.0;
         [
-            cos_x * c.x + sin_x * c.z - r,
-            -cos_x * c.x + sin_x * c.z - r,
-            cos_y * c.y + sin_y * c.z - r,
-            -cos_y * c.y + sin_y * c.z - r,
+            left.cos * c.x + left.sin * c.z - r,
+            -right.cos * c.x + right.sin * c.z - r,
+            bottom.cos * c.y + bottom.sin * c.z - r,
+            -top.cos * c.y + top.sin * c.z - r,
         ]
     }
 }
@@ -261,16 +307,16 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Creates the limits for the camera of a scene; `None` if the camera is not fitted or has no
-    /// direction.
+    /// Creates the limits for the camera of a scene; `None` if the camera is not fitted, has no
+    /// direction or no room.
     pub(super) fn new(scene: &Scene) -> Option<Self> {
         let Pose::Fit { direction, margin } = scene.camera.pose else { return None };
         let tangent = match scene.camera.projection {
             Projection::Perspective { fov } => tan(fov.to_radians() / 2.0),
             Projection::Orthographic { .. } => 1.0,
         };
-        let used = 1.0 - margin;
-        let sides = Sides::new((tangent * aspect(scene) * used, tangent * used));
+        let window = Window::of(scene.camera.insets, margin)?;
+        let sides = Sides::new(&window, tangent * aspect(scene), tangent);
         let vertical = scene.camera.up.normalize_or(DVec3::Y);
         Some(Self { axes: Axes::new(direction, scene.camera.up)?, sides, vertical })
     }
@@ -325,6 +371,54 @@ mod tests {
             largest = largest.max(edge(c.x, placed.half_width)).max(edge(c.y, placed.half_height));
         }
         assert!((largest - 1.0).abs() < 1e-9, "{largest}");
+    }
+
+    /// Bounds of the spheres in the picture, from -1 to 1, by the tangents of their outlines.
+    fn outline(scene: &Scene, placed: &Placement) -> (DVec2, DVec2) {
+        let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let parallel = matches!(scene.camera.projection, Projection::Orthographic { .. });
+        for i in 0..scene.spheres.len() {
+            let c = placed.axes.coordinates(center(&scene.spheres, i) - placed.eye);
+            let r = scene.spheres.radius[i];
+            let ends = |along: f64, half: f64| {
+                let (angle, reach) = (along.atan2(c.z), (r / along.hypot(c.z)).asin());
+                let ends = [-1.0, 1.0].map(|side| (angle + side * reach).tan() / half);
+                if parallel { [-r, r].map(|side| (along + side) / half) } else { ends }
+            };
+            let (x, y) = (ends(c.x, placed.half_width), ends(c.y, placed.half_height));
+            bounds.0 = bounds.0.min(DVec2::new(x[0], y[0]));
+            bounds.1 = bounds.1.max(DVec2::new(x[1], y[1]));
+        }
+        bounds
+    }
+
+    #[test]
+    fn insets_stay_free_and_the_rest_is_used() {
+        let mut scene = Scene { spheres: spheres(), ..Scene::default() };
+        for projection in
+            [Projection::Perspective { fov: 50.0 }, Projection::Orthographic { height: None }]
+        {
+            for insets in [[0.2, 0.0, 0.0, 0.0], [0.0, 0.3, 0.1, 0.0], [0.4, 0.1, 0.0, 0.25]] {
+                let [left, right, bottom, top] = insets;
+                scene.camera.insets = Insets { left, right, bottom, top };
+                scene.camera.projection = projection;
+                scene.camera.pose =
+                    Pose::Fit { direction: DVec3::new(0.3, -0.5, -1.0), margin: 0.1 };
+                let (low, high) = outline(&scene, &pose(&scene).unwrap());
+                let room = [
+                    low.x - (2.0 * left - 0.9),
+                    0.9 - 2.0 * right - high.x,
+                    low.y - (2.0 * bottom - 0.9),
+                    0.9 - 2.0 * top - high.y,
+                ];
+                assert!(room.iter().all(|room| *room > -1e-9), "{insets:?} {room:?}");
+                // Along one axis, spheres touch both ends.
+                let used = (room[0].max(room[1])).min(room[2].max(room[3]));
+                assert!(used < 1e-9, "{insets:?} {room:?}");
+            }
+        }
+        scene.camera.insets = Insets { left: 0.5, right: 0.5, ..Insets::default() };
+        assert!(matches!(pose(&scene), Err(WorldError::Camera { .. })));
     }
 
     #[test]

@@ -7,7 +7,7 @@ pub use sequence::SequenceBounds;
 
 use super::{WorldError, fit};
 use crate::elementary::{atan, hypot, rotation, sin, tan};
-use crate::scene::{Camera, Pose, Projection, Rgb, Scene, Spheres};
+use crate::scene::{Camera, Insets, Pose, Projection, Rgb, Scene, Spheres};
 use glam::{DMat3, DVec3};
 
 /// Number of sweeps after which Jacobi's method has converged for any 3 x 3 matrix.
@@ -42,6 +42,7 @@ pub fn include_points(scene: &mut Scene, points: &[DVec3]) -> Result<(), WorldEr
     let camera = &mut scene.camera;
     camera.pose =
         Pose::LookAt { eye: placed.eye, target: placed.eye + placed.axes.forward * distance };
+    camera.insets = Insets::default();
     if let Projection::Orthographic { height } = &mut camera.projection {
         *height = Some(2.0 * placed.half_height);
     }
@@ -67,6 +68,12 @@ pub fn orbit(scene: &mut Scene, points: &[DVec3], angle: f64) {
     let (eye, target) = match scene.camera.pose {
         Pose::LookAt { eye, target } => (eye, target),
         Pose::Fit { .. } if scene.spheres.is_empty() => return,
+        Pose::Fit { direction, margin } if scene.camera.insets != Insets::default() => {
+            let (center, radius) = bounding_sphere(&scene.spheres, points);
+            scene.camera.pose = Pose::Fit { direction: rotation * direction, margin };
+            fit_sphere(scene, center, radius);
+            return;
+        }
         Pose::Fit { direction, margin } => {
             let (center, radius) = bounding_sphere(&scene.spheres, points);
             let used = 1.0 - margin;
@@ -76,6 +83,37 @@ pub fn orbit(scene: &mut Scene, points: &[DVec3], angle: f64) {
         }
     };
     scene.camera.pose = Pose::LookAt { eye: target + rotation * (eye - target), target };
+}
+
+/// Fixes a fitted camera so that it frames a sphere; it stays as it is if it sees nothing.
+fn fit_sphere(scene: &mut Scene, center: DVec3, radius: f64) {
+    let Scene { camera, settings, .. } = &*scene;
+    let mut view = Scene { camera: camera.clone(), settings: settings.clone(), ..Scene::default() };
+    view.spheres.push(center, radius, 0, Rgb::ONE);
+    if include_points(&mut view, &[]).is_ok() {
+        // The vertical axis stays, for a turn about it.
+        view.camera.up = scene.camera.up;
+        scene.camera = view.camera;
+    }
+}
+
+/// Returns the axes of the picture of a camera: unit vectors to the right, upward, and into the scene;
+/// `None` if it has no direction.
+pub fn picture_axes(camera: &Camera) -> Option<[DVec3; 3]> {
+    let forward = match camera.pose {
+        Pose::LookAt { eye, target } => target - eye,
+        Pose::Fit { direction, .. } => direction,
+    };
+    let axes = fit::Axes::new(forward, camera.up)?;
+    Some([axes.right, axes.up, axes.forward])
+}
+
+/// Returns the distance along the view axis of a point from a camera that stands at a point; negative
+/// behind it, and `None` for a camera that is fitted or has no direction.
+pub fn depth(camera: &Camera, point: DVec3) -> Option<f64> {
+    let Pose::LookAt { eye, .. } = camera.pose else { return None };
+    let [_, _, forward] = picture_axes(camera)?;
+    Some((point - eye).dot(forward))
 }
 
 /// Returns the distance from its center at which a camera sees all of a sphere; sets the height of a
@@ -360,6 +398,33 @@ mod tests {
             assert!(seen.z > 0.0 && pixel.x > 0.0 && pixel.y > 0.0, "{pixel}");
             assert!(pixel.x < 800.0 && pixel.y < 600.0, "{pixel}");
         }
+    }
+
+    #[test]
+    fn turns_keep_insets_free() {
+        for step in 0..4 {
+            let mut scene = Scene { spheres: slab(turned()), ..Scene::default() };
+            scene.materials = Scene::of_particles(Particles::default(), "").materials;
+            scene.camera.insets = Insets { right: 0.25, bottom: 0.1, ..Insets::default() };
+            orbit(&mut scene, &[], f64::from(step) * 1.2);
+            let world = crate::World::build(&scene).unwrap();
+            for row in 0..scene.spheres.len() {
+                let center = world.transform.point(scene.spheres.center(row));
+                let pixel = world.camera.pixel(world.camera.view(center));
+                assert!(pixel.x > 0.0 && pixel.x < 600.0, "{pixel}");
+                assert!(pixel.y > 0.0 && pixel.y < 540.0, "{pixel}");
+            }
+        }
+    }
+
+    #[test]
+    fn depths_are_along_the_view() {
+        let pose = Pose::LookAt { eye: DVec3::Z * 4.0, target: DVec3::Z };
+        let camera = Camera { pose, ..Camera::default() };
+        assert_eq!(depth(&camera, DVec3::new(3.0, -2.0, 1.0)), Some(3.0));
+        assert_eq!(depth(&camera, DVec3::Z * 5.0), Some(-1.0));
+        assert_eq!(depth(&Camera::default(), DVec3::ZERO), None);
+        assert_eq!(picture_axes(&camera), Some([DVec3::X, DVec3::Y, DVec3::NEG_Z]));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use plotters::backend::DrawingBackend;
 use plotters::element::{Circle, DashedPathElement, PathElement, Polygon, Text};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
-use spherule_render::drawing::{self, Area, DrawingError, Drawn, INK, PAPER, Picture, letters};
+use spherule_render::drawing::{self, Area, DrawingError, Drawn, INK, Picture, letters};
 
 /// Supersampling factor of PNG images along each axis.
 const SUPERSAMPLING: usize = 2;
@@ -43,7 +43,7 @@ impl Picture for Drawing<'_> {
 pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>, DrawingError> {
     let (width, height) = Drawing::new(canvas).size();
     let supersampled = Drawing { canvas, scale: SUPERSAMPLING as f64, drop: DROP };
-    let pixels = drawing::codes(&supersampled, PAPER)?;
+    let pixels = drawing::codes(&supersampled)?;
     drawing::encode(&downsample(&pixels, width as usize, height as usize), (width, height))
 }
 

@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::value::Limits;
-use crate::scene::{Camera, FileError, Lens, Pose, Projection};
+use crate::scene::{Camera, FileError, Insets, Lens, Pose, Projection};
 use glam::DVec3;
 
 pub(super) fn read(block: &Block) -> Result<Camera, FileError> {
@@ -12,6 +12,7 @@ pub(super) fn read(block: &Block) -> Result<Camera, FileError> {
         up: block.value("up").map_or(Ok(DVec3::Y), |value| value.vector())?,
         lens: lens(block)?,
         near: block.value("near").map_or(Ok(0.0), |value| value.number(Limits::NotNegative))?,
+        insets: insets(block)?,
     })
 }
 
@@ -46,8 +47,21 @@ fn read_fit(block: &Block) -> Result<Pose, FileError> {
     })
 }
 
+fn insets(block: &Block) -> Result<Insets, FileError> {
+    let Some(value) = block.value("insets") else { return Ok(Insets::default()) };
+    let [left, right, bottom, top] = value.numbers(Limits::Below(0.0, 1.0))?;
+    let margin = block
+        .value("margin")
+        .map_or(Ok(Camera::FIT_MARGIN), |value| value.number(Limits::Below(0.0, 1.0)))?;
+    if left + right + margin >= 1.0 || bottom + top + margin >= 1.0 {
+        let error = value.error("`insets` and the margin leave no room for the spheres");
+        return Err(error.with_help("write smaller fractions of the width and the height"));
+    }
+    Ok(Insets { left, right, bottom, top })
+}
+
 fn read_look_at(block: &Block) -> Result<Pose, FileError> {
-    for key in ["direction", "margin"] {
+    for key in ["direction", "margin", "insets"] {
         block.forbid(key, "eye and target", || {
             "remove it, or write fit = true instead of eye and target".to_owned()
         })?;

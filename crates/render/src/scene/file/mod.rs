@@ -4,9 +4,9 @@
 //! function per section checks every key, its kind and its range, so that every error is reported with
 //! its line and what to write instead. `scenes/README.md` describes every key.
 
+mod annotations;
 mod block;
 mod camera;
-mod color_bar;
 mod environment;
 mod lights;
 mod look;
@@ -175,13 +175,12 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     let settings = root.block("render", &schema::RENDER)?;
     let camera = root.block("camera", &schema::CAMERA)?;
     let look = root.block("look", &schema::LOOK)?;
-    let color_bar = root.block("color_bar", &schema::COLOR_BAR)?;
     let mut scene = Scene {
         title: title.to_owned(),
         settings: settings.map_or(Ok(Settings::default()), |block| render::read(&block))?,
         camera: camera.map_or(Ok(Camera::default()), |block| camera::read(&block))?,
         look: look.map_or(Ok(Look::default()), |block| look::read(&block))?,
-        color_bar: color_bar.map(|block| color_bar::read(&block)).transpose()?,
+        annotations: annotations::read(root)?,
         slices: slices::read(root)?,
         lights: lights::read(root)?,
         ..Scene::default()

@@ -41,6 +41,11 @@ pub(super) const ROOT: Schema = plain(
         ("camera", &[]),
         ("look", &[]),
         ("color_bar", &[]),
+        ("legend", &[]),
+        ("axes", &[]),
+        ("scale_bar", &[]),
+        ("label", &[]),
+        ("lettering", &[]),
         ("environment", &[]),
         ("ground", &[]),
         ("slice", &[]),
@@ -107,6 +112,7 @@ pub(super) const CAMERA: Schema = Schema {
         ("aperture", &[]),
         ("focus", &[]),
         ("near", &[]),
+        ("insets", &[]),
     ],
 };
 
@@ -121,9 +127,22 @@ pub(super) const COLOR_BAR: Schema = plain(
         ("map", &[]),
         ("reversed", &[]),
         ("label", &[]),
-        ("corner", &[]),
+        ("position", &[]),
     ],
 );
+
+pub(super) const LEGEND: Schema =
+    plain("[legend]", &[("entries", &[]), ("omitted", &[]), ("label", &[]), ("position", &[])]);
+
+pub(super) const AXES: Schema =
+    plain("[axes]", &[("directions", &[]), ("names", &[]), ("position", &[])]);
+
+pub(super) const SCALE_BAR: Schema =
+    plain("[scale_bar]", &[("length", &[]), ("unit", &[]), ("position", &[])]);
+
+pub(super) const LABEL: Schema = plain("[[label]]", &[("text", &[]), ("position", &[])]);
+
+pub(super) const LETTERING: Schema = plain("[lettering]", &[("size", &[]), ("color", &[])]);
 
 pub(super) const ENVIRONMENT: Schema = Schema {
     section: "[environment]",
@@ -213,12 +232,17 @@ pub(super) const FILE: Schema = plain(
 mod tests {
     use super::*;
 
-    const ALL: [&Schema; 13] = [
+    const ALL: [&Schema; 18] = [
         &ROOT,
         &RENDER,
         &CAMERA,
         &LOOK,
         &COLOR_BAR,
+        &LEGEND,
+        &AXES,
+        &SCALE_BAR,
+        &LABEL,
+        &LETTERING,
         &ENVIRONMENT,
         &GROUND,
         &SLICE,

@@ -98,9 +98,16 @@ fn sections_in_wrong_brackets_are_reported() {
 /// Texts with one value each that is out of its range, and one at the range's end.
 #[test]
 fn every_range_is_checked() {
-    let cases: [(&str, &[&str], &str); 46] = [
+    let cases: [(&str, &[&str], &str); 53] = [
         ("[color_bar]\nrange = ?", &["[2, 1]", "[0, inf]", "1", "[1]"], "[1, 1]"),
-        ("[color_bar]\nrange = [1, 2]\ncorner = ?", &["\"left\"", "1"], "\"top-left\""),
+        ("[color_bar]\nrange = [1, 2]\nposition = ?", &["\"middle\"", "1"], "\"top-left\""),
+        ("[legend]\nentries = ?", &["1", "[\"C\"]", "[[\"C\"]]", "[[1, 1]]"], "[[\"C\", \"red\"]]"),
+        ("[axes]\ndirections = ?", &["1", "[[1, 0, 0]]"], "[[1, 0, 0], [0, 1, 0], [0, 0, 2]]"),
+        ("[axes]\nnames = ?", &["\"a\"", "[\"a\", \"b\"]"], "[\"a\", \"b\", \"c\"]"),
+        ("[scale_bar]\nlength = ?", &["0", "-1", "inf", "\"1\""], "2.5"),
+        ("[[label]]\ntext = ?", &["1", "[\"a\"]"], "\"a\""),
+        ("[lettering]\nsize = ?", &["0", "0.5", "nan"], "0.05"),
+        ("[camera]\ninsets = ?", &["0.1", "[0, 0, 1, 0]", "[0.5, 0.5, 0, 0]"], "[0, 0.3, 0, 0]"),
         ("[look]\nbackground = ?", &["\"rde\"", "\"#12\"", "-1", "[1, 2]"], "\"transparent\""),
         ("[look]\nbackground = ?", &["true", "2e30"], "[0, 1e30, 0.5]"),
         ("[look]\noutline = ?", &["1", "\"yes\""], "true"),

@@ -2,8 +2,8 @@
 
 use super::{Field, Group};
 use crate::scene::{
-    Camera, Environment, EnvironmentMap, Ground, Lens, Light, Look, Material, NamedMaterial, Pose,
-    Projection, Rgb, Scene, Settings, Tone,
+    Annotations, Camera, Environment, EnvironmentMap, Ground, Insets, Lens, Light, Look, Material,
+    NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Tone,
 };
 use glam::DVec3;
 
@@ -30,7 +30,7 @@ pub fn default_scene(seed: u64) -> Scene {
         ground: Some(ground),
         slices: Vec::new(),
         look: Look::default(),
-        color_bar: None,
+        annotations: Annotations::default(),
         lights: vec![sun()],
         environment: sky(),
         camera: camera(),
@@ -74,6 +74,7 @@ fn camera() -> Camera {
         up: DVec3::Y,
         lens: Some(Lens { aperture: 0.06, focus: Some(7.5) }),
         near: 0.0,
+        insets: Insets::default(),
     }
 }
 

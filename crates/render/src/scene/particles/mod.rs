@@ -20,7 +20,7 @@ pub use spherule_particles::{
     TextColumn, count_frames, read_frame,
 };
 pub use style::{
-    Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, TypeMaterial, TypeStyle,
+    Category, Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, TypeMaterial, TypeStyle,
 };
 
 use super::FileError;

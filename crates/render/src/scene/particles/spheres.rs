@@ -8,8 +8,7 @@ use super::{Kinds, TextColumn};
 use crate::color::category;
 use crate::memory;
 use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
-use spherule_particles::internals::retain;
-use spherule_particles::internals::{clipped, listed};
+use spherule_particles::internals::{clipped, listed, pairs, retain};
 use std::path::Path;
 
 /// The contents of a particle file, as spheres.
@@ -53,6 +52,18 @@ impl Particles {
     pub fn can_color_by(&self, name: &str) -> bool {
         [ID, INDEX].contains(&name)
             || Column::find(self, name).is_some_and(|column| column.has_values())
+    }
+
+    /// Returns the center of the first particle with this number in the column of ids; `None` if there is
+    /// none, or if ids were not read ([`ParticleStyle::ids`](super::ParticleStyle::ids)).
+    pub fn position_of(&self, id: f64) -> Option<glam::DVec3> {
+        let Some(Column::Numbers(ids)) = Column::find(self, ID) else { return None };
+        ids.iter().position(|own| *own == id).map(|row| self.spheres.center(row))
+    }
+
+    /// Returns the `key=value` pairs of the title, as extended XYZ has them.
+    pub fn header_values(&self) -> Vec<(String, String)> {
+        pairs(&self.title)
     }
 
     /// Returns the material of a row of `material_names`: one that was chosen, or one that the file

@@ -4,7 +4,7 @@
 pub(super) mod sections;
 
 use self::sections::{
-    camera, color_bar, environment, light, look, material, quoted, render, slice, vector,
+    annotations, camera, environment, light, look, material, quoted, render, slice, vector,
 };
 use super::{
     Camera, Environment, EnvironmentMap, FileError, Look, NamedMaterial, Rgb, Scene, Settings,
@@ -138,7 +138,7 @@ fn document(scene: &Scene, header: &Header, sky: &str) -> String {
     text += &render(header.settings);
     text += &camera(header.camera);
     text += &look(header.look);
-    text += &scene.color_bar.as_ref().map_or_else(String::new, color_bar);
+    text += &annotations(&scene.annotations);
     text += sky;
     for NamedMaterial { name, material: surface } in &scene.materials {
         let _ = write!(text, "[material.{}]\n{}\n", quoted(name), material(surface));
@@ -196,8 +196,9 @@ mod tests {
     use crate::scene::generate::default_scene;
     use crate::scene::particles::Cell;
     use crate::scene::{
-        BRIGHTEST, Background, ColorBar, ConductorFresnel, Corner, Filter, Ground, Integrator,
-        Lens, Light, LightChoice, Material, Projection, Roulette, SamplerKind, Slice, SliceMode,
+        Anchor, Annotations, AxisTripod, BRIGHTEST, Background, ColorBar, ColorLegend,
+        ConductorFresnel, Filter, Ground, Insets, Integrator, Label, Lens, Lettering, Light,
+        LightChoice, Material, Projection, Roulette, SamplerKind, ScaleBar, Slice, SliceMode,
     };
     use glam::DVec3;
     use std::sync::Arc;
@@ -301,15 +302,38 @@ mod tests {
     }
 
     #[test]
-    fn color_bars_survive() {
+    fn annotations_survive() {
         let range = Range::new(1.0 / 3.0, 7e30, Spacing::Logarithmic).unwrap();
         let scale = Scale { reversed: true, ..Scale::new(Map::Plasma, range) };
-        for (_, corner) in Corner::ALL {
+        let odd = Rgb::new(0.1, 1.0 / 3.0, 0.999_999_94);
+        for (_, position) in Anchor::ALL {
             let label = "c_pe \"per atom\"\nand more".to_owned();
-            let color_bar = Some(ColorBar { scale, label, corner });
-            let again = round_trip(&Scene { color_bar: color_bar.clone(), ..Scene::default() });
-            assert_eq!(again.color_bar, color_bar);
+            let names = ["a", "b\\", ""].map(str::to_owned);
+            let directions = [DVec3::X / 3.0, DVec3::new(1e-300, 2.0, -0.1), DVec3::NEG_Z];
+            let entries = vec![(odd, "C \"a\"".to_owned()), (Rgb::ZERO, String::new())];
+            let right = position.across() == 1.0;
+            let annotations = Annotations {
+                color_bar: Some(ColorBar { scale, label: label.clone(), position }),
+                legend: Some(ColorLegend { label: label.clone(), entries, omitted: 7, position }),
+                axes: Some(AxisTripod { directions, names, position }),
+                scale_bar: Some(ScaleBar {
+                    length: right.then_some(1.0 / 3.0),
+                    unit: "\u{c5}".to_owned(),
+                    position,
+                }),
+                labels: vec![Label { text: label, position }, Label::default()],
+                lettering: Lettering { size: 1.0 / 30.0, color: right.then_some(odd * 3.0) },
+            };
+            let again = round_trip(&Scene { annotations: annotations.clone(), ..Scene::default() });
+            assert_eq!(again.annotations, annotations);
         }
+    }
+
+    #[test]
+    fn insets_survive() {
+        let insets = Insets { left: 0.1, right: 1.0 / 3.0, bottom: 0.0, top: 1e-9 };
+        let camera = Camera { insets, ..Camera::default() };
+        assert_eq!(round_trip(&Scene { camera, ..Scene::default() }).camera.insets, insets);
     }
 
     #[test]

@@ -2,11 +2,13 @@
 
 use crate::color::{Scale, Spacing};
 use crate::scene::{
-    Background, Camera, ColorBar, ConductorFresnel, Environment, EnvironmentMap, Lens, Light, Look,
-    Material, Pose, Projection, Rgb, Slice,
+    Annotations, AxisTripod, Background, Camera, ColorBar, ColorLegend, ConductorFresnel,
+    Environment, EnvironmentMap, Insets, Label, Lens, Lettering, Light, Look, Material, Pose,
+    Projection, Rgb, ScaleBar, Slice,
 };
 use crate::settings::{SETTINGS, Setting, Settings, Value};
 use glam::DVec3;
+use std::fmt::Write as _;
 
 pub(super) fn render(settings: &Settings) -> String {
     let line = |setting: &Setting| match setting.get(settings) {
@@ -49,7 +51,15 @@ pub(in crate::scene) fn camera(camera: &Camera) -> String {
         None => String::new(),
     };
     let (up, near) = (vector(camera.up), camera.near);
-    format!("[camera]\nprojection = {projection}\n{pose}\nup = {up}\nnear = {near:?}\n{lens}\n")
+    let insets = match camera.pose {
+        Pose::Fit { .. } if camera.insets != Insets::default() => {
+            format!("insets = {:?}\n", camera.insets.to_array())
+        }
+        _ => String::new(),
+    };
+    format!(
+        "[camera]\nprojection = {projection}\n{pose}\nup = {up}\nnear = {near:?}\n{lens}{insets}\n"
+    )
 }
 
 /// Nothing if nothing is drawn over the picture.
@@ -72,16 +82,62 @@ pub(in crate::scene) fn look(look: &Look) -> String {
     )
 }
 
+/// Returns the sections of all annotations; empty if there are none.
+pub(in crate::scene) fn annotations(annotations: &Annotations) -> String {
+    let Annotations { color_bar: bar, legend: colors, axes: tripod, scale_bar: scale, .. } =
+        annotations;
+    let mut text = bar.as_ref().map_or_else(String::new, color_bar);
+    text += &colors.as_ref().map_or_else(String::new, legend);
+    text += &tripod.as_ref().map_or_else(String::new, axes);
+    text += &scale.as_ref().map_or_else(String::new, scale_bar);
+    for Label { text: line, position } in &annotations.labels {
+        let (line, position) = (quoted(line), position.name());
+        let _ = write!(text, "[[label]]\ntext = {line}\nposition = \"{position}\"\n\n");
+    }
+    if annotations.lettering != Lettering::default() {
+        let Lettering { size, color } = annotations.lettering;
+        let color = color.map_or_else(String::new, |color| format!("color = {}\n", rgb(color)));
+        let _ = write!(text, "[lettering]\nsize = {size:?}\n{color}\n");
+    }
+    text
+}
+
 /// Colors for what is beyond the range have no words in a scene file.
-pub(in crate::scene) fn color_bar(bar: &ColorBar) -> String {
+fn color_bar(bar: &ColorBar) -> String {
     let Scale { map, reversed, range, .. } = bar.scale;
     let (low, high, map) = (range.low(), range.high(), map.name());
     let log = range.spacing() == Spacing::Logarithmic;
-    let (label, corner) = (quoted(&bar.label), bar.corner.name());
+    let (label, position) = (quoted(&bar.label), bar.position.name());
     format!(
         "[color_bar]\nrange = [{low:?}, {high:?}]\nlog = {log}\nmap = \"{map}\"\n\
-         reversed = {reversed}\nlabel = {label}\ncorner = \"{corner}\"\n\n"
+         reversed = {reversed}\nlabel = {label}\nposition = \"{position}\"\n\n"
     )
+}
+
+fn legend(legend: &ColorLegend) -> String {
+    let entry = |(color, name): &(Rgb, String)| format!("[{}, {}]", quoted(name), rgb(*color));
+    let entries: Vec<String> = legend.entries.iter().map(entry).collect();
+    let (omitted, label, position) =
+        (legend.omitted, quoted(&legend.label), legend.position.name());
+    format!(
+        "[legend]\nentries = [{}]\nomitted = {omitted}\nlabel = {label}\nposition = \"{position}\"\n\n",
+        entries.join(", ")
+    )
+}
+
+fn axes(axes: &AxisTripod) -> String {
+    let [a, b, c] = axes.directions.map(vector);
+    let names = axes.names.iter().map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
+    let position = axes.position.name();
+    format!(
+        "[axes]\ndirections = [{a}, {b}, {c}]\nnames = [{names}]\nposition = \"{position}\"\n\n"
+    )
+}
+
+fn scale_bar(bar: &ScaleBar) -> String {
+    let length = bar.length.map_or_else(String::new, |length| format!("length = {length:?}\n"));
+    let (unit, position) = (quoted(&bar.unit), bar.position.name());
+    format!("[scale_bar]\n{length}unit = {unit}\nposition = \"{position}\"\n\n")
 }
 
 /// `picture` is the name of the picture's file, if there is one.

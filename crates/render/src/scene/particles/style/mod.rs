@@ -1,9 +1,11 @@
 //! The style of particles: the user's choices of colors, radii, materials and selection.
 
+mod categories;
 mod colors;
 mod columns;
 mod types;
 
+pub use categories::Category;
 pub use colors::{ColumnColors, ElementColors, Legend};
 pub(super) use columns::{Column, ID, INDEX, unknown};
 pub use types::{TypeMaterial, TypeStyle};
@@ -38,6 +40,8 @@ pub struct ParticleStyle {
     pub coloring: Coloring,
     /// Styles of single types, which override all else; the last one for a type applies.
     pub types: Vec<TypeStyle>,
+    /// True if ids are read although neither colors nor the selection need them.
+    pub ids: bool,
     /// True if a selection may be empty, a column may have no valid number, and a type may be missing,
     /// as in some frames of a trajectory.
     pub allow_empty: bool,
@@ -60,6 +64,9 @@ impl ParticleStyle {
         let mut columns = self.select.as_ref().map_or_else(Vec::new, Selection::columns);
         if let Coloring::Column(colors) = &self.coloring {
             columns.push(colors.column.clone());
+        }
+        if self.ids {
+            columns.push(ID.to_owned());
         }
         columns
     }

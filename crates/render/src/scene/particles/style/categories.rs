@@ -1,0 +1,145 @@
+//! Categories: the names that colors of particles stand for.
+
+use super::Coloring;
+use super::columns::Column;
+use crate::color::Rgb;
+use crate::scene::particles::{Codes, Element, Particles};
+use std::collections::BTreeMap;
+
+/// A name that a color stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Category {
+    /// The name: an element, a type or a text of a column.
+    pub name: String,
+    /// Linear color.
+    pub color: Rgb,
+    /// Number of particles.
+    pub count: u64,
+}
+
+/// The particles of one code of a column.
+#[derive(Clone, Debug, Default)]
+struct Group {
+    color: Option<Rgb>,
+    count: u64,
+    /// True if particles have different colors.
+    mixed: bool,
+}
+
+impl Particles {
+    /// Returns the elements, types or texts that colors stand for, without repetition: those of the
+    /// column that particles are colored by, or else of their types. `None` if colors stand for numbers
+    /// or for nothing, as those of a file that differ within a type.
+    pub fn categories(&self, coloring: &Coloring) -> Option<Vec<Category>> {
+        let kinds = &self.kinds;
+        if let Coloring::Column(colors) = coloring {
+            let Column::Texts { names, codes } = Column::find(self, &colors.column)? else {
+                return None;
+            };
+            let groups = self.groups(&codes, names.len())?;
+            let named = names.iter().map(|name| [*name; 2]);
+            return Some(merged(named.zip(groups)));
+        }
+        if kinds.codes.is_empty() {
+            return None;
+        }
+        let groups = self.groups(&kinds.codes, kinds.table.len())?;
+        let named = kinds.table.iter().map(|kind| {
+            let element: Option<&str> = kind.element.map(Element::symbol);
+            [element.unwrap_or(&kind.name), &kind.name]
+        });
+        Some(merged(named.zip(groups)))
+    }
+
+    /// Returns the color and the number of the particles of each code; `None` if those of one code have
+    /// different colors.
+    fn groups(&self, codes: &Codes, count: usize) -> Option<Vec<Group>> {
+        let mut groups = vec![Group::default(); count];
+        for row in 0..codes.len().min(self.spheres.len()) {
+            let group = groups.get_mut(codes.code(row) as usize)?;
+            let color = self.spheres.color_of(row);
+            group.mixed |= *group.color.get_or_insert(color) != color;
+            group.count += 1;
+        }
+        groups.iter().all(|group| !group.mixed).then_some(groups)
+    }
+}
+
+/// Merges groups of one name and color. Of several colors of a name, only the most frequent keeps the
+/// name; the others have the second, more precise name.
+fn merged<'a>(groups: impl Iterator<Item = ([&'a str; 2], Group)>) -> Vec<Category> {
+    let groups: Vec<([&str; 2], Rgb, u64)> = groups
+        .filter_map(|(names, Group { color, count, .. })| Some((names, color?, count)))
+        .collect();
+    let bits = |color: Rgb| color.to_array().map(f32::to_bits);
+    let mut counts: BTreeMap<(&str, [u32; 3]), u64> = BTreeMap::new();
+    for (names, color, count) in &groups {
+        *counts.entry((names[0], bits(*color))).or_default() += count;
+    }
+    let mut usual: BTreeMap<&str, ([u32; 3], u64)> = BTreeMap::new();
+    for ((name, color), count) in &counts {
+        let most = usual.entry(name).or_insert((*color, *count));
+        if *count > most.1 {
+            *most = (*color, *count);
+        }
+    }
+    let mut categories: Vec<Category> = Vec::new();
+    for (names, color, count) in groups {
+        let is_usual = usual.get(names[0]).is_some_and(|(usual, _)| *usual == bits(color));
+        let name = if is_usual { names[0] } else { names[1] };
+        let same = |category: &&mut Category| category.name == name && category.color == color;
+        match categories.iter_mut().find(same) {
+            Some(category) => category.count += count,
+            None => categories.push(Category { name: name.to_owned(), color, count }),
+        }
+    }
+    categories
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::particles::{ColumnColors, Columns, ParticleStyle, ReadOptions, read};
+
+    const ATOMS: &str = "ATOM      1  N   GLY A   1       0.000   0.000   0.000  1.00  0.00\n\
+                         ATOM      2  CA  GLY A   1       1.400   0.000   0.000  1.00  0.00\n\
+                         ATOM      3  CB  GLY B   2       2.800   0.000   0.000  1.00  0.00\n\
+                         ATOM      4  O   GLY B   2       4.200   0.000   0.000  1.00  0.00\n";
+
+    fn categories(style: &ParticleStyle) -> Option<Vec<(String, u64)>> {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("a.pdb");
+        std::fs::write(&path, ATOMS).expect("a file");
+        let columns = Columns { wanted: style.columns(), ..Columns::default() };
+        let mut particles =
+            read(&path, &ReadOptions { columns, ..ReadOptions::default() }).expect("particles");
+        style.apply(&path, &mut particles).expect("a valid style");
+        let found = particles.categories(&style.coloring)?;
+        Some(found.into_iter().map(|category| (category.name, category.count)).collect())
+    }
+
+    fn named(pairs: &[(&str, u64)]) -> Vec<(String, u64)> {
+        pairs.iter().map(|(name, count)| ((*name).to_owned(), *count)).collect()
+    }
+
+    #[test]
+    fn colors_stand_for_elements_types_and_texts() {
+        let elements = ParticleStyle::default();
+        assert_eq!(categories(&elements), Some(named(&[("N", 1), ("C", 2), ("O", 1)])));
+        let by = |column: &str| {
+            let column = ColumnColors { column: column.to_owned(), ..ColumnColors::default() };
+            ParticleStyle { coloring: Coloring::Column(column), ..ParticleStyle::default() }
+        };
+        assert_eq!(categories(&by("chain")), Some(named(&[("A", 2), ("B", 2)])));
+        assert_eq!(categories(&by("x")), None);
+    }
+
+    #[test]
+    fn types_with_a_color_of_their_own_have_a_name_of_their_own() {
+        let types = vec!["CB:color=red".parse().expect("a style")];
+        let style = ParticleStyle { types, ..ParticleStyle::default() };
+        let found = categories(&style).expect("categories");
+        assert!(found.contains(&("CB".to_owned(), 1)) || found.contains(&("CA".to_owned(), 1)));
+        assert_eq!(found.len(), 4, "{found:?}");
+    }
+}

@@ -1,0 +1,31 @@
+//! Pages: SVG and PDF files of an image with its annotations as vectors.
+
+use super::job::Job;
+use super::prepare::Prepared;
+use crate::cli::Failure;
+use spherule_render::graphics::Page;
+use spherule_render::image::WriteOptions;
+use spherule_render::image::tone::DisplayTransform;
+use spherule_render::overlay::annotations;
+use spherule_render::scene::Scene;
+
+/// Returns the content of the output file: the image, which is encoded already, or a page with it.
+pub(super) fn file(
+    job: &Job,
+    prepared: &Prepared,
+    image: Vec<u8>,
+    options: &WriteOptions,
+) -> Result<Vec<u8>, Failure> {
+    let Some(format) = job.page else { return Ok(image) };
+    let Scene { annotations, look, .. } = &prepared.scene;
+    let turns = job.turn.is_some();
+    let drawing = annotations::draw(annotations, &prepared.world, look, turns).drawing;
+    let page = Page {
+        size: (prepared.region.width, prepared.region.height),
+        picture: Some(&image),
+        drawing: &drawing,
+        display: DisplayTransform::nearest(options.exposure, options.tone),
+        metadata: &options.metadata,
+    };
+    Ok(page.file(format)?)
+}
