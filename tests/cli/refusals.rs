@@ -34,17 +34,22 @@ fn bad_input_is_refused_with_help() {
         ("render --region 4294967295,0,1x1", 2, &["--region", "960x540"]),
         ("render --memory-limit 4", 2, &["--memory-limit", "4GB"]),
         (
-            "render --memory-limit 90MB --size 2000x2000",
+            "render --memory-limit 90MB --size 2000x2000 --spp 4",
             1,
             &["400 spheres (", "2000 x 2000 pixels (216.0 MB)", "of the memory limit", "--size"],
         ),
         (
-            "render --size 65535x65535",
+            "render --size 65535x65535 --denoise off",
             1,
             &["65535 x 65535 pixels (231.9 GB) need 231.9 GB", "left", "--size or --region"],
         ),
         (
-            "render --size 65535x65535 --layers all -o a.exr",
+            "render --size 65535x65535",
+            1,
+            &["65535 x 65535 pixels (979.2 GB)", "--size or --region", "--denoise off"],
+        ),
+        (
+            "render --size 65535x65535 --spp 4 --layers all -o a.exr",
             1,
             &["their layers", "--size or --region"],
         ),

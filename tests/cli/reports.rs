@@ -39,7 +39,41 @@ fn renders_report_their_error() {
     assert!(text(&limited.stdout).contains("16.0 samples per pixel (16 to 16)"));
     let timed = folder.json(&[&small[..], &["--time", "10ms"]].concat());
     assert_eq!((&timed["noise"]["ended_by"], &timed["complete"]), (&json!("time"), &json!(true)));
-    assert!(folder.json(&small)["noise"].is_null());
+    assert!(folder.json(&[&small[..], &["--spp", "4"]].concat())["noise"].is_null());
+}
+
+#[test]
+fn images_are_denoised_unless_samples_are_chosen() {
+    let folder = Folder::new();
+    let small = ["render", "--size", "40x24", "--quiet", "--json"];
+    let report = |options: &str| {
+        let options: Vec<&str> = options.split_whitespace().collect();
+        folder.json(&[&small[..], &options].concat())
+    };
+    let on = report("--denoise on");
+    let noise = &on["noise"];
+    assert_eq!((&noise["denoised"], &on["settings"]["denoise"]), (&json!(true), &json!("on")));
+    let before = noise["error_before_denoising"].as_f64().unwrap();
+    assert!(before > 0.0 && on["settings"]["until_error"] == 0.01);
+    let limit = on["settings"]["spp"].as_u64().unwrap();
+    assert!(limit <= 1024 && noise["most_samples"].as_u64().unwrap() <= limit);
+    let tagged = text(&std::fs::read(folder.path("spherule.png")).unwrap());
+    for key in ["denoised", "error before denoising", "error bound"] {
+        assert!(tagged.contains(key), "{key}");
+    }
+    for (options, spp) in [("--denoise off", 64), ("--spp 5", 5), ("--spp 5 --denoise off", 5)] {
+        let plain = report(options);
+        assert!(plain["noise"].is_null() && plain["settings"]["spp"] == spp, "{options}");
+    }
+    let same = report("--spp 6 --denoise on");
+    assert_eq!(same["noise"]["denoised"], true);
+    assert_eq!(same["statistics"]["samples"], 6 * 40 * 24);
+    let target = report("--until-error 20% --denoise on");
+    assert!(target["noise"]["bound"].as_f64().unwrap() <= 0.2);
+    assert_eq!(report("--until-error 20%")["noise"]["denoised"], false);
+    let refused = folder.run(&[&small[..3], &["--part", "1/2", "--denoise", "on"]].concat());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("--denoise on needs the whole image"));
 }
 
 #[test]

@@ -139,7 +139,7 @@ fn settings_without_effect_are_refused() {
         ("render --preset chalk", 2, "particle file"),
         ("render a.toml --margin 0.1", 2, "add --view"),
         ("render clear.toml -o clear.ppm", 2, "cannot store a transparent background"),
-        ("render clear.toml --part 1/2", 2, "a scene's [look]"),
+        ("render clear.toml --part 1/2", 2, "the same in a scene need the whole image"),
     ] {
         let output = folder.run(&line.split(' ').collect::<Vec<_>>());
         let stderr = text(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");

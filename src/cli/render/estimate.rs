@@ -34,6 +34,8 @@ pub(crate) struct Estimate {
     spheres: u64,
     /// True if layers are part of the image.
     layered: bool,
+    /// True if the image is denoised.
+    denoised: bool,
     /// Bytes during the construction of columns and tree.
     build: u64,
     /// Bytes of the scene's columns, which are freed once the world is built.
@@ -56,6 +58,7 @@ impl Estimate {
             region,
             spheres: footprint.spheres,
             layered: !job.encoding.layers.is_empty(),
+            denoised,
             build: footprint.peak().saturating_sub(footprint.scene()),
             scene: footprint.scene(),
             world: footprint.resident(),
@@ -101,6 +104,8 @@ impl Estimate {
     pub(crate) fn message(&self, shortage: &Shortage) -> String {
         let hint = if self.build > self.picture() {
             "render fewer spheres, or use a machine with more memory"
+        } else if self.denoised {
+            "use a smaller --size or --region, or --denoise off"
         } else {
             "use a smaller --size or --region"
         };

@@ -12,12 +12,12 @@ pub(super) const MARGIN: [usize; 2] = [16, 11];
 /// Least albedo that radiance is divided by: darker surfaces reflect too little light for a ratio.
 const MIN_ALBEDO: f32 = 0.02;
 
-/// Weight of a pixel with average variance over that of one without. Pixels of higher variance than their neighbors
-/// are rare paths of much light, which would show as stains.
+/// Variance at which a pixel has half of the weight, as a multiple of the squared mean deviation of its neighbors.
+/// Pixels of much more variance are rare paths of much light, which would show as stains.
 const OUTLIERS: f32 = 4.0;
 
-/// Distance within which the variance of neighbors is averaged.
-const VARIANCE_RADIUS: usize = 3;
+/// Distance within which the deviation of neighbors is averaged.
+const DEVIATION_RADIUS: usize = 3;
 
 /// Pixels of a tile and its margins, row by row. Pixels outside of the picture have no weight.
 #[derive(Debug, Default)]
@@ -37,8 +37,8 @@ pub(super) struct Columns {
     pub(super) variance: [Vec<f32>; 3],
     /// Reliability of the pixel: 0 outside of the picture, 1 without noise.
     pub(super) weight: Vec<f32>,
-    /// Variance over channels.
-    mean_variance: Vec<f32>,
+    /// Standard deviation over channels.
+    deviation: Vec<f32>,
     /// Number of pixels: 1 inside of the picture.
     inside: Vec<f32>,
     /// Sums over windows.
@@ -52,11 +52,17 @@ impl Columns {
         MARGIN[1] * self.stride + MARGIN[0]
     }
 
+    /// Returns the index of the pixel this many columns and rows away.
+    #[inline(always)]
+    pub(super) fn neighbor(&self, at: usize, [x, y]: [isize; 2]) -> usize {
+        at.wrapping_add_signed(y * self.stride as isize + x)
+    }
+
     /// Fills the columns with the pixels of a tile, at most `width` wide, and those around it.
     pub(super) fn fill(&mut self, input: &Input, tile: Region, width: usize) {
         (self.stride, self.rows) = (width + 2 * MARGIN[0], tile.height as usize + 2 * MARGIN[1]);
         let count = self.stride * self.rows;
-        let columns = [&mut self.id, &mut self.weight, &mut self.mean_variance, &mut self.inside];
+        let columns = [&mut self.id, &mut self.weight, &mut self.deviation, &mut self.inside];
         let columns = columns.into_iter().chain(&mut self.features).chain(&mut self.albedo);
         for column in columns.chain(&mut self.irradiance).chain(&mut self.variance) {
             column.clear();
@@ -93,21 +99,23 @@ impl Columns {
             self.variance[channel][at] = variance;
             sum += variance;
         }
-        self.mean_variance[at] = sum / 3.0;
+        self.deviation[at] = (sum / 3.0).sqrt();
         self.inside[at] = 1.0;
     }
 
-    /// Computes the weights, by the variance of each pixel beside that of its neighbors.
+    /// Computes the weights, by the deviation of each pixel beside that of its neighbors.
     fn weigh(&mut self) {
-        let [variance, count] = &mut self.sums;
-        for (sums, values) in [(&mut *variance, &self.mean_variance), (&mut *count, &self.inside)] {
-            box_sums(values, self.stride, VARIANCE_RADIUS, sums, &mut self.scratch);
+        let [deviation, count] = &mut self.sums;
+        for (sums, values) in [(&mut *deviation, &self.deviation), (&mut *count, &self.inside)] {
+            box_sums(values, self.stride, DEVIATION_RADIUS, sums, &mut self.scratch);
         }
-        let around = variance.iter().zip(count.iter());
-        let pixels = self.inside.iter().zip(&self.mean_variance).zip(around);
-        for (weight, ((&inside, &variance), (&sum, &count))) in self.weight.iter_mut().zip(pixels) {
-            let usual = OUTLIERS * sum / count.max(1.0) + f32::MIN_POSITIVE;
-            *weight = inside * usual / (usual + variance);
+        let around = deviation.iter().zip(count.iter());
+        let pixels = self.inside.iter().zip(&self.deviation).zip(around);
+        for (weight, ((&inside, &deviation), (&sum, &count))) in self.weight.iter_mut().zip(pixels)
+        {
+            let usual = sum / count.max(1.0);
+            let usual = OUTLIERS * usual * usual + f32::MIN_POSITIVE;
+            *weight = inside * usual / (usual + deviation * deviation);
         }
     }
 }

@@ -94,15 +94,15 @@ pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoi
 
 /// Returns whether denoising lowered the error of a picture of this film, by its steering probes.
 pub fn is_better(film: &Film, image: &Image, denoised: &Image) -> bool {
-    let error = |image| noise::squared_error_of(film, image, Role::Steer).value;
+    let error = |image| noise::squared_error_of(film, image, &[], Role::Steer).value;
     error(denoised) < error(image)
 }
 
-/// Estimates the relative error of an image of the film's region that depends on the film's own samples, but not on its
-/// judging probes.
-pub fn error_of(film: &Film, image: &Image) -> Noise {
+/// Estimates the relative error of a denoised picture of this film, by its judging probes.
+pub fn error_of(film: &Film, denoised: &Denoised) -> Noise {
+    let Denoised { image, squared_error } = denoised;
     let mean = noise::Estimate { value: film.mean(), ..noise::Estimate::default() };
-    let measured = noise::squared_error_of(film, image, Role::Judge);
+    let measured = noise::squared_error_of(film, image, squared_error, Role::Judge);
     // Light that neither samples nor probes have found is missing in the denoised picture, too.
     let missing = noise::missing(film);
     let all = measured + missing;

@@ -25,7 +25,7 @@ pub(super) struct Prediction<L> {
 }
 
 /// Number of pixels in the largest window.
-const PIXELS: usize = (2 * RADII[RADII.len() - 1] + 1).pow(2);
+const PIXELS: usize = pixels(RADII[RADII.len() - 1]);
 
 /// Offsets of a window's pixels, from the middle outward.
 static OFFSETS: [[isize; 2]; PIXELS] = {
@@ -54,17 +54,16 @@ static OFFSETS: [[isize; 2]; PIXELS] = {
 #[inline(always)]
 pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>; RADII.len()] {
     let zero = L::splat(0.0);
-    let there = |[x, y]: [isize; 2]| at.wrapping_add_signed(y * columns.stride as isize + x);
-    let middle = columns.features.each_ref().map(|column| L::load(&column[at..]));
+    let middle = load(&columns.features, at);
     let id = L::load(&columns.id[at..]);
     let mut products = [[zero; REGRESSORS]; REGRESSORS];
     let mut weights = [zero; PIXELS];
     let mut solutions = [[zero; REGRESSORS]; RADII.len()];
     let mut first = 0;
     for (radius, solution) in RADII.iter().zip(&mut solutions) {
-        let end = (2 * radius + 1).pow(2);
+        let end = pixels(*radius);
         for (weight, &offset) in weights[first..end].iter_mut().zip(&OFFSETS[first..end]) {
-            let neighbor = there(offset);
+            let neighbor = columns.neighbor(at, offset);
             let differences = differences(columns, &middle, neighbor);
             *weight = weigh(columns, id, &differences, neighbor);
             add_products(&mut products, &differences, *weight);
@@ -72,29 +71,70 @@ pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>;
         *solution = solve(&products);
         first = end;
     }
-    let mut irradiance = [[zero; 3]; RADII.len()];
-    for ((&weight, &offset), place) in weights.iter().zip(&OFFSETS).zip(0..) {
-        let neighbor = there(offset);
-        let differences = differences(columns, &middle, neighbor);
-        let light = columns.irradiance.each_ref().map(|column| L::load(&column[neighbor..]));
-        let windows = RADII.iter().zip(&solutions).zip(&mut irradiance);
-        for ((_, [constant, slopes @ ..]), sums) in
-            windows.filter(|((radius, _), _)| place < (2 * *radius + 1).pow(2))
-        {
-            let mut coefficient = *constant;
-            for (slope, difference) in slopes.iter().zip(&differences) {
-                coefficient = slope.mul_add(*difference, coefficient);
-            }
-            coefficient = coefficient * weight;
-            for (sum, light) in sums.iter_mut().zip(&light) {
-                *sum = coefficient.mul_add(*light, *sum);
-            }
+    let mut sums = [[zero; 3]; RADII.len()];
+    let inner = pixels(RADII[0]);
+    let all = weights.iter().zip(&OFFSETS);
+    for (&weight, &offset) in all.clone().take(inner) {
+        apply::<0, L>(
+            (columns, &middle),
+            (&solutions, weight),
+            columns.neighbor(at, offset),
+            &mut sums,
+        );
+    }
+    for (&weight, &offset) in all.skip(inner) {
+        apply::<1, L>(
+            (columns, &middle),
+            (&solutions, weight),
+            columns.neighbor(at, offset),
+            &mut sums,
+        );
+    }
+    let prediction = |window: usize| Prediction {
+        irradiance: sums[window],
+        leverage: solutions[window][0] * weights[0],
+    };
+    [prediction(0), prediction(1)]
+}
+
+/// Returns the number of pixels of a window.
+const fn pixels(radius: usize) -> usize {
+    (2 * radius + 1).pow(2)
+}
+
+/// Adds the irradiance of a neighbor to the predictions of the windows from the `FIRST` on, times the neighbor's
+/// coefficients.
+#[inline(always)]
+fn apply<const FIRST: usize, L: Lanes>(
+    (columns, middle): (&Columns, &[L; REGRESSORS - 1]),
+    (solutions, weight): (&[[L; REGRESSORS]; RADII.len()], L),
+    neighbor: usize,
+    sums: &mut [[L; 3]; RADII.len()],
+) {
+    let differences = differences(columns, middle, neighbor);
+    let light: [L; 3] = load(&columns.irradiance, neighbor);
+    for window in FIRST..RADII.len() {
+        let [constant, slopes @ ..] = &solutions[window];
+        let mut coefficient = *constant;
+        for (slope, difference) in slopes.iter().zip(&differences) {
+            coefficient = slope.mul_add(*difference, coefficient);
+        }
+        coefficient = coefficient * weight;
+        for (sum, light) in sums[window].iter_mut().zip(&light) {
+            *sum = coefficient.mul_add(*light, *sum);
         }
     }
-    std::array::from_fn(|window| Prediction {
-        irradiance: irradiance[window],
-        leverage: solutions[window][0] * weights[0],
-    })
+}
+
+/// Returns the rows of lanes of some columns.
+#[inline(always)]
+pub(super) fn load<const N: usize, L: Lanes>(columns: &[Vec<f32>; N], at: usize) -> [L; N] {
+    // A closure over the array would be called for each.
+    let mut rows = [L::splat(0.0); N];
+    for (row, column) in rows.iter_mut().zip(columns) {
+        *row = L::load(&column[at..]);
+    }
+    rows
 }
 
 /// Returns the differences of a neighbor's features from those of the middle.
@@ -104,9 +144,9 @@ fn differences<L: Lanes>(
     middle: &[L; REGRESSORS - 1],
     neighbor: usize,
 ) -> [L; REGRESSORS - 1] {
-    let mut differences = *middle;
-    for (difference, column) in differences.iter_mut().zip(&columns.features) {
-        *difference = L::load(&column[neighbor..]) - *difference;
+    let mut differences: [L; REGRESSORS - 1] = load(&columns.features, neighbor);
+    for (difference, &middle) in differences.iter_mut().zip(middle) {
+        *difference = *difference - middle;
     }
     differences
 }

@@ -118,7 +118,7 @@ impl<'a> Denoiser<'a> {
         if self.choice == Choice::Better && !is_better(film, &image, &denoised.image) {
             return Judged { denoised: None, before, noise: before };
         }
-        let noise = error_of(film, &denoised.image);
+        let noise = error_of(film, &denoised);
         Judged { denoised: Some(denoised), before, noise }
     }
 

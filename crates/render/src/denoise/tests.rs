@@ -7,7 +7,8 @@ use crate::noise::CONFIDENCE;
 use crate::render::{Options, ResumableRender, render};
 use crate::sampling::{mix, unit};
 use crate::scene::generate::default_scene;
-use crate::scene::{Scene, Settings};
+use crate::scene::{Material, Rgb, Scene, Settings};
+use crate::trace::{Tracer, Traversal};
 use crate::world::World;
 
 const WIDTH: u32 = 150;
@@ -123,6 +124,9 @@ fn difference(a: &Image, b: &Image) -> f64 {
 
 fn scene() -> (Scene, World) {
     let mut scene = default_scene(4);
+    for row in &mut scene.materials {
+        row.material = Material::Lambertian { color: Rgb::splat(0.6) };
+    }
     (scene.settings.width, scene.settings.height) = (72, 54);
     let world = World::build(&scene).unwrap();
     (scene, world)
@@ -162,10 +166,12 @@ fn targets_are_those_of_the_denoised_picture() {
     let (scene, world) = scene();
     let settings = Settings { until_error: Some(0.04), spp: 4096, ..scene.settings.clone() };
     let options = Options { statistics: true, ..Options::default() };
-    let run = |threads: usize| {
+    let run = |threads: usize, traversal: Traversal| {
+        let tracer = Tracer { traversal, ..Tracer::default() };
+        let options = Options { tracer, ..options };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let denoiser = Denoiser::new(&world, &settings, &options, Choice::Better).unwrap();
+            let denoiser = Denoiser::new(&world, &settings, &options, Choice::Always).unwrap();
             let judge = |film: &Film| denoiser.judge(film);
             let options = Options { judge: Some(&judge), ..options };
             let mut render = ResumableRender::begin(&world, &settings, &options).unwrap();
@@ -173,12 +179,13 @@ fn targets_are_those_of_the_denoised_picture() {
             (denoiser.finish(render.film()).unwrap(), render.samples().total)
         })
     };
-    let (one, samples) = run(1);
-    assert!(one.noise.bound <= 0.04 && one.before.error > one.noise.error);
-    let (three, same) = run(3);
-    assert_eq!((three.denoised.unwrap(), same), (one.denoised.unwrap(), samples));
-    let raw = render(&world, &settings, &Options::default()).unwrap();
-    assert!(raw.samples.total > samples, "{} {samples}", raw.samples.total);
+    let (one, samples) = run(1, Traversal::Auto);
+    assert!(one.noise.bound <= 0.04, "{:?}", one.noise);
+    let one = (one.denoised.unwrap(), samples);
+    for (threads, traversal) in [(3, Traversal::Auto), (2, Traversal::Brute)] {
+        let (other, same) = run(threads, traversal);
+        assert!((other.denoised.unwrap(), same) == one, "{threads} {traversal:?}");
+    }
 }
 
 #[test]

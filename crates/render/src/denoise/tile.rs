@@ -1,7 +1,7 @@
 //! Denoising of a tile: predictions, their errors, and the choice among them.
 
 use super::columns::{Columns, MARGIN, box_sums};
-use super::regression::{Prediction, RADII, predict};
+use super::regression::{Prediction, RADII, load, predict};
 use crate::film::Region;
 use crate::image::Image;
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
@@ -94,12 +94,10 @@ impl Workspace {
     fn predict_row(&mut self, floor: f32, at: usize) {
         type L = F32x16;
         let columns = &self.columns;
-        let load = |columns: &[Vec<f32>; 3]| -> [L; 3] {
-            std::array::from_fn(|channel| L::load(&columns[channel][at..]))
-        };
         let predictions = predict::<L>(columns, at);
-        let [albedo, irradiance] = [load(&columns.albedo), load(&columns.irradiance)];
-        let variance = load(&columns.variance);
+        let [albedo, irradiance]: [[L; 3]; 2] =
+            [load(&columns.albedo, at), load(&columns.irradiance, at)];
+        let variance: [L; 3] = load(&columns.variance, at);
         let [.., widest] = &predictions;
         let mut scale = L::splat(floor);
         let mut own = L::splat(0.0);

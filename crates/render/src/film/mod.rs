@@ -190,7 +190,12 @@ impl Film {
     }
 
     /// Gives probes to the tiles that need them.
-    pub fn place_probes(&mut self, density: Density, seed: u64, needed: impl Fn(&Tile) -> bool) {
+    pub fn place_probes(
+        &mut self,
+        density: Density,
+        seed: u64,
+        mut needed: impl FnMut(&Tile) -> bool,
+    ) {
         for tile in self.tiles.iter_mut().filter(|tile| needed(tile)) {
             tile.probes = Probes::new(tile, density, seed);
         }

@@ -138,21 +138,29 @@ pub fn missing(film: &Film) -> Estimate {
 ///
 /// The two streams of a probe are independent, so the product of their differences from the image's pixel is an
 /// unbiased estimate of its squared error. Single products, and even their sum, may be negative.
-pub fn squared_error_of(film: &Film, image: &Image, role: Role) -> Estimate {
+///
+/// `expected` has an expectation of each pixel's squared error, row by row, that does not depend on these probes either,
+/// or is empty. Then probes estimate what it lacks (Cochran, "Sampling Techniques", 7.3): right or wrong, it adds no
+/// bias, but makes up for errors in few pixels that probes miss.
+pub fn squared_error_of(film: &Film, image: &Image, expected: &[f32], role: Role) -> Estimate {
     let pairs = film.tiles.iter().flat_map(|tile| tile.probes.pairs(role));
+    let expected_of = |pixel: usize| expected.get(pixel).map_or(0.0, |&error| f64::from(error));
+    let total = (0..expected.len()).map(expected_of).sum();
+    let total = Estimate { value: total, ..Estimate::default() };
     let products = pairs.map(|pair| {
         let (x, y) = (pair.x - film.region.x, pair.y - film.region.y);
-        let pixel = image.pixels[y as usize * image.width as usize + x as usize];
+        let at = y as usize * image.width as usize + x as usize;
+        let pixel = image.pixels[at];
         let [a, b] = pair.means;
         let product = |channel: usize| {
             let pixel = f64::from(pixel[channel]);
             (pixel - a[channel]) * (pixel - b[channel])
         };
-        let value = pair.weight * (0..3).map(product).sum::<f64>() / 3.0;
+        let value = pair.weight * ((0..3).map(product).sum::<f64>() / 3.0 - expected_of(at));
         // Products of both signs: their third moments cancel, or add to the upper tail.
         Estimate { value, variance: value * value, third: value.powi(3).max(0.0) }
     });
-    products.fold(Estimate::default(), Add::add)
+    products.fold(total, Add::add)
 }
 
 /// Estimates the mean radiance over pixels and channels from pilot and probes, independently of the

@@ -67,8 +67,7 @@ fn start(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) {
     let samples = PILOT.0.div_ceil(pixels).clamp(1, u64::from(PASS)) as u32;
     let block = if pixels < PILOT.1 { 1 } else { 4 };
     let tiles = state.film.tiles.iter_mut();
-    let even =
-        tiles.filter(|tile| tile.samples == 0 && pass::uniform_radiance(job.world, tile).is_some());
+    let even = tiles.filter(|tile| tile.samples == 0 && tile.probes.streams() == 0);
     let even = even.map(|tile| (tile, stop.first_samples())).collect();
     let paths = |tile: &Tile, samples| (tile.len() * samples) as usize;
     for_each_batch(job, batches(even, paths), watch, |(tiles, to), work| {

@@ -26,12 +26,8 @@ pub(crate) fn view(job: &Job, tile: &Tile) -> View {
     if hit { View::Anything } else { View::Background }
 }
 
-/// Returns the radiance of all samples of a tile, if they are equal and known.
-pub(super) fn uniform_radiance(world: &World, tile: &Tile) -> Option<Rgb> {
-    uniform_view(world, tile.view)
-}
-
-fn uniform_view(world: &World, view: View) -> Option<Rgb> {
+/// Returns the radiance of all samples of a tile with this view, if they are equal and known.
+pub(super) fn uniform_radiance(world: &World, view: View) -> Option<Rgb> {
     let sky = world.environment.constant().filter(|_| !world.lights.suns_have_discs());
     let seen = world.environment.background.or(sky);
     seen.filter(|_| world.ground.is_none() && view == View::Background)
@@ -74,7 +70,7 @@ impl TileSamples {
         work.clock.restart();
         let view = tiles.clone().next().map_or(View::Anything, |tile| tile.view);
         let regions = tiles.clone().map(|tile| tile.region);
-        let uniform = uniform_view(job.world, view).filter(|_| job.elisions.even_background);
+        let uniform = uniform_radiance(job.world, view).filter(|_| job.elisions.even_background);
         if let Some(radiance) = uniform {
             let pixels: u64 = tiles.map(|tile| tile.region.area()).sum();
             work.counters.skipped_samples += pixels * samples.len() as u64;
@@ -181,7 +177,7 @@ pub(super) fn pilot_pass(
     work: &mut Workspace,
 ) {
     let Some(Tile { view, .. }) = tiles.first() else { return };
-    if let Some(radiance) = uniform_view(job.world, *view) {
+    if let Some(radiance) = uniform_radiance(job.world, *view) {
         let mean = radiance.to_array().map(f64::from).iter().sum::<f64>() / 3.0;
         for tile in tiles {
             tile.probes.pilot = Some(Pilot { sum: f64::from(tile.len()) * mean, variance: 0.0 });

@@ -8,7 +8,7 @@ use super::{
     IncompatibleSettings, Options, Render, RenderError, Samples, Statistics, adapt, error,
     incompatible, pass, uniform,
 };
-use crate::film::{Film, Region};
+use crate::film::{Film, Region, View};
 use crate::integrator::Job;
 use crate::noise::{FIRST_SAMPLES, StopCondition};
 use crate::sampling::{PixelFilter, Sampler};
@@ -84,11 +84,18 @@ impl ResumableRender {
         }
         let mut film = Film::with_tiles(region, part.tiles.clone(), statistics);
         let state = with_job(world, settings, options, |job| {
-            if options.tracer.traversal != Traversal::Brute && options.elisions.empty_tiles {
-                film.tiles.par_iter_mut().for_each(|tile| tile.view = pass::view(job, tile));
-            }
             let measured = settings.has_target() || statistics;
-            if measured { State::new(job, film) } else { State::unmeasured(film) }
+            let known =
+                options.tracer.traversal != Traversal::Brute && options.elisions.empty_tiles;
+            if !measured && !known {
+                return State::unmeasured(film);
+            }
+            let views: Vec<View> =
+                film.tiles.par_iter().map(|tile| pass::view(job, tile)).collect();
+            if known {
+                film.tiles.iter_mut().zip(&views).for_each(|(tile, &view)| tile.view = view);
+            }
+            if measured { State::new(job, film, &views) } else { State::unmeasured(film) }
         });
         let stop_conditions =
             if settings.has_target() { vec![StopCondition::of(settings)] } else { Vec::new() };

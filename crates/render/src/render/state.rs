@@ -1,7 +1,7 @@
 //! State of a render: film, plan of steps, and noise.
 
 use super::pass;
-use crate::film::{Density, Film, Tile};
+use crate::film::{Density, Film, Tile, View};
 use crate::integrator::Job;
 use crate::noise::{self, Estimate, Noise, Slope, StopCondition};
 use serde::{Deserialize, Serialize};
@@ -37,11 +37,13 @@ pub(super) struct Step {
 }
 
 impl State {
-    /// Returns the state of a render that has not started.
-    pub(super) fn new(job: &Job, mut film: Film) -> Self {
+    /// Returns the state of a render that has not started. Tiles of this view need no probes if all their samples are
+    /// equal, whether the render knows that or not.
+    pub(super) fn new(job: &Job, mut film: Film, views: &[View]) -> Self {
         let world = job.world;
-        film.place_probes(Density::of(film.pixels()), job.settings.seed, |tile| {
-            pass::uniform_radiance(world, tile).is_none()
+        let mut views = views.iter();
+        film.place_probes(Density::of(film.pixels()), job.settings.seed, |_| {
+            views.next().is_none_or(|&view| pass::uniform_radiance(world, view).is_none())
         });
         Self::unmeasured(film)
     }

@@ -174,13 +174,14 @@ mod tests {
         let text = Identity::of(&scene).to_string();
         let parts: Vec<&str> = text.split(", ").collect();
         assert_eq!(parts.len(), 8);
-        assert!(parts[6].starts_with("camera ") && parts[6].len() == "camera ".len() + 16);
+        let camera = parts.iter().find(|part| part.starts_with("camera ")).unwrap();
+        assert_eq!(camera.len(), "camera ".len() + 16);
         let mut other = scene;
         other.camera.near = 0.5;
         let other = Identity::of(&other).to_string();
         let differ: Vec<_> = parts.iter().zip(other.split(", ")).filter(|(a, b)| *a != b).collect();
         assert_eq!(differ.len(), 1);
-        assert_eq!(differ[0].0, &parts[6]);
+        assert_eq!(differ[0].0, camera);
     }
 
     #[test]

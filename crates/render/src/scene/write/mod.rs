@@ -260,7 +260,8 @@ mod tests {
 
     #[test]
     fn whole_scenes_survive_to_the_last_bit() {
-        for scene in [default_scene(3), everything()] {
+        for mut scene in [default_scene(3), everything()] {
+            scene.settings.stop_given = true;
             let again = round_trip(&scene);
             assert!(same(&scene, &again), "{scene:?}\n{again:?}");
         }
@@ -352,10 +353,24 @@ mod tests {
     }
 
     #[test]
+    fn only_chosen_samples_are_written() {
+        let of = |spp, stop_given| {
+            let settings = Settings { spp, stop_given, ..Settings::default() };
+            let again = round_trip(&Scene { settings, ..Scene::default() }).settings;
+            (again.spp, again.stop_given)
+        };
+        assert_eq!(of(16, false), (16, false));
+        assert_eq!(of(16, true), (16, true));
+        // Numbers that differ from the default are kept, so they count as chosen.
+        assert_eq!(of(64, false), (64, true));
+    }
+
+    #[test]
     fn environment_maps_survive() {
         let pixels = vec![[0.1, 1e-30, 3e8], [0.0, 1.0 / 3.0, 2.0]];
         let image = Arc::new(crate::Image { width: 2, height: 1, pixels });
         let mut scene = default_scene(1);
+        scene.settings.stop_given = true;
         scene.environment.map =
             EnvironmentMap::Picture { image, up: DVec3::Z, rotation: -12.3, scale: 0.7 };
         let again = round_trip(&scene);
