@@ -4,12 +4,12 @@
 //! A [`Picture`] is drawn by the same code for pixels and vectors. The font is included in the program,
 //! since the system may have none.
 
+use crate::image::suffix;
 use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontStyle, IntoFont, RGBColor, TextStyle, register_font};
-use std::ffi::OsStr;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -56,10 +56,9 @@ pub trait Picture {
 impl Format {
     /// Returns the format of a file by its name; `None` unless it ends in `.png` or `.svg`.
     pub fn of_suffix(path: &Path) -> Option<Self> {
-        let suffix = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-        match suffix.as_deref() {
-            Some("png") => Some(Self::Png),
-            Some("svg") => Some(Self::Svg),
+        match suffix(path).as_str() {
+            "png" => Some(Self::Png),
+            "svg" => Some(Self::Svg),
             _ => None,
         }
     }

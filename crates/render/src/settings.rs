@@ -58,7 +58,7 @@ pub struct Settings {
     pub stop_given: bool,
 }
 
-/// Whether a finished picture is denoised.
+/// The choice to denoise a finished picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Denoise {
     /// Unless the user chose the number of samples or the error, and only if it lowers the measured error.

@@ -40,7 +40,7 @@ pub(super) struct Loaded {
     /// The color scale, if colors represent numbers.
     pub(super) legend: Option<Legend>,
     pub(super) cell: Option<Cell>,
-    /// What is up, if the scene is of particles.
+    /// The orientation of the particles, if the scene is of particles.
     pub(super) orientation: Option<Orientation>,
     pub(super) facts: FrameFacts,
     /// Center of the particle in focus, if the focus is a particle.

@@ -45,13 +45,13 @@ pub(super) struct Prepared {
     pub(super) notes: Vec<String>,
     /// The color scale, if colors represent numbers.
     pub(super) legend: Option<Legend>,
-    /// What is up, if the scene is of particles.
+    /// The orientation of the particles, if the scene is of particles.
     orientation: Option<Orientation>,
     /// Settings for particles from a prepared scene, for the image's metadata.
     looks: Option<Vec<(String, String)>>,
     /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
-    /// Whether and when the image is denoised.
+    /// The choice between the denoised and the unfiltered image; `None` if it is not denoised.
     pub(super) denoise: Option<Choice>,
     /// Warnings about the input.
     pub(super) warnings: Vec<String>,
@@ -65,7 +65,7 @@ pub(super) struct Staged {
     /// Normals of the slices that cut anything, toward what is cut away.
     pub(super) cuts: Vec<DVec3>,
     pub(super) legend: Option<Legend>,
-    /// What is up, if the scene is of particles.
+    /// The orientation of the particles, if the scene is of particles.
     pub(super) orientation: Option<Orientation>,
     /// The names that colors stand for, if they are asked for.
     pub(super) categories: Option<Vec<Category>>,
@@ -106,12 +106,12 @@ impl Staged {
 pub(super) struct PlacedScene {
     pub(super) scene: Scene,
     pub(super) legend: Option<Legend>,
-    /// What is up, if the scene is of particles.
+    /// The orientation of the particles, if the scene is of particles.
     orientation: Option<Orientation>,
     pub(super) region: Region,
     /// Identity of the scene, if the image or a checkpoint records it.
     pub(super) identity: Option<Identity>,
-    /// Whether and when the image is denoised.
+    /// The choice between the denoised and the unfiltered image; `None` if it is not denoised.
     pub(super) denoise: Option<Choice>,
     /// The world, if the scene is a prepared one.
     pub(super) stored: Option<Box<PreparedScene>>,

@@ -19,7 +19,7 @@ use std::path::Path;
 #[derive(Clone)]
 pub(in crate::cli) struct Common {
     pub(in crate::cli) camera: Camera,
-    /// What is up in the first frame that shows a sphere.
+    /// The orientation of the first frame that shows a sphere.
     pub(in crate::cli) orientation: Option<Orientation>,
     /// Height of the preset's ground, below all frames.
     pub(in crate::cli) ground: Option<f64>,

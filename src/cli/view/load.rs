@@ -163,7 +163,7 @@ struct StyledScene {
     labels: Labels,
     legend: Option<Legend>,
     cell: Option<Cell>,
-    /// What is up, if the scene is of particles.
+    /// The orientation of the particles, if the scene is of particles.
     orientation: Option<Orientation>,
     facts: FrameFacts,
     /// Center of the particle in focus, if the focus is a particle.

@@ -51,7 +51,7 @@ pub(super) struct Facts {
     pub(super) look: Look,
     /// The preset of the command line, or the default one of particles.
     pub(super) preset: Option<Preset>,
-    /// What is up, if the scene is of particles.
+    /// The orientation of the particles, if the scene is of particles.
     pub(super) orientation: Option<Orientation>,
     /// True if particles have their own materials, which presets do not replace.
     pub(super) own_materials: bool,

@@ -28,7 +28,7 @@ pub(in crate::cli) struct LensArgs {
     focus: Option<WithText<Focus>>,
 }
 
-/// What is in focus.
+/// The point or particle in focus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Focus {
     /// The center of a particle.

@@ -40,7 +40,7 @@ pub struct Options {
     #[arg(long, value_name = "FILE", requires = "spheres")]
     pub rays: Option<PathBuf>,
 
-    /// What is asked about the rays of a file: what is hit first, or whether anything is hit.
+    /// The query for the rays of a file: the closest hit, or any hit.
     #[arg(
         long,
         requires = "rays",

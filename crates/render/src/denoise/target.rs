@@ -40,7 +40,7 @@ pub struct Denoiser<'a> {
     progress: Mutex<Progress>,
 }
 
-/// What a denoiser has done so far.
+/// Layers accumulated and the last result.
 struct Progress {
     layers: ProgressiveLayers,
     /// The last result, and the number of samples that it was made from.

@@ -2,8 +2,7 @@
 
 use super::{Drawing, pdf, svg};
 use crate::image::tone::DisplayTransform;
-use crate::image::{self, Image, ImageError, Metadata, WriteOptions};
-use std::ffi::OsStr;
+use crate::image::{self, Image, ImageError, Metadata, WriteOptions, suffix};
 use std::path::Path;
 
 /// A file format of drawings.
@@ -47,11 +46,10 @@ pub struct Page<'a> {
 impl Format {
     /// Returns the format of a file by its name; `None` unless it ends in `.png`, `.svg` or `.pdf`.
     pub fn of_suffix(path: &Path) -> Option<Self> {
-        let suffix = path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase);
-        match suffix.as_deref() {
-            Some("png") => Some(Self::Png),
-            Some("svg") => Some(Self::Svg),
-            Some("pdf") => Some(Self::Pdf),
+        match suffix(path).as_str() {
+            "png" => Some(Self::Png),
+            "svg" => Some(Self::Svg),
+            "pdf" => Some(Self::Pdf),
             _ => None,
         }
     }

@@ -47,6 +47,11 @@ pub enum Format {
     Webp,
 }
 
+/// Returns the suffix of a file's name in lower case, without its dot; empty if it has none.
+pub(crate) fn suffix(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
 impl Format {
     /// Formats that can be written, in the order of lists.
     pub const WRITTEN: [Self; 7] =
@@ -150,7 +155,7 @@ impl Format {
     /// # Errors
     /// [`ImageError::UnknownSuffix`] if the suffix belongs to no format in [`Format::WRITTEN`].
     pub fn of_suffix(path: &Path) -> Result<Self, ImageError> {
-        let suffix = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let suffix = suffix(path);
         let mut formats = Self::WRITTEN.into_iter();
         formats
             .find(|format| format.suffixes().contains(&suffix.as_str()))

@@ -13,7 +13,7 @@ const DARK: f32 = 0.2;
 /// Overlays, drawn after rendering by [`crate::overlay`], and background; the default is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Look {
-    /// What the camera sees behind everything; the scene's lighting does not change.
+    /// The backdrop, as camera rays see it; the scene's lighting does not change.
     pub background: Background,
     /// True if far objects fade into the background, or into white if it has no color.
     pub depth_cue: bool,

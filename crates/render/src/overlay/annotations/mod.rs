@@ -34,7 +34,7 @@ const DARK: f32 = 0.2;
 /// Light gray, for letters on dark backgrounds.
 const LIGHT_INK: Rgb = Rgb::splat(0.8);
 
-/// What annotations show of the camera.
+/// The properties of the camera that annotations show.
 #[derive(Clone, Copy, Debug)]
 struct Viewpoint {
     /// Unit axes of the picture: to the right, upward, and into the scene.
