@@ -3,6 +3,7 @@
 use super::regression::REGRESSORS;
 use super::tile::Input;
 use crate::film::Region;
+use crate::lanes::{Lanes, Mask};
 use crate::layers::Features;
 
 /// Columns and rows of pixels around a tile that its result depends on, and a few columns more, so that rows of lanes
@@ -41,7 +42,7 @@ pub(super) struct Columns {
     deviation: Vec<f32>,
     /// Number of pixels: 1 inside of the picture.
     inside: Vec<f32>,
-    /// Sums over windows.
+    /// Sums of deviations and of pixels around each pixel.
     sums: [Vec<f32>; 2],
     scratch: Vec<f32>,
 }
@@ -56,6 +57,12 @@ impl Columns {
     #[inline(always)]
     pub(super) fn neighbor(&self, at: usize, [x, y]: [isize; 2]) -> usize {
         at.wrapping_add_signed(y * self.stride as isize + x)
+    }
+
+    /// Returns whether there is any noise around the pixels from `at` on, one in each lane.
+    #[inline(always)]
+    pub(super) fn has_noise<L: Lanes>(&self, at: usize) -> bool {
+        Lanes::lt(L::splat(0.0), L::load(&self.sums[0][at..])).bits() != 0
     }
 
     /// Fills the columns with the pixels of a tile, at most `width` wide, and those around it.

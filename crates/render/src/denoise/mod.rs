@@ -21,7 +21,11 @@
 //! ```
 //!
 //! where the leverage is the derivative of the prediction by the pixel's own mean. The window with the least error,
-//! averaged over neighbors, is taken. As samples increase, the variance vanishes, and with it the denoising.
+//! averaged over neighbors, is taken. As samples increase, the variance vanishes, and with it the denoising. Pixels
+//! without noise stay as they are.
+//!
+//! A rare path of much light makes a pixel and its variance much larger than its neighbors. Such a pixel counts little in
+//! their regressions, and where pixels keep their value, it gets theirs as far as its own noise explains the difference.
 //!
 //! # The stated error
 //!
@@ -92,10 +96,13 @@ pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoi
     denoised
 }
 
+/// Maximum squared error of a preferred denoised picture, relative to that of the picture: less gain may be chance.
+const GAIN: f64 = 0.9;
+
 /// Returns whether denoising lowered the error of a picture of this film, by its steering probes.
 pub fn is_better(film: &Film, image: &Image, denoised: &Image) -> bool {
     let error = |image| noise::squared_error_of(film, image, &[], Role::Steer).value;
-    error(denoised) < error(image)
+    error(denoised) < GAIN * error(image)
 }
 
 /// Estimates the relative error of a denoised picture of this film, by its judging probes.

@@ -20,6 +20,9 @@ const BORDER: usize = ERROR_RADIUS + CHOICE_RADIUS;
 /// Fraction of the picture's mean square that is added to the square of radiance in relative errors.
 const FLOOR: f32 = 0.3;
 
+/// Squared difference from the prediction that noise explains, in variances of the pixel.
+const OUTLIER_VARIANCES: f32 = 4.0;
+
 /// Number of choices: the pixel itself, and the prediction of each window.
 const CHOICES: usize = 1 + RADII.len();
 
@@ -94,10 +97,14 @@ impl Workspace {
     fn predict_row(&mut self, floor: f32, at: usize) {
         type L = F32x16;
         let columns = &self.columns;
-        let predictions = predict::<L>(columns, at);
         let [albedo, irradiance]: [[L; 3]; 2] =
             [load(&columns.albedo, at), load(&columns.irradiance, at)];
         let variance: [L; 3] = load(&columns.variance, at);
+        let predictions = if columns.has_noise::<L>(at) {
+            predict::<L>(columns, at)
+        } else {
+            [Prediction { irradiance, leverage: L::splat(0.0) }; RADII.len()]
+        };
         let [.., widest] = &predictions;
         let mut scale = L::splat(floor);
         let mut own = L::splat(0.0);
@@ -172,11 +179,18 @@ impl Workspace {
                 let pixel = (tile.y as usize + row) * input.image.width as usize
                     + tile.x as usize
                     + (at - first);
+                let outlier = if sums[0][at] > 0.0 {
+                    outlier_share(columns, &self.predictions[0], at)
+                } else {
+                    0.0
+                };
                 let radiance = std::array::from_fn(|channel| {
-                    if sums[0][at] == all {
+                    if sums[0][at] == all && outlier == 0.0 {
                         return input.image.pixels[pixel][channel];
                     }
-                    let own = sums[0][at] * columns.irradiance[channel][at];
+                    let own = columns.irradiance[channel][at];
+                    let usual = self.predictions[0][channel][at].max(0.0);
+                    let own = sums[0][at] * outlier.mul_add(usual - own, own);
                     let windows = sums[1..].iter().zip(&self.predictions);
                     let mixed = windows.fold(own, |sum, (shares, prediction)| {
                         sum + shares[at] * prediction[channel][at].max(0.0)
@@ -189,6 +203,18 @@ impl Workspace {
         }
         pixels
     }
+}
+
+/// Returns the share that a prediction has in the value of a pixel that keeps its own otherwise: that of its difference
+/// that its noise explains, if the pixel is less reliable than its neighbors. It vanishes as samples grow.
+fn outlier_share(columns: &Columns, prediction: &[Vec<f32>; 3], at: usize) -> f32 {
+    let (mut noise, mut change) = (0.0, f32::MIN_POSITIVE);
+    for channel in 0..3 {
+        let squared = columns.albedo[channel][at].powi(2);
+        noise += squared * columns.variance[channel][at];
+        change += squared * (prediction[channel][at] - columns.irradiance[channel][at]).powi(2);
+    }
+    (1.0 - columns.weight[at]) * (OUTLIER_VARIANCES * noise / change).min(1.0)
 }
 
 const _: () = assert!((TILE[0] as usize + 2 * BORDER).is_multiple_of(MAX_LANES));
