@@ -14,7 +14,7 @@ use spherule_render::denoise::Judged;
 use spherule_render::film::Region;
 use spherule_render::image::{Format, Metadata, QUALITY, WriteOptions};
 use spherule_render::layers::Layer;
-use spherule_render::noise::StopCondition;
+use spherule_render::noise::{Noise, StopCondition};
 use spherule_render::render::Render;
 use spherule_render::scene::particles::Legend;
 use spherule_render::scene::{Identity, Settings};
@@ -178,16 +178,26 @@ impl Subject<'_> {
             metadata.push(INTERRUPTED, "true");
         }
         if let Some(noise) = judged.map(|judged| judged.noise).or(render.noise) {
-            metadata.push("error", noise.error.to_string());
-            metadata.push("error bound", noise.bound.to_string());
+            push_error(&mut metadata, noise);
         }
         if let Some(Judged { denoised, before, .. }) = judged {
-            metadata.push(DENOISED, denoised.is_some().to_string());
-            if denoised.is_some() {
-                metadata.push(BEFORE, before.error.to_string());
-            }
+            push_denoised(&mut metadata, denoised.as_ref().map(|_| before));
         }
         metadata
+    }
+}
+
+/// Appends the error of the image.
+pub(in crate::cli) fn push_error(metadata: &mut Metadata, noise: Noise) {
+    metadata.push("error", noise.error.to_string());
+    metadata.push("error bound", noise.bound.to_string());
+}
+
+/// Appends whether the image was denoised, and the error `before` if it was.
+pub(in crate::cli) fn push_denoised(metadata: &mut Metadata, before: Option<&Noise>) {
+    metadata.push(DENOISED, before.is_some().to_string());
+    if let Some(before) = before {
+        metadata.push(BEFORE, before.error.to_string());
     }
 }
 

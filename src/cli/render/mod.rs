@@ -32,7 +32,7 @@ pub(super) use self::estimate::Estimate;
 use self::files::files;
 pub(super) use self::job::{Job, check_alpha};
 pub(super) use self::layers::alpha;
-pub(super) use self::metadata::Subject;
+pub(super) use self::metadata::{Subject, push_denoised, push_error};
 use self::notices::Notices;
 use self::prepare::{PlacedScene, Prepared};
 use self::resume::Resumed;
@@ -283,7 +283,8 @@ fn trace(
         .denoise
         .map(|choice| Denoiser::new(world, settings, &options, choice))
         .transpose()?;
-    let judge = |film: &Film| denoiser.as_ref().and_then(|denoiser| denoiser.judge(film));
+    let judged = |film: &Film, options: &Options| denoiser.as_ref()?.judge(world, film, options);
+    let judge = |film: &Film| judged(film, &options).map(|judged| judged.noise);
     let options = Options { judge: denoiser.is_some().then_some(&judge as &Judge), ..options };
     let begin = || ResumableRender::begin_part(world, settings, &options, prepared.part.clone());
     let mut render = unfinished.map_or_else(begin, Ok)?;
@@ -317,7 +318,8 @@ fn trace(
     };
     meter.finish();
     let resume_command = writer.filter(|_| kept).map(CheckpointWriter::resume_command);
-    let judged = denoiser.and_then(|denoiser| denoiser.finish(render.film()));
+    // Also if the render was cancelled.
+    let judged = judged(render.film(), &Options { cancel: None, ..options });
     Ok(Traced { render, judged, signal, resume_command })
 }
 

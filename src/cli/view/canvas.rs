@@ -160,13 +160,16 @@ pub(super) fn status(viewer: &Viewer) -> Vec<String> {
         parts.push(format!("{} spheres", HumanCount(facts.spheres as u64)));
     }
     if let Some(picture) = &viewer.shown {
-        parts.push(format!(
-            "{} of {} samples",
-            HumanCount(picture.samples.into()),
-            HumanCount(viewer.settings.spp.into())
-        ));
-        if let Some(noise) = viewer.noise {
-            parts.push(format!("noise {:.2} %", 100.0 * noise));
+        parts.push(match picture.samples {
+            0 => "preview".to_owned(),
+            samples => {
+                let limit = HumanCount(viewer.settings.spp.into());
+                format!("{} of {limit} samples", HumanCount(samples.into()))
+            }
+        });
+        if let Some(noise) = picture.noise {
+            let denoised = if picture.before.is_some() { ", denoised" } else { "" };
+            parts.push(format!("error {:.2} %{denoised}", 100.0 * noise.error));
         }
         let rate = picture.rays as f64 / picture.elapsed.as_secs_f64().max(1e-9);
         parts.push(format!("{:.1} Mrays/s", rate / 1e6));

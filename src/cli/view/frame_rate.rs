@@ -15,27 +15,34 @@ const LATE: f64 = 0.031;
 const FALL: f64 = 0.85;
 const RISE: f64 = 1.002;
 
-/// Initial estimate of pixels per second.
-const GUESS: f64 = 2e6;
+/// Initial estimates of pixels per second, without shadows and with them.
+const GUESS: [f64; 2] = [8e6, 8e6];
+
+/// Growth factor of the estimate with shadows for each preview without: they are tried again.
+const RETRY: f64 = 1.01;
 
 /// Minimum number of pixels of an image.
 const LEAST: f64 = 1024.0;
 
-/// Growth factor of pixels from image to image for a camera at rest.
-const REFINED: f64 = 2.0;
-
 /// Weight of the last measurement.
 const WEIGHT: f64 = 0.4;
 
-/// Image sizes.
+/// A preview while the camera moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moving {
+    pub(super) size: (u32, u32),
+    pub(super) shadows: bool,
+}
+
+/// Sizes of previews.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FrameRate {
     /// Always the size of the window, so that scripts have the same results on every machine.
     Whole,
-    /// As large as the time budget allows.
+    /// As large as the time budget allows; shadows are left out before pixels are.
     Measured {
-        /// Pixels per second.
-        rate: f64,
+        /// Pixels per second, without shadows and with them.
+        rates: [f64; 2],
         /// Time budget of an image in seconds.
         budget: f64,
     },
@@ -44,12 +51,16 @@ pub(super) enum FrameRate {
 impl FrameRate {
     /// Creates the control before any measurement.
     pub(super) fn measured() -> Self {
-        Self::Measured { rate: GUESS, budget: BUDGET }
+        Self::Measured { rates: GUESS, budget: BUDGET }
     }
 
-    /// Records the render time of an image.
-    pub(super) fn record_time(&mut self, pixels: u64, time: Duration) {
-        if let Self::Measured { rate, .. } = self {
+    /// Records the render time of a preview.
+    pub(super) fn record_time(&mut self, pixels: u64, shadows: bool, time: Duration) {
+        if let Self::Measured { rates, .. } = self {
+            if !shadows {
+                rates[1] = (rates[1] * RETRY).min(rates[0]);
+            }
+            let rate = &mut rates[usize::from(shadows)];
             let now = pixels as f64 / time.as_secs_f64().max(1e-6);
             // A late image is worse than a small one.
             let weight = if now < *rate { 2.0 * WEIGHT } else { WEIGHT };
@@ -65,18 +76,17 @@ impl FrameRate {
         }
     }
 
-    /// Returns the size of an image for a moving camera.
-    pub(super) fn moving(self, whole: (u32, u32)) -> (u32, u32) {
+    /// Returns the preview for a moving camera.
+    pub(super) fn moving(self, whole: (u32, u32)) -> Moving {
         match self {
-            Self::Whole => whole,
-            Self::Measured { rate, budget } => shrunk(whole, rate * budget),
+            Self::Whole => Moving { size: whole, shadows: true },
+            Self::Measured { rates, budget } => {
+                let [plain, shadowed] = rates.map(|rate| shrunk(whole, rate * budget));
+                let shadows = shadowed == whole;
+                Moving { size: if shadows { shadowed } else { plain }, shadows }
+            }
         }
     }
-}
-
-/// Returns the size of the next image for a camera at rest, after one of size `last`.
-pub(super) fn refined(whole: (u32, u32), last: (u32, u32)) -> (u32, u32) {
-    shrunk(whole, REFINED * pixels(last))
 }
 
 fn pixels((width, height): (u32, u32)) -> f64 {
@@ -101,18 +111,19 @@ mod tests {
     const WHOLE: (u32, u32) = (1280, 720);
 
     #[test]
-    fn sizes_follow_measured_times() {
+    fn shadows_are_left_out_before_pixels() {
         let mut frame_rate = FrameRate::measured();
-        for _ in 0..20 {
-            frame_rate.record_time(1_000_000, Duration::from_secs(1));
-        }
-        let count = pixels(frame_rate.moving(WHOLE));
-        assert!((count / (1e6 * BUDGET) - 1.0).abs() < 0.02, "{count}");
-        for _ in 0..20 {
-            frame_rate.record_time(1_000_000_000, Duration::from_secs(1));
-        }
-        assert_eq!(frame_rate.moving(WHOLE), WHOLE);
-        assert_eq!(FrameRate::Whole.moving(WHOLE), WHOLE);
+        let mut measure = |rate: u64, shadows: bool| {
+            (0..20).for_each(|_| frame_rate.record_time(rate, shadows, Duration::from_secs(1)));
+            frame_rate.moving(WHOLE)
+        };
+        assert_eq!(measure(1_000_000_000, true), Moving { size: WHOLE, shadows: true });
+        measure(1_000_000_000, false);
+        assert_eq!(measure(1_000_000, true), Moving { size: WHOLE, shadows: false });
+        let Moving { size, shadows } = measure(2_000_000, false);
+        assert!(!shadows && (pixels(size) / (2e6 * BUDGET) - 1.0).abs() < 0.02, "{size:?}");
+        assert_eq!(FrameRate::Whole.moving(WHOLE), Moving { size: WHOLE, shadows: true });
+        assert_eq!(shrunk((1, 1), 0.0), (1, 1));
     }
 
     #[test]
@@ -135,20 +146,5 @@ mod tests {
         assert!((15..60).contains(&late), "{late}");
         (0..100).for_each(|_| frame_rate.record_interval(Duration::from_secs(1)));
         assert_eq!(budget(frame_rate), SMALLEST);
-    }
-
-    #[test]
-    fn a_still_camera_reaches_full_resolution() {
-        let mut frame_rate = FrameRate::measured();
-        frame_rate.record_time(0, Duration::from_secs(1));
-        let mut size = frame_rate.moving(WHOLE);
-        let steps = (0..20).take_while(|_| {
-            let before = size;
-            size = refined(WHOLE, size);
-            pixels(before) < pixels(size)
-        });
-        assert!(steps.count() < 12);
-        assert_eq!(size, WHOLE);
-        assert_eq!(shrunk((1, 1), 0.0), (1, 1));
     }
 }

@@ -166,7 +166,7 @@ impl Headless {
 
     fn wait(&mut self, samples: u32) -> Result<(), Failure> {
         self.session.viewer.settings.spp = samples;
-        while self.session.viewer.whole().is_none_or(|picture| picture.samples < samples) {
+        while self.session.viewer.sampled().is_none_or(|picture| picture.samples < samples) {
             if !self.render()? {
                 break;
             }
@@ -176,7 +176,7 @@ impl Headless {
 
     /// Saves the image or the scene, by the suffix of the name.
     fn save(&mut self, path: &Path) -> Result<(), Failure> {
-        if self.session.viewer.whole().is_none() {
+        if self.session.viewer.sampled().is_none() {
             self.wait(1)?;
         }
         let (Some(settings), Some(renderer)) =
@@ -185,15 +185,13 @@ impl Headless {
             return Ok(());
         };
         let viewer = &self.session.viewer;
-        let Some(picture) = viewer.whole() else { return Ok(()) };
-        let (image, matte) = picture.visible();
+        let Some(picture) = viewer.sampled() else { return Ok(()) };
         let seen = SavedImage {
             title: &viewer.facts.title,
             camera: &viewer.control.camera,
             settings: &settings,
             look: viewer.look(),
-            image,
-            matte,
+            picture,
         };
         if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
             return save_scene(&seen, &renderer.stage.scene, renderer.stage.origin.as_ref(), path);

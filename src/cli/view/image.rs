@@ -1,12 +1,23 @@
 //! Render requests of the viewer, and their images.
 
+use super::frame_rate::Moving;
 use super::overlay::OverlaidImage;
 use super::tonemap::{DisplaySettings, ToneMapped};
 use spherule_render::image::Image;
+use spherule_render::noise::Noise;
 use spherule_render::overlay::Matte;
 use spherule_render::scene::{Camera, Look, Settings};
 use std::sync::Arc;
 use std::time::Duration;
+
+/// The way to render an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quality {
+    /// Without noise, but with direct light alone.
+    Preview { shadows: bool },
+    /// With the samples and the integrator of the settings.
+    Sampled,
+}
 
 /// A render request.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +27,7 @@ pub(super) struct RenderRequest {
     pub(super) camera: Camera,
     /// Settings with the size and the samples of this image.
     pub(super) settings: Settings,
+    pub(super) quality: Quality,
     pub(super) look: Look,
     /// Display settings of the window.
     pub(super) display: DisplaySettings,
@@ -27,9 +39,15 @@ pub(super) struct RenderRequest {
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
     pub(super) version: u64,
+    /// Samples per pixel; 0 for a preview.
     pub(super) samples: u32,
+    pub(super) quality: Quality,
     /// The rendered image.
     pub(super) image: Image,
+    /// Estimated error of the image; `None` for a preview, and as long as it is unknown.
+    pub(super) noise: Option<Noise>,
+    /// Estimated error before denoising, if the image is denoised.
+    pub(super) before: Option<Noise>,
     /// The image with overlays, if there are any.
     pub(super) drawn: Option<OverlaidImage>,
     /// The tone-mapped image.
@@ -42,6 +60,12 @@ pub(super) struct Picture {
 impl Picture {
     pub(super) fn size(&self) -> (u32, u32) {
         (self.image.width, self.image.height)
+    }
+
+    /// Returns its size and shadows, as a preview.
+    pub(super) fn moving(&self) -> Moving {
+        let shadows = self.quality == Quality::Preview { shadows: true };
+        Moving { size: self.size(), shadows }
     }
 
     /// Returns the image to show, with its matte if it is transparent.

@@ -2,7 +2,7 @@
 
 use super::camera_control::CameraControl;
 use super::digits;
-use super::image::{Picture, RenderRequest};
+use super::image::{Picture, Quality, RenderRequest};
 use super::load::LoadedScene;
 use super::overlay::{OverlaidImage, OverlayCache};
 use super::tonemap::{ToneMapped, ToneMapper};
@@ -13,10 +13,13 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
+use spherule_render::denoise::{Choice, Denoised, Denoiser, Judged};
 use spherule_render::film::Region;
+use spherule_render::image::Image;
 use spherule_render::layers::{Layer, layers};
-use spherule_render::render::{End, Options, RenderError, ResumableRender};
-use spherule_render::scene::{Annotations, Background, Camera, Scene, Settings};
+use spherule_render::noise::Noise;
+use spherule_render::render::{End, Options, Render, RenderError, ResumableRender, preview};
+use spherule_render::scene::{Annotations, Background, Camera, Denoise, Scene, Settings};
 use spherule_render::trace::Tracer;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
@@ -30,11 +33,28 @@ pub(super) struct Renderer {
     /// Camera, settings and background of the world, without its spheres.
     view: Scene,
     /// The render of the current camera and settings.
-    state: Option<(Camera, ResumableRender)>,
+    refined: Option<Refined>,
     overlay: OverlayCache,
     tone_mapper: ToneMapper,
     /// The annotations of full-size images.
     annotations: Annotations,
+}
+
+/// A render that is refined.
+struct Refined {
+    camera: Camera,
+    render: ResumableRender,
+    /// `None` if its images are not denoised.
+    denoiser: Option<Denoiser>,
+}
+
+/// A rendered image without overlays.
+struct Plain {
+    image: Image,
+    noise: Option<Noise>,
+    /// Error before denoising, if the image is denoised.
+    before: Option<Noise>,
+    rays: u64,
 }
 
 /// A picked sphere.
@@ -57,7 +77,7 @@ impl Renderer {
             tracer,
             builder,
             view: Scene { look, ..Scene::default() },
-            state: None,
+            refined: None,
             overlay: OverlayCache::default(),
             tone_mapper: ToneMapper::default(),
             annotations,
@@ -82,21 +102,12 @@ impl Renderer {
         self.set_background(request.look.background);
         let start = Instant::now();
         let options = Options { tracer: self.tracer, cancel: Some(cancel), ..Options::default() };
-        let mut state = self.state.take().filter(|(camera, _)| *camera == request.camera);
-        let extends =
-            |(_, state): &mut (Camera, ResumableRender)| state.extend(&request.settings).is_ok();
-        state = state.and_then(|mut state| extends(&mut state).then_some(state));
-        let world = &mut self.stage.world;
-        let begin = || {
-            let state = ResumableRender::begin(world, &request.settings, &options)?;
-            Ok::<_, RenderError>((request.camera.clone(), state))
+        let plain = match request.quality {
+            Quality::Preview { shadows } => self.preview(request, &options, shadows)?,
+            Quality::Sampled => self.refine(request, &options)?,
         };
-        let (_, state) = self.state.insert(state.map_or_else(begin, Ok)?);
-        let before = state.totals().counters.rays();
-        if state.run(world, &options) == End::Cancelled {
-            return Ok(None);
-        }
-        let (image, rays) = (state.film().resolve(), state.totals().counters.rays() - before);
+        let Some(Plain { image, noise, before, rays }) = plain else { return Ok(None) };
+        let world = &mut self.stage.world;
         let mut drawn = None;
         if !request.look.is_plain() {
             drawn = self.overlay.draw(world, request, image.clone(), &options)?;
@@ -112,11 +123,14 @@ impl Renderer {
             draw_annotations((&self.annotations, &request.look), world, &mut canvas, false);
             *matte = canvas.matte;
         }
-        let (version, samples) = (request.version, request.settings.spp);
+        let sampled = request.quality == Quality::Sampled;
         let mut picture = Picture {
-            version,
-            samples,
+            version: request.version,
+            samples: if sampled { request.settings.spp } else { 0 },
+            quality: request.quality,
             image,
+            noise,
+            before,
             drawn,
             rays,
             tone_mapped: None,
@@ -130,6 +144,53 @@ impl Renderer {
         Ok(Some(picture))
     }
 
+    /// Renders a preview; `None` if cancelled.
+    fn preview(
+        &self,
+        request: &RenderRequest,
+        options: &Options,
+        shadows: bool,
+    ) -> Result<Option<Plain>, RenderError> {
+        let image = preview(&self.stage.world, &request.settings, options, shadows)?;
+        let pixels = u64::from(request.settings.width) * u64::from(request.settings.height);
+        Ok(image.map(|image| Plain { image, noise: None, before: None, rays: pixels }))
+    }
+
+    /// Adds samples to the last render, or begins anew, and denoises; `None` if cancelled.
+    fn refine(
+        &mut self,
+        request: &RenderRequest,
+        options: &Options,
+    ) -> Result<Option<Plain>, RenderError> {
+        let (world, settings) = (&self.stage.world, &request.settings);
+        let options = Options { statistics: true, ..*options };
+        let extends = |refined: &mut Refined| {
+            refined.camera == request.camera && refined.render.extend(settings).is_ok()
+        };
+        let begin = || {
+            let render = ResumableRender::begin(world, settings, &options)?;
+            let new = |choice| Denoiser::new(world, settings, &options, choice);
+            let denoiser = choice(settings.denoise).map(new).transpose()?;
+            Ok::<_, RenderError>(Refined { camera: request.camera.clone(), render, denoiser })
+        };
+        let refined = self.refined.take().and_then(|mut last| extends(&mut last).then_some(last));
+        let Refined { render, denoiser, .. } = self.refined.insert(refined.map_or_else(begin, Ok)?);
+        let before = render.totals().counters.rays();
+        if render.run(world, &options) == End::Cancelled {
+            return Ok(None);
+        }
+        let rays = render.totals().counters.rays() - before;
+        if let Some(denoiser) = denoiser {
+            let judged = denoiser.judge(world, render.film(), &options);
+            let Some(Judged { denoised, before, noise }) = judged else { return Ok(None) };
+            if let Some(Denoised { image, .. }) = denoised {
+                return Ok(Some(Plain { image, noise: Some(noise), before: Some(before), rays }));
+            }
+        }
+        let Render { image, noise, .. } = render.render();
+        Ok(Some(Plain { image, noise, before: None, rays }))
+    }
+
     /// Sets the camera of the world; rebuilds the world if the camera is too far away for its precision.
     fn set_camera(&mut self, camera: &Camera, settings: &Settings) -> Result<(), Failure> {
         let same = self.view.camera == *camera
@@ -138,7 +199,7 @@ impl Renderer {
         if same {
             return Ok(());
         }
-        self.state = None;
+        self.refined = None;
         self.overlay.invalidate();
         (self.view.camera, self.view.settings) = (camera.clone(), settings.clone());
         let title = self.stage.facts.title.clone();
@@ -164,7 +225,7 @@ impl Renderer {
     /// Sets the background of the world.
     fn set_background(&mut self, background: Background) {
         if std::mem::replace(&mut self.view.look.background, background) != background {
-            self.state = None;
+            self.refined = None;
             self.stage.world.set_background(background);
         }
     }
@@ -218,6 +279,15 @@ impl Renderer {
         let place = spheres.id.par_iter().position_any(|&id| id as usize == row)?;
         let (center, radius) = spheres.exact(place);
         Some((center / transform.scale + transform.shift, radius / transform.scale))
+    }
+}
+
+/// Returns the choice between denoised and unfiltered images; `None` if none is denoised.
+fn choice(denoise: Denoise) -> Option<Choice> {
+    match denoise {
+        Denoise::On => Some(Choice::Always),
+        Denoise::Auto => Some(Choice::Better),
+        Denoise::Off => None,
     }
 }
 

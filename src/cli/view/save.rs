@@ -1,12 +1,12 @@
 //! Saving of the image, and of a scene that renders to it.
 
+use super::image::Picture;
 use super::load::Origin;
 use super::viewer::Facts;
 use crate::cli::failure::Failure;
-use crate::cli::render::{Job, Subject, alpha, check_alpha, write_bar};
+use crate::cli::render::{Job, Subject, alpha, check_alpha, push_denoised, push_error, write_bar};
 use spherule_render::film::Region;
-use spherule_render::image::{Channel, Format, Image, WriteOptions};
-use spherule_render::overlay::Matte;
+use spherule_render::image::{Channel, Format, WriteOptions};
 use spherule_render::scene::{Camera, Header, Look, Scene, Settings, write_as};
 use std::path::Path;
 #[cfg(feature = "view")]
@@ -20,9 +20,7 @@ pub(super) struct SavedImage<'a> {
     /// Settings with the image's number of samples.
     pub(super) settings: &'a Settings,
     pub(super) look: Look,
-    pub(super) image: &'a Image,
-    /// The part of each pixel that is not background; `None` for an opaque image.
-    pub(super) matte: Option<&'a Matte>,
+    pub(super) picture: &'a Picture,
 }
 
 /// Writes the image, as `spherule render` does for the saved scene.
@@ -34,8 +32,13 @@ pub(super) fn save_picture(seen: &SavedImage, path: &Path) -> Result<(), Failure
     let region = Region { x: 0, y: 0, width, height };
     let subject = Subject { title: seen.title, settings: seen.settings, region, looks: &[] };
     options.metadata = subject.describe(format, &options);
-    let channels: Vec<Channel> = seen.matte.map(|matte| alpha(matte, format)).into_iter().collect();
-    Ok(seen.image.write_layers(path, &channels, &options)?)
+    if let Picture { noise: Some(noise), before: Some(before), .. } = seen.picture {
+        push_error(&mut options.metadata, *noise);
+        push_denoised(&mut options.metadata, Some(before));
+    }
+    let (image, matte) = seen.picture.visible();
+    let channels: Vec<Channel> = matte.map(|matte| alpha(matte, format)).into_iter().collect();
+    Ok(image.write_layers(path, &channels, &options)?)
 }
 
 /// Writes the color bar, if it has its own file and colors represent numbers.

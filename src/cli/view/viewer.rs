@@ -11,7 +11,7 @@ use super::loading::Loading;
 use glam::DVec2;
 use spherule_render::elementary::pow;
 use spherule_render::scene::particles::{Legend, Orientation};
-use spherule_render::scene::{Background, Camera, Look, Preset, Settings};
+use spherule_render::scene::{Background, Camera, Denoise, Look, Preset, Settings};
 
 /// Minimum and maximum side of the window in pixels.
 const SIDES: (u32, u32) = (16, 16_384);
@@ -108,12 +108,8 @@ pub(super) struct Viewer {
     /// True if the next drag is a slice.
     pub(super) cutting: bool,
     pub(super) shown: Option<Picture>,
-    /// Estimated relative root mean square error.
-    pub(super) noise: Option<f64>,
     /// Version of the view, which grows with every change.
     pub(super) version: u64,
-    /// An image of half as many samples, for the noise estimate.
-    pub(super) half: Option<Picture>,
     pointer: DVec2,
     drag: Option<Drag>,
 }
@@ -138,9 +134,7 @@ impl Viewer {
             loading: None,
             cutting: false,
             shown: None,
-            noise: None,
             version: 0,
-            half: None,
             pointer: DVec2::ZERO,
             drag: None,
         }
@@ -170,16 +164,18 @@ impl Viewer {
         }
     }
 
-    /// Returns the current image if it is up to date and full-size.
-    pub(super) fn whole(&self) -> Option<&Picture> {
-        let whole = (self.settings.width, self.settings.height);
-        let now = |picture: &&Picture| picture.version == self.version && picture.size() == whole;
-        self.shown.as_ref().filter(now)
+    /// Returns the current image if it is up to date and no preview.
+    pub(super) fn sampled(&self) -> Option<&Picture> {
+        let current = |picture: &&Picture| picture.version == self.version && picture.samples > 0;
+        self.shown.as_ref().filter(current)
     }
 
-    /// Returns the settings that render the current full-size image.
+    /// Returns the settings that render the current image, if it is no preview.
     pub(super) fn settings_of_picture(&self) -> Option<Settings> {
-        self.whole().map(|picture| Settings { spp: picture.samples, ..self.settings.clone() })
+        self.sampled().map(|picture| {
+            let denoise = if picture.before.is_some() { Denoise::On } else { Denoise::Off };
+            Settings { spp: picture.samples, denoise, ..self.settings.clone() }
+        })
     }
 
     /// Returns whether the pointer is moving the camera.

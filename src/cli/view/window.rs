@@ -221,7 +221,7 @@ impl App {
         if self.scene.is_some() {
             self.workers.request_image(self.viewer.next_request());
         }
-        if self.saving && self.viewer.whole().is_some() {
+        if self.saving && self.viewer.sampled().is_some() {
             self.saving = false;
             self.save();
         }

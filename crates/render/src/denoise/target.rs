@@ -32,10 +32,8 @@ pub fn max_samples(region: Region, spheres: usize) -> u32 {
 }
 
 /// Denoises a render, as it is refined, and measures the error of the result.
-pub struct Denoiser<'a> {
-    world: &'a World,
-    settings: &'a Settings,
-    options: Options<'a>,
+pub struct Denoiser {
+    settings: Settings,
     choice: Choice,
     progress: Mutex<Progress>,
 }
@@ -67,63 +65,58 @@ pub struct Judged {
     pub noise: Noise,
 }
 
-impl<'a> Denoiser<'a> {
-    /// Creates the denoiser of renders of `world` with these settings and options, whose flag cancels it.
+impl Denoiser {
+    /// Creates the denoiser of renders of `world` with these settings, in the region of `options`.
     ///
     /// # Errors
     /// Those of [`render()`](crate::render::render()).
     pub fn new(
-        world: &'a World,
-        settings: &'a Settings,
-        options: &Options<'a>,
+        world: &World,
+        settings: &Settings,
+        options: &Options,
         choice: Choice,
     ) -> Result<Self, RenderError> {
         let layers = ProgressiveLayers::begin(world, settings, options)?;
         let progress = Mutex::new(Progress { layers, last: None });
-        Ok(Self { world, settings, options: *options, choice, progress })
+        Ok(Self { settings: settings.clone(), choice, progress })
     }
 
-    /// Denoises the picture of a film that has statistics, without regard to the flag that cancels. Returns `None` if
-    /// not all pixels have samples.
+    /// Denoises the picture of a film that has statistics, and judges it; with less than two samples per pixel the
+    /// variance is unknown, and the picture stays as it is. Returns `None` if not all pixels have samples, or if the flag
+    /// of the options cancels it. `world` must be that of the beginning.
     ///
     /// # Panics
     /// The film is of another region, or without sums of squares.
-    pub fn finish(&self, film: &Film) -> Option<Judged> {
-        self.denoise(film, &Options { cancel: None, ..self.options })
-    }
-
-    fn denoise(&self, film: &Film, options: &Options) -> Option<Judged> {
+    pub fn judge(&self, world: &World, film: &Film, options: &Options) -> Option<Judged> {
         let least = film.tiles.iter().map(|tile| tile.samples).min().filter(|&least| least > 0)?;
         // A thread that panicked with the lock has ended the render.
         let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         let total = film.tiles.iter().map(|tile| u64::from(tile.samples) * u64::from(tile.len()));
         let total = total.sum();
+        let mean = Estimate { value: film.mean(), ..Estimate::default() };
+        let before = Noise::new(noise::squared_error(film), film.pixels(), mean);
+        if least == 1 {
+            return Some(Judged { denoised: None, before, noise: before });
+        }
         if let Some((_, judged)) = progress.last.as_ref().filter(|(of, _)| *of == total) {
             return Some(judged.clone());
         }
         let settings = Settings { spp: least.min(SAMPLES), ..self.settings.clone() };
-        if !progress.layers.refine(self.world, &settings, options) {
+        if !progress.layers.refine(world, &settings, options) {
             return None;
         }
-        let judged = self.judge_picture(film, &progress.layers.layers());
+        let judged = self.judge_picture(film, &progress.layers.layers(), before);
         progress.last = Some((total, judged.clone()));
         Some(judged)
     }
 
-    fn judge_picture(&self, film: &Film, layers: &Layers) -> Judged {
+    fn judge_picture(&self, film: &Film, layers: &Layers, before: Noise) -> Judged {
         let image = film.resolve();
         let denoised = denoise(&image, &Statistics::of(film), layers);
-        let mean = Estimate { value: film.mean(), ..Estimate::default() };
-        let before = Noise::new(noise::squared_error(film), film.pixels(), mean);
         if self.choice == Choice::Better && !is_better(film, &image, &denoised.image) {
             return Judged { denoised: None, before, noise: before };
         }
         let noise = error_of(film, &denoised);
         Judged { denoised: Some(denoised), before, noise }
-    }
-
-    /// Returns the error of the preferred picture: see [`Options::judge`].
-    pub fn judge(&self, film: &Film) -> Option<Noise> {
-        self.denoise(film, &self.options).map(|judged| judged.noise)
     }
 }

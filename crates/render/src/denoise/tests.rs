@@ -138,7 +138,8 @@ fn judged(world: &World, settings: &Settings) -> (Image, Noise, Noise) {
     let denoiser = Denoiser::new(world, settings, &options, Choice::Always).unwrap();
     let mut render = ResumableRender::begin(world, settings, &options).unwrap();
     render.run(world, &options);
-    let Judged { denoised, before, noise } = denoiser.finish(render.film()).unwrap();
+    let Judged { denoised, before, noise } =
+        denoiser.judge(world, render.film(), &options).unwrap();
     (denoised.unwrap().image, noise, before)
 }
 
@@ -172,11 +173,12 @@ fn targets_are_those_of_the_denoised_picture() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let denoiser = Denoiser::new(&world, &settings, &options, Choice::Always).unwrap();
-            let judge = |film: &Film| denoiser.judge(film);
+            let judged = |film: &Film| denoiser.judge(&world, film, &options);
+            let judge = |film: &Film| judged(film).map(|judged| judged.noise);
             let options = Options { judge: Some(&judge), ..options };
             let mut render = ResumableRender::begin(&world, &settings, &options).unwrap();
             render.run(&world, &options);
-            (denoiser.finish(render.film()).unwrap(), render.samples().total)
+            (judged(render.film()).unwrap(), render.samples().total)
         })
     };
     let (one, samples) = run(1, Traversal::Auto);

@@ -9,12 +9,10 @@ use super::shading_row::{ShadingRow, SurfaceRow};
 use super::shadow_queue::{self, enqueue_shadow_rays};
 use super::stages;
 use super::workspace::Workspace;
-use crate::lanes::F32x16;
 use crate::ray::MISS;
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
 use crate::shade::MaterialKind;
-use crate::vec3::Vec3;
 use crate::world::{LightRow, ROW};
 
 /// Traces one ambient occlusion ray per path; `distance` is in world units.
@@ -38,9 +36,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
                 t: [distance; ROW],
                 ..LightRow::distant(direction, Rgb::ONE, shading.lanes)
             };
-            let colors = shading.surface_row.at.own.map(|hit| job.world.albedo(hit));
-            let channel = |i: usize| F32x16::new(colors.map(|color| color[i]));
-            let light = Vec3::new(channel(0), channel(1), channel(2));
+            let light = surface_row.albedo(job.world);
             enqueue_shadow_rays(job, work, &surface_row, (&sky, shading.lanes), light);
         }
         work.queues.put(kind, queue);

@@ -67,9 +67,9 @@ fn start(
     count
 }
 
-/// Starts a path through the center of each of the tile's pixels and of the lens.
-pub fn generate_centers(job: &Job, tile: &Tile, work: &mut Workspace) {
-    let count = start(job, tile.pixels().map(|(x, y)| (x, y, *job.sampler)), 0..1, work);
+/// Starts a path through the center of each of some pixels, no more than a batch, and of the lens.
+pub fn generate_centers(job: &Job, pixels: impl Iterator<Item = (u32, u32)>, work: &mut Workspace) {
+    let count = start(job, pixels.map(|(x, y)| (x, y, *job.sampler)), 0..1, work);
     work.start_paths(count);
     let middle = [F32x16::splat(0.0); 2];
     for first in (0..count).step_by(MAX_LANES) {

@@ -8,7 +8,7 @@ use super::next_rays::RayRow;
 use super::path_state::PathStateRow;
 use super::path_state::PreviousBounce;
 use super::surface::chord_length;
-use super::workspace::Workspace;
+use super::workspace::{Paths, Workspace};
 use crate::lanes::{
     Doubles, F32x16, F64x8, Lanes, MAX_LANES, Mask, Packing, load_doubles, narrow, set_bits,
     store_rounded, widen,
@@ -47,13 +47,27 @@ struct GlassRays {
     inward: u32,
 }
 
-/// Reflects or refracts every path that has hit glass.
+/// Reflects or refracts every path that has hit glass, by chance.
 pub(super) fn scatter(job: &Job, work: &mut Workspace, bounce: u32) {
+    let choice = |paths: &Paths, state: &PathStateRow| {
+        job.sampler.lobe_row(&paths.sampler_row(state), bounce)
+    };
+    scatter_by(job, work, bounce, choice);
+}
+
+/// Reflects every path that has hit glass where the reflectance is more than its `choice`, and refracts it elsewhere.
+#[inline(always)]
+pub(super) fn scatter_by(
+    job: &Job,
+    work: &mut Workspace,
+    bounce: u32,
+    choice: impl Fn(&Paths, &PathStateRow) -> F32x16,
+) {
     let Some(queue) = work.queues.take(MaterialKind::Dielectric) else { return };
     let (tinted, nested) = (is_tinted(job.world), work.paths.tracks_interiors());
     for (first, lanes) in queue.rows() {
         let state = queue.state_row(first);
-        let choice = job.sampler.lobe_row(&work.paths.sampler_row(&state), bounce);
+        let choice = choice(&work.paths, &state);
         let mut hits = gather_hits(job.world, work, (&queue, first), (state, choice));
         if nested {
             set_bits(lanes).for_each(|lane| find_outside_ior(job.world, work, &mut hits, lane));

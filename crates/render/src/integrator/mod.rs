@@ -24,6 +24,7 @@ pub mod near_misses;
 mod next_rays;
 pub mod path;
 pub mod path_state;
+pub mod preview;
 pub mod probe_batch;
 mod roulette;
 pub mod shading_row;

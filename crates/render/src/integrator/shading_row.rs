@@ -6,7 +6,7 @@ use super::workspace::Workspace;
 use crate::lanes::{F32x16, Lanes, U32x16};
 use crate::sampling::{Bases, Basis};
 use crate::vec3::Vec3;
-use crate::world::{ROW, ReceiverRow};
+use crate::world::{ROW, ReceiverRow, World};
 
 /// A row of surface points from which shadow rays or next rays start.
 pub struct SurfaceRow {
@@ -61,6 +61,16 @@ impl SurfaceRow {
             inside: queue.inside(first),
             state: queue.state_row(first),
         }
+    }
+}
+
+impl SurfaceRow {
+    /// Returns the characteristic colors at the points: [`World::albedo`].
+    #[inline(always)]
+    pub fn albedo(&self, world: &World) -> Vec3<F32x16> {
+        let colors = self.at.own.map(|hit| world.albedo(hit));
+        let channel = |i: usize| F32x16::new(colors.map(|color| color[i]));
+        Vec3::new(channel(0), channel(1), channel(2))
     }
 }
 

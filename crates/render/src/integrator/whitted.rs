@@ -52,7 +52,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
 
 /// Adds environment and suns to paths that leave the scene. They have come from the camera by mirrors
 /// and glass alone, so there is no MIS weight.
-fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
+pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
     let environment = &job.world.environment;
     for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
         let direction = work.rays.direction.row(row);
@@ -70,7 +70,7 @@ fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
 }
 
 /// Adds the light of emitters to paths that hit them.
-fn add_emitted(job: &Job, work: &mut Workspace) {
+pub(super) fn add_emitted(job: &Job, work: &mut Workspace) {
     for row in work.queues.of(MaterialKind::Emitter).into_iter().flat_map(MaterialQueue::ray_rows) {
         let material = job.world.material(work.hits.sphere[row]);
         let radiance = job.world.materials.emitter[material.row()].radiance;

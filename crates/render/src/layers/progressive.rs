@@ -114,7 +114,7 @@ impl TileLayers {
             return;
         }
         if !self.centered && job.tracer.traversal != Traversal::Brute {
-            self.tile.view = view(job, &self.tile);
+            self.tile.view = view(job, self.tile.region);
         }
         if self.tile.view == View::Anything || job.world.ground.is_some() {
             self.trace(job, samples, work);
@@ -136,7 +136,7 @@ impl TileLayers {
         if self.centered {
             return;
         }
-        generate_centers(job, &self.tile, work);
+        generate_centers(job, self.tile.pixels(), work);
         stages::intersect(job, work);
         for (sums, &hit) in self.sums.iter_mut().zip(&work.hits.sphere) {
             sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);

@@ -15,11 +15,10 @@ use std::ops::Range;
 /// Samples per pixel and pass; those of a tile are one batch of paths.
 pub(super) const PASS: u32 = 16;
 
-/// Returns the surfaces that camera rays of a tile may hit.
-pub(crate) fn view(job: &Job, tile: &Tile) -> View {
+/// Returns the surfaces that camera rays of a region may hit.
+pub(crate) fn view(job: &Job, Region { x, y, width, height }: Region) -> View {
     let world = job.world;
     let reach = f64::from(job.filter.radius()) - 0.5;
-    let Region { x, y, width, height } = tile.region;
     let low = DVec2::new(f64::from(x), f64::from(y)) - reach;
     let high = DVec2::new(f64::from(x + width), f64::from(y + height)) + reach;
     let hit = world.bvh.may_be_hit(&world.spheres, &world.camera.beam(low, high));

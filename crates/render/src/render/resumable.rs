@@ -91,7 +91,7 @@ impl ResumableRender {
                 return State::unmeasured(film);
             }
             let views: Vec<View> =
-                film.tiles.par_iter().map(|tile| pass::view(job, tile)).collect();
+                film.tiles.par_iter().map(|tile| pass::view(job, tile.region)).collect();
             if known {
                 film.tiles.iter_mut().zip(&views).for_each(|(tile, &view)| tile.view = view);
             }

@@ -1,8 +1,10 @@
 //! The environment: radiance of rays that hit nothing.
 
+mod irradiance;
 mod picture;
 mod region;
 
+pub use irradiance::Irradiance;
 pub(super) use picture::luminance;
 pub use picture::{PartBounds, Picture, SkyLight, SkySamples};
 

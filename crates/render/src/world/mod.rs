@@ -32,10 +32,13 @@ pub(crate) use caustics::{
 };
 pub use census::Features;
 pub use cut::{Cut, Span};
-pub use environment::{Environment, PartBounds, Picture, Radiance, SkyLight, SkySamples};
+pub use environment::{
+    Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
+};
 pub(crate) use fit::Placement;
 pub use ground::Ground;
 pub(crate) use light_images::{LightImage, LightImages, SeenLight};
+pub(crate) use lights::MAX_MIDDLES;
 pub use lights::{
     Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
 };

@@ -29,7 +29,7 @@ impl App {
     /// Saves image and scene in a separate thread, because large scenes take seconds.
     pub(super) fn save(&mut self) {
         let (Some(scene), Some(picture), Some(settings)) =
-            (&self.scene, self.viewer.whole(), self.viewer.settings_of_picture())
+            (&self.scene, self.viewer.sampled(), self.viewer.settings_of_picture())
         else {
             return;
         };
@@ -40,9 +40,8 @@ impl App {
         let facts = self.viewer.facts.clone();
         self.viewer.show_message(format!("saving {}", path.display()));
         let saver = std::thread::spawn(move || {
-            let (image, matte) = picture.visible();
             let (title, camera, settings) = (&*title, &camera, &settings);
-            let seen = SavedImage { title, camera, settings, look, image, matte };
+            let seen = SavedImage { title, camera, settings, look, picture: &picture };
             let toml = path.with_extension("toml");
             let saved = save_picture(&seen, &path)
                 .and_then(|()| save_bar(&job, &facts, settings.height))

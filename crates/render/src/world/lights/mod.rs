@@ -9,6 +9,7 @@ mod sun;
 mod tree;
 
 pub use point::Point;
+pub(crate) use row::MAX_MIDDLES;
 pub use row::{LightRow, ROW, ReceiverRow};
 pub(super) use sampler::LightSampler;
 pub use sphere_light::Disc;
@@ -138,6 +139,11 @@ impl Lights {
     /// Returns the number of lights.
     pub fn len(&self) -> usize {
         self.emitters.len() + self.points.len() + self.suns.len() + self.sky_parts
+    }
+
+    /// Returns the number of lights apart from parts of the environment's picture.
+    pub(crate) fn count_without_sky(&self) -> usize {
+        self.len() - self.sky_parts
     }
 
     /// Returns whether suns and emissive spheres are sampled in the directions of mirrored rays: if there

@@ -15,6 +15,9 @@ use std::ops::Range;
 /// Samples in a row.
 pub const ROW: usize = 16;
 
+/// Maximum number of lights that [`Lights::middle_row`] distinguishes.
+pub(crate) const MAX_MIDDLES: usize = 4;
+
 /// A row of receivers; lane by lane a [`Receiver`].
 #[derive(Clone, Copy, Debug)]
 pub struct ReceiverRow {
@@ -185,6 +188,32 @@ impl Lights {
         };
         let samples = self.sample_lights(world, at, (&light, lanes), [u, v]);
         samples.chosen(F32x16::new(probability))
+    }
+
+    /// Returns the light that comes from the middle of a light, without chance: from light number `index` if there are
+    /// at most [`MAX_MIDDLES`], apart from the environment's picture; otherwise from one that stands for a share of
+    /// `1 / MAX_MIDDLES` of the light at each receiver.
+    #[inline(always)]
+    pub(crate) fn middle_row(
+        &self,
+        world: &World,
+        at: &ReceiverRow,
+        index: usize,
+        lanes: u32,
+    ) -> LightRow {
+        let (count, middle) = (self.count_without_sky(), [F32x16::splat(0.0); 2]);
+        if count <= MAX_MIDDLES {
+            return self.sample_lights(world, at, (&[index as u32; ROW], lanes), middle);
+        }
+        let draw = [F64x8::splat((index as f64 + 0.5) / MAX_MIDDLES as f64); 2];
+        let (light, probability) = match &self.sampler {
+            LightSampler::Tree(tree) => tree.choose_row(at, draw, lanes),
+            _ => self.choose_each(at, draw),
+        };
+        let others = set_bits(lanes).filter(|&lane| (light[lane] as usize) < count);
+        let lanes = others.fold(0, |lanes, lane| lanes | 1 << lane);
+        let samples = self.sample_lights(world, at, (&light, lanes), middle);
+        samples.chosen(F32x16::new(probability) * F32x16::splat(MAX_MIDDLES as f32))
     }
 
     /// Samples the lights that were chosen.
