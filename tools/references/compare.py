@@ -17,32 +17,27 @@ Mitsuba needs LLVM for its fastest variant; DRJIT_LIBLLVM_PATH names the library
 import argparse
 import json
 import math
-import resource
-import shutil
-import subprocess
 import sys
 import tempfile
-import time
 from functools import partial
 from pathlib import Path
 
 import errors
 import scenes
-from scene_file import read_pfm, read_scene
+from errors import mean, number
+from renderers import (
+    HERE, LONG, Failed, add_arguments, add_cycles, cycles_command, cycles_python, fastest_variant, mitsuba_command, render_mitsuba,
+    render_spherule, render_worker,
+)
+from scene_file import read_scene
 
-HERE = Path(__file__).resolve().parent
+VARIANTS = ["llvm_ad_rgb", "scalar_rgb"]
 SAMPLERS = ["multijitter", "orthogonal", "ldsampler", "independent"]
-# Seeds of long renders; other images have small seeds.
-LONG = 1000
 # Greatest number of spheres for which long renders have Mitsuba's shape `sphere`: more take too long. Its `ellipsoids` are faster, but
 # some pixels are wrong.
 MOST_EXACT = 1000
 # Greatest factor from one level of samples to the next.
 STEP = 4
-
-
-class Failed(Exception):
-    """A renderer that could not render a scene."""
 
 
 def main():
@@ -67,7 +62,7 @@ def main():
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", help="scene files, or names of generated scenes [default: all]")
-    parser.add_argument("--spherule", type=Path, default=HERE.parents[1] / "target/release/spherule")
+    add_arguments(parser)
     parser.add_argument("--seed", type=int, default=1, help="seed of the generated scenes [default: 1]")
     parser.add_argument("--size", type=int, default=512, help="edge of the generated scenes' images [default: 512]")
     parser.add_argument("--spp", type=int, default=64, help="samples per pixel of the images compared [default: 64]")
@@ -75,10 +70,9 @@ def arguments():
     parser.add_argument("--long-images", type=int, default=4, help="images of each long render [default: 4]")
     parser.add_argument("--long-spp", type=int, default=128, help="samples per pixel of each of these [default: 128]")
     parser.add_argument("--most-seconds", type=float, default=40, help="processor time of the longest image [default: 40]")
-    parser.add_argument("--threads", type=int, default=2, help="threads of every renderer [default: 2]")
     parser.add_argument("--variant", help="variant of Mitsuba [default: the faster of llvm_ad_rgb and scalar_rgb]")
     parser.add_argument("--sampler", help="sampler of Mitsuba [default: the one with the least error in equal time]")
-    parser.add_argument("--cycles", metavar="PYTHON", help="Python that can import bpy [default: this one, if it can]")
+    add_cycles(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write all results to FILE")
     return parser.parse_args()
 
@@ -86,11 +80,7 @@ def arguments():
 def scene_paths(options):
     """Returns the scene files to compare, after generating those that are given by name."""
     names = options.scenes or [*sorted((HERE / "scenes").glob("*.toml")), *scenes.SCENES]
-    for name in names:
-        if name in scenes.SCENES:
-            yield scenes.generate(name, scenes.FOLDER, options.seed, options.size)
-        else:
-            yield Path(name)
+    return scenes.paths(names, options.seed, options.size)
 
 
 def compare(path, folder, options):
@@ -98,7 +88,8 @@ def compare(path, folder, options):
     ours = partial(render_spherule, path, folder, options)
     long_seeds = range(LONG, LONG + options.long_images)
     spherule = errors.LongRender([run["image"] for run in ours(options.long_spp, long_seeds)])
-    settings = fastest_variant(path, folder, options)
+    variants = [options.variant] if options.variant else VARIANTS
+    settings = fastest_variant(path, folder, options, variants)
     exact = settings | {"shapes": "sphere"} if read_scene(path).count() <= MOST_EXACT else settings
     runs = render_mitsuba(path, folder, options, exact, options.long_spp, long_seeds)
     mitsuba = errors.LongRender([run["image"] for run in runs])
@@ -115,14 +106,15 @@ def compare(path, folder, options):
         "worst": agreement.worst,
         "settings": settings,
         "spherule": measure(ours, reference, options),
-        "mitsuba": measure(theirs, reference, options) | total_mitsuba(path, folder, settings, options),
+        "mitsuba": measure(theirs, reference, options) | whole(mitsuba_command(path, folder, settings, options), folder, options),
     }
     if cycles_python(options):
         try:
-            cycles = partial(render_cycles, path, folder, options)
+            command = cycles_command(path, folder, options, ["--exact"])
+            cycles = partial(render_worker, command, folder)
             images = [run["image"] for run in cycles(options.long_spp, long_seeds)]
             row["cycles_agreement"] = vars(errors.agreement(errors.LongRender(images), spherule))
-            row["cycles"] = measure(cycles, reference, options) | total_cycles(path, folder, options)
+            row["cycles"] = measure(cycles, reference, options) | whole(command, folder, options)
         except Failed as error:
             print(f"{path.stem}: left out of the table of Cycles: {error}", file=sys.stderr)
     return row
@@ -154,26 +146,10 @@ def measure(render, reference, options):
         spp *= STEP
 
 
-def mean(values):
-    values = list(values)
-    return sum(values) / len(values)
-
-
-def fastest_variant(path, folder, options):
-    """Returns the variant and the shapes of Mitsuba that take the least time."""
-    trials, failure = [], None
-    for variant in [options.variant] if options.variant else ["llvm_ad_rgb", "scalar_rgb"]:
-        for shapes in ("sphere", "ellipsoids"):
-            settings = {"variant": variant, "shapes": shapes, "sampler": "multijitter"}
-            try:
-                runs = render_mitsuba(path, folder, options, settings, 4, range(1))
-            except Failed as error:
-                failure = error
-                break
-            trials.append((min(run["cpu"] for run in runs), settings))
-    if not trials:
-        raise failure
-    return min(trials, key=lambda trial: trial[0])[1]
+def whole(command, folder, options):
+    """Returns the wall-clock time of a process from its start to its written image, and of the render alone."""
+    run = render_worker(command, folder, options.spp, [0])[0]
+    return {"total": run["total"], "alone": run["wall"]}
 
 
 def best_sampler(path, folder, options, settings, reference):
@@ -184,97 +160,6 @@ def best_sampler(path, folder, options, settings, reference):
         error = mean(reference.relative_error(run["image"]) for run in runs)
         costs[sampler] = error * min(run["cpu"] for run in runs)
     return min(costs, key=costs.get)
-
-
-def render_spherule(path, folder, options, spp, seeds):
-    """Renders an image for each seed."""
-    runs = []
-    for seed in seeds:
-        image = folder / "image.pfm"
-        before, start = children_seconds(), time.perf_counter()
-        output = execute(spherule_command(path, image, spp, seed, options))
-        wall, cpu = time.perf_counter() - start, children_seconds() - before
-        alone = json.loads(output)["statistics"]["render_seconds"]
-        runs.append({"image": read_pfm(image), "cpu": cpu, "wall": wall, "alone": alone})
-    return runs
-
-
-def children_seconds():
-    """Returns the user and system time of all finished child processes."""
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
-
-
-def spherule_command(path, image, spp, seed, options):
-    settings = ["--spp", spp, "--seed", seed, "--threads", options.threads]
-    return [options.spherule, "render", path, *settings, "--quiet", "--json", "-o", image]
-
-
-def render_mitsuba(path, folder, options, settings, spp, seeds):
-    """Renders an image for each seed in one process, whose start and compilation are not counted."""
-    command = mitsuba_command(path, folder, settings, options)
-    # Long renders are not timed, and the scalar variant does not compile.
-    if seeds[0] < LONG and settings["variant"].startswith("llvm"):
-        command.append("--warm-up")
-    return render_worker(command, folder, spp, seeds)
-
-
-def mitsuba_command(path, folder, settings, options):
-    chosen = [f"--{key}={value}" for key, value in settings.items()]
-    return [sys.executable, HERE / "mitsuba_render.py", path, "--folder", folder, f"--threads={options.threads}", *chosen]
-
-
-def render_cycles(path, folder, options, spp, seeds):
-    """Renders an image for each seed in one process, whose start is not counted."""
-    return render_worker(cycles_command(path, folder, options), folder, spp, seeds)
-
-
-def cycles_command(path, folder, options):
-    return [cycles_python(options), "-W", "ignore", HERE / "cycles_render.py", path, "--folder", folder, f"--threads={options.threads}"]
-
-
-def cycles_python(options):
-    """Returns the Python that runs Cycles, if there is one."""
-    if not hasattr(options, "cycles_found"):
-        python = options.cycles or sys.executable
-        works = shutil.which(python) and subprocess.run([python, "-c", "import bpy"], capture_output=True).returncode == 0
-        if not works:
-            print("Cycles is left out: this Python cannot import bpy (pip install bpy; --cycles)", file=sys.stderr)
-        options.cycles_found = python if works else None
-    return options.cycles_found
-
-
-def render_worker(command, folder, spp, seeds):
-    output = execute([*command, "--spp", spp, "--seeds", *seeds])
-    runs = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
-    for run in runs:
-        run["image"] = read_pfm(folder / f"{run['seed']}.pfm")
-    return runs
-
-
-def total_mitsuba(path, folder, settings, options):
-    return total_worker(mitsuba_command(path, folder, settings, options), options)
-
-
-def total_cycles(path, folder, options):
-    return total_worker(cycles_command(path, folder, options), options)
-
-
-def total_worker(command, options):
-    """Returns the wall-clock time from the start of a process to its written image, and of the render alone."""
-    start = time.perf_counter()
-    output = execute([*command, "--spp", options.spp])
-    total = time.perf_counter() - start
-    return {"total": total, "alone": min(json.loads(line)["wall"] for line in output.splitlines() if line.startswith("{"))}
-
-
-def execute(command):
-    """Runs a program; returns its standard output."""
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if done.returncode:
-        lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
-        raise Failed(lines[-1])
-    return done.stdout
 
 
 def summary(row):
@@ -321,20 +206,15 @@ def renderer_table(rows, name):
 def equal_error(row, name="mitsuba"):
     """Returns how many times Spherule's processor time the other renderer takes to the error of its own image."""
     theirs = row[name]["at"]
-    seconds, sign = errors.time_to(row["spherule"]["levels"], theirs["relative"], "relative")
+    seconds, sign = errors.time_to(row["spherule"]["levels"], theirs["relative"], "relative", "cpu")
     # A bound on Spherule's time is the opposite bound on the ratio.
     return {"<": ">", ">": "<"}.get(sign, sign) + number(theirs["cpu"] / max(seconds, 1e-9))
 
 
 def seconds_to(measured):
     """Returns the processor time to a root mean square error of 0.01."""
-    seconds, sign = errors.time_to(measured["levels"], 1e-4, "squared")
+    seconds, sign = errors.time_to(measured["levels"], 1e-4, "squared", "cpu")
     return sign + number(seconds)
-
-
-def number(value):
-    """Returns a number with two significant digits, or all before the point."""
-    return f"{value:.2g}" if value < 10 else f"{value:.0f}"
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Errors of images: their reference, bias, relative mean squared error and fireflies."""
+"""Errors of images: their reference, bias, mean squared errors, FLIP and fireflies, and times to an error."""
 
 import math
 from dataclasses import dataclass
@@ -17,6 +17,7 @@ class LongRender:
     """Independent images of one renderer, of the same scene and settings."""
 
     def __init__(self, images):
+        self.images = images
         self.count = len(images)
         self.mean = np.mean(images, axis=0)
         # Variance of the mean.
@@ -104,22 +105,47 @@ class Reference:
         return int((image.mean(axis=2) > self.limit).sum())
 
 
-def time_to(levels, error, key):
+def flip(reference, image):
+    """Returns the mean of NVIDIA's LDR-FLIP of two images of linear radiance, both shown as sRGB, which clips them."""
+    # Only one script needs it.
+    from flip_evaluator import evaluate
+
+    return evaluate(srgb(reference), srgb(image), "LDR", applyMagma=False)[1]
+
+
+def srgb(image):
+    """Returns linear radiance as numbers of sRGB from 0 to 1, clipped."""
+    clipped = np.clip(image, 0, 1)
+    return np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055).astype(np.float32)
+
+
+def time_to(levels, error, key, time, power=1.0):
     """Returns the time at which a renderer reaches an error, and how it is known.
 
-    `levels` are measurements with more and more samples. Between two of them, error and time are interpolated in logarithms. Beyond
-    the last they are extrapolated, marked by "~": to an error 1.5 times lower at most, or 30 times if the squared error falls there
-    as 1 / samples within 20 %. Otherwise the time is only bounded.
+    `levels` are measurements with more and more samples; `key` and `time` name their error and their time. Between two of them,
+    error and time are interpolated in logarithms. Beyond the last they are extrapolated, marked by "~": for squared errors, whose
+    `power` is 1, to an error 1.5 times lower at most, or 30 times if it falls there as 1 / samples within 20 %; for others, which fall
+    as 1 / samples^power, to these factors to that power. Otherwise the time is only bounded.
     """
     for earlier, later in zip(levels, levels[1:]):
         if earlier[key] >= error >= later[key] and earlier[key] > later[key] > 0:
             part = math.log(earlier[key] / error) / math.log(earlier[key] / later[key])
-            return earlier["cpu"] * (later["cpu"] / earlier["cpu"]) ** part, ""
+            return earlier[time] * (later[time] / earlier[time]) ** part, ""
     if levels[0][key] < error:
-        return levels[0]["cpu"], "<"
+        return levels[0][time], "<"
     earlier, later = levels[-2:]
     if earlier[key] > later[key] > 0:
         slope = math.log(earlier[key] / later[key]) / math.log(later["spp"] / earlier["spp"])
-        if later[key] < (30 if 0.8 < slope < 1.2 else 1.5) * error:
-            return later["cpu"] * (later[key] / error) ** (1 / slope), "~"
-    return later["cpu"], ">"
+        if later[key] < (30 if 0.8 < slope / power < 1.2 else 1.5) ** power * error:
+            return later[time] * (later[key] / error) ** (1 / slope), "~"
+    return later[time], ">"
+
+
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values)
+
+
+def number(value):
+    """Returns a number with two significant digits, or all before the point."""
+    return f"{value:.2g}" if value < 10 else f"{value:.0f}"

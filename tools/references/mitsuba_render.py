@@ -14,11 +14,17 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from scene_file import Unsupported, read_scene, render_arguments, rgb, write_pfm
+from scene_file import Unsupported, internal_reflectance, read_scene, render_arguments, rgb, write_pfm
 
 # Half the edge of the square that represents the ground, in the scene's unit. On larger ones, the single precision of Mitsuba makes
 # stripes. The camera should not see its edge, which is nearer than the horizon.
 GROUND = 1e4
+# Distance of suns, in the scene's unit.
+SUN = 1e6
+# Most samples of an image that are rendered at once.
+MOST_SAMPLES = 2**25
+# Difference of the seeds of an image's passes.
+PASS = 2**16
 
 
 def main():
@@ -36,13 +42,22 @@ def main():
     except Unsupported as error:
         sys.exit(f"Mitsuba cannot represent {options.scene.name}: {error}")
     if options.warm_up:
-        np.array(mi.render(scene, spp=options.spp, seed=2**31))
+        render(scene, options.spp, 2**31)
     for seed in options.seeds:
         before, start = time.process_time(), time.perf_counter()
-        image = np.array(mi.render(scene, spp=options.spp, seed=seed))
+        image = render(scene, options.spp, seed)
         wall, cpu = time.perf_counter() - start, time.process_time() - before
         write_pfm(options.folder / f"{seed}.pfm", image)
-        print(json.dumps({"seed": seed, "cpu": cpu, "wall": wall}), flush=True)
+        print(json.dumps({"seed": seed, "cpu": cpu, "wall": wall, "written": time.time()}), flush=True)
+
+
+def render(scene, spp, seed):
+    """Returns an image: the mean of passes, where all samples at once would take too much memory."""
+    width, height = scene.sensors()[0].film().size()
+    most = max(MOST_SAMPLES // (width * height), 1)
+    passes = -(-spp // most)
+    images = (np.array(mi.render(scene, spp=-(-spp // passes), seed=seed + PASS * i)) for i in range(passes))
+    return sum(images) / passes
 
 
 def scene_dict(scene, options):
@@ -55,7 +70,7 @@ def scene_dict(scene, options):
         **environment(scene),
     }
     for i, light in enumerate(scene.table.get("light", [])):
-        result[f"light-{i}"] = emitter(light)
+        result[f"light-{i}"] = emitter(light, scene)
     bsdfs = {name: bsdf(material) for name, material in scene.materials.items() if material["kind"] != "emitter"}
     for name, plugin in bsdfs.items():
         result[f"material-{name}"] = {**plugin, "id": f"material-{name}"}
@@ -103,8 +118,7 @@ def environment(scene):
         picture = at_poles(scene.picture).astype(np.float32)
         turn = mi.ScalarTransform4f().rotate([0, 1, 0], -90)
         return {"environment": {"type": "envmap", "bitmap": mi.Bitmap(picture), "to_world": turn}}
-    color = rgb(scene.table.get("environment", {}).get("color", 1))
-    return {"environment": {"type": "constant", "radiance": spectrum(color)}} if any(color) else {}
+    return {"environment": {"type": "constant", "radiance": spectrum(scene.sky)}} if any(scene.sky) else {}
 
 
 def at_poles(picture):
@@ -121,9 +135,18 @@ def at_poles(picture):
     return result
 
 
-def emitter(light):
+def emitter(light, scene):
     """Returns a light that is not a sphere."""
-    if light["kind"] == "sun" and light.get("angular_radius", 0) == 0:
+    if light["kind"] == "sun":
+        sine = math.sin(math.radians(light.get("angular_radius", 0.27)))
+        if sine and scene.picture is not None:
+            raise Unsupported("a sun with extent before an environment map, which it would hide")
+        if sine:
+            direction = np.array(light["direction"]) / math.hypot(*light["direction"])
+            # A sphere hides the sky behind it.
+            radiance = [x / (math.pi * sine**2) + sky for x, sky in zip(rgb(light["irradiance"]), scene.sky)]
+            sun = {"type": "area", "radiance": spectrum(radiance)}
+            return {"type": "sphere", "center": (SUN * direction).tolist(), "radius": SUN * sine, "emitter": sun}
         return {
             "type": "directional",
             "direction": [-x for x in light["direction"]],
@@ -131,7 +154,7 @@ def emitter(light):
         }
     if light["kind"] == "point" and light.get("falloff", "square") == "square":
         return {"type": "point", "position": light["position"], "intensity": spectrum(light["intensity"])}
-    raise Unsupported("lights must be points or suns without extent")
+    raise Unsupported("points of light without falloff")
 
 
 def surface(name, material):
@@ -178,15 +201,6 @@ def base_reflectance(color, ior):
     eta = 1 / ior
     polynomial = 0.0636 / eta + 0.6681 + eta * (0.7099 - 1.4399 * eta)
     return series / (1 + series * polynomial)
-
-
-def internal_reflectance(ior):
-    """Returns the reflectance of a dielectric for diffuse light from inside, by the midpoint rule."""
-    cosine = (np.arange(1_000_000) + 0.5) / 1_000_000
-    outside = np.sqrt(np.maximum(1 - (1 - cosine**2) * ior**2, 0))
-    parallel = (cosine - ior * outside) / (cosine + ior * outside)
-    perpendicular = (ior * cosine - outside) / (ior * cosine + outside)
-    return float(np.mean((parallel**2 + perpendicular**2) * cosine))
 
 
 def ellipsoids(spheres):

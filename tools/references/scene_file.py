@@ -2,7 +2,11 @@
 
 import argparse
 import csv
+import functools
+import hashlib
+import struct
 import tomllib
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,6 +40,12 @@ class Scene:
     @property
     def materials(self):
         return self.table.get("material", {})
+
+    @property
+    def sky(self):
+        """The radiance of a constant environment: white by default, but black if there are lights."""
+        lit = "light" in self.table or any(material["kind"] == "emitter" for material in self.materials.values())
+        return rgb(self.table.get("environment", {"color": 0 if lit else 1}).get("color", 1))
 
     def count(self):
         return sum(len(group.radii) for group in self.spheres.values())
@@ -88,9 +98,29 @@ def check(table):
         raise Unsupported("the environment must be constant or a picture, and illuminate the scene")
     if environment.get("rotation", 0) or environment.get("up", [0, 1, 0]) != [0, 1, 0]:
         raise Unsupported("an environment map must not be rotated")
-    for section in ("generate", "slice"):
+    for section in ("generate", "slice", "look"):
         if section in table:
             raise Unsupported(f"the section `{section}`")
+
+
+def fingerprint(path):
+    """Returns a hash of a scene file and of all files that it names."""
+    table = tomllib.loads(path.read_text())
+    named = [file["path"] for file in table.get("file", [])]
+    if "file" in table.get("environment", {}):
+        named.append(table["environment"]["file"])
+    contents = [path.read_bytes(), *((path.parent / name).read_bytes() for name in named)]
+    return hashlib.blake2b(b"".join(hashlib.blake2b(content).digest() for content in contents), digest_size=8).hexdigest()
+
+
+@functools.lru_cache
+def internal_reflectance(ior):
+    """Returns the reflectance of a dielectric for diffuse light from inside, by the midpoint rule."""
+    cosine = (np.arange(1_000_000) + 0.5) / 1_000_000
+    outside = np.sqrt(np.maximum(1 - (1 - cosine**2) * ior**2, 0))
+    parallel = (cosine - ior * outside) / (cosine + ior * outside)
+    perpendicular = (ior * cosine - outside) / (ior * cosine + outside)
+    return float(np.mean((parallel**2 + perpendicular**2) * cosine))
 
 
 def rgb(value):
@@ -115,3 +145,16 @@ def write_pfm(path: Path, image):
     with open(path, "wb") as file:
         file.write(f"PF\n{width} {height}\n-1.0\n".encode())
         file.write(np.ascontiguousarray(image[::-1], dtype="<f4").tobytes())
+
+
+def write_png(path: Path, image):
+    """Writes an image of numbers from 0 to 1, as they are, in PNG with 8 bits."""
+    height, width, _ = image.shape
+    rows = np.round(np.clip(image, 0, 1) * 255).astype(np.uint8).reshape(height, width * 3)
+    # A byte before each row says that it is not filtered.
+    data = np.hstack([np.zeros((height, 1), np.uint8), rows]).tobytes()
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for kind, content in ((b"IHDR", header), (b"IDAT", zlib.compress(data)), (b"IEND", b"")):
+            file.write(struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content)))

@@ -2,6 +2,7 @@
 """Generates the large scenes of the comparison: a scene file, its spheres in CSV, and environment maps in PFM.
 
     tools/references/scenes.py                         # all scenes, into target/references
+    tools/references/scenes.py --size 256 grains       # one scene, as a smaller image
     tools/references/scenes.py --seed 7 white-diffuse  # one scene with other random numbers
 
 The same seed gives the same files.
@@ -31,22 +32,28 @@ FIELD_CAMERA = {"fov": 40, "eye": [0, 14, 19], "target": [0, 0, 0.5]}
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES))
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(ALL))
     parser.add_argument("--folder", type=Path, default=FOLDER, help="output folder [default: target/references]")
     parser.add_argument("--seed", type=int, default=1, help="seed of the random numbers [default: 1]")
     parser.add_argument("--size", type=int, default=512, help="width and height in pixels [default: 512]")
     options = parser.parse_args()
-    unknown = [name for name in options.scenes if name not in SCENES]
+    unknown = [name for name in options.scenes if name not in ALL]
     if unknown:
-        parser.error(f"there is no scene {unknown[0]}; the scenes are {', '.join(SCENES)}")
-    for name in options.scenes or SCENES:
+        parser.error(f"there is no scene {unknown[0]}; the scenes are {', '.join(ALL)}")
+    for name in options.scenes or ALL:
         print(generate(name, options.folder, options.seed, options.size))
+
+
+def paths(names, seed, size):
+    """Returns scene files, after generating those that are given by name."""
+    for name in names:
+        yield generate(name, FOLDER, seed, size) if name in ALL else Path(name)
 
 
 def generate(name, folder, seed, size=512):
     """Writes a scene and the files that it names; returns the path of the scene file."""
     folder.mkdir(parents=True, exist_ok=True)
-    scene = SCENES[name](np.random.default_rng(seed))
+    scene = ALL[name](np.random.default_rng(seed))
     sections = [("render", {"size": [size, size], "filter": "box"}), ("camera", scene["camera"])]
     environment = scene.get("environment", {"color": 0})
     if "picture" in scene:
@@ -54,7 +61,8 @@ def generate(name, folder, seed, size=512):
         environment = {"kind": "picture", "file": f"{name}-environment.pfm"}
     sections.append(("environment", environment))
     if "ground" in scene:
-        sections += [("ground", {"material": "ground"}), ("material.ground", scene["ground"])]
+        sections += [("ground", {"material": "ground", "height": scene.get("height", 0)}), ("material.ground", scene["ground"])]
+    sections += [("[light]", light) for light in scene.get("lights", [])]
     sections += [(f"material.{key}", material) for key, material in scene["materials"].items()]
     for center, radius, material in scene.get("lamps", []):
         sections.append(("[sphere]", {"center": center, "radius": radius, "material": material}))
@@ -64,7 +72,7 @@ def generate(name, folder, seed, size=512):
         for (x, y, z, radius), material in zip(scene["spheres"].tolist(), scene["names"]):
             file.write(f"{x},{y},{z},{radius},{material}\n")
     path = folder / f"{name}.toml"
-    lines = [f"# {SCENES[name].__doc__.splitlines()[0]}"]
+    lines = [f"# {ALL[name].__doc__.splitlines()[0]}"]
     for section, keys in sections:
         lines += [f"\n[{section}]", *(f"{key} = {value_text(value)}" for key, value in keys.items())]
     path.write_text("\n".join(lines) + "\n")
@@ -229,6 +237,81 @@ def white_volume(rng):
     }
 
 
+def protein(rng):
+    """4000 overlapping diffuse spheres, like the atoms of a protein, on a ground under a white sky."""
+    count, spacing = 4000, 1.9
+    cells = (np.indices((40, 40, 40)).reshape(3, -1).T - 19.5) * spacing
+    places = cells + rng.uniform(-0.35, 0.35, cells.shape) * spacing
+    # Lumps of about 15 units.
+    lumps = np.sin(places[:, 0] / 5 + 1) + np.sin(places[:, 1] / 4) + np.sin(places[:, 2] / 4.5 + 2)
+    order = np.argsort(np.linalg.norm(places * [0.8, 1.05, 1], axis=1) - 2.5 * lumps)
+    centers = places[order[:count]]
+    # Carbon, nitrogen, oxygen and sulfur: share, van der Waals radius and color.
+    elements = {
+        "carbon": (0.63, 1.7, [0.28, 0.28, 0.28]),
+        "nitrogen": (0.17, 1.55, [0.03, 0.08, 0.75]),
+        "oxygen": (0.19, 1.52, [0.8, 0.01, 0.01]),
+        "sulfur": (0.01, 1.8, [0.8, 0.62, 0.03]),
+    }
+    names = shares(rng, count, [(name, share) for name, (share, _, _) in elements.items()])
+    radii = np.array([elements[name][1] for name in names])
+    return {
+        "camera": {"fov": 30, "eye": [45, 50, 110], "target": [0, -4, 0]},
+        "spheres": np.column_stack([centers, radii]),
+        "names": names,
+        "environment": {"color": 1},
+        "ground": GROUND,
+        "height": float((centers[:, 1] - radii).min()),
+        "materials": {name: {"kind": "lambertian", "color": color} for name, (_, _, color) in elements.items()},
+    }
+
+
+def grains(rng):
+    """3000 diffuse grains with lognormal radii, dropped on a ground, under a sky and a sun of 30 degrees."""
+    count, edge = 3000, 24
+    radii = np.clip(rng.lognormal(math.log(0.3), 0.35, count), 0.12, 0.9)
+    spheres = np.empty((count, 4))
+    for i, radius in enumerate(radii):
+        # The lowest of some places, each on what lies there.
+        places = rng.uniform(-edge / 2, edge / 2, (12, 2))
+        x, y, z, r = spheres[:i].T
+        sums = radius + r
+        gaps = sums**2 - (places[:, :1] - x) ** 2 - (places[:, 1:] - z) ** 2
+        heights = np.max(np.where(gaps > 0, y + np.sqrt(np.maximum(gaps, 0)), radius), axis=1, initial=radius)
+        lowest = np.argmin(heights)
+        spheres[i] = places[lowest, 0], heights[lowest], places[lowest, 1], radius
+    colors = [[0.62, 0.5, 0.33], [0.45, 0.33, 0.2], [0.7, 0.65, 0.55], [0.35, 0.32, 0.3]]
+    names = shares(rng, count, [(f"grain-{i}", 0.25) for i in range(len(colors))])
+    return {
+        "camera": {"fov": 40, "eye": [6, 15, 17], "target": [0, 0.5, 0.5]},
+        "spheres": spheres,
+        "names": names,
+        "environment": {"color": 0.5},
+        "ground": GROUND,
+        "lights": [{"kind": "sun", "direction": [-0.6, 1.4, 0.5], "irradiance": 1.91, "angular_radius": 30}],
+        "materials": {f"grain-{i}": {"kind": "lambertian", "color": color} for i, color in enumerate(colors)},
+    }
+
+
+def crystal(_rng):
+    """A crystal of 2744 diffuse spheres of two kinds, like rock salt, under an overcast sky."""
+    edge = 14
+    cells = np.indices((edge, edge, edge)).reshape(3, -1).T
+    large = cells.sum(axis=1) % 2 == 0
+    radii = np.where(large, 0.59, 0.4)
+    return {
+        "camera": {"fov": 33, "eye": [17, 15, 30], "target": [0, -0.5, 0]},
+        "spheres": np.column_stack([cells - (edge - 1) / 2, radii]),
+        "names": ["chlorine" if is_large else "sodium" for is_large in large],
+        "picture": latlong(512, gradient([0.1] * 3, [1.25] * 3)),
+        "materials": {
+            "chlorine": {"kind": "lambertian", "color": [0.1, 0.7, 0.1]},
+            "sodium": {"kind": "lambertian", "color": [0.33, 0.13, 0.71]},
+        },
+    }
+
+
+# Those for which Spherule is compared with Mitsuba.
 SCENES = {
     "white-diffuse": white_diffuse,
     "white-thirds": white_thirds,
@@ -240,6 +323,11 @@ SCENES = {
     "picture-sky": picture_sky,
     "default-field": default_field,
 }
+# Particles in looks like those of the program's presets.
+PARTICLES = {"protein": protein, "grains": grains, "crystal": crystal}
+ALL = SCENES | PARTICLES
+# Those whose long renders converge: caustics of lamps take too many samples.
+CONVERGING = [name for name in ALL if name not in ("small-lamp", "large-lamp")]
 
 
 if __name__ == "__main__":
