@@ -129,7 +129,9 @@ impl Film {
     /// region.
     pub(crate) fn with_tiles(region: Region, tiles: Range<u32>, squared: bool) -> Self {
         let regions = Self::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
-        let tiles = regions.map(|region| Tile::new(region, squared)).collect();
+        let regions: Vec<Region> = regions.collect();
+        // New memory is slow, and less so if several threads get it.
+        let tiles = regions.into_par_iter().map(|region| Tile::new(region, squared)).collect();
         Self { region, tiles }
     }
 

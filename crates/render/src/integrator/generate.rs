@@ -4,16 +4,20 @@ use super::Job;
 use super::clock::Stage;
 use super::interior;
 use super::workspace::Workspace;
-use crate::film::Tile;
 use crate::lanes::{F32x16, F64x8, MAX_LANES, widen};
 use crate::sampling::{self, SampleRow, Sampler};
 use crate::world::World;
 use std::ops::Range;
 
-/// Starts a path for each of `samples` of each of the tile's pixels. Neighbors in the columns are
-/// neighbors in the image: packets are square.
-pub fn generate(job: &Job, tile: &Tile, samples: Range<u32>, work: &mut Workspace) {
-    generate_streams(job, tile.pixels().map(|(x, y)| (x, y, *job.sampler)), samples, work);
+/// Starts a path for each of `samples` of each of some pixels, no more than a batch. In the order of
+/// [`Tile::pixels`](crate::film::Tile::pixels), packets are square.
+pub fn generate(
+    job: &Job,
+    pixels: impl Iterator<Item = (u32, u32)>,
+    samples: Range<u32>,
+    work: &mut Workspace,
+) {
+    generate_streams(job, pixels.map(|(x, y)| (x, y, *job.sampler)), samples, work);
 }
 
 /// Starts paths for streams of samples: column and row of a pixel, and the sampler of its numbers.

@@ -241,15 +241,16 @@ pub fn features(
     let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
     let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };
-    let tiles = Film::with_tiles(region, tiles, false).tiles;
-    let features: Vec<Vec<Features>> = tiles
+    let regions = Film::tile_regions(region).skip(tiles.start as usize).take(tiles.len());
+    let regions: Vec<Region> = regions.collect();
+    let features: Vec<Vec<Features>> = regions
         .into_par_iter()
         .map_init(
             || Workspace::new(world, elisions),
-            |work, tile| {
-                let mut layers = TileLayers::new(tile);
+            |work, region| {
+                let mut layers = TileLayers::new(region);
                 layers.refine(&job, samples, work);
-                layers.features()
+                layers.features().collect()
             },
         )
         .collect();

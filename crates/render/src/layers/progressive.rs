@@ -2,7 +2,7 @@
 
 use super::sums::Sums;
 use super::{Features, Layers, SAMPLES};
-use crate::film::{Film, Region, Tile, View};
+use crate::film::{Film, Region, TILE, View};
 use crate::integrator::generate::{generate, generate_centers};
 use crate::integrator::workspace::Workspace;
 use crate::integrator::{Job, stages};
@@ -27,7 +27,9 @@ pub struct ProgressiveLayers {
 /// Layers of a tile with the samples so far.
 #[derive(Debug)]
 pub(super) struct TileLayers {
-    tile: Tile,
+    region: Region,
+    /// The surfaces that its camera rays may hit.
+    view: View,
     sums: Vec<Sums>,
     samples: u32,
     /// True if the ids at the pixels' centers are known.
@@ -45,8 +47,9 @@ impl ProgressiveLayers {
         options: &Options,
     ) -> Result<Self, RenderError> {
         let region = render::check(world, settings, options)?;
-        let film = Film::with_tiles(region, 0..u32::MAX, false);
-        let tiles = film.tiles.into_iter().map(TileLayers::new).collect();
+        let tiles: Vec<Region> = Film::tile_regions(region).collect();
+        // New memory is slow, and less so if several threads get it.
+        let tiles = tiles.into_par_iter().map(TileLayers::new).collect();
         Ok(Self { region, settings: settings.clone(), tiles })
     }
 
@@ -79,10 +82,20 @@ impl ProgressiveLayers {
 
     /// Returns the layers so far.
     pub fn layers(&self) -> Layers {
-        let features: Vec<Vec<Features>> =
-            self.tiles.par_iter().with_min_len(16).map(TileLayers::features).collect();
-        let tiles = 0..self.tiles.len() as u32;
-        Layers::gather(self.region, &[(tiles, features.into_iter().flatten().collect())])
+        let Region { x: left, width, height, .. } = self.region;
+        let in_row = width as usize;
+        let mut pixels = vec![Features::NONE; in_row * height as usize];
+        let rows = pixels.par_chunks_mut(in_row * TILE as usize);
+        let rows = rows.zip(self.tiles.par_chunks(width.div_ceil(TILE) as usize));
+        rows.for_each(|(pixels, tiles)| {
+            for tile in tiles {
+                let top = tile.region.y;
+                for ((x, y), features) in tile.region.morton().zip(tile.features()) {
+                    pixels[(y - top) as usize * in_row + (x - left) as usize] = features;
+                }
+            }
+        });
+        Layers { width, height, pixels, statistics: None }
     }
 }
 
@@ -94,9 +107,9 @@ fn extends(a: &Settings, b: &Settings) -> bool {
 
 impl TileLayers {
     /// Returns the layers of a tile without samples.
-    pub(super) fn new(tile: Tile) -> Self {
-        let sums = vec![Sums::default(); tile.len() as usize];
-        Self { tile, sums, samples: 0, centered: false }
+    pub(super) fn new(region: Region) -> Self {
+        let sums = vec![Sums::default(); region.area() as usize];
+        Self { region, view: View::Anything, sums, samples: 0, centered: false }
     }
 
     fn reset(&mut self) {
@@ -114,20 +127,20 @@ impl TileLayers {
             return;
         }
         if !self.centered && job.tracer.traversal != Traversal::Brute {
-            self.tile.view = view(job, self.tile.region);
+            self.view = view(job, self.region);
         }
-        if self.tile.view == View::Anything || job.world.ground.is_some() {
+        if self.view == View::Anything || job.world.ground.is_some() {
             self.trace(job, samples, work);
         }
         (self.samples, self.centered) = (samples, true);
     }
 
     fn trace(&mut self, job: &Job, samples: u32, work: &mut Workspace) {
-        work.view = self.tile.view;
+        work.view = self.view;
         for pass in passes(samples).filter(|pass| pass.end > self.samples) {
             let pass = pass.start.max(self.samples)..pass.end;
             let count = pass.len();
-            generate(job, &self.tile, pass, work);
+            generate(job, self.region.morton(), pass, work);
             stages::intersect(job, work);
             for (pixel, sums) in self.sums.iter_mut().enumerate() {
                 (pixel * count..(pixel + 1) * count).for_each(|row| sums.add(job.world, work, row));
@@ -136,16 +149,16 @@ impl TileLayers {
         if self.centered {
             return;
         }
-        generate_centers(job, self.tile.pixels(), work);
+        generate_centers(job, self.region.morton(), work);
         stages::intersect(job, work);
         for (sums, &hit) in self.sums.iter_mut().zip(&work.hits.sphere) {
             sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);
         }
     }
 
-    /// Returns the features of its pixels, in the order of [`Tile::pixels`].
-    pub(super) fn features(&self) -> Vec<Features> {
-        self.sums.iter().map(|sums| sums.mean(self.samples)).collect()
+    /// Returns the features of its pixels, in the order of [`Tile::pixels`](crate::film::Tile::pixels).
+    pub(super) fn features(&self) -> impl Iterator<Item = Features> {
+        self.sums.iter().map(|sums| sums.mean(self.samples))
     }
 }
 
