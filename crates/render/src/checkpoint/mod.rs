@@ -39,7 +39,7 @@ use std::ops::Range;
 const MAGIC: [u8; 20] = *b"spherule-checkpoint\n";
 
 /// Version of the format.
-const FORMAT: u32 = 6;
+const FORMAT: u32 = 7;
 
 /// The program that writes: another may make other bytes of the same samples.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");

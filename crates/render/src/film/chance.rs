@@ -1,6 +1,6 @@
 //! Light that paths find by chance: how much noise it is expected to make, by near misses.
 
-use super::Role;
+use super::{ExactSums, Role};
 use serde::{Deserialize, Serialize};
 use std::ops::Add;
 
@@ -8,16 +8,16 @@ use std::ops::Add;
 /// samples on it is between 0.2 and 0.6 in images of lamps.
 const EDGES: f64 = 0.5;
 
-/// Sums over the near misses of a tile's probes, from [`NearMisses`]: for each probe and stream in the order of
-/// its samples, so that they do not depend on the batches in which samples are taken.
+/// Sums over the near misses of a tile's probes, from [`NearMisses`]: exact, so that they do not depend on the batches
+/// and parts in which samples are taken.
 ///
 /// [`NearMisses`]: crate::integrator::near_misses::NearMisses
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ChanceLight {
-    /// By probe; empty before the first near miss.
-    terms: Vec<Term>,
+    /// Terms by probe; empty before the first near miss.
+    terms: ExactSums,
     /// Light of the hits, by stream and channel; empty before the first.
-    hits: Vec<[f64; 3]>,
+    hits: ExactSums,
 }
 
 /// The variance of samples of a pixel, averaged over channels, by a pair of samples, or a sum of such.
@@ -50,31 +50,30 @@ pub struct ChanceVariance {
 impl ChanceLight {
     /// Adds a term of one probe, of `probes`.
     pub fn add(&mut self, (probe, probes): (usize, usize), term: Term) {
-        self.terms.resize(probes, Term::default());
-        self.terms[probe] = self.terms[probe] + term;
+        add(&mut self.terms, (probe, probes), term.all());
     }
 
     /// Adds the light of a hit to the stream of its sample, of `streams`.
     pub fn add_hit(&mut self, (stream, streams): (usize, usize), light: [f64; 3]) {
-        self.hits.resize(streams, [0.0; 3]);
-        (0..3).for_each(|channel| self.hits[stream][channel] += light[channel]);
+        add(&mut self.hits, (stream, streams), light);
     }
 
     /// Adds other samples of the same probes.
     pub(super) fn merge(&mut self, other: &Self) {
-        for (probe, term) in other.terms.iter().enumerate() {
-            self.add((probe, other.terms.len()), *term);
-        }
-        for (stream, light) in other.hits.iter().enumerate() {
-            self.add_hit((stream, other.hits.len()), *light);
+        for (sums, others) in [(&mut self.terms, &other.terms), (&mut self.hits, &other.hits)] {
+            if sums.is_empty() {
+                sums.clone_from(others);
+            } else if !others.is_empty() {
+                sums.merge(others);
+            }
         }
     }
 
     /// Returns whether all sums are numbers, and none is negative.
     pub(super) fn is_valid(&self) -> bool {
-        let terms = self.terms.iter().flat_map(Term::all);
-        let hits = self.hits.iter().flatten().copied();
-        terms.chain(hits).all(|sum| sum.is_finite() && sum >= 0.0)
+        let sums = [&self.terms, &self.hits];
+        let exact = sums.iter().all(|sums| sums.is_valid());
+        exact && sums.iter().flat_map(|sums| sums.rounded()).flatten().all(|sum| sum >= 0.0)
     }
 
     /// Returns the variance of the mean of `samples` samples, by `probes` probes of each role with as many.
@@ -85,9 +84,12 @@ impl ChanceLight {
         }
         let (n, pairs) = (f64::from(samples), probes as f64 * f64::from(samples));
         let at_edges = EDGES / n.sqrt();
-        let both = self.terms.iter().fold(Term::default(), |sum, term| sum + *term);
-        let squares: f64 = self.terms.iter().map(|term| (term.rare + term.edges).powi(2)).sum();
-        let of_role = self.hits.chunks_exact(2).skip(role as usize).step_by(2);
+        let terms =
+            || self.terms.rounded().map(|[rare, edges, fourth]| Term { rare, edges, fourth });
+        let both = terms().fold(Term::default(), Add::add);
+        let squares: f64 = terms().map(|term| (term.rare + term.edges).powi(2)).sum();
+        let hits: Vec<[f64; 3]> = self.hits.rounded().collect();
+        let of_role = hits.chunks_exact(2).skip(role as usize).step_by(2);
         let squared = of_role.flat_map(|hits| (0..3).map(|c| (hits[0][c] - hits[1][c]).powi(2)));
         ChanceVariance {
             expected: (both.rare + both.edges * at_edges) / (2.0 * pairs) / n,
@@ -98,8 +100,16 @@ impl ChanceLight {
     }
 }
 
+/// Adds to one of `count` sums.
+fn add(sums: &mut ExactSums, (index, count): (usize, usize), terms: [f64; 3]) {
+    if sums.len() != count {
+        *sums = ExactSums::new(count);
+    }
+    sums.add(index, terms);
+}
+
 impl Term {
-    fn all(&self) -> [f64; 3] {
+    fn all(self) -> [f64; 3] {
         [self.rare, self.edges, self.fourth]
     }
 }

@@ -6,6 +6,8 @@
 //! Robust Geometric Predicates", 1997). With radiance in single precision most pixels need one level,
 //! and nearly all others two.
 
+use serde::{Deserialize, Serialize};
+
 /// The values of three channels.
 type Triple = [f64; 3];
 
@@ -14,7 +16,7 @@ type Triple = [f64; 3];
 pub(super) const LEVELS: usize = 48;
 
 /// An array of sums of three channels.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExactSums {
     /// Levels with one triple per sum, at least one; the sum of all levels is the value.
     levels: Vec<Vec<Triple>>,
@@ -31,6 +33,13 @@ impl ExactSums {
     /// Creates `count` sums of 0.
     pub fn new(count: usize) -> Self {
         Self { levels: vec![vec![[0.0; 3]; count]] }
+    }
+
+    /// Returns whether the levels, read from a file, are finite and of the same size.
+    pub(super) fn is_valid(&self) -> bool {
+        let levels = (1..=LEVELS).contains(&self.levels.len());
+        let same = self.levels.iter().all(|level| level.len() == self.len());
+        levels && same && self.levels.iter().flatten().flatten().all(|term| term.is_finite())
     }
 
     /// Returns the levels of all sums.
