@@ -251,7 +251,7 @@ fn near_miss(
     if previous.mirrored_light_sampled() {
         // Every path adds the light in the mirrored direction, times the reflectance; this is one of the
         // few that follow that direction.
-        weight *= reflectance(job.world, work, row).sqrt();
+        weight *= mirrored_probability(job.world, work, row).sqrt();
     }
     let toward = work.rays.direction.row(row);
     let near = NearMiss {
@@ -268,8 +268,8 @@ fn near_miss(
     (near.value.max_element() > 0.0 && near.value.is_finite()).then_some(near)
 }
 
-/// Returns the reflectance of the smooth surface at which the ray in a row starts.
-fn reflectance(world: &World, work: &Workspace, row: usize) -> f32 {
+/// Returns the probability with which the smooth surface at which the ray in a row starts has mirrored it.
+fn mirrored_probability(world: &World, work: &Workspace, row: usize) -> f32 {
     let own = work.rays.own[row];
     let (origin, toward) = (work.rays.origin.row(row), work.rays.direction.row(row));
     let normal = match (own, &world.ground) {
@@ -277,14 +277,18 @@ fn reflectance(world: &World, work: &Workspace, row: usize) -> f32 {
         (MISS | GROUND, _) => return 1.0,
         _ => (origin - world.spheres.center(own as usize)).normalize_or(toward),
     };
-    let id = world.material(own);
-    let ior = match id.kind() {
-        MaterialKind::Dielectric => world.materials.dielectric[id.row()].ior,
-        MaterialKind::Plastic => world.materials.plastic[id.row()].ior,
-        _ => return 1.0,
-    };
-    let cosine = f64::from(normal.dot(toward).abs()).min(1.0);
-    fresnel::dielectric(cosine, 1.0 / f64::from(ior)).0 as f32
+    let (id, cosine) = (world.material(own), normal.dot(toward).abs().min(1.0));
+    match id.kind() {
+        MaterialKind::Dielectric => {
+            let ior = world.materials.dielectric[id.row()].ior;
+            fresnel::dielectric(f64::from(cosine), 1.0 / f64::from(ior)).0 as f32
+        }
+        MaterialKind::Plastic => {
+            let plastic = &world.materials.plastic[id.row()];
+            plastic.mirrored_probability(world.color(own), cosine)
+        }
+        _ => 1.0,
+    }
 }
 
 /// Returns the common part of two discs of radius `angle` at `distance`, as a fraction of one.

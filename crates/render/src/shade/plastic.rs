@@ -5,7 +5,7 @@
 //! (Weidlich and Wilkie, "Arbitrarily Layered Micro-Facet Surfaces", GRAPHITE 2007, with the series
 //! summed). A white base reflects exactly all light.
 
-use super::{Bsdf, Material, Params, Scatter, fresnel, in_doubles, is_black};
+use super::{BroadcastParams, Bsdf, Material, Params, Scatter, fresnel, in_doubles, is_black};
 use crate::color::Rgb;
 use crate::lanes::{F64x8, Lanes};
 use crate::sampling::cosine_hemispheres;
@@ -47,6 +47,25 @@ impl<L: Lanes> PlasticBsdf<L> {
         in_doubles([cosine, self.ior], |[cosine, ior]| {
             fresnel::dielectric(cosine, F64x8::splat(1.0) / ior).0
         })
+    }
+
+    /// Returns the probability with which the mirrored direction is sampled, for this reflectance of the coat: its share
+    /// of the light if all directions are equally bright, so that dark bases are sampled less.
+    #[inline(always)]
+    fn mirrored_probability(&self, coat: L) -> L {
+        let base = (L::splat(1.0) - coat) * self.base.max_element();
+        // 1 where neither reflects.
+        let sum = (coat + base).max(L::splat(f32::MIN_POSITIVE));
+        L::splat(1.0) - base / sum
+    }
+}
+
+impl Plastic {
+    /// Returns the probability with which the mirrored direction is sampled at this cosine, with the sphere's color as a
+    /// factor.
+    pub(crate) fn mirrored_probability(&self, color: Rgb, cosine: f32) -> f32 {
+        let bsdf: PlasticBsdf<f32> = Self::row(&BroadcastParams(self.params(color)));
+        bsdf.mirrored_probability(bsdf.coat(cosine))
     }
 }
 
@@ -90,7 +109,7 @@ impl<L: Lanes> Bsdf<L> for PlasticBsdf<L> {
 
     #[inline(always)]
     fn pdf(&self, outgoing: Vec3<L>, incoming: Vec3<L>) -> L {
-        let base = L::splat(1.0) - self.coat(outgoing.z);
+        let base = L::splat(1.0) - self.mirrored_probability(self.coat(outgoing.z));
         base * L::splat(FRAC_1_PI) * incoming.z.max(L::splat(0.0))
     }
 
@@ -98,15 +117,18 @@ impl<L: Lanes> Bsdf<L> for PlasticBsdf<L> {
     fn sample(&self, outgoing: Vec3<L>, direction: [L; 2], choice: L) -> Scatter<L> {
         let one = L::splat(1.0);
         let coat = self.coat(outgoing.z);
+        let mirrored = self.mirrored_probability(coat);
+        // No base is sampled if the probability is 1.
+        let below = (one - mirrored).max(L::splat(f32::MIN_POSITIVE));
         let incoming = cosine_hemispheres(direction);
         let base = Scatter {
             incoming,
-            weight: self.base * (one - self.coat(incoming.z)),
-            pdf: (one - coat) * L::splat(FRAC_1_PI) * incoming.z,
+            weight: self.base * ((one - coat) * (one - self.coat(incoming.z)) / below),
+            pdf: (one - mirrored) * L::splat(FRAC_1_PI) * incoming.z,
         };
-        // The probability equals the reflectance: the weight is 1.
-        let mirrored = Scatter::mirrored(outgoing, Vec3::splat(1.0, 1.0, 1.0));
-        Scatter::select(choice.lt(coat), &mirrored, &base)
+        let weight = coat / mirrored.max(L::splat(f32::MIN_POSITIVE));
+        let coated = Scatter::mirrored(outgoing, Vec3::new(weight, weight, weight));
+        Scatter::select(choice.lt(mirrored), &coated, &base)
     }
 
     #[inline(always)]
@@ -120,7 +142,6 @@ impl<L: Lanes> Bsdf<L> for PlasticBsdf<L> {
 mod tests {
     use super::*;
     use crate::sampling::statistics::Grid;
-    use crate::shade::BroadcastParams;
     use crate::shade::tests::{albedo_by_quadrature, albedo_by_sampling, at};
     use crate::shade::tests::{
         rows_equal_their_lanes, samples_follow_density, samples_match_density,
@@ -153,10 +174,12 @@ mod tests {
     #[test]
     fn directions_follow_the_density() {
         for cosine in [1.0, 0.5, 0.1, 0.01] {
-            let (bsdf, outgoing) = (plastic(0.5), at(cosine));
-            let coat = coat(bsdf, outgoing.z);
-            samples_follow_density(&bsdf, outgoing, Grid::hemisphere(Vec3::Z), Some(coat));
-            samples_match_density(&bsdf, outgoing);
+            for color in [0.1, 0.5] {
+                let (bsdf, outgoing) = (plastic(color), at(cosine));
+                let mirrored = f64::from(bsdf.mirrored_probability(Rgb::ONE, outgoing.z));
+                samples_follow_density(&bsdf, outgoing, Grid::hemisphere(Vec3::Z), Some(mirrored));
+                samples_match_density(&bsdf, outgoing);
+            }
         }
     }
 
