@@ -83,7 +83,7 @@ def measure(path, folder, options, spp):
 
     name = f"spherule-{options.long_spp}"
     long = references.kept(path, name, options.long_images, long_image, options.size)
-    reference, radiance = Reference([long]), long.mean.mean()
+    reference, radiance = Reference([long]), float(long.mean.mean())
     runs = []
     for seed in range(1, options.seeds + 1):
         flags = [*size, *([] if spp is None else ["--denoise", "on"])]
