@@ -209,10 +209,10 @@ impl Workspace {
 /// that its noise explains, if the pixel is less reliable than its neighbors. It vanishes as samples grow.
 fn outlier_share(columns: &Columns, prediction: &[Vec<f32>; 3], at: usize) -> f32 {
     let (mut noise, mut change) = (0.0, f32::MIN_POSITIVE);
-    for channel in 0..3 {
+    for (channel, prediction) in prediction.iter().enumerate() {
         let squared = columns.albedo[channel][at].powi(2);
         noise += squared * columns.variance[channel][at];
-        change += squared * (prediction[channel][at] - columns.irradiance[channel][at]).powi(2);
+        change += squared * (prediction[at] - columns.irradiance[channel][at]).powi(2);
     }
     (1.0 - columns.weight[at]) * (OUTLIER_VARIANCES * noise / change).min(1.0)
 }

@@ -44,9 +44,10 @@ pub fn preview(
     let job =
         Job { world, settings: &chosen, sampler: &sampler, filter: &filter, tracer, elisions };
     let occlusion = matches!(settings.integrator, Integrator::Ao { .. });
-    let irradiance = match occlusion {
-        true => Irradiance::constant(Rgb::splat(PI)),
-        false => Irradiance::of(&world.environment),
+    let irradiance = if occlusion {
+        Irradiance::constant(Rgb::splat(PI))
+    } else {
+        Irradiance::of(&world.environment)
     };
     let lighting = Lighting { irradiance, lights: !occlusion, shadows };
     let (width, height) = (region.width as usize, region.height as usize);
