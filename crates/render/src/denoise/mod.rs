@@ -24,8 +24,9 @@
 //! averaged over neighbors, is taken. As samples increase, the variance vanishes, and with it the denoising. Pixels
 //! without noise stay as they are.
 //!
-//! A rare path of much light makes a pixel and its variance much larger than its neighbors. Such a pixel counts little in
-//! their regressions, and where pixels keep their value, it gets theirs as far as its own noise explains the difference.
+//! A rare path of much light makes a pixel and its variance much larger than its neighbors. Such a pixel counts little
+//! in their regressions, and where pixels keep their value, it gets theirs as far as its own noise explains the
+//! difference.
 //!
 //! # The stated error
 //!

@@ -82,8 +82,8 @@ impl Denoiser {
     }
 
     /// Denoises the picture of a film that has statistics, and judges it; with less than two samples per pixel the
-    /// variance is unknown, and the picture stays as it is. Returns `None` if not all pixels have samples, or if the flag
-    /// of the options cancels it. `world` must be that of the beginning.
+    /// variance is unknown, and the picture stays as it is. Returns `None` if not all pixels have samples, or if the
+    /// flag of the options cancels it. `world` must be that of the beginning.
     ///
     /// # Panics
     /// The film is of another region, or without sums of squares.

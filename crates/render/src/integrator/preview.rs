@@ -1,8 +1,8 @@
 //! Preview: direct light without noise, for pictures of a moving camera.
 //!
-//! Nothing is random: rays go through the middles of pixels, shadow rays to the middles of lights; the environment lights surfaces as
-//! if nothing hid it; mirrors and glass continue a path in one direction. So there is no noise, shadows are hard, and
-//! light from other surfaces is missing.
+//! Nothing is random: rays go through the middles of pixels, shadow rays to the middles of lights; the environment lights
+//! surfaces as if nothing hid it; mirrors and glass continue a path in one direction. So there is no noise, shadows are
+//! hard, and light from other surfaces is missing.
 
 use super::Job;
 use super::glass;
@@ -26,8 +26,8 @@ const DEPTH: u32 = 6;
 /// Throughput below which mirrored light is left out.
 const MIN_THROUGHPUT: f32 = 0.01;
 
-/// Fraction of the environment that is visible from the edge of a sphere, more toward its middle: under even light, spheres
-/// would look flat.
+/// Fraction of the environment that is taken as visible from the edge of a sphere; more is toward its middle. Without
+/// it, spheres under even light would look flat.
 const EDGE: f32 = 0.4;
 
 /// The light of a preview.
@@ -158,8 +158,8 @@ impl Shade<'_> {
     }
 }
 
-/// Returns the fraction of light that arrives where a fraction of the surroundings is visible, and the rest has the same
-/// albedo: a fit of path-traced values.
+/// Returns the fraction of light that arrives where a fraction of the environment is visible, and all around has the
+/// same albedo: a fit of path-traced values.
 ///
 /// Jimenez, Wu, Pesce and Jarabo, "Practical Real-Time Strategies for Accurate Indirect Occlusion", 2016, equation 10.
 #[inline(always)]

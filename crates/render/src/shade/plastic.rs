@@ -49,8 +49,8 @@ impl<L: Lanes> PlasticBsdf<L> {
         })
     }
 
-    /// Returns the probability with which the mirrored direction is sampled, for this reflectance of the coat: its share
-    /// of the light if all directions are equally bright, so that dark bases are sampled less.
+    /// Returns the probability with which the mirrored direction is sampled, for this reflectance of the coat: its
+    /// share of the light if all directions are equally bright, so that dark bases are sampled less.
     #[inline(always)]
     fn mirrored_probability(&self, coat: L) -> L {
         let base = (L::splat(1.0) - coat) * self.base.max_element();
@@ -61,8 +61,8 @@ impl<L: Lanes> PlasticBsdf<L> {
 }
 
 impl Plastic {
-    /// Returns the probability with which the mirrored direction is sampled at this cosine, with the sphere's color as a
-    /// factor.
+    /// Returns the probability with which the mirrored direction is sampled at this cosine, with the sphere's color as
+    /// a factor.
     pub(crate) fn mirrored_probability(&self, color: Rgb, cosine: f32) -> f32 {
         let bsdf: PlasticBsdf<f32> = Self::row(&BroadcastParams(self.params(color)));
         bsdf.mirrored_probability(bsdf.coat(cosine))
