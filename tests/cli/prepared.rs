@@ -37,6 +37,20 @@ fn pictures_of_prepared_scenes_are_those_of_the_scene() {
 }
 
 #[test]
+fn prepared_scenes_stop_by_themselves_if_nothing_was_said() {
+    let folder = Folder::new();
+    folder.write("a.xyz", PARTICLES);
+    let size = ["render", "--size", "24x16", "--quiet", "--json"];
+    folder.succeed(&[&size[..], &["a.xyz", "--prepare", "a.prepared"]].concat());
+    let whole = folder.json(&[&size[..], &["a.xyz", "-o", "a.png"]].concat());
+    let again = folder.json(&["render", "a.prepared", "--quiet", "--json", "-o", "b.png"]);
+    assert_eq!(again["noise"]["denoised"], whole["noise"]["denoised"]);
+    assert!(folder.read("a.png") == folder.read("b.png"));
+    let few = ["render", "a.prepared", "--spp", "4", "--quiet", "-o", "c.png"];
+    assert_eq!(folder.run(&few).stderr, b"", "no error was asked for");
+}
+
+#[test]
 fn parts_of_prepared_scenes_merge_with_those_of_the_scene() {
     let folder = Folder::new();
     folder.write(

@@ -12,7 +12,7 @@ use crate::cli::output;
 use spherule_render::atomic::check_destination;
 use spherule_render::memory::Size;
 use spherule_render::prepared::{self, PrepareError};
-use spherule_render::scene::Identity;
+use spherule_render::scene::{Identity, Settings};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -20,6 +20,11 @@ use std::process::ExitCode;
 pub(super) fn write(job: &Job, file: &Path) -> Result<ExitCode, Failure> {
     check_destination(file).map_err(|error| Failure::Write(file.to_owned(), error))?;
     let mut placed = PlacedScene::load(job, None)?;
+    let settings = &mut placed.scene.settings;
+    if !settings.stop_given {
+        // The program's own stop is chosen again when the file is rendered.
+        (settings.until_error, settings.spp) = (None, Settings::default().spp);
+    }
     write_bar(job, placed.legend.as_ref(), placed.scene.settings.height)?;
     let identity = placed.identity.take().unwrap_or_else(|| Identity::of(&placed.scene));
     let mut built = placed.build(job)?;
