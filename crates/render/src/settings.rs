@@ -61,7 +61,7 @@ pub struct Settings {
 /// The choice to denoise a finished picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Denoise {
-    /// Unless the user chose the number of samples or the error, and only if it lowers the measured error.
+    /// Unless the user chose the number of samples or the error, or the measured error rises by it.
     #[default]
     Auto,
     /// Always; the error target is then that of the denoised picture.

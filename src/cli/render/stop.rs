@@ -24,7 +24,7 @@ pub(super) fn choose(
             return Err(Failure::usage("render", message));
         }
         Denoise::On => Some(Choice::Always),
-        Denoise::Auto if !chosen && job.part.is_none() => Some(Choice::Better),
+        Denoise::Auto if !chosen && job.part.is_none() => Some(Choice::UnlessWorse),
         Denoise::Auto | Denoise::Off => None,
     };
     if choice.is_none() {

@@ -286,7 +286,7 @@ impl Renderer {
 fn choice(denoise: Denoise) -> Option<Choice> {
     match denoise {
         Denoise::On => Some(Choice::Always),
-        Denoise::Auto => Some(Choice::Better),
+        Denoise::Auto => Some(Choice::UnlessWorse),
         Denoise::Off => None,
     }
 }

@@ -97,13 +97,22 @@ pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoi
     denoised
 }
 
-/// Maximum squared error of a preferred denoised picture, relative to that of the picture: less gain may be chance.
-const GAIN: f64 = 0.9;
-
-/// Returns whether denoising lowered the error of a picture of this film, by its steering probes.
-pub fn is_better(film: &Film, image: &Image, denoised: &Image) -> bool {
-    let error = |image| noise::squared_error_of(film, image, &[], Role::Steer).value;
-    error(denoised) < GAIN * error(image)
+/// Returns whether denoising raised the error of a picture of this film, by its steering probes and more than by chance.
+///
+/// Where rare paths of much light make most of the error, few probes have nearly all of the difference. It is compared
+/// with its standard error, so that they do not decide alone.
+pub fn is_worse(film: &Film, image: &Image, denoised: &Image) -> bool {
+    let pairs = film.tiles.iter().flat_map(|tile| tile.probes.pairs(Role::Steer));
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for pair in pairs {
+        let (x, y) = (pair.x - film.region.x, pair.y - film.region.y);
+        let at = (y * image.width + x) as usize;
+        let error = |image: &Image| pair.squared_error(image.pixels[at]);
+        let rise = pair.weight * (error(denoised) - error(image));
+        sum += rise;
+        squares += rise * rise;
+    }
+    sum > squares.sqrt()
 }
 
 /// Estimates the relative error of a denoised picture of this film, by its judging probes.

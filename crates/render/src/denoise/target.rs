@@ -1,6 +1,6 @@
 //! Renders whose denoised picture has an error target.
 
-use super::{Denoised, denoise, error_of, is_better};
+use super::{Denoised, denoise, error_of, is_worse};
 use crate::film::{Film, Region};
 use crate::layers::{Layers, ProgressiveLayers, SAMPLES};
 use crate::noise::{self, Estimate, Noise};
@@ -50,8 +50,8 @@ struct Progress {
 pub enum Choice {
     /// Always.
     Always,
-    /// If that lowers the measured error.
-    Better,
+    /// Unless the measured error rises by it, more than by chance.
+    UnlessWorse,
 }
 
 /// A picture whose error is measured, denoised or not.
@@ -113,7 +113,7 @@ impl Denoiser {
     fn judge_picture(&self, film: &Film, layers: &Layers, before: Noise) -> Judged {
         let image = film.resolve();
         let denoised = denoise(&image, &Statistics::of(film), layers);
-        if self.choice == Choice::Better && !is_better(film, &image, &denoised.image) {
+        if self.choice == Choice::UnlessWorse && is_worse(film, &image, &denoised.image) {
             return Judged { denoised: None, before, noise: before };
         }
         let noise = error_of(film, &denoised);

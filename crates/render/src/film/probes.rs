@@ -88,6 +88,19 @@ pub struct ProbePair {
     pub means: [[f64; 3]; PAIR],
 }
 
+impl ProbePair {
+    /// Estimates the squared error of a pixel that is independent of the streams, averaged over channels, without bias:
+    /// it may be negative.
+    pub fn squared_error(&self, pixel: [f32; 3]) -> f64 {
+        let [a, b] = self.means;
+        let product = |channel: usize| {
+            let pixel = f64::from(pixel[channel]);
+            (pixel - a[channel]) * (pixel - b[channel])
+        };
+        (0..3).map(product).sum::<f64>() / 3.0
+    }
+}
+
 /// The reading of one probe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {

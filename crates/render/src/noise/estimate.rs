@@ -150,13 +150,7 @@ pub fn squared_error_of(film: &Film, image: &Image, expected: &[f32], role: Role
     let products = pairs.map(|pair| {
         let (x, y) = (pair.x - film.region.x, pair.y - film.region.y);
         let at = y as usize * image.width as usize + x as usize;
-        let pixel = image.pixels[at];
-        let [a, b] = pair.means;
-        let product = |channel: usize| {
-            let pixel = f64::from(pixel[channel]);
-            (pixel - a[channel]) * (pixel - b[channel])
-        };
-        let value = pair.weight * ((0..3).map(product).sum::<f64>() / 3.0 - expected_of(at));
+        let value = pair.weight * (pair.squared_error(image.pixels[at]) - expected_of(at));
         // Products of both signs: their third moments cancel, or add to the upper tail.
         Estimate { value, variance: value * value, third: value.powi(3).max(0.0) }
     });
