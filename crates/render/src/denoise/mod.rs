@@ -99,8 +99,8 @@ pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoi
 
 /// Returns whether denoising raised the error of a picture of this film, by its steering probes and more than by chance.
 ///
-/// Where rare paths of much light make most of the error, few probes have nearly all of the difference. It is compared
-/// with its standard error, so that they do not decide alone.
+/// Few probes have nearly all of the difference if rare paths of much light make most of the error. It is compared with
+/// its standard error, so that they do not decide alone.
 pub fn is_worse(film: &Film, image: &Image, denoised: &Image) -> bool {
     let pairs = film.tiles.iter().flat_map(|tile| tile.probes.pairs(Role::Steer));
     let (mut sum, mut squares) = (0.0, 0.0);
