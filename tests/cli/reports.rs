@@ -65,6 +65,15 @@ fn images_are_denoised_unless_samples_are_chosen() {
         let plain = report(options);
         assert!(plain["noise"].is_null() && plain["settings"]["spp"] == spp, "{options}");
     }
+    // Samples that a scene states are those of its image, however it looks best.
+    assert!(folder.run(&["field", "--count", "3", "--output", "field.toml"]).status.success());
+    let stated = report("field.toml");
+    assert_eq!(
+        (&stated["noise"]["denoised"], &stated["settings"]["spp"]),
+        (&json!(true), &json!(64))
+    );
+    assert_eq!(stated["statistics"]["samples"], 64 * 40 * 24);
+    assert!(report("field.toml --spp 5")["noise"].is_null());
     let same = report("--spp 6 --denoise on");
     assert_eq!(same["noise"]["denoised"], true);
     assert_eq!(same["statistics"]["samples"], 6 * 40 * 24);

@@ -141,7 +141,7 @@ impl PlacedScene {
             picture_file::check_size("render", region, job.format)?;
         }
         let spheres = scene.spheres.len();
-        let denoise = stop::choose(job, &mut scene.settings, region, spheres)?;
+        let denoise = stop::choose(job, &mut scene, region, spheres)?;
         let asked = job.checkpoints.file().is_some() || job.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
         Ok(Self { scene, legend, orientation, region, identity, denoise, stored: None, load })
@@ -163,7 +163,7 @@ impl PlacedScene {
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
         }
-        let denoise = stop::choose(job, &mut scene.settings, region, stored.sphere_count())?;
+        let denoise = stop::choose(job, &mut scene, region, stored.sphere_count())?;
         let identity = Some(stored.identity.clone());
         let stored = Some(Box::new(stored));
         Ok(Self { scene, legend: None, orientation: None, region, identity, denoise, stored, load })

@@ -15,7 +15,7 @@ const MIN_ALBEDO: f32 = 0.02;
 
 /// Variance at which a pixel has half of the weight, as a multiple of the squared mean deviation of its neighbors.
 /// Pixels of much more variance are rare paths of much light, which would show as stains.
-const OUTLIERS: f32 = 4.0;
+const OUTLIERS: f32 = 16.0;
 
 /// Distance within which the deviation of neighbors is averaged.
 const DEVIATION_RADIUS: usize = 3;

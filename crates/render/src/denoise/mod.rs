@@ -11,7 +11,7 @@
 //!
 //! # The choice of the window
 //!
-//! Each pixel has a prediction for each of three windows, and stays as it is where none is better. The squared error
+//! Each pixel has a prediction for each of two windows, and stays as it is where none is better. The squared error
 //! of a prediction that is linear in the radiance is estimated without a reference (Stein, "Estimation of the Mean of
 //! a Multivariate Normal Distribution", 1981; Li et al., "SURE-Based Optimization for Adaptive Sampling and
 //! Reconstruction", TOG 2012):
@@ -21,7 +21,7 @@
 //! ```
 //!
 //! where the leverage is the derivative of the prediction by the pixel's own mean. The window with the least error,
-//! averaged over neighbors, is taken. As samples increase, the variance vanishes, and with it the denoising. Pixels
+//! averaged over neighbors, is taken; wider ones are preferred where errors are nearly equal. As samples increase, the variance vanishes, and with it the denoising. Pixels
 //! without noise stay as they are.
 //!
 //! A rare path of much light makes a pixel and its variance much larger than its neighbors. Such a pixel counts little

@@ -98,7 +98,7 @@ pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>;
 }
 
 /// Returns the number of pixels of a window.
-const fn pixels(radius: usize) -> usize {
+pub(super) const fn pixels(radius: usize) -> usize {
     (2 * radius + 1).pow(2)
 }
 

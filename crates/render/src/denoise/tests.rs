@@ -7,7 +7,7 @@ use crate::noise::CONFIDENCE;
 use crate::render::{Options, ResumableRender, render};
 use crate::sampling::{mix, unit};
 use crate::scene::generate::default_scene;
-use crate::scene::{Material, Rgb, Scene, Settings};
+use crate::scene::{Material, NamedMaterial, Rgb, Scene, Settings};
 use crate::trace::{Tracer, Traversal};
 use crate::world::World;
 
@@ -206,11 +206,16 @@ fn more_samples_leave_less_to_denoise() {
 }
 
 #[test]
-fn limits_depend_on_size_and_spheres() {
+fn limits_depend_on_size_spheres_and_materials() {
+    let field = default_scene(4).materials;
+    let white = Material::Lambertian { color: Rgb::ONE };
+    let diffuse = [NamedMaterial { name: "white".into(), material: white }];
     let region = |width, height| Region { x: 0, y: 0, width, height };
-    assert_eq!(max_samples(region(960, 540), 400), 64);
-    assert_eq!(max_samples(region(1, 1), 1), 1024);
-    assert_eq!(max_samples(region(4000, 4000), 1), 16);
-    let more = [1, 1 << 10, 1 << 14, 1 << 20].map(|spheres| max_samples(region(512, 512), spheres));
+    assert_eq!(max_samples(region(960, 540), 400, &field), 64);
+    assert_eq!(max_samples(region(1, 1), 1, &[]), 1024);
+    assert_eq!(max_samples(region(4000, 4000), 1, &[]), 16);
+    assert_eq!(max_samples(region(960, 540), 400, &diffuse), 177);
+    let more = [1, 1 << 10, 1 << 14, 1 << 20]
+        .map(|spheres| max_samples(region(512, 512), spheres, &field));
     assert!(more.is_sorted_by(|a, b| a >= b) && more[0] > more[3], "{more:?}");
 }

@@ -1,7 +1,7 @@
 //! Denoising of a tile: predictions, their errors, and the choice among them.
 
 use super::columns::{Columns, MARGIN, box_sums};
-use super::regression::{Prediction, RADII, load, predict};
+use super::regression::{Prediction, RADII, load, pixels, predict};
 use crate::film::Region;
 use crate::image::Image;
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
@@ -25,6 +25,13 @@ const OUTLIER_VARIANCES: f32 = 4.0;
 
 /// Number of choices: the pixel itself, and the prediction of each window.
 const CHOICES: usize = 1 + RADII.len();
+
+/// Fraction of the pixel's variance by which a choice is handicapped, times the noise that it keeps: estimated errors are
+/// uncertain, and noise that stays shows more than a little blur.
+const CAUTION: f32 = 0.5;
+
+/// Fraction of the variance that each choice keeps: that of a mean over its pixels.
+const KEPT: [f32; CHOICES] = [1.0, 1.0 / pixels(RADII[0]) as f32, 1.0 / pixels(RADII[1]) as f32];
 
 /// The picture that is denoised.
 pub(super) struct Input<'a> {
@@ -50,8 +57,10 @@ pub(super) struct Workspace {
     scale: Vec<f32>,
     /// For each choice, 1 where it is the best.
     best: [Vec<f32>; CHOICES],
-    /// Least sum of errors.
+    /// Least sum of errors, handicaps included.
     least: Vec<f32>,
+    /// Sum of the errors of the best choice.
+    chosen: Vec<f32>,
     /// Sum of the weights of errors.
     weights: Vec<f32>,
     scratch: Vec<f32>,
@@ -144,20 +153,27 @@ impl Workspace {
         }
         let weight = &self.columns.weight;
         box_sums(weight, stride, ERROR_RADIUS, &mut self.weights, &mut self.scratch);
-        let [own, windows @ ..] = &self.sums;
-        self.least.clone_from(own);
-        for sums in windows {
-            self.least.iter_mut().zip(sums).for_each(|(least, &sum)| *least = least.min(sum));
+        let [own, ..] = &self.sums;
+        let handicapped = |(sum, own): (&f32, &f32), kept: f32| sum + CAUTION * kept * own;
+        self.least.clear();
+        self.least.resize(own.len(), f32::INFINITY);
+        for (sums, kept) in self.sums.iter().zip(KEPT) {
+            let sums = sums.iter().zip(own).map(|row| handicapped(row, kept));
+            self.least.iter_mut().zip(sums).for_each(|(least, sum)| *least = least.min(sum));
         }
         let mut open = std::mem::take(&mut self.scratch);
         open.clear();
         open.resize(self.least.len(), 1.0);
-        for (best, sums) in self.best.iter_mut().zip(&self.sums) {
+        self.chosen.clear();
+        self.chosen.resize(self.least.len(), 0.0);
+        for ((best, sums), kept) in self.best.iter_mut().zip(&self.sums).zip(KEPT) {
             best.clear();
             // The first of equals.
-            best.extend(sums.iter().zip(&self.least).zip(&mut open).map(|((sum, least), open)| {
-                let best = if sum <= least { *open } else { 0.0 };
+            let rows = sums.iter().zip(own).zip(&self.least).zip(&mut open).zip(&mut self.chosen);
+            best.extend(rows.map(|(((row, least), open), chosen)| {
+                let best = if handicapped(row, kept) <= *least { *open } else { 0.0 };
                 *open -= best;
+                *chosen += best * row.0;
                 best
             }));
         }
@@ -197,7 +213,7 @@ impl Workspace {
                     });
                     mixed / all * columns.albedo[channel][at]
                 });
-                let error = self.least[at] / (3.0 * self.weights[at]) * self.scale[at];
+                let error = self.chosen[at] / (3.0 * self.weights[at]) * self.scale[at];
                 pixels.push((radiance, error.max(0.0)));
             }
         }

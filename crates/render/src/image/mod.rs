@@ -28,6 +28,7 @@ pub use self::channel::{Channel, Values};
 pub use self::compare::{CompareError, Comparison, Difference, compare};
 pub use self::error::ImageError;
 pub use self::format::Format;
+#[cfg(feature = "drawing")]
 pub(crate) use self::format::suffix;
 pub use self::metadata::{Metadata, read_metadata};
 pub use self::options::{Depth, PpmEncoding, QUALITY, WriteOptions};

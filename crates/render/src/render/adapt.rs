@@ -20,6 +20,10 @@ const PILOT: (u64, u64) = (4096, 65_536);
 /// Interval of looking at the clock: fraction of the time limit, and minimum in seconds.
 const CLOCK_CHECKS: (f64, f64) = (0.02, 0.1);
 
+/// Ratio of the picture's error to the target from which on the judge is not asked, since that takes time: denoising
+/// divides the error by 1.2 to 2.5 in most pictures.
+const HOPELESS: f64 = 2.5;
+
 /// Renders until the target is met.
 pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Watch) -> End {
     start(job, state, stop, watch);
@@ -37,9 +41,13 @@ pub(super) fn run(job: &Job, state: &mut State, stop: &StopCondition, watch: &Wa
             return End::Time;
         }
         if state.plan.is_empty() {
+            let own = state.noise(stop.until_error.is_some());
+            let hopeless = |(noise, target): (Noise, f64)| noise.error > HOPELESS * target;
             let noise = match judge {
-                Some(judge) => judge(&state.film),
-                None => state.noise(stop.until_error.is_some()),
+                Some(judge) if !own.zip(stop.until_error).is_some_and(hopeless) => {
+                    judge(&state.film)
+                }
+                _ => own,
             };
             judged = noise;
             if watch.cancelled() {

@@ -64,7 +64,8 @@ pub struct Options<'a> {
     /// True if [`Render::statistics`] are computed, which needs probes and so takes time.
     pub statistics: bool,
     /// Estimates the error that is compared with the target, in place of that of the picture itself:
-    /// that of the denoised picture, say. `None` from it stands for an estimate that was cancelled.
+    /// that of the denoised picture, say. It is asked where the picture's own error is at most 2.5 times the target.
+    /// `None` from it stands for an estimate that was cancelled.
     ///
     /// It must be a function of the film and the scene alone.
     pub judge: Option<&'a Judge<'a>>,

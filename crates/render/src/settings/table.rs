@@ -189,7 +189,7 @@ const DENOISE: Names<Denoise> = Names(&[
     (
         "auto",
         Denoise::Auto,
-        "Unless samples or an error are chosen, or the measured error rises by it",
+        "Unless --spp or an error target is given, or the measured error rises by it",
     ),
     ("on", Denoise::On, "Always; an error target is then that of the denoised image"),
     ("off", Denoise::Off, "Never"),
