@@ -96,6 +96,19 @@ impl SphereTree {
         Self::build(rows.len(), |i| rows[i])
     }
 
+    /// Builds the tree over spheres in rows of centers, with a column of radii; otherwise as
+    /// [`SphereTree::from_columns`].
+    ///
+    /// # Errors
+    /// Columns of different lengths, or more than [`Spheres::MAX`] spheres.
+    pub fn from_centers(centers: &[[f32; 3]], radius: &[f32]) -> Result<Self, QueryError> {
+        same_length(centers.len(), &[radius.len()])?;
+        Self::build(centers.len(), |i| {
+            let [x, y, z] = centers[i];
+            [x, y, z, radius[i]]
+        })
+    }
+
     fn build(count: usize, row: impl Fn(usize) -> [f32; 4] + Sync) -> Result<Self, QueryError> {
         if count > Spheres::MAX {
             return Err(QueryError::TooMany(count));
