@@ -33,7 +33,8 @@ class Scene:
         radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"`` or ``"covalent"``, radii of
             elements; or ``"column:NAME"``. By default the particles' own, or those of elements, or half of the mean
             spacing.
-        color, kinds, materials, columns, cell, origin, periodic, unit, title: As for :class:`Particles`.
+        color, kinds, materials, columns, cell, origin, periodic, unit, title: As for :class:`Particles`, whose own color
+            and materials they replace.
         values: (n,) finite numbers that a color map turns into colors; ``label_of_values`` names them in the color bar.
         color_by: The name of a column that gives the colors.
         color_map, color_range, color_log: The map, the numbers at its ends, and whether it is logarithmic.
@@ -228,21 +229,28 @@ def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[s
         radii, radius = repr(number), None
     own = _options.part(given, _options.PARTICLES)
     own.pop("radius", None)
+    over: dict[str, Any] = {}
     if isinstance(particles, Particles):
+        over = {name: own.pop(name) for name in ("color", "materials") if name in own}
         if own:
-            raise Error(f"`{sorted(own)[0]}` is given twice: give it to Particles")
+            raise Error(f"`{sorted(own)[0]}` belongs to the particles: give it to Particles")
     else:
         particles = Particles(particles, **own)
+    count = len(particles)
     table: dict[str, Any] = particles._table(radii, float(given.get("radius_scale", 1.0)))
     if radius is not None:
-        table["radius"] = _arrays.column("radius", radius, len(particles))
+        table["radius"] = _arrays.column("radius", radius, count)
+    if "color" in over:
+        table["color"] = _arrays.colors("color", over["color"], count)
+    if "materials" in over:
+        table["materials"] = _arrays.coded("materials", over["materials"], count)
     if title is not None:
         table["title"] = title
     if (values := given.get("values")) is not None:
         if "color_by" in given:
             raise Error("give either `values` or `color_by`")
         name = given.get("label_of_values", "values")
-        column = _arrays.column("values", values, len(particles))
+        column = _arrays.column("values", values, count)
         wrong = np.flatnonzero(~np.isfinite(column))
         if len(wrong):
             raise Error(f"values[{wrong[0]}] is {column[wrong[0]]}, but must be finite")

@@ -5,6 +5,7 @@
 //! Python go on and a signal is noticed at once ([`watch`]).
 
 #![forbid(unsafe_code)]
+#![allow(clippy::needless_pass_by_value, reason = "arguments come from Python by value")]
 
 mod arrays;
 mod encode;

@@ -218,8 +218,8 @@ fn codes_of(
         return Err(error(py, &format!("{name}[{row}] is {code}, but there are {most} names")));
     }
     Ok(match names.len() {
-        ..=0x100 => Codes::Bytes(codes.iter().map(|&code| code as u8).collect()),
-        ..=0x1_0000 => Codes::Shorts(codes.iter().map(|&code| code as u16).collect()),
+        0..=0x100 => Codes::Bytes(codes.iter().map(|&code| code as u8).collect()),
+        0x101..=0x1_0000 => Codes::Shorts(codes.iter().map(|&code| code as u16).collect()),
         _ => Codes::Words(codes.iter().copied().collect()),
     })
 }

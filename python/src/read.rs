@@ -94,7 +94,7 @@ fn columns(py: Python<'_>, frame: ParticleFrame) -> PyResult<Bound<'_, PyDict>> 
     let some = |values: Vec<f64>| (!values.is_empty()).then(|| PyArray1::from_vec(py, values));
     table.set_item("radius", some(frame.radius))?;
     let colors = (!frame.color.is_empty()).then(|| -> PyResult<Bound<'_, PyArray2<f32>>> {
-        let rows: Vec<[f32; 3]> = frame.color.iter().map(|color| color.to_array()).collect();
+        let rows: Vec<[f32; 3]> = frame.color.iter().map(glam::Vec3::to_array).collect();
         PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
     });
     table.set_item("color", colors.transpose()?)?;

@@ -66,6 +66,7 @@ struct ViewTable {
 }
 
 /// The words of a [`ViewTable`], understood.
+#[derive(Default)]
 struct Staging {
     preset: Preset,
     view: Option<View>,
@@ -165,7 +166,7 @@ impl Scene {
             })
             .map_err(|why| error(py, &why))?;
         let column = |values| PyArray1::from_vec(py, values);
-        let colors: Vec<[f32; 3]> = spheres.color.iter().map(|color| color.to_array()).collect();
+        let colors: Vec<[f32; 3]> = spheres.color.iter().map(Rgb::to_array).collect();
         let material = PyArray1::from_vec(py, spheres.material);
         let places = [spheres.x, spheres.y, spheres.z, spheres.radius].map(column);
         Ok((text, places, material, PyArray1::from_vec(py, colors.into_flattened())))
@@ -241,22 +242,6 @@ impl Scene {
 impl Sections {
     fn parse(&self) -> Result<spherule::Scene, Fault> {
         Ok(spherule::Scene::parse(&self.text, KEYWORDS, &self.folder)?)
-    }
-}
-
-impl Default for Staging {
-    fn default() -> Self {
-        Self {
-            preset: Preset::default(),
-            view: None,
-            up: None,
-            wrap: false,
-            replicate: None,
-            show_cell: false,
-            color_bar: None,
-            planes: Vec::new(),
-            slice_mode: SliceMode::default(),
-        }
     }
 }
 

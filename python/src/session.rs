@@ -176,16 +176,12 @@ impl Session {
             }
         };
         let (world, denoiser) = (&self.world, self.denoiser.as_ref());
-        let options = Options { cancel: Some(&pause), progress: Some(&show), ..Options::default() };
+        // Without a pause, the watcher's flag ends the render by itself: at once, not after the next report.
+        let cancel = if slice.is_some() { &pause } else { &shared.cancel };
+        let options = Options { cancel: Some(cancel), progress: Some(&show), ..Options::default() };
         let judged = |film: &Film| Some(denoiser?.judge(world, film, &options)?.noise);
         let judge = denoiser.is_some().then_some(&judged as &Judge);
-        let end = if slice.is_none() {
-            // The flag of the watcher at once, without a tile's delay.
-            let options = Options { cancel: Some(&shared.cancel), judge, ..options };
-            self.render.run(&self.world, &options)
-        } else {
-            self.render.run(&self.world, &Options { judge, ..options })
-        };
+        let end = self.render.run(world, &Options { judge, ..options });
         end != End::Cancelled
     }
 
@@ -257,7 +253,7 @@ impl Session {
 
 impl Shown {
     /// The picture as a table for the class `Picture`.
-    fn table<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn table(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let Self { render, title, settings, matte, judged, denoised, layers, warnings } = self;
         let Settings { width, height, .. } = settings;
         let size = (height as usize, width as usize);
@@ -297,12 +293,12 @@ impl Shown {
 }
 
 /// A layer as an array of a value or three per pixel.
-fn layer_array<'py>(
-    py: Python<'py>,
+fn layer_array(
+    py: Python<'_>,
     layer: Layer,
     layers: Layers,
     (height, width): (usize, usize),
-) -> PyResult<Bound<'py, PyAny>> {
+) -> PyResult<Bound<'_, PyAny>> {
     let Layers { pixels, statistics, .. } = layers;
     let triples = |values: Vec<[f32; 3]>| {
         let array = PyArray1::from_vec(py, values.into_flattened());
@@ -331,11 +327,11 @@ fn layer_array<'py>(
 }
 
 /// The picture of an interrupted or finished session; the interrupt itself if there is nothing to show.
-pub(crate) fn show<'py>(
-    py: Python<'py>,
+pub(crate) fn show(
+    py: Python<'_>,
     shown: Result<Option<Shown>, Fault>,
     interrupt: Option<PyErr>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Bound<'_, PyDict>> {
     let shown = shown.map_err(|fault| fault.raise(py))?;
     match (shown, interrupt) {
         (Some(shown), None) => shown.table(py),

@@ -30,3 +30,47 @@ pub fn choose(
     }
     choice
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REGION: Region = Region { x: 0, y: 0, width: 80, height: 60 };
+
+    fn chosen(change: impl Fn(&mut Settings), part: bool) -> (Option<Choice>, Settings) {
+        let mut settings = Settings::default();
+        change(&mut settings);
+        let choice = choose(&mut settings, REGION, 1000, part);
+        (choice, settings)
+    }
+
+    #[test]
+    fn renders_without_a_stop_condition_stop_at_the_error_of_the_denoised_image() {
+        let (choice, settings) = chosen(|_| (), false);
+        assert_eq!((choice, settings.until_error), (Some(Choice::UnlessWorse), Some(MAX_ERROR)));
+        assert_eq!(settings.spp, max_samples(REGION, 1000));
+    }
+
+    #[test]
+    fn chosen_samples_and_errors_are_not_denoised_unless_asked_for() {
+        let samples = |settings: &mut Settings| (settings.spp, settings.stop_given) = (7, true);
+        let (choice, settings) = chosen(samples, false);
+        assert_eq!((choice, settings.spp, settings.denoise), (None, 7, Denoise::Off));
+        let error = |settings: &mut Settings| {
+            (settings.until_error, settings.stop_given) = (Some(0.1), true);
+        };
+        assert_eq!(chosen(error, false).0, None);
+        let asked = |settings: &mut Settings| {
+            samples(settings);
+            settings.denoise = Denoise::On;
+        };
+        let (choice, settings) = chosen(asked, false);
+        assert_eq!((choice, settings.spp, settings.until_error), (Some(Choice::Always), 7, None));
+    }
+
+    #[test]
+    fn parts_are_not_denoised() {
+        let (choice, settings) = chosen(|_| (), true);
+        assert_eq!((choice, settings.denoise, settings.until_error), (None, Denoise::Off, None));
+    }
+}
