@@ -12,7 +12,7 @@ matplotlib.use("agg")
 
 import matplotlib.pyplot as plt
 import numpy as np
-from ase.build import bulk
+from ase.build import bulk  # type: ignore[import-untyped,unused-ignore]
 
 import spherule
 

@@ -5,14 +5,15 @@ Run it with ASE installed; it writes molecule_ase.png.
 
 from pathlib import Path
 
-from ase.build import molecule
+from ase.build import molecule  # type: ignore[import-untyped,unused-ignore]
 
 import spherule
 
 
 def main() -> None:
     """Renders the molecule."""
-    cage, water = molecule("C60"), molecule("H2O")
+    cage = molecule("C60")  # type: ignore[no-untyped-call,unused-ignore]
+    water = molecule("H2O")  # type: ignore[no-untyped-call,unused-ignore]
     water.translate(cage.get_center_of_mass() - water.get_center_of_mass())
     picture = spherule.render(
         spherule.from_ase(cage + water),

@@ -22,7 +22,7 @@ def packing() -> npt.NDArray[np.float32]:
     rng = np.random.default_rng(11)
     side = int(EDGE / (2 * RADIUS))
     cells: dict[tuple[int, int, int], list[npt.NDArray[np.float64]]] = {}
-    centers = []
+    centers: list[npt.NDArray[np.float64]] = []
     near = [(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
     while len(centers) < COUNT:
         point = rng.random(3) * EDGE
@@ -48,16 +48,17 @@ def main() -> None:
 
     def directions(rows: int) -> npt.NDArray[np.float32]:
         vectors = rng.normal(size=(3, rows)).astype(np.float32)
-        return (vectors / np.sqrt((vectors**2).sum(axis=0))).T
+        unit: npt.NDArray[np.float32] = (vectors / np.sqrt((vectors**2).sum(axis=0))).T
+        return unit
 
     # A ray from a point in a sphere leaves it from inside: the normal points along the ray.
-    start = time.perf_counter()
     origins = ((rng.random((3, count), dtype=np.float32) - np.float32(0.5)) * np.float32(EDGE)).T
     toward = directions(count)
+    start = time.perf_counter()
     hits = tree.intersect(origins, toward, surface=True)
+    seconds = time.perf_counter() - start
     assert hits.normals is not None
     outside = hits.hit & ((hits.normals * toward).sum(axis=1) < 0)
-    seconds = time.perf_counter() - start
     porosity = 1 - len(centers) * 4 / 3 * np.pi * RADIUS**3 / EDGE**3
     print(f"{count / seconds / 1e6:.1f} million rays a second, with points and normals")
     print(f"porosity: {outside.mean():.4f} by rays, {porosity:.4f} by volume")

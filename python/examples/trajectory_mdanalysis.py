@@ -6,10 +6,10 @@ with MDAnalysis installed; it writes trajectory_mdanalysis.png.
 
 from pathlib import Path
 
-import MDAnalysis
+import MDAnalysis  # type: ignore[import-untyped,unused-ignore]
 import numpy as np
 import numpy.typing as npt
-from MDAnalysis.coordinates.memory import MemoryReader
+from MDAnalysis.coordinates.memory import MemoryReader  # type: ignore[import-untyped,unused-ignore]
 
 import spherule
 
