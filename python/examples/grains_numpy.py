@@ -20,8 +20,8 @@ RADIUS = 0.5
 def heap(count: int) -> npt.NDArray[np.float32]:
     """Centers in layers of a triangular lattice under a cone, each moved a little."""
     slope = 0.55
-    # A cone of this slope with as many cells of the lattice, whose packing is 0.74.
-    volume = count * 4 / 3 * np.pi * RADIUS**3 / 0.74
+    # A cone of this slope with as many cells of the lattice, whose packing is 0.74, and some more for its steps.
+    volume = 1.01 * count * 4 / 3 * np.pi * RADIUS**3 / 0.74
     base = float((3 * volume / (np.pi * slope)) ** (1 / 3))
     rng = np.random.default_rng(7)
     layers = []
@@ -29,7 +29,8 @@ def heap(count: int) -> npt.NDArray[np.float32]:
     for layer in range(int(base * slope / height)):
         z = layer * height
         reach = base - z / slope
-        steps = np.arange(-int(reach / RADIUS / 2) - 1, int(reach / RADIUS / 2) + 2, dtype=np.float32)
+        most = int(reach / RADIUS / np.sqrt(3)) + 2
+        steps = np.arange(-most, most + 1, dtype=np.float32)
         rows, columns = np.meshgrid(steps, steps, indexing="ij")
         x = (columns + rows % 2 / 2 + layer % 2 / 2) * 2 * RADIUS
         y = (rows + layer % 2 / 3) * np.sqrt(3) * RADIUS
