@@ -2,9 +2,9 @@
 
     python rays.py [--rays 1000000] [--rounds 3] [--dump FOLDER]
 
-Embree through Python traces triangles: each sphere becomes an icosphere of 80 or 320, inscribed in it, so its answers are
-those of other shapes. All use the same threads: as many as each finds by itself. The best of the rounds counts, which go
-in turn. `--dump` writes spheres and rays as raw float32, for a program in another language.
+Embree through Python traces triangles: each sphere becomes an icosphere of 80 or 320, inscribed in it, so its answers
+are those of other shapes. All use the same threads: as many as each finds by itself. The best of the rounds counts,
+which go in turn. `--dump` writes spheres and rays as raw float32, for a program in another language.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Ray queries without a picture: free paths and open directions in a random packing.
 
-From random points in the pores, rays in random directions give the distribution of free paths, whose mean is 4 V / S for
-any arrangement of convex grains (the law of Cauchy; here S and V are those of pores between spheres that do not
-overlap). The rays also tell the porosity, from inside or outside of which sphere each starts. It writes pores_queries.png, and
-checks the law.
+From random points in the pores, rays in random directions give the distribution of free paths, whose mean is 4 V / S
+for any arrangement of convex grains (the law of Cauchy; here S and V are those of pores between spheres that do not
+overlap). The rays also tell the porosity, from inside or outside of which sphere each starts. It writes
+pores_queries.png, and checks the law.
 """
 
 import time
@@ -41,7 +41,9 @@ def main() -> None:
     """Traces four million rays, and draws what they found."""
     centers = packing()
     # The cube and its 26 images, so that rays from the middle see no end.
-    shifts = np.array([(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)], np.float32) * np.float32(EDGE)
+    shifts = np.array([(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)], np.float32) * np.float32(
+        EDGE
+    )
     tree = spherule.SphereTree((centers[None] + shifts[:, None]).reshape(-1, 3), RADIUS)
     rng = np.random.default_rng(13)
     count = 2_000_000

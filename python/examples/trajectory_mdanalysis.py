@@ -1,7 +1,7 @@
 """A trajectory from MDAnalysis: a cluster of argon that is heated until it evaporates, four frames side by side.
 
-The trajectory is made here, by Langevin dynamics of a Lennard-Jones cluster, and read through a Universe in memory. Run it
-with MDAnalysis installed; it writes trajectory_mdanalysis.png.
+The trajectory is made here, by Langevin dynamics of a Lennard-Jones cluster, and read through a Universe in memory. Run
+it with MDAnalysis installed; it writes trajectory_mdanalysis.png.
 """
 
 from pathlib import Path

@@ -19,6 +19,7 @@ def floats(name: str, value: Any) -> npt.NDArray[Any]:
     """An array of float32 or float64, in this machine's byte order."""
     import numpy as np
 
+    array: npt.NDArray[Any]
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -29,7 +30,8 @@ def floats(name: str, value: Any) -> npt.NDArray[Any]:
         if array.flags.aligned and all(stride % array.itemsize == 0 for stride in array.strides):
             return array
         return np.array(array)
-    return array.astype(np.float64)
+    converted: npt.NDArray[np.float64] = array.astype(np.float64)
+    return converted
 
 
 def table(name: str, value: Any, width: int = 3) -> npt.NDArray[Any]:
@@ -40,8 +42,11 @@ def table(name: str, value: Any, width: int = 3) -> npt.NDArray[Any]:
         columns = [floats(f"{name}[{row}]", column) for row, column in enumerate(value)]
         lengths = [len(column) for column in columns]
         if len(set(lengths)) > 1:
-            raise Error(f"the columns of `{name}` have {', '.join(map(str, lengths))} entries, but must have equally many")
-        return np.stack(columns).T
+            raise Error(
+                f"the columns of `{name}` have {', '.join(map(str, lengths))} entries, but must have equally many"
+            )
+        rows: npt.NDArray[Any] = np.stack(columns).T
+        return rows
     array = floats(name, value)
     if array.ndim != 2 or array.shape[1] != width:
         raise Error(f"`{name}` has the shape {array.shape}, but must have (n, {width})")
@@ -80,7 +85,9 @@ def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.
     if array.dtype.kind not in "iuUSOT":
         raise Error(f"`{name}` is an array of {array.dtype}, but must be one of strings or integers")
     if array.dtype.kind in "SO":
-        array = np.array([item.decode() if isinstance(item, bytes) else str(item) for item in array.tolist()], dtype=np.str_)
+        array = np.array(
+            [item.decode() if isinstance(item, bytes) else str(item) for item in array.tolist()], dtype=np.str_
+        )
     unique, first, inverse = np.unique(array, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
     ranks = np.empty(len(order), np.uint32)
@@ -97,7 +104,9 @@ def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
     if isinstance(value, str):
         found = _native.color_of(value)
         if found is None:
-            raise Error(f"`{name}` is {value!r}, but must be a CSS color, #rrggbb, or an array of linear RGB from 0 to 1")
+            raise Error(
+                f"`{name}` is {value!r}, but must be a CSS color, #rrggbb, or an array of linear RGB from 0 to 1"
+            )
         return np.broadcast_to(np.array(found, np.float32), (count, 3))
     if isinstance(value, Sequence) and value and all(isinstance(item, str) for item in value):
         names, codes = coded(name, value, count)

@@ -45,13 +45,13 @@ def _shown(table: dict[str, Any]) -> Picture:
 def render(source: Any = None, **options: Unpack[AllOptions]) -> Picture:
     """Renders a picture.
 
-    With nothing but positions, it is the figure that the program makes of a particle file: framed by the camera, in soft
-    light before white, denoised, until its error is below 1 %. Equal scenes and settings give equal pixels, on any
+    With nothing but positions, it is the figure that the program makes of a particle file: framed by the camera, in
+    soft light before white, denoised, until its error is below 1 %. Equal scenes and settings give equal pixels, on any
     machine, with any number of threads, and in the program.
 
     Args:
-        source: (n, 3) positions, a tuple of the columns x, y and z, :class:`Particles`, a :class:`Scene`, or the path of a
-            scene or a particle file. None for a scene of sections alone.
+        source: (n, 3) positions, a tuple of the columns x, y and z, :class:`Particles`, a :class:`Scene`, or the path
+            of a scene or a particle file. None for a scene of sections alone.
         **options: Those of :class:`Scene`, unless the source is one, and:
 
             size: Width and height in pixels, 1 to 65535.

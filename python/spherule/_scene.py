@@ -30,11 +30,11 @@ class Scene:
 
     Args:
         particles: :class:`Particles`, (n, 3) positions, a tuple of the columns x, y and z, or None.
-        radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"`` or ``"covalent"``, radii of
-            elements; or ``"column:NAME"``. By default the particles' own, or those of elements, or half of the mean
-            spacing.
-        color, kinds, materials, columns, cell, origin, periodic, unit, title: As for :class:`Particles`, whose own color
-            and materials they replace.
+        radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"`` or ``"covalent"``,
+            radii of elements; or ``"column:NAME"``. By default the particles' own, or those of elements, or half of the
+            mean spacing.
+        color, kinds, materials, columns, cell, origin, periodic, unit, title: As for :class:`Particles`, whose own
+            color and materials they replace.
         values: (n,) finite numbers that a color map turns into colors; ``label_of_values`` names them in the color bar.
         color_by: The name of a column that gives the colors.
         color_map, color_range, color_log: The map, the numbers at its ends, and whether it is logarithmic.

@@ -24,8 +24,8 @@ class Hits(NamedTuple):
         t: (n,) float64: distances in units of the direction's length, each the double nearest to the true one; infinite
             where nothing is hit.
         sphere: (n,) uint32: rows of the spheres; :data:`spherule.NOTHING` where nothing is hit.
-        points, normals: (n, 3) float64: where the sphere is hit, and its outward unit normal there; NaN where nothing is
-            hit. None unless they were asked for.
+        points, normals: (n, 3) float64: where the sphere is hit, and its outward unit normal there; NaN where nothing
+            is hit. None unless they were asked for.
     """
 
     t: npt.NDArray[np.float64]

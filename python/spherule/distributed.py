@@ -1,8 +1,8 @@
 """Renders in parts, on other processes and machines, merged to the bytes of the whole.
 
-:func:`render_part` renders one part of a picture to bytes, and :func:`merge` puts all of them together: by any engine that
-calls functions elsewhere. :func:`render` does so as tasks of ``dask.distributed``: a worker that dies costs its part
-alone, which another one renders.
+:func:`render_part` renders one part of a picture to bytes, and :func:`merge` puts all of them together: by any engine
+that calls functions elsewhere. :func:`render` does so as tasks of ``dask.distributed``: a worker that dies costs its
+part alone, which another one renders.
 """
 
 from __future__ import annotations
@@ -96,7 +96,6 @@ def render(
     client: Any = None,
     *,
     parts: int | None = None,
-    threads: int | None = None,
     **options: Unpack[RenderOptions],
 ) -> Picture:
     """Renders a picture in parts, as tasks of Dask.
@@ -105,8 +104,8 @@ def render(
         scene: The scene, which is sent to every worker once.
         client: ``dask.distributed.Client``; by default the current one.
         parts: How many parts; by default four for each worker, so that fast workers take more.
-        threads: How many threads each task uses; by default as many as its worker has.
-        **options: Those of :func:`spherule.render`, with ``spp``.
+        **options: Those of :func:`spherule.render`, with ``spp``; ``threads`` is that of each task, by default as many
+            as its worker has.
 
     Returns:
         The picture, with the bytes of one that was rendered here.
@@ -117,7 +116,8 @@ def render(
     Example:
         >>> from dask.distributed import Client, LocalCluster
         >>> from spherule import Scene
-        >>> with LocalCluster(n_workers=1, processes=False, dashboard_address=None) as cluster, Client(cluster) as client:
+        >>> cluster = LocalCluster(n_workers=1, processes=False, dashboard_address=None)
+        >>> with cluster, Client(cluster) as client:
         ...     render(Scene([[0, 0, 0]], radius=1), client, size=(64, 48), spp=4).complete
         True
     """
@@ -125,21 +125,16 @@ def render(
         from dask.distributed import get_client
 
         client = get_client()
-    table = _table(scene, options)
+    # Before anything is sent.
+    _table(scene, options)
     workers = client.scheduler_info(n_workers=-1)["workers"]
     if not workers:
         raise Error("the Dask cluster has no workers")
     if parts is None:
-        least = min(4 * len(workers), _most_parts(scene, options))
-        parts = max(1, least)
-    if threads is None:
-        threads = min(worker["nthreads"] for worker in workers.values())
-    del table
+        parts = min(4 * len(workers), _most_parts(scene, options))
+    given = {"threads": min(worker["nthreads"] for worker in workers.values()), **options}
     sent = client.scatter(scene, broadcast=True, hash=False)
-    tasks = [
-        client.submit(_task, sent, part, parts, {**options, "threads": threads}, pure=False, key=f"spherule-{id(sent)}-{part}")
-        for part in range(1, parts + 1)
-    ]
+    tasks = [client.submit(_task, sent, part, parts, given, pure=False) for part in range(1, parts + 1)]
     try:
         return merge(scene, client.gather(tasks), **options)
     finally:

@@ -9,7 +9,13 @@ from ._errors import Error
 from ._particles import Particles
 
 #: Names of columns of data frames, by role.
-_COORDINATES = (("x", "y", "z"), ("X", "Y", "Z"), ("pos_x", "pos_y", "pos_z"), ("xu", "yu", "zu"), ("x_coord", "y_coord", "z_coord"))
+_COORDINATES = (
+    ("x", "y", "z"),
+    ("X", "Y", "Z"),
+    ("pos_x", "pos_y", "pos_z"),
+    ("xu", "yu", "zu"),
+    ("x_coord", "y_coord", "z_coord"),
+)
 _KINDS = ("type", "element", "element_symbol", "species", "kind", "atom_name")
 
 
@@ -59,8 +65,8 @@ def from_ase(atoms: Any) -> Particles:
 def from_mdanalysis(group: Any) -> Particles:
     """The particles of an MDAnalysis ``Universe`` or ``AtomGroup``, in its current frame, in angstrom.
 
-    Elements are those of the topology, or else follow from the types and names. The cell is kept, and names, residues and
-    charges become columns where the topology has them.
+    Elements are those of the topology, or else follow from the types and names. The cell is kept, and names, residues
+    and charges become columns where the topology has them.
 
     Args:
         group: ``MDAnalysis.Universe`` or ``AtomGroup``.
@@ -91,7 +97,14 @@ def from_mdanalysis(group: Any) -> Particles:
         distinct = list(dict.fromkeys(kinds))
         elements = [_native.element_of(name) or _native.element_of(name.rstrip("0123456789*+-'")) for name in distinct]
     columns = {}
-    for name, column in (("names", "name"), ("resnames", "resname"), ("resids", "resid"), ("segids", "segid"), ("charges", "charge"), ("masses", "mass")):
+    for name, column in (
+        ("names", "name"),
+        ("resnames", "resname"),
+        ("resids", "resid"),
+        ("segids", "segid"),
+        ("charges", "charge"),
+        ("masses", "mass"),
+    ):
         values = _optional(atoms, name)
         if values is not None:
             columns[column] = values
@@ -262,7 +275,10 @@ def from_pandas(
     if positions is None:
         positions = next((triple for triple in _COORDINATES if set(triple) <= set(names)), None)
         if positions is None:
-            raise Error(f"the data frame has no columns x, y and z; name them, as in positions=['a', 'b', 'c']: it has {', '.join(names)}")
+            raise Error(
+                f"the data frame has no columns x, y and z; name them, as in positions=['a', 'b', 'c']: "
+                f"it has {', '.join(names)}"
+            )
     for name in (*positions, *(name for name in (radius, kinds) if name)):
         if name not in names:
             raise Error(f"the data frame has no column `{name}`; it has {', '.join(names)}")
@@ -275,7 +291,11 @@ def from_pandas(
         radius = "diameter"
         radii = frame["diameter"].to_numpy() / 2
     used = {*positions, radius, kinds}
-    columns = {name: frame[name].to_numpy() for name in names if name not in used and frame[name].to_numpy().dtype.kind in "fiubOUST"}
+    columns = {
+        name: frame[name].to_numpy()
+        for name in names
+        if name not in used and frame[name].to_numpy().dtype.kind in "fiubOUST"
+    }
     return Particles(
         tuple(np.asarray(frame[name].to_numpy()) for name in positions),
         radius=radii,

@@ -15,7 +15,8 @@ FILES = {
     "a.gro": "t\n1\n    1SOL     OW    1   0.100   0.200   0.300\n   1.0 1.0 1.0\n",
     "a.pdb": "ATOM      1  CA  GLY A   1      11.000  12.000  13.000  1.00 20.00           C  \nEND\n",
     "a.txt": "0 0 0 1\n1 2 3 0.5\n",
-    "a.ply": "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n",
+    "a.ply": "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+    "end_header\n1 2 3\n",
 }
 
 
@@ -50,7 +51,10 @@ def test_frames_are_numbered_from_either_end(folder):
     assert spherule.read(path, -2).step == first.step == 5 and last.step == spherule.read(path, 1).step == 9
     assert last.columns["q"].tolist() == [0.25] and first.kinds.tolist() == ["1", "2"]
     origin, edges, periodic = first.cell
-    assert (origin, edges) == ([0, 0, -1], [[4, 0, 0], [0, 5, 0], [0, 0, 6]]) or (list(origin), [list(e) for e in edges]) == (
+    assert (origin, edges) == ([0, 0, -1], [[4, 0, 0], [0, 5, 0], [0, 0, 6]]) or (
+        list(origin),
+        [list(e) for e in edges],
+    ) == (
         [0, 0, -1],
         [[4, 0, 0], [0, 5, 0], [0, 0, 6]],
     )
@@ -133,7 +137,9 @@ def test_frames_of_gsd(tmp_path):
 
 def test_tables_of_pandas():
     pandas = pytest.importorskip("pandas")
-    table = pandas.DataFrame({"X": [0.0, 1], "Y": [0, 2], "Z": [0, 3], "diameter": [1, 2], "type": ["a", "b"], "q": [1, 2]})
+    table = pandas.DataFrame(
+        {"X": [0.0, 1], "Y": [0, 2], "Z": [0, 3], "diameter": [1, 2], "type": ["a", "b"], "q": [1, 2]}
+    )
     particles = spherule.from_pandas(table)
     assert particles.positions.tolist() == [[0, 0, 0], [1, 2, 3]] and particles.radius.tolist() == [0.5, 1]
     assert particles.kinds.tolist() == ["a", "b"] and list(particles.columns) == ["q"]
@@ -178,6 +184,12 @@ def test_collections_of_ovito_by_their_attributes():
 
 
 def test_other_things_are_refused():
-    for take in (spherule.from_ase, spherule.from_mdanalysis, spherule.from_ovito, spherule.from_gsd, spherule.from_pandas):
+    for take in (
+        spherule.from_ase,
+        spherule.from_mdanalysis,
+        spherule.from_ovito,
+        spherule.from_gsd,
+        spherule.from_pandas,
+    ):
         with pytest.raises(spherule.Error, match="but object has no"):
             take(object())

@@ -38,8 +38,14 @@ def of_program(program, folder, source, *options):
             {"spp": 2, "color_by": "z", "color_map": "magma_r", "color_bar": "right"},
             ["--spp", "2", "--color-by", "z", "--color-map", "magma_r", "--color-bar", "right"],
         ),
-        ({"spp": 2, "preset": "outline", "select": "z > 0.5"}, ["--spp", "2", "--preset", "outline", "--select", "z > 0.5"]),
-        ({"spp": 2, "integrator": "ao", "ao_distance": 0.3}, ["--spp", "2", "--integrator", "ao", "--ao-distance", "0.3"]),
+        (
+            {"spp": 2, "preset": "outline", "select": "z > 0.5"},
+            ["--spp", "2", "--preset", "outline", "--select", "z > 0.5"],
+        ),
+        (
+            {"spp": 2, "integrator": "ao", "ao_distance": 0.3},
+            ["--spp", "2", "--integrator", "ao", "--ao-distance", "0.3"],
+        ),
     ],
 )
 def test_pictures_are_those_of_the_program(program, tmp_path, cloud, options, words):

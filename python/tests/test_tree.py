@@ -112,7 +112,10 @@ def test_bounds_end_searches(spheres, rays):
         (lambda: spherule.SphereTree([[0, np.nan, 0]], 1), "positions[0, 1] is NaN, but must be finite"),
         (lambda: tree().intersect([[0, 0]], [[0, 0, 1]]), "`origins` has the shape (1, 2), but must have (n, 3)"),
         (lambda: tree().occluded(np.zeros((3, 3)), np.zeros((2, 3))), "`directions` has 2 rows, but must have 3"),
-        (lambda: tree().count([[0, 0, 0]], [[0, 0, 1]], t_max=[1, 2]), "`t_max` has the shape (2,), but must have (1,)"),
+        (
+            lambda: tree().count([[0, 0, 0]], [[0, 0, 1]], t_max=[1, 2]),
+            "`t_max` has the shape (2,), but must have (1,)",
+        ),
     ],
 )
 def test_what_is_wrong_is_named(call, text):
