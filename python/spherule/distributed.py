@@ -116,7 +116,7 @@ def render(
     Example:
         >>> from dask.distributed import Client, LocalCluster
         >>> from spherule import Scene
-        >>> cluster = LocalCluster(n_workers=1, processes=False, dashboard_address=None)
+        >>> cluster = LocalCluster(n_workers=1, processes=False, dashboard_address=":0")
         >>> with cluster, Client(cluster) as client:
         ...     render(Scene([[0, 0, 0]], radius=1), client, size=(64, 48), spp=4).complete
         True
