@@ -95,12 +95,12 @@ pub mod color {
 pub mod scene {
     #[doc(inline)]
     pub use spherule_render::scene::{
-        Anchor, Annotations, AxisTripod, Background, Camera, ColorBar, ColorLegend,
+        Anchor, Annotations, Axis, AxisTripod, Background, Camera, ColorBar, ColorLegend,
         ConductorFresnel, Denoise, Environment, EnvironmentMap, FileError, Filter, Footprint,
         Ground, Header, Identity, Insets, Integrator, InvalidSetting, Label, Lens, Lettering,
         Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset, Projection, Rgb,
         Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode, SlicePlane, Spheres,
-        Tone, write, write_as,
+        Tone, bounds, text_without_columns, write, write_as,
     };
 
     /// Generators of spheres.
@@ -116,9 +116,18 @@ pub mod scene {
     pub mod particles {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
-            Coloring, ParticleStyle, Particles, PeriodicError, Selection, of_frame, read,
+            Cell, Coloring, ColumnColors, ElementColors, Legend, Orientation, ParticleStyle,
+            Particles, PeriodicError, Selection, TypeMaterial, TypeStyle, UpReason, of_frame, read,
         };
     }
+}
+
+/// The table of render settings: their names, kinds and ranges.
+pub mod settings {
+    #[doc(inline)]
+    pub use spherule_render::settings::{
+        Kind, Limits, Names, Need, Role, SETTINGS, Scope, Setting, Value,
+    };
 }
 
 /// Worlds: scenes as the kernels read them.
@@ -127,6 +136,26 @@ pub mod world {
     pub use spherule_core::internals::bvh::builders::Builder;
     #[doc(inline)]
     pub use spherule_render::world::{Features, World, WorldError};
+
+    /// Cameras that frame a scene.
+    pub mod framing {
+        #[doc(inline)]
+        pub use spherule_render::world::framing::include_points;
+        #[doc(inline)]
+        pub use spherule_render::world::framing::view::{View, choose, vertical};
+    }
+}
+
+/// Overlays of finished images: the look, and annotations.
+pub mod overlay {
+    /// Annotations: color bars, legends, axes, scale bars and labels.
+    #[cfg(feature = "drawing")]
+    pub mod annotations {
+        #[doc(inline)]
+        pub use spherule_render::overlay::annotations::{AnnotationDrawing, draw, insets};
+    }
+    #[doc(inline)]
+    pub use spherule_render::overlay::{Canvas, Matte};
 }
 
 /// Renders: passes over tiles, tiles over threads; renders that can be stopped and resumed.
@@ -148,7 +177,7 @@ pub mod render {
 pub mod denoise {
     #[doc(inline)]
     pub use spherule_render::denoise::{
-        Choice, Denoised, Denoiser, Judged, MAX_ERROR, denoise, max_samples,
+        Asked, Choice, Denoised, Denoiser, Judged, MAX_ERROR, choose, denoise, max_samples,
     };
 }
 
@@ -185,6 +214,12 @@ pub mod image {
     #[doc(inline)]
     pub use spherule_render::image::{
         Channel, CompareError, Comparison, Depth, Difference, Format, Image, ImageError, Metadata,
-        PpmEncoding, Values, WriteOptions, check_writable, compare, read_metadata,
+        PpmEncoding, QUALITY, Values, WriteOptions, check_writable, compare, read_metadata,
     };
+
+    /// Exposure, tone curve and sRGB curve of displays.
+    pub mod tone {
+        #[doc(inline)]
+        pub use spherule_render::image::tone::DisplayTransform;
+    }
 }

@@ -45,16 +45,7 @@ impl SliceArgs {
             let mode = self.slice_mode.unwrap_or_default();
             scene.slices.extend(self.planes.iter().map(|plane| plane.slice(whole, mode)));
         }
-        let cuts = |slice: &&Slice| {
-            let spheres = &scene.spheres;
-            let reach = |row: usize| match slice.mode {
-                SliceMode::Caps => spheres.radius[row],
-                SliceMode::Remove | SliceMode::Hide => 0.0,
-            };
-            let cut = |row: usize| slice.depth(spheres.center(row)) + reach(row) > 0.0;
-            (0..spheres.len()).any(cut)
-        };
-        let normals = scene.slices.iter().filter(cuts).map(|slice| slice.normal).collect();
+        let normals = scene.cut_normals();
         let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
         if dropped > 0 && scene.spheres.is_empty() && !allow_empty {
             let message = format!("the slices cut away all of its {dropped} spheres");

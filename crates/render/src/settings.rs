@@ -163,6 +163,26 @@ pub struct InvalidSetting {
 }
 
 impl Settings {
+    /// Overrides settings with others, by name. If these add the first stop condition, the former number of samples is
+    /// no limit.
+    pub fn change(&mut self, values: &[(&'static str, Value)]) {
+        let given = |name: &str| values.iter().any(|(own, _)| *own == name);
+        let had_target = self.has_target();
+        for (name, value) in values {
+            if let Some(setting) = Setting::named(name) {
+                setting.set(self, *value);
+            }
+        }
+        self.stop_given |= ["spp", "until_error", "time"].into_iter().any(given);
+        if !given("spp") {
+            self.spp = match (had_target, self.has_target()) {
+                (false, true) => Self::HARD_SAMPLES,
+                (true, false) => Self::default().spp,
+                _ => self.spp,
+            };
+        }
+    }
+
     /// Width and height of an image in pixels.
     pub const PIXELS: RangeInclusive<u32> = 1..=65_535;
 

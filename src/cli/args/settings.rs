@@ -29,24 +29,9 @@ impl<const DISPLAY: bool> SettingArgs<DISPLAY> {
         self.values.iter().find(|row| row.0 == name).map(|row| row.1)
     }
 
-    /// Overrides settings with those that are given. If these add the first stop condition, the scene's
-    /// number of samples is no limit.
+    /// Overrides settings with those that are given.
     pub(in crate::cli) fn apply(&self, settings: &mut Settings) {
-        let had_target = settings.has_target();
-        for (name, value) in &self.values {
-            if let Some(setting) = Setting::named(name) {
-                setting.set(settings, *value);
-            }
-        }
-        let stops = ["spp", "until_error", "time"];
-        settings.stop_given |= stops.into_iter().any(|name| self.value(name).is_some());
-        if !DISPLAY && self.value("spp").is_none() {
-            settings.spp = match (had_target, settings.has_target()) {
-                (false, true) => Settings::HARD_SAMPLES,
-                (true, false) => Settings::default().spp,
-                _ => settings.spp,
-            };
-        }
+        settings.change(&self.values);
     }
 }
 

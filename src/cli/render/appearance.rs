@@ -5,11 +5,11 @@ use crate::cli::annotations::FrameFacts;
 use crate::cli::appearance::BarPlace;
 use crate::cli::failure::Failure;
 use crate::cli::source::Source;
-use crate::cli::views::Canvas;
 use crate::cli::write_file::write_file;
 use glam::DVec3;
 use spherule_render::World;
 use spherule_render::atomic::check_destination;
+use spherule_render::overlay::Canvas;
 use spherule_render::overlay::annotations::{self, AnnotationDrawing};
 use spherule_render::overlay::color_bar::Bar;
 use spherule_render::scene::particles::{

@@ -19,7 +19,6 @@ mod prepare;
 mod prepared_file;
 mod resume;
 mod sequence;
-mod stop;
 mod summary;
 mod survey;
 mod terminal;
@@ -43,12 +42,11 @@ use self::video::Video;
 use super::args::RenderArgs;
 use super::invocation::Invocation;
 use super::progress::Meter;
-use super::views::draw_over as draw_look;
 use super::write_file::write_file;
 use super::{Failure, output, picture_file, processor, signals};
 use spherule_render::denoise::{Denoiser, Judged};
 use spherule_render::film::Film;
-use spherule_render::overlay::Matte;
+use spherule_render::overlay::{Canvas, Matte};
 use spherule_render::render::{End, Judge, Options, Render, RenderError, ResumableRender};
 use spherule_render::scene::Scene;
 use std::process::ExitCode;
@@ -250,7 +248,7 @@ fn draw_over(
 ) -> Result<Option<Matte>, Failure> {
     let Scene { look, annotations, settings, .. } = &prepared.scene;
     let region = prepared.region;
-    let mut canvas = draw_look(look, &mut prepared.world, settings, region, render)?;
+    let mut canvas = Canvas::with_look(look, &mut prepared.world, settings, region, render)?;
     if job.page.is_none() {
         let turns = job.turn.is_some();
         if !draw_annotations((annotations, look), &prepared.world, &mut canvas, turns) {

@@ -4,7 +4,7 @@ use super::estimate::Estimate;
 use super::job::{Job, check_alpha};
 use super::notes::notes;
 use super::notices::Notices;
-use super::{appearance, metadata, part, stop, visibility};
+use super::{appearance, metadata, part, visibility};
 use crate::cli::annotations::{self, FrameFacts, annotate};
 use crate::cli::contents::{dropped, found};
 use crate::cli::failure::Failure;
@@ -14,12 +14,12 @@ use crate::cli::source::Source;
 use glam::DVec3;
 use spherule_render::World;
 use spherule_render::bvh::builders::Builder;
-use spherule_render::denoise::Choice;
+use spherule_render::denoise::{self, Asked, Choice};
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
 use spherule_render::scene::particles::{Category, Cell, Legend, Orientation, Particles};
-use spherule_render::scene::{Identity, Scene, Settings};
+use spherule_render::scene::{Denoise, Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -141,7 +141,7 @@ impl PlacedScene {
             picture_file::check_size("render", region, job.format)?;
         }
         let spheres = scene.spheres.len();
-        let denoise = stop::choose(job, &mut scene, region, spheres)?;
+        let denoise = choose(job, &mut scene, region, spheres)?;
         let asked = job.checkpoints.file().is_some() || job.is_identified();
         let identity = asked.then(|| Identity::of(&scene));
         Ok(Self { scene, legend, orientation, region, identity, denoise, stored: None, load })
@@ -163,7 +163,7 @@ impl PlacedScene {
         if job.part.is_none() {
             picture_file::check_size("render", region, job.format)?;
         }
-        let denoise = stop::choose(job, &mut scene, region, stored.sphere_count())?;
+        let denoise = choose(job, &mut scene, region, stored.sphere_count())?;
         let identity = Some(stored.identity.clone());
         let stored = Some(Box::new(stored));
         Ok(Self { scene, legend: None, orientation: None, region, identity, denoise, stored, load })
@@ -278,6 +278,22 @@ fn check_region(job: &Job, scene: &Scene) -> Result<(), Failure> {
     }
     let message = "annotations inside the image need the whole image; remove --region";
     Err(Failure::usage("render", message))
+}
+
+/// Completes the settings, and returns how the image is denoised, if at all. `spheres` is the number of spheres, which
+/// the scene itself does not have any more if it was prepared.
+fn choose(
+    job: &Job,
+    scene: &mut Scene,
+    region: Region,
+    spheres: usize,
+) -> Result<Option<Choice>, Failure> {
+    let asked = Asked { part: job.part.is_some(), spp: job.picture.settings.spp().is_some() };
+    if asked.part && scene.settings.denoise == Denoise::On {
+        let message = "--denoise on needs the whole image; remove it with --part";
+        return Err(Failure::usage("render", message));
+    }
+    Ok(denoise::choose(scene, region, spheres, asked))
 }
 
 /// Places the camera for this scene, or for all images of its sequence.

@@ -1,12 +1,11 @@
 //! Overlays of the viewer, as in `spherule render`, with reuse of the last image's layers.
 
 use super::image::RenderRequest;
-use crate::cli::views::settings_of_layers;
 use spherule_render::World;
 use spherule_render::film::Region;
 use spherule_render::image::Image;
 use spherule_render::layers::ProgressiveLayers;
-use spherule_render::overlay::{GroundRender, Matte, Overlay, RunBounds};
+use spherule_render::overlay::{GroundRender, Matte, Overlay, RunBounds, settings_of_layers};
 use spherule_render::render::{Options, RenderError};
 
 /// An image with overlays.

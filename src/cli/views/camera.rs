@@ -5,35 +5,15 @@ use crate::cli::Failure;
 use glam::DVec3;
 use spherule_render::overlay::annotations;
 use spherule_render::scene::particles::{Orientation, Particles, UpReason};
-use spherule_render::scene::{Axis, Camera, Insets, Pose, Projection, Scene};
+use spherule_render::scene::{Axis, Camera, Insets, Pose, Scene};
 use spherule_render::suggest;
+use spherule_render::world::framing::view::{self, View};
 use spherule_render::world::{WorldError, framing};
 use std::f64::consts::TAU;
-
-/// A view direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum View {
-    /// Along the principal axis of least extent.
-    Auto,
-    /// From a corner.
-    Iso,
-    /// From the end of an axis.
-    Side(Axis),
-}
 
 /// The direction that is up, or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UpArg(pub(super) Option<Axis>);
-
-impl View {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Iso => "iso",
-            Self::Side(axis) => axis.name(),
-        }
-    }
-}
 
 impl UpArg {
     pub(super) fn name(self) -> &'static str {
@@ -44,16 +24,6 @@ impl UpArg {
 /// Names of the coordinate axes.
 fn axes() -> impl Iterator<Item = &'static str> + Clone {
     Axis::ALL.iter().map(|(name, _)| *name)
-}
-
-/// Parses `auto`, `iso` or the name of a side.
-pub(super) fn view(text: &str) -> Result<View, String> {
-    let view = match text {
-        "auto" => Some(View::Auto),
-        "iso" => Some(View::Iso),
-        _ => Axis::named(text).map(View::Side),
-    };
-    view.ok_or_else(|| suggest::help(text, axes().chain(["iso", "auto"]), "sides are"))
 }
 
 /// Parses `auto` or the name of an axis.
@@ -135,20 +105,7 @@ impl ViewArgs {
                 scene.camera.projection = projection;
             }
         }
-        if let Some(view) = self.view {
-            scene.camera = of_view(view, scene, orientation);
-        }
-        let usual = orientation.map_or(Axis::Y, |orientation| orientation.up);
-        if let Pose::Fit { direction, .. } = &mut scene.camera.pose {
-            match self.view {
-                None if *direction == Camera::fit_direction(usual) => {
-                    *direction = framing::facing(*direction, normals);
-                }
-                // The opposite direction is equally broadside.
-                Some(View::Auto) if faces_away(*direction, normals) => *direction = -*direction,
-                _ => (),
-            }
-        }
+        view::choose(scene, self.view, orientation, normals);
         match (&mut scene.camera.pose, self.margin) {
             (Pose::Fit { margin, .. }, Some(typed)) => *margin = typed,
             (Pose::LookAt { .. }, Some(_)) => {
@@ -170,18 +127,8 @@ impl ViewArgs {
         camera: &Camera,
         orientation: Option<&Orientation>,
     ) -> DVec3 {
-        match (self.view, orientation) {
-            (Some(View::Side(_)), Some(orientation)) => orientation.up_of_sides().vector(),
-            _ => camera.up,
-        }
+        view::vertical(self.view, camera, orientation)
     }
-}
-
-/// Returns whether more of the planes face away from a camera than toward it.
-fn faces_away(direction: DVec3, normals: &[DVec3]) -> bool {
-    let count =
-        |direction: DVec3| normals.iter().filter(|normal| direction.dot(**normal) < 0.0).count();
-    count(direction) < count(-direction)
 }
 
 /// Points that must be in view besides spheres: the corners of a cell that is drawn.
@@ -189,77 +136,16 @@ pub(in crate::cli) fn corners(scene: &Scene) -> Vec<DVec3> {
     scene.look.cell.map_or_else(Vec::new, |cell| cell.corners().to_vec())
 }
 
-/// Returns the direction that is up in views from a side: z without particles.
-pub(super) fn up_of_sides(orientation: Option<&Orientation>) -> Axis {
-    orientation.map_or(Axis::Z, Orientation::up_of_sides)
-}
-
-/// Returns the camera that frames all of a scene from a side.
-pub(super) fn of_view(view: View, scene: &Scene, orientation: Option<&Orientation>) -> Camera {
-    let mut camera = scene.camera.clone();
-    if let Projection::Orthographic { height } = &mut camera.projection {
-        *height = None;
-    }
-    camera.near = 0.0;
-    let up = up_of_sides(orientation);
-    let (direction, up) = match view {
-        View::Auto => {
-            let fixed = orientation.filter(|orientation| orientation.reason.is_evident());
-            let fixed = fixed.map(|orientation| orientation.up.vector());
-            return framing::broadside(&scene.spheres, &camera, fixed);
-        }
-        View::Iso => {
-            let up = up.vector();
-            (up.abs() - up - DVec3::ONE, up)
-        }
-        View::Side(side) if side == up || side == up.opposite() => {
-            let [_, toward] = up.front();
-            (-side.vector(), -toward)
-        }
-        View::Side(side) => (-side.vector(), up.vector()),
-    };
-    let margin = match camera.pose {
-        Pose::Fit { margin, .. } => margin,
-        Pose::LookAt { .. } => Camera::FIT_MARGIN,
-    };
-    Camera { pose: Pose::Fit { direction, margin }, up, ..camera }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn sides_are_read_and_named() {
-        for name in ["auto", "x", "-x", "y", "-y", "z", "-z", "iso"] {
-            assert_eq!(view(name).map(View::name), Ok(name));
-        }
-        assert!(view("top").is_err() && view("").is_err());
+    fn directions_are_read_and_named() {
         for name in ["auto", "x", "-x", "y", "-y", "z", "-z"] {
             assert_eq!(up(name).map(UpArg::name), Ok(name));
         }
         assert!(up("iso").is_err() && up("").is_err() && up("+z").is_err());
-    }
-
-    #[test]
-    fn views_from_sides_have_what_is_up_on_top() {
-        for (_, up) in Axis::ALL {
-            let reason = UpReason::Chosen;
-            let orientation = Orientation { up, reason, projection: Camera::LONG_LENS };
-            for (name, side) in Axis::ALL {
-                let camera = of_view(View::Side(side), &Scene::default(), Some(&orientation));
-                let Pose::Fit { direction, .. } = camera.pose else { panic!("it frames all") };
-                assert_eq!(direction, -side.vector());
-                assert_eq!(camera.up.dot(direction), 0.0, "{name}");
-                let vertical = side == up || side == up.opposite();
-                assert_eq!(camera.up == up.vector(), !vertical, "{name}");
-            }
-            let camera = of_view(View::Iso, &Scene::default(), Some(&orientation));
-            let Pose::Fit { direction, .. } = camera.pose else { panic!("it frames all") };
-            assert_eq!(direction.dot(up.vector()), -1.0, "the camera is above");
-        }
-        let plain = of_view(View::Side(Axis::Z), &Scene::default(), None);
-        assert_eq!(plain.up, DVec3::Y);
     }
 
     #[test]

@@ -2,14 +2,12 @@
 
 mod camera;
 mod lens;
-mod overlay;
 mod periodic;
 mod style;
 
+use self::camera::UpArg;
 pub(super) use self::camera::corners;
-use self::camera::{UpArg, View};
 use self::lens::LensArgs;
-pub(super) use self::overlay::{Canvas, draw_over, settings_of_layers};
 pub(super) use self::style::StyleArgs;
 use super::Failure;
 use super::names::{self, Names};
@@ -19,6 +17,7 @@ use glam::DVec3;
 use serde_json::json;
 use spherule_render::scene::particles::Orientation;
 use spherule_render::scene::{Axis, Camera, Projection, Scene};
+use spherule_render::world::framing::view::{self, View};
 
 /// Projections, with their default parameters.
 const PROJECTIONS: Names<Projection> = Names(&[
@@ -38,8 +37,8 @@ pub(super) fn from_side(
     scene: &Scene,
     orientation: Option<&Orientation>,
 ) -> Option<(Camera, Axis)> {
-    let view = camera::view(side).ok()?;
-    Some((camera::of_view(view, scene, orientation), camera::up_of_sides(orientation)))
+    let view: View = side.parse().ok()?;
+    Some((view.camera(scene, orientation), view::up_of_sides(orientation)))
 }
 
 /// Range of the number of images of a turntable.
@@ -64,7 +63,7 @@ pub(super) struct ViewArgs {
     up: Option<UpArg>,
     /// Place the camera to show everything from a side: auto (along the principal axis of least extent), x,
     /// y, z (from that end of the axis), -x, -y, -z, or iso
-    #[arg(long, value_name = "SIDE", allow_hyphen_values = true, value_parser = camera::view)]
+    #[arg(long, value_name = "SIDE", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<View>())]
     view: Option<View>,
     /// Camera projection
     #[arg(long, value_parser = names::parser(&PROJECTIONS))]

@@ -96,6 +96,32 @@ impl SphereTree {
         Self::build(rows.len(), |i| rows[i])
     }
 
+    /// Builds the tree over spheres in rows of centers, with a column of radii; otherwise as
+    /// [`SphereTree::from_columns`].
+    ///
+    /// ```
+    /// use spherule_core::SphereTree;
+    ///
+    /// let rows = SphereTree::from_centers(&[[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]], &[1.0, 0.5])?;
+    /// let columns = SphereTree::from_columns(&[0.0, 3.0], &[1.0, 4.0], &[2.0, 5.0], &[1.0, 0.5])?;
+    /// for direction in [[0.1, 1.0, 2.0], [3.1, 4.0, 5.0], [1.0, 0.0, 0.0]] {
+    ///     assert_eq!(rows.intersect([0.0; 3], direction), columns.intersect([0.0; 3], direction));
+    /// }
+    /// assert!(rows.intersect([0.0; 3], [3.1, 4.0, 5.0]).is_some());
+    /// assert!(SphereTree::from_centers(&[[0.0; 3]], &[]).is_err());
+    /// # Ok::<(), spherule_core::QueryError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Columns of different lengths, or more than [`Spheres::MAX`] spheres.
+    pub fn from_centers(centers: &[[f32; 3]], radius: &[f32]) -> Result<Self, QueryError> {
+        same_length(centers.len(), &[radius.len()])?;
+        Self::build(centers.len(), |i| {
+            let [x, y, z] = centers[i];
+            [x, y, z, radius[i]]
+        })
+    }
+
     fn build(count: usize, row: impl Fn(usize) -> [f32; 4] + Sync) -> Result<Self, QueryError> {
         if count > Spheres::MAX {
             return Err(QueryError::TooMany(count));

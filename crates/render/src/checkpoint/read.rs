@@ -175,8 +175,7 @@ fn read_header(reader: &mut impl Read, length: u64) -> Result<(Origin, RenderHea
 
 /// Checks that the file is long enough for the sums, and that there is memory for them.
 fn check_size(header: &RenderHeader, length: u64) -> Result<(), ReadError> {
-    let pixels = u64::from(header.region.width) * u64::from(header.region.height);
-    let sums = pixels * size_of::<[f64; 3]>() as u64;
+    let sums = header.pixels() * size_of::<[f64; 3]>() as u64;
     if sums / MAX_RATIO > length {
         return Err(ReadError::Damaged("it is too short for its picture"));
     }

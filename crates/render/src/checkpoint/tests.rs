@@ -190,3 +190,26 @@ fn other_files_are_reported() {
     #[cfg(unix)]
     assert!(message("/dev/zero".into()).contains("is not a checkpoint"));
 }
+
+#[test]
+fn parts_of_a_few_dark_tiles_are_read() {
+    let mut scene =
+        Scene { spheres: scene().spheres, materials: scene().materials, ..Scene::default() };
+    scene.environment.map = crate::scene::EnvironmentMap::Constant(crate::scene::Rgb::ZERO);
+    let settings = &mut scene.settings;
+    (settings.width, settings.height, settings.spp) = (1600, 1600, 1);
+    let world = World::build(&scene).unwrap();
+    let (options, part) =
+        (Options::default(), crate::render::ImagePart { samples: 0..1, tiles: 0..1 });
+    let mut render = ResumableRender::begin_part(&world, &scene.settings, &options, part).unwrap();
+    render.run(&world, &options);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("part");
+    write(&path, &origin(&scene), &render).unwrap();
+    let sums = 1600 * 1600 * size_of::<[f64; 3]>() as u64;
+    assert!(
+        fs::metadata(&path).unwrap().len() < sums / 255,
+        "shorter than the whole picture may be"
+    );
+    assert_eq!(read(&path).unwrap().1.samples(), render.samples());
+}

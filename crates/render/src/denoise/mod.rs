@@ -35,11 +35,13 @@
 //! the denoised pixel `d`, so the expectation of `(d - a)(d - b)` is the squared error of `d`.
 //! [`crate::noise`] has the bound.
 
+mod choose;
 mod columns;
 mod regression;
 mod target;
 mod tile;
 
+pub use choose::{Asked, choose};
 pub use target::{Choice, Denoiser, Judged, MAX_ERROR, max_samples};
 
 use self::tile::{Workspace, tiles};

@@ -7,6 +7,7 @@
 
 #[cfg(feature = "drawing")]
 pub mod annotations;
+mod canvas;
 #[cfg(feature = "drawing")]
 pub mod color_bar;
 mod contours;
@@ -17,6 +18,7 @@ mod range;
 mod shadow;
 mod sky;
 
+pub use canvas::{Canvas, settings_of_layers};
 pub use lines::{Line, Pen};
 pub use matte::{Matte, draw_alpha, draw_over};
 pub use range::{RunBounds, depths};

@@ -114,6 +114,12 @@ impl RenderHeader {
         }
     }
 
+    /// Returns the number of pixels that have sums: those of the tiles of the part.
+    pub(crate) fn pixels(&self) -> u64 {
+        let tiles = Film::tile_regions(self.region).skip(self.part.tiles.start as usize);
+        tiles.take(self.part.tiles.len()).map(Region::area).sum()
+    }
+
     /// Returns the maximum bytes of the sums of the film.
     pub(crate) fn film_bytes(&self) -> u64 {
         let tile = u64::from(TILE * TILE) * size_of::<[f64; 3]>() as u64;

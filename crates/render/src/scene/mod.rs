@@ -41,7 +41,7 @@ pub use preset::Preset;
 pub use slice::{Slice, SliceMode, SlicePlane, bounds};
 pub use spheres::Spheres;
 pub use spherule_particles::{FileError, Place};
-pub use write::{Header, write, write_as};
+pub use write::{Header, text_without_columns, write, write_as};
 
 /// A whole scene: objects, lights, camera and settings.
 #[derive(Clone, Debug, Default)]

@@ -2,6 +2,7 @@
 //! points in the picture.
 
 mod sequence;
+pub mod view;
 
 pub use sequence::SequenceBounds;
 

@@ -75,6 +75,20 @@ impl Scene {
         self.slices.iter().any(|slice| slice.drops(center, radius))
     }
 
+    /// Returns the normals of the slices that cut or remove any sphere, toward what is cut away.
+    pub fn cut_normals(&self) -> Vec<DVec3> {
+        let cuts = |slice: &&Slice| {
+            let spheres = &self.spheres;
+            let reach = |row: usize| match slice.mode {
+                SliceMode::Caps => spheres.radius[row],
+                SliceMode::Remove | SliceMode::Hide => 0.0,
+            };
+            let cut = |row: usize| slice.depth(spheres.center(row)) + reach(row) > 0.0;
+            (0..spheres.len()).any(cut)
+        };
+        self.slices.iter().filter(cuts).map(|slice| slice.normal).collect()
+    }
+
     /// Drops the spheres that the slices remove, so that their memory is freed and cameras frame the
     /// rest. Returns how many. A world of the scene is the same, except for the numbers of the spheres
     /// and rounding to single precision.

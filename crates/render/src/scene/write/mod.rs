@@ -119,9 +119,13 @@ fn check(scene: &Scene) -> Result<(), String> {
     }
 }
 
-/// A scene file without its spheres and without the picture of its environment, for files that hold
-/// these by themselves.
-pub(crate) fn text_without_columns(scene: &Scene) -> Result<String, String> {
+/// Returns a scene file without its spheres and without the picture of its environment, for what holds these by
+/// itself.
+///
+/// # Errors
+///
+/// The scene has what a scene file cannot say, as for [`write()`].
+pub fn text_without_columns(scene: &Scene) -> Result<String, String> {
     check(scene)?;
     let Scene { title, camera, settings, look, .. } = scene;
     let sky = match &scene.environment.map {

@@ -1,0 +1,21 @@
+"""``python -m spherule``: the program, which the wheel installs among the scripts."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import sysconfig
+
+
+def main() -> None:
+    """Becomes the program, with the arguments of this process."""
+    name = "spherule" + (sysconfig.get_config_var("EXE") or "")
+    program = shutil.which(name, path=sysconfig.get_path("scripts")) or shutil.which(name)
+    if program is None:
+        sys.exit("error: the program `spherule` is not installed; a wheel of tools/wheel has it, as does cargo install")
+    os.execv(program, ["spherule", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,129 @@
+"""Arrays as the extension module takes them: of floats, with the right shape.
+
+Arrays of float32 and float64 are passed as they are, whatever their strides; all others are converted to float64.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ._errors import Error
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+
+def floats(name: str, value: Any) -> npt.NDArray[Any]:
+    """An array of float32 or float64, in this machine's byte order."""
+    import numpy as np
+
+    array: npt.NDArray[Any]
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise Error(f"`{name}` is not an array of numbers: {error}") from None
+    if array.dtype.kind not in "fiub":
+        raise Error(f"`{name}` is an array of {array.dtype}, but must be one of real numbers")
+    if array.dtype.kind == "f" and array.dtype.itemsize in (4, 8) and array.dtype.isnative:
+        if array.flags.aligned and all(stride % array.itemsize == 0 for stride in array.strides):
+            return array
+        return np.array(array)
+    converted: npt.NDArray[np.float64] = array.astype(np.float64)
+    return converted
+
+
+def table(name: str, value: Any, width: int = 3) -> npt.NDArray[Any]:
+    """Rows of `width` numbers, from rows or from a tuple of `width` columns."""
+    import numpy as np
+
+    if isinstance(value, tuple) and len(value) == width and all(getattr(item, "ndim", 0) == 1 for item in value):
+        columns = [floats(f"{name}[{row}]", column) for row, column in enumerate(value)]
+        lengths = [len(column) for column in columns]
+        if len(set(lengths)) > 1:
+            raise Error(
+                f"the columns of `{name}` have {', '.join(map(str, lengths))} entries, but must have equally many"
+            )
+        rows: npt.NDArray[Any] = np.stack(columns).T
+        return rows
+    array = floats(name, value)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise Error(f"`{name}` has the shape {array.shape}, but must have (n, {width})")
+    return array
+
+
+def column(name: str, value: Any, count: int) -> npt.NDArray[Any]:
+    """A number for each of `count` rows; one number is one for all."""
+    import numpy as np
+
+    array = floats(name, value)
+    if array.ndim == 0:
+        return np.broadcast_to(array, (count,))
+    if array.ndim != 1 or len(array) != count:
+        raise Error(f"`{name}` has the shape {array.shape}, but must have ({count},), one entry for each position")
+    return array
+
+
+def single(name: str, array: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
+    """The array in single precision; without a copy if it is already."""
+    import numpy as np
+
+    with np.errstate(over="ignore"):
+        return array.astype(np.float32, copy=False)
+
+
+def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.uint32]]:
+    """Names in the order in which they first occur, and the row in them of each particle."""
+    import numpy as np
+
+    array = np.asarray(value)
+    if array.ndim == 0:
+        return [str(array[()])], np.zeros(count, np.uint32)
+    if array.ndim != 1 or len(array) != count:
+        raise Error(f"`{name}` has the shape {array.shape}, but must have ({count},), one entry for each position")
+    if array.dtype.kind not in "iuUSOT":
+        raise Error(f"`{name}` is an array of {array.dtype}, but must be one of strings or integers")
+    if array.dtype.kind in "SO":
+        array = np.array(
+            [item.decode() if isinstance(item, bytes) else str(item) for item in array.tolist()], dtype=np.str_
+        )
+    unique, first, inverse = np.unique(array, return_index=True, return_inverse=True)
+    order = np.argsort(first, kind="stable")
+    ranks = np.empty(len(order), np.uint32)
+    ranks[order] = np.arange(len(order), dtype=np.uint32)
+    return [str(unique[row]) for row in order], ranks[inverse.reshape(-1)]
+
+
+def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
+    """Linear colors of all particles, from a name, `#rrggbb`, one triple, or a row for each."""
+    import numpy as np
+
+    from . import _native
+
+    if isinstance(value, str):
+        found = _native.color_of(value)
+        if found is None:
+            raise Error(
+                f"`{name}` is {value!r}, but must be a CSS color, #rrggbb, or an array of linear RGB from 0 to 1"
+            )
+        return np.broadcast_to(np.array(found, np.float32), (count, 3))
+    if isinstance(value, Sequence) and value and all(isinstance(item, str) for item in value):
+        names, codes = coded(name, value, count)
+        rows = []
+        for row, word in enumerate(names):
+            found = _native.color_of(word)
+            if found is None:
+                raise Error(f"{name}[{int(np.argmax(codes == row))}] is {word!r}, but must be a CSS color or #rrggbb")
+            rows.append(found)
+        return np.array(rows, np.float32)[codes]
+    encoded = getattr(value, "dtype", None) == np.uint8
+    array = floats(name, value)
+    if encoded:
+        levels = np.array([_native.linear_color((code / 255.0,) * 3)[0] for code in range(256)], np.float32)
+        array = levels[np.asarray(value)]
+    if array.ndim == 1 and array.shape == (3,):
+        return np.broadcast_to(array, (count, 3))
+    if array.ndim != 2 or array.shape != (count, 3):
+        raise Error(f"`{name}` has the shape {array.shape}, but must have (3,) or ({count}, 3)")
+    return array

@@ -1,0 +1,126 @@
+"""Keyword arguments of scenes and renders, by name."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ._errors import Error
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from ._native import Stop
+    from .sections import (
+        Color,
+        ColorBar,
+        ColorMap,
+        LayerName,
+        Position,
+        Preset,
+        Render,
+        Sections,
+        Side,
+        SliceMode,
+        TypeStyle,
+        UpAxis,
+    )
+
+    class SceneOptions(Sections, total=False):
+        """Keyword arguments of scenes: how particles look, and the sections of scene files."""
+
+        radius: Any
+        color: Any
+        kinds: Any
+        values: Any
+        materials: Any
+        columns: Mapping[str, Any]
+        cell: Any
+        origin: Any
+        periodic: Any
+        unit: str
+        radius_scale: float
+        select: str
+        colors: str
+        color_by: str
+        color_map: ColorMap
+        color_range: tuple[float, float]
+        color_log: bool
+        color_bar: bool | Position | ColorBar
+        label_of_values: str
+        types: Mapping[str, TypeStyle]
+        preset: Preset
+        background: Color
+        view: Side
+        up: UpAxis
+        wrap: bool
+        replicate: tuple[int, int, int]
+        show_cell: bool
+        slices: Sequence[str]
+        slice_mode: SliceMode
+
+    class RenderOptions(Render, total=False):
+        """Keyword arguments of renders."""
+
+        layers: Sequence[LayerName]
+        threads: int
+        progress: bool | Callable[[float, int, float, float | None], object]
+        stop: Stop
+        on_interrupt: str
+
+    class AllOptions(SceneOptions, RenderOptions, total=False):
+        """Keyword arguments of :func:`spherule.render`."""
+
+
+#: Arguments of particles.
+PARTICLES = frozenset("radius color kinds materials columns cell origin periodic unit".split())
+
+#: Arguments that say how particles are drawn.
+STYLE = frozenset(
+    "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types preset "
+    "background view up wrap replicate show_cell slices slice_mode".split()
+)
+
+#: Sections of scene files; the color bar is one, too, if it is a dict.
+SECTIONS = frozenset(
+    "title render camera look legend axes scale_bar label lettering environment ground slice light material sphere "
+    "generate file".split()
+)
+
+#: Keys of the section `render`.
+RENDER = frozenset(
+    "size spp until_error time denoise depth seed integrator light_choice shadow_samples ao_distance caustics sampler "
+    "filter roulette exposure tone".split()
+)
+
+#: Other arguments of renders.
+RUN = frozenset("layers threads progress stop on_interrupt".split())
+
+
+def check(given: Iterable[str], *known: frozenset[str]) -> None:
+    """Refuses unknown names, with the nearest known one."""
+    names = frozenset().union(*known)
+    for name in given:
+        if name not in names:
+            near = difflib.get_close_matches(name, names, 1)
+            raise TypeError(f"unknown argument `{name}`" + (f"; did you mean `{near[0]}`?" if near else ""))
+
+
+def part(given: Mapping[str, Any], names: frozenset[str]) -> dict[str, Any]:
+    """The arguments with these names that are not None."""
+    return {name: value for name, value in given.items() if name in names and value is not None}
+
+
+def render_table(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings of a render for the extension module."""
+    from . import _toml
+
+    text, keys = _toml.document({"render": part(given, RENDER)})
+    layers = given.get("layers") or ()
+    if isinstance(layers, str):
+        layers = (layers,)
+    threads = given.get("threads")
+    if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 4096):
+        raise Error(f"`threads` is {threads!r}, but must be an integer from 1 to 4096")
+    return {"text": text, "keys": keys.get("render", []), "layers": list(layers), "threads": threads}

@@ -1,0 +1,291 @@
+"""Scenes: particles with a style, sections as in scene files, or both."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from . import _arrays, _options, _toml
+from ._errors import Error, SpheruleWarning
+from ._particles import Particles, read
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._native import Scene as NativeScene
+    from ._options import RenderOptions, SceneOptions
+    from ._picture import Picture
+
+
+class Scene:
+    """A scene: what is rendered, from where, in which light.
+
+    A scene of particles looks as the program draws a particle file: the preset ``figure``, a camera that frames all
+    particles, radii and colors by element or type. Sections replace parts of that; their names, keys and checks are
+    those of scene files, as in ``camera={"projection": "orthographic"}`` or
+    ``light=[{"kind": "sun", "direction": [1, 1, 1], "irradiance": 3}]``. Without particles, a scene consists of its
+    sections alone.
+
+    Args:
+        particles: :class:`Particles`, (n, 3) positions, a tuple of the columns x, y and z, or None.
+        radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"`` or ``"covalent"``,
+            radii of elements; or ``"column:NAME"``. By default the particles' own, or those of elements, or half of the
+            mean spacing.
+        color, kinds, materials, columns, cell, origin, periodic, unit, title: As for :class:`Particles`, whose own
+            color and materials they replace.
+        values: (n,) finite numbers that a color map turns into colors; ``label_of_values`` names them in the color bar.
+        color_by: The name of a column that gives the colors.
+        color_map, color_range, color_log: The map, the numbers at its ends, and whether it is logarithmic.
+        color_bar: True or a position: draw the bar of these colors. A dict is the section of a scene file.
+        colors: ``"jmol"`` or ``"cpk"``: colors of elements.
+        types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``.
+        select: Draw only particles for which this is true, as in ``"element != H and z > 10"``.
+        radius_scale: A factor on all radii.
+        preset: ``"figure"``, ``"chalk"``, ``"studio"``, ``"cloudy"``, ``"glossy"``, ``"depthcue"`` or ``"outline"``.
+        background: A color, ``"transparent"`` or ``"sky"``.
+        view: The side from which the camera sees everything: ``"auto"``, ``"iso"``, ``"x"``, ``"-x"`` and so on.
+        up: The direction of particles that is up.
+        wrap, replicate, show_cell: Wrap particles into the cell; repeat it; draw its edges.
+        slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
+            ``"hide"``.
+        render, camera, look, legend, axes, scale_bar, label, lettering, environment, ground, slice, light, material,
+            sphere, generate, file: Sections, as :mod:`spherule.sections` types them.
+
+    Raises:
+        Error: Anything that cannot be used, by name and row, with the text of the program.
+        TypeError: An unknown argument.
+
+    Example:
+        >>> scene = Scene([[0, 0, 0], [1.5, 0, 0]], kinds=["C", "O"], background="#f0f4ff")
+        >>> len(scene), scene.size
+        (2, (800, 600))
+        >>> Scene(camera={"fov": 200}, sphere=[{"center": [0, 0, 0], "radius": 1}])
+        Traceback (most recent call last):
+            ...
+        spherule._errors.Error: [camera] fov = 200: `fov` is 200, but must be more than 0 and less than 180
+    """
+
+    def __init__(self, particles: Any = None, **options: Unpack[SceneOptions]) -> None:
+        from . import _native
+
+        given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+        _options.check(given, _options.PARTICLES, _options.STYLE, _options.SECTIONS)
+        sections = _options.part(given, _options.SECTIONS)
+        color_bar = given.pop("color_bar", None)
+        if isinstance(color_bar, Mapping):
+            sections["color_bar"] = color_bar
+            color_bar = None
+        if "background" in given:
+            sections["look"] = {**sections.get("look", {}), "background": given["background"]}
+        text, keys = _toml.document(sections)
+        if particles is None and (idle := (set(given) & _options.PARTICLES) | ({"values"} & set(given))):
+            raise Error(f"`{sorted(idle)[0]}` needs particles; give their positions first")
+        columns = None
+        if particles is not None:
+            columns = _columns(particles, given, sections.get("title"))
+        self._made(
+            _native.Scene(
+                {"text": text, "folder": os.getcwd(), "keys": keys},
+                columns,
+                _style(given),
+                _view(given, color_bar),
+            )
+        )
+
+    _native: NativeScene
+
+    def _made(self, native: NativeScene) -> None:
+        self._native = native
+        for text in self._native.warnings:
+            warnings.warn(text, SpheruleWarning, stacklevel=4)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], **options: Unpack[SceneOptions]) -> Scene:
+        """Reads a scene file, or a particle file, which options then style.
+
+        Args:
+            path: A ``.toml`` file is a scene, any other a particle file, of which the first frame is read.
+            **options: Those of :class:`Scene`, for particle files.
+
+        Raises:
+            Error: The file cannot be read or is not a valid scene; the text names the line.
+
+        Example:
+            >>> import pathlib, tempfile
+            >>> path = pathlib.Path(tempfile.mkdtemp()) / "one.toml"
+            >>> _ = path.write_text("[[sphere]]\\ncenter = [0, 0, 0]\\nradius = 1\\n")
+            >>> len(Scene.load(path))
+            1
+        """
+        from . import _native
+
+        name = os.fspath(path)
+        if not name.lower().endswith(".toml"):
+            options.setdefault("title", os.path.basename(name))
+            return cls(read(name), **options)
+        if options:
+            raise Error("options for particles need a particle file; a scene defines its own colors and materials")
+        scene = cls.__new__(cls)
+        scene._made(_native.Scene.load(name))
+        return scene
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes a scene file that loads as the same scene, with a ``.csv`` file of its spheres beside it.
+
+        Args:
+            path: A name that ends in ``.toml``.
+
+        Raises:
+            Error: The file cannot be written.
+
+        Example:
+            >>> import pathlib, tempfile
+            >>> path = pathlib.Path(tempfile.mkdtemp()) / "pair.toml"
+            >>> Scene([[0, 0, 0], [1, 0, 0]], radius=0.5).save(path)
+            >>> len(Scene.load(path))
+            2
+        """
+        self._native.save(os.fspath(path))
+
+    def __len__(self) -> int:
+        """The number of spheres."""
+        return len(self._native)
+
+    def __repr__(self) -> str:
+        width, height = self.size
+        title = f" {self.title!r}" if self.title else ""
+        return f"<spherule.Scene{title}: {len(self)} spheres, {width} x {height} pixels>"
+
+    @property
+    def title(self) -> str:
+        """The title; empty if there is none."""
+        return str(self._native.title)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of pictures in pixels."""
+        return self._native.size
+
+    @property
+    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """The lower and the upper corner of the box of all spheres; None without spheres."""
+        found = self._native.bounds
+        return found
+
+    def render(self, **options: Unpack[RenderOptions]) -> Picture:
+        """Renders the scene: see :func:`spherule.render`, of which this has the arguments of renders.
+
+        Example:
+            >>> Scene([[0, 0, 0]], radius=1).render(size=(40, 30), spp=4).pixels.shape
+            (30, 40, 3)
+        """
+        from ._render import render
+
+        return render(self, **options)
+
+    def refine(self, seconds: float = 0.5, **options: Unpack[RenderOptions]) -> Iterator[Picture]:
+        """Renders the scene step by step: see :func:`spherule.refine`.
+
+        Example:
+            >>> pictures = list(Scene([[0, 0, 0]], radius=1).refine(size=(40, 30), spp=64))
+            >>> pictures[-1].complete
+            True
+        """
+        from ._render import refine
+
+        return refine(self, seconds, **options)
+
+    def _repr_png_(self) -> bytes:
+        """A quick look, for notebooks."""
+        return self.render(spp=16, progress=False)._repr_png_()
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return _restored, self._native.columns()
+
+
+def _restored(*columns: Any) -> Scene:
+    """A scene from what its pickle holds."""
+    from . import _native
+
+    scene = Scene.__new__(Scene)
+    scene._native = _native.Scene.of_columns(*columns)
+    return scene
+
+
+def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[str, Any]:
+    """The particles for the extension module."""
+    import numpy as np
+
+    radius = given.get("radius")
+    radii = None
+    if isinstance(radius, str):
+        radii, radius = radius, None
+    elif radius is not None and np.ndim(radius) == 0:
+        number = float(_arrays.floats("radius", radius))
+        if not 0 < number < float("inf"):
+            raise Error(f"`radius` is {number:g}, but must be finite and greater than 0")
+        radii, radius = repr(number), None
+    own = _options.part(given, _options.PARTICLES)
+    own.pop("radius", None)
+    over: dict[str, Any] = {}
+    if isinstance(particles, Particles):
+        over = {name: own.pop(name) for name in ("color", "materials") if name in own}
+        if own:
+            raise Error(f"`{sorted(own)[0]}` belongs to the particles: give it to Particles")
+    else:
+        particles = Particles(particles, **own)
+    count = len(particles)
+    table: dict[str, Any] = particles._table(radii, float(given.get("radius_scale", 1.0)))
+    if radius is not None:
+        table["radius"] = _arrays.column("radius", radius, count)
+    if "color" in over:
+        table["color"] = _arrays.colors("color", over["color"], count)
+    if "materials" in over:
+        table["materials"] = _arrays.coded("materials", over["materials"], count)
+    if title is not None:
+        table["title"] = title
+    if (values := given.get("values")) is not None:
+        if "color_by" in given:
+            raise Error("give either `values` or `color_by`")
+        name = given.get("label_of_values", "values")
+        column = _arrays.column("values", values, count)
+        wrong = np.flatnonzero(~np.isfinite(column))
+        if len(wrong):
+            raise Error(f"values[{wrong[0]}] is {column[wrong[0]]}, but must be finite")
+        table["numbers"].append((name, column))
+        given["color_by"] = name
+    return table
+
+
+def _style(given: Mapping[str, Any]) -> dict[str, Any]:
+    types = []
+    for name, style in given.get("types", {}).items():
+        unknown = set(style) - {"radius", "color", "material"}
+        if unknown:
+            raise Error(f"type `{name}`: `{sorted(unknown)[0]}` is not radius, color or material")
+        color = style.get("color")
+        if color is not None:
+            color = tuple(float(value) for value in _arrays.colors("color", color, 1)[0])
+        types.append((name, style.get("radius"), color, style.get("material")))
+    ends = given.get("color_range")
+    if ends is not None:
+        low, high = (float(end) for end in ends)
+        if not low <= high:
+            raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
+        ends = (low, high)
+    names = ("select", "colors", "color_by", "color_map")
+    style = {name: given.get(name) for name in names}
+    return {**style, "color_range": ends, "color_log": bool(given.get("color_log", False)), "types": types}
+
+
+def _view(given: Mapping[str, Any], color_bar: bool | str | None) -> dict[str, Any]:
+    if color_bar is True:
+        color_bar = "bottom-right"
+    flags = {name: bool(given.get(name, False)) for name in ("wrap", "show_cell")}
+    names = ("preset", "view", "up", "replicate", "slice_mode")
+    slices = given.get("slices", ())
+    slices = [slices] if isinstance(slices, str) else list(slices)
+    words = {name: given.get(name) for name in names}
+    return {**words, **flags, "color_bar": color_bar or None, "slices": slices}

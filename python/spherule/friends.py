@@ -1,0 +1,328 @@
+"""Particles of other packages, which are imported by whoever has them: here only their attributes are read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from ._errors import Error
+from ._particles import Particles
+
+#: Names of columns of data frames, by role.
+_COORDINATES = (
+    ("x", "y", "z"),
+    ("X", "Y", "Z"),
+    ("pos_x", "pos_y", "pos_z"),
+    ("xu", "yu", "zu"),
+    ("x_coord", "y_coord", "z_coord"),
+)
+_KINDS = ("type", "element", "element_symbol", "species", "kind", "atom_name")
+
+
+def _need(thing: Any, name: str, what: str) -> Any:
+    try:
+        return getattr(thing, name)
+    except AttributeError:
+        raise Error(f"expected {what}, but {type(thing).__name__} has no `{name}`") from None
+
+
+def from_ase(atoms: Any) -> Particles:
+    """The particles of ASE's ``Atoms``: positions in angstrom, elements, the cell, and its per-atom arrays as columns.
+
+    Args:
+        atoms: ``ase.Atoms``.
+
+    Raises:
+        Error: It is something else.
+
+    Example:
+        >>> from ase.build import bulk
+        >>> copper = from_ase(bulk("Cu", cubic=True))
+        >>> len(copper), copper.elements.tolist()[0], copper.cell[2]
+        (4, 'Cu', (True, True, True))
+    """
+    import numpy as np
+
+    what = "ase.Atoms"
+    positions = _need(atoms, "positions", what)
+    symbols = _need(atoms, "get_chemical_symbols", what)()
+    cell = np.asarray(_need(atoms, "cell", what)[:])
+    columns = {}
+    for name, values in getattr(atoms, "arrays", {}).items():
+        if name not in ("positions", "numbers"):
+            columns.update(_components(name, values))
+    has_cell = bool(abs(np.linalg.det(cell)) > 0)
+    return Particles(
+        positions,
+        kinds=symbols,
+        columns=columns,
+        cell=cell if has_cell else None,
+        periodic=np.asarray(_need(atoms, "pbc", what)),
+        unit="angstrom",
+    )
+
+
+def from_mdanalysis(group: Any) -> Particles:
+    """The particles of an MDAnalysis ``Universe`` or ``AtomGroup``, in its current frame, in angstrom.
+
+    Elements are those of the topology, or else follow from the types and names. The cell is kept, and names, residues
+    and charges become columns where the topology has them.
+
+    Args:
+        group: ``MDAnalysis.Universe`` or ``AtomGroup``.
+
+    Raises:
+        Error: It is something else.
+
+    Example:
+        >>> import MDAnalysis
+        >>> universe = MDAnalysis.Universe.empty(2, trajectory=True)
+        >>> universe.add_TopologyAttr("elements", ["O", "H"])
+        >>> universe.atoms.positions = [[0, 0, 0], [0.96, 0, 0]]
+        >>> from_mdanalysis(universe).elements.tolist()
+        ['O', 'H']
+    """
+    import numpy as np
+
+    from . import _native
+
+    atoms = _need(group, "atoms", "an MDAnalysis Universe or AtomGroup")
+    kinds = elements = None
+    for name in ("elements", "types", "names"):
+        values = _optional(atoms, name)
+        if values is not None and any(str(value) for value in values):
+            kinds = [str(value) for value in values]
+            break
+    if kinds is not None:
+        distinct = list(dict.fromkeys(kinds))
+        elements = [_native.element_of(name) or _native.element_of(name.rstrip("0123456789*+-'")) for name in distinct]
+    columns = {}
+    for name, column in (
+        ("names", "name"),
+        ("resnames", "resname"),
+        ("resids", "resid"),
+        ("segids", "segid"),
+        ("charges", "charge"),
+        ("masses", "mass"),
+    ):
+        values = _optional(atoms, name)
+        if values is not None:
+            columns[column] = values
+    box = _optional(atoms, "dimensions")
+    has_cell = box is not None and bool(np.all(np.asarray(box)[:3] > 0))
+    timestep = _optional(_optional(atoms, "universe"), "trajectory")
+    return Particles(
+        _need(atoms, "positions", "an MDAnalysis Universe or AtomGroup"),
+        kinds=kinds,
+        elements=elements,
+        columns=columns,
+        cell=box if has_cell else None,
+        unit="angstrom",
+        step=_optional(timestep, "frame"),
+        time=_optional(timestep, "time"),
+    )
+
+
+def from_ovito(data: Any) -> Particles:
+    """The particles of OVITO's ``DataCollection``, as ``pipeline.compute()`` returns it.
+
+    Positions, types with their names, radii and colors of particles, or else of their types, the cell, and all other
+    properties as columns.
+
+    Args:
+        data: ``ovito.data.DataCollection``.
+
+    Raises:
+        Error: It is something else, or has no particles.
+    """
+    import numpy as np
+
+    from . import _native
+
+    found = _need(data, "particles", "an OVITO DataCollection")
+    if found is None:
+        raise Error("the OVITO DataCollection has no particles")
+    properties = {name: found[name] for name in found.keys()}
+    if "Position" not in properties:
+        raise Error("the OVITO particles have no property `Position`")
+    count = len(np.asarray(properties["Position"]))
+    kinds = elements = None
+    radius = np.zeros(count)
+    if "Particle Type" in properties:
+        property = properties["Particle Type"]
+        codes = np.asarray(property)
+        names, radii = {}, {}
+        for kind in _optional(property, "types") or ():
+            names[int(kind.id)] = str(kind.name) or str(kind.id)
+            radii[int(kind.id)] = float(_optional(kind, "radius") or 0.0)
+        kinds = [names.get(int(code), str(code)) for code in codes]
+        elements = [_native.element_of(name) for name in dict.fromkeys(kinds)]
+        radius = np.array([radii.get(int(code), 0.0) for code in codes])
+    if "Radius" in properties:
+        own = np.asarray(properties["Radius"], np.float64)
+        radius = np.where(own > 0, own, radius)
+    columns = {}
+    for name, property in properties.items():
+        if name not in ("Position", "Particle Type", "Radius", "Color"):
+            columns.update(_components(name, np.asarray(property)))
+    cell = _optional(data, "cell")
+    matrix = None if cell is None else np.asarray(cell)[:, :]
+    return Particles(
+        np.asarray(properties["Position"]),
+        kinds=kinds,
+        elements=elements,
+        radius=radius if count and bool(np.all(radius > 0)) else None,
+        color=np.asarray(properties["Color"]) if "Color" in properties else None,
+        columns=columns,
+        cell=None if matrix is None else matrix[:, :3].T,
+        origin=(0.0, 0.0, 0.0) if matrix is None else matrix[:, 3],
+        periodic=True if cell is None else tuple(bool(flag) for flag in cell.pbc),
+    )
+
+
+def from_gsd(frame: Any) -> Particles:
+    """The particles of a frame of ``gsd.hoomd``: positions, diameters, types, the box, and other properties as columns.
+
+    Args:
+        frame: ``gsd.hoomd.Frame``, an item of ``gsd.hoomd.open(...)``.
+
+    Raises:
+        Error: It is something else, or has no particles.
+
+    Example:
+        >>> import gsd.hoomd
+        >>> frame = gsd.hoomd.Frame()
+        >>> frame.particles.N = 2
+        >>> frame.particles.position = [[0, 0, 0], [1, 0, 0]]
+        >>> frame.particles.types, frame.particles.typeid = ["A", "B"], [0, 1]
+        >>> frame.configuration.box = [4, 4, 4, 0, 0, 0]
+        >>> from_gsd(frame).kinds.tolist()
+        ['A', 'B']
+    """
+    import numpy as np
+
+    what = "a gsd.hoomd frame"
+    particles = _need(frame, "particles", what)
+    configuration = _need(frame, "configuration", what)
+    positions = _need(particles, "position", what)
+    if positions is None:
+        raise Error("the frame of gsd has no positions")
+    count = len(positions)
+    names, codes = _optional(particles, "types"), _optional(particles, "typeid")
+    kinds = None
+    if names is not None and codes is not None:
+        kinds = [names[int(code)] for code in codes]
+    diameter = _optional(particles, "diameter")
+    columns: dict[str, Any] = {}
+    for name in ("mass", "charge", "body", "velocity", "image", "angmom", "orientation", "moment_inertia"):
+        values = _optional(particles, name)
+        if values is not None and len(values) == count:
+            columns.update(_components(name, values))
+    cell, origin = None, np.zeros(3)
+    periodic: bool | tuple[bool, bool, bool] = True
+    box = _optional(configuration, "box")
+    if box is not None:
+        lx, ly, lz, xy, xz, yz = (float(value) for value in box)
+        # HOOMD-blue, "Periodic boundary conditions": the box is centered at the origin.
+        flat = lz == 0.0
+        edges = np.array([[lx, 0.0, 0.0], [xy * ly, ly, 0.0], [xz * lz, yz * lz, 1.0 if flat else lz]])
+        cell, origin = edges, -edges.sum(axis=0) / 2
+        if flat:
+            periodic = (True, True, False)
+    return Particles(
+        positions,
+        kinds=kinds,
+        radius=None if diameter is None or len(diameter) != count else np.asarray(diameter, np.float64) / 2,
+        columns=columns,
+        cell=cell,
+        origin=origin,
+        periodic=periodic,
+        step=_optional(configuration, "step"),
+    )
+
+
+def from_pandas(
+    frame: Any,
+    *,
+    positions: Sequence[str] | None = None,
+    radius: str | None = None,
+    kinds: str | None = None,
+    cell: Any = None,
+    periodic: Any = True,
+) -> Particles:
+    """The particles of a data frame, a row each.
+
+    Args:
+        frame: ``pandas.DataFrame``.
+        positions: The names of the columns of coordinates; by default x, y and z, in either case.
+        radius: The name of the column of radii; by default ``radius``, or half of ``diameter``, if there is one.
+        kinds: The name of the column of types; by default ``type``, ``element`` or ``species``.
+        cell, periodic: As for :class:`Particles`.
+
+    Raises:
+        Error: It is something else, or lacks the columns.
+
+    Example:
+        >>> import pandas
+        >>> table = pandas.DataFrame({"x": [0.0, 1.0], "y": 0.0, "z": 0.0, "radius": 0.5, "charge": [-1.0, 1.0]})
+        >>> particles = from_pandas(table)
+        >>> particles.radius.tolist(), list(particles.columns)
+        ([0.5, 0.5], ['charge'])
+    """
+    import numpy as np
+
+    names = [str(name) for name in _need(frame, "columns", "a pandas DataFrame")]
+    if positions is None:
+        positions = next((triple for triple in _COORDINATES if set(triple) <= set(names)), None)
+        if positions is None:
+            raise Error(
+                f"the data frame has no columns x, y and z; name them, as in positions=['a', 'b', 'c']: "
+                f"it has {', '.join(names)}"
+            )
+    for name in (*positions, *(name for name in (radius, kinds) if name)):
+        if name not in names:
+            raise Error(f"the data frame has no column `{name}`; it has {', '.join(names)}")
+    kinds = kinds or next((name for name in _KINDS if name in names), None)
+    radii = None
+    if radius or "radius" in names:
+        radius = radius or "radius"
+        radii = frame[radius].to_numpy()
+    elif "diameter" in names:
+        radius = "diameter"
+        radii = frame["diameter"].to_numpy() / 2
+    used = {*positions, radius, kinds}
+    columns = {
+        name: frame[name].to_numpy()
+        for name in names
+        if name not in used and frame[name].to_numpy().dtype.kind in "fiubOUST"
+    }
+    return Particles(
+        tuple(np.asarray(frame[name].to_numpy()) for name in positions),
+        radius=radii,
+        kinds=None if kinds is None else frame[kinds].to_numpy(),
+        columns=columns,
+        cell=cell,
+        periodic=periodic,
+    )
+
+
+def _optional(thing: Any, name: str) -> Any:
+    """An attribute, or None; packages raise errors of their own for those that a topology lacks."""
+    try:
+        return getattr(thing, name)
+    except Exception:  # noqa: BLE001
+        return None
+
+
+def _components(name: str, values: Any) -> dict[str, Any]:
+    """Columns of a property, as the readers name its components."""
+    import numpy as np
+
+    array = np.asarray(values)
+    if array.ndim == 1:
+        return {name: array}
+    if array.ndim != 2 or array.dtype.kind not in "fiub":
+        return {}
+    width = array.shape[1]
+    parts = "xyz" if width == 3 else [str(part + 1) for part in range(width)]
+    return {f"{name}_{part}": array[:, row] for row, part in enumerate(parts)}

@@ -1,0 +1,102 @@
+//! Files of pictures, in memory.
+
+use crate::errors::error;
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use spherule::image::{
+    Channel, Depth, Format, Image, ImageError, Metadata, QUALITY, Values, WriteOptions,
+};
+use spherule::overlay;
+use spherule::scene::Tone;
+use std::path::PathBuf;
+
+/// What of a picture is not background, for its alpha.
+#[pyclass(frozen, module = "spherule._spherule")]
+pub(crate) struct Matte(overlay::Matte);
+
+impl Matte {
+    pub(crate) fn of(matte: overlay::Matte) -> Self {
+        Self(matte)
+    }
+
+    /// Alpha as a channel, for formats that blend linear or encoded values.
+    fn channel(&self, format: Format) -> Channel {
+        let values = if format == Format::Exr { self.0.linear() } else { self.0.encoded() };
+        Channel { name: "A".to_owned(), values: Values::Floats(values) }
+    }
+}
+
+/// How a picture is encoded.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct EncodeTable {
+    /// A name that ends in the format's suffix.
+    path: PathBuf,
+    exposure: f64,
+    filmic: bool,
+    bits: u32,
+    quality: Option<u8>,
+    metadata: Vec<(String, String)>,
+}
+
+fn image(pixels: &PyReadonlyArray3<'_, f32>) -> Result<Image, ImageError> {
+    let pixels = pixels.as_array();
+    let (height, width, _) = pixels.dim();
+    let row = |row: numpy::ndarray::ArrayView1<f32>| [row[0], row[1], row[2]];
+    let values = pixels.rows().into_iter().map(row).collect();
+    Image::new(width as u32, height as u32, values)
+}
+
+fn tone(filmic: bool) -> Tone {
+    if filmic { Tone::Filmic } else { Tone::Linear }
+}
+
+/// The bytes of a file of a picture, whose pixels have three or four values.
+#[pyfunction]
+pub(crate) fn encode<'py>(
+    py: Python<'py>,
+    pixels: PyReadonlyArray3<'py, f32>,
+    matte: Option<&Matte>,
+    table: EncodeTable,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let fault = |why: ImageError| error(py, &why);
+    let format = Format::of_suffix(&table.path).map_err(fault)?;
+    let image = image(&pixels).map_err(fault)?;
+    let mut metadata = Metadata::new();
+    for (name, text) in &table.metadata {
+        metadata.push(name, text.replace('\0', " "));
+    }
+    let options = WriteOptions {
+        depth: if table.bits == 16 { Depth::Sixteen } else { Depth::Eight },
+        quality: table.quality.unwrap_or(QUALITY),
+        exposure: table.exposure,
+        tone: tone(table.filmic),
+        metadata,
+        ..WriteOptions::default()
+    };
+    let channels: Vec<Channel> = matte.map(|matte| matte.channel(format)).into_iter().collect();
+    let bytes = py.detach(|| image.encode(format, &channels, &options)).map_err(fault)?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+/// The codes of a picture for a display, 0 to 255, of three values per pixel.
+#[pyfunction]
+pub(crate) fn display_codes<'py>(
+    py: Python<'py>,
+    pixels: PyReadonlyArray3<'py, f32>,
+    exposure: f64,
+    filmic: bool,
+) -> PyResult<Bound<'py, PyArray3<u8>>> {
+    let transform = spherule::image::tone::DisplayTransform::new(exposure, tone(filmic));
+    let transform = transform.map_err(|why| error(py, &why))?;
+    let pixels = pixels.as_array();
+    let (height, width, _) = pixels.dim();
+    let codes = py.detach(|| {
+        let row = |row: numpy::ndarray::ArrayView1<f32>| {
+            [0, 1, 2].map(|channel| transform.code(row[channel], 255) as u8)
+        };
+        pixels.rows().into_iter().map(row).collect::<Vec<[u8; 3]>>().into_flattened()
+    });
+    PyArray1::from_vec(py, codes).reshape([height, width, 3])
+}

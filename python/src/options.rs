@@ -1,0 +1,233 @@
+//! Particles and their style, from tables that the package's Python modules fill.
+
+use crate::arrays::{Column, Table, check_points, check_positive};
+use crate::errors::error;
+use glam::DVec3;
+use pyo3::prelude::*;
+use spherule::color::{Map, Rgb, Spacing};
+use spherule::particles::{
+    Cell, Codes, Element, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions,
+    TextColumn,
+};
+use spherule::scene::particles::{
+    Coloring, ColumnColors, ElementColors, ParticleStyle, Selection, TypeMaterial, TypeStyle,
+};
+use std::str::FromStr;
+
+/// Names, and the row in them of each particle.
+pub(crate) type Coded<'py> = (Vec<String>, Bound<'py, PyAny>);
+
+/// Origin, the edges a, b and c, and whether the cell is periodic along each.
+pub(crate) type CellTuple = ([f64; 3], [[f64; 3]; 3], [bool; 3]);
+
+/// Columns of particles. Arrays are of floats, and have as many rows as there are particles.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct ParticleTable<'py> {
+    positions: Bound<'py, PyAny>,
+    /// `vdw`, `covalent`, `column:NAME` or a number.
+    radii: Option<String>,
+    radius: Option<Bound<'py, PyAny>>,
+    radius_scale: f64,
+    color: Option<Bound<'py, PyAny>>,
+    kinds: Option<Coded<'py>>,
+    /// The symbol of the element of each kind, where it has one.
+    elements: Vec<Option<String>>,
+    materials: Option<Coded<'py>>,
+    numbers: Vec<(String, Bound<'py, PyAny>)>,
+    texts: Vec<(String, Coded<'py>)>,
+    cell: Option<CellTuple>,
+    title: String,
+    unit: String,
+}
+
+/// The style of a type: name, radius, color, material.
+type TypeTuple = (String, Option<f64>, Option<[f32; 3]>, Option<String>);
+
+/// The style of particles.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct StyleTable {
+    select: Option<String>,
+    colors: Option<String>,
+    color_by: Option<String>,
+    color_map: Option<String>,
+    color_range: Option<[f64; 2]>,
+    color_log: bool,
+    types: Vec<TypeTuple>,
+}
+
+impl ParticleTable<'_> {
+    /// The frame, and the options that complete it.
+    pub(crate) fn frame(self, py: Python<'_>) -> PyResult<(ParticleFrame, ReadOptions)> {
+        let columns = Table::of(&self.positions)?.to_columns(py);
+        check_points(py, "positions", &columns)?;
+        let count = columns.first().map_or(0, Vec::len);
+        let [x, y, z] = <[_; 3]>::try_from(columns)
+            .map_err(|columns| lengths(py, "positions", 3, columns.len()))?;
+        let mut frame = ParticleFrame { x, y, z, title: self.title, ..ParticleFrame::default() };
+        if let Some(radius) = &self.radius {
+            frame.radius = Column::of(radius)?.to_vec(py);
+            check_positive(py, "radius", &frame.radius)?;
+            check_length(py, "radius", count, frame.radius.len())?;
+        }
+        if let Some(color) = &self.color {
+            let columns = Table::of(color)?.to_columns(py);
+            check_points(py, "color", &columns)?;
+            let [red, green, blue] = <[_; 3]>::try_from(columns)
+                .map_err(|columns| lengths(py, "color", 3, columns.len()))?;
+            check_length(py, "color", count, red.len())?;
+            let rows = red.iter().zip(&green).zip(&blue);
+            let color =
+                |((r, g), b): ((&f64, &f64), &f64)| Rgb::new(*r as f32, *g as f32, *b as f32);
+            frame.color = rows.map(color).collect();
+            if let Some(row) = frame.color.iter().position(|color| !is_share(*color)) {
+                let message = format!("color[{row}] is {}, but must be 0 to 1", frame.color[row]);
+                return Err(error(py, &message));
+            }
+        }
+        if let Some((names, codes)) = &self.kinds {
+            let kind = |(name, element): (&String, &Option<String>)| Kind {
+                name: name.clone(),
+                element: element.as_deref().and_then(Element::from_symbol),
+                virtual_site: false,
+            };
+            let table = names.iter().zip(&self.elements).map(kind).collect();
+            frame.kinds = Kinds { table, codes: codes_of(py, "kinds", names, codes, count)? };
+        }
+        if let Some((names, codes)) = self.materials {
+            frame.materials = text_column(py, "materials", names, &codes, count)?;
+        }
+        for (name, values) in self.numbers {
+            let values = Column::of(&values)?.to_vec(py);
+            check_length(py, &name, count, values.len())?;
+            frame.numbers.push(NumberColumn { name, values });
+        }
+        for (name, (names, codes)) in self.texts {
+            frame.texts.push(text_column(py, &name, names, &codes, count)?);
+        }
+        frame.columns = frame.numbers.iter().map(|column| column.name.clone()).collect();
+        frame.columns.extend(frame.texts.iter().map(|column| column.name.clone()));
+        frame.cell = self.cell.map(|cell| cell_of(py, cell)).transpose()?;
+        frame.unit = unit_of(&self.unit);
+        let radii = self.radii.as_deref().map_or(Ok(Radii::Auto), Radii::from_str);
+        let options = ReadOptions {
+            radii: radii.map_err(|message| error(py, &message))?,
+            radius_scale: self.radius_scale,
+            ..ReadOptions::default()
+        };
+        Ok((frame, options))
+    }
+}
+
+impl StyleTable {
+    /// The style of the program's options of the same names.
+    pub(crate) fn style(self, py: Python<'_>, radius_scale: f64) -> PyResult<ParticleStyle> {
+        let fault = |message: String| error(py, &message);
+        let select = self.select.as_deref().map(Selection::from_str).transpose();
+        let select = select.map_err(|why| fault(why.to_string()))?;
+        let coloring = match (self.color_by, self.colors.as_deref()) {
+            (Some(column), _) => {
+                let (map, reversed) = match self.color_map.as_deref() {
+                    None => (None, false),
+                    Some(name) => map_of(name).map_err(fault)?,
+                };
+                let spacing = if self.color_log { Spacing::Logarithmic } else { Spacing::Linear };
+                let ends = self.color_range;
+                Coloring::Column(ColumnColors { column, map, reversed, ends, spacing })
+            }
+            (None, None) => Coloring::Usual,
+            (None, Some("jmol")) => Coloring::Elements(ElementColors::Jmol),
+            (None, Some("cpk")) => Coloring::Elements(ElementColors::Cpk),
+            (None, Some(other)) => {
+                return Err(fault(format!("`colors` is \"{other}\", but must be jmol or cpk")));
+            }
+        };
+        let types = self.types.into_iter().map(|(name, radius, color, material)| {
+            let named = |word: &String| TypeMaterial::ALL.iter().find(|(own, _)| own == word);
+            let known = material.as_ref().map(|word| {
+                let names = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
+                let message = || format!("unknown material \"{word}\"; materials are {names}");
+                named(word).map(|(_, material)| *material).ok_or_else(message)
+            });
+            let radius = radius.map(|radius| radius * radius_scale);
+            let color = color.map(Rgb::from);
+            Ok(TypeStyle { name, radius, color, material: known.transpose()? })
+        });
+        let types = types.collect::<Result<_, _>>().map_err(fault)?;
+        Ok(ParticleStyle { select, coloring, types, ..ParticleStyle::default() })
+    }
+}
+
+/// The map with a name, which may end in `_r` for the reversed one.
+fn map_of(name: &str) -> Result<(Option<Map>, bool), String> {
+    let (stem, reversed) = name.strip_suffix("_r").map_or((name, false), |stem| (stem, true));
+    let map = Map::named(stem).ok_or_else(|| {
+        let names = Map::ALL.map(Map::name).join(", ");
+        format!("unknown color map \"{name}\"; maps are {names}, each also reversed with _r")
+    })?;
+    Ok((Some(map), reversed))
+}
+
+fn is_share(color: Rgb) -> bool {
+    (0..3).all(|channel| (0.0..=1.0).contains(&color[channel]))
+}
+
+/// The cell, if its edges span a volume.
+pub(crate) fn cell_of(py: Python<'_>, (origin, vectors, periodic): CellTuple) -> PyResult<Cell> {
+    let [a, b, c] = vectors.map(DVec3::from);
+    let cell = Cell { origin: origin.into(), vectors: [a, b, c], periodic };
+    let finite = [a, b, c, cell.origin].iter().all(|vector| vector.is_finite());
+    if finite && a.cross(b).dot(c) != 0.0 {
+        return Ok(cell);
+    }
+    Err(error(py, &"`cell` must be finite, with three edges that span a volume"))
+}
+
+/// The unit with a name; unknown ones are unknown.
+fn unit_of(name: &str) -> LengthUnit {
+    use LengthUnit::{Angstrom, Bohr, Centimeter, Meter, Micrometer, Nanometer};
+    let known = [Angstrom, Nanometer, Bohr, Micrometer, Centimeter, Meter];
+    known.into_iter().find(|unit| unit.name() == name).unwrap_or_default()
+}
+
+fn text_column(
+    py: Python<'_>,
+    name: &str,
+    names: Vec<String>,
+    codes: &Bound<'_, PyAny>,
+    count: usize,
+) -> PyResult<TextColumn> {
+    let codes = codes_of(py, name, &names, codes, count)?;
+    Ok(TextColumn { name: name.to_owned(), names, codes })
+}
+
+/// Rows in a table of names, in the narrowest type.
+fn codes_of(
+    py: Python<'_>,
+    name: &str,
+    names: &[String],
+    codes: &Bound<'_, PyAny>,
+    count: usize,
+) -> PyResult<Codes> {
+    let codes: numpy::PyReadonlyArray1<u32> = codes.extract()?;
+    let codes = codes.as_array();
+    check_length(py, name, count, codes.len())?;
+    if let Some(row) = codes.iter().position(|&code| code as usize >= names.len()) {
+        let (code, most) = (codes[row], names.len());
+        return Err(error(py, &format!("{name}[{row}] is {code}, but there are {most} names")));
+    }
+    Ok(match names.len() {
+        0..=0x100 => Codes::Bytes(codes.iter().map(|&code| code as u8).collect()),
+        0x101..=0x1_0000 => Codes::Shorts(codes.iter().map(|&code| code as u16).collect()),
+        _ => Codes::Words(codes.iter().copied().collect()),
+    })
+}
+
+fn check_length(py: Python<'_>, name: &str, expected: usize, found: usize) -> PyResult<()> {
+    if found == expected { Ok(()) } else { Err(lengths(py, name, expected, found)) }
+}
+
+fn lengths(py: Python<'_>, name: &str, expected: usize, found: usize) -> PyErr {
+    error(py, &format!("`{name}` has {found} entries, but must have {expected}"))
+}

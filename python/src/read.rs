@@ -1,0 +1,142 @@
+//! Particle files as columns.
+
+use crate::errors::{error, of_file};
+use crate::pools::pool;
+use crate::watch::Watcher;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use spherule::particles::{
+    self as particles, Codes, Columns, Element, FileError, Format, FrameChoice, ParticleFrame,
+    ReadOptions, TextColumn, read_frame,
+};
+use std::path::{Path, PathBuf};
+
+/// How a particle file is read, by the names of the program's options.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct ReadTable {
+    format: Option<String>,
+    /// `x=px,type=species` and so on.
+    columns: Option<String>,
+    atom_style: Option<String>,
+}
+
+impl ReadTable {
+    fn options(&self, py: Python<'_>) -> PyResult<ReadOptions> {
+        let format = self.format.as_deref().map(|name| {
+            let found = Format::ALL.iter().find(|(own, _)| *own == name).map(|(_, format)| *format);
+            found.ok_or_else(|| {
+                let names = Format::ALL.map(|(name, _)| name).join(", ");
+                error(py, &format!("unknown format \"{name}\"; formats are {names}"))
+            })
+        });
+        let columns = self.columns.as_deref().map_or(Ok(Columns::default()), str::parse);
+        let columns: Columns = columns.map_err(|why: String| error(py, &why))?;
+        Ok(ReadOptions {
+            format: format.transpose()?,
+            columns: Columns { rest: Some(usize::MAX), ..columns },
+            atom_style: self.atom_style.clone(),
+            allow_empty: true,
+            ..ReadOptions::default()
+        })
+    }
+}
+
+/// The number of complete frames of a file.
+#[pyfunction]
+pub(crate) fn count_frames(py: Python<'_>, path: PathBuf, table: ReadTable) -> PyResult<u64> {
+    let options = table.options(py)?;
+    let work = move |_: &_| particles::count_frames(&path, &options);
+    let (count, _) = Watcher::default().run(py, pool(py, None)?, work)?;
+    count.map_err(|error| of_file(py, &error))
+}
+
+/// A frame of a file, from 0; negative numbers count from the end.
+#[pyfunction]
+pub(crate) fn read(
+    py: Python<'_>,
+    path: PathBuf,
+    frame: i64,
+    table: ReadTable,
+) -> PyResult<Bound<'_, PyDict>> {
+    let options = table.options(py)?;
+    let work = move |_: &_| frame_of(&path, frame, options);
+    let (read, _) = Watcher::default().run(py, pool(py, None)?, work)?;
+    columns(py, read.map_err(|error| of_file(py, &error))?)
+}
+
+fn frame_of(path: &Path, frame: i64, options: ReadOptions) -> Result<ParticleFrame, FileError> {
+    let frame = match frame {
+        -1 => FrameChoice::Last,
+        0.. => FrameChoice::Index(frame.unsigned_abs()),
+        _ => {
+            let count = particles::count_frames(path, &options)?;
+            let index = count.checked_sub(frame.unsigned_abs()).ok_or_else(|| {
+                let message = format!("has no frame {frame}, only {count}");
+                FileError::whole_file(path, message)
+            });
+            FrameChoice::Index(index?)
+        }
+    };
+    read_frame(path, &ReadOptions { frame, ..options })
+}
+
+fn columns(py: Python<'_>, frame: ParticleFrame) -> PyResult<Bound<'_, PyDict>> {
+    let table = PyDict::new(py);
+    let count = frame.len();
+    // One column after the other: the transpose has a row for each particle.
+    let mut positions = frame.x;
+    positions.reserve_exact(2 * count);
+    positions.extend_from_slice(&frame.y);
+    positions.extend_from_slice(&frame.z);
+    table.set_item("positions", PyArray1::from_vec(py, positions).reshape([3, count])?)?;
+    let some = |values: Vec<f64>| (!values.is_empty()).then(|| PyArray1::from_vec(py, values));
+    table.set_item("radius", some(frame.radius))?;
+    let colors = (!frame.color.is_empty()).then(|| -> PyResult<Bound<'_, PyArray2<f32>>> {
+        let rows: Vec<[f32; 3]> = frame.color.iter().map(glam::Vec3::to_array).collect();
+        PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
+    });
+    table.set_item("color", colors.transpose()?)?;
+    let kinds = frame.kinds;
+    let names: Vec<String> = kinds.table.iter().map(|kind| kind.name.clone()).collect();
+    let elements: Vec<Option<&str>> =
+        kinds.table.iter().map(|kind| kind.element.map(Element::symbol)).collect();
+    let coded = (!kinds.codes.is_empty()).then(|| (names, codes(py, &kinds.codes)));
+    table.set_item("kinds", coded)?;
+    table.set_item("elements", elements)?;
+    let text = |column: TextColumn| (column.names, codes(py, &column.codes));
+    let materials = (!frame.materials.codes.is_empty()).then(|| text(frame.materials));
+    table.set_item("materials", materials)?;
+    let numbers = PyDict::new(py);
+    for column in frame.numbers {
+        numbers.set_item(column.name, PyArray1::from_vec(py, column.values))?;
+    }
+    table.set_item("numbers", numbers)?;
+    let texts = PyDict::new(py);
+    for column in frame.texts {
+        texts.set_item(column.name.clone(), text(column))?;
+    }
+    table.set_item("texts", texts)?;
+    let cell = frame.cell.map(|cell| {
+        (cell.origin.to_array(), cell.vectors.map(|vector| vector.to_array()), cell.periodic)
+    });
+    table.set_item("cell", cell)?;
+    table.set_item("title", frame.title)?;
+    table.set_item("step", frame.step)?;
+    table.set_item("time", frame.time)?;
+    table.set_item("unit", frame.unit.name())?;
+    table.set_item("format", frame.format.name())?;
+    table.set_item("warnings", frame.warnings)?;
+    Ok(table)
+}
+
+fn codes<'py>(py: Python<'py>, codes: &Codes) -> Bound<'py, PyArray1<u32>> {
+    PyArray1::from_vec(py, (0..codes.len()).map(|row| codes.code(row)).collect())
+}
+
+/// The symbol of the element that a word is the symbol of, in any case.
+#[pyfunction]
+pub(crate) fn element_of(word: &str) -> Option<&'static str> {
+    Element::from_symbol(word).map(Element::symbol)
+}

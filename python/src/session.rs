@@ -1,0 +1,422 @@
+//! Renders: from a scene to pictures, in one step or refined step by step.
+
+use crate::encode::Matte;
+use crate::errors::error;
+use crate::pools::pool;
+use crate::scene::{Fault, Scene, change, place};
+use crate::watch::{Shared, Stop, Watcher};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::ThreadPool;
+use spherule::World;
+use spherule::denoise::{Asked, Choice, Denoiser, Judged, choose};
+use spherule::layers::{Layer, Layers, layers};
+use spherule::overlay::{Canvas, annotations};
+use spherule::render::{
+    End, Film, Judge, Noise, Options, Region, Render, RenderError, ResumableRender, Statistics,
+};
+use spherule::scene::{Annotations, Identity, Look, Settings, Tone};
+use spherule::split::Part;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Settings for a render, as the section `[render]` of a scene file.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct RenderTable {
+    /// TOML of the section.
+    text: String,
+    keys: Vec<String>,
+    /// Names of layers.
+    layers: Vec<String>,
+    threads: Option<usize>,
+}
+
+/// What a render is asked for.
+#[derive(Clone)]
+pub(crate) struct Request {
+    settings: Settings,
+    keys: Vec<String>,
+    layers: Vec<Layer>,
+}
+
+impl RenderTable {
+    /// Understands the table, and returns its pool of threads.
+    pub(crate) fn request(&self, py: Python<'_>) -> PyResult<(Request, Arc<ThreadPool>)> {
+        let given = spherule::Scene::parse(&self.text, crate::errors::KEYWORDS, Path::new(""));
+        let given = given.map_err(|error| crate::errors::of_file(py, &error))?;
+        let layer = |name: &String| {
+            Layer::ALL.into_iter().find(|layer| layer.name() == name).ok_or_else(|| {
+                let names = Layer::ALL.map(Layer::name).join(", ");
+                error(py, &format!("unknown layer \"{name}\"; layers are {names}"))
+            })
+        };
+        let layers = self.layers.iter().map(layer).collect::<PyResult<_>>()?;
+        let request = Request { settings: given.settings, keys: self.keys.clone(), layers };
+        Ok((request, pool(py, self.threads)?))
+    }
+}
+
+impl From<RenderError> for Fault {
+    fn from(error: RenderError) -> Self {
+        Self::Text(error.to_string())
+    }
+}
+
+/// A render that goes on until its end or a signal, and all that its pictures need.
+pub(crate) struct Session {
+    world: World,
+    title: String,
+    look: Look,
+    annotations: Annotations,
+    settings: Settings,
+    region: Region,
+    denoiser: Option<Denoiser>,
+    layers: Vec<Layer>,
+    pub(crate) render: ResumableRender,
+    /// Identity of the scene, for parts.
+    pub(crate) identity: Option<Identity>,
+}
+
+/// A picture and its facts.
+pub(crate) struct Shown {
+    render: Render,
+    title: String,
+    settings: Settings,
+    matte: Option<spherule::overlay::Matte>,
+    /// The error of the picture, before and after denoising.
+    judged: Option<(Noise, Noise)>,
+    denoised: bool,
+    layers: Vec<(Layer, Layers)>,
+    warnings: Vec<String>,
+}
+
+impl Session {
+    /// Builds the world of a scene; of one that is `taken` its spheres move there.
+    pub(crate) fn begin(
+        scene: &Mutex<spherule::Scene>,
+        request: Request,
+        taken: bool,
+        part: Option<Part>,
+    ) -> Result<Self, Fault> {
+        let mut scene = scene.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = (scene.settings.clone(), scene.camera.clone());
+        let begun = Self::begin_with(&mut scene, request, taken, part);
+        (scene.settings, scene.camera) = kept;
+        begun
+    }
+
+    fn begin_with(
+        scene: &mut spherule::Scene,
+        request: Request,
+        taken: bool,
+        part: Option<Part>,
+    ) -> Result<Self, Fault> {
+        let Request { settings, keys, layers } = request;
+        change(&mut scene.settings, &settings, &keys);
+        place(scene)?;
+        let Settings { width, height, .. } = scene.settings;
+        let region = Region { x: 0, y: 0, width, height };
+        let asked = Asked { part: part.is_some(), spp: keys.iter().any(|key| key == "spp") };
+        let choice = choose(scene, region, scene.spheres.len(), asked);
+        let settings = scene.settings.clone();
+        let identity = part.is_some().then(|| Identity::of(scene));
+        let samples = u64::from(width) * u64::from(height) * u64::from(settings.spp);
+        let builder = World::builder(scene.spheres.len(), samples);
+        let world = if taken {
+            World::build_taking(scene, builder)?
+        } else {
+            World::build_with(scene, builder)?
+        };
+        let statistics = choice.is_some() || layers.iter().any(|layer| layer.is_statistic());
+        let options = Options { region: Some(region), statistics, ..Options::default() };
+        let denoiser = |choice: Choice| Denoiser::new(&world, &settings, &options, choice);
+        let denoiser = choice.map(denoiser).transpose()?;
+        let whole = spherule::render::ImagePart::whole(region, settings.spp);
+        let image_part = match part {
+            Some(part) => {
+                part.of_image(&whole, None).map_err(|why| Fault::Text(why.to_string()))?
+            }
+            None => whole,
+        };
+        let render = ResumableRender::begin_part(&world, &settings, &options, image_part)?;
+        let (title, look) = (scene.title.clone(), scene.look);
+        let annotations = scene.annotations.clone();
+        Ok(Self {
+            world,
+            title,
+            look,
+            annotations,
+            settings,
+            region,
+            denoiser,
+            layers,
+            render,
+            identity,
+        })
+    }
+
+    /// Renders until the end, or for some time; returns whether it is the end.
+    pub(crate) fn run(&mut self, shared: &Shared, slice: Option<Duration>) -> bool {
+        shared.keeps.store(true, Ordering::SeqCst);
+        let pause = AtomicBool::new(false);
+        let until = slice.map(|slice| Instant::now() + slice);
+        let show = |progress| {
+            shared.show(progress);
+            let due = until.is_some_and(|until| until <= Instant::now());
+            if due || shared.cancel.load(Ordering::SeqCst) {
+                pause.store(true, Ordering::SeqCst);
+            }
+        };
+        let (world, denoiser) = (&self.world, self.denoiser.as_ref());
+        // Without a pause, the watcher's flag ends the render by itself: at once, not after the next report.
+        let cancel = if slice.is_some() { &pause } else { &shared.cancel };
+        let options = Options { cancel: Some(cancel), progress: Some(&show), ..Options::default() };
+        let judged = |film: &Film| Some(denoiser?.judge(world, film, &options)?.noise);
+        let judge = denoiser.is_some().then_some(&judged as &Judge);
+        let end = self.render.run(world, &Options { judge, ..options });
+        end != End::Cancelled
+    }
+
+    /// Finishes the picture so far: denoised, with look and annotations. A `quick` one is not denoised.
+    pub(crate) fn show(&mut self, quick: bool) -> Result<Shown, Fault> {
+        let mut render = self.render.render();
+        let judged = self.denoiser.as_ref().filter(|_| !quick).and_then(|denoiser| {
+            let options = Options { region: Some(self.region), ..Options::default() };
+            denoiser.judge(&self.world, self.render.film(), &options)
+        });
+        let errors = judged.as_ref().map(|judged| (judged.before, judged.noise));
+        let mut is_denoised = false;
+        if let Some(Judged { denoised: Some(denoised), .. }) = judged {
+            is_denoised = true;
+            render.image = denoised.image;
+        }
+        let layers = self.layers(&render)?;
+        let mut warnings = Vec::new();
+        let mut canvas = Canvas::with_look(
+            &self.look,
+            &mut self.world,
+            &self.settings,
+            self.region,
+            &mut render,
+        )?;
+        if !self.annotations.is_empty() {
+            let drawn = annotations::draw(&self.annotations, &self.world, &self.look, false);
+            canvas.draw(|image| drawn.drawing.draw_over(image));
+            if !drawn.fits {
+                warnings.push(
+                    "annotations overlap: make the picture larger, or use fewer or a smaller \
+                     `lettering`"
+                        .to_owned(),
+                );
+            }
+        }
+        let matte = canvas.matte;
+        let (title, settings) = (self.title.clone(), self.settings.clone());
+        Ok(Shown {
+            render,
+            title,
+            settings,
+            matte,
+            judged: errors,
+            denoised: is_denoised,
+            layers,
+            warnings,
+        })
+    }
+
+    fn layers(&self, render: &Render) -> Result<Vec<(Layer, Layers)>, Fault> {
+        let Region { width, height, .. } = self.region;
+        let mut made = Vec::new();
+        for &layer in &self.layers {
+            let pixels = if layer.is_statistic() {
+                Layers { width, height, pixels: Vec::new(), statistics: render.statistics.clone() }
+            } else {
+                // No more samples than the image has, so that an interrupted render ends soon.
+                let spp = render.samples.most.max(1);
+                let settings = Settings { spp, ..self.settings.clone() };
+                let options = Options { region: Some(self.region), ..Options::default() };
+                layers(&self.world, &settings, &options, &[layer])?
+            };
+            made.push((layer, pixels));
+        }
+        Ok(made)
+    }
+}
+
+impl Shown {
+    /// The picture as a table for the class `Picture`.
+    fn table(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let Self { render, title, settings, matte, judged, denoised, layers, warnings } = self;
+        let Settings { width, height, .. } = settings;
+        let size = (height as usize, width as usize);
+        let table = PyDict::new(py);
+        let pixels = match &matte {
+            None => PyArray1::from_vec(py, render.image.pixels.into_flattened())
+                .reshape([size.0, size.1, 3])?,
+            Some(matte) => {
+                let alpha = matte.linear();
+                let rows = render.image.pixels.iter().zip(&alpha);
+                let values = rows.flat_map(|(&[r, g, b], &a)| [r, g, b, a]).collect();
+                PyArray1::from_vec(py, values).reshape([size.0, size.1, 4])?
+            }
+        };
+        table.set_item("pixels", pixels)?;
+        table.set_item("matte", matte.map(Matte::of))?;
+        table.set_item("title", title)?;
+        table.set_item("exposure", settings.exposure)?;
+        table.set_item("tone", if settings.tone == Tone::Filmic { "filmic" } else { "linear" })?;
+        table.set_item("spp", (render.samples.least, render.samples.most))?;
+        table.set_item("samples", render.samples.total)?;
+        let noise = judged.map(|(_, noise)| noise).or(render.noise);
+        table.set_item("error", noise.map(|noise| noise.error))?;
+        table.set_item("error_bound", noise.map(|noise| noise.bound))?;
+        table.set_item("denoised", denoised)?;
+        table.set_item("complete", render.complete)?;
+        table.set_item("seconds", render.elapsed.as_secs_f64())?;
+        table.set_item("rays", render.counters.rays())?;
+        table.set_item("warnings", warnings)?;
+        let named = PyDict::new(py);
+        for (layer, values) in layers {
+            named.set_item(layer.name(), layer_array(py, layer, values, size)?)?;
+        }
+        table.set_item("layers", named)?;
+        Ok(table)
+    }
+}
+
+/// A layer as an array of a value or three per pixel.
+fn layer_array(
+    py: Python<'_>,
+    layer: Layer,
+    layers: Layers,
+    (height, width): (usize, usize),
+) -> PyResult<Bound<'_, PyAny>> {
+    let Layers { pixels, statistics, .. } = layers;
+    let triples = |values: Vec<[f32; 3]>| {
+        let array = PyArray1::from_vec(py, values.into_flattened());
+        Ok(array.reshape([height, width, 3])?.into_any())
+    };
+    let floats =
+        |values: Vec<f32>| Ok(PyArray1::from_vec(py, values).reshape([height, width])?.into_any());
+    let whole =
+        |values: Vec<u32>| Ok(PyArray1::from_vec(py, values).reshape([height, width])?.into_any());
+    let missing = || PyRuntimeError::new_err("the render has no statistics");
+    match layer {
+        Layer::Albedo => triples(pixels.iter().map(|pixel| pixel.albedo).collect()),
+        Layer::Normal => triples(pixels.iter().map(|pixel| pixel.normal).collect()),
+        Layer::Depth => floats(pixels.iter().map(|pixel| pixel.depth).collect()),
+        Layer::Coverage => floats(pixels.iter().map(|pixel| pixel.coverage).collect()),
+        Layer::Id => whole(pixels.iter().map(|pixel| pixel.id).collect()),
+        Layer::Variance => {
+            let Statistics { variance, .. } = statistics.ok_or_else(missing)?;
+            triples(variance.pixels)
+        }
+        _ => {
+            let Statistics { samples, .. } = statistics.ok_or_else(missing)?;
+            whole(samples)
+        }
+    }
+}
+
+/// The picture of an interrupted or finished session; the interrupt itself if there is nothing to show.
+pub(crate) fn show(
+    py: Python<'_>,
+    shown: Result<Option<Shown>, Fault>,
+    interrupt: Option<PyErr>,
+) -> PyResult<Bound<'_, PyDict>> {
+    let shown = shown.map_err(|fault| fault.raise(py))?;
+    match (shown, interrupt) {
+        (Some(shown), None) => shown.table(py),
+        (Some(shown), Some(interrupt)) => {
+            // An exception of the progress report is not a wish to see the picture so far.
+            if !interrupt.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py) {
+                return Err(interrupt);
+            }
+            let table = shown.table(py)?;
+            table.set_item("complete", false)?;
+            Ok(table)
+        }
+        (None, Some(interrupt)) => Err(interrupt),
+        (None, None) => Err(error(py, &"stopped before the first sample: there is no picture")),
+    }
+}
+
+/// Renders a scene; of one that is `taken` the spheres are gone afterwards.
+#[pyfunction]
+#[pyo3(signature = (scene, table, taken, stop, report))]
+pub(crate) fn render<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    table: RenderTable,
+    taken: bool,
+    stop: Option<&Stop>,
+    report: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (request, pool) = table.request(py)?;
+    let scene = Arc::clone(&scene.scene);
+    let work = move |shared: &Shared| {
+        let mut session = Session::begin(&scene, request, taken, None)?;
+        let done = session.run(shared, None);
+        if session.render.samples().total == 0 {
+            return Ok(None);
+        }
+        session.show(!done).map(Some)
+    };
+    let (shown, interrupt) = Watcher::new(stop, report).run(py, pool, work)?;
+    show(py, shown, interrupt)
+}
+
+/// A render that is refined step by step.
+#[pyclass(frozen, module = "spherule._spherule")]
+pub(crate) struct Refinement {
+    session: Arc<Mutex<Option<Session>>>,
+    pool: Arc<ThreadPool>,
+}
+
+/// Begins a render that is refined step by step.
+#[pyfunction]
+pub(crate) fn refine(py: Python<'_>, scene: &Scene, table: RenderTable) -> PyResult<Refinement> {
+    let (request, pool) = table.request(py)?;
+    let scene = Arc::clone(&scene.scene);
+    let work = move |_: &Shared| Session::begin(&scene, request, false, None);
+    let (session, _) = Watcher::default().run(py, Arc::clone(&pool), work)?;
+    let session = session.map_err(|fault| fault.raise(py))?;
+    Ok(Refinement { session: Arc::new(Mutex::new(Some(session))), pool })
+}
+
+#[pymethods]
+impl Refinement {
+    /// Renders for some seconds and returns the picture so far; `None` after the end.
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        seconds: f64,
+        stop: Option<&Stop>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let slice = Duration::try_from_secs_f64(seconds)
+            .map_err(|_| error(py, &format!("`seconds` is {seconds}, but must be 0 or more")))?;
+        let state = Arc::clone(&self.session);
+        let work = move |shared: &Shared| {
+            let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
+            let Some(session) = state.as_mut() else { return Ok(None) };
+            let done = session.run(shared, Some(slice));
+            let cancelled = shared.cancel.load(Ordering::SeqCst);
+            let shown = session.show(cancelled && !done)?;
+            if done || cancelled {
+                *state = None;
+            }
+            Ok(Some(shown))
+        };
+        let pool = Arc::clone(&self.pool);
+        let (shown, interrupt) = Watcher::new(stop, None).run(py, pool, work)?;
+        if let Ok(None) = shown {
+            return interrupt.map_or(Ok(None), Err);
+        }
+        show(py, shown, interrupt).map(Some)
+    }
+}

@@ -1,0 +1,129 @@
+"""Arrays in: every type and stride gives the same picture, and what is wrong is named."""
+
+import numpy as np
+import pytest
+
+import spherule
+
+SMALL = {"size": (60, 40), "spp": 2}
+
+
+def picture(positions, **options):
+    return spherule.render(positions, **{"radius": 0.05, **SMALL, **options}).pixels
+
+
+def unaligned(array):
+    buffer = bytearray(array.nbytes + 1)
+    view = np.frombuffer(buffer, np.uint8)[1:].view()
+    view[:] = np.frombuffer(array.tobytes(), np.uint8)
+    return np.ndarray(array.shape, array.dtype, buffer, 1)
+
+
+def readonly(array):
+    copy = array.copy()
+    copy.flags.writeable = False
+    return copy
+
+
+@pytest.mark.parametrize(
+    "convert",
+    [
+        pytest.param(np.asfortranarray, id="fortran"),
+        pytest.param(readonly, id="readonly"),
+        pytest.param(lambda a: np.repeat(a, 2, axis=0)[::2], id="strided"),
+        pytest.param(lambda a: a[::-1].copy()[::-1], id="negative stride"),
+        pytest.param(lambda a: np.hstack([a, a])[:, :3], id="part of a table"),
+        pytest.param(lambda a: a.astype(np.float64), id="float64"),
+        pytest.param(lambda a: a.astype(">f4"), id="other byte order"),
+        pytest.param(lambda a: a.astype(np.longdouble), id="longdouble"),
+        pytest.param(unaligned, id="unaligned"),
+        pytest.param(lambda a: a.tolist(), id="lists"),
+        pytest.param(lambda a: (a[:, 0], a[:, 1], a[:, 2]), id="columns"),
+        pytest.param(lambda a: memoryview(a), id="buffer"),
+    ],
+)
+def test_every_layout_gives_the_same_picture(cloud, convert):
+    assert np.array_equal(picture(cloud), picture(convert(cloud)))
+
+
+def test_integers_and_halves_are_converted():
+    grid = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0]])
+    expected = picture(grid.astype(np.float64), radius=1)
+    for dtype in (np.int8, np.uint16, np.int64, np.float16):
+        assert np.array_equal(picture(grid.astype(dtype), radius=1), expected), dtype
+
+
+def test_arrays_are_not_changed_and_not_kept(cloud):
+    import sys
+
+    before, references = cloud.copy(), sys.getrefcount(cloud)
+    scene = spherule.Scene(cloud, radius=np.full(1000, 0.05, np.float32))
+    assert np.array_equal(cloud, before) and sys.getrefcount(cloud) == references
+    cloud[:] = 0
+    assert np.array_equal(scene.render(**SMALL).pixels, picture(before))
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"positions": [[0, 0]]}, "`positions` has the shape (1, 2), but must have (n, 3)"),
+        ({"positions": 1.0}, "`positions` has the shape (), but must have (n, 3)"),
+        ({"positions": [["a", "b", "c"]]}, "`positions` is an array of <U1, but must be one of real numbers"),
+        ({"positions": np.zeros((2, 3), complex)}, "`positions` is an array of complex128"),
+        ({"positions": [[0, 0, 0], [0, np.nan, 0]]}, "positions[1, 1] is NaN, but must be finite"),
+        ({"positions": [[0, 0, np.inf]]}, "positions[0, 2] is inf, but must be finite"),
+        ({"positions": ([0.0], [0.0])}, "`positions` has the shape (2, 1), but must have (n, 3)"),
+        (
+            {"positions": (np.zeros(1), np.zeros(2), np.zeros(1))},
+            "the columns of `positions` have 1, 2, 1 entries, but must have equally many",
+        ),
+        ({"radius": [1, -2]}, "radius[1] is -2, but must be finite and greater than 0"),
+        ({"radius": [np.nan, 1]}, "radius[0] is NaN"),
+        ({"radius": 0}, "`radius` is 0, but must be finite and greater than 0"),
+        ({"radius": np.array(np.inf)}, "`radius` is inf"),
+        ({"radius": [1, 2, 3]}, "`radius` has the shape (3,), but must have (2,)"),
+        ({"radius": [[1], [2]]}, "`radius` has the shape (2, 1), but must have (2,)"),
+        ({"radius": "vdW"}, "did you mean"),
+        ({"color": "gren"}, "`color` is 'gren', but must be a CSS color"),
+        ({"color": ["red", "gren"]}, "color[1] is 'gren'"),
+        ({"color": [[0, 0, 0], [0, 2, 0]]}, "color[1] is [0, 2, 0], but must be 0 to 1"),
+        ({"color": [[0, 0, 0], [0, np.nan, 0]]}, "color[1, 1] is NaN, but must be finite"),
+        ({"color": [0.5, 0.5]}, "`color` has the shape (2,), but must have (3,) or (2, 3)"),
+        ({"values": [1, np.nan]}, "values[1] is nan, but must be finite"),
+        ({"values": [1, 2, 3]}, "`values` has the shape (3,), but must have (2,)"),
+        ({"values": [1, 2], "color_map": "jet"}, 'unknown color map "jet"; maps are viridis'),
+        ({"values": [1, 2], "color_range": (3, 1)}, "`color_range` is 3 to 1, but the lower number comes first"),
+        ({"color_bar": True}, "`color_bar` needs colors that stand for numbers"),
+        ({"kinds": ["H"]}, "`kinds` has the shape (1,), but must have (2,)"),
+        ({"kinds": [1.5, 2.5]}, "`kinds` is an array of float64, but must be one of strings or integers"),
+        ({"cell": [1, 1, 0]}, "`cell` must be finite, with three edges that span a volume"),
+        ({"cell": [1, 1]}, "`cell` has the shape (2,), but must have (3,), (6,) or (3, 3)"),
+        ({"show_cell": True}, "has no simulation cell to draw"),
+        ({"select": "index >"}, "index >"),
+        ({"spp": 0}, "[render] spp = 0: `spp` is 0, but must be an integer from 1 to 16777216"),
+        ({"size": (0, 5)}, "[render] size = [0, 5]"),
+        ({"until_error": 2}, "[render] until_error = 2"),
+        ({"threads": 0}, "`threads` is 0, but must be an integer from 1 to 4096"),
+        ({"layers": ["deep"], "radius": 1}, 'unknown layer "deep"; layers are albedo'),
+        ({"camera": {"fov": 200}}, "[camera] fov = 200: `fov` is 200, but must be more than 0 and less than 180"),
+        ({"camera": {"eyes": [0, 0, 1]}}, "[camera] eyes = [0, 0, 1]: "),
+        ({"light": {"kind": "sun"}}, "`light` must be a list of dicts"),
+        ({"background": "whit"}, 'did you mean "white"?'),
+        ({"camera": {"up": object()}}, "`camera.up` is of type object, which a scene cannot hold"),
+    ],
+)
+def test_what_is_wrong_is_named(options, text):
+    positions = options.pop("positions", [[0, 0, 0], [3, 0, 0]])
+    with pytest.raises(spherule.Error) as refused:
+        spherule.render(positions, **{**SMALL, **options})
+    assert text in str(refused.value)
+
+
+def test_unknown_arguments_are_refused_with_the_nearest():
+    with pytest.raises(TypeError, match="unknown argument `raduis`; did you mean `radius`?"):
+        spherule.render([[0, 0, 0]], raduis=1)
+
+
+def test_no_particles_are_refused():
+    with pytest.raises(spherule.Error, match="holds no particles"):
+        spherule.render(np.zeros((0, 3)))

@@ -1,0 +1,98 @@
+"""Ctrl-C, forks and imports, in processes of their own."""
+
+import os
+import signal
+import statistics
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+
+LONG = """
+    import sys, threading, time, warnings
+    import numpy as np
+    import spherule
+
+    warnings.simplefilter("ignore")
+    cloud = np.random.default_rng(1).random(({count}, 3), dtype=np.float32)
+    print("ready", flush=True)
+    try:
+        picture = spherule.render(cloud, radius=0.02, size=(800, 600), spp=100_000, {options})
+        print("picture", picture.complete, float(picture.pixels.max()) > 0, picture.samples > 0, flush=True)
+    except spherule.Interrupted as interrupted:
+        print("raised", interrupted.picture.complete, interrupted.picture.samples > 0, flush=True)
+    except KeyboardInterrupt:
+        print("nothing", flush=True)
+"""
+
+
+def interrupted(wait, count=1000, options=""):
+    """What a render says after Ctrl-C, and the seconds until then."""
+    code = textwrap.dedent(LONG.format(count=count, options=options))
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(wait)
+        start = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        line = process.stdout.readline().strip()
+        return line, time.monotonic() - start
+
+
+def test_interrupts_return_the_picture_so_far():
+    times = []
+    for _ in range(5):
+        line, seconds = interrupted(0.6)
+        assert line == "picture False True True"
+        times.append(seconds)
+    assert statistics.median(times) < 0.1, times
+
+
+def test_interrupts_are_raised_if_asked_for():
+    line, _ = interrupted(0.6, options='on_interrupt="raise"')
+    assert line == "raised False True"
+
+
+def test_interrupts_before_the_first_sample_leave_nothing():
+    line, seconds = interrupted(0.25, count=3_000_000)
+    assert line == "nothing"
+    assert seconds < 0.5
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there are no forks")
+def test_children_of_forks_render_with_threads_of_their_own():
+    code = """
+        import os, sys, warnings
+        import numpy as np
+        import spherule
+
+        warnings.simplefilter("ignore")
+        def pixels():
+            return spherule.render([[0, 0, 0]], radius=1, size=(64, 48), spp=16).pixels
+        before = pixels()
+        child = os.fork()
+        if child == 0:
+            os._exit(0 if np.array_equal(pixels(), before) else 1)
+        assert os.waitpid(child, 0)[1] == 0
+        assert np.array_equal(pixels(), before)
+    """
+    subprocess.run([sys.executable, "-c", textwrap.dedent(code)], check=True, timeout=60)
+
+
+def test_imports_are_fast_and_bring_nothing():
+    code = """
+        import sys, time
+        start = time.perf_counter()
+        import spherule
+        seconds = time.perf_counter() - start
+        heavy = {"numpy", "ase", "MDAnalysis", "ovito", "gsd", "pandas", "dask", "tqdm"} & set(sys.modules)
+        print(seconds, *heavy)
+    """
+    runs = [
+        subprocess.run([sys.executable, "-c", textwrap.dedent(code)], check=True, capture_output=True, text=True)
+        for _ in range(5)
+    ]
+    words = [run.stdout.split() for run in runs]
+    assert all(len(row) == 1 for row in words), words
+    assert min(float(row[0]) for row in words) < 0.1

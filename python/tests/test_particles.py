@@ -1,0 +1,195 @@
+"""Files and other packages: NumPy columns, with radii, elements and the cell."""
+
+import numpy as np
+import pytest
+
+import spherule
+
+FILES = {
+    "a.xyz": "3\nwater\nO 0 0 0\nH 0.96 0 0\nH -0.24 0.93 0\n",
+    "a.csv": "x,y,z,radius,charge\n0,0,0,1,-1\n1,2,3,0.5,1\n",
+    "a.lammpstrj": "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp ff\n0 4\n0 5\n-1 5\n"
+    "ITEM: ATOMS id type x y z q\n1 1 0 0 0 0.5\n2 2 1 2 3 -0.5\n"
+    "ITEM: TIMESTEP\n9\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp ff\n0 4\n0 5\n-1 5\n"
+    "ITEM: ATOMS id type x y z q\n7 2 3 2 1 0.25\n",
+    "a.gro": "t\n1\n    1SOL     OW    1   0.100   0.200   0.300\n   1.0 1.0 1.0\n",
+    "a.pdb": "ATOM      1  CA  GLY A   1      11.000  12.000  13.000  1.00 20.00           C  \nEND\n",
+    "a.txt": "0 0 0 1\n1 2 3 0.5\n",
+    "a.ply": "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+    "end_header\n1 2 3\n",
+}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    np.save(tmp_path / "a.npy", np.array([[0, 0, 0], [1, 2, 3.5]]))
+    np.savez(tmp_path / "a.npz", positions=np.array([[1, 2, 3.0]]), radii=np.array([0.25]))
+    return tmp_path
+
+
+def test_files_become_columns(folder):
+    water = spherule.read(folder / "a.xyz")
+    assert water.positions.tolist() == [[0, 0, 0], [0.96, 0, 0], [-0.24, 0.93, 0]]
+    assert water.x.flags.c_contiguous and water.x.base is not None
+    assert (water.kinds.tolist(), water.elements.tolist()) == (["O", "H", "H"],) * 2
+    assert (water.format, water.title, water.cell) == ("xyz", "water", None)
+    table = spherule.read(folder / "a.csv")
+    assert (table.radius.tolist(), table.columns["charge"].tolist()) == ([1, 0.5], [-1, 1])
+    for name in FILES:
+        assert len(spherule.read(folder / name)) >= 1, name
+    assert spherule.read(folder / "a.npy").z.tolist() == [0, 3.5]
+    assert spherule.read(folder / "a.npz").radius.tolist() == [0.25]
+
+
+def test_frames_are_numbered_from_either_end(folder):
+    path = folder / "a.lammpstrj"
+    assert spherule.count_frames(path) == 2
+    assert [frame.step for frame in spherule.frames(path)] == [5, 9]
+    first, last = spherule.read(path), spherule.read(path, -1)
+    assert spherule.read(path, -2).step == first.step == 5 and last.step == spherule.read(path, 1).step == 9
+    assert last.columns["q"].tolist() == [0.25] and first.kinds.tolist() == ["1", "2"]
+    origin, edges, periodic = first.cell
+    assert (origin, edges) == ([0, 0, -1], [[4, 0, 0], [0, 5, 0], [0, 0, 6]]) or (
+        list(origin),
+        [list(e) for e in edges],
+    ) == (
+        [0, 0, -1],
+        [[4, 0, 0], [0, 5, 0], [0, 0, 6]],
+    )
+    assert list(periodic) == [True, True, False]
+    for frame, text in ((2, "has no frame 2, only 2"), (-3, "has no frame -3, only 2")):
+        with pytest.raises(spherule.Error, match=text):
+            spherule.read(path, frame)
+
+
+def test_errors_of_files_have_path_and_line(folder):
+    (folder / "bad.xyz").write_text("2\nx\nO 0 0 0\nH 0 zero 0\n")
+    with pytest.raises(spherule.Error) as refused:
+        spherule.read(folder / "bad.xyz")
+    assert refused.value.path == str(folder / "bad.xyz") and refused.value.line == 4
+    with pytest.raises(spherule.Error, match="cannot be read: No such file"):
+        spherule.read(folder / "missing.xyz")
+    with pytest.raises(spherule.Error, match='unknown format "xzy"; formats are xyzr'):
+        spherule.read(folder / "a.xyz", format="xzy")
+
+
+def test_what_is_read_renders_as_the_file(folder):
+    ways = (
+        spherule.render(folder / "a.xyz", size=(60, 40), spp=2),
+        spherule.render(spherule.read(folder / "a.xyz"), size=(60, 40), spp=2),
+        spherule.render(
+            [[0, 0, 0], [0.96, 0, 0], [-0.24, 0.93, 0]], kinds=["O", "H", "H"], unit="angstrom", size=(60, 40), spp=2
+        ),
+    )
+    assert all(np.array_equal(ways[0].pixels, picture.pixels) for picture in ways)
+
+
+def test_cells_of_lengths_and_angles():
+    cell = spherule.Particles([[0, 0, 0]], cell=[2, 3, 4, 80, 95, 120]).cell
+    a, b, c = (np.array(edge) for edge in cell[1])
+    assert np.allclose([np.linalg.norm(edge) for edge in (a, b, c)], [2, 3, 4])
+    angles = [np.degrees(np.arccos(p @ q / np.linalg.norm(p) / np.linalg.norm(q))) for p, q in ((b, c), (a, c), (a, b))]
+    assert np.allclose(angles, [80, 95, 120])
+
+
+def test_structures_of_ase():
+    build = pytest.importorskip("ase.build")
+    crystal = build.bulk("NaCl", "rocksalt", a=5.64, cubic=True)
+    particles = spherule.from_ase(crystal)
+    assert np.array_equal(particles.positions, crystal.positions)
+    assert set(particles.elements) == {"Na", "Cl"} and particles.unit == "angstrom"
+    assert np.allclose(particles.cell[1], crystal.cell[:]) and particles.cell[2] == (True,) * 3
+    assert spherule.from_ase(build.molecule("H2O")).cell is None
+    picture = spherule.render(particles, size=(60, 40), spp=2, show_cell=True, replicate=(2, 1, 1))
+    assert picture.pixels.shape == (40, 60, 3)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_structures_of_mdanalysis(folder):
+    mdanalysis = pytest.importorskip("MDAnalysis")
+    universe = mdanalysis.Universe(str(folder / "a.pdb"))
+    particles = spherule.from_mdanalysis(universe.atoms)
+    assert particles.positions.tolist() == [[11, 12, 13]] and particles.positions.dtype == np.float32
+    assert particles.elements.tolist() == ["C"] and particles.columns["resname"].tolist() == ["GLY"]
+    universe.dimensions = [10, 10, 10, 90, 90, 90]
+    assert np.allclose(spherule.from_mdanalysis(universe).cell[1], np.eye(3) * 10)
+
+
+def test_frames_of_gsd(tmp_path):
+    hoomd = pytest.importorskip("gsd.hoomd")
+    frame = hoomd.Frame()
+    frame.particles.N = 3
+    frame.particles.position = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+    frame.particles.types, frame.particles.typeid = ["A", "B"], [0, 1, 0]
+    frame.particles.diameter = [1, 2, 1]
+    frame.configuration.box = [6, 6, 6, 0.1, 0, 0]
+    with hoomd.open(tmp_path / "a.gsd", "w") as file:
+        file.append(frame)
+    with hoomd.open(tmp_path / "a.gsd") as file:
+        ours = spherule.from_gsd(file[0])
+    theirs = spherule.read(tmp_path / "a.gsd")
+    assert np.array_equal(ours.positions, theirs.positions) and np.array_equal(ours.radius, theirs.radius)
+    assert np.array_equal(ours.kinds, theirs.kinds)
+    assert np.allclose(ours.cell[1], theirs.cell[1]) and np.allclose(ours.cell[0], theirs.cell[0])
+
+
+def test_tables_of_pandas():
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame(
+        {"X": [0.0, 1], "Y": [0, 2], "Z": [0, 3], "diameter": [1, 2], "type": ["a", "b"], "q": [1, 2]}
+    )
+    particles = spherule.from_pandas(table)
+    assert particles.positions.tolist() == [[0, 0, 0], [1, 2, 3]] and particles.radius.tolist() == [0.5, 1]
+    assert particles.kinds.tolist() == ["a", "b"] and list(particles.columns) == ["q"]
+    with pytest.raises(spherule.Error, match="no columns x, y and z"):
+        spherule.from_pandas(table.drop(columns="X"))
+    with pytest.raises(spherule.Error, match="no column `r`; it has X, Y"):
+        spherule.from_pandas(table, radius="r")
+
+
+def test_collections_of_ovito_by_their_attributes():
+    """OVITO's module is large: this has the attributes that its DataCollection has."""
+
+    class Property:
+        def __init__(self, values, types=()):
+            self.values, self.types = np.array(values), types
+
+        def __array__(self, dtype=None, copy=None):
+            return self.values if dtype is None else self.values.astype(dtype)
+
+    class Kind:
+        def __init__(self, id, name, radius):
+            self.id, self.name, self.radius = id, name, radius
+
+    class Cell:
+        pbc = (True, True, False)
+
+        def __array__(self, dtype=None, copy=None):
+            return np.array([[4, 0, 0, -1], [0, 5, 0, -2], [0, 0, 6, -3.0]])
+
+    class Data:
+        cell = Cell()
+        particles = {
+            "Position": Property([[0.0, 0, 0], [1, 0, 0]]),
+            "Particle Type": Property([1, 2], [Kind(1, "Cu", 1.2), Kind(2, "X", 0.7)]),
+            "Velocity": Property([[1.0, 2, 3], [4, 5, 6]]),
+        }
+
+    particles = spherule.from_ovito(Data())
+    assert particles.kinds.tolist() == ["Cu", "X"] and particles.elements.tolist() == ["Cu", ""]
+    assert particles.radius.tolist() == [1.2, 0.7] and particles.columns["Velocity_z"].tolist() == [3, 6]
+    assert particles.cell == ((-1, -2, -3), ((4, 0, 0), (0, 5, 0), (0, 0, 6)), (True, True, False))
+
+
+def test_other_things_are_refused():
+    for take in (
+        spherule.from_ase,
+        spherule.from_mdanalysis,
+        spherule.from_ovito,
+        spherule.from_gsd,
+        spherule.from_pandas,
+    ):
+        with pytest.raises(spherule.Error, match="but object has no"):
+            take(object())

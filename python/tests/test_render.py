@@ -1,0 +1,240 @@
+"""Pictures: those of the program, to the byte, in every way to ask for them."""
+
+import asyncio
+import pickle
+import subprocess
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import spherule
+
+SMALL = {"size": (60, 40), "spp": 2}
+
+
+def of_program(program, folder, source, *options):
+    out = folder / "program.pfm"
+    subprocess.run([program, "render", source, "-o", out, "--quiet", *options], check=True, cwd=folder)
+    return out.read_bytes()
+
+
+@pytest.mark.filterwarnings("ignore::spherule.SpheruleWarning")
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, []),
+        ({"spp": 3}, ["--spp", "3"]),
+        ({"until_error": 0.05}, ["--until-error", "5%"]),
+        ({"spp": 4, "denoise": "on", "seed": 9}, ["--spp", "4", "--denoise", "on", "--seed", "9"]),
+        ({"spp": 2, "radius": 0.1, "preset": "studio"}, ["--spp", "2", "--radii", "0.1", "--preset", "studio"]),
+        ({"spp": 2, "view": "iso", "up": "y"}, ["--spp", "2", "--view", "iso", "--up", "y"]),
+        (
+            {"spp": 2, "slices": ["x>50%"], "slice_mode": "caps"},
+            ["--spp", "2", "--slice", "x>50%", "--slice-mode", "caps"],
+        ),
+        (
+            {"spp": 2, "color_by": "z", "color_map": "magma_r", "color_bar": "right"},
+            ["--spp", "2", "--color-by", "z", "--color-map", "magma_r", "--color-bar", "right"],
+        ),
+        (
+            {"spp": 2, "preset": "outline", "select": "z > 0.5"},
+            ["--spp", "2", "--preset", "outline", "--select", "z > 0.5"],
+        ),
+        (
+            {"spp": 2, "integrator": "ao", "ao_distance": 0.3},
+            ["--spp", "2", "--integrator", "ao", "--ao-distance", "0.3"],
+        ),
+    ],
+)
+def test_pictures_are_those_of_the_program(program, tmp_path, cloud, options, words):
+    np.save(tmp_path / "cloud.npy", cloud)
+    expected = of_program(program, tmp_path, "cloud.npy", "--size", "120x80", *words)
+    assert spherule.render(cloud, size=(120, 80), **options).encode("pfm") == expected
+
+
+def test_scene_files_give_the_pictures_of_the_program(program, tmp_path):
+    scene = spherule.Scene(
+        title="a pair",
+        render={"size": [80, 60], "spp": 4, "depth": 5},
+        camera={"eye": [0, 1, 6], "target": [0, 0, 0], "fov": 30, "aperture": 0.1},
+        environment={"kind": "gradient", "bottom": 1, "top": [0.5, 0.7, 1]},
+        light=[{"kind": "sun", "direction": [1, 1, 1], "irradiance": 2}],
+        material={"gold": {"kind": "conductor", "color": [1, 0.77, 0.34], "roughness": 0.2}},
+        sphere=[
+            {"center": [0, 0, 0], "radius": 1, "material": "gold"},
+            {"center": [2, 0, 0], "radius": 0.5, "color": "tomato"},
+        ],
+        ground={"height": -1},
+        slice=[{"normal": [0, 0, 1], "distance": 0.5, "mode": "caps"}],
+        label=[{"text": 'two "spheres" \\ one plane'}],
+    )
+    scene.save(tmp_path / "pair.toml")
+    ours = scene.render().encode("pfm")
+    assert ours == spherule.Scene.load(tmp_path / "pair.toml").render().encode("pfm")
+    assert ours == of_program(program, tmp_path, "pair.toml")
+
+
+def test_sections_replace_what_a_preset_has(cloud):
+    plain = spherule.Scene(cloud, radius=0.05).render(**SMALL).pixels
+    for section in (
+        {"camera": {"projection": "orthographic"}},
+        {"camera": {"eye": [3, 3, 3], "target": [0.5, 0.5, 0.5]}},
+        {"light": [{"kind": "point", "position": [2, 2, 2], "intensity": 5}]},
+        {"environment": {"color": 0.3}},
+        {"look": {"outline": True}},
+        {"sphere": [{"center": [0.5, 0.5, 1.2], "radius": 0.3, "color": "red"}]},
+        {"material": {"gold": {"kind": "conductor", "color": "gold"}}, "materials": "gold"},
+        {"axes": {}},
+    ):
+        assert not np.array_equal(spherule.Scene(cloud, radius=0.05, **section).render(**SMALL).pixels, plain), section
+
+
+def test_pictures_do_not_depend_on_threads(cloud):
+    pictures = [spherule.render(cloud, radius=0.05, threads=threads, **SMALL) for threads in (1, 2, 5)]
+    assert all(np.array_equal(pictures[0].pixels, picture.pixels) for picture in pictures)
+
+
+def test_layers_are_arrays_by_name(cloud):
+    names = ["albedo", "normal", "depth", "coverage", "id", "variance", "samples"]
+    picture = spherule.render(cloud, radius=0.05, layers=names, **SMALL)
+    shapes = {name: (layer.shape, str(layer.dtype)) for name, layer in picture.layers.items()}
+    triple, single, whole = ((40, 60, 3), "float32"), ((40, 60), "float32"), ((40, 60), "uint32")
+    assert shapes == dict(zip(names, [triple, triple, single, single, whole, triple, whole]))
+    ids = picture.layers["id"]
+    seen = ids[ids != spherule.NOTHING]
+    assert len(seen) > 100 and seen.max() < 1000
+    assert np.array_equal(picture.layers["samples"], np.full((40, 60), 2))
+    assert not picture.pixels.flags.owndata and picture.pixels.flags.writeable
+
+
+def test_transparent_pictures_have_alpha(cloud):
+    picture = spherule.render(cloud, radius=0.05, background="transparent", **SMALL)
+    assert picture.pixels.shape == (40, 60, 4)
+    alpha = picture.pixels[..., 3]
+    assert alpha.min() == 0 and alpha.max() == 1
+    assert picture.encode("png")[25] == 6, "PNG with alpha"
+    with pytest.raises(spherule.Error):
+        picture.encode("jpg")
+
+
+def test_pictures_display_and_save_themselves(tmp_path, cloud):
+    picture = spherule.render(cloud, radius=0.05, **SMALL)
+    assert picture._repr_png_() == picture.encode("png")
+    assert np.asarray(picture) is picture.pixels
+    for name in ("a.png", "a.exr", "a.jpg", "a.tiff", "a.webp", "a.ppm", "a.PFM"):
+        picture.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes() == picture.encode(name[2:])
+    with pytest.raises(spherule.Error):
+        picture.save(tmp_path / "a.bmp")
+    with pytest.raises(OSError):
+        picture.save(tmp_path / "missing" / "a.png")
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted(
+        ["a.png", "a.exr", "a.jpg", "a.tiff", "a.webp", "a.ppm", "a.PFM"]
+    )
+    codes = picture.srgb()
+    ppm = picture.encode("ppm")
+    assert ppm.endswith(codes.tobytes()), "the codes of the program's files"
+    before = picture.encode("png")
+    picture.pixels[:] = 0
+    assert picture.encode("png") != before
+
+
+def test_refinement_ends_with_the_picture(cloud):
+    options = {"radius": 0.05, "size": (160, 120), "spp": 64}
+    pictures = list(spherule.refine(cloud, 0.01, **options))
+    assert len(pictures) > 1 and not pictures[0].complete
+    assert pictures[-1].complete
+    assert np.array_equal(pictures[-1].pixels, spherule.render(cloud, **options).pixels)
+
+
+def test_stop_ends_a_render_from_another_thread(cloud):
+    stop = spherule.Stop()
+    threading.Timer(0.3, stop.set).start()
+    start = time.monotonic()
+    picture = spherule.render(cloud, radius=0.05, size=(400, 300), spp=100_000, stop=stop)
+    assert time.monotonic() - start < 2
+    assert not picture.complete and picture.pixels.max() > 0
+
+
+def test_other_threads_run_meanwhile(cloud):
+    count, done = 0, threading.Event()
+
+    def spin():
+        nonlocal count
+        while not done.is_set():
+            count += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=spin)
+    thread.start()
+    spherule.render(cloud, radius=0.05, size=(300, 200), time=0.5)
+    done.set()
+    thread.join()
+    assert count > 50
+
+
+def test_renders_of_several_threads_are_equal(cloud):
+    scene = spherule.Scene(cloud, radius=0.05)
+    pictures = [None] * 4
+
+    def work(row):
+        pictures[row] = scene.render(**SMALL).pixels
+
+    threads = [threading.Thread(target=work, args=(row,)) for row in range(4)]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    assert all(np.array_equal(pictures[0], other) for other in pictures)
+
+
+def test_progress_is_told_and_its_errors_are_raised(cloud):
+    told = []
+    options = {"radius": 0.05, "size": (300, 200), "spp": 200}
+    spherule.render(cloud, progress=lambda *facts: told.append(facts), **options)
+    assert told and all(0 <= done <= 1 and rays > 0 and seconds > 0 for done, rays, seconds, _ in told)
+
+    def fail(*_):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        spherule.render(cloud, progress=fail, **options)
+
+
+def test_async_renders_leave_the_loop_running(cloud):
+    async def both():
+        ticks = 0
+
+        async def tick():
+            nonlocal ticks
+            while True:
+                ticks += 1
+                await asyncio.sleep(0.005)
+
+        ticking = asyncio.create_task(tick())
+        picture = await spherule.render_async(cloud, radius=0.05, size=(300, 200), time=0.3)
+        ticking.cancel()
+        return ticks, picture
+
+    ticks, picture = asyncio.run(both())
+    assert ticks > 10 and picture.complete
+
+
+def test_cancelled_tasks_end_their_renders(cloud):
+    async def cancelled():
+        task = asyncio.create_task(spherule.render_async(cloud, radius=0.05, size=(300, 200), spp=1_000_000))
+        await asyncio.sleep(0.3)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+
+    start = time.monotonic()
+    asyncio.run(cancelled())
+    assert time.monotonic() - start < 3
+
+
+def test_scenes_are_pickled(cloud):
+    scene = spherule.Scene(cloud, radius=0.05, kinds=["C", "O"] * 500, preset="glossy", show_cell=True, cell=[1, 1, 1])
+    copy = pickle.loads(pickle.dumps(scene))
+    assert len(copy) == 1000
+    assert np.array_equal(scene.render(**SMALL).pixels, copy.render(**SMALL).pixels)
