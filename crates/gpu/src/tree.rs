@@ -1,0 +1,282 @@
+//! Trees and spheres on a device, and queries of rays in the tree's units.
+
+use crate::device::Device;
+use crate::error::DeviceError;
+use spherule_core::internals::bvh::{
+    Any, Closest, NodeRow, Query, Tracer, Tree, UNKNOWN, decide_found,
+};
+use spherule_core::internals::ray::{Hits, MISS, Rays};
+use spherule_core::internals::spheres::{LEAF, SphereBlock};
+
+/// Columns that the spheres may be cut into.
+const BRICKS: usize = 4;
+
+/// Rays of one dispatch at most.
+const BATCH: usize = 1 << 20;
+
+/// Words of a node, of a sphere and of a ray.
+const NODE: usize = 56;
+const SPHERE: usize = 4;
+const RAY: usize = 12;
+
+/// The bit of a child that is none, and of a radius where there is no sphere.
+const NONE: u32 = 1 << 31;
+
+/// A distance that counts as infinite.
+const FAR: f32 = (1_u128 << 100) as f32;
+
+/// How many rays were asked about, and how many of them the processor decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Answered {
+    /// Rays.
+    pub rays: u64,
+    /// Rays that the device did not know the answer of.
+    pub unknown: u64,
+    /// Decisions that were made on integers, by the processor.
+    pub exact: u64,
+}
+
+impl std::ops::AddAssign for Answered {
+    fn add_assign(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.unknown += other.unknown;
+        self.exact += other.exact;
+    }
+}
+
+/// The numbers that a kernel gets.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Params {
+    zero: u32,
+    rays: u32,
+    brick_bits: u32,
+    nodes: u32,
+}
+
+/// Buffers of one dispatch.
+struct Lane {
+    params: wgpu::Buffer,
+    rays: wgpu::Buffer,
+    found: wgpu::Buffer,
+    copy: wgpu::Buffer,
+    /// For the first hit, and for any.
+    groups: [wgpu::BindGroup; 2],
+}
+
+/// A tree and its spheres on a device.
+pub struct DeviceTree<'a> {
+    device: &'a Device,
+    tree: Tree<'a>,
+    /// For the first hit, and for any.
+    kernels: &'a [wgpu::ComputePipeline; 2],
+    columns: Vec<wgpu::Buffer>,
+    brick_bits: u32,
+    batch: usize,
+}
+
+impl<'a> DeviceTree<'a> {
+    /// Copies a tree to a device.
+    ///
+    /// # Errors
+    /// It does not fit, or the device fails.
+    pub fn new(device: &'a Device, tree: Tree<'a>) -> Result<Self, DeviceError> {
+        Self::cut(device, tree, device.summary().max_binding)
+    }
+
+    /// Copies a tree in columns of at most so many bytes, for tests.
+    #[doc(hidden)]
+    pub fn cut(device: &'a Device, tree: Tree<'a>, most: u64) -> Result<Self, DeviceError> {
+        let row = size_of::<[u32; SPHERE]>();
+        let spheres = tree.spheres.blocks().len() * LEAF;
+        let brick_bits = (most / row as u64).max(LEAF as u64).ilog2().min(31);
+        if spheres > BRICKS << brick_bits {
+            let what = format!("{} spheres", tree.spheres.len());
+            return Err(DeviceError::Memory { what });
+        }
+        device.check()?;
+        let mut columns = vec![device.filled("nodes", bytemuck::cast_slice(&nodes(tree)))?];
+        let blocks = (1 << brick_bits) / LEAF;
+        let mut bricks = tree.spheres.blocks().chunks(blocks);
+        for _ in 0..BRICKS {
+            let rows = bricks.next().map(sphere_rows).unwrap_or_default();
+            columns.push(device.filled("spheres", bytemuck::cast_slice(&rows))?);
+        }
+        let kernels = device.query_kernels()?;
+        let batch = BATCH.min(most as usize / size_of::<[u32; RAY]>());
+        Ok(Self { device, tree, kernels, columns, brick_bits, batch })
+    }
+
+    /// The tree.
+    pub fn tree(&self) -> Tree<'a> {
+        self.tree
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.columns.iter().map(wgpu::Buffer::size).sum()
+    }
+
+    /// Finds the first hit of each ray, as [`Tracer::closest`]. If the device fails the processor does it, and
+    /// [`Device::fault`] tells.
+    pub fn closest(&self, rays: &Rays, hits: &mut Hits) -> Answered {
+        self.query::<Closest>(rays, hits, Tracer::closest)
+    }
+
+    /// Finds whether each ray hits anything, as [`Tracer::occluded`]; otherwise as [`DeviceTree::closest`].
+    pub fn occluded(&self, rays: &Rays, hits: &mut Hits) -> Answered {
+        self.query::<Any>(rays, hits, Tracer::occluded)
+    }
+
+    fn query<Q: Query>(
+        &self,
+        rays: &Rays,
+        hits: &mut Hits,
+        otherwise: fn(Tracer, Tree, &Rays, &mut Hits) -> u64,
+    ) -> Answered {
+        let count = rays.len() as u64;
+        let Ok(found) = self.find(rays, hits, Q::ANY) else {
+            let exact = otherwise(Tracer::default(), self.tree, rays, hits);
+            return Answered { rays: count, unknown: count, exact };
+        };
+        let exact = decide_found::<Q>(self.tree, rays, hits, |row| found[row]);
+        Answered { rays: count, unknown: unknown(&found), exact }
+    }
+
+    /// Returns what the device knows of each ray: the row of the sphere that it hits first, or of any, [`MISS`] or
+    /// [`UNKNOWN`].
+    ///
+    /// # Errors
+    /// The device fails.
+    pub fn find(&self, rays: &Rays, hits: &Hits, any: bool) -> Result<Vec<u32>, DeviceError> {
+        self.device.check()?;
+        if !(rays.precise.is_empty() && self.tree.spheres.precise.is_empty()) {
+            return Ok(vec![UNKNOWN; rays.len()]);
+        }
+        let mut found = vec![UNKNOWN; rays.len()];
+        if rays.is_empty() {
+            return Ok(found);
+        }
+        let lane = self.lane(rays.len().min(self.batch))?;
+        let mut rows = Vec::with_capacity(RAY * rays.len().min(self.batch));
+        for first in (0..rays.len()).step_by(self.batch) {
+            let count = self.batch.min(rays.len() - first);
+            rows.clear();
+            rows.extend((first..first + count).flat_map(|row| ray_row(rays, hits, row, any)));
+            self.ask(&lane, &rows, any, &mut found[first..first + count])?;
+        }
+        Ok(found)
+    }
+
+    /// Returns buffers for so many rays.
+    fn lane(&self, rays: usize) -> Result<Lane, DeviceError> {
+        use wgpu::BufferUsages as Usage;
+        let words = |words: usize| (size_of::<u32>() * words) as u64;
+        let buffer = |what, bytes, usage| self.device.buffer(what, bytes, usage);
+        let params =
+            buffer("numbers", size_of::<Params>() as u64, Usage::UNIFORM | Usage::COPY_DST)?;
+        let column = buffer("rays", words(RAY * rays), Usage::STORAGE | Usage::COPY_DST)?;
+        let found = buffer("answers", words(rays), Usage::STORAGE | Usage::COPY_SRC)?;
+        let copy = buffer("answers to read", words(rays), Usage::MAP_READ | Usage::COPY_DST)?;
+        let groups = [0, 1].map(|any| {
+            let mut buffers = vec![&params];
+            buffers.extend(&self.columns);
+            buffers.extend([&column, &found]);
+            self.device.bind(&self.kernels[any], &buffers)
+        });
+        self.device.check()?;
+        Ok(Lane { params, rays: column, found, copy, groups })
+    }
+
+    /// Asks the device about some rays.
+    fn ask(
+        &self,
+        lane: &Lane,
+        rows: &[u32],
+        any: bool,
+        found: &mut [u32],
+    ) -> Result<(), DeviceError> {
+        let params = Params {
+            zero: 0,
+            rays: found.len() as u32,
+            brick_bits: self.brick_bits,
+            nodes: self.tree.bvh.len() as u32,
+        };
+        self.device.write(&lane.params, bytemuck::bytes_of(&params));
+        self.device.write(&lane.rays, bytemuck::cast_slice(rows));
+        let bytes = size_of_val(found) as u64;
+        let run = (&self.kernels[usize::from(any)], &lane.groups[usize::from(any)]);
+        self.device.dispatch(run, found.len(), (&lane.found, &lane.copy, bytes));
+        self.device.read(&lane.copy, bytes, |view| {
+            bytemuck::cast_slice_mut(found).copy_from_slice(view);
+        })
+    }
+}
+
+/// Returns the number of answers that are not known.
+pub(crate) fn unknown(found: &[u32]) -> u64 {
+    found.iter().filter(|&&sphere| sphere == UNKNOWN).count() as u64
+}
+
+/// Returns the nodes; boxes of children that are none are finite, for kernels know no infinity.
+fn nodes(tree: Tree) -> Vec<[u32; NODE]> {
+    let node = |row: NodeRow| {
+        let mut words: [u32; NODE] = bytemuck::cast(row);
+        for child in 0..LEAF {
+            if words[NODE - LEAF + child] == NONE {
+                words[..NODE - LEAF].iter_mut().skip(child).step_by(LEAF).for_each(|x| *x = 0);
+            }
+        }
+        words
+    };
+    tree.bvh.rows().map(node).collect()
+}
+
+/// Returns the spheres of blocks one by one.
+fn sphere_rows(blocks: &[SphereBlock]) -> Vec<[u32; SPHERE]> {
+    let sphere = |block: &SphereBlock, lane: usize| {
+        // Not -0: equal spheres are equal bits.
+        let number = |x: f32| (x + 0.0).to_bits();
+        let radius = block.radius[lane];
+        let radius = if radius.is_nan() { NONE } else { radius.to_bits() };
+        [number(block.x[lane]), number(block.y[lane]), number(block.z[lane]), radius]
+    };
+    blocks.iter().flat_map(|block| (0..LEAF).map(move |lane| sphere(block, lane))).collect()
+}
+
+/// Returns a ray as the kernel reads it.
+fn ray_row(rays: &Rays, hits: &Hits, row: usize, any: bool) -> [u32; RAY] {
+    let [x, y, z] = rays.origin.row(row).to_array().map(f32::to_bits);
+    let [u, v, w] = rays.direction.row(row).to_array().map(f32::to_bits);
+    let done = any && hits.sphere[row] != MISS;
+    let [low, high] = if done { [-1.0; 2] } else { bounds(hits.t[row]) }.map(f32::to_bits);
+    [x, y, z, u, v, w, rays.own[row], rays.target[row], low, high, 0, 0]
+}
+
+/// Returns finite numbers around a distance at which a search ends; below 0 if there is nothing to search.
+fn bounds(t: f64) -> [f32; 2] {
+    let rounded = t as f32;
+    let low = if f64::from(rounded) > t { rounded.next_down() } else { rounded };
+    let high = if f64::from(rounded) < t { rounded.next_up() } else { rounded };
+    // Numbers that a device may flush to 0 are none for the lower bound, and normal ones for the upper.
+    let low = if low < FAR.recip() { -1.0 } else { low.min(FAR) };
+    let high = if t < 0.0 { -1.0 } else { high.clamp(FAR.recip(), FAR) };
+    [low, high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_around_distances_and_finite() {
+        for t in [0.0, 1e-300, 1e-40, 1e-20, 0.1, 1.0 / 3.0, 2.0, 1e20, 1e29] {
+            let [low, high] = bounds(t).map(f64::from);
+            assert!(low <= t && t <= high, "{t}: {low} {high}");
+            assert!(high > 0.0 && (low < 0.0 || low.is_normal()));
+        }
+        assert_eq!(bounds(f64::INFINITY), [FAR; 2]);
+        assert_eq!(bounds(-1.0), [-1.0; 2]);
+        assert_eq!(bounds(1.5), [1.5; 2]);
+    }
+}
