@@ -5,11 +5,12 @@ use crate::error::DeviceError;
 use crate::tree::{Answered, DeviceTree, unknown};
 use spherule_core::internals::ray::Hits as Scaled;
 use spherule_core::{Hits, QueryError, RayColumns, SphereTree};
+use std::sync::Arc;
 
 /// A tree of spheres on a device: its answers are those of the [`SphereTree`], bit for bit.
 pub struct DeviceSpheres<'a> {
     spheres: &'a SphereTree,
-    tree: DeviceTree<'a>,
+    tree: DeviceTree,
 }
 
 impl<'a> DeviceSpheres<'a> {
@@ -17,7 +18,7 @@ impl<'a> DeviceSpheres<'a> {
     ///
     /// # Errors
     /// It does not fit, or the device fails.
-    pub fn new(device: &'a Device, spheres: &'a SphereTree) -> Result<Self, DeviceError> {
+    pub fn new(device: &Arc<Device>, spheres: &'a SphereTree) -> Result<Self, DeviceError> {
         Ok(Self { spheres, tree: DeviceTree::new(device, spheres.parts())? })
     }
 

@@ -7,6 +7,7 @@ use spherule_core::internals::bvh::{
 };
 use spherule_core::internals::ray::{Hits, MISS, Rays};
 use spherule_core::internals::spheres::{LEAF, SphereBlock};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Columns that the spheres may be cut into.
 const BRICKS: usize = 4;
@@ -56,6 +57,8 @@ struct Params {
 
 /// Buffers of one dispatch.
 struct Lane {
+    /// Rays that fit.
+    capacity: usize,
     params: wgpu::Buffer,
     rays: wgpu::Buffer,
     found: wgpu::Buffer,
@@ -64,52 +67,61 @@ struct Lane {
     groups: [wgpu::BindGroup; 2],
 }
 
-/// A tree and its spheres on a device.
-pub struct DeviceTree<'a> {
-    device: &'a Device,
-    tree: Tree<'a>,
-    /// For the first hit, and for any.
-    kernels: &'a [wgpu::ComputePipeline; 2],
+/// A tree and its spheres on a device. Queries may come from many threads.
+pub struct DeviceTree {
+    device: Arc<Device>,
+    /// Numbers of nodes and of spheres.
+    size: [usize; 2],
+    /// True if single precision holds the spheres; the processor answers all otherwise.
+    single: bool,
     columns: Vec<wgpu::Buffer>,
     brick_bits: u32,
     batch: usize,
+    /// Buffers that no query uses now.
+    lanes: Mutex<Vec<Lane>>,
 }
 
-impl<'a> DeviceTree<'a> {
+impl DeviceTree {
     /// Copies a tree to a device.
     ///
     /// # Errors
     /// It does not fit, or the device fails.
-    pub fn new(device: &'a Device, tree: Tree<'a>) -> Result<Self, DeviceError> {
+    pub fn new(device: &Arc<Device>, tree: Tree) -> Result<Self, DeviceError> {
         Self::cut(device, tree, device.summary().max_binding)
     }
 
     /// Copies a tree in columns of at most so many bytes, for tests.
     #[doc(hidden)]
-    pub fn cut(device: &'a Device, tree: Tree<'a>, most: u64) -> Result<Self, DeviceError> {
+    pub fn cut(device: &Arc<Device>, tree: Tree, most: u64) -> Result<Self, DeviceError> {
+        device.check()?;
+        device.query_kernels()?;
         let row = size_of::<[u32; SPHERE]>();
-        let spheres = tree.spheres.blocks().len() * LEAF;
-        let brick_bits = (most / row as u64).max(LEAF as u64).ilog2().min(31);
-        if spheres > BRICKS << brick_bits {
+        let blocks = tree.spheres.blocks();
+        let brick_bits = (most / row as u64).max(LEAF as u64).ilog2().min(30);
+        if blocks.len() * LEAF > BRICKS << brick_bits {
             let what = format!("{} spheres", tree.spheres.len());
             return Err(DeviceError::Memory { what });
         }
-        device.check()?;
         let mut columns = vec![device.filled("nodes", bytemuck::cast_slice(&nodes(tree)))?];
-        let blocks = (1 << brick_bits) / LEAF;
-        let mut bricks = tree.spheres.blocks().chunks(blocks);
+        let mut bricks = blocks.chunks((1 << brick_bits) / LEAF);
         for _ in 0..BRICKS {
             let rows = bricks.next().map(sphere_rows).unwrap_or_default();
             columns.push(device.filled("spheres", bytemuck::cast_slice(&rows))?);
         }
-        let kernels = device.query_kernels()?;
-        let batch = BATCH.min(most as usize / size_of::<[u32; RAY]>());
-        Ok(Self { device, tree, kernels, columns, brick_bits, batch })
+        Ok(Self {
+            device: Arc::clone(device),
+            size: size(tree),
+            single: tree.spheres.precise.is_empty(),
+            columns,
+            brick_bits,
+            batch: BATCH.min(most as usize / size_of::<[u32; RAY]>()),
+            lanes: Mutex::default(),
+        })
     }
 
-    /// The tree.
-    pub fn tree(&self) -> Tree<'a> {
-        self.tree
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.device
     }
 
     /// Bytes on the device.
@@ -117,29 +129,31 @@ impl<'a> DeviceTree<'a> {
         self.columns.iter().map(wgpu::Buffer::size).sum()
     }
 
-    /// Finds the first hit of each ray, as [`Tracer::closest`]. If the device fails the processor does it, and
-    /// [`Device::fault`] tells.
-    pub fn closest(&self, rays: &Rays, hits: &mut Hits) -> Answered {
-        self.query::<Closest>(rays, hits, Tracer::closest)
+    /// Finds the first hit of each ray in the tree, which is the one that was copied, as [`Tracer::closest`]. If the
+    /// device fails the processor does it, and [`Device::fault`] tells.
+    pub fn closest(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> Answered {
+        self.query::<Closest>(tree, rays, hits, Tracer::closest)
     }
 
     /// Finds whether each ray hits anything, as [`Tracer::occluded`]; otherwise as [`DeviceTree::closest`].
-    pub fn occluded(&self, rays: &Rays, hits: &mut Hits) -> Answered {
-        self.query::<Any>(rays, hits, Tracer::occluded)
+    pub fn occluded(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> Answered {
+        self.query::<Any>(tree, rays, hits, Tracer::occluded)
     }
 
     fn query<Q: Query>(
         &self,
+        tree: Tree,
         rays: &Rays,
         hits: &mut Hits,
         otherwise: fn(Tracer, Tree, &Rays, &mut Hits) -> u64,
     ) -> Answered {
         let count = rays.len() as u64;
-        let Ok(found) = self.find(rays, hits, Q::ANY) else {
-            let exact = otherwise(Tracer::default(), self.tree, rays, hits);
+        let found = (size(tree) == self.size).then(|| self.find(rays, hits, Q::ANY));
+        let Some(Ok(found)) = found else {
+            let exact = otherwise(Tracer::default(), tree, rays, hits);
             return Answered { rays: count, unknown: count, exact };
         };
-        let exact = decide_found::<Q>(self.tree, rays, hits, |row| found[row]);
+        let exact = decide_found::<Q>(tree, rays, hits, |row| found[row]);
         Answered { rays: count, unknown: unknown(&found), exact }
     }
 
@@ -150,14 +164,11 @@ impl<'a> DeviceTree<'a> {
     /// The device fails.
     pub fn find(&self, rays: &Rays, hits: &Hits, any: bool) -> Result<Vec<u32>, DeviceError> {
         self.device.check()?;
-        if !(rays.precise.is_empty() && self.tree.spheres.precise.is_empty()) {
-            return Ok(vec![UNKNOWN; rays.len()]);
-        }
         let mut found = vec![UNKNOWN; rays.len()];
-        if rays.is_empty() {
+        if rays.is_empty() || !self.single || !rays.precise.is_empty() {
             return Ok(found);
         }
-        let lane = self.lane(rays.len().min(self.batch))?;
+        let lane = self.take_lane(rays.len().min(self.batch))?;
         let mut rows = Vec::with_capacity(RAY * rays.len().min(self.batch));
         for first in (0..rays.len()).step_by(self.batch) {
             let count = self.batch.min(rays.len() - first);
@@ -165,7 +176,24 @@ impl<'a> DeviceTree<'a> {
             rows.extend((first..first + count).flat_map(|row| ray_row(rays, hits, row, any)));
             self.ask(&lane, &rows, any, &mut found[first..first + count])?;
         }
+        // Not after a fault: what is left of such buffers is unknown.
+        self.lanes.lock().unwrap_or_else(PoisonError::into_inner).push(lane);
         Ok(found)
+    }
+
+    /// Returns buffers for so many rays, of a former query or new ones.
+    fn take_lane(&self, rays: usize) -> Result<Lane, DeviceError> {
+        let fits = |lane: &Lane| lane.capacity >= rays;
+        let mut idle = self.lanes.lock().unwrap_or_else(PoisonError::into_inner);
+        match idle.iter().position(fits) {
+            Some(place) => Ok(idle.swap_remove(place)),
+            None => {
+                // Those that are too small would never be used again.
+                idle.clear();
+                drop(idle);
+                self.lane(rays.next_power_of_two().min(self.batch))
+            }
+        }
     }
 
     /// Returns buffers for so many rays.
@@ -178,14 +206,15 @@ impl<'a> DeviceTree<'a> {
         let column = buffer("rays", words(RAY * rays), Usage::STORAGE | Usage::COPY_DST)?;
         let found = buffer("answers", words(rays), Usage::STORAGE | Usage::COPY_SRC)?;
         let copy = buffer("answers to read", words(rays), Usage::MAP_READ | Usage::COPY_DST)?;
+        let kernels = self.device.query_kernels()?;
         let groups = [0, 1].map(|any| {
             let mut buffers = vec![&params];
             buffers.extend(&self.columns);
             buffers.extend([&column, &found]);
-            self.device.bind(&self.kernels[any], &buffers)
+            self.device.bind(&kernels[any], &buffers)
         });
         self.device.check()?;
-        Ok(Lane { params, rays: column, found, copy, groups })
+        Ok(Lane { capacity: rays, params, rays: column, found, copy, groups })
     }
 
     /// Asks the device about some rays.
@@ -200,17 +229,34 @@ impl<'a> DeviceTree<'a> {
             zero: 0,
             rays: found.len() as u32,
             brick_bits: self.brick_bits,
-            nodes: self.tree.bvh.len() as u32,
+            nodes: self.size[0] as u32,
         };
         self.device.write(&lane.params, bytemuck::bytes_of(&params));
         self.device.write(&lane.rays, bytemuck::cast_slice(rows));
         let bytes = size_of_val(found) as u64;
-        let run = (&self.kernels[usize::from(any)], &lane.groups[usize::from(any)]);
+        let kernels = self.device.query_kernels()?;
+        let run = (&kernels[usize::from(any)], &lane.groups[usize::from(any)]);
         self.device.dispatch(run, found.len(), (&lane.found, &lane.copy, bytes));
         self.device.read(&lane.copy, bytes, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);
         })
     }
+}
+
+impl std::fmt::Debug for DeviceTree {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [nodes, spheres] = self.size;
+        f.debug_struct("DeviceTree")
+            .field("device", &self.device)
+            .field("nodes", &nodes)
+            .field("spheres", &spheres)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Returns the numbers of nodes and of spheres of a tree.
+fn size(tree: Tree) -> [usize; 2] {
+    [tree.bvh.len(), tree.spheres.len()]
 }
 
 /// Returns the number of answers that are not known.

@@ -13,12 +13,12 @@ use spherule_gpu::{Answered, Device, DeviceError, DeviceSpheres, DeviceTree};
 use spherule_measure::stress::rays::Ray;
 use spherule_measure::stress::{REGIMES, sample};
 use spherule_measure::workload::{Class, SphereScene, Views};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// The device of all tests; `None`, which the environment may forbid, if there is none.
-fn device() -> Option<&'static Device> {
-    static DEVICE: OnceLock<Result<Device, DeviceError>> = OnceLock::new();
-    match DEVICE.get_or_init(|| Device::best(true)) {
+fn device() -> Option<&'static Arc<Device>> {
+    static DEVICE: OnceLock<Result<Arc<Device>, DeviceError>> = OnceLock::new();
+    match DEVICE.get_or_init(|| Device::best(true).map(Arc::new)) {
         Ok(device) => Some(device),
         Err(error) => {
             assert!(std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{error}");
@@ -45,7 +45,7 @@ impl Columns {
 }
 
 /// Compares all answers of a tree on the device with its own.
-fn compare(device: &Device, spheres: &[[f32; 4]], rays: &[Ray], bounds: &[f64]) -> Answered {
+fn compare(device: &Arc<Device>, spheres: &[[f32; 4]], rays: &[Ray], bounds: &[f64]) -> Answered {
     let tree = SphereTree::from_rows(spheres).unwrap();
     let on_device = DeviceSpheres::new(device, &tree).unwrap();
     let columns = Columns::new(rays);
@@ -93,18 +93,22 @@ fn build_tree(mut spheres: Spheres) -> (Spheres, Bvh) {
 }
 
 /// Compares answers of a renderer's tree on the device with those of the processor; returns how many were unknown.
-fn compare_tree(on_device: &DeviceTree, rays: &Rays, start: &Found, any: bool) -> Answered {
+fn compare_tree(
+    (on_device, tree): (&DeviceTree, Tree),
+    rays: &Rays,
+    start: &Found,
+    any: bool,
+) -> Answered {
     let (mut own, mut others) = (start.clone(), start.clone());
-    let tree = on_device.tree();
     if any {
         Tracer::default().occluded(tree, rays, &mut own);
     } else {
         Tracer::default().closest(tree, rays, &mut own);
     }
     let answered = if any {
-        on_device.occluded(rays, &mut others)
+        on_device.occluded(tree, rays, &mut others)
     } else {
-        on_device.closest(rays, &mut others)
+        on_device.closest(tree, rays, &mut others)
     };
     for row in 0..rays.len() {
         let ray = rays.exact(row);
@@ -119,7 +123,7 @@ fn compare_tree(on_device: &DeviceTree, rays: &Rays, start: &Found, any: bool) -
 }
 
 /// Compares all classes of rays of a workload.
-fn compare_workload(device: &Device, scene: SphereScene, side: u32, cut: Option<u64>) {
+fn compare_workload(device: &Arc<Device>, scene: SphereScene, side: u32, cut: Option<u64>) {
     let (spheres, bvh) = build_tree(scene.spheres().unwrap());
     let tree = Tree { bvh: &bvh, spheres: &spheres };
     let on_device = match cut {
@@ -130,7 +134,7 @@ fn compare_workload(device: &Device, scene: SphereScene, side: u32, cut: Option<
     for class in Class::ALL {
         let rays = views.rays(class);
         let start = Found::with_capacity(rays.len());
-        let answered = compare_tree(&on_device, rays, &start, class.is_any());
+        let answered = compare_tree((&on_device, tree), rays, &start, class.is_any());
         let share = answered.unknown as f64 / answered.rays.max(1) as f64;
         println!(
             "{:12} {:10} {:6} rays, {share:.1e} unknown",
@@ -224,8 +228,8 @@ fn rays_from_surfaces_and_toward_lights_hit_what_they_hit_on_the_processor() {
             open.sphere[row] = if row % 50 == 0 { 3 } else { MISS };
             shadow.target[row] = random.index(spheres.len()) as u32;
         }
-        all += compare_tree(&on_device, &rays, &start, false);
-        all += compare_tree(&on_device, &shadow, &open, true);
+        all += compare_tree((&on_device, tree), &rays, &start, false);
+        all += compare_tree((&on_device, tree), &shadow, &open, true);
         let found = on_device.find(&rays, &start, false).unwrap();
         answers[0] += found.iter().filter(|&&sphere| sphere < UNKNOWN).count();
         answers[1] += found.iter().filter(|&&sphere| sphere == MISS).count();

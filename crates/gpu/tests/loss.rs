@@ -8,11 +8,12 @@ use spherule_core::internals::ray::{Hits, MISS, Rays};
 use spherule_core::{Hits as Columns, NOTHING, RayColumns, SphereTree};
 use spherule_gpu::{Device, DeviceError, DeviceSpheres, DeviceTree};
 use spherule_measure::workload::{Class, SphereScene, Views};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A device of its own.
-fn device() -> Option<Device> {
-    match Device::best(true) {
+fn device() -> Option<Arc<Device>> {
+    match Device::best(true).map(Arc::new) {
         Ok(device) => Some(device),
         Err(error) => {
             assert!(std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{error}");
@@ -44,7 +45,7 @@ fn a_device_that_is_taken_away_in_the_middle_loses_no_hit() {
         });
         let ask = |_| {
             let mut hits = Hits::with_capacity(rays.len());
-            let answered = on_device.closest(rays, &mut hits);
+            let answered = on_device.closest(tree, rays, &mut hits);
             asked.fetch_add(1, Ordering::Relaxed);
             assert_eq!(hits.sphere, expected.sphere);
             assert_eq!(hits.t, expected.t);

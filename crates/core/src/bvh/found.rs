@@ -54,7 +54,8 @@ pub fn decide_found<Q: Query>(
 impl<Q: Query> HitResolver<'_, Q> {
     /// Adds a ray and the sphere that it hits first.
     fn push_found(&mut self, row: usize, sphere: usize) {
-        if !self.is_single_precision() {
+        let own = self.rays.own[row] as usize == sphere;
+        if own || !self.is_single_precision() {
             self.unresolved.push(row as u32);
             return;
         }
