@@ -3,7 +3,7 @@
 use crate::device::Device;
 use crate::error::DeviceError;
 use spherule_core::internals::bvh::{
-    Any, Closest, NodeRow, Query, Tracer, Tree, UNKNOWN, decide_found,
+    Any, Closest, DeviceTracer, NodeRow, Query, Tracer, Tree, UNKNOWN, decide_found,
 };
 use spherule_core::internals::ray::{Hits, MISS, Rays};
 use spherule_core::internals::spheres::{LEAF, SphereBlock};
@@ -79,6 +79,8 @@ pub struct DeviceTree {
     batch: usize,
     /// Buffers that no query uses now.
     lanes: Mutex<Vec<Lane>>,
+    /// Sums over all queries.
+    tally: Mutex<Answered>,
 }
 
 impl DeviceTree {
@@ -116,6 +118,7 @@ impl DeviceTree {
             brick_bits,
             batch: BATCH.min(most as usize / size_of::<[u32; RAY]>()),
             lanes: Mutex::default(),
+            tally: Mutex::default(),
         })
     }
 
@@ -140,6 +143,11 @@ impl DeviceTree {
         self.query::<Any>(tree, rays, hits, Tracer::occluded)
     }
 
+    /// Returns sums over all queries so far.
+    pub fn tally(&self) -> Answered {
+        *self.tally.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn query<Q: Query>(
         &self,
         tree: Tree,
@@ -151,10 +159,16 @@ impl DeviceTree {
         let found = (size(tree) == self.size).then(|| self.find(rays, hits, Q::ANY));
         let Some(Ok(found)) = found else {
             let exact = otherwise(Tracer::default(), tree, rays, hits);
-            return Answered { rays: count, unknown: count, exact };
+            return self.counted(Answered { rays: count, unknown: count, exact });
         };
         let exact = decide_found::<Q>(tree, rays, hits, |row| found[row]);
-        Answered { rays: count, unknown: unknown(&found), exact }
+        self.counted(Answered { rays: count, unknown: unknown(&found), exact })
+    }
+
+    /// Adds what a query was answered to the sums.
+    fn counted(&self, answered: Answered) -> Answered {
+        *self.tally.lock().unwrap_or_else(PoisonError::into_inner) += answered;
+        answered
     }
 
     /// Returns what the device knows of each ray: the row of the sphere that it hits first, or of any, [`MISS`] or
@@ -185,15 +199,13 @@ impl DeviceTree {
     fn take_lane(&self, rays: usize) -> Result<Lane, DeviceError> {
         let fits = |lane: &Lane| lane.capacity >= rays;
         let mut idle = self.lanes.lock().unwrap_or_else(PoisonError::into_inner);
-        match idle.iter().position(fits) {
-            Some(place) => Ok(idle.swap_remove(place)),
-            None => {
-                // Those that are too small would never be used again.
-                idle.clear();
-                drop(idle);
-                self.lane(rays.next_power_of_two().min(self.batch))
-            }
+        if let Some(place) = idle.iter().position(fits) {
+            return Ok(idle.swap_remove(place));
         }
+        // Those that are too small would never be used again.
+        idle.clear();
+        drop(idle);
+        self.lane(rays.next_power_of_two().min(self.batch))
     }
 
     /// Returns buffers for so many rays.
@@ -251,6 +263,16 @@ impl std::fmt::Debug for DeviceTree {
             .field("nodes", &nodes)
             .field("spheres", &spheres)
             .finish_non_exhaustive()
+    }
+}
+
+impl DeviceTracer for DeviceTree {
+    fn closest(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
+        Self::closest(self, tree, rays, hits).exact
+    }
+
+    fn occluded(&self, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
+        Self::occluded(self, tree, rays, hits).exact
     }
 }
 

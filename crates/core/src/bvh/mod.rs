@@ -22,7 +22,7 @@ mod single;
 mod traversal;
 
 pub use beam::Beam;
-pub use found::{UNKNOWN, decide_found};
+pub use found::{DeviceTracer, UNKNOWN, decide_found};
 pub use one_ray::{OneHit, trace_far, trace_one};
 pub use plain_ray::{PlainAnswer, PlainHit, PlainRay};
 pub use rows::NodeRow;
