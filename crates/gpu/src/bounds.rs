@@ -1,8 +1,8 @@
 //! The tests of `hits.wgsl`, operation by operation, on the worst device that keeps the promises of WGSL.
 //!
-//! Every operation rounds up or down as chance has it, products are fused with sums or not, sums are taken in any order, and
-//! numbers that are too small become 0 or not. What the kernel calls certain must hold all the same: docs/gpu.md has the
-//! proof. Names are those of the kernel.
+//! Every operation rounds up or down as chance has it, products are fused with sums or not, sums are taken in any
+//! order, and numbers that are too small become 0 or not. What the kernel calls certain must hold all the same:
+//! docs/gpu.md has the proof. Names are those of the kernel.
 
 use spherule_core::internals::intersect::confirm;
 use spherule_core::internals::random::Random;

@@ -117,8 +117,17 @@ pub struct Device {
     handle: wgpu::Device,
     queue: wgpu::Queue,
     faults: Faults,
-    /// The kernels of queries, for the first hit and for any, once they are compiled.
-    kernels: OnceLock<Result<[wgpu::ComputePipeline; 2], DeviceError>>,
+    /// The kernels of queries by [`QueryKernel`], once they are compiled.
+    kernels: [OnceLock<Result<wgpu::ComputePipeline, DeviceError>>; 4],
+}
+
+/// A kernel of queries.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct QueryKernel {
+    /// True if any hit ends the search.
+    pub(crate) any: bool,
+    /// True if it answers with visits.
+    pub(crate) counts: bool,
 }
 
 impl Device {
@@ -156,7 +165,7 @@ impl Device {
         });
         let failed = faults.clone();
         device.on_uncaptured_error(Arc::new(move |error| failed.add(of_driver(&error))));
-        let (probe, kernels) = (Probe::default(), OnceLock::new());
+        let (probe, kernels) = (Probe::default(), [const { OnceLock::new() }; 4]);
         let mut opened = Self { summary, probe, handle: device, queue, faults, kernels };
         opened.probe = probe::run(&opened)?;
         match opened.probe.broken() {
@@ -267,14 +276,16 @@ impl Device {
         Ok(pipeline)
     }
 
-    /// Returns the kernels of queries, for the first hit and for any.
-    pub(crate) fn query_kernels(&self) -> Result<&[wgpu::ComputePipeline; 2], DeviceError> {
-        let source = ("hits", include_str!("hits.wgsl"));
-        let compile = || {
-            let first = self.kernel(source, &[("ANY", 0.0)])?;
-            Ok([first, self.kernel(source, &[("ANY", 1.0)])?])
-        };
-        self.kernels.get_or_init(compile).as_ref().map_err(Clone::clone)
+    /// Returns a kernel of queries.
+    pub(crate) fn query_kernel(
+        &self,
+        QueryKernel { any, counts }: QueryKernel,
+    ) -> Result<&wgpu::ComputePipeline, DeviceError> {
+        let numbers = [any, counts].map(u8::from);
+        let place = &self.kernels[usize::from(numbers[0] + 2 * numbers[1])];
+        let constants = [("ANY", numbers[0].into()), ("COUNT", numbers[1].into())];
+        let compile = || self.kernel(("hits", include_str!("hits.wgsl")), &constants);
+        place.get_or_init(compile).as_ref().map_err(Clone::clone)
     }
 
     /// Binds buffers to a kernel, in their order.

@@ -27,6 +27,8 @@ struct Params {
 
 // True if any hit ends the search.
 override ANY: bool = false;
+// True to answer with the numbers of nodes and, from bit 16 on, leaves that the search visits. For measurements.
+override COUNT: bool = false;
 
 const MISS: u32 = 0xffffffffu;
 const UNKNOWN: u32 = 0xfffffffdu;
@@ -262,6 +264,7 @@ fn trace(ray: ptr<function, Ray>, search: ptr<function, Search>) -> u32 {
     var depth = 0u;
     var node = 0u;
     var open = children_entered(&slabs, node, (*search).t_far);
+    var visits = 1u;
     loop {
         if open == 0u {
             if depth == 0u {
@@ -284,21 +287,23 @@ fn trace(ray: ptr<function, Ray>, search: ptr<function, Search>) -> u32 {
             }
             node = child;
             open = children_entered(&slabs, node, (*search).t_far);
+            visits += 1u;
             continue;
         }
+        visits += 1u << 16u;
         let first = (child & (LEAF - 1u)) * 8u;
         for (var lane = 0u; lane < 8u; lane++) {
             test_sphere(ray, search, first + lane);
         }
         if ANY && (*search).sphere != MISS {
             if (*search).far < (*search).bound {
-                return (*search).sphere;
+                return select((*search).sphere, visits, COUNT);
             }
             // Too close to the end of the search.
             (*search).others = 0.0;
         }
     }
-    return answer(search);
+    return select(answer(search), visits, COUNT);
 }
 
 // The largest coordinate without its sign, in bits.

@@ -1,8 +1,9 @@
 //! Exact ray queries on spheres, on a GPU.
 //!
-//! The device answers for each ray which sphere it certainly hits first, that it certainly hits none, or that it does not
-//! know; the processor decides what it does not know, and computes all distances. So hits are those of `spherule-core`, bit
-//! for bit, on every device whose arithmetic keeps the promises of WGSL, which is tested when a [`Device`] is opened.
+//! The device answers for each ray which sphere it certainly hits first, that it certainly hits none, or that it
+//! does not know; the processor decides what it does not know, and computes all distances. So hits are those of
+//! `spherule-core`, bit for bit, on every device whose arithmetic keeps the promises of WGSL, which is tested when a
+//! [`Device`] is opened.
 //!
 //! - [`Adapters`]: what this machine has.
 //! - [`Device`]: one of them, open, and what a [`Probe`] of its arithmetic has found.

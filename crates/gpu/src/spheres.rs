@@ -22,8 +22,8 @@ impl<'a> DeviceSpheres<'a> {
         Ok(Self { spheres, tree: DeviceTree::new(device, spheres.parts())? })
     }
 
-    /// Finds the first hit of each ray, as [`SphereTree::intersect_columns`]. If the device fails the processor does it,
-    /// and [`Device::fault`] tells.
+    /// Finds the first hit of each ray, as [`SphereTree::intersect_columns`]. If the device fails the processor does
+    /// it, and [`Device::fault`] tells.
     ///
     /// # Errors
     /// Columns of different lengths.
@@ -39,8 +39,8 @@ impl<'a> DeviceSpheres<'a> {
         Ok(Answered { rays: count, unknown: unknown(&found) + alone, exact })
     }
 
-    /// Finds whether each ray hits anything nearer than its bound in `t`, as [`SphereTree::occluded_columns`]; otherwise
-    /// as [`DeviceSpheres::intersect_columns`].
+    /// Finds whether each ray hits anything nearer than its bound in `t`, as [`SphereTree::occluded_columns`];
+    /// otherwise as [`DeviceSpheres::intersect_columns`].
     ///
     /// # Errors
     /// Columns of different lengths.

@@ -1,6 +1,6 @@
 //! Trees and spheres on a device, and queries of rays in the tree's units.
 
-use crate::device::Device;
+use crate::device::{Device, QueryKernel};
 use crate::error::DeviceError;
 use spherule_core::internals::bvh::{
     Any, Closest, DeviceTracer, NodeRow, Query, Tracer, Tree, UNKNOWN, decide_found,
@@ -63,8 +63,6 @@ struct Lane {
     rays: wgpu::Buffer,
     found: wgpu::Buffer,
     copy: wgpu::Buffer,
-    /// For the first hit, and for any.
-    groups: [wgpu::BindGroup; 2],
 }
 
 /// A tree and its spheres on a device. Queries may come from many threads.
@@ -96,7 +94,6 @@ impl DeviceTree {
     #[doc(hidden)]
     pub fn cut(device: &Arc<Device>, tree: Tree, most: u64) -> Result<Self, DeviceError> {
         device.check()?;
-        device.query_kernels()?;
         let row = size_of::<[u32; SPHERE]>();
         let blocks = tree.spheres.blocks();
         let brick_bits = (most / row as u64).max(LEAF as u64).ilog2().min(30);
@@ -177,6 +174,26 @@ impl DeviceTree {
     /// # Errors
     /// The device fails.
     pub fn find(&self, rays: &Rays, hits: &Hits, any: bool) -> Result<Vec<u32>, DeviceError> {
+        self.run(QueryKernel { any, counts: false }, rays, hits)
+    }
+
+    /// Returns how many nodes and leaves the search for the hit of each ray visits on the device; 65 535 at most. For
+    /// measurements.
+    ///
+    /// # Errors
+    /// The device fails.
+    #[doc(hidden)]
+    pub fn visits(
+        &self,
+        rays: &Rays,
+        hits: &Hits,
+        any: bool,
+    ) -> Result<Vec<[u16; 2]>, DeviceError> {
+        let visits = self.run(QueryKernel { any, counts: true }, rays, hits)?;
+        Ok(visits.into_iter().map(|both| [both as u16, (both >> 16) as u16]).collect())
+    }
+
+    fn run(&self, kernel: QueryKernel, rays: &Rays, hits: &Hits) -> Result<Vec<u32>, DeviceError> {
         self.device.check()?;
         let mut found = vec![UNKNOWN; rays.len()];
         if rays.is_empty() || !self.single || !rays.precise.is_empty() {
@@ -185,10 +202,10 @@ impl DeviceTree {
         let lane = self.take_lane(rays.len().min(self.batch))?;
         let mut rows = Vec::with_capacity(RAY * rays.len().min(self.batch));
         for first in (0..rays.len()).step_by(self.batch) {
-            let count = self.batch.min(rays.len() - first);
+            let batch = first..rays.len().min(first + self.batch);
             rows.clear();
-            rows.extend((first..first + count).flat_map(|row| ray_row(rays, hits, row, any)));
-            self.ask(&lane, &rows, any, &mut found[first..first + count])?;
+            rows.extend(batch.clone().flat_map(|row| ray_row(rays, hits, row, kernel.any)));
+            self.ask(kernel, &lane, &rows, &mut found[batch])?;
         }
         // Not after a fault: what is left of such buffers is unknown.
         self.lanes.lock().unwrap_or_else(PoisonError::into_inner).push(lane);
@@ -208,7 +225,7 @@ impl DeviceTree {
         self.lane(rays.next_power_of_two().min(self.batch))
     }
 
-    /// Returns buffers for so many rays.
+    /// Returns new buffers for so many rays.
     fn lane(&self, rays: usize) -> Result<Lane, DeviceError> {
         use wgpu::BufferUsages as Usage;
         let words = |words: usize| (size_of::<u32>() * words) as u64;
@@ -218,23 +235,16 @@ impl DeviceTree {
         let column = buffer("rays", words(RAY * rays), Usage::STORAGE | Usage::COPY_DST)?;
         let found = buffer("answers", words(rays), Usage::STORAGE | Usage::COPY_SRC)?;
         let copy = buffer("answers to read", words(rays), Usage::MAP_READ | Usage::COPY_DST)?;
-        let kernels = self.device.query_kernels()?;
-        let groups = [0, 1].map(|any| {
-            let mut buffers = vec![&params];
-            buffers.extend(&self.columns);
-            buffers.extend([&column, &found]);
-            self.device.bind(&kernels[any], &buffers)
-        });
         self.device.check()?;
-        Ok(Lane { capacity: rays, params, rays: column, found, copy, groups })
+        Ok(Lane { capacity: rays, params, rays: column, found, copy })
     }
 
     /// Asks the device about some rays.
     fn ask(
         &self,
+        kernel: QueryKernel,
         lane: &Lane,
         rows: &[u32],
-        any: bool,
         found: &mut [u32],
     ) -> Result<(), DeviceError> {
         let params = Params {
@@ -246,9 +256,12 @@ impl DeviceTree {
         self.device.write(&lane.params, bytemuck::bytes_of(&params));
         self.device.write(&lane.rays, bytemuck::cast_slice(rows));
         let bytes = size_of_val(found) as u64;
-        let kernels = self.device.query_kernels()?;
-        let run = (&kernels[usize::from(any)], &lane.groups[usize::from(any)]);
-        self.device.dispatch(run, found.len(), (&lane.found, &lane.copy, bytes));
+        let kernel = self.device.query_kernel(kernel)?;
+        let mut buffers = vec![&lane.params];
+        buffers.extend(&self.columns);
+        buffers.extend([&lane.rays, &lane.found]);
+        let group = self.device.bind(kernel, &buffers);
+        self.device.dispatch((kernel, &group), found.len(), (&lane.found, &lane.copy, bytes));
         self.device.read(&lane.copy, bytes, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);
         })

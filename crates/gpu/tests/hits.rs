@@ -136,12 +136,18 @@ fn compare_workload(device: &Arc<Device>, scene: SphereScene, side: u32, cut: Op
         let start = Found::with_capacity(rays.len());
         let answered = compare_tree((&on_device, tree), rays, &start, class.is_any());
         let share = answered.unknown as f64 / answered.rays.max(1) as f64;
+        let visits = on_device.visits(rays, &start, class.is_any()).unwrap();
+        let mean = |kind: usize| {
+            let sum: f64 = visits.iter().map(|visits| f64::from(visits[kind])).sum();
+            sum / visits.len() as f64
+        };
+        let (name, nodes, leaves) = (class.name(), mean(0), mean(1));
         println!(
-            "{:12} {:10} {:6} rays, {share:.1e} unknown",
+            "{:12} {name:10} {:6} rays, {share:.1e} unknown, {nodes:.1} nodes, {leaves:.1} leaves",
             scene.name,
-            class.name(),
             rays.len()
         );
+        assert!((0.5..200.0).contains(&nodes) && leaves < nodes * 8.0, "{nodes} {leaves}");
         assert_eq!(answered.rays, rays.len() as u64);
         assert!(share < 0.05, "{} {}: {share}", scene.name, class.name());
     }

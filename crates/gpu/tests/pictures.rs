@@ -52,7 +52,7 @@ fn pictures_of_all_scenes_are_the_processors() {
     let mut seen = 0;
     for entry in folder.read_dir().unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        if !name.ends_with(".toml") {
+        if Path::new(&name).extension().is_none_or(|extension| extension != "toml") {
             continue;
         }
         let scene = load(&name);
