@@ -16,35 +16,35 @@ use std::sync::{Arc, OnceLock};
 static DEVICE: OnceLock<Result<Arc<Device>, DeviceError>> = OnceLock::new();
 
 /// What traces the rays of a world.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(in crate::cli) struct Attached {
+    choice: Choice,
     tree: Option<Arc<DeviceTree>>,
     refusal: Option<String>,
+    /// True once it was told that the device is lost.
+    told: bool,
 }
 
 impl Attached {
     /// Copies a world's spheres to a device if that is wanted and possible, and lets it trace their rays.
     pub(in crate::cli) fn to(world: &mut World, choice: Choice) -> Self {
+        let mut attached = Self { choice, tree: None, refusal: None, told: false };
         if choice != Choice::Gpu {
-            return Self::default();
+            return attached;
         }
-        if world.is_sliced() {
-            return Self::refused("slices are traced by the processor");
-        }
-        let device = DEVICE.get_or_init(|| Device::best(true).map(Arc::new));
-        let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-        match device.clone().and_then(|device| DeviceTree::new(&device, tree)) {
-            Err(error) => Self::refused(&error.to_string()),
+        match on_device(world) {
             Ok(tree) => {
-                let tree = Arc::new(tree);
                 world.device = Some(tree.clone());
-                Self { tree: Some(tree), refusal: None }
+                attached.tree = Some(tree);
             }
+            Err(why) => attached.refusal = Some(format!("--device gpu has no effect: {why}")),
         }
+        attached
     }
 
-    fn refused(why: &str) -> Self {
-        Self { tree: None, refusal: Some(format!("--device gpu has no effect: {why}")) }
+    /// Does for another world what was done for the last one.
+    pub(in crate::cli) fn renew(&mut self, world: &mut World) {
+        *self = Self { told: self.told, ..Self::to(world, self.choice) };
     }
 
     /// The reason why there is no device, if one was asked for.
@@ -74,6 +74,13 @@ impl Attached {
         Some(format!("{error}; the processor traced what was left"))
     }
 
+    /// [`Attached::fault`], once.
+    pub(in crate::cli) fn new_fault(&mut self) -> Option<String> {
+        let fault = self.fault().filter(|_| !self.told)?;
+        self.told = true;
+        Some(fault)
+    }
+
     /// What the device did.
     pub(in crate::cli) fn summary(&self) -> Option<DeviceSummary> {
         let tree = self.tree.as_ref()?;
@@ -81,6 +88,17 @@ impl Attached {
         let name = tree.device().summary().name.clone();
         Some(DeviceSummary { name, rays: tally.rays, unknown: tally.unknown })
     }
+}
+
+/// Copies the spheres and the tree of a world to the device.
+fn on_device(world: &World) -> Result<Arc<DeviceTree>, String> {
+    if world.is_sliced() {
+        return Err("slices are traced by the processor".to_owned());
+    }
+    let device = DEVICE.get_or_init(|| Device::best(true).map(Arc::new));
+    let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
+    let tree = device.clone().and_then(|device| DeviceTree::new(&device, tree));
+    tree.map(Arc::new).map_err(|error| error.to_string())
 }
 
 /// An adapter in JSON.

@@ -19,6 +19,10 @@ impl Attached {
         Self(choice)
     }
 
+    /// Leaves them again.
+    #[expect(clippy::unused_self, reason = "as with a device")]
+    pub(in crate::cli) fn renew(&mut self, _: &mut World) {}
+
     /// The reason why there is no device, if one was asked for.
     pub(in crate::cli) fn refusal(&self) -> Option<String> {
         (self.0 == Device::Gpu).then(|| format!("--device gpu has no effect: {ADVICE}"))
@@ -33,6 +37,12 @@ impl Attached {
     /// Nothing.
     #[expect(clippy::unused_self, reason = "as with a device")]
     pub(in crate::cli) fn fault(&self) -> Option<String> {
+        None
+    }
+
+    /// Nothing.
+    #[expect(clippy::unused_self, reason = "as with a device")]
+    pub(in crate::cli) fn new_fault(&mut self) -> Option<String> {
         None
     }
 

@@ -67,6 +67,8 @@ pub(super) struct LoadedScene {
     pub(super) labels: Labels,
     pub(super) facts: Facts,
     pub(super) warnings: Vec<String>,
+    /// What traces rays.
+    pub(super) device: Attached,
 }
 
 /// Data needed to read a stage's spheres again.
@@ -299,7 +301,8 @@ impl Loader {
         let origin = || Origin { job: Arc::clone(job), content: content.clone(), stamp };
         let origin = many.then(origin);
         let mut warnings = std::mem::take(&mut scene.warnings);
-        warnings.extend(Attached::to(&mut world, job.speed.device).refusal());
+        let device = Attached::to(&mut world, job.speed.device);
+        warnings.extend(device.refusal());
         let scene = Arc::new(RwLock::new(scene));
         Ok(LoadedScene {
             scene,
@@ -310,6 +313,7 @@ impl Loader {
             labels,
             facts,
             warnings,
+            device,
         })
     }
 }

@@ -73,8 +73,8 @@ impl Answers for Occlusion<'_> {
 }
 
 impl SphereTree {
-    /// Traces rays in chunks, and writes the answers of those that hit something; `known` is what they hit in the tree, if
-    /// that has been found elsewhere ([`decide_found`]).
+    /// Traces rays in chunks, and writes the answers of those that hit something; `known` is what they hit in the tree,
+    /// if that has been found elsewhere ([`decide_found`]).
     pub(super) fn run<Q: Query>(
         &self,
         columns: &RayColumns,
