@@ -142,9 +142,13 @@ impl RenderArgs {
 #[derive(Debug, clap::Args)]
 pub(super) struct InfoArgs {
     /// Scene (.toml), particle file (any other name), or - to read particles from standard input
-    pub(super) scene: PathBuf,
+    #[arg(required_unless_present = "devices")]
+    pub(super) scene: Option<PathBuf>,
     #[command(flatten)]
     pub(super) particles: ParticleArgs,
+    /// List GPUs, their limits, and what a test of their arithmetic finds
+    #[arg(long, conflicts_with_all = ["scene", "rows"])]
+    pub(super) devices: bool,
     /// List the first and last N particles of a particle file
     #[arg(long, value_name = "N")]
     pub(super) rows: Option<usize>,

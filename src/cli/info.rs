@@ -6,7 +6,7 @@ use super::files::Files;
 use super::particles::ParticleInfo;
 use super::rows::RowInfo;
 use super::source::Source;
-use super::{Failure, output, settings, slices};
+use super::{Failure, devices, output, settings, slices};
 use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::World;
@@ -77,11 +77,15 @@ const SHOWN: usize = 12;
 
 /// Loads the scene and prints its contents.
 pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
+    let Some(file) = &args.scene else {
+        devices::list(args.json);
+        return Ok(ExitCode::SUCCESS);
+    };
     args.particles.refuse_frames("info")?;
     let mut files = Files::new("info");
-    files.reads_scene(&args.scene);
+    files.reads_scene(file);
     files.check()?;
-    let source = Source::of_path("info", &args.scene, &args.particles)?;
+    let source = Source::of_path("info", file, &args.particles)?;
     let (scene, particles) = load(&source, args.rows)?;
     let world =
         World::build(&scene).map_err(|error| Failure::World(source.name().into_owned(), error))?;

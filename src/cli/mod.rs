@@ -9,6 +9,7 @@ mod command_line;
 mod compare;
 mod completions;
 mod contents;
+mod devices;
 mod examples;
 mod failure;
 mod field;

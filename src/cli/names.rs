@@ -109,3 +109,14 @@ pub(super) enum Builder {
     /// Along a Morton curve: fastest to build
     Morton,
 }
+
+/// What traces rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Device {
+    /// The faster one: so far the processor, since shading stays there
+    Auto,
+    /// The processor
+    Cpu,
+    /// A GPU traces rays, and the processor does the rest; needs a program that was built with it
+    Gpu,
+}

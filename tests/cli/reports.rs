@@ -102,6 +102,8 @@ fn settings_without_effect_are_reported() {
         ("dark.toml --no-caustics", "--no-caustics has no effect"),
         ("--depth 2 --roulette throughput", "--roulette throughput has no effect"),
         ("--traversal scalar --lanes 8", "--lanes has no effect"),
+        #[cfg(not(feature = "gpu"))]
+        ("--device gpu", "--device gpu has no effect: this program was built without it"),
         ("-o a.exr --exposure 1", "exposure has no effect"),
         ("-o a.pfm --tone filmic", "tone has no effect"),
         ("-o a.pfm --bits 16", "--bits has no effect"),

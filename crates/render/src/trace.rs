@@ -49,9 +49,13 @@ pub fn occluded(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> 
 
 /// Traces rays among the spheres that they can hit.
 fn trace(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
-    if world.camera_visible.is_none() && world.cut.is_empty() {
+    if !world.is_sliced() {
         let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-        return query.trace(tracer, tree, rays, hits);
+        return match (&world.device, query) {
+            (None, _) => query.trace(tracer, tree, rays, hits),
+            (Some(device), Query::Closest) => device.closest(tree, rays, hits),
+            (Some(device), Query::Any) => device.occluded(tree, rays, hits),
+        };
     }
     trace_sliced(tracer, query, world, rays, hits)
 }

@@ -1,7 +1,7 @@
 //! Arguments for the image, its file, performance and reports.
 
 use super::settings::SettingArgs;
-use crate::cli::names::{self, BITS, Builder, LANES, LAYERS, PPM, TRAVERSALS};
+use crate::cli::names::{self, BITS, Builder, Device, LANES, LAYERS, PPM, TRAVERSALS};
 use crate::cli::values::{self, THREADS};
 use clap::value_parser;
 use spherule_render::film::Region;
@@ -59,6 +59,9 @@ pub(in crate::cli) struct SpeedArgs {
     /// Rays per packet [default: 16]
     #[arg(long, value_parser = names::parser(&LANES))]
     pub(in crate::cli) lanes: Option<PacketWidth>,
+    /// What traces rays
+    #[arg(long, value_enum, default_value_t = Device::Auto)]
+    pub(in crate::cli) device: Device,
 }
 
 /// Reports on standard output and standard error.

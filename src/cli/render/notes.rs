@@ -41,6 +41,10 @@ pub(super) fn notes(job: &Job, scene: &Scene, world: &World) -> Vec<String> {
         "--lanes",
         "--traversal scalar and stream trace no packets",
     );
+    let device = world.device.is_some();
+    let on_device = "a GPU traces the rays";
+    note(job.speed.lanes.is_some() && !alone, device, "--lanes", on_device);
+    note(job.speed.traversal != Traversal::Auto, device, "--traversal", on_device);
     let encoding = job.encoding;
     let linear = job.format.is_linear();
     let holds = format!("{} files store linear radiance", job.format);

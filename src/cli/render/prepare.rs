@@ -7,6 +7,7 @@ use super::notices::Notices;
 use super::{appearance, metadata, part, visibility};
 use crate::cli::annotations::{self, FrameFacts, annotate};
 use crate::cli::contents::{dropped, found};
+use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::cli::picture_file;
@@ -57,6 +58,8 @@ pub(super) struct Prepared {
     pub(super) warnings: Vec<String>,
     /// Reason why the image shows no sphere, if it shows none.
     pub(super) empty: Option<String>,
+    /// What traces rays.
+    pub(super) device: Attached,
 }
 
 /// A scene with the job's settings, before its camera is placed.
@@ -179,7 +182,7 @@ impl PlacedScene {
         let start = Instant::now();
         let name = || job.source.name().into_owned();
         let mut looks = None;
-        let (world, builder) = if let Some(mut stored) = stored {
+        let (mut world, builder) = if let Some(mut stored) = stored {
             stored.scene = scene;
             looks = Some(std::mem::take(&mut stored.metadata));
             let builder = stored.builder;
@@ -196,8 +199,10 @@ impl PlacedScene {
             (world, builder)
         };
         let build = start.elapsed();
+        let device = Attached::to(&mut world, job.speed.device);
         let mut warnings = std::mem::take(&mut scene.warnings);
         warnings.extend(dropped(&world));
+        warnings.extend(device.refusal());
         let empty = visibility::explain_empty(&world, region, scene.settings.spp);
         let mut notes = notes(job, &scene, &world);
         notes.extend(annotations::notes(&scene.annotations));
@@ -219,6 +224,7 @@ impl PlacedScene {
             denoise,
             warnings,
             empty,
+            device,
         })
     }
 }
@@ -253,6 +259,7 @@ impl Prepared {
             notices.note(&text);
         }
         if job.report.verbose {
+            self.device.facts().iter().for_each(|text| notices.note(text));
             output::note(format_args!("found: {}", found(&self.world).join(", ")));
             for skipped in self.world.features.skipped() {
                 output::note(format_args!("skipped: {skipped}"));

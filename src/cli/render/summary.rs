@@ -7,6 +7,7 @@ use super::notices::Notices;
 use super::prepare::Prepared;
 use crate::cli::args::ReportArgs;
 use crate::cli::contents::{found, plural, spheres};
+use crate::cli::devices::DeviceSummary;
 use crate::cli::names::TRAVERSALS;
 use crate::cli::output;
 use crate::cli::progress::rate;
@@ -52,6 +53,8 @@ struct TracerSummary {
     traversal: &'static str,
     builder: &'static str,
     lanes: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    device: Option<DeviceSummary>,
 }
 
 /// Counts and times.
@@ -106,6 +109,7 @@ impl<'a> Summary<'a> {
         listed.extend(settings::list_encoding(job.format, options));
         let mut new_warnings = warnings(&render.counters, &prepared.scene.settings);
         new_warnings.extend(missed(render, judged, &prepared.scene.settings));
+        new_warnings.extend(prepared.device.fault());
         let known = prepared.warnings.iter().chain(&prepared.empty);
         Self {
             program: "spherule",
@@ -114,7 +118,7 @@ impl<'a> Summary<'a> {
             output: job.output.display().to_string(),
             complete: render.complete,
             settings: listed,
-            tracer: TracerSummary::new(job, prepared.builder),
+            tracer: TracerSummary::new(job, prepared),
             statistics: Statistics::new(prepared, render),
             noise: NoiseSummary::new(prepared, render, judged),
             found: found(&prepared.world),
@@ -181,6 +185,14 @@ impl<'a> Summary<'a> {
             plural(statistics.exact_decisions, "decision"),
             memory::describe(statistics.spheres, columns, statistics.peak_bytes),
         ));
+        if let Some(device) = &self.tracer.device {
+            output::print(format_args!(
+                "device  {}: {}, of which the processor decided {}",
+                device.name,
+                plural(device.rays, "ray"),
+                HumanCount(device.unknown),
+            ));
+        }
         self.noise.iter().for_each(NoiseSummary::print);
     }
 }
@@ -197,11 +209,12 @@ impl TaskSummary {
 }
 
 impl TracerSummary {
-    fn new(job: &Job, builder: Builder) -> Self {
+    fn new(job: &Job, prepared: &Prepared) -> Self {
         Self {
+            device: prepared.device.summary(),
             threads: job.threads,
             traversal: TRAVERSALS.name(&job.tracer.traversal),
-            builder: match builder {
+            builder: match prepared.builder {
                 Builder::Median => "median",
                 Builder::SurfaceArea => "surface-area",
                 Builder::Morton => "morton",

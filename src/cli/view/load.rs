@@ -6,6 +6,7 @@ use super::digits;
 use super::loading::{Progress, Step};
 use super::viewer::Facts;
 use crate::cli::annotations::{FrameFacts, annotate};
+use crate::cli::devices::Attached;
 use crate::cli::failure::Failure;
 use crate::cli::render::{Job, check_legend, focus};
 use crate::cli::source::Source;
@@ -66,6 +67,8 @@ pub(super) struct LoadedScene {
     pub(super) labels: Labels,
     pub(super) facts: Facts,
     pub(super) warnings: Vec<String>,
+    /// What traces rays.
+    pub(super) device: Attached,
 }
 
 /// Data needed to read a stage's spheres again.
@@ -287,7 +290,7 @@ impl Loader {
         progress.begin(Step::Building(count));
         let samples = u64::from(scene.settings.width) * u64::from(scene.settings.height) * 64;
         let builder = job.builder(count, samples);
-        let world = if many {
+        let mut world = if many {
             let sketch = sketch(&scene.spheres);
             let world = World::build_taking(&mut scene, builder).map_err(failed)?;
             scene.spheres = sketch;
@@ -297,7 +300,9 @@ impl Loader {
         };
         let origin = || Origin { job: Arc::clone(job), content: content.clone(), stamp };
         let origin = many.then(origin);
-        let warnings = std::mem::take(&mut scene.warnings);
+        let mut warnings = std::mem::take(&mut scene.warnings);
+        let device = Attached::to(&mut world, job.speed.device);
+        warnings.extend(device.refusal());
         let scene = Arc::new(RwLock::new(scene));
         Ok(LoadedScene {
             scene,
@@ -308,6 +313,7 @@ impl Loader {
             labels,
             facts,
             warnings,
+            device,
         })
     }
 }

@@ -7,6 +7,7 @@ use super::load::LoadedScene;
 use super::overlay::{OverlaidImage, OverlayCache};
 use super::tonemap::{ToneMapped, ToneMapper};
 use crate::cli::failure::Failure;
+use crate::cli::output;
 use crate::cli::render::draw_annotations;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -106,6 +107,7 @@ impl Renderer {
             Quality::Preview { shadows } => self.preview(request, &options, shadows)?,
             Quality::Sampled => self.refine(request, &options)?,
         };
+        self.stage.device.new_fault().iter().for_each(output::warn);
         let Some(Plain { image, noise, before, rays }) = plain else { return Ok(None) };
         let world = &mut self.stage.world;
         let mut drawn = None;
@@ -218,6 +220,7 @@ impl Renderer {
             }
         };
         self.stage.world = built.map_err(failed)?;
+        self.stage.device.renew(&mut self.stage.world);
         self.overlay = OverlayCache::default();
         Ok(())
     }

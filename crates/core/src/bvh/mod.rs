@@ -9,6 +9,7 @@ pub mod builders;
 mod child_order;
 mod decision;
 mod enclosing;
+mod found;
 mod interleaved;
 mod nearest;
 mod one_ray;
@@ -21,6 +22,7 @@ mod single;
 mod traversal;
 
 pub use beam::Beam;
+pub use found::{DeviceTracer, UNKNOWN, decide_found};
 pub use one_ray::{OneHit, trace_far, trace_one};
 pub use plain_ray::{PlainAnswer, PlainHit, PlainRay};
 pub use rows::NodeRow;

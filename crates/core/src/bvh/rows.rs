@@ -1,9 +1,10 @@
-//! Trees as rows of numbers, for files.
+//! Trees as rows of numbers, for files and for other processors.
 
 use super::{Bvh, Child, DEPTH, Node, WIDTH};
 use bytemuck::{Pod, Zeroable};
 
-/// A node without the room that aligns it.
+/// A node without the room that aligns it: planes by axis, by side, lower first, and by child; then, for each child,
+/// the index of its node, or that of its block with bit 30 set, or bit 31 alone where there is none.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct NodeRow {

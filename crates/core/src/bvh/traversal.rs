@@ -315,7 +315,11 @@ fn trace_incoherent<Q: Query>(bvh: &Bvh, resolver: &mut HitResolver<Q>, rays: Ra
 /// Traces rays again whose hits are unresolved, and decides each candidate at once: with the tree, or by
 /// brute force.
 #[inline(always)]
-fn trace_unresolved<Q: Query>(bvh: &Bvh, resolver: &mut HitResolver<Q>, brute_force: bool) {
+pub(super) fn trace_unresolved<Q: Query>(
+    bvh: &Bvh,
+    resolver: &mut HitResolver<Q>,
+    brute_force: bool,
+) {
     let mut unresolved = std::mem::take(&mut resolver.unresolved);
     let rays = RayStarts::Listed { first: 0, places: unresolved.iter(), few: FEW };
     if brute_force {

@@ -6,7 +6,7 @@ use super::load::PACKET;
 use super::reorder::{BATCH, SortedRays};
 use super::surface::PendingSurfaces;
 use super::{NOTHING, SphereTree};
-use crate::bvh::{Query, Traversal, trace};
+use crate::bvh::{Query, Traversal, decide_found, trace};
 use crate::intersect::Pair;
 use crate::lanes::{F32x16, Lanes, Mask, bits, bits_of, first_lanes, set_bits};
 use crate::ray::{self, MISS, Rays};
@@ -73,8 +73,14 @@ impl Answers for Occlusion<'_> {
 }
 
 impl SphereTree {
-    /// Traces rays in chunks, and writes the answers of those that hit something.
-    pub(super) fn run<Q: Query>(&self, columns: &RayColumns, answers: &mut impl Answers) -> Tally {
+    /// Traces rays in chunks, and writes the answers of those that hit something; `known` is what they hit in the tree,
+    /// if that has been found elsewhere ([`decide_found`]).
+    pub(super) fn run<Q: Query>(
+        &self,
+        columns: &RayColumns,
+        answers: &mut impl Answers,
+        known: Option<&[u32]>,
+    ) -> Tally {
         let mut tally = Tally::default();
         let count = columns.origin[0].len();
         let mut rays = Rays::with_capacity(CHUNK.min(count));
@@ -82,10 +88,11 @@ impl SphereTree {
         let mut sorted = SortedRays::taken();
         for first in (0..count).step_by(BATCH) {
             let batch = Rows { columns, rows: first..count.min(first + BATCH) };
-            let is_sorted = self.sort_rays(&batch, answers.bounds(), &mut sorted);
+            let is_sorted =
+                known.is_none() && self.sort_rays(&batch, answers.bounds(), &mut sorted);
             for first in (0..batch.rows.len()).step_by(CHUNK) {
                 let places = first..batch.rows.len().min(first + CHUNK);
-                let traced = (&mut rays, &mut hits);
+                let traced = (&mut rays, &mut hits, known);
                 if is_sorted {
                     self.run_chunk::<Q>(
                         columns,
@@ -110,12 +117,15 @@ impl SphereTree {
         &self,
         columns: &RayColumns,
         chunk: &impl ChunkRays,
-        (rays, hits): (&mut Rays, &mut ray::Hits),
+        (rays, hits, known): (&mut Rays, &mut ray::Hits, Option<&[u32]>),
         answers: &mut impl Answers,
         tally: &mut Tally,
     ) {
         let loaded = self.load(chunk, answers.bounds(), rays, hits);
-        tally.exact += trace::<F32x16, Q>(Traversal::Auto, self.tree(), rays, hits);
+        tally.exact += match known {
+            Some(known) => decide_found::<Q>(self.tree(), rays, hits, |k| known[chunk.row(k)]),
+            None => trace::<F32x16, Q>(Traversal::Auto, self.tree(), rays, hits),
+        };
         // Powers of two, whose product does not round.
         let unit = |row: usize| f64::from(loaded.shrink[row]) * self.scale[1];
         let mut pending = PendingSurfaces::NONE;

@@ -8,6 +8,7 @@
 mod batch;
 mod chunk;
 mod columns;
+mod found;
 mod load;
 mod plain_ray;
 mod reorder;
@@ -295,7 +296,7 @@ impl SphereTree {
         let surfaces = hits.surface.as_ref().map_or(hits.t.len(), |column| column.len());
         rays.check(&[hits.t.len(), hits.sphere.len(), surfaces])?;
         hits.sphere.fill(NOTHING);
-        Ok(self.run::<ClosestRounded>(rays, &mut hits))
+        Ok(self.run::<ClosestRounded>(rays, &mut hits, None))
     }
 
     /// Finds whether each ray hits anything nearer than its bound in `t`. The order of rays matters as little as to
@@ -311,7 +312,7 @@ impl SphereTree {
     ) -> Result<Tally, QueryError> {
         rays.check(&[t.len(), occluded.len()])?;
         occluded.fill(false);
-        Ok(self.run::<Any>(rays, &mut Occlusion { t, occluded }))
+        Ok(self.run::<Any>(rays, &mut Occlusion { t, occluded }, None))
     }
 }
 

@@ -31,4 +31,4 @@ mod surface;
 pub use forms::Form;
 pub use regimes::{REGIMES, Regime};
 pub use report::{FormReport, RegimeReport, Report};
-pub use run::{Options, run};
+pub use run::{Options, run, sample};

@@ -70,12 +70,17 @@ fn run_regime(
         .reduce(|| RegimeReport::new(regime), |a, b| a.merged(&b))
 }
 
+/// Returns the spheres of a random scene of a regime, and `count` rays.
+pub fn sample(regime: &Regime, count: usize, random: &mut Random) -> (Vec<[f32; 4]>, Vec<Ray>) {
+    let spheres = scenes::scene(&regime.recipe, random);
+    let rays = (0..count).map(|_| rays::ray(&regime.recipe, &spheres, random)).collect();
+    (spheres, rays)
+}
+
 /// Tests `count` rays in a random scene.
 fn run_scene(regime: &Regime, count: usize, seed: u64) -> RegimeReport {
     let mut random = Random::new(seed);
-    let spheres = scenes::scene(&regime.recipe, &mut random);
-    let rays: Vec<Ray> =
-        (0..count).map(|_| rays::ray(&regime.recipe, &spheres, &mut random)).collect();
+    let (spheres, rays) = sample(regime, count, &mut random);
     let mut report = RegimeReport::new(regime);
     report.rays = count as u64;
     // Cannot fail: columns have equal lengths.

@@ -46,8 +46,8 @@ pub(crate) use parts::{OmittedSpheres, Parts};
 pub use transform::Transform;
 pub use visibility::Visibility;
 
-use crate::bvh::Bvh;
 use crate::bvh::builders::Builder;
+use crate::bvh::{Bvh, DeviceTracer};
 use crate::memory::Shortage;
 use crate::ray::GROUND;
 use crate::scene::{self, Background, Footprint, Rgb, Scene};
@@ -55,6 +55,7 @@ use crate::settings::{InvalidSetting, Settings};
 use crate::shade::{MaterialId, MaterialKind, Materials};
 use crate::spheres::Spheres;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Approximate number of rays per sample, with bounces and shadow rays, for choosing the tree builder.
 const RAYS_PER_SAMPLE: u64 = 4;
@@ -102,6 +103,9 @@ pub struct World {
     /// The camera.
     #[doc(hidden)]
     pub camera: Camera,
+    /// Traces rays in place of the processor, where nothing is sliced.
+    #[doc(hidden)]
+    pub device: Option<Arc<dyn DeviceTracer>>,
     /// Features of the world, which decide which stages run.
     pub features: Features,
 }
@@ -244,12 +248,18 @@ impl World {
             light_images: LightImages::default(),
             environment,
             camera,
+            device: None,
             features: Features::default(),
         };
         world.features = Features::census(&world, omitted);
         world.caustic_casters = CausticCasters::find(&world);
         world.light_images = LightImages::find(&world);
         world
+    }
+
+    /// Returns whether slices hide or cut spheres, so that the processor traces all rays.
+    pub fn is_sliced(&self) -> bool {
+        self.camera_visible.is_some() || !self.cut.is_empty()
     }
 
     /// Returns the same world without its spheres, and without the light of emissive spheres.
@@ -271,6 +281,7 @@ impl World {
             light_images: LightImages::default(),
             environment: self.environment.clone(),
             camera: self.camera,
+            device: None,
             features,
         }
     }

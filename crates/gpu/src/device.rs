@@ -1,0 +1,389 @@
+//! Adapters and devices.
+
+use crate::error::DeviceError;
+use crate::probe::{self, Probe};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
+
+/// The longest that one dispatch may take; longer is a device that hangs.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Storage buffers that the kernels bind at once.
+const STORAGE_BUFFERS: u32 = 7;
+
+/// An adapter: a GPU as a driver offers it, or a processor that a driver makes one of.
+#[derive(Clone, Debug)]
+pub struct AdapterSummary {
+    /// The name.
+    pub name: String,
+    /// The interface by which it is reached.
+    pub backend: String,
+    /// What it is: discrete, integrated, virtual, or software.
+    pub kind: &'static str,
+    /// The driver and its version.
+    pub driver: String,
+    /// The most bytes of one buffer.
+    pub max_buffer: u64,
+    /// The most bytes of a buffer that a kernel reads.
+    pub max_binding: u64,
+    /// The most buffers that a kernel reads.
+    pub max_storage_buffers: u32,
+    /// The sizes of groups of lanes.
+    pub subgroups: [u32; 2],
+}
+
+impl AdapterSummary {
+    fn of(adapter: &wgpu::Adapter) -> Self {
+        let (info, limits) = (adapter.get_info(), adapter.limits());
+        let kind = match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+            wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+            wgpu::DeviceType::VirtualGpu => "virtual GPU",
+            wgpu::DeviceType::Cpu => "software",
+            wgpu::DeviceType::Other => "other",
+        };
+        let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
+        Self {
+            name: info.name,
+            backend: info.backend.to_string(),
+            kind,
+            driver,
+            max_buffer: limits.max_buffer_size,
+            max_binding: limits.max_storage_buffer_binding_size,
+            max_storage_buffers: limits.max_storage_buffers_per_shader_stage,
+            subgroups: [info.subgroup_min_size, info.subgroup_max_size],
+        }
+    }
+
+    /// Whether it is a processor that a driver makes a GPU of.
+    pub fn is_software(&self) -> bool {
+        self.kind == "software"
+    }
+}
+
+/// The adapters of this machine.
+pub struct Adapters(Vec<wgpu::Adapter>);
+
+impl Adapters {
+    /// Finds all adapters; those that are not software first.
+    pub fn find() -> Self {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends = wgpu::Backends::PRIMARY;
+        let instance = wgpu::Instance::new(descriptor);
+        let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+        let rank = |adapter: &wgpu::Adapter| match adapter.get_info().device_type {
+            wgpu::DeviceType::DiscreteGpu => 0,
+            wgpu::DeviceType::IntegratedGpu => 1,
+            wgpu::DeviceType::VirtualGpu => 2,
+            wgpu::DeviceType::Other => 3,
+            wgpu::DeviceType::Cpu => 4,
+        };
+        adapters.sort_by_key(rank);
+        Self(adapters)
+    }
+
+    /// Returns what is known of each.
+    pub fn summaries(&self) -> Vec<AdapterSummary> {
+        self.0.iter().map(AdapterSummary::of).collect()
+    }
+
+    /// Opens the device of an adapter, by its place in the list, and tests its arithmetic.
+    ///
+    /// # Errors
+    /// There is no such adapter, the driver refuses, or the arithmetic is not good enough.
+    pub fn open(&self, place: usize) -> Result<Device, DeviceError> {
+        Device::open(self.0.get(place).ok_or(DeviceError::NoAdapter)?)
+    }
+}
+
+/// The first thing that went wrong, as the driver told it, from any thread.
+#[derive(Clone, Default)]
+struct Faults(Arc<Mutex<Option<DeviceError>>>);
+
+impl Faults {
+    fn add(&self, error: DeviceError) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+
+    fn get(&self) -> Option<DeviceError> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+/// A device that answers queries.
+pub struct Device {
+    summary: AdapterSummary,
+    probe: Probe,
+    handle: wgpu::Device,
+    queue: wgpu::Queue,
+    faults: Faults,
+    /// The kernels of queries by [`QueryKernel`], once they are compiled.
+    kernels: [OnceLock<Result<wgpu::ComputePipeline, DeviceError>>; 4],
+}
+
+/// A kernel of queries.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct QueryKernel {
+    /// True if any hit ends the search.
+    pub(crate) any: bool,
+    /// True if it answers with visits.
+    pub(crate) counts: bool,
+}
+
+impl Device {
+    /// Opens the best device of this machine; software counts only if `software` allows it.
+    ///
+    /// # Errors
+    /// There is none, or it cannot be used.
+    pub fn best(software: bool) -> Result<Self, DeviceError> {
+        let adapters = Adapters::find();
+        let usable = |summary: &AdapterSummary| software || !summary.is_software();
+        let place = adapters.summaries().iter().position(usable).ok_or(DeviceError::NoAdapter)?;
+        adapters.open(place)
+    }
+
+    fn open(adapter: &wgpu::Adapter) -> Result<Self, DeviceError> {
+        let summary = AdapterSummary::of(adapter);
+        let refused =
+            |reason: String| DeviceError::Refused { adapter: summary.name.clone(), reason };
+        if summary.max_storage_buffers < STORAGE_BUFFERS {
+            let most = summary.max_storage_buffers;
+            let reason =
+                format!("its kernels read {most} buffers, but {STORAGE_BUFFERS} are needed");
+            return Err(refused(reason));
+        }
+        let descriptor = wgpu::DeviceDescriptor {
+            required_limits: adapter.limits(),
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| refused(error.to_string()))?;
+        let faults = Faults::default();
+        let lost = faults.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            lost.add(DeviceError::Lost(told(&message, &format!("{reason:?}"))));
+        });
+        let failed = faults.clone();
+        device.on_uncaptured_error(Arc::new(move |error| failed.add(of_driver(&error))));
+        let (probe, kernels) = (Probe::default(), [const { OnceLock::new() }; 4]);
+        let mut opened = Self { summary, probe, handle: device, queue, faults, kernels };
+        opened.probe = probe::run(&opened)?;
+        match opened.probe.broken() {
+            None => Ok(opened),
+            Some(what) => Err(DeviceError::Inexact { adapter: opened.summary.name, what }),
+        }
+    }
+
+    /// What is known of the adapter.
+    pub fn summary(&self) -> &AdapterSummary {
+        &self.summary
+    }
+
+    /// What the test of its arithmetic has found.
+    pub fn probe(&self) -> &Probe {
+        &self.probe
+    }
+
+    /// The first thing that went wrong, after which nothing is answered any more.
+    pub fn fault(&self) -> Option<DeviceError> {
+        self.faults.get()
+    }
+
+    /// Takes the device away, as a driver does that crashes. For tests.
+    #[doc(hidden)]
+    pub fn destroy(&self) {
+        self.handle.destroy();
+        self.faults.add(DeviceError::Lost("it was destroyed".to_owned()));
+    }
+
+    /// Returns nothing if nothing has gone wrong so far.
+    pub(crate) fn check(&self) -> Result<(), DeviceError> {
+        self.fault().map_or(Ok(()), Err)
+    }
+
+    /// Returns a buffer for kernels.
+    pub(crate) fn buffer(
+        &self,
+        what: &str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, DeviceError> {
+        let binding = usage.contains(wgpu::BufferUsages::STORAGE);
+        let most =
+            self.summary.max_buffer.min(if binding { self.summary.max_binding } else { u64::MAX });
+        let memory = || DeviceError::Memory { what: format!("{what}, {bytes} bytes") };
+        if bytes > most {
+            return Err(memory());
+        }
+        let scope = self.handle.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let buffer = self.handle.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(what),
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        });
+        if pollster::block_on(scope.pop()).is_some() {
+            return Err(memory());
+        }
+        self.check()?;
+        Ok(buffer)
+    }
+
+    /// Returns a buffer that holds these bytes; at least one row of them.
+    pub(crate) fn filled(&self, what: &str, bytes: &[u8]) -> Result<wgpu::Buffer, DeviceError> {
+        /// Bytes that are written at once, so that what the driver keeps until then stays small.
+        const PIECE: usize = 1 << 24;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let buffer = self.buffer(what, bytes.len().max(16) as u64, usage)?;
+        for (piece, offset) in bytes.chunks(PIECE).zip((0_u64..).step_by(PIECE)) {
+            self.queue.write_buffer(&buffer, offset, piece);
+            if bytes.len() > PIECE {
+                self.queue.submit([]);
+                self.wait()?;
+            }
+        }
+        self.check()?;
+        Ok(buffer)
+    }
+
+    /// Writes bytes to the start of a buffer.
+    pub(crate) fn write(&self, buffer: &wgpu::Buffer, bytes: &[u8]) {
+        self.queue.write_buffer(buffer, 0, bytes);
+    }
+
+    /// Compiles a kernel; `constants` are its overrides.
+    pub(crate) fn kernel(
+        &self,
+        (name, source): (&str, &str),
+        constants: &[(&str, f64)],
+    ) -> Result<wgpu::ComputePipeline, DeviceError> {
+        let module = self.handle.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        let pipeline = self.handle.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(name),
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                ..wgpu::PipelineCompilationOptions::default()
+            },
+            cache: None,
+        });
+        self.check()?;
+        Ok(pipeline)
+    }
+
+    /// Returns a kernel of queries.
+    pub(crate) fn query_kernel(
+        &self,
+        QueryKernel { any, counts }: QueryKernel,
+    ) -> Result<&wgpu::ComputePipeline, DeviceError> {
+        let numbers = [any, counts].map(u8::from);
+        let place = &self.kernels[usize::from(numbers[0] + 2 * numbers[1])];
+        let constants = [("ANY", numbers[0].into()), ("COUNT", numbers[1].into())];
+        let compile = || self.kernel(("hits", include_str!("hits.wgsl")), &constants);
+        place.get_or_init(compile).as_ref().map_err(Clone::clone)
+    }
+
+    /// Binds buffers to a kernel, in their order.
+    pub(crate) fn bind(
+        &self,
+        kernel: &wgpu::ComputePipeline,
+        buffers: &[&wgpu::Buffer],
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        self.handle.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &kernel.get_bind_group_layout(0),
+            entries: &entries,
+        })
+    }
+
+    /// Runs a kernel in groups of 64 invocations, and copies the first bytes of a buffer to another.
+    pub(crate) fn dispatch(
+        &self,
+        (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+        invocations: usize,
+        (from, to, bytes): (&wgpu::Buffer, &wgpu::Buffer, u64),
+    ) {
+        let mut encoder =
+            self.handle.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(kernel);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(invocations.div_ceil(64) as u32, 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// Waits for all that was submitted.
+    fn wait(&self) -> Result<(), DeviceError> {
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        match self.handle.poll(wait) {
+            Ok(_) => self.check(),
+            Err(error) => {
+                self.faults.add(DeviceError::Lost(error.to_string()));
+                self.check()
+            }
+        }
+    }
+
+    /// Hands over the bytes of a buffer that can be mapped, once all that was submitted is done.
+    pub(crate) fn read(
+        &self,
+        buffer: &wgpu::Buffer,
+        bytes: u64,
+        mut take: impl FnMut(&[u8]),
+    ) -> Result<(), DeviceError> {
+        let faults = self.faults.clone();
+        buffer.map_async(wgpu::MapMode::Read, 0..bytes, move |mapped| {
+            if let Err(error) = mapped {
+                faults.add(DeviceError::Lost(error.to_string()));
+            }
+        });
+        self.wait()?;
+        match buffer.get_mapped_range(0..bytes) {
+            Ok(view) => take(&view),
+            Err(error) => self.faults.add(DeviceError::Lost(error.to_string())),
+        }
+        buffer.unmap();
+        self.check()
+    }
+}
+
+impl std::fmt::Debug for Device {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Device")
+            .field("summary", &self.summary)
+            .field("fault", &self.fault())
+            .finish_non_exhaustive()
+    }
+}
+
+/// The first line of a message, or something in its place.
+fn told(message: &str, otherwise: &str) -> String {
+    let line = message.lines().map(str::trim).find(|line| !line.is_empty());
+    line.unwrap_or(otherwise).trim_end_matches('.').to_owned()
+}
+
+fn of_driver(error: &wgpu::Error) -> DeviceError {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => {
+            DeviceError::Memory { what: "what it was asked to do".to_owned() }
+        }
+        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+            DeviceError::Failed(told(description, "for no reason that it tells"))
+        }
+    }
+}

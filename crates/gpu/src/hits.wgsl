@@ -1,0 +1,347 @@
+// What each ray hits first, or whether it hits anything: certainly a sphere, certainly nothing, or unknown.
+//
+// Reads beside `bvh/one_ray.rs`, `slabs.rs` and `conservative.rs` of spherule-core. The bounds are not theirs: they are
+// derived in docs/gpu.md for what WGSL promises of f32, and hold however sums are ordered and products are fused
+// between two values that pass `keep`.
+
+struct Params {
+    // 0, which no compiler knows.
+    zero: u32,
+    rays: u32,
+    // Spheres in each column but the last, a multiple of 8; as a power of two.
+    brick_bits: u32,
+    nodes: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+// Each node in 14 rows: by axis and side, lower first, eight planes; and eight children.
+@group(0) @binding(1) var<storage, read> nodes: array<vec4<u32>>;
+// Centers and radii, with the sign bit of the radius where there is no sphere.
+@group(0) @binding(2) var<storage, read> spheres_0: array<vec4<u32>>;
+@group(0) @binding(3) var<storage, read> spheres_1: array<vec4<u32>>;
+@group(0) @binding(4) var<storage, read> spheres_2: array<vec4<u32>>;
+@group(0) @binding(5) var<storage, read> spheres_3: array<vec4<u32>>;
+// Each ray in three rows: origin, direction, own sphere, target, and the bounds of the distance where its search ends.
+@group(0) @binding(6) var<storage, read> rays: array<vec4<u32>>;
+@group(0) @binding(7) var<storage, read_write> found: array<u32>;
+
+// True if any hit ends the search.
+override ANY: bool = false;
+// True to answer with the numbers of nodes and, from bit 16 on, leaves that the search visits. For measurements.
+override COUNT: bool = false;
+
+const MISS: u32 = 0xffffffffu;
+const UNKNOWN: u32 = 0xfffffffdu;
+const NODE_ROWS: u32 = 14u;
+const CHILD_ROW: u32 = 12u;
+const LEAF: u32 = 0x40000000u;
+const NO_CHILD: u32 = 0x80000000u;
+const DEPTH: u32 = 24u;
+
+// The largest relative error of a sum, a difference or a product: one unit in the last place.
+const E: f32 = 0x1p-23f;
+// Relative width of the band in which a sphere is neither hit nor missed for certain.
+const K: f32 = 20.0 * E;
+// More than anything that flushed numbers change.
+const TINY: f32 = 0x1p-60f;
+const TINY_SQUARE: f32 = 0x1p-100f;
+// Distances of planes are moved by this part of the origin's, and near ones decreased.
+const SLACK: f32 = 16.0 * E;
+const SOONER: f32 = 1.0 - 16.0 * E;
+// Directions are kept this far from 0.
+const LEAST: f32 = 0x1p-100f;
+// More than any distance.
+const FAR: f32 = 0x1p100f;
+// Bits of 2^20, 1/4 and 4: the largest coordinate of origins, and the range of that of directions.
+const REACH_BITS: u32 = 0x49800000u;
+const SHORT_BITS: u32 = 0x3e800000u;
+const LONG_BITS: u32 = 0x40800000u;
+
+// The same number, through which nothing is fused or reordered.
+fn keep(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) ^ params.zero);
+}
+
+fn keep3(v: vec3<f32>) -> vec3<f32> {
+    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(v) ^ vec3<u32>(params.zero));
+}
+
+// No less than the square root of a number.
+fn root_above(x: f32) -> f32 {
+    let least = max(x, TINY_SQUARE);
+    let root = keep(keep(sqrt(least)) * (1.0 + 16.0 * E));
+    return select(max(least, 1.0), root, keep(root * root) >= least * (1.0 + 4.0 * E));
+}
+
+// No more than the square root of a number.
+fn root_below(x: f32) -> f32 {
+    let root = keep(keep(sqrt(max(x, TINY_SQUARE))) * (1.0 - 16.0 * E));
+    let proven = x >= TINY_SQUARE && keep(root * root) <= x * (1.0 - 4.0 * E);
+    return select(0.0, root, proven);
+}
+
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    // The sphere that the ray starts on, and the one that it is aimed at, which it never hits; or MISS.
+    own: u32,
+    goal: u32,
+    length2: f32,
+    inverse_length2: f32,
+    // No less than the direction's length.
+    length: f32,
+    // Maximum error of the origin if it is a rounded point of a surface; else 0.
+    origin_error: f32,
+}
+
+// The search so far.
+struct Search {
+    // A hit that is certain, and bounds of its distance; MISS if there is none.
+    sphere: u32,
+    near: f32,
+    far: f32,
+    // Nothing else is hit before.
+    others: f32,
+    // A distance before which the search does not end, and one beyond which nothing counts.
+    bound: f32,
+    t_far: f32,
+}
+
+fn sphere_row(row: u32) -> vec4<u32> {
+    let place = row & ((1u << params.brick_bits) - 1u);
+    switch row >> params.brick_bits {
+        case 0u: { return spheres_0[place]; }
+        case 1u: { return spheres_1[place]; }
+        case 2u: { return spheres_2[place]; }
+        default: { return spheres_3[place]; }
+    }
+}
+
+// Whether a sphere is the one in a row, or coincides with it.
+fn is_same(sphere: vec4<u32>, row: u32, known: u32) -> bool {
+    return known == row || (known < UNKNOWN - 1u && all(sphere_row(known) == sphere));
+}
+
+// Tests a sphere.
+fn test_sphere(ray: ptr<function, Ray>, search: ptr<function, Search>, row: u32) {
+    let bits = sphere_row(row);
+    if (bits.w & 0x80000000u) != 0u {
+        return;
+    }
+    let center = bitcast<vec3<f32>>(bits.xyz);
+    let radius = bitcast<f32>(bits.w);
+    let direction = (*ray).direction;
+    let inverse_length2 = (*ray).inverse_length2;
+    let to_center = keep3(center - (*ray).origin);
+    let middle = keep(dot(to_center, direction) * inverse_length2);
+    let perpendicular = keep3(to_center - middle * direction);
+    let distance2 = dot(perpendicular, perpendicular);
+    let slack = keep(abs(middle) * K);
+    let band = keep(slack * (*ray).length + TINY);
+    let reach = keep(radius * (1.0 + K) + band);
+    let chord2 = keep(reach * reach - distance2);
+    if chord2 < 0.0 {
+        return;
+    }
+    // The hit, near or far, is in the larger interval about the middle.
+    let half = keep(root_above(chord2 * inverse_length2) * (1.0 + 2.0 * K) + slack);
+    let enter_low = middle - half;
+    let leave_high = middle + half;
+    if enter_low > (*search).t_far || leave_high < 0.0 {
+        return;
+    }
+    if is_same(bits, row, (*ray).own) || is_same(bits, row, (*ray).goal) {
+        return;
+    }
+    var near = max(enter_low, 0.0);
+    var far = FAR;
+    var certain = false;
+    let inner = keep(radius * (1.0 - K) - band);
+    let inner2 = keep(inner * inner - distance2);
+    if inner > 0.0 && inner2 > 0.0 {
+        // The line certainly meets the sphere, and no later than this.
+        let least = keep(root_below(inner2 * inverse_length2) * (1.0 - 2.0 * K) - slack);
+        let enter_high = middle - least;
+        let leave_low = middle + least;
+        // The origin is on the surface if the product of the distances to both ends is within this.
+        var edge = TINY_SQUARE;
+        if (*ray).own != MISS {
+            let error = (*ray).origin_error;
+            let size = dot(to_center, to_center) + radius * radius;
+            edge += (error * (2.0 * radius + error) + size * 0x1p-36f) * (1.0 + 32.0 * E);
+        }
+        let scale = (*ray).length2 * (1.0 - 32.0 * E);
+        let exact_origin = (*ray).own == MISS;
+        if enter_low > 0.0 {
+            certain = exact_origin || keep(keep(enter_low * leave_low) * scale) > edge;
+            far = enter_high;
+        } else if enter_high < 0.0 && leave_low > 0.0 {
+            certain = exact_origin || keep(keep(-enter_high * leave_low) * scale) > edge;
+            near = leave_low;
+            far = leave_high;
+        }
+    }
+    if certain && far < (*search).far {
+        (*search).others = min((*search).others, (*search).near);
+        (*search).sphere = row;
+        (*search).near = near;
+        (*search).far = far;
+        (*search).t_far = min((*search).t_far, far);
+    } else {
+        (*search).others = min((*search).others, select(max(enter_low, 0.0), near, certain));
+    }
+}
+
+// Permutes the bits of slots so that they are in the order in which a ray of an octant meets them, or back.
+fn in_order_of(octant: u32, slots: u32) -> u32 {
+    var mask = slots;
+    if (octant & 1u) != 0u {
+        mask = ((mask & 0x55u) << 1u) | ((mask >> 1u) & 0x55u);
+    }
+    if (octant & 2u) != 0u {
+        mask = ((mask & 0x33u) << 2u) | ((mask >> 2u) & 0x33u);
+    }
+    if (octant & 4u) != 0u {
+        mask = ((mask & 0x0fu) << 4u) | (mask >> 4u);
+    }
+    return mask;
+}
+
+struct Slabs {
+    inverse: vec3<f32>,
+    // Terms of near and far distances.
+    near: vec3<f32>,
+    far: vec3<f32>,
+    negative: vec3<bool>,
+    octant: u32,
+}
+
+// The children of half a node that the ray may enter before `t_far`: a bit for each.
+fn entered(slabs: ptr<function, Slabs>, row: u32, t_far: f32) -> u32 {
+    var near = vec4<f32>(0.0);
+    var far = vec4<f32>(t_far);
+    for (var axis = 0u; axis < 3u; axis++) {
+        let low = bitcast<vec4<f32>>(nodes[row + 4u * axis]);
+        let high = bitcast<vec4<f32>>(nodes[row + 4u * axis + 2u]);
+        let negative = (*slabs).negative[axis];
+        let inverse = (*slabs).inverse[axis];
+        near = max(near, select(low, high, negative) * inverse + (*slabs).near[axis]);
+        far = min(far, select(high, low, negative) * inverse + (*slabs).far[axis]);
+    }
+    let child = nodes[row + CHILD_ROW];
+    let hit = (near * SOONER <= far) & (child != vec4<u32>(NO_CHILD));
+    return dot(vec4<u32>(hit), vec4<u32>(1u, 2u, 4u, 8u));
+}
+
+fn children_entered(slabs: ptr<function, Slabs>, node: u32, t_far: f32) -> u32 {
+    let row = node * NODE_ROWS;
+    let slots = entered(slabs, row, t_far) | (entered(slabs, row + 1u, t_far) << 4u);
+    return in_order_of((*slabs).octant, slots);
+}
+
+// The answer for a search that has passed the tree.
+fn answer(search: ptr<function, Search>) -> u32 {
+    let first = min((*search).others, (*search).bound);
+    if (*search).sphere != MISS && (*search).far < first {
+        return (*search).sphere;
+    }
+    let none = (*search).sphere == MISS && (*search).others >= FAR;
+    return select(UNKNOWN, MISS, none);
+}
+
+fn trace(ray: ptr<function, Ray>, search: ptr<function, Search>) -> u32 {
+    var slabs: Slabs;
+    let direction = (*ray).direction;
+    let least = select(vec3<f32>(LEAST), vec3<f32>(-LEAST), direction < vec3<f32>(0.0));
+    let kept = select(direction, least, abs(direction) < vec3<f32>(LEAST));
+    slabs.inverse = keep3(1.0 / kept);
+    let shift = keep3((*ray).origin * slabs.inverse);
+    slabs.near = keep3(-shift - abs(shift) * SLACK);
+    slabs.far = keep3(abs(shift) * SLACK - shift);
+    slabs.negative = kept < vec3<f32>(0.0);
+    slabs.octant = dot(vec3<u32>(slabs.negative), vec3<u32>(1u, 2u, 4u));
+    var stack: array<vec2<u32>, DEPTH>;
+    var depth = 0u;
+    var node = 0u;
+    var open = children_entered(&slabs, node, (*search).t_far);
+    var visits = 1u;
+    loop {
+        if open == 0u {
+            if depth == 0u {
+                break;
+            }
+            depth -= 1u;
+            node = stack[depth].x;
+            open = stack[depth].y;
+        }
+        let slot = firstTrailingBit(open) ^ slabs.octant;
+        open &= open - 1u;
+        let child = nodes[node * NODE_ROWS + CHILD_ROW + (slot >> 2u)][slot & 3u];
+        if (child & LEAF) == 0u {
+            if open != 0u {
+                if depth == DEPTH {
+                    return UNKNOWN;
+                }
+                stack[depth] = vec2<u32>(node, open);
+                depth += 1u;
+            }
+            node = child;
+            open = children_entered(&slabs, node, (*search).t_far);
+            visits += 1u;
+            continue;
+        }
+        visits += 1u << 16u;
+        let first = (child & (LEAF - 1u)) * 8u;
+        for (var lane = 0u; lane < 8u; lane++) {
+            test_sphere(ray, search, first + lane);
+        }
+        if ANY && (*search).sphere != MISS {
+            if (*search).far < (*search).bound {
+                return select((*search).sphere, visits, COUNT);
+            }
+            // Too close to the end of the search.
+            (*search).others = 0.0;
+        }
+    }
+    return select(answer(search), visits, COUNT);
+}
+
+// The largest coordinate without its sign, in bits.
+fn largest(v: vec3<u32>) -> u32 {
+    let magnitude = v & vec3<u32>(0x7fffffffu);
+    return max(max(magnitude.x, magnitude.y), magnitude.z);
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let row = id.x;
+    if row >= params.rays {
+        return;
+    }
+    let first = rays[3u * row];
+    let second = rays[3u * row + 1u];
+    let third = rays[3u * row + 2u];
+    let toward = vec3<u32>(first.w, second.xy);
+    let long = largest(toward);
+    let bounds = bitcast<vec2<f32>>(third.xy);
+    if params.nodes == 0u || bounds.y < 0.0 {
+        found[row] = MISS;
+        return;
+    }
+    if largest(first.xyz) > REACH_BITS || long < SHORT_BITS || long > LONG_BITS {
+        found[row] = UNKNOWN;
+        return;
+    }
+    var ray: Ray;
+    ray.origin = bitcast<vec3<f32>>(first.xyz);
+    ray.direction = bitcast<vec3<f32>>(toward);
+    ray.own = second.z;
+    ray.goal = second.w;
+    ray.length2 = keep(dot(ray.direction, ray.direction));
+    ray.inverse_length2 = keep(1.0 / ray.length2);
+    ray.length = root_above(ray.length2 * (1.0 + 8.0 * E));
+    let span = abs(ray.origin.x) + abs(ray.origin.y) + abs(ray.origin.z);
+    ray.origin_error = select(0.0, keep(span * (E * (1.0 + 8.0 * E))), ray.own != MISS);
+    var search = Search(MISS, FAR, FAR, FAR, bounds.x, bounds.y);
+    found[row] = trace(&ray, &search);
+}

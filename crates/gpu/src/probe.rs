@@ -1,0 +1,213 @@
+//! The arithmetic of a device, found by test.
+
+use crate::device::Device;
+use crate::error::DeviceError;
+use spherule_core::internals::random::Random;
+
+/// Operands that are tried, and operands whose results are near the least number.
+const ORDINARY: usize = 1 << 16;
+const LEAST: usize = 1 << 10;
+
+/// What became of results that are too small to be normal numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Subnormals {
+    /// They are as on the processor.
+    #[default]
+    Kept,
+    /// Some are 0.
+    Flushed,
+}
+
+/// How `fma` rounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fma {
+    /// Once.
+    #[default]
+    Fused,
+    /// The product, and then the sum.
+    Unfused,
+    /// Sometimes so and sometimes otherwise.
+    Mixed,
+}
+
+/// One operation: how many results differ from those of the processor, and how many are farther from the true ones than
+/// WGSL allows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operation {
+    /// The name.
+    pub name: &'static str,
+    /// Results that are not correctly rounded.
+    pub unequal: usize,
+    /// Results that break the promise.
+    pub broken: usize,
+}
+
+/// What the operations of a device give.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Probe {
+    /// Sum, difference, product, quotient and square root.
+    pub operations: [Operation; 5],
+    /// `fma`.
+    pub fma: Fma,
+    /// Results that are too small.
+    pub subnormals: Subnormals,
+    /// Whether `x * y + z` is fused, sometimes or always, where nobody asks for it.
+    pub contracts: bool,
+    /// Operands that were tried.
+    pub tried: usize,
+}
+
+impl Probe {
+    /// Returns whether sums, differences, products, quotients and roots are those of the processor, `fma` is fused and
+    /// small numbers are kept.
+    pub fn is_like_the_processor(&self) -> bool {
+        let equal = self.operations.iter().all(|operation| operation.unequal == 0);
+        equal && self.fma == Fma::Fused && self.subnormals == Subnormals::Kept && !self.contracts
+    }
+
+    /// Returns the operations that break the promises of WGSL on which the kernels rely. They do not rely on roots.
+    pub(crate) fn broken(&self) -> Option<String> {
+        let broken = self.operations[..4].iter().filter(|operation| operation.broken > 0);
+        let names: Vec<_> = broken.map(|operation| operation.name).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    }
+}
+
+/// Tests the arithmetic of a device.
+pub(crate) fn run(device: &Device) -> Result<Probe, DeviceError> {
+    let operands = operands();
+    let results = compute(device, &operands)?;
+    Ok(judge(&operands, &results))
+}
+
+/// Returns triples of numbers.
+fn operands() -> Vec<[f32; 4]> {
+    let mut random = Random::new(11);
+    let number = |random: &mut Random, decades: [f64; 2]| {
+        (random.sign() * random.decades(decades) * random.between([1.0, 2.0])) as f32
+    };
+    let ordinary = |random: &mut Random| {
+        let x = number(random, [-4.0, 4.0]);
+        // Also such as cancel.
+        let y = if random.coin() {
+            number(random, [-4.0, 4.0])
+        } else {
+            -x * (1.0 + 1e-3 * random.unit() as f32)
+        };
+        let z = if random.coin() { number(random, [-4.0, 4.0]) } else { -x * y };
+        [x, y, z, 0.0]
+    };
+    let least = |random: &mut Random| {
+        let x = number(random, [-20.0, -19.0]);
+        [x, number(random, [-20.0, -19.0]), 0.0, 0.0]
+    };
+    let mut operands: Vec<_> = (0..ORDINARY).map(|_| ordinary(&mut random)).collect();
+    operands.extend((0..LEAST).map(|_| least(&mut random)));
+    operands
+}
+
+/// Computes all operations on the device.
+fn compute(device: &Device, operands: &[[f32; 4]]) -> Result<Vec<[f32; 8]>, DeviceError> {
+    let kernel = device.kernel(("probe", include_str!("probe.wgsl")), &[])?;
+    let bytes = (size_of::<[f32; 8]>() * operands.len()) as u64;
+    let input = device.filled("operands", bytemuck::cast_slice(operands))?;
+    let output = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+    let output = device.buffer("results", bytes, output)?;
+    let copy = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+    let copy = device.buffer("results to read", bytes, copy)?;
+    let group = device.bind(&kernel, &[&input, &output]);
+    device.dispatch((&kernel, &group), operands.len(), (&output, &copy, bytes));
+    let mut results = vec![[0.0; 8]; operands.len()];
+    device.read(&copy, bytes, |view| {
+        bytemuck::cast_slice_mut(&mut results).copy_from_slice(view);
+    })?;
+    Ok(results)
+}
+
+/// Compares results with those of the processor.
+fn judge(operands: &[[f32; 4]], results: &[[f32; 8]]) -> Probe {
+    let mut probe = Probe { tried: operands.len(), ..Probe::default() };
+    for (operation, name) in probe.operations.iter_mut().zip(["+", "-", "*", "/", "sqrt"]) {
+        operation.name = name;
+    }
+    let (mut fused, mut unfused) = (true, true);
+    for (&[x, y, z, _], &[sum, difference, product, quotient, fma, plain, root, _]) in
+        operands[..ORDINARY].iter().zip(results)
+    {
+        let [a, b] = [x, y].map(f64::from);
+        // In double precision sums and products of these numbers do not round, and others round too little to matter.
+        let truths = [a + b, a - b, a * b, a / b, a.abs().sqrt()];
+        let found = [sum, difference, product, quotient, root];
+        let allowed = [1.0, 1.0, 1.0, 2.5, 5.0];
+        for (i, operation) in probe.operations.iter_mut().enumerate() {
+            let right = [x + y, x - y, x * y, x / y, x.abs().sqrt()][i];
+            operation.unequal += usize::from(found[i] != right);
+            let unit = f64::from(right.abs().next_up() - right.abs());
+            let close = (f64::from(found[i]) - truths[i]).abs() < allowed[i] * unit * (1.0 + 1e-6);
+            operation.broken += usize::from(!close);
+        }
+        let (once, twice) = (x.mul_add(y, z), x * y + z);
+        fused &= fma == once;
+        unfused &= fma == twice;
+        probe.contracts |= plain != twice;
+    }
+    probe.fma = match (fused, unfused) {
+        (true, _) => Fma::Fused,
+        (false, true) => Fma::Unfused,
+        (false, false) => Fma::Mixed,
+    };
+    let small = operands[ORDINARY..].iter().zip(&results[ORDINARY..]);
+    let kept = small.clone().all(|(operand, result)| result[2] == operand[0] * operand[1]);
+    probe.subnormals = if kept { Subnormals::Kept } else { Subnormals::Flushed };
+    for (&[x, y, ..], result) in small {
+        // Flushed, or off by no more than the least normal number.
+        let error = (f64::from(result[2]) - f64::from(x) * f64::from(y)).abs();
+        probe.operations[2].broken +=
+            usize::from(error.is_nan() || error > f64::from(f32::MIN_POSITIVE));
+    }
+    probe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The processor's own results.
+    fn own(operands: &[[f32; 4]]) -> Vec<[f32; 8]> {
+        let row = |&[x, y, z, _]: &[f32; 4]| {
+            [x + y, x - y, x * y, x / y, x.mul_add(y, z), x * y + z, x.abs().sqrt(), 0.0]
+        };
+        operands.iter().map(row).collect()
+    }
+
+    #[test]
+    fn the_processor_is_like_the_processor() {
+        let operands = operands();
+        let probe = judge(&operands, &own(&operands));
+        assert!(probe.is_like_the_processor(), "{probe:?}");
+        assert_eq!((probe.broken(), probe.tried), (None, ORDINARY + LEAST));
+    }
+
+    #[test]
+    fn what_differs_is_found_and_what_breaks_promises_is_named() {
+        let operands = operands();
+        let changed = |change: &dyn Fn(&[f32; 4], &mut [f32; 8])| {
+            let mut results = own(&operands);
+            results.iter_mut().zip(&operands).for_each(|(row, operand)| change(operand, row));
+            judge(&operands, &results)
+        };
+        let next = changed(&|_, row| row[3] = row[3].next_up().next_up());
+        assert!(next.operations[3].unequal >= ORDINARY && next.broken().is_none());
+        assert!(!next.is_like_the_processor());
+        let far = changed(&|_, row| row[2] = row[2].next_up().next_up());
+        assert_eq!(far.broken().as_deref(), Some("*"));
+        let flushed = changed(&|_, row| row[2] = if row[2].is_normal() { row[2] } else { 0.0 });
+        assert_eq!((flushed.subnormals, flushed.broken()), (Subnormals::Flushed, None));
+        let unfused = changed(&|_, row| row[4] = row[5]);
+        assert_eq!((unfused.fma, unfused.is_like_the_processor()), (Fma::Unfused, false));
+        let fused = changed(&|_, row| row[5] = row[4]);
+        assert!(fused.contracts && fused.fma == Fma::Fused);
+        let wild = changed(&|operand, row| row[4] += operand[2]);
+        assert_eq!(wild.fma, Fma::Mixed);
+    }
+}

@@ -1,0 +1,23 @@
+//! What traces rays, the processor or a GPU (`--device`), and the list of GPUs (`info --devices`).
+
+#[cfg(feature = "gpu")]
+mod gpu;
+#[cfg(not(feature = "gpu"))]
+mod without;
+
+#[cfg(feature = "gpu")]
+pub(super) use self::gpu::{Attached, list};
+#[cfg(not(feature = "gpu"))]
+pub(super) use self::without::{Attached, list};
+
+use serde::Serialize;
+
+/// A device, and what it did.
+#[derive(Debug, Serialize)]
+pub(super) struct DeviceSummary {
+    pub(super) name: String,
+    /// Number of rays.
+    pub(super) rays: u64,
+    /// Number of rays that the processor decided.
+    pub(super) unknown: u64,
+}
