@@ -250,7 +250,9 @@ fn columns_of<'a>(table: ArrayView2<'a, f32>, place: &'a mut [Vec<f32>; 3]) -> [
     if let Some(rows) = table.to_slice() {
         // In one pass over the rows: three take longer than the rest of the work leaves unnoticed.
         let (rows, _) = rows.as_chunks::<3>();
-        place.iter_mut().for_each(|column| column.resize(rows.len(), 0.0));
+        for column in place.iter_mut() {
+            column.resize(rows.len(), 0.0);
+        }
         let [x, y, z] = place.each_mut();
         let columns = x.iter_mut().zip(y.iter_mut()).zip(z.iter_mut());
         for (((x, y), z), row) in columns.zip(rows) {
