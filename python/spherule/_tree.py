@@ -113,7 +113,7 @@ class SphereTree:
     def occluded(
         self, origins: Any, directions: Any, *, t_max: Any = None, threads: int | None = None
     ) -> npt.NDArray[np.bool_]:
-        """Whether each ray hits anything: faster than the first hit.
+        """Find the rays that hit anything: faster than the first hit.
 
         Args:
             origins, directions, t_max, threads: As for :meth:`intersect`.
@@ -131,7 +131,7 @@ class SphereTree:
         return self._tree.occluded(*self._rays(origins, directions, t_max), threads)
 
     def count(self, origins: Any, directions: Any, *, t_max: Any = None, threads: int | None = None) -> int:
-        """How many of the rays hit anything.
+        """Count the rays that hit anything.
 
         Args:
             origins, directions, t_max, threads: As for :meth:`intersect`.

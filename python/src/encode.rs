@@ -11,7 +11,7 @@ use spherule::overlay;
 use spherule::scene::Tone;
 use std::path::PathBuf;
 
-/// What of a picture is not background, for its alpha.
+/// The part of each pixel that is not background, for the alpha of a picture.
 #[pyclass(frozen, module = "spherule._spherule")]
 pub(crate) struct Matte(overlay::Matte);
 
@@ -27,7 +27,7 @@ impl Matte {
     }
 }
 
-/// How a picture is encoded.
+/// Format and options of an encoded picture.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct EncodeTable {

@@ -13,7 +13,7 @@ use std::fs;
 use std::io;
 use std::sync::Arc;
 
-/// What a file of a part is called in a folder of its own.
+/// Name of the file of a part, in a folder of its own.
 const FILE: &str = "part";
 
 impl From<io::Error> for Fault {

@@ -12,7 +12,7 @@ use spherule::particles::{
 };
 use std::path::{Path, PathBuf};
 
-/// How a particle file is read, by the names of the program's options.
+/// Options for reading a particle file, by the names that the program has for them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct ReadTable {

@@ -49,7 +49,7 @@ struct Sections {
     keys: HashMap<String, Vec<String>>,
 }
 
-/// How particles are seen, by the names of the program's options.
+/// Options for the looks of particles, by the names that the program has for them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct ViewTable {
@@ -295,7 +295,7 @@ impl Staging {
     }
 }
 
-/// What a scene of particles is made of.
+/// Particles, style and sections of a scene of particles.
 struct Work {
     frame: ParticleFrame,
     options: ReadOptions,

@@ -36,7 +36,7 @@ pub(crate) struct RenderTable {
     threads: Option<usize>,
 }
 
-/// What a render is asked for.
+/// Settings and layers of a requested render.
 #[derive(Clone)]
 pub(crate) struct Request {
     settings: Settings,

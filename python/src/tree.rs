@@ -8,7 +8,6 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use spherule::query::{Hits, NOTHING, QueryError, RayColumns, Surface};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The most rays of a task: as many as are put in order together.
 const BATCH: usize = 1 << 16;
@@ -124,19 +123,7 @@ impl SphereTree {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let rays = RowsOfRays { origins: origins.as_array(), directions: directions.as_array() };
-        let t = bounds(bound, rays.len());
-        let mut occluded = vec![false; rays.len()];
-        let pool = pool(py, threads)?;
-        let size = task(rays.len(), pool.current_num_threads());
-        let traced = py.detach(|| {
-            pool.install(|| {
-                let tasks = t.par_chunks(size).zip(occluded.par_chunks_mut(size)).enumerate();
-                tasks.try_for_each(|(chunk, (t, occluded))| {
-                    self.shade(rays.part(chunk * size, t.len()), t, occluded)
-                })
-            })
-        });
-        traced.map_err(|why| error(py, &why))?;
+        let occluded = self.shade_all(py, rays, bound, threads)?;
         Ok(PyArray1::from_vec(py, occluded))
     }
 
@@ -149,27 +136,36 @@ impl SphereTree {
         threads: Option<usize>,
     ) -> PyResult<u64> {
         let rays = RowsOfRays { origins: origins.as_array(), directions: directions.as_array() };
-        let t = bounds(bound, rays.len());
-        let total = AtomicU64::new(0);
-        let pool = pool(py, threads)?;
-        let size = task(rays.len(), pool.current_num_threads());
-        let traced = py.detach(|| {
-            pool.install(|| {
-                t.par_chunks(size).enumerate().try_for_each(|(chunk, t)| {
-                    let mut occluded = vec![false; t.len()];
-                    self.shade(rays.part(chunk * size, t.len()), t, &mut occluded)?;
-                    let hits = occluded.iter().filter(|&&hit| hit).count() as u64;
-                    total.fetch_add(hits, Ordering::Relaxed);
-                    Ok(())
-                })
-            })
-        });
-        traced.map_err(|why: QueryError| error(py, &why))?;
-        Ok(total.into_inner())
+        let occluded = self.shade_all(py, rays, bound, threads)?;
+        Ok(py.detach(|| occluded.iter().filter(|&&hit| hit).count() as u64))
     }
 }
 
 impl SphereTree {
+    /// Finds whether each ray hits anything, on the threads of a pool.
+    fn shade_all(
+        &self,
+        py: Python<'_>,
+        rays: RowsOfRays,
+        bound: Option<PyReadonlyArray1<'_, f64>>,
+        threads: Option<usize>,
+    ) -> PyResult<Vec<bool>> {
+        let t = bounds(bound, rays.len());
+        let mut occluded = vec![false; rays.len()];
+        let pool = pool(py, threads)?;
+        let size = task(rays.len(), pool.current_num_threads());
+        let traced = py.detach(|| {
+            pool.install(|| {
+                let tasks = t.par_chunks(size).zip(occluded.par_chunks_mut(size)).enumerate();
+                tasks.try_for_each(|(chunk, (t, occluded))| {
+                    self.shade(rays.part(chunk * size, t.len()), t, occluded)
+                })
+            })
+        });
+        traced.map_err(|why: QueryError| error(py, &why))?;
+        Ok(occluded)
+    }
+
     fn trace(
         &self,
         rays: RowsOfRays,

@@ -38,7 +38,7 @@ impl Stop {
     }
 }
 
-/// What work and watcher tell each other.
+/// State that work and watcher share.
 #[derive(Default)]
 pub(crate) struct Shared {
     /// Set to end the work early, with what there is.

@@ -1,4 +1,4 @@
-//! What traces rays, the processor or a GPU (`--device`), and the list of GPUs (`info --devices`).
+//! Devices that trace rays, the processor or a GPU (`--device`), and the list of GPUs (`info --devices`).
 
 #[cfg(feature = "gpu")]
 mod gpu;

@@ -179,7 +179,7 @@ impl Ray {
     }
 }
 
-/// What the test of a sphere says.
+/// Result of the test of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
     /// It is not hit.

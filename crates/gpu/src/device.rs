@@ -18,7 +18,7 @@ pub struct AdapterSummary {
     pub name: String,
     /// The interface by which it is reached.
     pub backend: String,
-    /// What it is: discrete, integrated, virtual, or software.
+    /// Kind of device: discrete, integrated, virtual, or software.
     pub kind: &'static str,
     /// The driver and its version.
     pub driver: String,
@@ -55,7 +55,7 @@ impl AdapterSummary {
         }
     }
 
-    /// Whether it is a processor that a driver makes a GPU of.
+    /// Returns true for a processor that a driver makes a GPU of.
     pub fn is_software(&self) -> bool {
         self.kind == "software"
     }
@@ -161,7 +161,7 @@ impl Device {
         let faults = Faults::default();
         let lost = faults.clone();
         device.set_device_lost_callback(move |reason, message| {
-            lost.add(DeviceError::Lost(told(&message, &format!("{reason:?}"))));
+            lost.add(DeviceError::Lost(first_line(&message, &format!("{reason:?}"))));
         });
         let failed = faults.clone();
         device.on_uncaptured_error(Arc::new(move |error| failed.add(of_driver(&error))));
@@ -174,12 +174,12 @@ impl Device {
         }
     }
 
-    /// What is known of the adapter.
+    /// Name, kind and limits of the adapter.
     pub fn summary(&self) -> &AdapterSummary {
         &self.summary
     }
 
-    /// What the test of its arithmetic has found.
+    /// Results of the test of its arithmetic.
     pub fn probe(&self) -> &Probe {
         &self.probe
     }
@@ -372,7 +372,7 @@ impl std::fmt::Debug for Device {
 }
 
 /// The first line of a message, or something in its place.
-fn told(message: &str, otherwise: &str) -> String {
+fn first_line(message: &str, otherwise: &str) -> String {
     let line = message.lines().map(str::trim).find(|line| !line.is_empty());
     line.unwrap_or(otherwise).trim_end_matches('.').to_owned()
 }
@@ -383,7 +383,7 @@ fn of_driver(error: &wgpu::Error) -> DeviceError {
             DeviceError::Memory { what: "what it was asked to do".to_owned() }
         }
         wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
-            DeviceError::Failed(told(description, "for no reason that it tells"))
+            DeviceError::Failed(first_line(description, "for no reason that it tells"))
         }
     }
 }

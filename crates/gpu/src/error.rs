@@ -12,7 +12,7 @@ pub enum DeviceError {
     Refused {
         /// The adapter's name.
         adapter: String,
-        /// What the driver says.
+        /// Message of the driver.
         reason: String,
     },
     /// The device's arithmetic is less exact than the bounds of the kernels allow.
@@ -28,7 +28,7 @@ pub enum DeviceError {
     /// Spheres or rays do not fit.
     #[error("the GPU has too little memory for {what}")]
     Memory {
-        /// What does not fit, and how large it is.
+        /// Data that do not fit, and their size.
         what: String,
     },
     /// The device is gone.

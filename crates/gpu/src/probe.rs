@@ -8,7 +8,7 @@ use spherule_core::internals::random::Random;
 const ORDINARY: usize = 1 << 16;
 const LEAST: usize = 1 << 10;
 
-/// What became of results that are too small to be normal numbers.
+/// Treatment of results that are too small to be normal numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Subnormals {
     /// They are as on the processor.
@@ -18,7 +18,7 @@ pub enum Subnormals {
     Flushed,
 }
 
-/// How `fma` rounds.
+/// Rounding of `fma`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fma {
     /// Once.
@@ -42,7 +42,7 @@ pub struct Operation {
     pub broken: usize,
 }
 
-/// What the operations of a device give.
+/// Results of the operations of a device.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Probe {
     /// Sum, difference, product, quotient and square root.
@@ -51,7 +51,7 @@ pub struct Probe {
     pub fma: Fma,
     /// Results that are too small.
     pub subnormals: Subnormals,
-    /// Whether `x * y + z` is fused, sometimes or always, where nobody asks for it.
+    /// True if `x * y + z` is fused, sometimes or always, where nobody asks for it.
     pub contracts: bool,
     /// Operands that were tried.
     pub tried: usize,

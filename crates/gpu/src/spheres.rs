@@ -34,9 +34,9 @@ impl<'a> DeviceSpheres<'a> {
             let exact = self.spheres.intersect_columns(rays, hits)?.exact;
             return Ok(Answered { rays: count, unknown: count, exact });
         };
-        let alone = alone(&bounds, hits.t);
+        let unheld = count_unheld(&bounds, hits.t);
         let exact = self.spheres.intersect_found(rays, hits, &found)?.exact;
-        Ok(Answered { rays: count, unknown: unknown(&found) + alone, exact })
+        Ok(Answered { rays: count, unknown: unknown(&found) + unheld, exact })
     }
 
     /// Finds whether each ray hits anything nearer than its bound in `t`, as [`SphereTree::occluded_columns`];
@@ -57,12 +57,12 @@ impl<'a> DeviceSpheres<'a> {
             return Ok(Answered { rays: count, unknown: count, exact });
         };
         let exact = self.spheres.occluded_found(rays, t, occluded, &found)?.exact;
-        Ok(Answered { rays: count, unknown: unknown(&found) + alone(&bounds, t), exact })
+        Ok(Answered { rays: count, unknown: unknown(&found) + count_unheld(&bounds, t), exact })
     }
 }
 
-/// Returns how many rays only the processor can trace, for single precision does not hold them.
-fn alone(scaled: &Scaled, bounds: &[f64]) -> u64 {
+/// Returns the number of rays that single precision does not hold, so that only the processor can trace them.
+fn count_unheld(scaled: &Scaled, bounds: &[f64]) -> u64 {
     scaled.t.iter().zip(bounds).filter(|(scaled, bound)| **scaled < 0.0 && **bound >= 0.0).count()
         as u64
 }

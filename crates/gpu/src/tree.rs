@@ -26,7 +26,7 @@ const NONE: u32 = 1 << 31;
 /// A distance that counts as infinite.
 const FAR: f32 = (1_u128 << 100) as f32;
 
-/// How many rays were asked about, and how many of them the processor decided.
+/// Numbers of rays that were asked about, and of those that the processor decided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Answered {
     /// Rays.

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 #![allow(clippy::print_stdout, reason = "the table of docs/gpu.md, with --nocapture")]
 
+mod common;
+
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::bvh::{Bvh, Tracer, Tree, UNKNOWN};
 use spherule_core::internals::random::Random;
@@ -17,14 +19,8 @@ use std::sync::{Arc, OnceLock};
 
 /// The device of all tests; `None`, which the environment may forbid, if there is none.
 fn device() -> Option<&'static Arc<Device>> {
-    static DEVICE: OnceLock<Result<Arc<Device>, DeviceError>> = OnceLock::new();
-    match DEVICE.get_or_init(|| Device::best(true).map(Arc::new)) {
-        Ok(device) => Some(device),
-        Err(error) => {
-            assert!(std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{error}");
-            None
-        }
-    }
+    static DEVICE: OnceLock<Option<Arc<Device>>> = OnceLock::new();
+    DEVICE.get_or_init(common::device).as_ref()
 }
 
 /// Rays in columns.

@@ -2,25 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 
+mod common;
+
+use common::device;
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::bvh::{Tracer, Tree};
 use spherule_core::internals::ray::{Hits, MISS, Rays};
 use spherule_core::{Hits as Columns, NOTHING, RayColumns, SphereTree};
-use spherule_gpu::{Device, DeviceError, DeviceSpheres, DeviceTree};
+use spherule_gpu::{DeviceError, DeviceSpheres, DeviceTree};
 use spherule_measure::workload::{Class, SphereScene, Views};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// A device of its own.
-fn device() -> Option<Arc<Device>> {
-    match Device::best(true).map(Arc::new) {
-        Ok(device) => Some(device),
-        Err(error) => {
-            assert!(std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{error}");
-            None
-        }
-    }
-}
 
 #[test]
 fn a_device_that_is_taken_away_in_the_middle_loses_no_hit() {

@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "tests fail so")]
 
+mod common;
+
+use common::device;
 use spherule_gpu::{Device, DeviceError, DeviceTree};
 use spherule_render::World;
 use spherule_render::bvh::Tree;
@@ -9,17 +12,6 @@ use spherule_render::render::{Options, Progress, render};
 use spherule_render::scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
-
-/// A device of its own.
-fn device() -> Option<Arc<Device>> {
-    match Device::best(true).map(Arc::new) {
-        Ok(device) => Some(device),
-        Err(error) => {
-            assert!(std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{error}");
-            None
-        }
-    }
-}
 
 /// Reads a scene, for a small picture of few samples.
 fn load(name: &str) -> Scene {

@@ -15,7 +15,7 @@ use std::sync::{Arc, OnceLock};
 /// The device of this process. Once it is lost, the processor does all that follows.
 static DEVICE: OnceLock<Result<Arc<Device>, DeviceError>> = OnceLock::new();
 
-/// What traces the rays of a world.
+/// The device that traces the rays of a world.
 #[derive(Debug)]
 pub(in crate::cli) struct Attached {
     choice: Choice,
@@ -52,7 +52,7 @@ impl Attached {
         self.refusal.clone()
     }
 
-    /// What is known of the device.
+    /// Returns lines about the device.
     pub(in crate::cli) fn facts(&self) -> Vec<String> {
         let Some(tree) = &self.tree else { return Vec::new() };
         let device = tree.device();
@@ -68,7 +68,7 @@ impl Attached {
         ]
     }
 
-    /// What went wrong with the device, if anything did.
+    /// Returns the fault of the device, if it has one.
     pub(in crate::cli) fn fault(&self) -> Option<String> {
         let error = self.tree.as_ref()?.device().fault()?;
         Some(format!("{error}; the processor traced what was left"))
@@ -81,7 +81,7 @@ impl Attached {
         Some(fault)
     }
 
-    /// What the device did.
+    /// Returns the counts of the device's rays.
     pub(in crate::cli) fn summary(&self) -> Option<DeviceSummary> {
         let tree = self.tree.as_ref()?;
         let tally = tree.tally();
@@ -112,9 +112,9 @@ struct Listed {
     max_binding_bytes: u64,
     storage_buffers: u32,
     subgroup_sizes: [u32; 2],
-    /// What the probe found; null if the device cannot be used.
+    /// Results of the probe; null if the device cannot be used.
     arithmetic: Option<String>,
-    /// Whether its operations are the processor's.
+    /// True if its operations give the processor's results.
     like_the_processor: bool,
     /// Why it cannot be used.
     error: Option<String>,

@@ -58,7 +58,7 @@ pub(super) struct Prepared {
     pub(super) warnings: Vec<String>,
     /// Reason why the image shows no sphere, if it shows none.
     pub(super) empty: Option<String>,
-    /// What traces rays.
+    /// The device that traces rays.
     pub(super) device: Attached,
 }
 

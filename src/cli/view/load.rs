@@ -67,7 +67,7 @@ pub(super) struct LoadedScene {
     pub(super) labels: Labels,
     pub(super) facts: Facts,
     pub(super) warnings: Vec<String>,
-    /// What traces rays.
+    /// The device that traces rays.
     pub(super) device: Attached,
 }
 

@@ -5,7 +5,7 @@ use crate::film::Region;
 use crate::scene::Scene;
 use crate::settings::Denoise;
 
-/// What a render is asked for, beside what its scene states.
+/// Requests of a caller that its scene does not state.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked {
     /// True for a part of an image.
