@@ -218,6 +218,7 @@ macro_rules! impl_lanes {
                 row[..$width].copy_from_slice(&self.to_array());
             }
             #[inline(always)]
+            #[expect(clippy::disallowed_methods, reason = "where there is an instruction, it is rounded once")]
             fn mul_add(self, factor: Self, term: Self) -> Self {
                 if fused::IN_HARDWARE {
                     self.mul_add(factor, term)

@@ -21,8 +21,8 @@
 //! ```
 //!
 //! where the leverage is the derivative of the prediction by the pixel's own mean. The window with the least error,
-//! averaged over neighbors, is taken; wider ones are preferred where errors are nearly equal. As samples increase, the variance vanishes, and with it the denoising. Pixels
-//! without noise stay as they are.
+//! averaged over neighbors, is taken; wider ones are preferred where errors are nearly equal. As samples increase, the
+//! variance vanishes, and with it the denoising. Pixels without noise stay as they are.
 //!
 //! A rare path of much light makes a pixel and its variance much larger than its neighbors. Such a pixel counts little
 //! in their regressions, and where pixels keep their value, it gets theirs as far as its own noise explains the

@@ -96,15 +96,14 @@ impl Workspace {
         let first = self.columns.origin() - BORDER * self.columns.stride - BORDER;
         for row in 0..tile.height as usize + 2 * BORDER {
             for column in (0..TILE[0] as usize + 2 * BORDER).step_by(MAX_LANES) {
-                self.predict_row(floor, first + row * self.columns.stride + column);
+                self.predict_row::<F32x16>(floor, first + row * self.columns.stride + column);
             }
         }
     }
 
     /// Does the same for a row of lanes.
     #[inline(always)]
-    fn predict_row(&mut self, floor: f32, at: usize) {
-        type L = F32x16;
+    fn predict_row<L: Lanes>(&mut self, floor: f32, at: usize) {
         let columns = &self.columns;
         let [albedo, irradiance]: [[L; 3]; 2] =
             [load(&columns.albedo, at), load(&columns.irradiance, at)];
@@ -121,7 +120,7 @@ impl Workspace {
             let radiance = widest.irradiance[channel] * albedo[channel];
             let noise = variance[channel] * albedo[channel] * albedo[channel];
             scale = radiance.mul_add(radiance, scale + noise);
-            own += noise;
+            own = own + noise;
         }
         // Black pictures have no error.
         scale = Lanes::max(scale, L::splat(f32::MIN_POSITIVE));
