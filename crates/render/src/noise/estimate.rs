@@ -191,21 +191,6 @@ fn probes(tile: &Tile) -> Estimate {
     sums.fold(Estimate::default(), Add::add)
 }
 
-/// Returns the ratio of the variance of pixels' means in a tile to that of as many independent samples,
-/// from the probes of the tile and its neighbors: less than 1 for well-distributed samples, 1 if
-/// nothing is known.
-pub fn gain(film: &Film, tile: usize) -> f64 {
-    let (mut squared, mut independent) = (0.0, 0.0);
-    for (neighbor, _) in neighbors(tile, film.columns(), film.tiles.len()) {
-        let probes = &film.tiles[neighbor].probes;
-        for reading in [Role::Steer, Role::Judge].iter().flat_map(|role| probes.readings(*role)) {
-            squared += reading.weight * reading.squared;
-            independent += reading.weight * reading.independent;
-        }
-    }
-    if independent > 0.0 { squared / independent } else { 1.0 }
-}
-
 /// Returns a tile and its neighbors, row by row, with their weights in pooled estimates.
 pub(super) fn neighbors(
     tile: usize,
@@ -223,9 +208,7 @@ pub(super) fn neighbors(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{Density, Region};
     use crate::sampling::{mix, stream, unit};
-    use crate::scene::Rgb;
 
     /// Returns a number in (0, 1) of a stream.
     fn uniform(key: u64, index: u64) -> f64 {
@@ -332,19 +315,5 @@ mod tests {
         let estimate = |value, variance| Estimate { value, variance, third: 0.0 };
         assert_eq!(estimate(1.0, 1.0).combined_with(estimate(5.0, 3.0)), estimate(2.0, 0.75));
         assert_eq!(estimate(1.0, 0.0).combined_with(estimate(5.0, 3.0)), estimate(1.0, 0.0));
-    }
-
-    #[test]
-    fn the_gain_is_the_variance_over_that_of_independent_samples() {
-        let mut film = Film::new(Region { x: 0, y: 0, width: 16, height: 16 }, false).unwrap();
-        assert_eq!(gain(&film, 0), 1.0);
-        film.place_probes(Density { block: 64, replicas: 1 }, 1, |_| true);
-        let probes = &mut film.tiles[0].probes;
-        // Two samples of each stream, whose mean is 1 or 2: half the squared difference is 1/2, and
-        // half of each stream's variance of 2 is 1.
-        let samples = |stream: usize| [stream % 2, stream % 2 + 2].map(|x| Rgb::splat(x as f32));
-        let samples: Vec<Rgb> = (0..probes.streams()).flat_map(samples).collect();
-        probes.add(&samples, 2);
-        assert_eq!(gain(&film, 0), 0.5);
     }
 }

@@ -45,13 +45,15 @@
 //! [`Probes`]: crate::film::Probes
 
 mod estimate;
+mod gain;
 mod plan;
 mod stop_condition;
 
 pub use estimate::{
-    CONFIDENCE, Estimate, Noise, SquaredError, gain, mean_radiance, missing, squared_error,
+    CONFIDENCE, Estimate, Noise, SquaredError, mean_radiance, missing, squared_error,
     squared_error_of,
 };
+pub use gain::Gain;
 pub use plan::{Slope, next_round, steering_variance, work};
 pub(crate) use stop_condition::FIRST_SAMPLES;
 pub use stop_condition::StopCondition;

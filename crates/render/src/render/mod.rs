@@ -145,7 +145,10 @@ pub struct Statistics {
 impl Statistics {
     /// Returns the statistics of a film with sums of squares.
     pub fn of(film: &Film) -> Self {
-        let variance = film.variance(|tile| noise::gain(film, tile));
+        let variance = film.variance(|tile| {
+            let gain = noise::Gain::of(film, tile);
+            move |variance| gain.at(variance)
+        });
         Self { variance, samples: film.samples() }
     }
 }
