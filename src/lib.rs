@@ -206,7 +206,9 @@ pub mod split {
 /// Auxiliary channels for denoisers and compositing.
 pub mod layers {
     #[doc(inline)]
-    pub use spherule_render::layers::{GROUND_PLANE, Layer, Layers, NOTHING, layers};
+    pub use spherule_render::layers::{
+        GROUND_PLANE, Layer, Layers, NOTHING, ProgressiveLayers, layers,
+    };
 }
 
 /// Images: linear RGB in memory, their files, and their comparison.

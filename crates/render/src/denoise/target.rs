@@ -1,6 +1,6 @@
 //! Renders whose denoised picture has an error target.
 
-use super::{Denoised, denoise, error_of, is_worse};
+use super::{Denoised, denoise_until, error_of, is_worse};
 use crate::film::{Film, Region};
 use crate::layers::{Layers, ProgressiveLayers, SAMPLES};
 use crate::noise::{self, Estimate, Noise};
@@ -9,6 +9,7 @@ use crate::scene::{Material, NamedMaterial};
 use crate::settings::Settings;
 use crate::world::World;
 use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Error of the denoised picture at which a render stops if nothing else is said: 1 %.
@@ -114,18 +115,29 @@ impl Denoiser {
         if !progress.layers.refine(world, &settings, options) {
             return None;
         }
-        let judged = self.judge_picture(film, &progress.layers.layers(), before);
+        let never = AtomicBool::new(false);
+        let cancel = options.cancel.unwrap_or(&never);
+        let judged = self.judge_picture(film, &progress.layers.layers(), before, cancel)?;
         progress.last = Some((total, judged.clone()));
         Some(judged)
     }
 
-    fn judge_picture(&self, film: &Film, layers: &Layers, before: Noise) -> Judged {
+    fn judge_picture(
+        &self,
+        film: &Film,
+        layers: &Layers,
+        before: Noise,
+        cancel: &AtomicBool,
+    ) -> Option<Judged> {
         let image = film.resolve();
-        let denoised = denoise(&image, &Statistics::of(film), layers);
+        let denoised = denoise_until(&image, &Statistics::of(film), layers, cancel);
+        if cancel.load(Ordering::Relaxed) {
+            return None;
+        }
         if self.choice == Choice::UnlessWorse && is_worse(film, &image, &denoised.image) {
-            return Judged { denoised: None, before, noise: before };
+            return Some(Judged { denoised: None, before, noise: before });
         }
         let noise = error_of(film, &denoised);
-        Judged { denoised: Some(denoised), before, noise }
+        Some(Judged { denoised: Some(denoised), before, noise })
     }
 }

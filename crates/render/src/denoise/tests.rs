@@ -55,6 +55,14 @@ fn pictures_without_noise_stay_as_they_are() {
 }
 
 #[test]
+fn cancelled_denoising_leaves_the_tiles_that_remain() {
+    let (image, statistics, layers) = picture(0.4);
+    let until = |flag| denoise_until(&image, &statistics, &layers, &AtomicBool::new(flag)).image;
+    assert_eq!(until(true), image);
+    assert_ne!(until(false), image);
+}
+
+#[test]
 fn noise_falls_and_edges_stay() {
     let (truth, ..) = picture(0.0);
     let (image, statistics, layers) = picture(0.4);
