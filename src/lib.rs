@@ -206,9 +206,7 @@ pub mod split {
 /// Auxiliary channels for denoisers and compositing.
 pub mod layers {
     #[doc(inline)]
-    pub use spherule_render::layers::{
-        GROUND_PLANE, Layer, Layers, NOTHING, ProgressiveLayers, layers,
-    };
+    pub use spherule_render::layers::{GROUND_PLANE, Layer, Layers, NOTHING, layers};
 }
 
 /// Images: linear RGB in memory, their files, and their comparison.

@@ -166,8 +166,9 @@ def from_ovito(data: Any) -> Particles:
         kinds = np.array(names, np.str_)[rows]
         elements = [_native.element_of(name) for name in dict.fromkeys(kinds.tolist())]
         radius = np.array([float(_optional(style, "radius") or 0.0) for style in styles])[rows]
-        if count and all(style is not None for style in styles):
-            color = np.array([style.color for style in styles])[rows]
+        known = [style for style in styles if style is not None]
+        if count and len(known) == len(styles):
+            color = np.array([style.color for style in known])[rows]
     if "Color" in properties:
         color = np.asarray(properties["Color"])
     if "Radius" in properties:

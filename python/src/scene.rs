@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use spherule::color::{self, Rgb};
 use spherule::overlay::annotations;
-use spherule::particles::{FileError, NumberColumn, ParticleFrame, Radii, ReadOptions};
+use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
 use spherule::scene::particles::{
     Legend, Orientation, ParticleStyle, Particles, UpReason, of_frame,
 };
@@ -430,10 +430,9 @@ impl Work {
 
     /// Returns whether spheres may get other rows than their particles.
     fn renumbers(&self) -> bool {
-        // Radii from a column, or after a factor, may be 0: their rows are dropped.
-        let dropped =
-            matches!(self.options.radii, Radii::Column(_)) || self.options.radius_scale != 1.0;
-        self.style.select.is_some() || self.staging.replicate.is_some() || dropped
+        // Radii may be 0 after a factor: their rows are dropped.
+        let scaled = self.options.radius_scale != 1.0;
+        self.style.select.is_some() || self.staging.replicate.is_some() || scaled
     }
 
     /// Adds the spheres of the sections, and their materials.

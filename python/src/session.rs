@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 use rayon::ThreadPool;
 use spherule::World;
 use spherule::denoise::{Asked, Choice, Denoiser, Judged, choose};
-use spherule::layers::{Layer, Layers, ProgressiveLayers};
+use spherule::layers::{Layer, Layers, layers};
 use spherule::overlay::{Canvas, annotations};
 use spherule::render::{
     End, Film, Judge, Noise, Options, Region, Render, RenderError, ResumableRender,
@@ -212,6 +212,7 @@ impl Session {
             &self.settings,
             self.region,
             &mut render,
+            cancel,
         )?;
         if !self.annotations.is_empty() {
             let drawn = annotations::draw(&self.annotations, &self.world, &self.look, false);
@@ -247,29 +248,24 @@ impl Session {
     /// Traces the layers that were asked for; returns those that there are.
     fn layers(&self, render: &Render, cancel: &AtomicBool) -> Result<(Vec<Layer>, Layers), Fault> {
         let Region { width, height, .. } = self.region;
-        let statistics = render.statistics.clone();
-        let mut layers = Layers { width, height, pixels: Vec::new(), statistics };
-        let traced = |layer: &&Layer| !layer.is_statistic();
-        if !self.layers.iter().any(|layer| traced(&layer)) {
-            return Ok((self.layers.clone(), layers));
+        let mut made = Layers { width, height, pixels: Vec::new(), statistics: None };
+        let mut named = self.layers.clone();
+        if self.layers.iter().any(|layer| !layer.is_statistic()) {
+            // No more samples than the image has, so that an interrupted render ends soon.
+            let spp = render.samples.most.max(1);
+            let settings = Settings { spp, ..self.settings.clone() };
+            made = layers(&self.world, &settings, &self.finishing(cancel), &self.layers)?;
+            if cancel.load(Ordering::SeqCst) {
+                named.retain(|layer| layer.is_statistic());
+            }
         }
-        // No more samples than the image has; ids are of pixels' centers, and need none.
-        let ids = self.layers.iter().filter(traced).all(|layer| *layer == Layer::Id);
-        let spp = if ids { 1 } else { render.samples.most.max(1) };
-        let settings = Settings { spp, ..self.settings.clone() };
-        let options = self.finishing(cancel);
-        let mut features = ProgressiveLayers::begin(&self.world, &settings, &options)?;
-        if !features.refine(&self.world, &settings, &options) {
-            let statistics = self.layers.iter().filter(|layer| layer.is_statistic());
-            return Ok((statistics.copied().collect(), layers));
-        }
-        layers.pixels = features.layers().pixels;
         if let Some(rows) = &self.rows {
-            for pixel in &mut layers.pixels {
+            for pixel in &mut made.pixels {
                 pixel.id = rows.get(pixel.id as usize).copied().unwrap_or(pixel.id);
             }
         }
-        Ok((self.layers.clone(), layers))
+        made.statistics.clone_from(&render.statistics);
+        Ok((named, made))
     }
 }
 
@@ -387,7 +383,12 @@ pub(crate) fn render<'py>(
         if session.render.samples().total == 0 {
             return Ok(None);
         }
-        session.show(&shared.cancel).map(Some)
+        let shown = session.show(&shared.cancel);
+        if shared.cancel.load(Ordering::SeqCst) {
+            // Large pictures take a while to give their memory back; who interrupts does not wait for that.
+            rayon::spawn(move || drop(session));
+        }
+        shown.map(Some)
     };
     let (shown, interrupt) = Watcher::new(stop, report).run(py, pool, work)?;
     show(py, shown, interrupt)

@@ -21,6 +21,7 @@ use crate::world::World;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 
 /// Maximum number of samples of a pixel for layers: an edge then has 256 levels.
 pub const SAMPLES: u32 = 256;
@@ -203,7 +204,8 @@ impl Layers {
 
 /// Computes the layers of a picture, with as many samples as the picture but at most [`SAMPLES`].
 ///
-/// Only the region and the tracer of `options` are used. Like the picture's, pixels have the same bytes
+/// Only the region, the tracer and the flag of `options` are used: tiles that are not begun when it is set have no
+/// features. Like the picture's, pixels have the same bytes
 /// for any number of threads and any tracer, in a region and in the whole. If `wanted` has only
 /// [`Layer::Id`] and statistics, one ray per pixel is traced, and only the ids are valid.
 ///
@@ -248,6 +250,9 @@ pub fn features(
         .map_init(
             || Workspace::new(world, elisions),
             |work, region| {
+                if options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                    return vec![Features::NONE; region.area() as usize];
+                }
                 let mut layers = TileLayers::new(region);
                 layers.refine(&job, samples, work);
                 layers.features().collect()
