@@ -43,7 +43,8 @@ def main() -> None:
     files: dict[str, tuple[bytes, bool]] = {}
     with zipfile.ZipFile(first) as wheel:
         for info in wheel.infolist():
-            if not info.filename.endswith("/RECORD"):
+            # maturin's list of crates has a time and paths of this machine; THIRD-PARTY-LICENSES.txt lists them, too.
+            if not info.filename.endswith("/RECORD") and ".dist-info/sboms/" not in info.filename:
                 files[info.filename] = (wheel.read(info), info.filename.endswith(".so"))
     folder = next(name.split("/")[0] for name in files if ".dist-info/" in name)
     data = folder.replace(".dist-info", ".data")

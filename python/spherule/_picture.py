@@ -26,7 +26,8 @@ class Picture:
             of sections follow. Or it is :data:`spherule.NOTHING` or :data:`spherule.GROUND`.
         error: The measured relative error of the picture, or None; ``error_bound`` holds with 95 % confidence.
         denoised: Whether it is denoised.
-        complete: False if the render was interrupted: then it is not denoised, and has no layers of camera rays.
+        complete: False if the render was interrupted: then it is not denoised, and has no outlines, depth cue or layers of
+            camera rays.
         spp: The least and the greatest number of samples of a pixel.
         samples, rays, seconds: Samples and rays of all pixels, and the time of the render.
         exposure, tone: How it is displayed and saved: stops, and ``"linear"`` or ``"filmic"``.

@@ -9,7 +9,6 @@ use crate::scene::{Material, NamedMaterial};
 use crate::settings::Settings;
 use crate::world::World;
 use std::ops::RangeInclusive;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Error of the denoised picture at which a render stops if nothing else is said: 1 %.
@@ -115,9 +114,7 @@ impl Denoiser {
         if !progress.layers.refine(world, &settings, options) {
             return None;
         }
-        let never = AtomicBool::new(false);
-        let cancel = options.cancel.unwrap_or(&never);
-        let judged = self.judge_picture(film, &progress.layers.layers(), before, cancel)?;
+        let judged = self.judge_picture(film, &progress.layers.layers(), before, options)?;
         progress.last = Some((total, judged.clone()));
         Some(judged)
     }
@@ -127,11 +124,14 @@ impl Denoiser {
         film: &Film,
         layers: &Layers,
         before: Noise,
-        cancel: &AtomicBool,
+        options: &Options,
     ) -> Option<Judged> {
+        if options.is_cancelled() {
+            return None;
+        }
         let image = film.resolve();
-        let denoised = denoise_until(&image, &Statistics::of(film), layers, cancel);
-        if cancel.load(Ordering::Relaxed) {
+        let denoised = denoise_until(&image, &Statistics::of(film), layers, options);
+        if options.is_cancelled() {
             return None;
         }
         if self.choice == Choice::UnlessWorse && is_worse(film, &image, &denoised.image) {

@@ -10,6 +10,7 @@ use crate::scene::generate::default_scene;
 use crate::scene::{Material, NamedMaterial, Rgb, Scene, Settings};
 use crate::trace::{Tracer, Traversal};
 use crate::world::World;
+use std::sync::atomic::AtomicBool;
 
 const WIDTH: u32 = 150;
 const HEIGHT: u32 = 70;
@@ -57,7 +58,11 @@ fn pictures_without_noise_stay_as_they_are() {
 #[test]
 fn cancelled_denoising_leaves_the_tiles_that_remain() {
     let (image, statistics, layers) = picture(0.4);
-    let until = |flag| denoise_until(&image, &statistics, &layers, &AtomicBool::new(flag)).image;
+    let until = |flag| {
+        let flag = AtomicBool::new(flag);
+        let options = Options { cancel: Some(&flag), ..Options::default() };
+        denoise_until(&image, &statistics, &layers, &options).image
+    };
     assert_eq!(until(true), image);
     assert_ne!(until(false), image);
 }

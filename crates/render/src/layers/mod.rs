@@ -21,7 +21,6 @@ use crate::world::World;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
-use std::sync::atomic::Ordering;
 
 /// Maximum number of samples of a pixel for layers: an edge then has 256 levels.
 pub const SAMPLES: u32 = 256;
@@ -204,8 +203,8 @@ impl Layers {
 
 /// Computes the layers of a picture, with as many samples as the picture but at most [`SAMPLES`].
 ///
-/// Only the region, the tracer and the flag of `options` are used: tiles that are not begun when it is set have no
-/// features. Like the picture's, pixels have the same bytes
+/// Only the region, the tracer and the flag of `options` are used: once it is set, no pixels are returned. Like the
+/// picture's, pixels have the same bytes
 /// for any number of threads and any tracer, in a region and in the whole. If `wanted` has only
 /// [`Layer::Id`] and statistics, one ray per pixel is traced, and only the ids are valid.
 ///
@@ -220,11 +219,15 @@ pub fn layers(
     let region = render::check(world, settings, options)?;
     let tiles = 0..Film::tile_count(region);
     let features = features(world, settings, options, wanted, tiles.clone())?;
+    if options.is_cancelled() {
+        let Region { width, height, .. } = region;
+        return Ok(Layers { width, height, pixels: Vec::new(), statistics: None });
+    }
     Ok(Layers::gather(region, &[(tiles, features)]))
 }
 
 /// Computes the features of some tiles of the region, by their numbers: tile by tile, in the order of
-/// [`Tile::pixels`](crate::film::Tile::pixels).
+/// [`Tile::pixels`](crate::film::Tile::pixels). Tiles that are not begun when the options' flag is set are left out.
 ///
 /// # Errors
 /// Those of [`render()`](crate::render::render()).
@@ -247,12 +250,10 @@ pub fn features(
     let regions: Vec<Region> = regions.collect();
     let features: Vec<Vec<Features>> = regions
         .into_par_iter()
+        .filter(|_| !options.is_cancelled())
         .map_init(
             || Workspace::new(world, elisions),
             |work, region| {
-                if options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-                    return vec![Features::NONE; region.area() as usize];
-                }
                 let mut layers = TileLayers::new(region);
                 layers.refine(&job, samples, work);
                 layers.features().collect()

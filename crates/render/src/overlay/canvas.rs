@@ -7,7 +7,7 @@ use crate::layers::{self, Layer, layers};
 use crate::render::{Options, Render, RenderError};
 use crate::scene::{Look, Settings};
 use crate::world::World;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// An image with its matte, for overlays.
 pub struct Canvas<'a> {
@@ -18,8 +18,9 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// Draws the overlays of a look over a rendered region. Once the flag is set, they are drawn by one sample per pixel,
-    /// and shadows on the ground are left out, since who interrupts does not want to wait for more.
+    /// Draws the overlays of a look over a rendered region. Once the flag is set, no rays are traced for them, since who
+    /// interrupts does not want to wait: nothing is drawn, or the background is removed by one sample per pixel, without
+    /// the shadows on the ground.
     ///
     /// # Errors
     /// Those of [`render()`](crate::render::render()).
@@ -43,11 +44,14 @@ impl<'a> Canvas<'a> {
         let traced = |samples, options| {
             layers(world, &settings_of_layers(settings, samples), options, &[Layer::Depth])
         };
-        let mut features = traced(most, &options)?;
-        if cancel.load(Ordering::Relaxed) {
-            features = traced(1, &whole)?;
+        let mut layers = traced(most, &options)?;
+        if layers.pixels.is_empty() {
+            if !look.is_transparent() {
+                return Ok(Self { image, matte: None });
+            }
+            layers = traced(1, &whole)?;
         }
-        let overlay = Overlay { world, region, layers: &features, depths: None };
+        let overlay = Overlay { world, region, layers: &layers, depths: None };
         let matte = overlay.draw_look(image, look, ground);
         Ok(Self { image, matte })
     }
