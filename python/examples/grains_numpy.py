@@ -19,7 +19,7 @@ RADIUS = 0.5
 
 def dunes(count: int) -> npt.NDArray[np.float32]:
     """Centers in layers of a triangular lattice below a surface of dunes, each moved a little."""
-    # Twice as wide as deep, and a tenth as high as deep at a mean; a sphere has 1 / sqrt(2) of the cube of its diameter.
+    # Twice as wide as deep, and a tenth as high at a mean; a sphere has 1 / sqrt(2) of the cube of its diameter.
     depth = float((count / np.sqrt(2) / 0.2) ** (1 / 3))
     rng = np.random.default_rng(7)
     layers = []

@@ -126,8 +126,8 @@ def from_mdanalysis(group: Any) -> Particles:
 def from_ovito(data: Any) -> Particles:
     """The particles of OVITO's ``DataCollection``, as ``pipeline.compute()`` returns it.
 
-    Positions, types with their names, radii and colors of particles, or else of their types, the cell, the time step, and
-    all other properties as columns. OVITO's colors are those of the screen: they are taken as sRGB.
+    Positions, types with their names, radii and colors of particles, or else of their types, the cell, the time step,
+    and all other properties as columns. OVITO's colors are those of the screen: they are taken as sRGB.
 
     Args:
         data: ``ovito.data.DataCollection``.

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! The argument is the common beginning of the paths of raw float32 columns: `-positions.f32` and `-radius.f32`,
-//! `-origins.f32` and `-directions.f32`, x before y before z. For each line on the standard input, the time of a batch in
-//! seconds and the number of rays that hit something go to the standard output.
+//! `-origins.f32` and `-directions.f32`, x before y before z. For each line on the standard input, the time of a batch
+//! in seconds and the number of rays that hit something go to the standard output.
 
 use rayon::prelude::*;
 use spherule_core::{Hits, NOTHING, QueryError, RayColumns, SphereTree};

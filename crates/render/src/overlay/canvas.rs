@@ -18,9 +18,9 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// Draws the overlays of a look over a rendered region. Once the flag is set, no rays are traced for them, since who
-    /// interrupts does not want to wait: nothing is drawn, or the background is removed by one sample per pixel, without
-    /// the shadows on the ground.
+    /// Draws the overlays of a look over a rendered region. Once the flag is set, no rays are traced for them, since
+    /// who interrupts does not want to wait: nothing is drawn, or the background is removed by one sample per pixel,
+    /// without the shadows on the ground.
     ///
     /// # Errors
     /// Those of [`render()`](crate::render::render()).

@@ -88,7 +88,8 @@ fn plain<'a>(settings: &Settings, options: &Options<'a>) -> (Settings, Options<'
     (Settings { until_error: None, time: None, ..settings.clone() }, options)
 }
 
-/// Renders how spheres change the ground's light; `None` if there is no ground, or if the flag of the options cancels it.
+/// Renders how spheres change the ground's light; `None` if there is no ground, or if the flag of the options cancels
+/// it.
 ///
 /// `settings` give the number of samples; only the tracer, the region and the flag of `options` are used. The
 /// world is unchanged afterwards.
