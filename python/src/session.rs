@@ -204,7 +204,6 @@ impl Session {
             render.image = denoised.image;
         }
         let (named, layers) = self.layers(&render, cancel)?;
-        let finished = !stopped();
         let mut warnings = Vec::new();
         let mut canvas = Canvas::with_look(
             &self.look,
@@ -226,6 +225,7 @@ impl Session {
             }
         }
         let matte = canvas.matte;
+        let finished = !stopped();
         let (title, settings) = (self.title.clone(), self.settings.clone());
         Ok(Shown {
             render,

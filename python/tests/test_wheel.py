@@ -36,6 +36,8 @@ def python(code, **environment):
 
 def levels():
     folder = Path(spherule.__file__).parent / "_levels"
+    if not folder.is_dir():
+        pytest.skip("a wheel of one level")
     others = [path.name for path in folder.iterdir() if (path / "_spherule.abi3.so").is_file()]
     return [python("import spherule; print(spherule.level())", SPHERULE_LEVEL="v2").stdout.strip(), *sorted(others)]
 

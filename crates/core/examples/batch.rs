@@ -57,9 +57,11 @@ fn trace(
     let size = count.div_ceil(4 * rayon::current_num_threads()).clamp(1, TASK);
     let tasks = t.par_chunks_mut(size).zip(sphere.par_chunks_mut(size)).enumerate();
     tasks.try_for_each(|(task, (t, sphere))| {
-        let rows = task * size..task * size + t.len();
-        let part = |columns: [&'_ [f32]; 3]| columns.map(|column| &column[rows.clone()]);
-        let rays = RayColumns { origin: part(origin), direction: part(direction) };
+        let (first, count) = (task * size, t.len());
+        let rays = RayColumns {
+            origin: origin.map(|column| &column[first..first + count]),
+            direction: direction.map(|column| &column[first..first + count]),
+        };
         tree.intersect_columns(&rays, Hits { t, sphere, surface: None }).map(|_| ())
     })?;
     Ok((t, sphere))
