@@ -2,7 +2,8 @@
 
 The first wheel is the lowest level's: its extension module stays what it is, and those of the others go to
 ``spherule/_levels/LEVEL``. The program goes where pip puts scripts, and its levels beside it, where it looks for them.
-Equal inputs give equal bytes.
+The tag of the platform is that of the newest symbol that any of them needs of the C library. Equal inputs give equal
+bytes.
 """
 
 from __future__ import annotations
@@ -11,11 +12,22 @@ import argparse
 import base64
 import hashlib
 import os
+import re
 import time
 import zipfile
+from collections.abc import Iterable
 from pathlib import Path
 
 MODULE = "spherule/_spherule.abi3.so"
+
+
+def platform_tag(tag: str, binaries: Iterable[bytes]) -> str:
+    """The tag of PEP 600 for binaries of ``linux_ARCHITECTURE``; other tags stay as they are."""
+    if not tag.startswith("linux_"):
+        return tag
+    versions = (int(minor) for binary in binaries for minor in re.findall(rb"GLIBC_2\.(\d+)", binary))
+    # The first C library that the policy knows.
+    return tag.replace("linux_", f"manylinux_2_{max(versions, default=17)}_")
 
 
 def main() -> None:
@@ -31,7 +43,8 @@ def main() -> None:
     files: dict[str, tuple[bytes, bool]] = {}
     with zipfile.ZipFile(first) as wheel:
         for info in wheel.infolist():
-            if not info.filename.endswith("/RECORD"):
+            # maturin's list of crates has a time and paths of this machine; THIRD-PARTY-LICENSES.txt lists them, too.
+            if not info.filename.endswith("/RECORD") and ".dist-info/sboms/" not in info.filename:
                 files[info.filename] = (wheel.read(info), info.filename.endswith(".so"))
     folder = next(name.split("/")[0] for name in files if ".dist-info/" in name)
     data = folder.replace(".dist-info", ".data")
@@ -51,6 +64,11 @@ def main() -> None:
     for path in options.license:
         files[f"{folder}/licenses/{path.name}"] = (path.read_bytes(), False)
 
+    *distribution, built_for = Path(first).stem.split("-")
+    tag = platform_tag(built_for, (content for content, executable in files.values() if executable))
+    facts, _ = files[f"{folder}/WHEEL"]
+    files[f"{folder}/WHEEL"] = (facts.replace(f"-{built_for}\n".encode(), f"-{tag}\n".encode()), False)
+
     record = []
     for name, (content, _) in sorted(files.items()):
         digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
@@ -61,13 +79,14 @@ def main() -> None:
     moment = time.gmtime(max(int(os.environ.get("SOURCE_DATE_EPOCH", "0")), 315_532_800))
     # The files that tell what it is come last, as the format asks for.
     order = sorted(files, key=lambda name: (".dist-info/" in name, name))
-    with zipfile.ZipFile(options.out / Path(first).name, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as packed:
+    packed = options.out / f"{'-'.join([*distribution, tag])}.whl"
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for name in order:
             content, executable = files[name]
             info = zipfile.ZipInfo(name, moment[:6])
             info.external_attr = (0o100755 if executable else 0o100644) << 16
             info.compress_type = zipfile.ZIP_DEFLATED
-            packed.writestr(info, content)
+            wheel.writestr(info, content)
 
 
 if __name__ == "__main__":

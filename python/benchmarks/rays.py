@@ -1,15 +1,18 @@
 """Rays per second, beside trimesh and embreex in one run.
 
-    python rays.py [--rays 1000000] [--rounds 3] [--dump FOLDER]
+    python rays.py [--rays 1000000] [--rounds 3] [--batch target/release/examples/batch]
 
 Embree through Python traces triangles: each sphere becomes an icosphere of 80 or 320, inscribed in it, so its answers
 are those of other shapes. All use the same threads: as many as each finds by itself. The best of the rounds counts,
-which go in turn. `--dump` writes spheres and rays as raw float32, for a program in another language.
+which go in turn. `--batch` names the program of `crates/core/examples/batch.rs`, which takes its turn, too: the same
+rays by the Rust library.
 """
 
 from __future__ import annotations
 
 import argparse
+import subprocess
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -54,15 +57,47 @@ def mesh(positions: Rows, radius: Rows, subdivisions: int) -> trimesh.Trimesh:
     return trimesh.Trimesh(vertices.reshape(-1, 3), faces.reshape(-1, 3), process=False)
 
 
+class Batch:
+    """The Rust library: a program that traces the same rays whenever it is asked to."""
+
+    def __init__(self, program: Path, spheres: tuple[Rows, Rows], rays: tuple[Rows, Rows]) -> None:
+        self.folder = tempfile.TemporaryDirectory()
+        stem = Path(self.folder.name) / "batch"
+        for name, table in zip(("positions", "radius", "origins", "directions"), (*spheres, *rays)):
+            table.T.astype("<f4").tofile(f"{stem}-{name}.f32")
+        self.process = subprocess.Popen([program, stem], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+    def run(self) -> tuple[float, int]:
+        """Seconds and hits of a batch."""
+        assert self.process.stdin and self.process.stdout
+        self.process.stdin.write("\n")
+        self.process.stdin.flush()
+        seconds, hits = self.process.stdout.readline().split()
+        return float(seconds), int(hits)
+
+    def close(self) -> None:
+        """Ends the program."""
+        self.process.communicate()
+        self.folder.cleanup()
+
+
+def timed(call: Callable[[], Any]) -> float:
+    """Seconds of a call."""
+    start = time.perf_counter()
+    call()
+    return time.perf_counter() - start
+
+
 def main() -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rays", type=int, default=1_000_000)
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--dump", type=Path)
+    parser.add_argument("--batch", type=Path)
     options = parser.parse_args()
-    print("| spheres | rays | spherule, rows | spherule, columns | embreex, 80 | embreex, 320 | trimesh, 80 |")
-    print("|--:|---|--:|--:|--:|--:|--:|")
+    names = ["rows", "columns", "embreex, 80", "embreex, 320", "trimesh, 80"] + ["Rust"] * bool(options.batch)
+    print(f"| spheres | rays | {' | '.join(names)} |")
+    print("|--:|---|" + "--:|" * len(names))
     for count in (1_000, 10_000):
         positions, radius = scene(count)
         tree = spherule.SphereTree(positions, radius)
@@ -74,23 +109,24 @@ def main() -> None:
         for kind in ("camera", "random"):
             origins, directions = rays(kind, options.rays)
             columns = np.asfortranarray(origins), np.asfortranarray(directions)
-            if options.dump:
-                for name, table in (("origins", origins), ("directions", directions), ("positions", positions)):
-                    table.T.astype("<f4").tofile(options.dump / f"{count}-{kind}-{name}.f32")
-                radius.astype("<f4").tofile(options.dump / f"{count}-{kind}-radius.f32")
-            runs: list[Callable[[], Any]] = [
+            calls: list[Callable[[], Any]] = [
                 lambda: tree.intersect(origins, directions),
                 lambda: tree.intersect(*columns),
                 lambda: embree[0].run(origins, directions),
                 lambda: embree[1].run(origins, directions),
                 lambda: coarse.ray.intersects_first(origins, directions),
             ]
+            runs: list[Callable[[], float]] = [lambda call=call: timed(call) for call in calls]  # type: ignore[misc]
+            batch = Batch(options.batch, (positions, radius), (origins, directions)) if options.batch else None
+            if batch:
+                assert batch.run()[1] == tree.count(*columns), "both must find the same hits"
+                runs.append(lambda: batch.run()[0])
             best = [float("inf")] * len(runs)
             for _ in range(options.rounds):
                 for row, run in enumerate(runs):
-                    start = time.perf_counter()
-                    run()
-                    best[row] = min(best[row], time.perf_counter() - start)
+                    best[row] = min(best[row], run())
+            if batch:
+                batch.close()
             cells = (f"{len(origins) / seconds / 1e6:.2f}" for seconds in best)
             print(f"| {count:,} | {kind} | " + " | ".join(cells) + " |", flush=True)
 

@@ -34,11 +34,13 @@ def main() -> None:
         radius=1.28,
         values=displacement,
         label_of_values="displacement (angstrom)",
-        color_map="inferno",
+        color_map="plasma",
         color_log=True,
         color_bar="right",
         slices=[f"x > {center[0]:.3f}"],
         slice_mode="caps",
+        view="iso",
+        camera={"projection": "orthographic"},
         size=(560, 480),
         spp=48,
         denoise="on",
@@ -46,8 +48,11 @@ def main() -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), width_ratios=[1.2, 1], layout="constrained")
     left.imshow(picture.srgb())
     left.set_axis_off()
-    right.loglog(distance, displacement, ".", color="black", markersize=3)
+    right.loglog(distance, displacement, ".", color="#6a00a8", markersize=4)
     right.set(xlabel="distance from the vacancy (angstrom)", ylabel="displacement (angstrom)")
+    right.set_xticks([3, 5, 10, 20], ["3", "5", "10", "20"])
+    right.minorticks_off()
+    right.grid(alpha=0.3)
     figure.savefig(Path(__file__).with_suffix(".png"), dpi=100)
 
 

@@ -17,10 +17,10 @@ def main() -> None:
     water.translate(cage.get_center_of_mass() - water.get_center_of_mass())
     picture = spherule.render(
         spherule.from_ase(cage + water),
-        radius="covalent",
         preset="glossy",
         background="transparent",
-        types={"C": {"color": "#404040"}},
+        types={"C": {"color": "#5a6d80", "radius": 0.55}, "O": {"radius": 0.8}, "H": {"radius": 0.5}},
+        view="x",
         size=(480, 480),
         spp=64,
         denoise="on",

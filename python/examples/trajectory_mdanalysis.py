@@ -51,10 +51,13 @@ def main() -> None:
         picture = spherule.render(
             particles,
             radius=SIGMA / 2,
-            color="skyblue",
-            camera={"eye": [middle[0], middle[1], middle[2] + 110], "target": middle, "fov": 22},
+            # How far each atom is from the middle, in diameters.
+            values=np.linalg.norm(universe.atoms.positions - middle, axis=1) / SIGMA,
+            color_map="turbo",
+            color_range=(0, 5),
+            camera={"eye": [middle[0] + 40, middle[1] + 30, middle[2] + 90], "target": middle, "fov": 20},
             label=[{"text": f"frame {particles.step}", "position": "bottom"}],
-            size=(240, 240),
+            size=(250, 270),
             spp=32,
             denoise="on",
         )

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 
+#: The most rows of names that are put in order between two looks at signals: some hundredths of a second.
+_CHUNK = 1 << 17
+
+
 def floats(name: str, value: Any) -> npt.NDArray[Any]:
     """An array of float32 or float64, in this machine's byte order."""
     import numpy as np
@@ -84,15 +88,20 @@ def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.
         raise Error(f"`{name}` has the shape {array.shape}, but must have ({count},), one entry for each position")
     if array.dtype.kind not in "iuUSOT":
         raise Error(f"`{name}` is an array of {array.dtype}, but must be one of strings or integers")
-    if array.dtype.kind in "SO":
-        array = np.array(
-            [item.decode() if isinstance(item, bytes) else str(item) for item in array.tolist()], dtype=np.str_
-        )
-    unique, first, inverse = np.unique(array, return_index=True, return_inverse=True)
-    order = np.argsort(first, kind="stable")
-    ranks = np.empty(len(order), np.uint32)
-    ranks[order] = np.arange(len(order), dtype=np.uint32)
-    return [str(unique[row]) for row in order], ranks[inverse.reshape(-1)]
+    known: dict[str, int] = {}
+    codes = np.empty(count, np.uint32)
+    for start in range(0, count, _CHUNK):
+        part = array[start : start + _CHUNK]
+        if part.dtype.kind in "SO":
+            part = np.array(
+                [item.decode() if isinstance(item, bytes) else str(item) for item in part.tolist()], np.str_
+            )
+        unique, first, inverse = np.unique(part, return_index=True, return_inverse=True)
+        ranks = np.empty(len(unique), np.uint32)
+        for row in np.argsort(first):
+            ranks[row] = known.setdefault(str(unique[row]), len(known))
+        codes[start : start + _CHUNK] = ranks[inverse.reshape(-1)]
+    return list(known), codes
 
 
 def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:

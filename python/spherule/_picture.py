@@ -22,10 +22,12 @@ class Picture:
             memory is the renderer's own; what is changed is saved and displayed.
         layers: By name, the layers that were asked for: ``albedo``, ``normal`` and ``variance`` (height, width, 3)
             float32; ``depth`` and ``coverage`` (height, width) float32; ``id`` and ``samples`` (height, width) uint32.
-            An ``id`` is a row of the scene's spheres, :data:`spherule.NOTHING` or :data:`spherule.GROUND`.
+            An ``id`` is a row of the arrays that the scene is made of, also after selections, slices and copies;
+            spheres of sections follow. Or it is :data:`spherule.NOTHING` or :data:`spherule.GROUND`.
         error: The measured relative error of the picture, or None; ``error_bound`` holds with 95 % confidence.
         denoised: Whether it is denoised.
-        complete: False if the render was interrupted.
+        complete: False if the render was interrupted: then it is not denoised, and has no outlines, depth cue or
+            layers of camera rays.
         spp: The least and the greatest number of samples of a pixel.
         samples, rays, seconds: Samples and rays of all pixels, and the time of the render.
         exposure, tone: How it is displayed and saved: stops, and ``"linear"`` or ``"filmic"``.

@@ -237,6 +237,12 @@ def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[s
     else:
         particles = Particles(particles, **own)
     count = len(particles)
+    if radii is not None and radii.startswith("column:"):
+        name = radii.removeprefix("column:")
+        if name not in particles.columns:
+            there = ", ".join(particles.columns) or "none"
+            raise Error(f"`radius` is {radii!r}, but there is no column `{name}`; columns are {there}")
+        radii, radius = None, particles.columns[name]
     table: dict[str, Any] = particles._table(radii, float(given.get("radius_scale", 1.0)))
     if radius is not None:
         table["radius"] = _arrays.column("radius", radius, count)

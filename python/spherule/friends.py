@@ -126,14 +126,23 @@ def from_mdanalysis(group: Any) -> Particles:
 def from_ovito(data: Any) -> Particles:
     """The particles of OVITO's ``DataCollection``, as ``pipeline.compute()`` returns it.
 
-    Positions, types with their names, radii and colors of particles, or else of their types, the cell, and all other
-    properties as columns.
+    Positions, types with their names, radii and colors of particles, or else of their types, the cell, the time step,
+    and all other properties as columns. OVITO's colors are those of the screen: they are taken as sRGB.
 
     Args:
         data: ``ovito.data.DataCollection``.
 
     Raises:
         Error: It is something else, or has no particles.
+
+    Example:
+        >>> from ovito.data import DataCollection
+        >>> data = DataCollection()
+        >>> particles = data.create_particles(count=2)
+        >>> _ = particles.create_property("Position", data=[[0, 0, 0], [1, 0, 0]])
+        >>> _ = particles.create_property("Radius", data=[0.5, 0.25])
+        >>> from_ovito(data).radius.tolist()
+        [0.5, 0.25]
     """
     import numpy as np
 
@@ -146,18 +155,22 @@ def from_ovito(data: Any) -> Particles:
     if "Position" not in properties:
         raise Error("the OVITO particles have no property `Position`")
     count = len(np.asarray(properties["Position"]))
-    kinds = elements = None
+    kinds = elements = color = None
     radius = np.zeros(count)
     if "Particle Type" in properties:
         property = properties["Particle Type"]
-        codes = np.asarray(property)
-        names, radii = {}, {}
-        for kind in _optional(property, "types") or ():
-            names[int(kind.id)] = str(kind.name) or str(kind.id)
-            radii[int(kind.id)] = float(_optional(kind, "radius") or 0.0)
-        kinds = [names.get(int(code), str(code)) for code in codes]
-        elements = [_native.element_of(name) for name in dict.fromkeys(kinds)]
-        radius = np.array([radii.get(int(code), 0.0) for code in codes])
+        distinct, rows = np.unique(np.asarray(property), return_inverse=True)
+        types = {int(kind.id): kind for kind in _optional(property, "types") or ()}
+        styles = [types.get(int(code)) for code in distinct]
+        names = [str(_optional(style, "name") or code) for code, style in zip(distinct, styles)]
+        kinds = np.array(names, np.str_)[rows]
+        elements = [_native.element_of(name) for name in dict.fromkeys(kinds.tolist())]
+        radius = np.array([float(_optional(style, "radius") or 0.0) for style in styles])[rows]
+        known = [style for style in styles if style is not None]
+        if count and len(known) == len(styles):
+            color = np.array([style.color for style in known])[rows]
+    if "Color" in properties:
+        color = np.asarray(properties["Color"])
     if "Radius" in properties:
         own = np.asarray(properties["Radius"], np.float64)
         radius = np.where(own > 0, own, radius)
@@ -166,17 +179,23 @@ def from_ovito(data: Any) -> Particles:
         if name not in ("Position", "Particle Type", "Radius", "Color"):
             columns.update(_components(name, np.asarray(property)))
     cell = _optional(data, "cell")
-    matrix = None if cell is None else np.asarray(cell)[:, :]
+    matrix = None if cell is None else np.asarray(cell)
+    if matrix is not None and not abs(np.linalg.det(matrix[:, :3])) > 0:
+        # That of a plane.
+        cell = matrix = None
+    attributes = _optional(data, "attributes") or {}
     return Particles(
         np.asarray(properties["Position"]),
         kinds=kinds,
         elements=elements,
         radius=radius if count and bool(np.all(radius > 0)) else None,
-        color=np.asarray(properties["Color"]) if "Color" in properties else None,
+        color=None if color is None else np.rint(np.clip(color, 0.0, 1.0) * 255.0).astype(np.uint8),
         columns=columns,
         cell=None if matrix is None else matrix[:, :3].T,
         origin=(0.0, 0.0, 0.0) if matrix is None else matrix[:, 3],
         periodic=True if cell is None else tuple(bool(flag) for flag in cell.pbc),
+        step=attributes.get("Timestep"),
+        time=attributes.get("Time"),
     )
 
 

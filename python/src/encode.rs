@@ -1,6 +1,7 @@
 //! Files of pictures, in memory.
 
 use crate::errors::error;
+use crate::pools::pool;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -76,7 +77,10 @@ pub(crate) fn encode<'py>(
         ..WriteOptions::default()
     };
     let channels: Vec<Channel> = matte.map(|matte| matte.channel(format)).into_iter().collect();
-    let bytes = py.detach(|| image.encode(format, &channels, &options)).map_err(fault)?;
+    // Not on the threads of the process as a whole, which a fork does not have.
+    let pool = pool(py, None)?;
+    let bytes = py.detach(|| pool.install(|| image.encode(format, &channels, &options)));
+    let bytes = bytes.map_err(fault)?;
     Ok(PyBytes::new(py, &bytes))
 }
 

@@ -25,7 +25,7 @@ pub(crate) type CellTuple = ([f64; 3], [[f64; 3]; 3], [bool; 3]);
 #[pyo3(from_item_all)]
 pub(crate) struct ParticleTable<'py> {
     positions: Bound<'py, PyAny>,
-    /// `vdw`, `covalent`, `column:NAME` or a number.
+    /// `vdw`, `covalent` or a number.
     radii: Option<String>,
     radius: Option<Bound<'py, PyAny>>,
     radius_scale: f64,
@@ -60,19 +60,19 @@ pub(crate) struct StyleTable {
 impl ParticleTable<'_> {
     /// The frame, and the options that complete it.
     pub(crate) fn frame(self, py: Python<'_>) -> PyResult<(ParticleFrame, ReadOptions)> {
-        let columns = Table::of(&self.positions)?.to_columns(py);
+        let columns = Table::of(&self.positions)?.to_columns(py)?;
         check_points(py, "positions", &columns)?;
         let count = columns.first().map_or(0, Vec::len);
         let [x, y, z] = <[_; 3]>::try_from(columns)
             .map_err(|columns| lengths(py, "positions", 3, columns.len()))?;
         let mut frame = ParticleFrame { x, y, z, title: self.title, ..ParticleFrame::default() };
         if let Some(radius) = &self.radius {
-            frame.radius = Column::of(radius)?.to_vec(py);
+            frame.radius = Column::of(radius)?.to_vec(py)?;
             check_positive(py, "radius", &frame.radius)?;
             check_length(py, "radius", count, frame.radius.len())?;
         }
         if let Some(color) = &self.color {
-            let columns = Table::of(color)?.to_columns(py);
+            let columns = Table::of(color)?.to_columns(py)?;
             check_points(py, "color", &columns)?;
             let [red, green, blue] = <[_; 3]>::try_from(columns)
                 .map_err(|columns| lengths(py, "color", 3, columns.len()))?;
@@ -99,7 +99,7 @@ impl ParticleTable<'_> {
             frame.materials = text_column(py, "materials", names, &codes, count)?;
         }
         for (name, values) in self.numbers {
-            let values = Column::of(&values)?.to_vec(py);
+            let values = Column::of(&values)?.to_vec(py)?;
             check_length(py, &name, count, values.len())?;
             frame.numbers.push(NumberColumn { name, values });
         }

@@ -11,7 +11,6 @@ use spherule::split::{Merge, Part};
 use std::ffi::OsString;
 use std::fs;
 use std::io;
-use std::sync::Arc;
 
 /// Name of the file of a part, in a folder of its own.
 const FILE: &str = "part";
@@ -36,7 +35,7 @@ pub(crate) fn render_part<'py>(
         error(py, &format!("there is no part {number} of {count}; parts are 1 to {count}"))
     })?;
     let (request, pool) = table.request(py)?;
-    let scene = Arc::clone(&scene.scene);
+    let scene = scene.share();
     let work = move |shared: &Shared| -> Result<Option<Vec<u8>>, Fault> {
         let mut session = Session::begin(&scene, request, false, Some(part))?;
         if !session.run(shared, None) {
@@ -68,8 +67,8 @@ pub(crate) fn merge<'py>(
     parts: Vec<Vec<u8>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (request, pool) = table.request(py)?;
-    let scene = Arc::clone(&scene.scene);
-    let work = move |_: &Shared| {
+    let scene = scene.share();
+    let work = move |shared: &Shared| {
         let folder = tempfile::tempdir()?;
         let path = folder.path().join(FILE);
         let mut merge = Merge::default();
@@ -84,7 +83,7 @@ pub(crate) fn merge<'py>(
         let (whole, _) = merge.finish().map_err(|why| text(&why))?;
         let mut session = Session::begin(&scene, request, false, Part::new(1, 1))?;
         session.render = whole;
-        session.show(false).map(Some)
+        session.show(&shared.cancel).map(Some)
     };
     let (shown, interrupt) = Watcher::default().run(py, pool, work)?;
     show(py, shown, interrupt)

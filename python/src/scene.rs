@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use spherule::color::{self, Rgb};
 use spherule::overlay::annotations;
-use spherule::particles::{FileError, ParticleFrame, ReadOptions};
+use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
 use spherule::scene::particles::{
     Legend, Orientation, ParticleStyle, Particles, UpReason, of_frame,
 };
@@ -27,15 +27,29 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// The name of particles from arrays, in messages.
 const ARRAYS: &str = "particles";
 
+/// The column of rows in the user's arrays, which no expression can name.
+const ROWS: &str = "\0rows";
+
 /// A scene that Python holds.
 #[pyclass(frozen, module = "spherule._spherule")]
 pub(crate) struct Scene {
-    pub(crate) scene: Arc<Mutex<spherule::Scene>>,
+    scene: Arc<Mutex<spherule::Scene>>,
+    /// Row in the user's arrays of each sphere, unless they are the same; spheres of sections follow.
+    rows: Option<Arc<[u32]>>,
 }
 
-/// The text of a scene without its spheres, their places and radii, their materials and colors.
-type SceneColumns<'py> =
-    (String, [Bound<'py, PyArray1<f64>>; 4], Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<f32>>);
+/// A scene and its rows, for work on other threads.
+pub(crate) type SharedScene = (Arc<Mutex<spherule::Scene>>, Option<Arc<[u32]>>);
+
+/// The text of a scene without its spheres, their places and radii, their materials, colors, and rows in the user's
+/// arrays.
+type SceneColumns<'py> = (
+    String,
+    [Bound<'py, PyArray1<f64>>; 4],
+    Bound<'py, PyArray1<u32>>,
+    Bound<'py, PyArray1<f32>>,
+    Option<Bound<'py, PyArray1<u32>>>,
+);
 
 /// Sections as in a scene file.
 #[derive(FromPyObject)]
@@ -78,6 +92,9 @@ struct Staging {
     planes: Vec<SlicePlane>,
     slice_mode: SliceMode,
 }
+
+/// A scene, and the row in the user's arrays of each sphere, unless they are the same.
+type Numbered = (spherule::Scene, Option<Vec<u32>>);
 
 /// Why there is no scene.
 pub(crate) enum Fault {
@@ -169,7 +186,9 @@ impl Scene {
         let colors: Vec<[f32; 3]> = spheres.color.iter().map(Rgb::to_array).collect();
         let material = PyArray1::from_vec(py, spheres.material);
         let places = [spheres.x, spheres.y, spheres.z, spheres.radius].map(column);
-        Ok((text, places, material, PyArray1::from_vec(py, colors.into_flattened())))
+        let color = PyArray1::from_vec(py, colors.into_flattened());
+        let rows = self.rows.as_ref().map(|rows| PyArray1::from_slice(py, rows));
+        Ok((text, places, material, color, rows))
     }
 
     /// The scene that `columns` describes.
@@ -180,6 +199,7 @@ impl Scene {
         places: [PyReadonlyArray1<'_, f64>; 4],
         material: PyReadonlyArray1<'_, u32>,
         color: PyReadonlyArray1<'_, f32>,
+        rows: Option<PyReadonlyArray1<'_, u32>>,
     ) -> PyResult<Self> {
         let scene = spherule::Scene::parse(text, KEYWORDS, Path::new(""));
         let mut scene = scene.map_err(|error| of_file(py, &error))?;
@@ -188,7 +208,7 @@ impl Scene {
         let color = color.as_array().to_vec();
         let color = color.as_chunks().0.iter().map(|&color| Rgb::from_array(color)).collect();
         scene.spheres = Spheres { x, y, z, radius, material, color };
-        Ok(Self::of(scene))
+        Ok(Self::of((scene, rows.map(|rows| rows.as_array().to_vec()))))
     }
 
     /// The number of spheres.
@@ -230,8 +250,12 @@ impl Scene {
 }
 
 impl Scene {
-    fn of(scene: spherule::Scene) -> Self {
-        Self { scene: Arc::new(Mutex::new(scene)) }
+    fn of((scene, rows): (spherule::Scene, Option<Vec<u32>>)) -> Self {
+        Self { scene: Arc::new(Mutex::new(scene)), rows: rows.map(Arc::from) }
+    }
+
+    pub(crate) fn share(&self) -> SharedScene {
+        (Arc::clone(&self.scene), self.rows.clone())
     }
 
     fn lock(&self) -> MutexGuard<'_, spherule::Scene> {
@@ -308,16 +332,23 @@ struct Work {
 
 impl Work {
     /// Completes a scene of sections alone, as the program does with a scene file.
-    fn placed(mut scene: spherule::Scene, staging: &Staging) -> Result<spherule::Scene, Fault> {
-        let normals = staging.cut(&mut scene, None)?;
+    fn placed(mut scene: spherule::Scene, staging: &Staging) -> Result<Numbered, Fault> {
+        let mut rows = None;
+        let normals = staging.cut(&mut scene, None, &mut rows)?;
         framing::choose(&mut scene, staging.view, None, &normals);
-        Ok(scene)
+        Ok((scene, rows))
     }
 
     /// Makes the scene in the order of the program: the preset, then slices, annotations, the look, settings, the
     /// camera, and lights that depend on it. Sections that are given replace what the preset has.
-    fn scene(mut self) -> Result<spherule::Scene, Fault> {
-        let frame = std::mem::take(&mut self.frame);
+    fn scene(mut self) -> Result<Numbered, Fault> {
+        let mut frame = std::mem::take(&mut self.frame);
+        let count = frame.len();
+        if self.renumbers() {
+            // Columns of numbers follow their rows through selections and copies.
+            let values = (0..count).map(|row| row as f64).collect();
+            frame.numbers.push(NumberColumn { name: ROWS.to_owned(), values });
+        }
         let has = |section: &str| self.keys.contains_key(section);
         let Self { options, style, staging, given, .. } = &self;
         let path = Path::new(ARRAYS);
@@ -338,11 +369,14 @@ impl Work {
         if staging.show_cell && cell.is_none() {
             return Err(FileError::whole_file(path, "has no simulation cell to draw").into());
         }
+        let own = particles.numbers.iter().position(|column| column.name == ROWS);
+        let own = own.map(|column| particles.numbers.swap_remove(column).values);
+        let mut rows = own.map(|values| values.into_iter().map(|row| row as u32).collect());
         let orientation = staging.orientation(&particles);
         let preset = staging.preset;
         let mut scene = preset.scene(particles, &title, &orientation);
         scene.slices.clone_from(&given.slices);
-        let normals = staging.cut(&mut scene, cell.map(|cell| cell.bounds()))?;
+        let normals = staging.cut(&mut scene, cell.map(|cell| cell.bounds()), &mut rows)?;
         scene.annotations.clone_from(&given.annotations);
         staging.annotate(&mut scene, legend)?;
         if let Some(keys) = self.keys.get("look") {
@@ -371,6 +405,10 @@ impl Work {
             framing::choose(&mut scene, staging.view, Some(&orientation), &normals);
         }
         self.append_spheres(&mut scene);
+        if let Some(rows) = &mut rows {
+            let added = scene.spheres.len() - rows.len();
+            rows.extend((count..count + added).map(|row| row as u32));
+        }
         if ["light", "environment", "ground"].into_iter().any(has) {
             scene.lights.clone_from(&given.lights);
             scene.environment = given.environment.clone();
@@ -387,7 +425,14 @@ impl Work {
             scene.camera = camera;
         }
         scene.warnings.extend(given.warnings.iter().cloned());
-        Ok(scene)
+        Ok((scene, rows))
+    }
+
+    /// Returns whether spheres may get other rows than their particles.
+    fn renumbers(&self) -> bool {
+        // Radii may be 0 after a factor: their rows are dropped.
+        let scaled = self.options.radius_scale != 1.0;
+        self.style.select.is_some() || self.staging.replicate.is_some() || scaled
     }
 
     /// Adds the spheres of the sections, and their materials.
@@ -457,11 +502,13 @@ fn set_camera(camera: &mut Camera, given: &Camera, keys: &[String]) {
 }
 
 impl Staging {
-    /// Cuts by the scene's slices and those of the options; returns the normals of those that cut anything.
+    /// Cuts by the scene's slices and those of the options; returns the normals of those that cut anything. `rows` are
+    /// those of the spheres that are left.
     fn cut(
         &self,
         scene: &mut spherule::Scene,
         cell: Option<[DVec3; 2]>,
+        rows: &mut Option<Vec<u32>>,
     ) -> Result<Vec<DVec3>, Fault> {
         if !self.planes.is_empty() {
             let whole = cell.or_else(|| bounds(&scene.spheres)).unwrap_or_default();
@@ -472,7 +519,13 @@ impl Staging {
             return Ok(Vec::new());
         }
         let normals = scene.cut_normals();
+        let shown: Vec<u32> = scene.shown().map(|row| row as u32).collect();
         let dropped = scene.drop_cut();
+        if dropped > 0 {
+            let before = rows.take();
+            let of = |row: u32| before.as_ref().map_or(row, |before| before[row as usize]);
+            *rows = Some(shown.into_iter().map(of).collect());
+        }
         if dropped > 0 && scene.spheres.is_empty() {
             let message = format!("the slices cut away all of its {dropped} spheres");
             let error = FileError::whole_file(Path::new(ARRAYS), message);

@@ -3,7 +3,7 @@
 use crate::encode::Matte;
 use crate::errors::error;
 use crate::pools::pool;
-use crate::scene::{Fault, Scene, change, place};
+use crate::scene::{Fault, Scene, SharedScene, change, place};
 use crate::watch::{Shared, Stop, Watcher};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyRuntimeError;
@@ -15,7 +15,7 @@ use spherule::denoise::{Asked, Choice, Denoiser, Judged, choose};
 use spherule::layers::{Layer, Layers, layers};
 use spherule::overlay::{Canvas, annotations};
 use spherule::render::{
-    End, Film, Judge, Noise, Options, Region, Render, RenderError, ResumableRender, Statistics,
+    End, Film, Judge, Noise, Options, Region, Render, RenderError, ResumableRender,
 };
 use spherule::scene::{Annotations, Identity, Look, Settings, Tone};
 use spherule::split::Part;
@@ -77,6 +77,8 @@ pub(crate) struct Session {
     region: Region,
     denoiser: Option<Denoiser>,
     layers: Vec<Layer>,
+    /// Row in the user's arrays of each sphere, unless they are the same.
+    rows: Option<Arc<[u32]>>,
     pub(crate) render: ResumableRender,
     /// Identity of the scene, for parts.
     pub(crate) identity: Option<Identity>,
@@ -91,27 +93,30 @@ pub(crate) struct Shown {
     /// The error of the picture, before and after denoising.
     judged: Option<(Noise, Noise)>,
     denoised: bool,
-    layers: Vec<(Layer, Layers)>,
+    /// False if finishing it was cancelled: it is not denoised, and has no layers of camera rays.
+    finished: bool,
+    named: Vec<Layer>,
+    layers: Layers,
     warnings: Vec<String>,
 }
 
 impl Session {
     /// Builds the world of a scene; of one that is `taken` its spheres move there.
     pub(crate) fn begin(
-        scene: &Mutex<spherule::Scene>,
+        (scene, rows): &SharedScene,
         request: Request,
         taken: bool,
         part: Option<Part>,
     ) -> Result<Self, Fault> {
         let mut scene = scene.lock().unwrap_or_else(PoisonError::into_inner);
         let kept = (scene.settings.clone(), scene.camera.clone());
-        let begun = Self::begin_with(&mut scene, request, taken, part);
+        let begun = Self::begin_with((&mut scene, rows.clone()), request, taken, part);
         (scene.settings, scene.camera) = kept;
         begun
     }
 
     fn begin_with(
-        scene: &mut spherule::Scene,
+        (scene, rows): (&mut spherule::Scene, Option<Arc<[u32]>>),
         request: Request,
         taken: bool,
         part: Option<Part>,
@@ -155,6 +160,7 @@ impl Session {
             region,
             denoiser,
             layers,
+            rows,
             render,
             identity,
         })
@@ -182,11 +188,13 @@ impl Session {
         end != End::Cancelled
     }
 
-    /// Finishes the picture so far: denoised, with look and annotations. A `quick` one is not denoised.
-    pub(crate) fn show(&mut self, quick: bool) -> Result<Shown, Fault> {
+    /// Finishes the picture so far: denoised, with layers, look and annotations. Once the flag is set, it is neither
+    /// denoised nor are there layers of camera rays, since these take longer than who interrupts wants to wait.
+    pub(crate) fn show(&mut self, cancel: &AtomicBool) -> Result<Shown, Fault> {
         let mut render = self.render.render();
-        let judged = self.denoiser.as_ref().filter(|_| !quick).and_then(|denoiser| {
-            let options = Options { region: Some(self.region), ..Options::default() };
+        let stopped = || cancel.load(Ordering::SeqCst);
+        let judged = self.denoiser.as_ref().filter(|_| !stopped()).and_then(|denoiser| {
+            let options = self.finishing(cancel);
             denoiser.judge(&self.world, self.render.film(), &options)
         });
         let errors = judged.as_ref().map(|judged| (judged.before, judged.noise));
@@ -195,7 +203,7 @@ impl Session {
             is_denoised = true;
             render.image = denoised.image;
         }
-        let layers = self.layers(&render)?;
+        let (named, layers) = self.layers(&render, cancel)?;
         let mut warnings = Vec::new();
         let mut canvas = Canvas::with_look(
             &self.look,
@@ -203,6 +211,7 @@ impl Session {
             &self.settings,
             self.region,
             &mut render,
+            cancel,
         )?;
         if !self.annotations.is_empty() {
             let drawn = annotations::draw(&self.annotations, &self.world, &self.look, false);
@@ -216,6 +225,7 @@ impl Session {
             }
         }
         let matte = canvas.matte;
+        let finished = !stopped();
         let (title, settings) = (self.title.clone(), self.settings.clone());
         Ok(Shown {
             render,
@@ -224,34 +234,46 @@ impl Session {
             matte,
             judged: errors,
             denoised: is_denoised,
+            finished,
+            named,
             layers,
             warnings,
         })
     }
 
-    fn layers(&self, render: &Render) -> Result<Vec<(Layer, Layers)>, Fault> {
+    fn finishing<'a>(&self, cancel: &'a AtomicBool) -> Options<'a> {
+        Options { region: Some(self.region), cancel: Some(cancel), ..Options::default() }
+    }
+
+    /// Traces the layers that were asked for; returns those that there are.
+    fn layers(&self, render: &Render, cancel: &AtomicBool) -> Result<(Vec<Layer>, Layers), Fault> {
         let Region { width, height, .. } = self.region;
-        let mut made = Vec::new();
-        for &layer in &self.layers {
-            let pixels = if layer.is_statistic() {
-                Layers { width, height, pixels: Vec::new(), statistics: render.statistics.clone() }
-            } else {
-                // No more samples than the image has, so that an interrupted render ends soon.
-                let spp = render.samples.most.max(1);
-                let settings = Settings { spp, ..self.settings.clone() };
-                let options = Options { region: Some(self.region), ..Options::default() };
-                layers(&self.world, &settings, &options, &[layer])?
-            };
-            made.push((layer, pixels));
+        let mut made = Layers { width, height, pixels: Vec::new(), statistics: None };
+        let mut named = self.layers.clone();
+        if self.layers.iter().any(|layer| !layer.is_statistic()) {
+            // No more samples than the image has, so that an interrupted render ends soon.
+            let spp = render.samples.most.max(1);
+            let settings = Settings { spp, ..self.settings.clone() };
+            made = layers(&self.world, &settings, &self.finishing(cancel), &self.layers)?;
+            if cancel.load(Ordering::SeqCst) {
+                named.retain(|layer| layer.is_statistic());
+            }
         }
-        Ok(made)
+        if let Some(rows) = &self.rows {
+            for pixel in &mut made.pixels {
+                pixel.id = rows.get(pixel.id as usize).copied().unwrap_or(pixel.id);
+            }
+        }
+        made.statistics.clone_from(&render.statistics);
+        Ok((named, made))
     }
 }
 
 impl Shown {
     /// The picture as a table for the class `Picture`.
     fn table(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let Self { render, title, settings, matte, judged, denoised, layers, warnings } = self;
+        let Self { render, title, settings, matte, judged, denoised, warnings, .. } = self;
+        let (named, layers) = (self.named, self.layers);
         let Settings { width, height, .. } = settings;
         let size = (height as usize, width as usize);
         let table = PyDict::new(py);
@@ -276,26 +298,26 @@ impl Shown {
         table.set_item("error", noise.map(|noise| noise.error))?;
         table.set_item("error_bound", noise.map(|noise| noise.bound))?;
         table.set_item("denoised", denoised)?;
-        table.set_item("complete", render.complete)?;
+        table.set_item("complete", render.complete && self.finished)?;
         table.set_item("seconds", render.elapsed.as_secs_f64())?;
         table.set_item("rays", render.counters.rays())?;
         table.set_item("warnings", warnings)?;
-        let named = PyDict::new(py);
-        for (layer, values) in layers {
-            named.set_item(layer.name(), layer_array(py, layer, values, size)?)?;
+        let arrays = PyDict::new(py);
+        for layer in named {
+            arrays.set_item(layer.name(), layer_array(py, layer, &layers, size)?)?;
         }
-        table.set_item("layers", named)?;
+        table.set_item("layers", arrays)?;
         Ok(table)
     }
 }
 
 /// A layer as an array of a value or three per pixel.
-fn layer_array(
-    py: Python<'_>,
+fn layer_array<'py>(
+    py: Python<'py>,
     layer: Layer,
-    layers: Layers,
+    layers: &Layers,
     (height, width): (usize, usize),
-) -> PyResult<Bound<'_, PyAny>> {
+) -> PyResult<Bound<'py, PyAny>> {
     let Layers { pixels, statistics, .. } = layers;
     let triples = |values: Vec<[f32; 3]>| {
         let array = PyArray1::from_vec(py, values.into_flattened());
@@ -313,13 +335,9 @@ fn layer_array(
         Layer::Coverage => floats(pixels.iter().map(|pixel| pixel.coverage).collect()),
         Layer::Id => whole(pixels.iter().map(|pixel| pixel.id).collect()),
         Layer::Variance => {
-            let Statistics { variance, .. } = statistics.ok_or_else(missing)?;
-            triples(variance.pixels)
+            triples(statistics.as_ref().ok_or_else(missing)?.variance.pixels.clone())
         }
-        _ => {
-            let Statistics { samples, .. } = statistics.ok_or_else(missing)?;
-            whole(samples)
-        }
+        _ => whole(statistics.as_ref().ok_or_else(missing)?.samples.clone()),
     }
 }
 
@@ -358,14 +376,19 @@ pub(crate) fn render<'py>(
     report: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (request, pool) = table.request(py)?;
-    let scene = Arc::clone(&scene.scene);
+    let scene = scene.share();
     let work = move |shared: &Shared| {
         let mut session = Session::begin(&scene, request, taken, None)?;
-        let done = session.run(shared, None);
+        session.run(shared, None);
         if session.render.samples().total == 0 {
             return Ok(None);
         }
-        session.show(!done).map(Some)
+        let shown = session.show(&shared.cancel);
+        if shared.cancel.load(Ordering::SeqCst) {
+            // Large pictures take a while to give their memory back; who interrupts does not wait for that.
+            rayon::spawn(move || drop(session));
+        }
+        shown.map(Some)
     };
     let (shown, interrupt) = Watcher::new(stop, report).run(py, pool, work)?;
     show(py, shown, interrupt)
@@ -382,7 +405,7 @@ pub(crate) struct Refinement {
 #[pyfunction]
 pub(crate) fn refine(py: Python<'_>, scene: &Scene, table: RenderTable) -> PyResult<Refinement> {
     let (request, pool) = table.request(py)?;
-    let scene = Arc::clone(&scene.scene);
+    let scene = scene.share();
     let work = move |_: &Shared| Session::begin(&scene, request, false, None);
     let (session, _) = Watcher::default().run(py, Arc::clone(&pool), work)?;
     let session = session.map_err(|fault| fault.raise(py))?;
@@ -406,7 +429,7 @@ impl Refinement {
             let Some(session) = state.as_mut() else { return Ok(None) };
             let done = session.run(shared, Some(slice));
             let cancelled = shared.cancel.load(Ordering::SeqCst);
-            let shown = session.show(cancelled && !done)?;
+            let shown = session.show(&shared.cancel)?;
             if done || cancelled {
                 *state = None;
             }

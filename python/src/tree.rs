@@ -77,8 +77,9 @@ impl SphereTree {
         let pool = pool(py, threads)?;
         let rays = RowsOfRays { origins: origins.as_array(), directions: directions.as_array() };
         let count = rays.len();
-        let mut t = bounds(bound, count);
-        let mut sphere = vec![NOTHING; count];
+        let bound = bound.as_ref().map(|bound| bound.as_array());
+        // Zeros are pages that nobody has touched: each task fills its own.
+        let (mut t, mut sphere) = (vec![0.0; count], vec![0; count]);
         let rows = if surface { count } else { 0 };
         let mut points = vec![[f64::NAN; 3]; rows];
         let mut normals = vec![[f64::NAN; 3]; rows];
@@ -88,12 +89,18 @@ impl SphereTree {
                 let tasks = t.par_chunks_mut(size).zip(sphere.par_chunks_mut(size)).enumerate();
                 if !surface {
                     return tasks.try_for_each(|(chunk, (t, sphere))| {
-                        self.trace(rays.part(chunk * size, t.len()), t, sphere, None)
+                        let first = chunk * size;
+                        fill_bounds(t, bound, first);
+                        self.trace(rays.part(first, t.len()), t, sphere, None)?;
+                        forget_misses(t, sphere);
+                        Ok(())
                     });
                 }
                 let surfaces = points.par_chunks_mut(size).zip(normals.par_chunks_mut(size));
                 tasks.zip(surfaces).try_for_each(|((chunk, (t, sphere)), (points, normals))| {
-                    let rays = rays.part(chunk * size, t.len());
+                    let first = chunk * size;
+                    fill_bounds(t, bound, first);
+                    let rays = rays.part(first, t.len());
                     let mut found = vec![Surface::default(); t.len()];
                     self.trace(rays, t, sphere, Some(&mut found))?;
                     let hits = sphere.iter().zip(&found).zip(points.iter_mut().zip(normals));
@@ -102,12 +109,12 @@ impl SphereTree {
                             (*point, *normal) = (found.point, found.normal);
                         }
                     }
+                    forget_misses(t, sphere);
                     Ok(())
                 })
             })
         });
         traced.map_err(|why: QueryError| error(py, &why))?;
-        py.detach(|| forget_misses(&mut t, &sphere));
         let table =
             |rows: Vec<[f64; 3]>| PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3]);
         let surfaces = if surface { Some((table(points)?, table(normals)?)) } else { None };
@@ -150,15 +157,18 @@ impl SphereTree {
         bound: Option<PyReadonlyArray1<'_, f64>>,
         threads: Option<usize>,
     ) -> PyResult<Vec<bool>> {
-        let t = bounds(bound, rays.len());
+        let bound = bound.as_ref().map(|bound| bound.as_array());
         let mut occluded = vec![false; rays.len()];
         let pool = pool(py, threads)?;
         let size = task(rays.len(), pool.current_num_threads());
         let traced = py.detach(|| {
             pool.install(|| {
-                let tasks = t.par_chunks(size).zip(occluded.par_chunks_mut(size)).enumerate();
-                tasks.try_for_each(|(chunk, (t, occluded))| {
-                    self.shade(rays.part(chunk * size, t.len()), t, occluded)
+                let tasks = occluded.par_chunks_mut(size).enumerate();
+                tasks.try_for_each_init(Vec::new, |t, (chunk, occluded)| {
+                    let first = chunk * size;
+                    t.resize(occluded.len(), 0.0);
+                    fill_bounds(t, bound, first);
+                    self.shade(rays.part(first, occluded.len()), t, occluded)
                 })
             })
         });
@@ -262,9 +272,16 @@ fn columns_of<'a>(table: ArrayView2<'a, f32>, place: &'a mut [Vec<f32>; 3]) -> [
     place.each_ref().map(Vec::as_slice)
 }
 
-/// The bound of each ray; infinity without one.
-fn bounds(bound: Option<PyReadonlyArray1<'_, f64>>, count: usize) -> Vec<f64> {
-    bound.map_or_else(|| vec![f64::INFINITY; count], |bound| bound.as_array().to_vec())
+/// Sets the bounds of rays from number `first` on; infinity without bounds.
+fn fill_bounds(t: &mut [f64], bound: Option<ArrayView1<f64>>, first: usize) {
+    match bound {
+        None => t.fill(f64::INFINITY),
+        Some(bound) => {
+            for (t, &bound) in t.iter_mut().zip(bound.iter().skip(first)) {
+                *t = bound;
+            }
+        }
+    }
 }
 
 /// The number of rays of a task.

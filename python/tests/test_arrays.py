@@ -84,6 +84,9 @@ def test_arrays_are_not_changed_and_not_kept(cloud):
         ({"radius": [1, 2, 3]}, "`radius` has the shape (3,), but must have (2,)"),
         ({"radius": [[1], [2]]}, "`radius` has the shape (2, 1), but must have (2,)"),
         ({"radius": "vdW"}, "did you mean"),
+        ({"radius": "column:r"}, "`radius` is 'column:r', but there is no column `r`; columns are none"),
+        ({"radius": "column:r", "columns": {"r": [1, 0]}}, "radius[1] is 0, but must be finite and greater than 0"),
+        ({"radius": "column:r", "columns": {"r": ["a", "b"]}}, "`radius` is an array of <U1"),
         ({"color": "gren"}, "`color` is 'gren', but must be a CSS color"),
         ({"color": ["red", "gren"]}, "color[1] is 'gren'"),
         ({"color": [[0, 0, 0], [0, 2, 0]]}, "color[1] is [0, 2, 0], but must be 0 to 1"),
@@ -117,6 +120,26 @@ def test_what_is_wrong_is_named(options, text):
     with pytest.raises(spherule.Error) as refused:
         spherule.render(positions, **{**SMALL, **options})
     assert text in str(refused.value)
+
+
+def test_numbers_without_dimensions_stand_for_all(cloud):
+    expected = picture(cloud, radius=np.full(1000, 0.05))
+    for radius in (0.05, np.float64(0.05), np.array(0.05)):
+        assert np.array_equal(picture(cloud, radius=radius), expected)
+    column = {"r": np.full(1000, 0.05, np.float32)}
+    assert np.array_equal(picture(cloud, radius="column:r", columns=column), picture(cloud, radius=np.float32(0.05)))
+    assert np.array_equal(picture(cloud, kinds=np.array("C"), radius=0.05), picture(cloud, kinds=["C"] * 1000))
+
+
+def test_names_are_numbered_as_they_first_occur():
+    # More rows than are put in order at once.
+    names = np.array(["b", "a", "c", "long name"])[np.random.default_rng(1).permutation(np.arange(300_000) % 4)]
+    first = list(dict.fromkeys(names.tolist()))
+    for values in (names, names.astype("S"), names.astype(object), names.tolist()):
+        found = spherule.Particles(np.zeros((300_000, 3)), kinds=values)
+        assert np.array_equal(found.kinds, names) and found._kinds[0] == first
+    numbers = spherule.Particles(np.zeros((300_000, 3)), kinds=np.arange(300_000)[::-1] % 70_000)
+    assert numbers.kinds[:3].tolist() == ["19999", "19998", "19997"] and len(numbers._kinds[0]) == 70_000
 
 
 def test_unknown_arguments_are_refused_with_the_nearest():

@@ -17,7 +17,7 @@ def test_the_examples_of_the_manual_run(tmp_path, monkeypatch):
         "ITEM: ATOMS id type x y z q\n1 1 0 0 0 0.5\n"
     )
     blocks = re.findall(r"```python\n(.*?)```", MANUAL.read_text(), re.S)
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     rng = np.random.default_rng(4)
     names = {"origins": rng.random((9, 3)), "directions": rng.normal(size=(9, 3))}
     for block in blocks:
@@ -25,3 +25,4 @@ def test_the_examples_of_the_manual_run(tmp_path, monkeypatch):
             pytest.importorskip("IPython")
         exec(block, names)
     assert Path("cloud.png").is_file() and Path("gold.csv").is_file() and names["hits"].t.shape == (9,)
+    assert len(names["seen"]) > 100 and names["positions"][names["seen"], 0].min() > 0.5

@@ -60,6 +60,70 @@ def test_interrupts_before_the_first_sample_leave_nothing():
     assert seconds < 0.5
 
 
+FINISHING = """
+    import time, warnings
+    import numpy as np
+    import spherule
+
+    warnings.simplefilter("ignore")
+    cloud = np.random.default_rng(1).random((1000, 3), dtype=np.float32)
+    scene = spherule.Scene(cloud, radius=0.02, preset="outline")
+    options = {"size": (800, 600), "spp": 64, "denoise": "on", "layers": ["normal", "id", "samples"]}
+    stop = spherule.Stop()
+    stop.set()
+    # Stopped before it begins: nothing, or the samples of a first task.
+    try:
+        print(scene.render(stop=stop, **options).complete)
+    except spherule.Error:
+        print("stopped")
+    whole = scene.render(**options)
+    print(whole.complete, whole.denoised, *whole.layers)
+    told = []
+
+    def report(done, rays, seconds, error):
+        told.append(done)
+        if done == 1.0:
+            raise KeyboardInterrupt
+
+    start = time.monotonic()
+    picture = scene.render(progress=report, on_interrupt="return", **options)
+    # All samples are taken, but what follows is not done if the interrupt came before.
+    print(picture.samples == whole.samples or not picture.complete)
+    print(picture.complete or (not picture.denoised and "normal" not in picture.layers and picture.pixels.max() > 0))
+"""
+
+
+def test_interrupts_while_a_picture_is_finished_leave_its_samples():
+    code = textwrap.dedent(FINISHING)
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
+    first, whole, *last = run.stdout.splitlines()
+    assert first in ("False", "stopped") and whole == "True True normal id samples" and last == ["True", "True"]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there are no forks")
+def test_pools_of_forks_render_encode_and_query():
+    code = """
+        import multiprocessing, warnings
+        import numpy as np
+        import spherule
+
+        warnings.simplefilter("ignore")
+        tree = spherule.SphereTree([[0, 0, 0]], 1)
+
+        def work(number):
+            picture = spherule.render([[0, 0, 0]], radius=1, size=(64, 48), spp=16, denoise="on", layers=["id"])
+            hits = tree.intersect(np.full((3000, 3), [0, 0, 5]), [0, 0, -1])
+            return picture.encode("png"), picture.encode("exr"), picture.srgb().tobytes(), float(hits.t.sum())
+
+        if __name__ == "__main__":
+            before = work(0)
+            with multiprocessing.get_context("fork").Pool(2) as pool:
+                found = pool.map_async(work, range(6)).get(timeout=50)
+            assert all(one == before for one in found) and before[3] == 12000
+    """
+    subprocess.run([sys.executable, "-c", textwrap.dedent(code)], check=True, timeout=60)
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there are no forks")
 def test_children_of_forks_render_with_threads_of_their_own():
     code = """

@@ -109,6 +109,40 @@ def test_layers_are_arrays_by_name(cloud):
     assert not picture.pixels.flags.owndata and picture.pixels.flags.writeable
 
 
+@pytest.mark.parametrize(
+    ("options", "seen"),
+    [
+        ({}, {0, 1, 2}),
+        ({"select": "x > 1"}, {1, 2}),
+        ({"slices": ["x < 1"]}, {1, 2}),
+        ({"select": "x > 1", "slices": ["x > 4"]}, {1}),
+        ({"select": "x > 1", "cell": [9, 9, 9], "replicate": (1, 2, 1)}, {1, 2}),
+        ({"sphere": [{"center": [0, 3, 0], "radius": 1}], "select": "x > 1"}, {1, 2, 3}),
+        ({"radius_scale": 0.5}, {0, 1, 2}),
+    ],
+)
+def test_ids_are_rows_of_the_arrays(options, seen):
+    scene = spherule.Scene([[0, 0, 0], [3, 0, 0], [6, 0, 0]], radius=1, view="z", **options)
+    for copy in (scene, pickle.loads(pickle.dumps(scene))):
+        ids = copy.render(layers="id", size=(80, 60), spp=1).layers["id"]
+        assert set(ids.ravel().tolist()) - {spherule.NOTHING, spherule.GROUND} == seen
+
+
+def test_ids_of_sections_are_their_order():
+    sphere = [{"center": [x, 0, 0], "radius": 1} for x in (0, 3, 6)]
+    scene = spherule.Scene(sphere=sphere, slice=[{"normal": [-1, 0, 0], "distance": -1.5, "mode": "remove"}])
+    ids = scene.render(layers="id", size=(80, 60), spp=1).layers["id"]
+    assert set(ids.ravel().tolist()) - {spherule.NOTHING, spherule.GROUND} == {1, 2}
+
+
+def test_all_layers_at_once_are_those_of_one_after_the_other(cloud):
+    names = ["albedo", "normal", "depth", "coverage", "id"]
+    scene = spherule.Scene(cloud, radius=0.05)
+    whole = scene.render(layers=names, **SMALL).layers
+    for name in names:
+        assert np.array_equal(whole[name], scene.render(layers=name, **SMALL).layers[name]), name
+
+
 def test_transparent_pictures_have_alpha(cloud):
     picture = spherule.render(cloud, radius=0.05, background="transparent", **SMALL)
     assert picture.pixels.shape == (40, 60, 4)

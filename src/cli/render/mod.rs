@@ -50,7 +50,7 @@ use spherule_render::overlay::{Canvas, Matte};
 use spherule_render::render::{End, Judge, Options, Render, RenderError, ResumableRender};
 use spherule_render::scene::Scene;
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Result of a render, complete or not.
@@ -248,7 +248,10 @@ fn draw_over(
 ) -> Result<Option<Matte>, Failure> {
     let Scene { look, annotations, settings, .. } = &prepared.scene;
     let region = prepared.region;
-    let mut canvas = Canvas::with_look(look, &mut prepared.world, settings, region, render)?;
+    let world = &mut prepared.world;
+    // The looks of interrupted images are finished, too.
+    let never = AtomicBool::new(false);
+    let mut canvas = Canvas::with_look(look, world, settings, region, render, &never)?;
     if job.page.is_none() {
         let turns = job.turn.is_some();
         if !draw_annotations((annotations, look), &prepared.world, &mut canvas, turns) {

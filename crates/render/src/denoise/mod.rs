@@ -49,7 +49,7 @@ use crate::film::{Film, Region, Role};
 use crate::image::Image;
 use crate::layers::Layers;
 use crate::noise::{self, Noise};
-use crate::render::Statistics;
+use crate::render::{Options, Statistics};
 use rayon::prelude::*;
 
 /// A denoised picture, or a region of it.
@@ -69,6 +69,16 @@ pub struct Denoised {
 /// # Panics
 /// The sizes differ.
 pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoised {
+    denoise_until(image, statistics, layers, &Options::default())
+}
+
+/// Does the same until the flag of the options is set: tiles that are not begun by then stay as they are.
+fn denoise_until(
+    image: &Image,
+    statistics: &Statistics,
+    layers: &Layers,
+    options: &Options,
+) -> Denoised {
     let (width, height) = (image.width, image.height);
     let pixels = image.pixels.len();
     assert_eq!((layers.width, layers.height), (width, height), "layers of another size");
@@ -83,6 +93,7 @@ pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoi
     let regions: Vec<Region> = tiles(width, height).collect();
     let done: Vec<_> = regions
         .into_par_iter()
+        .filter(|_| !options.is_cancelled())
         .map_init(Workspace::default, |work, region| (region, work.denoise(&input, region)))
         .collect();
     let mut denoised = Denoised { image: image.clone(), squared_error: vec![0.0; pixels] };

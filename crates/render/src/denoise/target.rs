@@ -1,6 +1,6 @@
 //! Renders whose denoised picture has an error target.
 
-use super::{Denoised, denoise, error_of, is_worse};
+use super::{Denoised, denoise_until, error_of, is_worse};
 use crate::film::{Film, Region};
 use crate::layers::{Layers, ProgressiveLayers, SAMPLES};
 use crate::noise::{self, Estimate, Noise};
@@ -114,18 +114,30 @@ impl Denoiser {
         if !progress.layers.refine(world, &settings, options) {
             return None;
         }
-        let judged = self.judge_picture(film, &progress.layers.layers(), before);
+        let judged = self.judge_picture(film, &progress.layers.layers(), before, options)?;
         progress.last = Some((total, judged.clone()));
         Some(judged)
     }
 
-    fn judge_picture(&self, film: &Film, layers: &Layers, before: Noise) -> Judged {
+    fn judge_picture(
+        &self,
+        film: &Film,
+        layers: &Layers,
+        before: Noise,
+        options: &Options,
+    ) -> Option<Judged> {
+        if options.is_cancelled() {
+            return None;
+        }
         let image = film.resolve();
-        let denoised = denoise(&image, &Statistics::of(film), layers);
+        let denoised = denoise_until(&image, &Statistics::of(film), layers, options);
+        if options.is_cancelled() {
+            return None;
+        }
         if self.choice == Choice::UnlessWorse && is_worse(film, &image, &denoised.image) {
-            return Judged { denoised: None, before, noise: before };
+            return Some(Judged { denoised: None, before, noise: before });
         }
         let noise = error_of(film, &denoised);
-        Judged { denoised: Some(denoised), before, noise }
+        Some(Judged { denoised: Some(denoised), before, noise })
     }
 }

@@ -10,6 +10,7 @@ use crate::scene::generate::default_scene;
 use crate::scene::{Material, NamedMaterial, Rgb, Scene, Settings};
 use crate::trace::{Tracer, Traversal};
 use crate::world::World;
+use std::sync::atomic::AtomicBool;
 
 const WIDTH: u32 = 150;
 const HEIGHT: u32 = 70;
@@ -52,6 +53,18 @@ fn pictures_without_noise_stay_as_they_are() {
     let denoised = denoise(&image, &statistics, &layers);
     assert_eq!(denoised.image, image);
     assert!(denoised.squared_error.iter().all(|&error| error == 0.0));
+}
+
+#[test]
+fn cancelled_denoising_leaves_the_tiles_that_remain() {
+    let (image, statistics, layers) = picture(0.4);
+    let until = |flag| {
+        let flag = AtomicBool::new(flag);
+        let options = Options { cancel: Some(&flag), ..Options::default() };
+        denoise_until(&image, &statistics, &layers, &options).image
+    };
+    assert_eq!(until(true), image);
+    assert_ne!(until(false), image);
 }
 
 #[test]

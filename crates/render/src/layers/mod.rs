@@ -203,7 +203,8 @@ impl Layers {
 
 /// Computes the layers of a picture, with as many samples as the picture but at most [`SAMPLES`].
 ///
-/// Only the region and the tracer of `options` are used. Like the picture's, pixels have the same bytes
+/// Only the region, the tracer and the flag of `options` are used: once it is set, no pixels are returned. Like the
+/// picture's, pixels have the same bytes
 /// for any number of threads and any tracer, in a region and in the whole. If `wanted` has only
 /// [`Layer::Id`] and statistics, one ray per pixel is traced, and only the ids are valid.
 ///
@@ -218,11 +219,15 @@ pub fn layers(
     let region = render::check(world, settings, options)?;
     let tiles = 0..Film::tile_count(region);
     let features = features(world, settings, options, wanted, tiles.clone())?;
+    if options.is_cancelled() {
+        let Region { width, height, .. } = region;
+        return Ok(Layers { width, height, pixels: Vec::new(), statistics: None });
+    }
     Ok(Layers::gather(region, &[(tiles, features)]))
 }
 
 /// Computes the features of some tiles of the region, by their numbers: tile by tile, in the order of
-/// [`Tile::pixels`](crate::film::Tile::pixels).
+/// [`Tile::pixels`](crate::film::Tile::pixels). Tiles that are not begun when the options' flag is set are left out.
 ///
 /// # Errors
 /// Those of [`render()`](crate::render::render()).
@@ -245,6 +250,7 @@ pub fn features(
     let regions: Vec<Region> = regions.collect();
     let features: Vec<Vec<Features>> = regions
         .into_par_iter()
+        .filter(|_| !options.is_cancelled())
         .map_init(
             || Workspace::new(world, elisions),
             |work, region| {

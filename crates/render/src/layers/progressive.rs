@@ -62,7 +62,6 @@ impl ProgressiveLayers {
         }
         self.settings = settings.clone();
         let (samples, tiles) = (settings.spp.min(SAMPLES), self.tiles.len());
-        let cancelled = || options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
         let filter = PixelFilter::new(settings.filter);
         let (tracer, elisions) = (options.tracer, options.elisions);
@@ -71,7 +70,7 @@ impl ProgressiveLayers {
         let queue: Vec<Mutex<&mut TileLayers>> = self.tiles.iter_mut().map(Mutex::new).collect();
         rayon::broadcast(|_| {
             let mut work = Workspace::new(world, elisions);
-            while !cancelled() {
+            while !options.is_cancelled() {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 let Some(Ok(mut tile)) = queue.get(number).map(Mutex::lock) else { return };
                 tile.refine(&job, samples, &mut work);

@@ -7,6 +7,7 @@ use crate::layers::{self, Layer, layers};
 use crate::render::{Options, Render, RenderError};
 use crate::scene::{Look, Settings};
 use crate::world::World;
+use std::sync::atomic::AtomicBool;
 
 /// An image with its matte, for overlays.
 pub struct Canvas<'a> {
@@ -17,7 +18,9 @@ pub struct Canvas<'a> {
 }
 
 impl<'a> Canvas<'a> {
-    /// Draws the overlays of a look over a rendered region.
+    /// Draws the overlays of a look over a rendered region. Once the flag is set, no rays are traced for them, since
+    /// who interrupts does not want to wait: nothing is drawn, or the background is removed by one sample per pixel,
+    /// without the shadows on the ground.
     ///
     /// # Errors
     /// Those of [`render()`](crate::render::render()).
@@ -27,16 +30,27 @@ impl<'a> Canvas<'a> {
         settings: &Settings,
         region: Region,
         render: &'a mut Render,
+        cancel: &AtomicBool,
     ) -> Result<Self, RenderError> {
         let (most, mean) = (render.samples.most, mean_samples(region, render));
         let image = &mut render.image;
         if look.is_plain() {
             return Ok(Self { image, matte: None });
         }
-        let options = Options { region: Some(region), ..Options::default() };
+        let whole = Options { region: Some(region), ..Options::default() };
+        let options = Options { cancel: Some(cancel), ..whole };
         let floor = Settings { spp: mean, ..settings.clone() };
         let ground = if look.is_transparent() { ground(world, &floor, &options)? } else { None };
-        let layers = layers(world, &settings_of_layers(settings, most), &options, &[Layer::Depth])?;
+        let traced = |samples, options| {
+            layers(world, &settings_of_layers(settings, samples), options, &[Layer::Depth])
+        };
+        let mut layers = traced(most, &options)?;
+        if layers.pixels.is_empty() {
+            if !look.is_transparent() {
+                return Ok(Self { image, matte: None });
+            }
+            layers = traced(1, &whole)?;
+        }
         let overlay = Overlay { world, region, layers: &layers, depths: None };
         let matte = overlay.draw_look(image, look, ground);
         Ok(Self { image, matte })

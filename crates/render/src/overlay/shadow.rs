@@ -88,9 +88,10 @@ fn plain<'a>(settings: &Settings, options: &Options<'a>) -> (Settings, Options<'
     (Settings { until_error: None, time: None, ..settings.clone() }, options)
 }
 
-/// Renders how spheres change the ground's light; `None` if there is no ground.
+/// Renders how spheres change the ground's light; `None` if there is no ground, or if the flag of the options cancels
+/// it.
 ///
-/// `settings` give the number of samples; only the tracer and the region of `options` are used. The
+/// `settings` give the number of samples; only the tracer, the region and the flag of `options` are used. The
 /// world is unchanged afterwards.
 ///
 /// # Errors
@@ -100,12 +101,11 @@ pub fn ground(
     settings: &Settings,
     options: &Options,
 ) -> Result<Option<Ground>, RenderError> {
-    let options = Options { cancel: None, ..*options };
-    let Some(mut render) = GroundRender::begin(world, settings, &options)? else {
+    let Some(mut render) = GroundRender::begin(world, settings, options)? else {
         return Ok(None);
     };
-    render.run(world, settings, &options)?;
-    Ok(Some(render.ground()))
+    let done = render.run(world, settings, options)?;
+    Ok(done.then(|| render.ground()))
 }
 
 /// Returns the fraction of one picture's light that is missing in the other.

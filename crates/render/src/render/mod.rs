@@ -45,7 +45,7 @@ use crate::scene::Settings;
 use crate::trace::Tracer;
 use crate::world::World;
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Options of a render that do not change the image.
@@ -71,6 +71,13 @@ pub struct Options<'a> {
     pub judge: Option<&'a Judge<'a>>,
     /// Work that may be omitted without changing the image; the default is all.
     pub elisions: Elisions,
+}
+
+impl Options<'_> {
+    /// Returns whether the flag is set.
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
 }
 
 /// An estimate of an error from a film: see [`Options::judge`].

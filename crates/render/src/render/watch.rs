@@ -69,7 +69,7 @@ impl<'a> Watch<'a> {
 
     /// Returns whether the render is to be cancelled.
     pub(super) fn cancelled(&self) -> bool {
-        self.options.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
+        self.options.is_cancelled()
     }
 
     /// Adds the counters of a task, and reports the progress: the fraction `done`.
