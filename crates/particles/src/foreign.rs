@@ -38,13 +38,9 @@ const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 
 /// Magic numbers of binary files: offset, bytes, name, conversion.
-const MAGICS: [(usize, &[u8], &str, &str); 26] = [
+const MAGICS: [(usize, &[u8], &str, &str); 22] = [
     (0, b"# vtk DataFile", "a VTK file", MESH),
     (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
-    (0, b"CDF\x01", "a NetCDF file", WITH_TOPOLOGY),
-    (0, b"CDF\x02", "a NetCDF file", WITH_TOPOLOGY),
-    (0, b"CDF\x05", "a NetCDF file", WITH_TOPOLOGY),
-    (12, b"GMX_trn_file", "a TRR trajectory of GROMACS", TRAJECTORY),
     (0, b"LammpS RestartT", "a binary restart file of LAMMPS", RESTART),
     (8, b"DUMPATOM", "a binary dump of LAMMPS", BINARY_DUMP),
     (8, b"DUMPCUSTOM", "a binary dump of LAMMPS", BINARY_DUMP),
@@ -211,21 +207,6 @@ pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
     let word = |offset: usize| head.get(offset..offset + 4)?.try_into().ok();
     let big_endian = |offset: usize| word(offset).map_or(0, u32::from_be_bytes);
     let little_endian = |offset: usize| word(offset).map_or(0, u32::from_le_bytes);
-    // XTC: the number of atoms is stored twice.
-    let atoms = big_endian(4);
-    if matches!(big_endian(0), 1995 | 2023) && atoms > 0 && atoms == big_endian(52) {
-        return Some(foreign("an XTC trajectory of GROMACS", TRAJECTORY, path));
-    }
-    if big_endian(0) == 1993 && big_endian(4) == 13 {
-        return Some(foreign("a TRR trajectory of GROMACS", TRAJECTORY, path));
-    }
-    // DCD begins with the length of a Fortran record, in four or eight bytes and either byte order.
-    let is_dcd = |offset: usize| has(offset, b"CORD") || has(offset, b"VELD");
-    let records =
-        [(big_endian(0), 4), (little_endian(0), 4), (big_endian(4), 8), (little_endian(0), 8)];
-    if records.iter().any(|&(length, offset)| length == 84 && is_dcd(offset)) {
-        return Some(foreign("a DCD trajectory", WITH_TOPOLOGY, path));
-    }
     let is_gadget = |word: &dyn Fn(usize) -> u32| {
         word(0) == 256 && word(260) == 256 || word(0) == 8 && has(4, b"HEAD") && word(12) == 8
     };
@@ -467,25 +448,10 @@ mod tests {
 
     #[test]
     fn binary_formats_are_named_with_a_command() {
-        let xtc =
-            [&1995_u32.to_be_bytes()[..], &7_u32.to_be_bytes(), &[0; 44], &7_u32.to_be_bytes()]
-                .concat();
-        let dcd = |length: &[u8], word: &[u8]| [length, word, &[0; 90]].concat();
         let gadget = [&256_u32.to_le_bytes()[..], &[0; 256], &256_u32.to_le_bytes()].concat();
         let zip = |name: &[u8]| [b"PK\x03\x04", &[0; 26][..], name, &[0; 9]].concat();
         for (content, words) in [
-            (xtc, ["XTC", "gmx trjconv -f run.bin"]),
-            (dcd(&84_u32.to_le_bytes(), b"CORD"), ["DCD", "'run.bin').atoms"]),
-            (dcd(&84_u32.to_be_bytes(), b"VELD"), ["DCD", "frames='all'"]),
-            (dcd(&84_u64.to_le_bytes(), b"CORD"), ["DCD", "'run.xyz'"]),
-            (dcd(&84_u64.to_be_bytes(), b"CORD"), ["DCD", "MDAnalysis"]),
-            (
-                [&1993_u32.to_be_bytes()[..], &13_u32.to_be_bytes(), &[0; 4], b"GMX_trn_file"]
-                    .concat(),
-                ["TRR", "gmx"],
-            ),
             (b"\x89HDF\r\n\x1A\n\0\0".to_vec(), ["HDF5", "h5py.File('run.bin')"]),
-            (b"CDF\x02\0\0\0\0".to_vec(), ["NetCDF", "MDAnalysis"]),
             (gadget, ["Gadget", "pynbody.load('run.bin')"]),
             (zip(b"[Content_Types].xml"), ["spreadsheet", "--convert-to csv run.bin"]),
             (
@@ -506,8 +472,8 @@ mod tests {
         assert_eq!(binary(&zip(b"position.npy"), Path::new("a.npz")), None);
         assert_eq!(binary(&[0; 300], Path::new("a")), None);
         assert!(
-            named(b"CDF\x01", "-").contains("'FILE'")
-                && named(b"CDF\x01", "a b.nc").contains("'FILE'")
+            named(b"\x89HDF\r\n\x1A\n", "-").contains("'FILE'")
+                && named(b"\x89HDF\r\n\x1A\n", "a b.h5").contains("'FILE'")
         );
     }
 

@@ -8,8 +8,9 @@
 //! ```
 //!
 //! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
-//! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content. Files may
-//! be compressed with gzip, bzip2, xz or zstd.
+//! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, and so are the
+//! trajectories DCD, XTC, TRR and NetCDF of Amber, whose particles a topology names. Files may be
+//! compressed with gzip, bzip2, xz or zstd.
 //!
 //! Every reader streams: it stores columns, never the file, and doesn't allocate by counts in the file.
 //! A malformed number is an error with its line. To add a format, add it to [`Format`], its detection to
@@ -32,11 +33,13 @@
 
 mod aliases;
 mod alternates;
+mod binary;
 mod builder;
 mod categories;
 mod cell;
 mod cif;
 mod csv;
+mod dcd;
 mod element;
 mod error;
 mod extra;
@@ -45,6 +48,7 @@ mod foreign;
 mod frame;
 mod frame_reader;
 mod gro;
+mod gromacs;
 mod gsd;
 mod header;
 mod lammps;
@@ -52,6 +56,7 @@ mod line;
 mod lines;
 mod memory;
 mod naming;
+mod netcdf;
 mod number;
 mod numpy;
 mod options;
@@ -68,6 +73,7 @@ mod source;
 mod srgb;
 mod suggest;
 mod text;
+mod topology;
 mod undrawn;
 mod units;
 mod utf16;

@@ -4,13 +4,15 @@ use super::fields::Fields;
 use super::foreign::{self, Foreign};
 use super::options::{Format, ReadOptions, Role};
 use super::source::Source;
-use super::{cif, gro, gsd, header, line, number, numpy, pdb, ply, units, utf16};
+use super::{
+    cif, dcd, gro, gromacs, gsd, header, line, netcdf, number, numpy, pdb, ply, units, utf16,
+};
 use crate::FileError;
 
 /// Help that lists the formats that can be detected.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
-                     of crystals, GSD, PLY and arrays of NumPy; of others, name the format, as in --format xyz, \
+                     of crystals, GSD, PLY, arrays of NumPy, DCD, XTC, TRR and NetCDF of Amber; of others, name the format, as in --format xyz, \
                      or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.
@@ -36,7 +38,7 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
             _ => Ok(format),
         };
     }
-    if let Some(asked @ (Format::Gsd | Format::Npy | Format::Npz | Format::Ply)) = options.format {
+    if let Some(asked) = options.format.filter(|format| format.has_magic()) {
         let help = "leave --format out: the content tells the format";
         return Err(fault(format!("is not {}", asked.name())).with_help(help));
     }
@@ -79,7 +81,14 @@ fn binary(head: &[u8]) -> Option<Format> {
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
         return Some(Format::Npz);
     }
-    ply::is_ply(head).then_some(Format::Ply)
+    let signatures: [(fn(&[u8]) -> bool, Format); 5] = [
+        (ply::is_ply, Format::Ply),
+        (dcd::is_dcd, Format::Dcd),
+        (gromacs::is_xtc, Format::Xtc),
+        (gromacs::is_trr, Format::Trr),
+        (netcdf::is_netcdf, Format::NetCdf),
+    ];
+    signatures.into_iter().find(|(is, _)| is(head)).map(|(_, format)| format)
 }
 
 fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
