@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds Spherule's readers of particle files against other programs: counts, frames, cells, first and last rows.
 
-    pip install ase gemmi gsd MDAnalysis plyfile
+    pip install ase chemfiles gemmi gsd MDAnalysis plyfile
     cargo build --release
     tools/readers/compare.py FOLDER ...       # all files that Spherule reads, folders within them too
     tools/readers/compare.py --answers        # write tests/data/particles/answers.toml
@@ -178,6 +178,10 @@ def programs(file, format):
         "xtc": [by_mdanalysis_trajectory],
         "trr": [by_mdanalysis_trajectory],
         "netcdf": [by_mdanalysis_trajectory],
+        "pqr": [by_mdanalysis],
+        "poscar": [by_ase_poscar],
+        "sdf": [by_chemfiles],
+        "mol2": [by_chemfiles],
     }[format]
 
 
@@ -279,6 +283,18 @@ def by_ase(file, **options):
                   elements=atoms.get_chemical_symbols())
 
 
+def by_ase_poscar(file):
+    return by_ase(file, format="vasp-xdatcar" if "Direct configuration" in unpacked(file) else "vasp")
+
+
+def by_chemfiles(file):
+    import chemfiles
+    with chemfiles.Trajectory(str(file)) as source:
+        # Positions are a view of the frame.
+        frame = source.read()
+        return answer(f"chemfiles {chemfiles.__version__}", frame.positions.copy(), None, source.nsteps)
+
+
 def by_ase_dump(file):
     return by_ase(file, format="lammps-dump-text", order=False)
 
@@ -370,7 +386,8 @@ def by_numpy_text(file):
     return answer(f"NumPy {np.__version__}", rows[:, :3], None, 1, **more)
 
 
-FORMATS = {".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf",
+FORMATS = {".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf", ".pqr": "pqr", ".poscar": "poscar", ".xdatcar": "poscar", ".sdf": "sdf",
+           ".mol2": "mol2",
            ".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
            ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif"}
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the small trajectories of tests/data/particles and the files in tests/data/topologies that name their particles.
+"""Writes the small trajectories and structures of tests/data/particles and the files in tests/data/topologies that name their particles.
 
-    pip install MDAnalysis chemfiles mdtraj netCDF4
+    pip install ase MDAnalysis chemfiles mdtraj netCDF4 parmed
     tools/readers/trajectories.py
     tools/readers/compare.py --answers        # what MDAnalysis reads from them
 
@@ -14,10 +14,13 @@ import sys
 import warnings
 from pathlib import Path
 
+import ase.build
+import ase.io
 import chemfiles
 import MDAnalysis
 import mdtraj
 import numpy as np
+import parmed
 
 DATA = Path(__file__).resolve().parents[2] / "tests/data"
 OUT = DATA / "particles"
@@ -47,6 +50,7 @@ def main():
     atoms.write(str(TOPOLOGIES / "water.pdb"))
     atoms.write(str(TOPOLOGIES / "water.pqr"))
     variants((OUT / "water.dcd").read_bytes())
+    structures(atoms)
 
 
 def water():
@@ -92,6 +96,33 @@ def mdtraj_copies():
         file.write(frames[:2, :20])
     with mdtraj.formats.NetCDFTrajectoryFile(str(OUT / "no_cell.ncdf"), "w", force_overwrite=True) as file:
         file.write(frames[:2, :20])
+
+
+def structures(atoms):
+    """PQR by MDAnalysis, VASP's formats by ASE, molecules by chemfiles, a PSF topology by ParmEd."""
+    atoms[:12].write(str(OUT / "water.pqr"))
+    crystal = ase.build.bulk("ZnS", "zincblende", a=5.41, cubic=True)
+    ase.io.write(OUT / "zns.poscar", crystal, format="vasp", direct=True)
+    ase.io.write(OUT / "zns_cartesian.poscar", crystal, format="vasp", direct=False)
+    frames = []
+    for step in range(3):
+        frame = crystal.copy()
+        frame.rattle(0.05, seed=step)
+        frames.append(frame)
+    ase.io.write(OUT / "zns.xdatcar", frames, format="vasp-xdatcar")
+    for suffix in ["sdf", "mol2"]:
+        with chemfiles.Trajectory(str(OUT / f"molecules.{suffix}"), "w") as file:
+            for name in ["CH3CH2OH", "C6H6"]:
+                molecule = ase.build.molecule(name)
+                frame = chemfiles.Frame()
+                for symbol, place in zip(molecule.get_chemical_symbols(), molecule.positions):
+                    frame.add_atom(chemfiles.Atom(symbol), place)
+                file.write(frame)
+    topology = parmed.load_file(str(TOPOLOGIES / "water.pdb"))
+    for own, atom in zip(topology.atoms, atoms):
+        own.charge, own.mass, own.type = atom.charge, atom.mass, atom.name
+    topology.box = None
+    parmed.charmm.CharmmPsfFile.from_structure(topology).write_psf(str(TOPOLOGIES / "water.psf"))
 
 
 def records(data):

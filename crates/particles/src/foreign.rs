@@ -249,15 +249,7 @@ pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
     if starts_with("<?xml") || starts_with("<") {
         return Some(markup(head, path));
     }
-    let structures: [(bool, &str, &str); 11] = [
-        (is_psf(first, head), "a topology of CHARMM or NAMD (PSF)", TOPOLOGY),
-        (has_line(head, b"@<TRIPOS>"), "a MOL2 file", ATOMS),
-        (is_molfile(&lines, head), "an MDL molfile (SDF)", MOLECULES),
-        (
-            is_poscar(&lines),
-            "a POSCAR of VASP",
-            "convert it: ase convert -i vasp -o extxyz {file} {stem}.xyz",
-        ),
+    let structures: [(bool, &str, &str); 7] = [
         (
             is_cube(&lines),
             "a cube file of Gaussian",
@@ -315,45 +307,6 @@ fn numbers(line: &[u8]) -> Option<Vec<f64>> {
     Fields::blanks(line).map(number::parse).collect()
 }
 
-/// Returns whether the first line is `PSF` with flags, and a section with a title follows.
-fn is_psf(first: &[u8], head: &[u8]) -> bool {
-    let is_flag = |field: &[u8]| field.iter().all(u8::is_ascii_uppercase);
-    first.starts_with(b"PSF")
-        && Fields::blanks(first).all(is_flag)
-        && memchr::memmem::find(head, b"!N").is_some()
-}
-
-/// Returns whether the fourth line has the numbers of atoms and bonds, in three columns each, and the
-/// version.
-fn is_molfile(lines: &[&[u8]], head: &[u8]) -> bool {
-    let Some(counts) = lines.get(3) else { return false };
-    let is_count = |field: Option<&[u8]>| field.is_some_and(|field| number::whole(field).is_some());
-    let version = counts.ends_with(b"V2000") || counts.ends_with(b"V3000");
-    is_count(counts.get(..3))
-        && is_count(counts.get(3..6))
-        && (version || has_line(head, b"M  END"))
-}
-
-/// Returns whether lines are a comment, a scale, three lattice vectors, element names and numbers of
-/// atoms or only these, and the kind of coordinates.
-fn is_poscar(lines: &[&[u8]]) -> bool {
-    let has = |line: usize, count: usize| {
-        lines.get(line).and_then(|line| numbers(line)).is_some_and(|numbers| numbers.len() == count)
-    };
-    let counts = |line: usize| {
-        let mut fields = Fields::blanks(lines.get(line).copied().unwrap_or_default()).peekable();
-        fields.peek().is_some() && fields.all(|field| number::whole(field).is_some())
-    };
-    let coordinates = |line: usize| {
-        let line = lines.get(line).copied().unwrap_or_default().trim_ascii_start();
-        line.first().is_some_and(|letter| b"sSdDcCkK".contains(letter))
-    };
-    let scale = has(1, 1) || has(1, 3);
-    scale
-        && (2..5).all(|line| has(line, 3))
-        && (counts(5) && coordinates(6) || counts(6) && coordinates(7))
-}
-
 /// Returns whether lines are two comments, the number of atoms and the origin, three axes of the grid with
 /// their numbers of points, and an atom. The line of the origin may end with another number. Rows of a
 /// table with five numbers each do not match.
@@ -404,45 +357,13 @@ fn is_mesh(first: &[u8]) -> bool {
     vertex.is_some_and(|numbers| numbers.len() >= 3) || first.starts_with(b"mtllib ")
 }
 
-/// Returns the format of a PQR file. It resembles PDB, but has charges and radii in columns of any
-/// width.
-pub(crate) fn pqr(head: &[u8], path: &Path) -> Option<Foreign> {
-    let has_suffix = |wanted: &str| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        name.split('.').skip(1).any(|part| part == wanted)
-    };
-    if has_suffix("pdb") || has_suffix("ent") {
-        return None;
-    }
-    let is_atom = |line: &&[u8]| line.starts_with(b"ATOM") || line.starts_with(b"HETATM");
-    let complete = &head[..memchr::memrchr(b'\n', head).unwrap_or(head.len())];
-    let mut atoms = complete.split(|&byte| byte == b'\n').filter(is_atom).take(LINES).peekable();
-    atoms.peek()?;
-    let conversion = "draw its radii: awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' {file} | \
-               spherule render - -o {stem}.png; or read it as PDB, without them: --format pdb";
-    let is_pqr = has_suffix("pqr") || atoms.all(is_pqr_atom);
-    is_pqr.then(|| foreign("a PQR file, with charges and radii", conversion, path))
-}
-
-/// Returns whether a row ends with five decimal numbers that are not in the columns of PDB.
-fn is_pqr_atom(line: &[u8]) -> bool {
-    let fields: Vec<&[u8]> = Fields::blanks(line).collect();
-    let last = fields.len().checked_sub(5).map(|first| &fields[first..]).unwrap_or_default();
-    let is_decimal = |field: &&[u8]| field.contains(&b'.') && number::parse(field).is_some();
-    let numbers = last.len() == 5 && last.iter().all(is_decimal);
-    // In PDB, occupancy and temperature factor have two decimals in fixed columns.
-    let two_decimals = |end: usize| line.get(end - 3) == Some(&b'.');
-    numbers && !(two_decimals(60) && two_decimals(66) && line.get(38 - 4) == Some(&b'.'))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn named(content: &[u8], name: &str) -> String {
         let path = Path::new(name);
-        let found =
-            binary(content, path).or_else(|| text(content, path)).or_else(|| pqr(content, path));
+        let found = binary(content, path).or_else(|| text(content, path));
         found.map_or_else(String::new, |found| format!("{}: {}", found.name, found.help))
     }
 
@@ -479,26 +400,15 @@ mod tests {
 
     #[test]
     fn text_formats_are_named_with_a_command() {
-        let mol = "241\n  -OEChem-\n\n 12 12  0     0  0  0  0  0  0999 V2000\n    2.0    0.0    0.0 C\nM  END\n";
-        let poscar =
-            "Si2\n1.0\n0 2.7 2.7\n2.7 0 2.7\n2.7 2.7 0\nSi\n2\nDirect\n0 0 0\n0.25 0.25 0.25\n";
-        let old_poscar =
-            "8\n5.43\n1 0 0\n0 1 0\n0 0 1\n2 6\nSelective dynamics\nCartesian\n0 0 0 T T F\n";
         let cube =
             "title\ncomment\n 2 0.0 0.0 0.0\n 10 0.5 0 0\n 10 0 0.5 0\n 10 0 0 0.5\n 8 8.0 0 0 0\n";
         let amber =
             "\n    2\n   1.0000000   2.0000000   3.0000000   4.0000000   5.0000000   6.0000000\n";
         let charmm = "* TITLE\n*\n    1\n    1    1 ALA  N     1.0 2.0 3.0 PEP  1  0.0\n";
         for (content, words) in [
-            (mol, ["SDF", "obabel in.txt -O in.xyz"]),
-            ("@<TRIPOS>MOLECULE\nx\n", ["MOL2", "MDAnalysis"]),
-            ("# made by x\n@<TRIPOS>MOLECULE\n", ["MOL2", "in.txt"]),
-            (poscar, ["POSCAR", "ase convert -i vasp -o extxyz in.txt in.xyz"]),
-            (old_poscar, ["POSCAR", "-i vasp"]),
             (cube, ["cube", "-i cube"]),
             (amber, ["Amber", "TOPOLOGY"]),
             (charmm, ["CRD", "MDAnalysis"]),
-            ("PSF CMAP\n\n  1 !NTITLE\n", ["PSF", "TRAJECTORY"]),
             ("# vtk DataFile Version 3.0\nx\nASCII\n", ["VTK", "meshio.read('in.txt').points"]),
             ("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
             ("<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
@@ -508,11 +418,6 @@ mod tests {
             ("TITLE\nwater\nEND\nPOSITION\n", ["G96", "gmx editconf -f in.txt"]),
             ("mtllib a\nv 1 2 3\n", ["OBJ", "awk"]),
             ("<html>", ["web page", "curl"]),
-            (
-                "ATOM      1  N   NTR     0      63.889  69.990 133.214  0.1414 1.8240\n",
-                ["PQR", "print $(NF-4)"],
-            ),
-            ("ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\nTER\n", ["PQR", "--format pdb"]),
         ] {
             let found = named(content.as_bytes(), "in.txt");
             assert!(words.iter().all(|word| found.contains(word)), "{words:?}: {found}");
@@ -540,10 +445,6 @@ mod tests {
         ] {
             assert_eq!(named(content.as_bytes(), "a.txt"), "", "{content}");
         }
-        assert_eq!(
-            named("ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\n".as_bytes(), "a.pdb.gz"),
-            ""
-        );
     }
 
     #[test]
@@ -587,10 +488,7 @@ mod tests {
 
     #[test]
     fn variants_of_text_formats_are_named() {
-        let mol = |counts: &str, end: &str| format!("a\n  b\n\n{counts}\n    2.0 0.0 0.0 C\n{end}");
         for (content, word) in [
-            (mol("  0  0  0     0  0            999 V3000", ""), "SDF"),
-            (mol(" 12 12", "M  END\n"), "SDF"),
             ("ZONE T=\"a\"\n1 2 3\n".to_owned(), "Tecplot"),
             ("ZONE\n1 2 3\n".to_owned(), "Tecplot"),
             ("solid part\n facet normal 0 0 1\nfacet normal 0 0 1\n".to_owned(), "STL"),

@@ -9,8 +9,8 @@
 //!
 //! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
 //! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, and so are the
-//! trajectories DCD, XTC, TRR and NetCDF of Amber, whose particles a topology names. Files may be
-//! compressed with gzip, bzip2, xz or zstd.
+//! trajectories DCD, XTC, TRR and NetCDF of Amber, whose particles a topology names, PQR, POSCAR and XDATCAR,
+//! SDF, MOL2 and PSF. Files may be compressed with gzip, bzip2, xz or zstd.
 //!
 //! Every reader streams: it stores columns, never the file, and doesn't allocate by counts in the file.
 //! A malformed number is an error with its line. To add a format, add it to [`Format`], its detection to
@@ -55,6 +55,8 @@ mod lammps;
 mod line;
 mod lines;
 mod memory;
+mod mol2;
+mod molfile;
 mod naming;
 mod netcdf;
 mod number;
@@ -62,7 +64,10 @@ mod numpy;
 mod options;
 mod pdb;
 mod ply;
+mod poscar;
+mod pqr;
 mod progress;
+mod psf;
 mod reader;
 mod record;
 mod scalar;

@@ -46,11 +46,21 @@ pub enum Format {
     Trr,
     /// A NetCDF trajectory of Amber.
     NetCdf,
+    /// PQR: PDB with charges and radii.
+    Pqr,
+    /// POSCAR, CONTCAR or XDATCAR of VASP.
+    Poscar,
+    /// MDL molfiles and SDF.
+    Sdf,
+    /// MOL2 of Tripos.
+    Mol2,
+    /// PSF of CHARMM and NAMD: a topology, without positions.
+    Psf,
 }
 
 impl Format {
     /// All formats with their names in scene files and on the command line.
-    pub const ALL: [(&'static str, Self); 17] = [
+    pub const ALL: [(&'static str, Self); 22] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
         ("xyz", Self::Xyz),
@@ -68,6 +78,11 @@ impl Format {
         ("xtc", Self::Xtc),
         ("trr", Self::Trr),
         ("netcdf", Self::NetCdf),
+        ("pqr", Self::Pqr),
+        ("poscar", Self::Poscar),
+        ("sdf", Self::Sdf),
+        ("mol2", Self::Mol2),
+        ("psf", Self::Psf),
     ];
 
     /// Returns whether files of this format are told by their first bytes alone.

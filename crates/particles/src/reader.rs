@@ -5,7 +5,10 @@ use super::frame_reader::FrameReader;
 use super::options::{Format, FrameChoice, ReadOptions};
 use super::source::{Source, is_standard_input};
 use super::topology::Joined;
-use super::{cif, csv, dcd, gro, gromacs, gsd, lammps, netcdf, numpy, pdb, ply, sniff, text, xyz};
+use super::{
+    cif, csv, dcd, gro, gromacs, gsd, lammps, mol2, molfile, netcdf, numpy, pdb, ply, poscar, pqr,
+    psf, sniff, text, xyz,
+};
 use crate::FileError;
 use std::path::Path;
 
@@ -23,7 +26,7 @@ impl Frames {
     /// The file cannot be read, or its format is unknown.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
         let reader: Box<dyn FrameReader> = match &options.topology {
-            None => open(path, options)?,
+            None => open_positions(path, options)?,
             Some(topology) => Box::new(Joined::new(path, topology, options)?),
         };
         Ok(Self { reader, failed: false })
@@ -40,11 +43,28 @@ impl Frames {
     }
 }
 
-/// Returns the reader of a file, without its topology.
-pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn FrameReader>, FileError> {
+/// Returns the reader of a file of positions, without its topology.
+pub(crate) fn open_positions(
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<Box<dyn FrameReader>, FileError> {
+    let (format, reader) = open(path, options)?;
+    if format == Format::Psf {
+        let error = FileError::whole_file(path, "is a topology, without positions");
+        let name = path.display();
+        return Err(error.with_help(format!("name a trajectory, and give it --topology {name}")));
+    }
+    Ok(reader)
+}
+
+/// Returns the reader of a file and its format; a topology may lack positions.
+pub(crate) fn open(
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<(Format, Box<dyn FrameReader>), FileError> {
     let source = Source::open(path, &options.progress)?;
     let format = sniff::format(&source, options)?;
-    Ok(match format {
+    let reader: Box<dyn FrameReader> = match format {
         Format::Xyzr => Box::new(text::Rows::new(source, options)),
         Format::Csv => Box::new(csv::Csv::new(source, options)),
         Format::Xyz => Box::new(xyz::Xyz::new(source, options)),
@@ -62,7 +82,13 @@ pub(crate) fn open(path: &Path, options: &ReadOptions) -> Result<Box<dyn FrameRe
         Format::Xtc => Box::new(gromacs::Xtc::new(source, options)?),
         Format::Trr => Box::new(gromacs::Trr::new(source, options)?),
         Format::NetCdf => Box::new(netcdf::NetCdf::new(source, options)?),
-    })
+        Format::Pqr => Box::new(pqr::Pqr::new(source, options)),
+        Format::Poscar => Box::new(poscar::Poscar::new(source, options)),
+        Format::Sdf => Box::new(molfile::Molfile::new(source, options)),
+        Format::Mol2 => Box::new(mol2::Mol2::new(source, options)),
+        Format::Psf => Box::new(psf::Psf::new(source, options)),
+    };
+    Ok((format, reader))
 }
 
 impl Iterator for Frames {

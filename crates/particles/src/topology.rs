@@ -101,7 +101,7 @@ impl Joined {
             atom_style: options.atom_style.clone(),
             ..ReadOptions::default()
         };
-        let frames = reader::open(path, &trajectory)?;
+        let frames = reader::open_positions(path, &trajectory)?;
         let topology = topology.to_owned();
         Ok(Self {
             path: path.to_owned(),
@@ -116,7 +116,7 @@ impl Joined {
 
     /// Reads the topology.
     fn read(&self) -> Result<ParticleFrame, FileError> {
-        let mut frames = reader::open(&self.topology, &self.options)?;
+        let (_, mut frames) = reader::open(&self.topology, &self.options)?;
         let Some(mut particles) = frames.next()? else {
             return Err(FileError::whole_file(&self.topology, "holds no particles"));
         };

@@ -25,6 +25,10 @@ const SAME: [&str; 9] = [
 /// Trajectories with other frames.
 const OTHERS: [&str; 4] = ["fixed_atoms.dcd", "no_cell.dcd", "no_cell.ncdf", "six.xtc"];
 
+/// Structures in text.
+const STRUCTURES: [&str; 5] =
+    ["water.pqr", "zns.poscar", "zns.xdatcar", "molecules.sdf", "molecules.mol2"];
+
 fn data(folder: &str, name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data").join(folder).join(name)
 }
@@ -130,7 +134,7 @@ fn steps_and_times_are_those_of_the_file() {
 
 #[test]
 fn topologies_name_particles() {
-    for topology in ["water.gro", "water.pdb"] {
+    for topology in ["water.gro", "water.pdb", "water.pqr", "water.psf"] {
         for name in SAME {
             let options = with_topology(topology, "resname,resid");
             let frame = read(name, &ReadOptions { frame: FrameChoice::Index(2), ..options });
@@ -154,6 +158,112 @@ fn topologies_name_particles() {
     let bare = read("water.xtc", &at(1));
     assert!(bare.kinds.codes.is_empty());
     assert!(bare.warnings.iter().any(|text| text.contains("--topology")), "{:?}", bare.warnings);
+}
+
+#[test]
+fn radii_of_topologies_are_in_the_unit_of_the_trajectory() {
+    let radii = |name: &str| {
+        let radius = read(name, &with_topology("water.pqr", "")).radius;
+        [radius[0], radius[1], radius[183]]
+    };
+    assert_eq!(radii("water.dcd"), [1.768, 0.2, 1.369]);
+    for (own, expected) in radii("water.xtc").into_iter().zip([0.1768, 0.02, 0.1369]) {
+        assert!((own - expected).abs() < 1e-12, "{own} {expected}");
+    }
+}
+
+#[test]
+fn topologies_without_positions_are_no_particle_files() {
+    let path = data("topologies", "water.psf");
+    let error = read_frame(&path, &ReadOptions::default()).expect_err("no positions");
+    assert_eq!(error.message, "is a topology, without positions");
+    assert!(error.help.is_some_and(|help| help.contains("--topology")));
+    let options = with_topology("water.psf", "segid,mass,charge");
+    let frame = read("water.dcd", &options);
+    let value = |name: &str| {
+        let column = frame.numbers.iter().find(|column| column.name == name).expect("a column");
+        column.values[183]
+    };
+    assert_eq!((value("charge"), value("mass"), frame.numbers.len()), (1.0, 22.9898, 2));
+    assert_eq!(frame.texts.iter().map(|column| column.text(0)).collect::<Vec<_>>(), ["W"]);
+    assert!(frame.position(0).is_finite());
+}
+
+/// Names of types and symbols of elements of the first rows.
+fn types(frame: &ParticleFrame) -> Vec<(&str, &str)> {
+    let kinds = (0..frame.len().min(4)).filter_map(|row| frame.kinds.kind(row));
+    kinds.map(|kind| (kind.name.as_str(), kind.element.map_or("-", Element::symbol))).collect()
+}
+
+#[test]
+fn structures_have_elements_and_columns() {
+    let zinc_sulfide = [("Zn", "Zn"), ("S", "S"), ("Zn", "Zn"), ("S", "S")];
+    for name in ["zns.poscar", "zns_cartesian.poscar", "zns.xdatcar"] {
+        assert_eq!(types(&read(name, &at(0))), zinc_sulfide, "{name}");
+    }
+    let ethanol = [("C", "C"), ("C", "C"), ("O", "O"), ("H", "H")];
+    for name in ["molecules.sdf", "molecules.mol2"] {
+        assert_eq!(types(&read(name, &at(0))), ethanol, "{name}");
+        assert_eq!(read(name, &at(1)).len(), 12, "{name}");
+    }
+    let columns = "charge,chain".parse().expect("columns");
+    let water = read("water.pqr", &ReadOptions { columns, ..ReadOptions::default() });
+    assert_eq!(types(&water)[..2], [("OW", "O"), ("HW1", "H")]);
+    assert_eq!((water.radius[1], water.numbers[0].values[1]), (0.2, 0.417));
+    assert_eq!(water.texts[0].text(0), "W");
+}
+
+#[test]
+fn variants_of_poscar_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("POSCAR");
+    let read = |text: &str| {
+        std::fs::write(&path, text).expect("a file");
+        read_frame(&path, &ReadOptions::default())
+    };
+    // A volume for a scale, symbols in the title, fixed atoms and velocities.
+    let text = "Na Cl\n-8\n1 0 0\n0 1 0\n0 0 1\n1 2\nSelective dynamics\nCartesian\n\
+                0.5 0 0 T T F\n1 0 0 T T T\n0 1 0 F F F\n\n0 0 0\n0 0 0\n0 0 0\n";
+    let frame = read(text).expect("a frame");
+    assert_eq!(types(&frame), [("Na", "Na"), ("Cl", "Cl"), ("Cl", "Cl")]);
+    assert!((frame.x[0] - 1.0).abs() < 1e-12 && (frame.y[2] - 2.0).abs() < 1e-12, "{frame:?}");
+    assert_eq!(count_frames(&path, &ReadOptions::default()).ok(), Some(1));
+    let cell = "what\n1\n4 0 0\n0 4 0\n0 0 4\n";
+    let frame = read(&format!("{cell}Fe_pv O/1234\n1 1\nDirect\n0.5 0 0\n0 0.25 1\n"));
+    let frame = frame.expect("a frame");
+    assert_eq!(types(&frame), [("Fe", "Fe"), ("O", "O")]);
+    assert_eq!((frame.x[0], frame.y[1], frame.z[1]), (2.0, 1.0, 4.0));
+    let frame = read(&format!("{cell}1 1\nDirect\n0.5 0 0\n0 0.25 1\n"));
+    assert_eq!(types(&frame.expect("a frame")), [("1", "-"), ("2", "-")]);
+    let flat = "a\n1\n4 0 0\n0 4 0\n0 4 0\nC\n1\nD\n0 0 0\n";
+    for (text, line, message) in [
+        (flat.to_owned(), 6, "the lattice vectors before have no volume"),
+        (format!("{cell}C O\n1\nD\n0 0 0\n"), 7, "1 numbers of atoms, but 2 species"),
+        (format!("{cell}C\n2\nD\n0 0 0\n"), 10, "the file ends before its last position"),
+        (format!("{cell}C\n1\nD\n0 0\n"), 9, "three numbers are expected here"),
+    ] {
+        let error = read(&text).expect_err(message);
+        assert_eq!((error.line(), error.message.as_str()), (Some(line), message));
+    }
+}
+
+#[test]
+fn variants_of_molfiles_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("molecule");
+    let text = "name\n  tool\n\n  0  0  0     0  0            999 V3000\nM  V30 BEGIN CTAB\n\
+                M  V30 COUNTS 2 1 0 0 0\nM  V30 BEGIN ATOM\nM  V30 1 C 1 2 3 0\nM  V30 2 Cl 4 5 6 0\n\
+                M  V30 END ATOM\nM  V30 END CTAB\nM  END\n";
+    let two = text.repeat(2).replace("M  END\n", "M  END\n$$$$\n");
+    std::fs::write(&path, two).expect("a file");
+    let options = ReadOptions::default();
+    assert_eq!(count_frames(&path, &options).ok(), Some(2));
+    let frame = read_frame(&path, &at(1)).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((types(&frame), frame.title.as_str()), (vec![("C", "C"), ("Cl", "Cl")], "name"));
+    assert_eq!((&frame.x[..], &frame.z[..]), (&[1.0, 4.0][..], &[3.0, 6.0][..]));
+    std::fs::write(&path, text.replace("1 C 1 2 3 0", "1 C 1 2")).expect("a file");
+    let error = read_frame(&path, &options).expect_err("a row that is too short");
+    assert_eq!((error.line(), error.message.as_str()), (Some(8), "not the columns of an atom"));
 }
 
 #[test]
@@ -272,12 +382,12 @@ fn truncated_files_have_the_frames_before() {
 fn damaged_files_do_not_panic_or_take_memory() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("damaged");
-    for name in SAME.into_iter().chain(OTHERS) {
+    for name in SAME.into_iter().chain(OTHERS).chain(STRUCTURES) {
         let content = std::fs::read(trajectory(name)).expect("a file");
         // Every byte of the headers, and some of the rest.
         let places = (0..content.len().min(300)).chain((300..content.len()).step_by(311));
         for place in places {
-            for value in [0xFF, 0x80, content[place] ^ 1] {
+            for value in [0xFF, content[place] ^ 1] {
                 let mut damaged = content.clone();
                 damaged[place] = value;
                 let (read, count) = read_all(&path, &damaged);
