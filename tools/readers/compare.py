@@ -180,6 +180,8 @@ def programs(file, format):
         "netcdf": [by_mdanalysis_trajectory],
         "pqr": [by_mdanalysis],
         "poscar": [by_ase_poscar],
+        "xsf": [by_ase_xsf],
+        "cfg": [by_ase_cfg],
         "sdf": [by_chemfiles],
         "mol2": [by_chemfiles],
     }[format]
@@ -287,6 +289,14 @@ def by_ase_poscar(file):
     return by_ase(file, format="vasp-xdatcar" if "Direct configuration" in unpacked(file) else "vasp")
 
 
+def by_ase_xsf(file):
+    return by_ase(file, format="xsf")
+
+
+def by_ase_cfg(file):
+    return by_ase(file, format="cfg")
+
+
 def by_chemfiles(file):
     import chemfiles
     with chemfiles.Trajectory(str(file)) as source:
@@ -386,7 +396,7 @@ def by_numpy_text(file):
     return answer(f"NumPy {np.__version__}", rows[:, :3], None, 1, **more)
 
 
-FORMATS = {".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf", ".pqr": "pqr", ".poscar": "poscar", ".xdatcar": "poscar", ".sdf": "sdf",
+FORMATS = {".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf", ".pqr": "pqr", ".poscar": "poscar", ".xdatcar": "poscar", ".sdf": "sdf", ".xsf": "xsf", ".axsf": "xsf", ".cfg": "cfg",
            ".mol2": "mol2",
            ".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
            ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif"}

@@ -110,6 +110,9 @@ def structures(atoms):
         frame.rattle(0.05, seed=step)
         frames.append(frame)
     ase.io.write(OUT / "zns.xdatcar", frames, format="vasp-xdatcar")
+    ase.io.write(OUT / "zns.xsf", frames[0], format="xsf")
+    ase.io.write(OUT / "zns.axsf", frames, format="xsf")
+    ase.io.write(OUT / "zns.cfg", frames[0], format="cfg")
     for suffix in ["sdf", "mol2"]:
         with chemfiles.Trajectory(str(OUT / f"molecules.{suffix}"), "w") as file:
             for name in ["CH3CH2OH", "C6H6"]:

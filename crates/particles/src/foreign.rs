@@ -99,47 +99,12 @@ const MAGICS: [(usize, &[u8], &str, &str); 22] = [
 ];
 
 /// First words of text files, in any case: words, name, conversion.
-const WORDS: [(&str, &str, &str); 18] = [
+const WORDS: [(&str, &str, &str); 11] = [
     ("%version", "a topology of Amber", TOPOLOGY),
     ("title =", "a Tecplot file", MESH),
     ("title=", "a Tecplot file", MESH),
     ("variables =", "a Tecplot file", MESH),
     ("variables=", "a Tecplot file", MESH),
-    (
-        "crystal",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "slab",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "polymer",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "molecule",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "primvec",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "animsteps",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "atoms",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
     (
         "<!doctype html",
         "a web page (HTML)",
@@ -240,9 +205,7 @@ pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
         let is_keyword = words.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_');
         !is_keyword || first.len() == words.len()
     };
-    let known = WORDS.iter().find(|(words, ..)| {
-        starts_with(words) && (is_complete(words) || has_step_count(words, first))
-    });
+    let known = WORDS.iter().find(|(words, ..)| starts_with(words) && is_complete(words));
     if let Some((_, name, conversion)) = known {
         return Some(foreign(name, conversion, path));
     }
@@ -272,14 +235,6 @@ pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
     ];
     let (_, name, conversion) = structures.into_iter().find(|(matches, ..)| *matches)?;
     Some(foreign(name, conversion, path))
-}
-
-/// Returns whether a line is a keyword of XSF with a number, as in `ANIMSTEPS 5`.
-fn has_step_count(keyword: &str, line: &[u8]) -> bool {
-    let mut fields = Fields::blanks(line).skip(1);
-    ["animsteps", "atoms"].contains(&keyword)
-        && fields.next().is_some_and(|count| number::whole(count).is_some())
-        && fields.next().is_none()
 }
 
 /// Returns the format of an XML file with this head.
@@ -412,8 +367,6 @@ mod tests {
             ("# vtk DataFile Version 3.0\nx\nASCII\n", ["VTK", "meshio.read('in.txt').points"]),
             ("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
             ("<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
-            ("CRYSTAL\nPRIMVEC\n", ["XSF", "-i xsf"]),
-            ("ATOMS\n8 0 0 0\n", ["XSF", "-i xsf"]),
             ("TITLE = \"a\"\nVARIABLES = \"x\"\n", ["Tecplot", "meshio"]),
             ("TITLE\nwater\nEND\nPOSITION\n", ["G96", "gmx editconf -f in.txt"]),
             ("mtllib a\nv 1 2 3\n", ["OBJ", "awk"]),
@@ -492,7 +445,6 @@ mod tests {
             ("ZONE T=\"a\"\n1 2 3\n".to_owned(), "Tecplot"),
             ("ZONE\n1 2 3\n".to_owned(), "Tecplot"),
             ("solid part\n facet normal 0 0 1\nfacet normal 0 0 1\n".to_owned(), "STL"),
-            ("ANIMSTEPS 5\nCRYSTAL\n".to_owned(), "XSF"),
             ("<?xml version=\"1.0\"?>\n<cml>\n".to_owned(), "CML"),
             ("<molecule xmlns=\"http://www.xml-cml.org/schema\">\n".to_owned(), "CML"),
             ("<?xml version=\"1.0\"?>\n<atoms>\n".to_owned(), "XML"),

@@ -1,4 +1,4 @@
-//! Reads MDL molfiles and SDF, versions V2000 and V3000: molecules, one frame each, in angstrom ("CTfile
+//! Reads MDL molfiles and SDF, versions V2000 and V3000: molecules, one frame each, in angstrom ("CT file
 //! Formats", BIOVIA 2020).
 
 use super::builder::Builder;

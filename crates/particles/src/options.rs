@@ -54,13 +54,17 @@ pub enum Format {
     Sdf,
     /// MOL2 of Tripos.
     Mol2,
+    /// XSF of XCrySDen.
+    Xsf,
+    /// CFG of AtomEye.
+    Cfg,
     /// PSF of CHARMM and NAMD: a topology, without positions.
     Psf,
 }
 
 impl Format {
     /// All formats with their names in scene files and on the command line.
-    pub const ALL: [(&'static str, Self); 22] = [
+    pub const ALL: [(&'static str, Self); 24] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
         ("xyz", Self::Xyz),
@@ -82,6 +86,8 @@ impl Format {
         ("poscar", Self::Poscar),
         ("sdf", Self::Sdf),
         ("mol2", Self::Mol2),
+        ("xsf", Self::Xsf),
+        ("cfg", Self::Cfg),
         ("psf", Self::Psf),
     ];
 

@@ -65,7 +65,7 @@ impl Poscar {
         let volume = vectors[0].cross(vectors[1]).dot(vectors[2]).abs();
         let scale = match scales[..] {
             // A negative scale is the volume.
-            [scale] if scale < 0.0 => DVec3::splat((-scale / volume).cbrt()),
+            [scale] if scale < 0.0 => DVec3::splat(libm::cbrt(-scale / volume)),
             [scale] => DVec3::splat(scale),
             [x, y, z] => DVec3::new(x, y, z),
             _ => return Err(wrong_scale),

@@ -1,4 +1,4 @@
-//! Reads PQR of PDB2PQR, APBS and MDAnalysis: rows of PDB whose fields are separated by blanks, with a charge
+//! Reads PQR of PDB2PQR, APBS and `MDAnalysis`: rows of PDB whose fields are separated by blanks, with a charge
 //! and a radius in angstrom (apbs.readthedocs.io/en/latest/formats/pqr.html).
 
 use super::builder::Builder;

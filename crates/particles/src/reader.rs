@@ -6,8 +6,8 @@ use super::options::{Format, FrameChoice, ReadOptions};
 use super::source::{Source, is_standard_input};
 use super::topology::Joined;
 use super::{
-    cif, csv, dcd, gro, gromacs, gsd, lammps, mol2, molfile, netcdf, numpy, pdb, ply, poscar, pqr,
-    psf, sniff, text, xyz,
+    cfg, cif, csv, dcd, gro, gromacs, gsd, lammps, mol2, molfile, netcdf, numpy, pdb, ply, poscar,
+    pqr, psf, sniff, text, xsf, xyz,
 };
 use crate::FileError;
 use std::path::Path;
@@ -86,6 +86,8 @@ pub(crate) fn open(
         Format::Poscar => Box::new(poscar::Poscar::new(source, options)),
         Format::Sdf => Box::new(molfile::Molfile::new(source, options)),
         Format::Mol2 => Box::new(mol2::Mol2::new(source, options)),
+        Format::Xsf => Box::new(xsf::Xsf::new(source, options)),
+        Format::Cfg => Box::new(cfg::Cfg::new(source, options)),
         Format::Psf => Box::new(psf::Psf::new(source, options)),
     };
     Ok((format, reader))

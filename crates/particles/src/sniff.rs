@@ -5,8 +5,8 @@ use super::foreign::{self, Foreign};
 use super::options::{Format, ReadOptions, Role};
 use super::source::Source;
 use super::{
-    cif, dcd, gro, gromacs, gsd, header, line, mol2, molfile, netcdf, number, numpy, pdb, ply,
-    poscar, pqr, psf, units, utf16,
+    cfg, cif, dcd, gro, gromacs, gsd, header, line, mol2, molfile, netcdf, number, numpy, pdb, ply,
+    poscar, pqr, psf, units, utf16, xsf,
 };
 use crate::FileError;
 
@@ -14,11 +14,14 @@ use crate::FileError;
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
                      of crystals, GSD, PLY, arrays of NumPy, DCD, XTC, TRR and NetCDF of Amber, PQR, \
-                     POSCAR, SDF, MOL2 and PSF; of others, name the format, as in --format xyz, \
+                     POSCAR, SDF, MOL2, XSF, CFG and PSF; of others, name the format, as in --format xyz, \
                      or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.
 const DATA_HEADER: usize = 40;
+
+/// Test of the head of a file.
+type Test = fn(&[u8]) -> bool;
 
 /// Returns the format in the options, or else the detected one.
 pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, FileError> {
@@ -83,10 +86,12 @@ fn structured(head: &[u8]) -> Option<Format> {
     if psf::is_psf(first, head) {
         return Some(Format::Psf);
     }
-    let structures: [(fn(&[u8]) -> bool, Format); 3] = [
+    let structures: [(Test, Format); 5] = [
         (mol2::is_mol2, Format::Mol2),
         (molfile::is_molfile, Format::Sdf),
         (poscar::is_poscar, Format::Poscar),
+        (xsf::is_xsf, Format::Xsf),
+        (cfg::is_cfg, Format::Cfg),
     ];
     structures.into_iter().find(|(is, _)| is(head)).map(|(_, format)| format)
 }
@@ -101,7 +106,7 @@ fn binary(head: &[u8]) -> Option<Format> {
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
         return Some(Format::Npz);
     }
-    let signatures: [(fn(&[u8]) -> bool, Format); 5] = [
+    let signatures: [(Test, Format); 5] = [
         (ply::is_ply, Format::Ply),
         (dcd::is_dcd, Format::Dcd),
         (gromacs::is_xtc, Format::Xtc),
@@ -209,6 +214,13 @@ mod tests {
         for poscar in [poscar, old] {
             assert_eq!(detect(poscar), Ok(Format::Poscar), "{poscar}");
         }
+        for xsf in
+            ["CRYSTAL\nPRIMVEC\n", "ATOMS\n8 0 0 0\n", "# x\nANIMSTEPS 5\nCRYSTAL\nPRIMVEC\n"]
+        {
+            assert_eq!(detect(xsf), Ok(Format::Xsf), "{xsf}");
+        }
+        assert_eq!(detect("CRYSTAL\n1 atoms\n\nAtoms # atomic\n"), Ok(Format::LammpsData));
+        assert_eq!(detect("Number of particles = 8\nA = 1.0\n"), Ok(Format::Cfg));
         assert_eq!(detect("PSF CMAP\n\n  1 !NTITLE\n"), Ok(Format::Psf));
         let table = "8\n1.0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n2 2 2\n3 3 3\n";
         for other in [table, "PSF x y z\n1 2 3 4\n", "x y z\n1 2 3\na\nxx yy V2000\n"] {

@@ -26,8 +26,15 @@ const SAME: [&str; 9] = [
 const OTHERS: [&str; 4] = ["fixed_atoms.dcd", "no_cell.dcd", "no_cell.ncdf", "six.xtc"];
 
 /// Structures in text.
-const STRUCTURES: [&str; 5] =
-    ["water.pqr", "zns.poscar", "zns.xdatcar", "molecules.sdf", "molecules.mol2"];
+const STRUCTURES: [&str; 7] = [
+    "water.pqr",
+    "zns.poscar",
+    "zns.xdatcar",
+    "zns.axsf",
+    "zns.cfg",
+    "molecules.sdf",
+    "molecules.mol2",
+];
 
 fn data(folder: &str, name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data").join(folder).join(name)
@@ -197,9 +204,12 @@ fn types(frame: &ParticleFrame) -> Vec<(&str, &str)> {
 
 #[test]
 fn structures_have_elements_and_columns() {
-    let zinc_sulfide = [("Zn", "Zn"), ("S", "S"), ("Zn", "Zn"), ("S", "S")];
-    for name in ["zns.poscar", "zns_cartesian.poscar", "zns.xdatcar"] {
-        assert_eq!(types(&read(name, &at(0))), zinc_sulfide, "{name}");
+    let names =
+        ["zns.poscar", "zns_cartesian.poscar", "zns.xdatcar", "zns.xsf", "zns.axsf", "zns.cfg"];
+    for name in names {
+        let frame = read(name, &at(0));
+        let symbols: Vec<&str> = types(&frame).into_iter().map(|(_, symbol)| symbol).collect();
+        assert_eq!(symbols, ["Zn", "S", "Zn", "S"], "{name}");
     }
     let ethanol = [("C", "C"), ("C", "C"), ("O", "O"), ("H", "H")];
     for name in ["molecules.sdf", "molecules.mol2"] {

@@ -195,7 +195,7 @@ mod tests {
     impl Written {
         fn put(&mut self, value: u32, count: u32) {
             for bit in (0..count).rev() {
-                if self.count % 8 == 0 {
+                if self.count.is_multiple_of(8) {
                     self.bytes.push(0);
                 }
                 let last = self.bytes.len() - 1;

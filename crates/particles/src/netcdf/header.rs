@@ -153,14 +153,14 @@ impl Parser<'_> {
 
     fn attribute(&mut self) -> Option<(String, Attribute)> {
         let name = self.name()?;
-        let kind = self.numbers.i32()?;
+        let kind = kind(self.numbers.i32()?)?;
         let count = self.length()?;
-        let value = match scalar(kind)? {
-            None => {
+        let value = match kind {
+            Kind::Characters => {
                 let text = String::from_utf8_lossy(self.padded(count)?);
                 Attribute::Text(text.trim_end_matches('\0').to_owned())
             }
-            Some(scalar) => {
+            Kind::Numbers(scalar) => {
                 let bytes = self.padded(count.checked_mul(scalar.size() as u64)?)?;
                 let empty = bytes.is_empty();
                 if empty {
@@ -180,7 +180,10 @@ impl Parser<'_> {
             dimensions.push(usize::try_from(self.length()?).ok()?);
         }
         let attributes = self.list(ATTRIBUTES, Self::attribute)?;
-        let scalar = scalar(self.numbers.i32()?)?;
+        let scalar = match kind(self.numbers.i32()?)? {
+            Kind::Characters => None,
+            Kind::Numbers(scalar) => Some(scalar),
+        };
         // The size follows from the dimensions; where they are large, it is wrong.
         self.length()?;
         let begin = if self.version == 1 { self.numbers.count()? } else { self.long()? };
@@ -188,20 +191,27 @@ impl Parser<'_> {
     }
 }
 
-/// Returns the type of a number: `Some(None)` for characters, `None` if there is no such type.
-fn scalar(kind: i32) -> Option<Option<Scalar>> {
-    Some(match kind {
-        1 => Some(Scalar::I8),
-        2 => None,
-        3 => Some(Scalar::I16),
-        4 => Some(Scalar::I32),
-        5 => Some(Scalar::F32),
-        6 => Some(Scalar::F64),
-        7 => Some(Scalar::U8),
-        8 => Some(Scalar::U16),
-        9 => Some(Scalar::U32),
-        10 => Some(Scalar::I64),
-        11 => Some(Scalar::U64),
+/// Type of values.
+enum Kind {
+    Characters,
+    Numbers(Scalar),
+}
+
+/// Returns the type with this number, if there is one.
+fn kind(number: i32) -> Option<Kind> {
+    let scalar = match number {
+        2 => return Some(Kind::Characters),
+        1 => Scalar::I8,
+        3 => Scalar::I16,
+        4 => Scalar::I32,
+        5 => Scalar::F32,
+        6 => Scalar::F64,
+        7 => Scalar::U8,
+        8 => Scalar::U16,
+        9 => Scalar::U32,
+        10 => Scalar::I64,
+        11 => Scalar::U64,
         _ => return None,
-    })
+    };
+    Some(Kind::Numbers(scalar))
 }

@@ -405,7 +405,7 @@ fn files_of_other_formats_come_with_a_command() {
     let tng = [&[0; 40][..], b"TRAJNG", &[0; 100]].concat();
     for (content, name, command) in [
         (&tng[..], "TNG", "gmx trjconv"),
-        (b"CRYSTAL\nPRIMVEC\n1 0 0\n", "XSF", "ase convert"),
+        (b"TITLE\nwater\nEND\nPOSITION\n", "G96", "gmx editconf"),
         (b"%VERSION  VERSION_STAMP = V0001.000\n", "Amber", "MDAnalysis"),
     ] {
         let error = frame_with(content, &ReadOptions::default()).expect_err(name);
