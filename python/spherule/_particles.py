@@ -230,8 +230,11 @@ def _column(name: str, values: Any, count: int) -> npt.NDArray[Any]:
     return array
 
 
-def _options(format: str | None, columns: str | None, atom_style: str | None) -> dict[str, Any]:
-    return {"format": format, "columns": columns, "atom_style": atom_style}
+def _options(
+    format: str | None, columns: str | None, atom_style: str | None, topology: str | os.PathLike[str] | None
+) -> dict[str, Any]:
+    path = None if topology is None else os.fspath(topology)
+    return {"format": format, "columns": columns, "atom_style": atom_style, "topology": path}
 
 
 def read(
@@ -241,11 +244,12 @@ def read(
     format: str | None = None,
     columns: str | None = None,
     atom_style: str | None = None,
+    topology: str | os.PathLike[str] | None = None,
 ) -> Particles:
     """Reads a frame of a particle file into NumPy columns.
 
     All formats of the program are read, compressed or not: XYZ, LAMMPS dumps and data, GRO, PDB, mmCIF, CIF, GSD, PLY,
-    NPY, NPZ, CSV and plain columns.
+    NPY, NPZ, CSV, plain columns, PQR, POSCAR, SDF, MOL2, XSF, CFG, and the trajectories DCD, XTC, TRR and NetCDF of Amber.
 
     Args:
         path: The file.
@@ -253,6 +257,7 @@ def read(
         format: The format; by default it is found by the content.
         columns: Roles of columns, as in ``"x=px,type=species"``.
         atom_style: The atom style of a LAMMPS data file, as ``"full"``.
+        topology: The file that names the particles of a trajectory.
 
     Returns:
         All columns in the file's units, nothing scaled or dropped. Numbers are float64.
@@ -272,7 +277,7 @@ def read(
 
     if not isinstance(frame, int):
         raise Error(f"`frame` is {frame!r}, but must be an integer; -1 is the last frame")
-    table = _native.read(os.fspath(path), frame, _options(format, columns, atom_style))
+    table = _native.read(os.fspath(path), frame, _options(format, columns, atom_style, topology))
     particles = Particles.__new__(Particles)
     particles.positions = table["positions"].T
     particles.radius, particles.color = table["radius"], table["color"]
@@ -299,11 +304,12 @@ def count_frames(
     format: str | None = None,
     columns: str | None = None,
     atom_style: str | None = None,
+    topology: str | os.PathLike[str] | None = None,
 ) -> int:
     """The number of complete frames of a particle file.
 
     Args:
-        path, format, columns, atom_style: As for :func:`read`.
+        path, format, columns, atom_style, topology: As for :func:`read`.
 
     Raises:
         Error: The file cannot be read, or its format is unknown.
@@ -317,7 +323,7 @@ def count_frames(
     """
     from . import _native
 
-    return _native.count_frames(os.fspath(path), _options(format, columns, atom_style))
+    return _native.count_frames(os.fspath(path), _options(format, columns, atom_style, topology))
 
 
 def frames(
@@ -326,11 +332,12 @@ def frames(
     format: str | None = None,
     columns: str | None = None,
     atom_style: str | None = None,
+    topology: str | os.PathLike[str] | None = None,
 ) -> Iterator[Particles]:
     """The frames of a particle file, one after the other.
 
     Args:
-        path, format, columns, atom_style: As for :func:`read`.
+        path, format, columns, atom_style, topology: As for :func:`read`.
 
     Raises:
         Error: As for :func:`read`.
@@ -342,5 +349,6 @@ def frames(
         >>> [float(frame.x[0]) for frame in frames(path)]
         [0.0, 1.0]
     """
-    for number in range(count_frames(path, format=format, columns=columns, atom_style=atom_style)):
-        yield read(path, number, format=format, columns=columns, atom_style=atom_style)
+    count = count_frames(path, format=format, columns=columns, atom_style=atom_style, topology=topology)
+    for number in range(count):
+        yield read(path, number, format=format, columns=columns, atom_style=atom_style, topology=topology)

@@ -20,6 +20,7 @@ pub(crate) struct ReadTable {
     /// `x=px,type=species` and so on.
     columns: Option<String>,
     atom_style: Option<String>,
+    topology: Option<PathBuf>,
 }
 
 impl ReadTable {
@@ -37,6 +38,7 @@ impl ReadTable {
             format: format.transpose()?,
             columns: Columns { rest: Some(usize::MAX), ..columns },
             atom_style: self.atom_style.clone(),
+            topology: self.topology.clone(),
             allow_empty: true,
             ..ReadOptions::default()
         })

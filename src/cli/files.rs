@@ -5,6 +5,7 @@
 //! usual.
 
 use super::Failure;
+use super::particles::ParticleArgs;
 use spherule_render::atomic::FileIdentity;
 use spherule_render::scene;
 use std::collections::HashMap;
@@ -61,6 +62,14 @@ impl Files {
         let name = format!("which the scene {} reads", path.display());
         for file in scene::included_files(path) {
             self.reads(&name, &file);
+        }
+    }
+
+    /// Adds a file of particles or a scene, and the topology of a trajectory.
+    pub(super) fn reads_particles(&mut self, path: &Path, args: &ParticleArgs) {
+        self.reads_scene(path);
+        if let Some(topology) = args.topology() {
+            self.reads("the topology", topology);
         }
     }
 

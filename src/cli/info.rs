@@ -83,7 +83,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<ExitCode, Failure> {
     };
     args.particles.refuse_frames("info")?;
     let mut files = Files::new("info");
-    files.reads_scene(file);
+    files.reads_particles(file, &args.particles);
     files.check()?;
     let source = Source::of_path("info", file, &args.particles)?;
     let (scene, particles) = load(&source, args.rows)?;

@@ -13,14 +13,15 @@ use spherule_render::scene::particles::{
     count_frames,
 };
 use spherule_render::suggest;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Options for reading a particle file.
 #[derive(Clone, Debug, Default, clap::Args)]
 #[command(next_help_heading = "Particle files")]
 pub(super) struct ParticleArgs {
     /// File format [default: detected]: xyzr, csv, xyz, lammps-dump, lammps-data, gro, pdb, mmcif, cif, gsd,
-    /// ply, npy or npz
+    /// ply, npy, npz, dcd, xtc, trr, netcdf, pqr, poscar, sdf, mol2, xsf, cfg or
+    /// psf
     #[arg(long, value_parser = format)]
     format: Option<Format>,
     /// Meaning of columns, as in x=px,radius=size,type=species
@@ -39,6 +40,9 @@ pub(super) struct ParticleArgs {
     /// Atom style of a LAMMPS data file that does not name it, as in full or "hybrid sphere dipole"
     #[arg(long, value_name = "STYLE")]
     atom_style: Option<String>,
+    /// File that names the particles of a trajectory: their types, elements, residues, radii and other columns
+    #[arg(long, value_name = "FILE")]
+    topology: Option<PathBuf>,
 }
 
 fn format(name: &str) -> Result<Format, String> {
@@ -66,6 +70,7 @@ impl ParticleArgs {
             radii: self.radii.as_deref().cloned().unwrap_or_default(),
             radius_scale: self.radius_scale.unwrap_or(1.0),
             atom_style: self.atom_style.clone(),
+            topology: self.topology.clone(),
             ..ReadOptions::default()
         }
     }
@@ -73,6 +78,11 @@ impl ParticleArgs {
     /// Returns whether any option was given.
     pub(super) fn any(&self) -> bool {
         self.frames().is_some() || self.options() != ReadOptions::default()
+    }
+
+    /// The file that names the particles of a trajectory.
+    pub(super) fn topology(&self) -> Option<&Path> {
+        self.topology.as_deref()
     }
 
     /// The range of frames, if several are rendered.
@@ -97,6 +107,10 @@ impl ParticleArgs {
         }
         if let Some(style) = &self.atom_style {
             list.insert("atom_style".to_owned(), json!(style));
+        }
+        // Without folders, which are private.
+        if let Some(name) = self.topology.as_deref().and_then(Path::file_name) {
+            list.insert("topology".to_owned(), json!(name.to_string_lossy()));
         }
         list
     }

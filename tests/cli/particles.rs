@@ -2,6 +2,7 @@
 
 use crate::folder::{Folder, SMALL, text};
 use serde_json::json;
+use spherule_render::image::read_metadata;
 
 const DUMP: &str = "\
 ITEM: TIMESTEP
@@ -132,4 +133,31 @@ fn elements_follow_from_names_of_atoms() {
     assert_eq!(spheres("a.pdb", "name == CA", &[]), 2);
     assert_eq!(spheres("a.pdb", "type == CA", &[]), 2);
     assert_eq!(spheres("a.pdb", "type == C", &["--columns", "type=element"]), 2);
+}
+
+#[test]
+fn topologies_name_the_particles_of_trajectories() {
+    let folder = Folder::new();
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data");
+    let trajectory = format!("{data}/particles/water.xtc");
+    folder.write(
+        "top.gro",
+        &text(&std::fs::read(format!("{data}/topologies/water.gro")).expect("a file")),
+    );
+    let args = ["--topology", "top.gro", "--frame", "3"];
+    let info = folder.json(&[&["info", &trajectory[..], "--json"][..], &args].concat());
+    let particles = &info["particles"];
+    assert_eq!((&particles["format"], &particles["step"]), (&json!("xtc"), &json!(3)));
+    assert_eq!(particles["types"][0], json!({"name": "OW", "element": "O", "spheres": 60}));
+    let render =
+        |more: &[&str]| folder.run(&[&SMALL, &[&trajectory[..]][..], &args, more].concat());
+    assert!(render(&["-o", "a.png"]).status.success());
+    let settings = read_metadata(folder.path("a.png")).expect("metadata");
+    assert_eq!(settings.value("topology"), Some("top.gro"));
+    // An output never replaces the topology.
+    let refused = render(&["-o", "top.gro", "--output-format", "png"]);
+    assert!(text(&refused.stderr).contains("the topology"), "{}", text(&refused.stderr));
+    let other =
+        folder.run(&["info", &trajectory, "--topology", &format!("{data}/particles/water.pqr")]);
+    assert!(text(&other.stderr).contains("has 184 particles, but its topology 12"));
 }

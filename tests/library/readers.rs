@@ -4,7 +4,7 @@
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
 use spherule_render::scene::particles::{
-    Cell, Element, LengthUnit, ParticleFrame, ReadOptions, count_frames, read_frame,
+    Cell, Element, FrameChoice, LengthUnit, ParticleFrame, ReadOptions, count_frames, read_frame,
 };
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -27,6 +27,10 @@ struct Answer {
     first: Vec<[f64; 3]>,
     #[serde(default)]
     last: Vec<[f64; 3]>,
+    /// The first positions of the last frame, and its cell.
+    #[serde(default)]
+    last_frame: Vec<[f64; 3]>,
+    last_cell: Option<[[f64; 3]; 3]>,
     #[serde(default)]
     radii: Vec<f64>,
     #[serde(default)]
@@ -80,6 +84,18 @@ fn files_are_read_as_other_programs_read_them() {
         let positions: Vec<DVec3> =
             (0..frame.len()).map(|row| frame.position(row) / per_angstrom).collect();
         let cell = check_cell(&answer, &frame, per_angstrom);
+        if !answer.last_frame.is_empty() {
+            let options = ReadOptions { frame: FrameChoice::Last, ..options };
+            let last =
+                read_frame(&path, &options).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let rows = 0..answer.last_frame.len();
+            let positions: Vec<DVec3> = rows.map(|row| last.position(row) / per_angstrom).collect();
+            let (first, cell) = (answer.last_frame.clone(), answer.last_cell);
+            let answer = Answer { name: name.clone(), first, last: Vec::new(), cell, ..answer };
+            check_rows(&answer, &positions);
+            check_cell(&answer, &last, per_angstrom);
+            continue;
+        }
         if answer.any_order {
             check_set(&answer, &frame, &positions, cell.expect("a crystal's cell"));
         } else {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds Spherule's readers of particle files against other programs: counts, frames, cells, first and last rows.
 
-    pip install ase gemmi gsd MDAnalysis plyfile
+    pip install ase chemfiles gemmi gsd MDAnalysis plyfile
     cargo build --release
     tools/readers/compare.py FOLDER ...       # all files that Spherule reads, folders within them too
     tools/readers/compare.py --answers        # write tests/data/particles/answers.toml
@@ -82,7 +82,16 @@ def arguments():
 
 
 def spherule(options, file):
-    command = [options.spherule, "info", file, "--json", "--rows", "1000000" if ".cif" in file.name else str(ROWS)]
+    own = spherule_frame(options, file, "first")
+    if own["format"] in ("dcd", "xtc", "trr", "netcdf"):
+        last = spherule_frame(options, file, "last")
+        own |= {"last_frame": last["rows"], "last_cell": last["cell"]}
+    return own
+
+
+def spherule_frame(options, file, frame):
+    rows = "1000000" if ".cif" in file.name else str(ROWS)
+    command = [options.spherule, "info", file, "--json", "--rows", rows, "--frame", frame]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)
     if done.returncode:
         raise Unread(done.stderr.strip().splitlines()[:1])
@@ -117,6 +126,12 @@ def differences(own, other):
     # The axes of other programs may be turned: lengths and angles count.
     elif cells and not np.allclose(cells[0] @ cells[0].T, cells[1] @ cells[1].T, rtol=1e-4, atol=1e-2):
         yield f"cell {cells[0].tolist()}, not {cells[1].tolist()}"
+    if "last_frame" in other:
+        if not np.allclose(own["last_frame"][:ROWS], other["last_frame"][:ROWS], rtol=1e-4, atol=2e-3):
+            yield f"last frame {own['last_frame'].tolist()}, not {other['last_frame'].tolist()}"
+        cells = [cell for cell in (own["last_cell"], other["last_cell"]) if cell is not None]
+        if len(cells) == 1 or cells and not np.allclose(*cells, rtol=1e-4, atol=1e-2):
+            yield f"last cell {own['last_cell']}, not {other['last_cell']}"
     if other["any_order"]:
         if not same_sets(own["rows"], other["rows"], cells[0], cells[-1]):
             yield "other positions"
@@ -159,6 +174,16 @@ def programs(file, format):
         "npz": [by_numpy],
         "csv": [by_numpy_text],
         "xyzr": [by_numpy_text],
+        "dcd": [by_mdanalysis_trajectory],
+        "xtc": [by_mdanalysis_trajectory],
+        "trr": [by_mdanalysis_trajectory],
+        "netcdf": [by_mdanalysis_trajectory],
+        "pqr": [by_mdanalysis],
+        "poscar": [by_ase_poscar],
+        "xsf": [by_ase_xsf],
+        "cfg": [by_ase_cfg],
+        "sdf": [by_chemfiles],
+        "mol2": [by_chemfiles],
     }[format]
 
 
@@ -260,6 +285,26 @@ def by_ase(file, **options):
                   elements=atoms.get_chemical_symbols())
 
 
+def by_ase_poscar(file):
+    return by_ase(file, format="vasp-xdatcar" if "Direct configuration" in unpacked(file) else "vasp")
+
+
+def by_ase_xsf(file):
+    return by_ase(file, format="xsf")
+
+
+def by_ase_cfg(file):
+    return by_ase(file, format="cfg")
+
+
+def by_chemfiles(file):
+    import chemfiles
+    with chemfiles.Trajectory(str(file)) as source:
+        # Positions are a view of the frame.
+        frame = source.read()
+        return answer(f"chemfiles {chemfiles.__version__}", frame.positions.copy(), None, source.nsteps)
+
+
 def by_ase_dump(file):
     return by_ase(file, format="lammps-dump-text", order=False)
 
@@ -277,6 +322,25 @@ def by_mdanalysis(file, **options):
     universe = MDAnalysis.Universe(str(file), **options)
     cell = universe.trajectory.ts.triclinic_dimensions
     return answer(f"MDAnalysis {MDAnalysis.__version__}", universe.atoms.positions, cell, len(universe.trajectory))
+
+
+def by_mdanalysis_trajectory(file):
+    """The first and the last frame of a trajectory. MDAnalysis writes an index beside it, so it reads a copy."""
+    import MDAnalysis
+    import shutil
+    import tempfile
+    if file.name == "wide_markers.dcd":
+        # It does not read markers of 64 bits: the file has the frames of another.
+        file = file.with_name("water.dcd")
+    with tempfile.TemporaryDirectory() as folder:
+        copy = shutil.copy(file, folder)
+        universe = MDAnalysis.Universe(copy, copy, topology_format="MINIMAL")
+        cell = universe.trajectory.ts.triclinic_dimensions
+        positions = universe.atoms.positions.copy()
+        count = len(universe.trajectory)
+        universe.trajectory[-1]
+        return answer(f"MDAnalysis {MDAnalysis.__version__}", positions, cell, count, last_frame=universe.atoms.positions.copy(),
+                      last_cell=universe.trajectory.ts.triclinic_dimensions)
 
 
 def by_mdanalysis_dump(file):
@@ -332,7 +396,9 @@ def by_numpy_text(file):
     return answer(f"NumPy {np.__version__}", rows[:, :3], None, 1, **more)
 
 
-FORMATS = {".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
+FORMATS = {".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf", ".pqr": "pqr", ".poscar": "poscar", ".xdatcar": "poscar", ".sdf": "sdf", ".xsf": "xsf", ".axsf": "xsf", ".cfg": "cfg",
+           ".mol2": "mol2",
+           ".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
            ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif"}
 
 
@@ -361,6 +427,10 @@ def write_answers():
             lines.append(f"first = {rounded(rows)}")
         else:
             lines += [f"first = {rounded(rows[:ROWS])}", f"last = {rounded(rows[-ROWS:])}"]
+            if "last_frame" in found:
+                lines.append(f"last_frame = {rounded(found['last_frame'][:ROWS])}")
+            if found.get("last_cell") is not None:
+                lines.append(f"last_cell = {rounded(found['last_cell'])}")
             if "radii" in found:
                 lines.append(f"radii = {rounded(found['radii'][:ROWS])}")
     (DATA / "answers.toml").write_text("\n".join(lines) + "\n")

@@ -5,7 +5,7 @@ use super::categories::{Codebook, Kind, add};
 use super::extra::Extra;
 use super::frame::ParticleFrame;
 use super::lines::Line;
-use super::naming::{drop_uncertain_elements, kind};
+use super::naming::{drop_uncertain_elements, kind, of_atom};
 use super::schema::{Schema, Slot};
 use crate::memory;
 use crate::{FileError, MAX_PARTICLES, Rgb};
@@ -183,6 +183,14 @@ impl Builder {
             })
         });
         self.frame.kinds.codes.push(code);
+    }
+
+    /// Appends the type of an atom of a molecule, by its name and that of its residue.
+    pub(crate) fn atom_kind(&mut self, name: &[u8], residue: &[u8]) {
+        self.kind_of(&[residue, name].join(&b' '), |key| {
+            let (residue, name) = key.split_once(' ').unwrap_or(("", key));
+            of_atom(name, residue)
+        });
     }
 
     fn channel(&mut self, channel: usize, line: &Line, field: &[u8]) -> Result<(), FileError> {

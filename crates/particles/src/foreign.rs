@@ -38,13 +38,9 @@ const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 
 /// Magic numbers of binary files: offset, bytes, name, conversion.
-const MAGICS: [(usize, &[u8], &str, &str); 26] = [
+const MAGICS: [(usize, &[u8], &str, &str); 22] = [
     (0, b"# vtk DataFile", "a VTK file", MESH),
     (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
-    (0, b"CDF\x01", "a NetCDF file", WITH_TOPOLOGY),
-    (0, b"CDF\x02", "a NetCDF file", WITH_TOPOLOGY),
-    (0, b"CDF\x05", "a NetCDF file", WITH_TOPOLOGY),
-    (12, b"GMX_trn_file", "a TRR trajectory of GROMACS", TRAJECTORY),
     (0, b"LammpS RestartT", "a binary restart file of LAMMPS", RESTART),
     (8, b"DUMPATOM", "a binary dump of LAMMPS", BINARY_DUMP),
     (8, b"DUMPCUSTOM", "a binary dump of LAMMPS", BINARY_DUMP),
@@ -103,47 +99,12 @@ const MAGICS: [(usize, &[u8], &str, &str); 26] = [
 ];
 
 /// First words of text files, in any case: words, name, conversion.
-const WORDS: [(&str, &str, &str); 18] = [
+const WORDS: [(&str, &str, &str); 11] = [
     ("%version", "a topology of Amber", TOPOLOGY),
     ("title =", "a Tecplot file", MESH),
     ("title=", "a Tecplot file", MESH),
     ("variables =", "a Tecplot file", MESH),
     ("variables=", "a Tecplot file", MESH),
-    (
-        "crystal",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "slab",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "polymer",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "molecule",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "primvec",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "animsteps",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
-    (
-        "atoms",
-        "an XSF file of XCrySDen",
-        "convert it: ase convert -i xsf -o extxyz {file} {stem}.xyz",
-    ),
     (
         "<!doctype html",
         "a web page (HTML)",
@@ -211,21 +172,6 @@ pub(crate) fn binary(head: &[u8], path: &Path) -> Option<Foreign> {
     let word = |offset: usize| head.get(offset..offset + 4)?.try_into().ok();
     let big_endian = |offset: usize| word(offset).map_or(0, u32::from_be_bytes);
     let little_endian = |offset: usize| word(offset).map_or(0, u32::from_le_bytes);
-    // XTC: the number of atoms is stored twice.
-    let atoms = big_endian(4);
-    if matches!(big_endian(0), 1995 | 2023) && atoms > 0 && atoms == big_endian(52) {
-        return Some(foreign("an XTC trajectory of GROMACS", TRAJECTORY, path));
-    }
-    if big_endian(0) == 1993 && big_endian(4) == 13 {
-        return Some(foreign("a TRR trajectory of GROMACS", TRAJECTORY, path));
-    }
-    // DCD begins with the length of a Fortran record, in four or eight bytes and either byte order.
-    let is_dcd = |offset: usize| has(offset, b"CORD") || has(offset, b"VELD");
-    let records =
-        [(big_endian(0), 4), (little_endian(0), 4), (big_endian(4), 8), (little_endian(0), 8)];
-    if records.iter().any(|&(length, offset)| length == 84 && is_dcd(offset)) {
-        return Some(foreign("a DCD trajectory", WITH_TOPOLOGY, path));
-    }
     let is_gadget = |word: &dyn Fn(usize) -> u32| {
         word(0) == 256 && word(260) == 256 || word(0) == 8 && has(4, b"HEAD") && word(12) == 8
     };
@@ -259,24 +205,14 @@ pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
         let is_keyword = words.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'_');
         !is_keyword || first.len() == words.len()
     };
-    let known = WORDS.iter().find(|(words, ..)| {
-        starts_with(words) && (is_complete(words) || has_step_count(words, first))
-    });
+    let known = WORDS.iter().find(|(words, ..)| starts_with(words) && is_complete(words));
     if let Some((_, name, conversion)) = known {
         return Some(foreign(name, conversion, path));
     }
     if starts_with("<?xml") || starts_with("<") {
         return Some(markup(head, path));
     }
-    let structures: [(bool, &str, &str); 11] = [
-        (is_psf(first, head), "a topology of CHARMM or NAMD (PSF)", TOPOLOGY),
-        (has_line(head, b"@<TRIPOS>"), "a MOL2 file", ATOMS),
-        (is_molfile(&lines, head), "an MDL molfile (SDF)", MOLECULES),
-        (
-            is_poscar(&lines),
-            "a POSCAR of VASP",
-            "convert it: ase convert -i vasp -o extxyz {file} {stem}.xyz",
-        ),
+    let structures: [(bool, &str, &str); 7] = [
         (
             is_cube(&lines),
             "a cube file of Gaussian",
@@ -299,14 +235,6 @@ pub(crate) fn text(head: &[u8], path: &Path) -> Option<Foreign> {
     ];
     let (_, name, conversion) = structures.into_iter().find(|(matches, ..)| *matches)?;
     Some(foreign(name, conversion, path))
-}
-
-/// Returns whether a line is a keyword of XSF with a number, as in `ANIMSTEPS 5`.
-fn has_step_count(keyword: &str, line: &[u8]) -> bool {
-    let mut fields = Fields::blanks(line).skip(1);
-    ["animsteps", "atoms"].contains(&keyword)
-        && fields.next().is_some_and(|count| number::whole(count).is_some())
-        && fields.next().is_none()
 }
 
 /// Returns the format of an XML file with this head.
@@ -332,45 +260,6 @@ fn has_line(head: &[u8], start: &[u8]) -> bool {
 /// Returns the fields of a line, if all are numbers.
 fn numbers(line: &[u8]) -> Option<Vec<f64>> {
     Fields::blanks(line).map(number::parse).collect()
-}
-
-/// Returns whether the first line is `PSF` with flags, and a section with a title follows.
-fn is_psf(first: &[u8], head: &[u8]) -> bool {
-    let is_flag = |field: &[u8]| field.iter().all(u8::is_ascii_uppercase);
-    first.starts_with(b"PSF")
-        && Fields::blanks(first).all(is_flag)
-        && memchr::memmem::find(head, b"!N").is_some()
-}
-
-/// Returns whether the fourth line has the numbers of atoms and bonds, in three columns each, and the
-/// version.
-fn is_molfile(lines: &[&[u8]], head: &[u8]) -> bool {
-    let Some(counts) = lines.get(3) else { return false };
-    let is_count = |field: Option<&[u8]>| field.is_some_and(|field| number::whole(field).is_some());
-    let version = counts.ends_with(b"V2000") || counts.ends_with(b"V3000");
-    is_count(counts.get(..3))
-        && is_count(counts.get(3..6))
-        && (version || has_line(head, b"M  END"))
-}
-
-/// Returns whether lines are a comment, a scale, three lattice vectors, element names and numbers of
-/// atoms or only these, and the kind of coordinates.
-fn is_poscar(lines: &[&[u8]]) -> bool {
-    let has = |line: usize, count: usize| {
-        lines.get(line).and_then(|line| numbers(line)).is_some_and(|numbers| numbers.len() == count)
-    };
-    let counts = |line: usize| {
-        let mut fields = Fields::blanks(lines.get(line).copied().unwrap_or_default()).peekable();
-        fields.peek().is_some() && fields.all(|field| number::whole(field).is_some())
-    };
-    let coordinates = |line: usize| {
-        let line = lines.get(line).copied().unwrap_or_default().trim_ascii_start();
-        line.first().is_some_and(|letter| b"sSdDcCkK".contains(letter))
-    };
-    let scale = has(1, 1) || has(1, 3);
-    scale
-        && (2..5).all(|line| has(line, 3))
-        && (counts(5) && coordinates(6) || counts(6) && coordinates(7))
 }
 
 /// Returns whether lines are two comments, the number of atoms and the origin, three axes of the grid with
@@ -423,69 +312,22 @@ fn is_mesh(first: &[u8]) -> bool {
     vertex.is_some_and(|numbers| numbers.len() >= 3) || first.starts_with(b"mtllib ")
 }
 
-/// Returns the format of a PQR file. It resembles PDB, but has charges and radii in columns of any
-/// width.
-pub(crate) fn pqr(head: &[u8], path: &Path) -> Option<Foreign> {
-    let has_suffix = |wanted: &str| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        name.split('.').skip(1).any(|part| part == wanted)
-    };
-    if has_suffix("pdb") || has_suffix("ent") {
-        return None;
-    }
-    let is_atom = |line: &&[u8]| line.starts_with(b"ATOM") || line.starts_with(b"HETATM");
-    let complete = &head[..memchr::memrchr(b'\n', head).unwrap_or(head.len())];
-    let mut atoms = complete.split(|&byte| byte == b'\n').filter(is_atom).take(LINES).peekable();
-    atoms.peek()?;
-    let conversion = "draw its radii: awk '/^(ATOM|HETATM)/ {print $(NF-4), $(NF-3), $(NF-2), $NF}' {file} | \
-               spherule render - -o {stem}.png; or read it as PDB, without them: --format pdb";
-    let is_pqr = has_suffix("pqr") || atoms.all(is_pqr_atom);
-    is_pqr.then(|| foreign("a PQR file, with charges and radii", conversion, path))
-}
-
-/// Returns whether a row ends with five decimal numbers that are not in the columns of PDB.
-fn is_pqr_atom(line: &[u8]) -> bool {
-    let fields: Vec<&[u8]> = Fields::blanks(line).collect();
-    let last = fields.len().checked_sub(5).map(|first| &fields[first..]).unwrap_or_default();
-    let is_decimal = |field: &&[u8]| field.contains(&b'.') && number::parse(field).is_some();
-    let numbers = last.len() == 5 && last.iter().all(is_decimal);
-    // In PDB, occupancy and temperature factor have two decimals in fixed columns.
-    let two_decimals = |end: usize| line.get(end - 3) == Some(&b'.');
-    numbers && !(two_decimals(60) && two_decimals(66) && line.get(38 - 4) == Some(&b'.'))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn named(content: &[u8], name: &str) -> String {
         let path = Path::new(name);
-        let found =
-            binary(content, path).or_else(|| text(content, path)).or_else(|| pqr(content, path));
+        let found = binary(content, path).or_else(|| text(content, path));
         found.map_or_else(String::new, |found| format!("{}: {}", found.name, found.help))
     }
 
     #[test]
     fn binary_formats_are_named_with_a_command() {
-        let xtc =
-            [&1995_u32.to_be_bytes()[..], &7_u32.to_be_bytes(), &[0; 44], &7_u32.to_be_bytes()]
-                .concat();
-        let dcd = |length: &[u8], word: &[u8]| [length, word, &[0; 90]].concat();
         let gadget = [&256_u32.to_le_bytes()[..], &[0; 256], &256_u32.to_le_bytes()].concat();
         let zip = |name: &[u8]| [b"PK\x03\x04", &[0; 26][..], name, &[0; 9]].concat();
         for (content, words) in [
-            (xtc, ["XTC", "gmx trjconv -f run.bin"]),
-            (dcd(&84_u32.to_le_bytes(), b"CORD"), ["DCD", "'run.bin').atoms"]),
-            (dcd(&84_u32.to_be_bytes(), b"VELD"), ["DCD", "frames='all'"]),
-            (dcd(&84_u64.to_le_bytes(), b"CORD"), ["DCD", "'run.xyz'"]),
-            (dcd(&84_u64.to_be_bytes(), b"CORD"), ["DCD", "MDAnalysis"]),
-            (
-                [&1993_u32.to_be_bytes()[..], &13_u32.to_be_bytes(), &[0; 4], b"GMX_trn_file"]
-                    .concat(),
-                ["TRR", "gmx"],
-            ),
             (b"\x89HDF\r\n\x1A\n\0\0".to_vec(), ["HDF5", "h5py.File('run.bin')"]),
-            (b"CDF\x02\0\0\0\0".to_vec(), ["NetCDF", "MDAnalysis"]),
             (gadget, ["Gadget", "pynbody.load('run.bin')"]),
             (zip(b"[Content_Types].xml"), ["spreadsheet", "--convert-to csv run.bin"]),
             (
@@ -506,47 +348,29 @@ mod tests {
         assert_eq!(binary(&zip(b"position.npy"), Path::new("a.npz")), None);
         assert_eq!(binary(&[0; 300], Path::new("a")), None);
         assert!(
-            named(b"CDF\x01", "-").contains("'FILE'")
-                && named(b"CDF\x01", "a b.nc").contains("'FILE'")
+            named(b"\x89HDF\r\n\x1A\n", "-").contains("'FILE'")
+                && named(b"\x89HDF\r\n\x1A\n", "a b.h5").contains("'FILE'")
         );
     }
 
     #[test]
     fn text_formats_are_named_with_a_command() {
-        let mol = "241\n  -OEChem-\n\n 12 12  0     0  0  0  0  0  0999 V2000\n    2.0    0.0    0.0 C\nM  END\n";
-        let poscar =
-            "Si2\n1.0\n0 2.7 2.7\n2.7 0 2.7\n2.7 2.7 0\nSi\n2\nDirect\n0 0 0\n0.25 0.25 0.25\n";
-        let old_poscar =
-            "8\n5.43\n1 0 0\n0 1 0\n0 0 1\n2 6\nSelective dynamics\nCartesian\n0 0 0 T T F\n";
         let cube =
             "title\ncomment\n 2 0.0 0.0 0.0\n 10 0.5 0 0\n 10 0 0.5 0\n 10 0 0 0.5\n 8 8.0 0 0 0\n";
         let amber =
             "\n    2\n   1.0000000   2.0000000   3.0000000   4.0000000   5.0000000   6.0000000\n";
         let charmm = "* TITLE\n*\n    1\n    1    1 ALA  N     1.0 2.0 3.0 PEP  1  0.0\n";
         for (content, words) in [
-            (mol, ["SDF", "obabel in.txt -O in.xyz"]),
-            ("@<TRIPOS>MOLECULE\nx\n", ["MOL2", "MDAnalysis"]),
-            ("# made by x\n@<TRIPOS>MOLECULE\n", ["MOL2", "in.txt"]),
-            (poscar, ["POSCAR", "ase convert -i vasp -o extxyz in.txt in.xyz"]),
-            (old_poscar, ["POSCAR", "-i vasp"]),
             (cube, ["cube", "-i cube"]),
             (amber, ["Amber", "TOPOLOGY"]),
             (charmm, ["CRD", "MDAnalysis"]),
-            ("PSF CMAP\n\n  1 !NTITLE\n", ["PSF", "TRAJECTORY"]),
             ("# vtk DataFile Version 3.0\nx\nASCII\n", ["VTK", "meshio.read('in.txt').points"]),
             ("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
             ("<VTKFile type=\"PolyData\">\n", ["VTK", "meshio"]),
-            ("CRYSTAL\nPRIMVEC\n", ["XSF", "-i xsf"]),
-            ("ATOMS\n8 0 0 0\n", ["XSF", "-i xsf"]),
             ("TITLE = \"a\"\nVARIABLES = \"x\"\n", ["Tecplot", "meshio"]),
             ("TITLE\nwater\nEND\nPOSITION\n", ["G96", "gmx editconf -f in.txt"]),
             ("mtllib a\nv 1 2 3\n", ["OBJ", "awk"]),
             ("<html>", ["web page", "curl"]),
-            (
-                "ATOM      1  N   NTR     0      63.889  69.990 133.214  0.1414 1.8240\n",
-                ["PQR", "print $(NF-4)"],
-            ),
-            ("ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\nTER\n", ["PQR", "--format pdb"]),
         ] {
             let found = named(content.as_bytes(), "in.txt");
             assert!(words.iter().all(|word| found.contains(word)), "{words:?}: {found}");
@@ -574,10 +398,6 @@ mod tests {
         ] {
             assert_eq!(named(content.as_bytes(), "a.txt"), "", "{content}");
         }
-        assert_eq!(
-            named("ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\n".as_bytes(), "a.pdb.gz"),
-            ""
-        );
     }
 
     #[test]
@@ -621,14 +441,10 @@ mod tests {
 
     #[test]
     fn variants_of_text_formats_are_named() {
-        let mol = |counts: &str, end: &str| format!("a\n  b\n\n{counts}\n    2.0 0.0 0.0 C\n{end}");
         for (content, word) in [
-            (mol("  0  0  0     0  0            999 V3000", ""), "SDF"),
-            (mol(" 12 12", "M  END\n"), "SDF"),
             ("ZONE T=\"a\"\n1 2 3\n".to_owned(), "Tecplot"),
             ("ZONE\n1 2 3\n".to_owned(), "Tecplot"),
             ("solid part\n facet normal 0 0 1\nfacet normal 0 0 1\n".to_owned(), "STL"),
-            ("ANIMSTEPS 5\nCRYSTAL\n".to_owned(), "XSF"),
             ("<?xml version=\"1.0\"?>\n<cml>\n".to_owned(), "CML"),
             ("<molecule xmlns=\"http://www.xml-cml.org/schema\">\n".to_owned(), "CML"),
             ("<?xml version=\"1.0\"?>\n<atoms>\n".to_owned(), "XML"),

@@ -4,10 +4,10 @@
 use super::builder::Builder;
 use super::categories::Kind;
 use super::cell::Cell;
-use super::element::{is_virtual_site, of_atom_name};
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
+use super::naming;
 use super::options::{Format, ReadOptions};
 use super::schema::{Naming, Schema, Slot};
 use super::{number, source::Source};
@@ -147,10 +147,7 @@ fn field<'l>(line: &Line<'l>, column: usize, width: usize) -> Result<&'l [u8], F
 /// Returns the type for the names of a residue and an atom, five letters each.
 fn kind(key: &str) -> Kind {
     let (residue, name) = key.split_at_checked(5).unwrap_or((key, ""));
-    let (residue, name) = (residue.trim(), name.trim());
-    let virtual_site = is_virtual_site(name, residue);
-    let element = if virtual_site { None } else { of_atom_name(name, residue) };
-    Kind { name: name.to_owned(), element, virtual_site }
+    naming::of_atom(name.trim(), residue.trim())
 }
 
 /// Parses the box: its lengths, then, if it is tilted, the other components of its edges.

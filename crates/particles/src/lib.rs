@@ -8,8 +8,9 @@
 //! ```
 //!
 //! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
-//! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content. Files may
-//! be compressed with gzip, bzip2, xz or zstd.
+//! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, and so are the
+//! trajectories DCD, XTC, TRR and NetCDF of Amber, whose particles a topology names, PQR, POSCAR and XDATCAR,
+//! SDF, MOL2, XSF, CFG and PSF. Files may be compressed with gzip, bzip2, xz or zstd.
 //!
 //! Every reader streams: it stores columns, never the file, and doesn't allocate by counts in the file.
 //! A malformed number is an error with its line. To add a format, add it to [`Format`], its detection to
@@ -32,11 +33,14 @@
 
 mod aliases;
 mod alternates;
+mod binary;
 mod builder;
 mod categories;
 mod cell;
+mod cfg;
 mod cif;
 mod csv;
+mod dcd;
 mod element;
 mod error;
 mod extra;
@@ -45,19 +49,26 @@ mod foreign;
 mod frame;
 mod frame_reader;
 mod gro;
+mod gromacs;
 mod gsd;
 mod header;
 mod lammps;
 mod line;
 mod lines;
 mod memory;
+mod mol2;
+mod molfile;
 mod naming;
+mod netcdf;
 mod number;
 mod numpy;
 mod options;
 mod pdb;
 mod ply;
+mod poscar;
+mod pqr;
 mod progress;
+mod psf;
 mod reader;
 mod record;
 mod scalar;
@@ -68,9 +79,11 @@ mod source;
 mod srgb;
 mod suggest;
 mod text;
+mod topology;
 mod undrawn;
 mod units;
 mod utf16;
+mod xsf;
 mod xyz;
 
 #[cfg(doctest)]

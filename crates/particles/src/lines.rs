@@ -52,6 +52,20 @@ impl Lines {
 
     /// Returns the next line, if there is one.
     pub(crate) fn next(&mut self) -> Result<Option<Line<'_>>, FileError> {
+        let range = self.advance()?;
+        Ok(range.map(|range| Line::new(&self.path, self.number, &self.buffer[range])))
+    }
+
+    /// Returns the next line, or an error that the file ends before `what`.
+    pub(crate) fn require(&mut self, what: &str) -> Result<Line<'_>, FileError> {
+        match self.advance()? {
+            Some(range) => Ok(Line::new(&self.path, self.number, &self.buffer[range])),
+            None => Err(self.ended(format!("the file ends before {what}"))),
+        }
+    }
+
+    /// Moves past the next line, and returns its range in the buffer.
+    fn advance(&mut self) -> Result<Option<Range<usize>>, FileError> {
         self.number += 1;
         let Some(mut range) = self.find()? else {
             self.last = self.start;
@@ -60,7 +74,7 @@ impl Lines {
         self.last = range.start;
         self.returned = self.buffer[range.clone()].last() == Some(&b'\r');
         range.end -= usize::from(self.returned);
-        Ok(Some(Line::new(&self.path, self.number, &self.buffer[range])))
+        Ok(Some(range))
     }
 
     /// Returns the line ending of the last line.

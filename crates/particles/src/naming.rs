@@ -1,7 +1,7 @@
 //! Derives elements from type names.
 
 use super::categories::{Kind, Kinds};
-use super::element::{Element, is_virtual_site};
+use super::element::{Element, is_virtual_site, of_atom_name};
 use super::number;
 use super::schema::Naming;
 
@@ -15,6 +15,13 @@ pub(crate) fn kind(name: &str, naming: Naming) -> Kind {
     let is_number = number::whole(name.as_bytes()).is_some();
     let is_type = is_number && naming == Naming::Types;
     let element = if virtual_site || is_type { None } else { Element::from_label(name) };
+    Kind { name: name.to_owned(), element, virtual_site }
+}
+
+/// Returns the type of an atom of a molecule, by its name and that of its residue.
+pub(crate) fn of_atom(name: &str, residue: &str) -> Kind {
+    let virtual_site = is_virtual_site(name, residue);
+    let element = if virtual_site { None } else { of_atom_name(name, residue) };
     Kind { name: name.to_owned(), element, virtual_site }
 }
 

@@ -2,6 +2,7 @@
 
 use super::progress::ReadProgress;
 use crate::suggest;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Format of a particle file.
@@ -37,11 +38,33 @@ pub enum Format {
     Npy,
     /// NumPy arrays in an archive: positions, radii, colors.
     Npz,
+    /// A DCD trajectory of CHARMM, NAMD, OpenMM or LAMMPS.
+    Dcd,
+    /// A compressed XTC trajectory of GROMACS.
+    Xtc,
+    /// A TRR trajectory of GROMACS.
+    Trr,
+    /// A NetCDF trajectory of Amber.
+    NetCdf,
+    /// PQR: PDB with charges and radii.
+    Pqr,
+    /// POSCAR, CONTCAR or XDATCAR of VASP.
+    Poscar,
+    /// MDL molfiles and SDF.
+    Sdf,
+    /// MOL2 of Tripos.
+    Mol2,
+    /// XSF of XCrySDen.
+    Xsf,
+    /// CFG of AtomEye.
+    Cfg,
+    /// PSF of CHARMM and NAMD: a topology, without positions.
+    Psf,
 }
 
 impl Format {
     /// All formats with their names in scene files and on the command line.
-    pub const ALL: [(&'static str, Self); 13] = [
+    pub const ALL: [(&'static str, Self); 24] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
         ("xyz", Self::Xyz),
@@ -55,7 +78,29 @@ impl Format {
         ("ply", Self::Ply),
         ("npy", Self::Npy),
         ("npz", Self::Npz),
+        ("dcd", Self::Dcd),
+        ("xtc", Self::Xtc),
+        ("trr", Self::Trr),
+        ("netcdf", Self::NetCdf),
+        ("pqr", Self::Pqr),
+        ("poscar", Self::Poscar),
+        ("sdf", Self::Sdf),
+        ("mol2", Self::Mol2),
+        ("xsf", Self::Xsf),
+        ("cfg", Self::Cfg),
+        ("psf", Self::Psf),
     ];
+
+    /// Returns whether files of this format are told by their first bytes alone.
+    pub(crate) fn has_magic(self) -> bool {
+        let arrays = matches!(self, Self::Gsd | Self::Ply | Self::Npy | Self::Npz);
+        arrays || self.lacks_names()
+    }
+
+    /// Returns whether files of this format have positions alone, and a topology tells what they are of.
+    pub(crate) fn lacks_names(self) -> bool {
+        matches!(self, Self::Dcd | Self::Xtc | Self::Trr | Self::NetCdf)
+    }
 
     /// Returns the name in scene files and on the command line.
     pub fn name(self) -> &'static str {
@@ -234,6 +279,9 @@ pub struct ReadOptions {
     /// The atom style of a LAMMPS data file, such as `full`; `None`: as the file declares it, or else
     /// inferred from the columns.
     pub atom_style: Option<String>,
+    /// The file that says what the particles of a trajectory are: all that its first frame has but
+    /// positions, velocities, forces and the cell.
+    pub topology: Option<PathBuf>,
     /// True if a frame without spheres is valid, as in a trajectory, and not an error.
     pub allow_empty: bool,
     /// Counter of the bytes read.
@@ -254,6 +302,7 @@ impl ReadOptions {
             radius_scale,
             scale,
             atom_style: _,
+            topology: _,
             allow_empty: _,
             progress: _,
         } = self;
@@ -281,6 +330,7 @@ impl Default for ReadOptions {
             radius_scale: 1.0,
             scale: 1.0,
             atom_style: None,
+            topology: None,
             allow_empty: false,
             progress: ReadProgress::default(),
         }

@@ -4,7 +4,11 @@ use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::options::{Format, FrameChoice, ReadOptions};
 use super::source::{Source, is_standard_input};
-use super::{cif, csv, gro, gsd, lammps, numpy, pdb, ply, sniff, text, xyz};
+use super::topology::Joined;
+use super::{
+    cfg, cif, csv, dcd, gro, gromacs, gsd, lammps, mol2, molfile, netcdf, numpy, pdb, ply, poscar,
+    pqr, psf, sniff, text, xsf, xyz,
+};
 use crate::FileError;
 use std::path::Path;
 
@@ -21,26 +25,12 @@ impl Frames {
     ///
     /// The file cannot be read, or its format is unknown.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
-        let source = Source::open(path, &options.progress)?;
-        let format = sniff::format(&source, options)?;
-        let reader: Box<dyn FrameReader> = match format {
-            Format::Xyzr => Box::new(text::Rows::new(source, options)),
-            Format::Csv => Box::new(csv::Csv::new(source, options)),
-            Format::Xyz => Box::new(xyz::Xyz::new(source, options)),
-            Format::LammpsDump => Box::new(lammps::Dump::new(source, options)),
-            Format::LammpsData => Box::new(lammps::Data::new(source, options)),
-            Format::Gro => Box::new(gro::Gro::new(source, options)),
-            Format::Pdb => Box::new(pdb::Pdb::new(source, options)),
-            Format::MmCif => Box::new(cif::MmCif::new(source, options)),
-            Format::Cif => Box::new(cif::Crystal::new(source, options)),
-            Format::Gsd => Box::new(gsd::Gsd::new(source, options)?),
-            Format::Ply => Box::new(ply::Ply::new(source, options)),
-            Format::Npy => Box::new(numpy::Npy::new(source, options)?),
-            Format::Npz => Box::new(numpy::Npz::new(source, options)?),
+        let reader: Box<dyn FrameReader> = match &options.topology {
+            None => open_positions(path, options)?,
+            Some(topology) => Box::new(Joined::new(path, topology, options)?),
         };
         Ok(Self { reader, failed: false })
     }
-
     /// Skips the next frame with as little work as the format allows. Returns whether there was one.
     ///
     /// # Errors
@@ -51,6 +41,56 @@ impl Frames {
         self.failed |= skipped.is_err();
         skipped
     }
+}
+
+/// Returns the reader of a file of positions, without its topology.
+pub(crate) fn open_positions(
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<Box<dyn FrameReader>, FileError> {
+    let (format, reader) = open(path, options)?;
+    if format == Format::Psf {
+        let error = FileError::whole_file(path, "is a topology, without positions");
+        let name = path.display();
+        return Err(error.with_help(format!("name a trajectory, and give it --topology {name}")));
+    }
+    Ok(reader)
+}
+
+/// Returns the reader of a file and its format; a topology may lack positions.
+pub(crate) fn open(
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<(Format, Box<dyn FrameReader>), FileError> {
+    let source = Source::open(path, &options.progress)?;
+    let format = sniff::format(&source, options)?;
+    let reader: Box<dyn FrameReader> = match format {
+        Format::Xyzr => Box::new(text::Rows::new(source, options)),
+        Format::Csv => Box::new(csv::Csv::new(source, options)),
+        Format::Xyz => Box::new(xyz::Xyz::new(source, options)),
+        Format::LammpsDump => Box::new(lammps::Dump::new(source, options)),
+        Format::LammpsData => Box::new(lammps::Data::new(source, options)),
+        Format::Gro => Box::new(gro::Gro::new(source, options)),
+        Format::Pdb => Box::new(pdb::Pdb::new(source, options)),
+        Format::MmCif => Box::new(cif::MmCif::new(source, options)),
+        Format::Cif => Box::new(cif::Crystal::new(source, options)),
+        Format::Gsd => Box::new(gsd::Gsd::new(source, options)?),
+        Format::Ply => Box::new(ply::Ply::new(source, options)),
+        Format::Npy => Box::new(numpy::Npy::new(source, options)?),
+        Format::Npz => Box::new(numpy::Npz::new(source, options)?),
+        Format::Dcd => Box::new(dcd::Dcd::new(source, options)?),
+        Format::Xtc => Box::new(gromacs::Xtc::new(source, options)?),
+        Format::Trr => Box::new(gromacs::Trr::new(source, options)?),
+        Format::NetCdf => Box::new(netcdf::NetCdf::new(source, options)?),
+        Format::Pqr => Box::new(pqr::Pqr::new(source, options)),
+        Format::Poscar => Box::new(poscar::Poscar::new(source, options)),
+        Format::Sdf => Box::new(molfile::Molfile::new(source, options)),
+        Format::Mol2 => Box::new(mol2::Mol2::new(source, options)),
+        Format::Xsf => Box::new(xsf::Xsf::new(source, options)),
+        Format::Cfg => Box::new(cfg::Cfg::new(source, options)),
+        Format::Psf => Box::new(psf::Psf::new(source, options)),
+    };
+    Ok((format, reader))
 }
 
 impl Iterator for Frames {
@@ -69,7 +109,14 @@ impl Iterator for Frames {
 /// Returns the next frame, with warnings about columns that are not drawn.
 fn next_frame(reader: &mut dyn FrameReader) -> Result<Option<ParticleFrame>, FileError> {
     let mut frame = reader.next()?;
-    frame.iter_mut().for_each(ParticleFrame::add_undrawn_columns);
+    if let Some(frame) = &mut frame {
+        frame.add_undrawn_columns();
+        if frame.format.lacks_names() && frame.kinds.codes.is_empty() && !frame.is_empty() {
+            let warning =
+                "its particles have no names; --topology FILE reads them from another file";
+            frame.warnings.push(warning.to_owned());
+        }
+    }
     Ok(frame)
 }
 

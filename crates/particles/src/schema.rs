@@ -36,7 +36,7 @@ pub(crate) enum Naming {
 }
 
 /// The uses of all columns of a file.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Schema {
     /// Uses of the columns, up to the last used one.
     pub(crate) slots: Vec<Slot>,

@@ -4,17 +4,24 @@ use super::fields::Fields;
 use super::foreign::{self, Foreign};
 use super::options::{Format, ReadOptions, Role};
 use super::source::Source;
-use super::{cif, gro, gsd, header, line, number, numpy, pdb, ply, units, utf16};
+use super::{
+    cfg, cif, dcd, gro, gromacs, gsd, header, line, mol2, molfile, netcdf, number, numpy, pdb, ply,
+    poscar, pqr, psf, units, utf16, xsf,
+};
 use crate::FileError;
 
 /// Help that lists the formats that can be detected.
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
-                     of crystals, GSD, PLY and arrays of NumPy; of others, name the format, as in --format xyz, \
+                     of crystals, GSD, PLY, arrays of NumPy, DCD, XTC, TRR and NetCDF of Amber, PQR, \
+                     POSCAR, SDF, MOL2, XSF, CFG and PSF; of others, name the format, as in --format xyz, \
                      or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.
 const DATA_HEADER: usize = 40;
+
+/// Test of the head of a file.
+type Test = fn(&[u8]) -> bool;
 
 /// Returns the format in the options, or else the detected one.
 pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, FileError> {
@@ -36,7 +43,7 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
             _ => Ok(format),
         };
     }
-    if let Some(asked @ (Format::Gsd | Format::Npy | Format::Npz | Format::Ply)) = options.format {
+    if let Some(asked) = options.format.filter(|format| format.has_magic()) {
         let help = "leave --format out: the content tells the format";
         return Err(fault(format!("is not {}", asked.name())).with_help(help));
     }
@@ -56,17 +63,37 @@ pub(crate) fn format(source: &Source, options: &ReadOptions) -> Result<Format, F
     }
     let detected = detect(head, options);
     // Titles of these files may be any text, also signatures of other formats.
-    let is_titled = |format: &Format| matches!(format, Format::Gro | Format::LammpsData);
+    let is_titled = |format: &Format| {
+        matches!(format, Format::Gro | Format::LammpsData | Format::Poscar | Format::Sdf)
+    };
     if let Some(&format) = detected.as_ref().ok().filter(|format| is_titled(format)) {
         return Ok(format);
     }
-    let pqr = || {
-        foreign::pqr(head, &source.path).filter(|_| matches!(detected, Err(_) | Ok(Format::Pdb)))
-    };
-    match foreign::text(head, &source.path).or_else(pqr) {
-        Some(foreign) => Err(refuse(foreign)),
-        None => detected.map_err(|message| fault(message).with_help(KNOWN)),
+    if let Some(foreign) = foreign::text(head, &source.path) {
+        return Err(refuse(foreign));
     }
+    // Rows of PQR look like those of PDB.
+    let may_be_pqr = matches!(detected, Err(_) | Ok(Format::Pdb));
+    if may_be_pqr && pqr::is_pqr(head, &source.path) {
+        return Ok(Format::Pqr);
+    }
+    detected.map_err(|message| fault(message).with_help(KNOWN))
+}
+
+/// Returns the format of a text whose first lines have a structure of their own, after any title.
+fn structured(head: &[u8]) -> Option<Format> {
+    let first = head.split(|&byte| byte == b'\n').next().unwrap_or_default().trim_ascii_end();
+    if psf::is_psf(first, head) {
+        return Some(Format::Psf);
+    }
+    let structures: [(Test, Format); 5] = [
+        (mol2::is_mol2, Format::Mol2),
+        (molfile::is_molfile, Format::Sdf),
+        (poscar::is_poscar, Format::Poscar),
+        (xsf::is_xsf, Format::Xsf),
+        (cfg::is_cfg, Format::Cfg),
+    ];
+    structures.into_iter().find(|(is, _)| is(head)).map(|(_, format)| format)
 }
 
 fn binary(head: &[u8]) -> Option<Format> {
@@ -79,7 +106,14 @@ fn binary(head: &[u8]) -> Option<Format> {
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
         return Some(Format::Npz);
     }
-    ply::is_ply(head).then_some(Format::Ply)
+    let signatures: [(Test, Format); 5] = [
+        (ply::is_ply, Format::Ply),
+        (dcd::is_dcd, Format::Dcd),
+        (gromacs::is_xtc, Format::Xtc),
+        (gromacs::is_trr, Format::Trr),
+        (netcdf::is_netcdf, Format::NetCdf),
+    ];
+    signatures.into_iter().find(|(is, _)| is(head)).map(|(_, format)| format)
 }
 
 fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
@@ -89,6 +123,9 @@ fn detect(head: &[u8], options: &ReadOptions) -> Result<Format, String> {
         && gro::is_gro(second, third)
     {
         return Ok(Format::Gro);
+    }
+    if let Some(format) = structured(head) {
+        return Ok(format);
     }
     let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
     let mut lines = lines.filter(|line| !line.is_empty() && !line::is_comment(line));
@@ -154,6 +191,44 @@ mod tests {
 
     fn detect(head: &str) -> Result<Format, String> {
         super::detect(head.as_bytes(), &ReadOptions::default())
+    }
+
+    #[test]
+    fn structures_of_lines_tell_the_format() {
+        let mol =
+            |counts: &str, end: &str| format!("241\n  b\n\n{counts}\n    2.0 0.0 0.0 C\n{end}");
+        let molfiles = [
+            mol(" 12 12  0     0  0  0  0  0  0999 V2000", "M  END\n"),
+            mol("  0  0  0     0  0            999 V3000", ""),
+            mol(" 12 12", "M  END\n"),
+        ];
+        for molfile in molfiles {
+            assert_eq!(detect(&molfile), Ok(Format::Sdf), "{molfile}");
+        }
+        for mol2 in ["@<TRIPOS>MOLECULE\nx\n", "# made by x\n@<TRIPOS>MOLECULE\n"] {
+            assert_eq!(detect(mol2), Ok(Format::Mol2), "{mol2}");
+        }
+        let poscar =
+            "Si2\n1.0\n0 2.7 2.7\n2.7 0 2.7\n2.7 2.7 0\nSi\n2\nDirect\n0 0 0\n0.25 0.25 0.25\n";
+        let old = "8\n5.43\n1 0 0\n0 1 0\n0 0 1\n2 6\nSelective dynamics\nCartesian\n0 0 0 T T F\n";
+        for poscar in [poscar, old] {
+            assert_eq!(detect(poscar), Ok(Format::Poscar), "{poscar}");
+        }
+        for xsf in
+            ["CRYSTAL\nPRIMVEC\n", "ATOMS\n8 0 0 0\n", "# x\nANIMSTEPS 5\nCRYSTAL\nPRIMVEC\n"]
+        {
+            assert_eq!(detect(xsf), Ok(Format::Xsf), "{xsf}");
+        }
+        assert_eq!(detect("CRYSTAL\n1 atoms\n\nAtoms # atomic\n"), Ok(Format::LammpsData));
+        assert_eq!(detect("Number of particles = 8\nA = 1.0\n"), Ok(Format::Cfg));
+        assert_eq!(detect("PSF CMAP\n\n  1 !NTITLE\n"), Ok(Format::Psf));
+        let table = "8\n1.0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n2 2 2\n3 3 3\n";
+        for other in [table, "PSF x y z\n1 2 3 4\n", "x y z\n1 2 3\na\nxx yy V2000\n"] {
+            assert!(
+                !matches!(detect(other), Ok(Format::Poscar | Format::Psf | Format::Sdf)),
+                "{other}"
+            );
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::cli::files::Files;
 pub(in crate::cli) fn files(args: &RenderArgs) -> Files {
     let mut files = Files::new("render");
     if let Some(scene) = &args.scene {
-        files.reads_scene(scene);
+        files.reads_particles(scene, &args.particles);
     }
     let many = args.is_sequence();
     let part = args.part.resolved().is_some() && !many;

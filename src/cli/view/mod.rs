@@ -129,7 +129,9 @@ fn open(_: Job<'static>, _: &ViewerArgs) -> Result<ExitCode, Failure> {
 /// Files that a script reads and writes.
 fn script_files(args: &ViewerArgs, script: &Path, steps: &[(usize, Step)]) -> Files {
     let mut files = Files::new("view");
-    args.render.scene.iter().for_each(|scene| files.reads_scene(scene));
+    if let Some(scene) = &args.render.scene {
+        files.reads_particles(scene, &args.render.particles);
+    }
     files.reads("the script", script);
     let mut saves = |step: &str, path: &Path| {
         files.writes(step, path);

@@ -1,12 +1,9 @@
 //! The GSD container: named chunks of numbers with an index (gsd.readthedocs.io, "File layer").
 
 use crate::FileError;
-use crate::progress::CountedFile;
+use crate::binary::BinaryFile;
 use crate::scalar::{Order, Scalar};
 use std::collections::{BTreeMap, HashMap};
-use std::io::{self, Read, Seek, SeekFrom};
-use std::path::Path;
-use std::sync::Arc;
 
 /// Magic number of a file.
 pub(in super::super) const MAGIC: [u8; 8] = 0x65DF_65DF_65DF_65DF_u64.to_le_bytes();
@@ -20,9 +17,7 @@ const NAMES: u64 = 1 << 24;
 
 /// An open file.
 pub(super) struct File {
-    path: Arc<Path>,
-    content: CountedFile,
-    length: u64,
+    content: BinaryFile,
     names: HashMap<String, u16>,
     /// Chunks by frame and name.
     chunks: BTreeMap<(u64, u16), Chunk>,
@@ -45,24 +40,21 @@ fn word(bytes: &[u8], at: usize) -> u64 {
 }
 
 impl File {
-    pub(super) fn open(path: &Arc<Path>, mut content: CountedFile) -> Result<Self, FileError> {
-        let unreadable =
-            |error: io::Error| FileError::whole_file(path, format!("cannot be read: {error}"));
-        let length = content.seek(SeekFrom::End(0)).map_err(unreadable)?;
+    pub(super) fn open(content: BinaryFile) -> Result<Self, FileError> {
         let (names, chunks) = (HashMap::new(), BTreeMap::new());
-        let mut file = Self { path: path.clone(), content, length, names, chunks };
-        let header = file.bytes(0, HEADER)?;
+        let mut file = Self { content, names, chunks };
+        let header = file.content.bytes(0, HEADER)?;
         let version = word(&header, 44) >> 16 & 0xFFFF;
         if !(1..=2).contains(&version) {
             let message = format!("is GSD of version {version}, but 1 and 2 are read");
-            return Err(FileError::whole_file(path, message).with_help("upgrade it to version 2"));
+            return Err(file.content.fault(message).with_help("upgrade it to version 2"));
         }
         let schema: Vec<u8> =
             header[112..176].iter().copied().take_while(|&byte| byte > 0).collect();
         if schema != b"hoomd" {
             let message = format!("holds `{}`, not particles", String::from_utf8_lossy(&schema));
-            return Err(FileError::whole_file(path, message)
-                .with_help("only the schema hoomd is supported"));
+            let error = file.content.fault(message);
+            return Err(error.with_help("only the schema hoomd is supported"));
         }
         file.read_names(word(&header, 24), word(&header, 32), version)?;
         file.read_index(word(&header, 8), word(&header, 16))?;
@@ -72,7 +64,7 @@ impl File {
     /// Reads the names, which are in fields of 64 bytes or, since version 2, null-terminated.
     fn read_names(&mut self, location: u64, fields: u64, version: u64) -> Result<(), FileError> {
         let length = fields.saturating_mul(64).min(NAMES);
-        let bytes = self.bytes(location, length)?;
+        let bytes = self.content.bytes(location, length)?;
         let name = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         let names: Vec<String> = if version == 1 {
             let fields = bytes.chunks(64);
@@ -87,7 +79,7 @@ impl File {
     }
 
     fn read_index(&mut self, location: u64, entries: u64) -> Result<(), FileError> {
-        let bytes = self.bytes(location, entries.saturating_mul(ENTRY))?;
+        let bytes = self.content.bytes(location, entries.saturating_mul(ENTRY))?;
         for entry in bytes.chunks_exact(ENTRY as usize) {
             let last = word(entry, 24);
             let (frame, location) = (word(entry, 0), word(entry, 16));
@@ -106,7 +98,7 @@ impl File {
         let (frames, chunks) = (self.frames(), self.chunks.len() as u64);
         if frames > chunks {
             let message = format!("has an index of {frames} frames, but of {chunks} chunks");
-            let error = FileError::whole_file(&self.path, message);
+            let error = self.content.fault(message);
             return Err(error.with_help("the index is damaged: copy the file again"));
         }
         Ok(())
@@ -150,7 +142,7 @@ impl File {
         let scalar = self.scalar(chunk, frame, name)?;
         let size = scalar.size();
         let row = chunk.width.saturating_mul(size as u64);
-        self.check_range(chunk.location, chunk.rows.saturating_mul(row))?;
+        self.content.check_range(chunk.location, chunk.rows.saturating_mul(row))?;
         let rows = if row == 0 { 0 } else { chunk.rows };
         let column = |_| Vec::with_capacity(rows as usize);
         let mut columns: Vec<Vec<f64>> = places.iter().map(column).collect();
@@ -173,12 +165,12 @@ impl File {
         mut each: impl FnMut(&[u8]),
     ) -> Result<(), FileError> {
         let row = chunk.width.saturating_mul(size as u64);
-        self.check_range(chunk.location, chunk.rows.saturating_mul(row))?;
+        self.content.check_range(chunk.location, chunk.rows.saturating_mul(row))?;
         // Empty rows have no block.
         let rows = if row == 0 { 0 } else { chunk.rows };
         for first in (0..rows).step_by(ROWS as usize) {
             let count = ROWS.min(rows - first);
-            each(&self.bytes(chunk.location + first * row, count * row)?);
+            each(&self.content.bytes(chunk.location + first * row, count * row)?);
         }
         Ok(())
     }
@@ -198,7 +190,7 @@ impl File {
             10 => Scalar::F64,
             kind => {
                 let message = format!("{name} of frame {frame} is of the unknown type {kind}");
-                return Err(FileError::whole_file(&self.path, message));
+                return Err(self.content.fault(message));
             }
         })
     }
@@ -210,7 +202,7 @@ impl File {
         name: &str,
     ) -> Result<Option<Vec<String>>, FileError> {
         let Some(chunk) = self.chunk(frame, name) else { return Ok(None) };
-        let bytes = self.bytes(chunk.location, chunk.rows.saturating_mul(chunk.width))?;
+        let bytes = self.content.bytes(chunk.location, chunk.rows.saturating_mul(chunk.width))?;
         let rows = bytes.chunks((chunk.width as usize).max(1));
         let text = |row: &[u8]| {
             let end = row.iter().position(|&byte| byte == 0).unwrap_or(row.len());
@@ -233,26 +225,5 @@ impl File {
     fn chunk(&self, frame: u64, name: &str) -> Option<Chunk> {
         let id = *self.names.get(name)?;
         self.chunks.get(&(frame, id)).copied()
-    }
-
-    /// Returns an error if a range is not within the file.
-    fn check_range(&self, location: u64, length: u64) -> Result<(), FileError> {
-        if location.checked_add(length).is_some_and(|end| end <= self.length) {
-            return Ok(());
-        }
-        let message = format!("is cut off: {length} bytes from {location} on are not there");
-        let error = FileError::whole_file(&self.path, message);
-        Err(error.with_help("copy it again, after the simulation has ended"))
-    }
-
-    /// Reads bytes of the file; checks that they exist before allocating memory.
-    fn bytes(&mut self, location: u64, length: u64) -> Result<Vec<u8>, FileError> {
-        self.check_range(location, length)?;
-        let mut bytes = vec![0; length as usize];
-        let seek = self.content.seek(SeekFrom::Start(location));
-        seek.and_then(|_| self.content.read_exact(&mut bytes)).map_err(|error| {
-            FileError::whole_file(&self.path, format!("cannot be read: {error}"))
-        })?;
-        Ok(bytes)
     }
 }

@@ -18,6 +18,7 @@ use super::schema::unknown_column;
 use super::source::Source;
 use super::undrawn::Undrawn;
 use crate::FileError;
+use crate::binary::BinaryFile;
 use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
@@ -51,7 +52,7 @@ pub(super) struct Gsd {
 impl Gsd {
     pub(super) fn new(source: Source, options: &ReadOptions) -> Result<Self, FileError> {
         let path = source.path.clone();
-        let file = File::open(&path, source.into_file()?)?;
+        let file = File::open(BinaryFile::open(source)?)?;
         Ok(Self { path, file, options: options.clone(), next: 0 })
     }
 

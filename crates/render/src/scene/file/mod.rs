@@ -57,7 +57,8 @@ pub fn included_files(path: &Path) -> Vec<PathBuf> {
     let Ok(document) = text.parse::<toml::Table>() else { return Vec::new() };
     let picture = document.get("environment").and_then(|environment| environment.get("file"));
     let particles = document.get("file").and_then(toml::Value::as_array).into_iter().flatten();
-    let names = particles.filter_map(|file| file.get("path")).chain(picture);
+    let named = particles.flat_map(|file| [file.get("path"), file.get("topology")]);
+    let names = named.flatten().chain(picture);
     let folder = path.parent().unwrap_or(Path::new(""));
     names.filter_map(toml::Value::as_str).map(|name| folder.join(name)).collect()
 }

@@ -225,7 +225,14 @@ pub(super) const GENERATE: Schema = Schema {
 
 pub(super) const FILE: Schema = plain(
     "[[file]]",
-    &[("path", &[]), ("format", &[]), ("material", &[]), ("radius", &[]), ("scale", &[])],
+    &[
+        ("path", &[]),
+        ("format", &[]),
+        ("topology", &[]),
+        ("material", &[]),
+        ("radius", &[]),
+        ("scale", &[]),
+    ],
 );
 
 #[cfg(test)]

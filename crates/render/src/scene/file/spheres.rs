@@ -9,6 +9,7 @@ use crate::scene::Footprint;
 use crate::scene::generate::{Field, Generator, Grid, Lattice, Sphereflake, Volume, Weekend};
 use crate::scene::particles::{self, Format, Radii, ReadOptions};
 use crate::scene::{FileError, Rgb, Scene, Spheres};
+use std::path::PathBuf;
 
 pub(super) fn read(
     source: &Source,
@@ -153,17 +154,15 @@ fn read_file(
     let format = block.value("format").map(|value| format(&value)).transpose()?;
     let scale = block.value("scale");
     let radius = block.value("radius").map(|value| value.number(Limits::Positive)).transpose()?;
+    let topology = block.value("topology").map(|value| existing(source, &value)).transpose()?;
     let options = ReadOptions {
         format,
+        topology,
         radii: radius.map_or(Radii::Auto, Radii::Missing),
         scale: scale.map_or(Ok(1.0), |value| value.number(Limits::Positive))?,
         ..ReadOptions::default()
     };
-    let path = source.folder.join(file.text()?);
-    if !path.is_file() {
-        let error = file.error(format!("file not found: {}", path.display()));
-        return Err(error.with_help("paths are relative to the folder of the scene file"));
-    }
+    let path = existing(source, &file)?;
     let particles = particles::read(&path, &options)?;
     let added = Footprint::of_columns(&particles.spheres, &[]);
     check_capacity(&scene.spheres, &added, added.scene(), materials)
@@ -182,6 +181,16 @@ fn read_file(
     scene.spheres.append(particles.spheres, &rows);
     scene.warnings.extend(particles.warnings);
     Ok(())
+}
+
+/// Returns the path of a file that a value names.
+fn existing(source: &Source, file: &Value) -> Result<PathBuf, FileError> {
+    let path = source.folder.join(file.text()?);
+    if path.is_file() {
+        return Ok(path);
+    }
+    let error = file.error(format!("file not found: {}", path.display()));
+    Err(error.with_help("paths are relative to the folder of the scene file"))
 }
 
 fn format(value: &Value) -> Result<Format, FileError> {

@@ -100,8 +100,10 @@ impl Orientation {
     /// Finds the orientation of particles.
     pub fn of(particles: &Particles) -> Self {
         let (spheres, cell) = (&particles.spheres, particles.cell.as_ref());
-        let molecules = matches!(particles.format, Format::Pdb | Format::MmCif)
-            || particles.format == Format::Xyz && cell.is_none();
+        let molecules = matches!(
+            particles.format,
+            Format::Pdb | Format::MmCif | Format::Pqr | Format::Sdf | Format::Mol2
+        ) || particles.format == Format::Xyz && cell.is_none();
         let cell = cell.filter(|_| !molecules);
         let radius = median_radius(spheres);
         let gaps = cell.map(|cell| gaps(spheres, cell));
@@ -371,7 +373,12 @@ mod tests {
         let cloud = || lattice([4, 4, 4]).map(|p| p * DVec3::new(1.0, 1.1, 1.2));
         for (_, format) in Format::ALL {
             let expected = match format {
-                Format::Pdb | Format::MmCif | Format::Xyz => (Axis::Y, UpReason::Molecule),
+                Format::Pdb
+                | Format::MmCif
+                | Format::Pqr
+                | Format::Sdf
+                | Format::Mol2
+                | Format::Xyz => (Axis::Y, UpReason::Molecule),
                 _ => (Axis::Z, UpReason::Convention(format)),
             };
             assert_eq!(found(&particles(format, cloud())), expected);

@@ -402,13 +402,11 @@ fn text_in_utf_16_is_read_or_named() {
 
 #[test]
 fn files_of_other_formats_come_with_a_command() {
-    let xtc = [&1995_u32.to_be_bytes()[..], &7_u32.to_be_bytes(), &[0; 44], &7_u32.to_be_bytes()]
-        .concat();
-    let sdf = b"241\n  tool\n\n  1  0  0  0  0  0  0  0  0  0999 V2000\n    0.0    0.0    0.0 C\nM  END\n";
+    let tng = [&[0; 40][..], b"TRAJNG", &[0; 100]].concat();
     for (content, name, command) in [
-        (&xtc[..], "XTC", "gmx trjconv"),
-        (sdf, "SDF", "obabel"),
-        (b"ATOM 1 N NTR 0 63.889 69.990 133.214 0.1414 1.8240\n", "PQR", "awk"),
+        (&tng[..], "TNG", "gmx trjconv"),
+        (b"TITLE\nwater\nEND\nPOSITION\n", "G96", "gmx editconf"),
+        (b"%VERSION  VERSION_STAMP = V0001.000\n", "Amber", "MDAnalysis"),
     ] {
         let error = frame_with(content, &ReadOptions::default()).expect_err(name);
         assert!(

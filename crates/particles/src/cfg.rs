@@ -1,0 +1,168 @@
+//! Reads CFG of AtomEye, standard and extended: fractional coordinates, in angstrom
+//! (Li, "AtomEye", 2003). `Transform` and `eta` are ignored.
+
+use super::builder::Builder;
+use super::cell::Cell;
+use super::frame::{LengthUnit, ParticleFrame};
+use super::frame_reader::FrameReader;
+use super::lines::Lines;
+use super::number;
+use super::options::{Format, ReadOptions};
+use super::schema::{Schema, Slot};
+use super::source::Source;
+use crate::FileError;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// The beginning of a file.
+const FIRST: &[u8] = b"Number of particles";
+
+/// Names of the first columns.
+const NAMES: [&str; 5] = ["species", "mass", "x", "y", "z"];
+
+/// Velocities, in fractional coordinates.
+const VELOCITIES: [&str; 3] = ["vs1", "vs2", "vs3"];
+
+/// Maximum number of auxiliary columns.
+const COLUMNS: usize = 10_000;
+
+/// Reader of a CFG file, which is one frame.
+pub(crate) struct Cfg {
+    lines: Lines,
+    options: ReadOptions,
+    done: bool,
+}
+
+/// What precedes the rows.
+struct Header {
+    count: u64,
+    scale: f64,
+    vectors: [DVec3; 3],
+    has_velocities: bool,
+    /// Number of numbers per row of an extended file.
+    entries: Option<usize>,
+    /// Names of auxiliary columns.
+    names: Vec<String>,
+}
+
+impl Cfg {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        Self { lines: Lines::new(source), options: options.clone(), done: false }
+    }
+
+    /// Reads the header, up to the first row.
+    fn header(&mut self) -> Result<Header, FileError> {
+        let vectors = [DVec3::ZERO; 3];
+        let mut header = Header {
+            count: 0,
+            scale: 1.0,
+            vectors,
+            has_velocities: true,
+            entries: None,
+            names: Vec::new(),
+        };
+        while let Some(line) = self.lines.next()? {
+            let text =
+                line.bytes.split(|&byte| byte == b'#').next().unwrap_or_default().trim_ascii();
+            if text.is_empty() {
+                continue;
+            }
+            if text == b".NO_VELOCITY." {
+                header.has_velocities = false;
+                continue;
+            }
+            let Some(equals) = memchr::memchr(b'=', text) else {
+                self.lines.back();
+                break;
+            };
+            let (key, value) = (text[..equals].trim_ascii_end(), text[equals + 1..].trim_ascii());
+            let first = value.split(u8::is_ascii_whitespace).next().unwrap_or_default();
+            match key {
+                FIRST => header.count = line.whole_number(first)?,
+                b"A" => header.scale = line.number(first)?,
+                b"entry_count" => header.entries = Some(line.whole_number(first)? as usize),
+                _ => {
+                    if let Some([row, axis]) = component(key) {
+                        header.vectors[row][axis] = line.number(first)?;
+                    } else if key.starts_with(b"auxiliary[") && header.names.len() < COLUMNS {
+                        header.names.push(String::from_utf8_lossy(first).into_owned());
+                    }
+                }
+            }
+        }
+        Ok(header)
+    }
+}
+
+/// Returns the row and column of a component of the cell, as in `H0(1,2)`.
+fn component(key: &[u8]) -> Option<[usize; 2]> {
+    let digits = key.strip_prefix(b"H0(")?.strip_suffix(b")")?;
+    let [row, b',', axis] = *digits else { return None };
+    let index = |digit: u8| (b'1'..=b'3').contains(&digit).then(|| usize::from(digit - b'1'));
+    Some([index(row)?, index(axis)?])
+}
+
+impl FrameReader for Cfg {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        if self.done {
+            return Ok(None);
+        }
+        self.done = true;
+        let header = self.header()?;
+        let vectors = header.vectors.map(|vector| vector * header.scale);
+        let cell = Cell { origin: DVec3::ZERO, vectors, periodic: [true; 3] }.checked();
+        let cell = cell.ok_or_else(|| self.lines.ended("the cell H0 has no volume"))?;
+        let velocities = if header.has_velocities { &VELOCITIES[..] } else { &[] };
+        let names = NAMES.iter().chain(velocities).map(|name| (*name).to_owned());
+        let schema = Schema::new(names.chain(header.names).collect(), &self.options);
+        let schema = Arc::new(schema.map_err(|message| self.lines.ended(message))?);
+        let used: Vec<(usize, Slot)> = schema.used_columns().collect();
+        let mut builder = Builder::new(self.lines.path(), Format::Cfg, &schema);
+        let (mut mass, mut symbol) = (Vec::new(), Vec::new());
+        for atom in 0..header.count {
+            // In extended files, masses and symbols have lines of their own, before the atoms that they are of.
+            let (line, skip) = loop {
+                let Some(line) = self.lines.next()? else {
+                    let message = format!("the file ends after {atom} of {} atoms", header.count);
+                    return Err(self.lines.ended(message).with_help("the file is cut off"));
+                };
+                let mut fields = line.fields();
+                let (first, second) = (fields.next().unwrap_or_default(), fields.next());
+                match (header.entries, second) {
+                    (None, Some(second)) => {
+                        (mass, symbol) = (first.to_vec(), second.to_vec());
+                        break (line, 2);
+                    }
+                    (Some(_), Some(_)) => break (line, 0),
+                    (_, None) if first.is_empty() => (),
+                    (_, None) if number::parse(first).is_some() => mass = first.to_vec(),
+                    (_, None) => symbol = first.to_vec(),
+                }
+            };
+            let fields: Vec<&[u8]> = line.fields().skip(skip).collect();
+            let least = header.entries.unwrap_or(3).max(3);
+            if fields.len() < least {
+                return Err(line.whole(format!("{} numbers, but a row has {least}", fields.len())));
+            }
+            let place = [line.number(fields[0])?, line.number(fields[1])?, line.number(fields[2])?];
+            builder.push(cell.cartesian(place).to_array())?;
+            for &(column, slot) in &used {
+                let field = match column {
+                    0 => &symbol[..],
+                    1 => &mass[..],
+                    _ => fields.get(column - 2).copied().unwrap_or_default(),
+                };
+                builder.put(slot, &line, field)?;
+            }
+        }
+        let frame = builder.finish();
+        Ok(Some(ParticleFrame { cell: Some(cell), unit: LengthUnit::Angstrom, ..frame }))
+    }
+}
+
+/// Returns whether a file with this head is CFG.
+pub(crate) fn is_cfg(head: &[u8]) -> bool {
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii);
+    let mut lines = lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"));
+    lines.next().is_some_and(|line| line.starts_with(FIRST) && line.contains(&b'='))
+}

@@ -1,0 +1,119 @@
+//! Reads MOL2 of Tripos: molecules, one frame each, in angstrom (zhanggroup.org/DockRMSD/mol2.pdf).
+
+use super::builder::Builder;
+use super::cell::Cell;
+use super::fields::Fields;
+use super::frame::{LengthUnit, ParticleFrame};
+use super::frame_reader::FrameReader;
+use super::lines::{Line, Lines};
+use super::options::{Format, ReadOptions};
+use super::schema::{Schema, Slot};
+use super::source::Source;
+use crate::FileError;
+use std::sync::Arc;
+
+/// Names of the columns; the last three may be missing.
+const NAMES: [&str; 9] =
+    ["number", "name", "x", "y", "z", "atom_type", "residue_number", "residue", "charge"];
+
+/// Columns of texts, even if the texts look like numbers.
+const TEXTS: [&str; 5] = ["number", "name", "atom_type", "residue_number", "residue"];
+
+/// Index of the type of an atom: an element, and its hybridization after a point.
+const TYPE: usize = 5;
+
+/// The beginning of a line with the name of a section.
+const SECTION: &[u8] = b"@<TRIPOS>";
+
+/// Reader of the molecules of a MOL2 file.
+pub(crate) struct Mol2 {
+    lines: Lines,
+    schema: Result<Arc<Schema>, String>,
+}
+
+impl Mol2 {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
+        Self { lines: Lines::new(source), schema: schema.map(Arc::new) }
+    }
+
+    /// Moves past the line that begins the next molecule. Returns whether there is one.
+    fn find(&mut self) -> Result<bool, FileError> {
+        while let Some(line) = self.lines.next()? {
+            if section(line.bytes) == Some(b"MOLECULE") {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// Returns the name of the section that a line begins.
+fn section(line: &[u8]) -> Option<&[u8]> {
+    line.strip_prefix(SECTION).map(<[u8]>::trim_ascii)
+}
+
+/// Parses the cell: lengths and angles.
+fn cell(line: &Line) -> Result<Option<Cell>, FileError> {
+    let mut numbers = [0.0; 6];
+    for (number, field) in numbers.iter_mut().zip(line.fields()) {
+        *number = line.number(field)?;
+    }
+    let [a, b, c, alpha, beta, gamma] = numbers;
+    Ok(Cell::of_lengths([a, b, c], [alpha, beta, gamma]))
+}
+
+impl FrameReader for Mol2 {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
+        if !self.find()? {
+            return Ok(None);
+        }
+        let title = self.lines.next()?.map(|line| line.text().trim().to_owned());
+        let mut builder = Builder::new(self.lines.path(), Format::Mol2, &schema);
+        builder.declare(&TEXTS, &["charge"]);
+        let has_kind = schema.slots.contains(&Slot::Kind);
+        let (mut inside, mut edges) = (Vec::new(), None);
+        while let Some(line) = self.lines.next()? {
+            if let Some(section) = section(line.bytes) {
+                inside = section.to_vec();
+                if inside == b"MOLECULE" {
+                    self.lines.back();
+                    break;
+                }
+            } else if inside == b"ATOM" && !line.is_blank() {
+                let mut row = line.fields().collect::<Vec<_>>();
+                if row.len() <= TYPE {
+                    let help = "a row is a number, name, x, y, z and type, and may have more";
+                    return Err(line.whole("not the columns of an atom").with_help(help));
+                }
+                row.resize(NAMES.len().max(row.len()), b"");
+                builder.row(&line, row.iter().copied())?;
+                if !has_kind {
+                    let kind = row[TYPE];
+                    builder.kind(kind.split(|&byte| byte == b'.').next().unwrap_or(kind));
+                }
+            } else if inside == b"CRYSIN" && !line.is_blank() && edges.is_none() {
+                edges = cell(&line)?;
+            }
+        }
+        let frame = builder.finish();
+        let title = title.unwrap_or_default();
+        Ok(Some(ParticleFrame { cell: edges, title, unit: LengthUnit::Angstrom, ..frame }))
+    }
+
+    fn skip(&mut self) -> Result<bool, FileError> {
+        self.find()
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        self.find()
+    }
+}
+
+/// Returns whether a file with this head is MOL2: comments, and the beginning of a section.
+pub(crate) fn is_mol2(head: &[u8]) -> bool {
+    let mut lines = head.split(|&byte| byte == b'\n');
+    let first = lines.find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"));
+    first.is_some_and(|line| line.starts_with(SECTION) && Fields::blanks(line).count() == 1)
+}

@@ -1,0 +1,150 @@
+//! Reads MDL molfiles and SDF, versions V2000 and V3000: molecules, one frame each, in angstrom ("CT file
+//! Formats", BIOVIA 2020).
+
+use super::builder::Builder;
+use super::fields::Fields;
+use super::frame::{LengthUnit, ParticleFrame};
+use super::frame_reader::FrameReader;
+use super::lines::{Line, Lines};
+use super::number;
+use super::options::{Format, ReadOptions};
+use super::schema::Schema;
+use super::source::Source;
+use crate::FileError;
+use std::sync::Arc;
+
+/// Names of the columns.
+const NAMES: [&str; 4] = ["x", "y", "z", "element"];
+
+/// Number of lines before the counts.
+const HEADER: usize = 3;
+
+/// The line that ends a molecule of an SDF file.
+const END: &[u8] = b"$$$$";
+
+/// Beginnings of rows in version V3000.
+const V3000: &[u8] = b"M  V30 ";
+
+/// Reader of the molecules of a file.
+pub(crate) struct Molfile {
+    lines: Lines,
+    schema: Result<Arc<Schema>, String>,
+}
+
+impl Molfile {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
+        Self { lines: Lines::new(source), schema: schema.map(Arc::new) }
+    }
+
+    /// Reads the header: the title, and the number of atoms, which version V3000 has elsewhere. Returns
+    /// `None` at the end of the file.
+    fn header(&mut self) -> Result<Option<(String, Option<u64>)>, FileError> {
+        let Some(title) = self.lines.next()? else { return Ok(None) };
+        let title = title.text().trim().to_owned();
+        self.lines.skip(HEADER as u64 - 1)?;
+        let Some(line) = self.lines.next()? else {
+            // Blank lines may end a file.
+            let blank = title.is_empty();
+            return if blank {
+                Ok(None)
+            } else {
+                Err(self.lines.ended("the file ends before its counts"))
+            };
+        };
+        if line.bytes.trim_ascii_end().ends_with(b"V3000") {
+            return Ok(Some((title, None)));
+        }
+        let count = line.whole_number(line.bytes.get(..3).unwrap_or(line.bytes))?;
+        Ok(Some((title, Some(count))))
+    }
+
+    /// Finds the rows of atoms of version V3000, and returns their number.
+    fn extended(&mut self) -> Result<u64, FileError> {
+        let mut count = None;
+        while let Some(line) = self.lines.next()? {
+            let mut words =
+                line.bytes.strip_prefix(V3000).map(Fields::blanks).into_iter().flatten();
+            match (words.next(), words.next()) {
+                (Some(b"COUNTS"), Some(atoms)) => count = Some(line.whole_number(atoms)?),
+                (Some(b"BEGIN"), Some(b"ATOM")) => break,
+                _ if line.bytes == END => break,
+                _ => (),
+            }
+        }
+        count.ok_or_else(|| self.lines.ended("the molecule has no COUNTS of atoms"))
+    }
+
+    /// Moves past the end of a molecule.
+    fn finish(&mut self) -> Result<(), FileError> {
+        while let Some(line) = self.lines.next()? {
+            if line.bytes.trim_ascii_end() == END {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns the position and symbol of a row: in fixed columns, or after an index in version V3000.
+fn fields<'l>(line: &Line<'l>, extended: bool) -> Result<[&'l [u8]; 4], FileError> {
+    let wrong = || {
+        let help =
+            "a row is x, y and z in ten columns each, and a symbol, or `M  V30 index symbol x y z`";
+        line.whole("not the columns of an atom").with_help(help)
+    };
+    if extended {
+        let words = line.bytes.strip_prefix(V3000).map(Fields::blanks).into_iter().flatten();
+        let words: Vec<&[u8]> = words.skip(1).take(4).collect();
+        let [symbol, x, y, z] = words.try_into().map_err(|_| wrong())?;
+        return Ok([x, y, z, symbol]);
+    }
+    let part = |start: usize, end: usize| {
+        let part = line.bytes.get(start..end.min(line.bytes.len())).unwrap_or_default();
+        part.trim_ascii()
+    };
+    let fields = [part(0, 10), part(10, 20), part(20, 30), part(31, 34)];
+    if fields.iter().any(|field| field.is_empty()) { Err(wrong()) } else { Ok(fields) }
+}
+
+impl FrameReader for Molfile {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
+        let Some((title, plain)) = self.header()? else { return Ok(None) };
+        let count = match plain {
+            Some(count) => count,
+            None => self.extended()?,
+        };
+        let mut builder = Builder::new(self.lines.path(), Format::Sdf, &schema);
+        for atom in 0..count {
+            let Some(line) = self.lines.next()? else {
+                let message = format!("the file ends after {atom} of {count} atoms");
+                return Err(self.lines.ended(message).with_help("the file is cut off"));
+            };
+            builder.row(&line, fields(&line, plain.is_none())?.into_iter())?;
+        }
+        self.finish()?;
+        Ok(Some(ParticleFrame { title, unit: LengthUnit::Angstrom, ..builder.finish() }))
+    }
+
+    fn skip(&mut self) -> Result<bool, FileError> {
+        let there = self.header()?.is_some();
+        self.finish()?;
+        Ok(there)
+    }
+
+    fn more(&mut self) -> Result<bool, FileError> {
+        self.lines.more()
+    }
+}
+
+/// Returns whether the fourth line has the numbers of atoms and bonds, in three columns each, and the
+/// version.
+pub(crate) fn is_molfile(head: &[u8]) -> bool {
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii_end);
+    let Some(counts) = { lines }.nth(HEADER) else { return false };
+    let is_count = |field: Option<&[u8]>| field.is_some_and(|field| number::whole(field).is_some());
+    let version = counts.ends_with(b"V2000") || counts.ends_with(b"V3000");
+    let end = memchr::memmem::find(head, b"\nM  END").is_some();
+    is_count(counts.get(..3)) && is_count(counts.get(3..6)) && (version || end)
+}

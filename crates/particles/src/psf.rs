@@ -1,0 +1,127 @@
+//! Reads PSF, topologies of CHARMM, NAMD and X-PLOR: what the atoms of a trajectory are
+//! (charmm-gui.org/charmmdoc/struct.html). They have no positions: those of the frame are NaN.
+
+use super::builder::Builder;
+use super::categories::Kind;
+use super::element::{Element, is_virtual_site};
+use super::fields::Fields;
+use super::frame::ParticleFrame;
+use super::frame_reader::FrameReader;
+use super::lines::{Line, Lines};
+use super::naming;
+use super::number;
+use super::options::{Format, ReadOptions};
+use super::schema::{Naming, Schema, Slot};
+use super::source::Source;
+use crate::FileError;
+use std::sync::Arc;
+
+/// Names of the columns, of which the last three are not in the file.
+const NAMES: [&str; 11] = [
+    "number",
+    "segment",
+    "residue_number",
+    "residue",
+    "name",
+    "atom_type",
+    "charge",
+    "mass",
+    "x",
+    "y",
+    "z",
+];
+
+/// Columns of texts, even if the texts look like numbers.
+const TEXTS: [&str; 6] = ["number", "segment", "residue_number", "residue", "name", "atom_type"];
+
+/// Number of columns in the file.
+const COLUMNS: usize = 8;
+
+/// Reader of a PSF file, which is one frame.
+pub(crate) struct Psf {
+    lines: Lines,
+    schema: Result<Arc<Schema>, String>,
+    done: bool,
+}
+
+impl Psf {
+    pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
+        let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
+        let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
+        Self { lines: Lines::new(source), schema: schema.map(named), done: false }
+    }
+
+    /// Finds the section of atoms; returns their number.
+    fn count(&mut self) -> Result<u64, FileError> {
+        while let Some(line) = self.lines.next()? {
+            let mut fields = line.fields();
+            let (count, name) = (fields.next(), fields.next());
+            if name.is_some_and(|name| name.starts_with(b"!NATOM")) {
+                return line.whole_number(count.unwrap_or_default());
+            }
+        }
+        Err(self.lines.ended("the file has no section !NATOM"))
+    }
+}
+
+/// Returns the fields of a row, in the order of [`NAMES`]. The segment may be blank.
+fn fields<'l>(line: &Line<'l>) -> Result<[&'l [u8]; COLUMNS], FileError> {
+    let mut fields: Vec<&[u8]> = line.fields().collect();
+    // Charge and mass have decimals; types, and what follows, may be whole numbers.
+    let is_decimal = |field: &&[u8]| field.contains(&b'.') && number::parse(field).is_some();
+    if !fields.iter().skip(6).take(2).all(is_decimal) && fields.len() > 1 {
+        fields.insert(1, b"");
+    }
+    fields.truncate(COLUMNS);
+    fields.try_into().map_err(|_| {
+        let help =
+            "a row is a number, segment, residue number, residue, name, type, charge and mass";
+        line.whole("not the columns of an atom").with_help(help)
+    })
+}
+
+/// Returns the type for the mass, name and residue of an atom, separated by blanks.
+fn kind(key: &str) -> Kind {
+    let mut parts = key.split(' ');
+    let mut part = || parts.next().unwrap_or_default();
+    let (mass, name, residue) = (part(), part(), part());
+    let by_mass = number::parse(mass.as_bytes()).and_then(Element::from_mass);
+    let named = naming::of_atom(name, residue);
+    let element = by_mass.filter(|_| !is_virtual_site(name, residue)).or(named.element);
+    Kind { element, ..named }
+}
+
+impl FrameReader for Psf {
+    fn next(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        if self.done {
+            return Ok(None);
+        }
+        self.done = true;
+        let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
+        let count = self.count()?;
+        let mut builder = Builder::new(self.lines.path(), Format::Psf, &schema);
+        builder.declare(&TEXTS, &["charge", "mass"]);
+        let has_kind = schema.slots.contains(&Slot::Kind);
+        for atom in 0..count {
+            let Some(line) = self.lines.next()? else {
+                let message = format!("the file ends after {atom} of {count} atoms");
+                return Err(self.lines.ended(message).with_help("the file is cut off"));
+            };
+            let fields = fields(&line)?;
+            let positions: [&[u8]; 3] = [b"nan"; 3];
+            builder.row(&line, fields.into_iter().chain(positions))?;
+            if !has_kind {
+                builder.kind_of(&[fields[7], fields[4], fields[3]].join(&b' '), kind);
+            }
+        }
+        Ok(Some(builder.finish()))
+    }
+}
+
+/// Returns whether the first line is `PSF` with flags, and a section with a title follows.
+pub(crate) fn is_psf(first: &[u8], head: &[u8]) -> bool {
+    let is_flag = |field: &[u8]| field.iter().all(u8::is_ascii_uppercase);
+    first.starts_with(b"PSF")
+        && Fields::blanks(first).all(is_flag)
+        && memchr::memmem::find(head, b"!N").is_some()
+}

@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""Writes the small trajectories and structures of tests/data/particles and the files in tests/data/topologies that name their particles.
+
+    pip install ase MDAnalysis chemfiles mdtraj netCDF4 parmed
+    tools/readers/trajectories.py
+    tools/readers/compare.py --answers        # what MDAnalysis reads from them
+
+Variants of DCD that no program here writes are made from the bytes of one that MDAnalysis wrote. MDAnalysis reads them too, except
+for markers of 64 bits: that file is compared with the one it was made from.
+"""
+
+import struct
+import sys
+import warnings
+from pathlib import Path
+
+import ase.build
+import ase.io
+import chemfiles
+import MDAnalysis
+import mdtraj
+import numpy as np
+import parmed
+
+DATA = Path(__file__).resolve().parents[2] / "tests/data"
+OUT = DATA / "particles"
+TOPOLOGIES = DATA / "topologies"
+FRAMES = 4
+WATERS = 60
+EDGES = np.array([14.0, 13.0, 12.0])
+
+
+def main():
+    warnings.simplefilter("ignore")
+    TOPOLOGIES.mkdir(exist_ok=True)
+    universe = water()
+    atoms = universe.atoms
+    for name, options in [("water.dcd", {"nsavc": 10, "istart": 100}), ("water.xtc", {}), ("water.trr", {}), ("water.ncdf", {"velocities": True})]:
+        with MDAnalysis.Writer(str(OUT / name), len(atoms), **options) as file:
+            for _ in universe.trajectory:
+                file.write(atoms)
+    chemfiles_copies()
+    mdtraj_copies()
+    small = atoms[:6]
+    with MDAnalysis.Writer(str(OUT / "six.xtc"), 6) as file:
+        for _ in universe.trajectory:
+            file.write(small)
+    universe.trajectory[0]
+    atoms.write(str(TOPOLOGIES / "water.gro"))
+    atoms.write(str(TOPOLOGIES / "water.pdb"))
+    atoms.write(str(TOPOLOGIES / "water.pqr"))
+    variants((OUT / "water.dcd").read_bytes())
+    structures(atoms)
+
+
+def water():
+    """Water and four sodium ions in a triclinic cell that changes, with velocities."""
+    random = np.random.default_rng(24)
+    count = 3 * WATERS + 4
+    residues = np.concatenate([np.repeat(np.arange(WATERS), 3), np.arange(WATERS, WATERS + 4)])
+    universe = MDAnalysis.Universe.empty(count, n_residues=WATERS + 4, atom_resindex=residues,
+                                         residue_segindex=[0] * (WATERS + 4), trajectory=True, velocities=True)
+    universe.add_TopologyAttr("name", ["OW", "HW1", "HW2"] * WATERS + ["NA"] * 4)
+    universe.add_TopologyAttr("resname", ["SOL"] * WATERS + ["NA"] * 4)
+    universe.add_TopologyAttr("resid", np.arange(1, WATERS + 5))
+    universe.add_TopologyAttr("segid", ["W"])
+    universe.add_TopologyAttr("chainID", ["W"] * count)
+    universe.add_TopologyAttr("record_type", ["ATOM"] * count)
+    universe.add_TopologyAttr("occupancy", np.ones(count))
+    universe.add_TopologyAttr("charge", [-0.834, 0.417, 0.417] * WATERS + [1.0] * 4)
+    universe.add_TopologyAttr("radius", [1.768, 0.2, 0.2] * WATERS + [1.369] * 4)
+    universe.add_TopologyAttr("mass", [15.9994, 1.008, 1.008] * WATERS + [22.98977] * 4)
+    oxygen = random.uniform(0, 1, (WATERS, 1, 3)) * EDGES
+    shape = np.array([[0, 0, 0], [0.9572, 0, 0], [-0.24, 0.9266, 0]])
+    turns = np.linalg.qr(random.normal(size=(WATERS, 3, 3)))[0]
+    molecules = (oxygen + np.einsum("wij,aj->wai", turns, shape)).reshape(-1, 3)
+    places = np.concatenate([molecules, random.uniform(0, 1, (4, 3)) * EDGES])
+    frames = places + np.cumsum(random.normal(0, 0.1, (FRAMES, count, 3)), axis=0)
+    cells = np.array([[*(EDGES + 0.125 * step), 90, 80, 70] for step in range(FRAMES)])
+    universe.load_new(frames.astype(np.float32), dimensions=cells, velocities=random.normal(0, 1, (FRAMES, count, 3)), dt=2.0)
+    return universe
+
+
+def chemfiles_copies():
+    """The same frames by chemfiles, whose DCD has angles of cells where that of MDAnalysis has their cosines."""
+    for name in ["chemfiles.xtc", "chemfiles.trr", "chemfiles.dcd"]:
+        with chemfiles.Trajectory(str(OUT / "water.dcd")) as source, chemfiles.Trajectory(str(OUT / name), "w") as copy:
+            for step in range(source.nsteps):
+                copy.write(source.read_step(step))
+
+
+def mdtraj_copies():
+    """The same frames, without a cell in DCD, by mdtraj."""
+    frames = mdtraj.formats.DCDTrajectoryFile(str(OUT / "water.dcd")).read()[0]
+    with mdtraj.formats.DCDTrajectoryFile(str(OUT / "no_cell.dcd"), "w") as file:
+        file.write(frames[:2, :20])
+    with mdtraj.formats.NetCDFTrajectoryFile(str(OUT / "no_cell.ncdf"), "w", force_overwrite=True) as file:
+        file.write(frames[:2, :20])
+
+
+def structures(atoms):
+    """PQR by MDAnalysis, VASP's formats by ASE, molecules by chemfiles, a PSF topology by ParmEd."""
+    atoms[:12].write(str(OUT / "water.pqr"))
+    crystal = ase.build.bulk("ZnS", "zincblende", a=5.41, cubic=True)
+    ase.io.write(OUT / "zns.poscar", crystal, format="vasp", direct=True)
+    ase.io.write(OUT / "zns_cartesian.poscar", crystal, format="vasp", direct=False)
+    frames = []
+    for step in range(3):
+        frame = crystal.copy()
+        frame.rattle(0.05, seed=step)
+        frames.append(frame)
+    ase.io.write(OUT / "zns.xdatcar", frames, format="vasp-xdatcar")
+    ase.io.write(OUT / "zns.xsf", frames[0], format="xsf")
+    ase.io.write(OUT / "zns.axsf", frames, format="xsf")
+    ase.io.write(OUT / "zns.cfg", frames[0], format="cfg")
+    for suffix in ["sdf", "mol2"]:
+        with chemfiles.Trajectory(str(OUT / f"molecules.{suffix}"), "w") as file:
+            for name in ["CH3CH2OH", "C6H6"]:
+                molecule = ase.build.molecule(name)
+                frame = chemfiles.Frame()
+                for symbol, place in zip(molecule.get_chemical_symbols(), molecule.positions):
+                    frame.add_atom(chemfiles.Atom(symbol), place)
+                file.write(frame)
+    topology = parmed.load_file(str(TOPOLOGIES / "water.pdb"))
+    for own, atom in zip(topology.atoms, atoms):
+        own.charge, own.mass, own.type = atom.charge, atom.mass, atom.name
+    topology.box = None
+    parmed.charmm.CharmmPsfFile.from_structure(topology).write_psf(str(TOPOLOGIES / "water.psf"))
+
+
+def records(data):
+    """The Fortran records of a file with 32-bit markers."""
+    at = 0
+    while at < len(data):
+        length, = struct.unpack_from("<i", data, at)
+        yield data[at + 4:at + 4 + length]
+        at += length + 8
+
+
+def variants(data):
+    """DCD files in another byte order, with other markers, and with fixed atoms."""
+    def written(name, parts, order="<", marker="i"):
+        (OUT / name).write_bytes(b"".join(
+            struct.pack(order + marker, len(part)) + part + struct.pack(order + marker, len(part)) for part in parts))
+
+    def swapped(part, size, start=0):
+        numbers = part[start:]
+        return part[:start] + b"".join(numbers[at:at + size][::-1] for at in range(0, len(numbers), size))
+
+    parts = list(records(data))
+    head, title, count, frames = parts[0], parts[1], parts[2], parts[3:]
+    written("wide_markers.dcd", parts, marker="q")
+    big = [swapped(head, 4, 4), swapped(title[:4], 4) + title[4:], swapped(count, 4)]
+    big += [swapped(part, 8 if len(part) == 48 else 4) for part in frames]
+    written("big_endian.dcd", big, order=">")
+    # Every third atom moves.
+    atoms, = struct.unpack("<i", count)
+    free = np.arange(2, atoms, 3)
+    words = list(struct.unpack("<20i", head[4:]))
+    words[8] = atoms - len(free)
+    fixed = [head[:4] + struct.pack("<20i", *words), title, count, struct.pack(f"<{len(free)}i", *(free + 1))]
+    for place, part in enumerate(frames):
+        if place > 3 and len(part) != 48:
+            part = np.frombuffer(part, "<f4")[free].tobytes()
+        fixed.append(part)
+    written("fixed_atoms.dcd", fixed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
