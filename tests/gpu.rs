@@ -52,3 +52,27 @@ fn devices_are_listed() {
     let count = listed.as_array().map_or(0, Vec::len);
     assert!(count > 0 || std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{printed}");
 }
+
+#[test]
+fn the_device_is_measured_beside_the_processor() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    if std::env::var_os("SPHERULE_GPU_TESTS").is_none() {
+        return;
+    }
+    let args = ["bench", "gpu", "--quick", "--rounds", "1", "-o", "out"];
+    let (printed, _) = run(folder.path(), &args, None);
+    assert!(printed.contains("Adapter: ") && printed.contains("unknown"), "{printed}");
+    let read = |name: &str| std::fs::read(folder.path().join("out").join(name)).expect(name);
+    let report: serde_json::Value = serde_json::from_slice(&read("gpu.json")).expect("JSON");
+    let rows = |table: usize| report["tables"][table]["rows"].as_array().expect("rows").clone();
+    // Classes of rays; one set of spheres; two images with two numbers of samples.
+    assert_eq!([0, 1, 2].map(|table| rows(table).len()), [4, 1, 4]);
+    let stages = ["pack", "upload", "kernel", "read", "decide"];
+    for row in rows(0) {
+        let share = |stage: &&str| row[*stage].as_f64().unwrap_or(f64::NAN);
+        let sum: f64 = stages.iter().map(share).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{row}");
+        assert!(row["unknown"].as_f64().is_some_and(|share| share < 0.05), "{row}");
+    }
+    assert!(!read("gpu-build.csv").is_empty() && !read("gpu-error.csv").is_empty());
+}

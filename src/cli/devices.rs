@@ -6,9 +6,9 @@ mod gpu;
 mod without;
 
 #[cfg(feature = "gpu")]
-pub(super) use self::gpu::{Attached, list};
+pub(super) use self::gpu::{Attached, list, open};
 #[cfg(not(feature = "gpu"))]
-pub(super) use self::without::{Attached, list};
+pub(super) use self::without::{ADVICE, Attached, list};
 
 use serde::Serialize;
 

@@ -238,8 +238,7 @@ impl Device {
         for (piece, offset) in bytes.chunks(PIECE).zip((0_u64..).step_by(PIECE)) {
             self.queue.write_buffer(&buffer, offset, piece);
             if bytes.len() > PIECE {
-                self.queue.submit([]);
-                self.wait()?;
+                self.finish()?;
             }
         }
         self.check()?;
@@ -325,6 +324,12 @@ impl Device {
         }
         encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
         self.queue.submit([encoder.finish()]);
+    }
+
+    /// Waits for all that the device was asked to do, writes to buffers included.
+    pub(crate) fn finish(&self) -> Result<(), DeviceError> {
+        self.queue.submit([]);
+        self.wait()
     }
 
     /// Waits for all that was submitted.

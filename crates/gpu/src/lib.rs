@@ -19,10 +19,13 @@ mod device;
 mod error;
 mod probe;
 mod spheres;
+mod times;
 mod tree;
 
 pub use device::{AdapterSummary, Adapters, Device};
 pub use error::DeviceError;
 pub use probe::{Fma, Operation, Probe, Subnormals};
 pub use spheres::DeviceSpheres;
+#[doc(hidden)]
+pub use times::{QueryStage, QueryTimes};
 pub use tree::{Answered, DeviceTree};

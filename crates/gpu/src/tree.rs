@@ -2,6 +2,7 @@
 
 use crate::device::{Device, QueryKernel};
 use crate::error::DeviceError;
+use crate::times::{QueryStage, QueryTimes, Stopwatch};
 use spherule_core::internals::bvh::{
     Any, Closest, DeviceTracer, NodeRow, Query, Tracer, Tree, UNKNOWN, decide_found,
 };
@@ -145,6 +146,32 @@ impl DeviceTree {
         *self.tally.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Measures the stages of a query, by waiting for each. The hits are those of [`DeviceTree::closest`], or of
+    /// [`DeviceTree::occluded`] if any hit will do.
+    ///
+    /// # Errors
+    /// The device fails.
+    #[doc(hidden)]
+    pub fn timed(
+        &self,
+        tree: Tree,
+        rays: &Rays,
+        hits: &mut Hits,
+        any: bool,
+    ) -> Result<(Answered, QueryTimes), DeviceError> {
+        let mut watch = Stopwatch::start();
+        let kernel = QueryKernel { any, counts: false };
+        let found = self.run(kernel, rays, hits, &mut watch)?;
+        let exact = if any {
+            decide_found::<Any>(tree, rays, hits, |row| found[row])
+        } else {
+            decide_found::<Closest>(tree, rays, hits, |row| found[row])
+        };
+        watch.end(QueryStage::Decide, &self.device)?;
+        let answered = Answered { rays: rays.len() as u64, unknown: unknown(&found), exact };
+        Ok((self.counted(answered), watch.times()))
+    }
+
     fn query<Q: Query>(
         &self,
         tree: Tree,
@@ -174,7 +201,7 @@ impl DeviceTree {
     /// # Errors
     /// The device fails.
     pub fn find(&self, rays: &Rays, hits: &Hits, any: bool) -> Result<Vec<u32>, DeviceError> {
-        self.run(QueryKernel { any, counts: false }, rays, hits)
+        self.run(QueryKernel { any, counts: false }, rays, hits, &mut Stopwatch::off())
     }
 
     /// Returns how many nodes and leaves the search for the hit of each ray visits on the device; 65 535 at most. For
@@ -189,11 +216,18 @@ impl DeviceTree {
         hits: &Hits,
         any: bool,
     ) -> Result<Vec<[u16; 2]>, DeviceError> {
-        let visits = self.run(QueryKernel { any, counts: true }, rays, hits)?;
+        let kernel = QueryKernel { any, counts: true };
+        let visits = self.run(kernel, rays, hits, &mut Stopwatch::off())?;
         Ok(visits.into_iter().map(|both| [both as u16, (both >> 16) as u16]).collect())
     }
 
-    fn run(&self, kernel: QueryKernel, rays: &Rays, hits: &Hits) -> Result<Vec<u32>, DeviceError> {
+    fn run(
+        &self,
+        kernel: QueryKernel,
+        rays: &Rays,
+        hits: &Hits,
+        watch: &mut Stopwatch,
+    ) -> Result<Vec<u32>, DeviceError> {
         self.device.check()?;
         let mut found = vec![UNKNOWN; rays.len()];
         if rays.is_empty() || !self.single || !rays.precise.is_empty() {
@@ -205,7 +239,8 @@ impl DeviceTree {
             let batch = first..rays.len().min(first + self.batch);
             rows.clear();
             rows.extend(batch.clone().flat_map(|row| ray_row(rays, hits, row, kernel.any)));
-            self.ask(kernel, &lane, &rows, &mut found[batch])?;
+            watch.end(QueryStage::Pack, &self.device)?;
+            self.ask(kernel, &lane, (&rows, &mut found[batch]), watch)?;
         }
         // Not after a fault: what is left of such buffers is unknown.
         self.lanes.lock().unwrap_or_else(PoisonError::into_inner).push(lane);
@@ -244,8 +279,8 @@ impl DeviceTree {
         &self,
         kernel: QueryKernel,
         lane: &Lane,
-        rows: &[u32],
-        found: &mut [u32],
+        (rows, found): (&[u32], &mut [u32]),
+        watch: &mut Stopwatch,
     ) -> Result<(), DeviceError> {
         let params = Params {
             zero: 0,
@@ -255,6 +290,7 @@ impl DeviceTree {
         };
         self.device.write(&lane.params, bytemuck::bytes_of(&params));
         self.device.write(&lane.rays, bytemuck::cast_slice(rows));
+        watch.end(QueryStage::Upload, &self.device)?;
         let bytes = size_of_val(found) as u64;
         let kernel = self.device.query_kernel(kernel)?;
         let mut buffers = vec![&lane.params];
@@ -262,9 +298,11 @@ impl DeviceTree {
         buffers.extend([&lane.rays, &lane.found]);
         let group = self.device.bind(kernel, &buffers);
         self.device.dispatch((kernel, &group), found.len(), (&lane.found, &lane.copy, bytes));
+        watch.end(QueryStage::Kernel, &self.device)?;
         self.device.read(&lane.copy, bytes, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);
-        })
+        })?;
+        watch.end(QueryStage::Read, &self.device)
     }
 }
 

@@ -95,10 +95,15 @@ fn on_device(world: &World) -> Result<Arc<DeviceTree>, String> {
     if world.is_sliced() {
         return Err("slices are traced by the processor".to_owned());
     }
-    let device = DEVICE.get_or_init(|| Device::best(true).map(Arc::new));
+    let device = open()?;
     let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-    let tree = device.clone().and_then(|device| DeviceTree::new(&device, tree));
-    tree.map(Arc::new).map_err(|error| error.to_string())
+    DeviceTree::new(&device, tree).map(Arc::new).map_err(|error| error.to_string())
+}
+
+/// Returns the device of this process, or why there is none.
+pub(in crate::cli) fn open() -> Result<Arc<Device>, String> {
+    let device = DEVICE.get_or_init(|| Device::best(true).map(Arc::new));
+    device.clone().map_err(|error| error.to_string())
 }
 
 /// An adapter in JSON.

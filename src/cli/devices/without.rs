@@ -6,7 +6,7 @@ use crate::cli::output;
 use spherule_render::World;
 
 /// Advice to who wants one.
-const ADVICE: &str =
+pub(in crate::cli) const ADVICE: &str =
     "this program was built without it (build it with cargo build --release --features gpu)";
 
 /// The processor.
