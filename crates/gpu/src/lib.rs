@@ -17,13 +17,16 @@
 mod bounds;
 mod device;
 mod error;
+mod paths;
 mod probe;
 mod spheres;
+mod stages;
 mod times;
 mod tree;
 
 pub use device::{AdapterSummary, Adapters, Device};
 pub use error::DeviceError;
+pub use paths::Integrator;
 pub use probe::{Fma, Operation, Probe, Subnormals};
 pub use spheres::DeviceSpheres;
 #[doc(hidden)]

@@ -24,7 +24,7 @@ mod transform;
 mod visibility;
 
 pub use appearance::{Appearance, Colors, Column};
-pub use camera::Camera;
+pub use camera::{Camera, CameraTerms};
 pub use camera_visible::CameraVisible;
 pub use caustics::CausticCasters;
 pub(crate) use caustics::{
@@ -48,6 +48,7 @@ pub use visibility::Visibility;
 
 use crate::bvh::builders::Builder;
 use crate::bvh::{Bvh, DeviceTracer};
+use crate::integrator::device::DeviceIntegrator;
 use crate::memory::Shortage;
 use crate::ray::GROUND;
 use crate::scene::{self, Background, Footprint, Rgb, Scene};
@@ -106,6 +107,9 @@ pub struct World {
     /// Traces rays in place of the processor, where nothing is sliced.
     #[doc(hidden)]
     pub device: Option<Arc<dyn DeviceTracer>>,
+    /// Follows whole paths in place of the processor, where it can.
+    #[doc(hidden)]
+    pub device_paths: Option<Arc<dyn DeviceIntegrator>>,
     /// Features of the world, which decide which stages run.
     pub features: Features,
 }
@@ -249,6 +253,7 @@ impl World {
             environment,
             camera,
             device: None,
+            device_paths: None,
             features: Features::default(),
         };
         world.features = Features::census(&world, omitted);
@@ -282,6 +287,7 @@ impl World {
             environment: self.environment.clone(),
             camera: self.camera,
             device: None,
+            device_paths: None,
             features,
         }
     }
