@@ -191,6 +191,11 @@ impl Device {
         self.faults.add(DeviceError::Lost("it was destroyed".to_owned()));
     }
 
+    /// Notes what has gone wrong, unless something has before.
+    pub(crate) fn fail(&self, error: DeviceError) {
+        self.faults.add(error);
+    }
+
     /// Returns nothing if nothing has gone wrong so far.
     pub(crate) fn check(&self) -> Result<(), DeviceError> {
         self.fault().map_or(Ok(()), Err)

@@ -7,6 +7,7 @@
 //!
 //! - [`Adapters`]: what this machine has.
 //! - [`Device`]: one of them, open, and what a [`Probe`] of its arithmetic has found.
+//! - [`Integrator`]: follows whole paths of renders of a world, whose tree is on the device, as far as it can.
 //! - [`DeviceTree`]: a renderer's tree on a device; [`DeviceSpheres`]: a [`spherule_core::SphereTree`].
 //!
 //! A device that is lost, or that has too little memory, ends no query: the processor answers it.
@@ -26,6 +27,8 @@ mod tree;
 
 pub use device::{AdapterSummary, Adapters, Device};
 pub use error::DeviceError;
+#[doc(hidden)]
+pub use paths::FirstStages;
 pub use paths::Integrator;
 pub use probe::{Fma, Operation, Probe, Subnormals};
 pub use spheres::DeviceSpheres;

@@ -6,7 +6,7 @@ use crate::stages::Kernel;
 use crate::tree::{Answered, DeviceTree, FAR, Params};
 use bytemuck::{Pod, Zeroable};
 use spherule_render::World;
-use spherule_render::integrator::device::{
+use spherule_render::world::{
     DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DeviceRoulette,
 };
 use std::ops::Range;
@@ -110,9 +110,69 @@ impl Integrator {
     }
 }
 
+/// What the first stages of a batch of paths write, for tests: rays as `hits.wgsl` reads them.
+#[doc(hidden)]
+#[derive(Clone, Debug)]
+pub struct FirstStages {
+    /// Camera rays.
+    pub camera_rays: Vec<[u32; 12]>,
+    /// Positions in the Sobol sequences, and their seeds.
+    pub sequences: Vec<[u32; 2]>,
+    /// First hits.
+    pub found: Vec<u32>,
+    /// The rays that follow: shadow rays of ambient occlusion, or those of the first bounce.
+    pub next_rays: Vec<[u32; 12]>,
+}
+
+impl Integrator {
+    /// Runs the stages up to the first surface.
+    ///
+    /// # Errors
+    /// The device fails.
+    #[doc(hidden)]
+    pub fn first_stages(
+        &self,
+        job: &DeviceJob,
+        pixels: &[(u32, u32)],
+        samples: &Range<u32>,
+    ) -> Result<FirstStages, DeviceError> {
+        let paths = JobPaths::new(self, job)?;
+        let count = pixels.len() * samples.len();
+        let columns = Columns::new(paths.device(), pixels.len(), count)?;
+        paths.set_params(&columns, &paths.begin(&columns, pixels, samples));
+        let stage = |kernel| paths.stage(kernel, &columns, count);
+        stage(Kernel::Generate)?;
+        let camera_rays = read_column(paths.device(), &columns.rays, count)?;
+        let sequences = read_column(paths.device(), &columns.sequences, count)?;
+        stage(Kernel::Hits { any: false, counts: false })?;
+        let found = read_column(paths.device(), &columns.found, count)?;
+        stage(match job.integration {
+            DeviceIntegration::Occlusion { .. } => Kernel::Occlusion,
+            DeviceIntegration::Diffuse { .. } => Kernel::Path,
+        })?;
+        let next_rays = read_column(paths.device(), &columns.rays, count)?;
+        Ok(FirstStages { camera_rays, sequences, found, next_rays })
+    }
+}
+
+/// Returns the first rows of a column.
+fn read_column<T: Pod>(
+    device: &Device,
+    column: &wgpu::Buffer,
+    rows: usize,
+) -> Result<Vec<T>, DeviceError> {
+    let bytes = (size_of::<T>() * rows) as u64;
+    let copy = device.buffer("rows to read", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
+    device.copy(column, &copy, bytes);
+    let mut read = vec![T::zeroed(); rows];
+    device.read(&copy, bytes, |view| bytemuck::cast_slice_mut(&mut read).copy_from_slice(view))?;
+    Ok(read)
+}
+
 impl DeviceIntegrator for Integrator {
     fn begin(&self, job: &DeviceJob) -> Option<Box<dyn DevicePaths>> {
-        let paths = JobPaths::new(self, job).ok()?;
+        let paths = JobPaths::new(self, job);
+        let paths = paths.map_err(|error| self.tree.device().fail(error)).ok()?;
         Some(Box::new(paths))
     }
 }
@@ -150,20 +210,11 @@ impl JobPaths {
             return Ok(answers);
         }
         let mut kept = self.columns.lock().unwrap_or_else(PoisonError::into_inner);
-        let fits =
-            |columns: &Columns| columns.capacity[0] >= pixels.len() && columns.capacity[1] >= count;
-        let columns = match kept.take().filter(fits) {
+        let columns = match kept.take().filter(|columns| columns.fit(pixels.len(), count)) {
             Some(columns) => columns,
             None => Columns::new(device, pixels.len(), count)?,
         };
-        let words: Vec<u32> = pixels.iter().map(|&(x, y)| x | y << 16).collect();
-        device.write(&columns.pixels, bytemuck::cast_slice(&words));
-        let params = Params {
-            first_sample: samples.start,
-            samples: samples.len() as u32,
-            ..self.tree.params(count)
-        };
-        self.follow_all(&columns, params)?;
+        self.follow_all(&columns, self.begin(&columns, pixels, samples))?;
         let bytes = size_of_val(&*answers) as u64;
         device.copy(&columns.paths, &columns.paths_to_read, bytes);
         device.read(&columns.paths_to_read, bytes, |view| {
@@ -174,44 +225,73 @@ impl JobPaths {
         Ok(answers)
     }
 
+    /// Writes the pixels of a batch; returns its numbers.
+    fn begin(&self, columns: &Columns, pixels: &[(u32, u32)], samples: &Range<u32>) -> Params {
+        let words: Vec<u32> = pixels.iter().map(|&(x, y)| x | y << 16).collect();
+        self.device().write(&columns.pixels, bytemuck::cast_slice(&words));
+        Params {
+            first_sample: samples.start,
+            samples: samples.len() as u32,
+            ..self.tree.params(pixels.len() * samples.len())
+        }
+    }
+
+    /// Writes the numbers of a batch.
+    fn set_params(&self, columns: &Columns, params: &Params) {
+        self.device().write(&columns.params, bytemuck::bytes_of(params));
+    }
+
+    /// Runs a stage of all paths of a batch.
+    fn stage(&self, kernel: Kernel, columns: &Columns, count: usize) -> Result<(), DeviceError> {
+        let Columns { params, pixels, rays, found, sequences, lights, paths, alive, .. } = columns;
+        let Self { numbers, sobol, offsets, albedos, .. } = self;
+        let mut buffers = vec![params];
+        let spheres = self.tree.spheres();
+        match kernel {
+            Kernel::Hits { .. } => {
+                buffers.push(self.tree.nodes());
+                buffers.extend(spheres);
+                buffers.extend([rays, found]);
+            }
+            Kernel::Generate => {
+                buffers.extend([numbers, pixels, sobol, offsets, rays, sequences, lights, paths]);
+            }
+            Kernel::Occlusion | Kernel::Path => {
+                buffers.push(numbers);
+                buffers.extend(spheres);
+                buffers.extend([albedos, sobol, sequences, found, rays, lights, paths]);
+                buffers.extend((kernel == Kernel::Path).then_some(alive));
+            }
+            Kernel::Shadows => buffers.extend([rays, lights, found, paths]),
+            // No stage of paths.
+            Kernel::Doubles => {}
+        }
+        self.device().run(kernel, &buffers, count)
+    }
+
     /// Runs the stages of all paths of a batch.
     fn follow_all(&self, columns: &Columns, params: Params) -> Result<(), DeviceError> {
+        const FIRST_HITS: Kernel = Kernel::Hits { any: false, counts: false };
+        const ANY_HITS: Kernel = Kernel::Hits { any: true, counts: false };
         let device = self.device();
-        let count = params.count as usize;
-        device.write(&columns.params, bytemuck::bytes_of(&params));
-        let Columns { pixels, rays, found, sequences, lights, paths, alive, .. } = columns;
-        let generate: [&wgpu::Buffer; 8] =
-            [&self.numbers, pixels, &self.sobol, &self.offsets, rays, sequences, lights, paths];
-        let stage = |kernel, buffers: &[&wgpu::Buffer]| {
-            device.run(kernel, &[&[&columns.params], buffers].concat(), count)
-        };
-        let spheres = self.tree.spheres();
-        let hits = |any| {
-            let kernel = Kernel::Hits { any, counts: false };
-            stage(kernel, &[&[self.tree.nodes()], &spheres[..], &[rays, found]].concat())
-        };
-        let shade = [
-            &[&self.numbers],
-            &spheres[..],
-            &[&self.albedos, &self.sobol, sequences, found, rays, lights, paths],
-        ]
-        .concat();
-        stage(Kernel::Generate, &generate)?;
+        let stage = |kernel| self.stage(kernel, columns, params.count as usize);
+        self.set_params(columns, &params);
+        stage(Kernel::Generate)?;
         if let DeviceIntegration::Occlusion { .. } = self.integration {
-            hits(false)?;
-            stage(Kernel::Occlusion, &shade)?;
-            hits(true)?;
-            return stage(Kernel::Shadows, &[rays, lights, found, paths]);
+            stage(FIRST_HITS)?;
+            stage(Kernel::Occlusion)?;
+            stage(ANY_HITS)?;
+            return stage(Kernel::Shadows);
         }
-        let bounce_buffers = [&shade[..], &[alive]].concat();
         for bounce in 0.. {
-            device.write(&columns.params, bytemuck::bytes_of(&Params { bounce, ..params }));
-            device.write(alive, &0_u32.to_ne_bytes());
-            hits(false)?;
-            stage(Kernel::Path, &bounce_buffers)?;
+            self.set_params(columns, &Params { bounce, ..params });
+            device.write(&columns.alive, &0_u32.to_ne_bytes());
+            stage(FIRST_HITS)?;
+            stage(Kernel::Path)?;
             let mut left = 0_u32;
-            device.copy(alive, &columns.alive_to_read, 4);
-            device.read(&columns.alive_to_read, 4, |view| {
+            let bytes = size_of_val(&left) as u64;
+            device.copy(&columns.alive, &columns.alive_to_read, bytes);
+            device.read(&columns.alive_to_read, bytes, |view| {
                 left = bytemuck::pod_read_unaligned(view);
             })?;
             if left == 0 {
@@ -224,7 +304,7 @@ impl JobPaths {
 
 impl DevicePaths for JobPaths {
     fn follow(&self, pixels: &[(u32, u32)], samples: Range<u32>) -> Option<Vec<DevicePath>> {
-        let paths = self.run(pixels, &samples).ok()?;
+        let paths = self.run(pixels, &samples).map_err(|error| self.device().fail(error)).ok()?;
         let unknown = paths.iter().filter(|path| path.radiance().is_none()).count();
         self.tree.count_paths(Answered {
             rays: paths.iter().map(|path| 1 + path.rays()).sum(),
@@ -237,6 +317,11 @@ impl DevicePaths for JobPaths {
 }
 
 impl Columns {
+    /// Returns whether so many pixels and paths fit.
+    fn fit(&self, pixels: usize, paths: usize) -> bool {
+        self.capacity[0] >= pixels && self.capacity[1] >= paths
+    }
+
     fn new(device: &Device, pixels: usize, paths: usize) -> Result<Self, DeviceError> {
         let buffer = |what, words: usize, usage| {
             device.buffer(what, (size_of::<u32>() * words) as u64, usage)

@@ -102,7 +102,7 @@ pub(crate) fn run(device: &Device) -> Result<Probe, DeviceError> {
 fn are_like_the_processor(device: &Device) -> Result<bool, DeviceError> {
     let operands = double_operands();
     let params = Params { count: operands.len() as u32, ..Params::default() };
-    let bytes = (size_of::<[f64; 8]>() * operands.len()) as u64;
+    let bytes = (size_of::<[f64; 10]>() * operands.len()) as u64;
     let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
     let numbers = device.buffer("numbers", size_of::<Params>() as u64, uniform)?;
     device.write(&numbers, bytemuck::bytes_of(&params));
@@ -113,16 +113,19 @@ fn are_like_the_processor(device: &Device) -> Result<bool, DeviceError> {
     let copy = device.buffer("results to read", bytes, copy)?;
     device.run(Kernel::Doubles, &[&numbers, &input, &output], operands.len())?;
     device.copy(&output, &copy, bytes);
-    let mut results = vec![[0.0; 8]; operands.len()];
+    let mut results = vec![[0.0; 10]; operands.len()];
     device.read(&copy, bytes, |view| {
         bytemuck::cast_slice_mut(&mut results).copy_from_slice(view);
     })?;
     let own = |&[x, y, z]: &[f64; 3]| {
-        let fused = (x as f32).mul_add(y as f32, z as f32);
-        let rounded = f64::from(x as f32);
-        [x + y, x - y, x * y, x / y, x.abs().sqrt(), x * y + z, rounded, f64::from(fused)]
+        let [a, b, c] = [x, y, z].map(|x| x as f32);
+        let singles = [a, a.mul_add(b, c), a / b, a.abs().sqrt()].map(f64::from);
+        let [rounded, fused, quotient, root] = singles;
+        let doubles = [x + y, x - y, x * y, x / y, x.abs().sqrt(), x * y + z];
+        let [sum, difference, product, ratio, length, plain] = doubles;
+        [sum, difference, product, ratio, length, plain, rounded, fused, quotient, root]
     };
-    let bits = |row: [f64; 8]| row.map(f64::to_bits);
+    let bits = |row: [f64; 10]| row.map(f64::to_bits);
     Ok(operands.iter().zip(results).all(|(operands, found)| bits(own(operands)) == bits(found)))
 }
 

@@ -5,9 +5,9 @@ use super::watch::Watch;
 use crate::film::{Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
-use crate::integrator::device::{DevicePath, DevicePaths};
 use crate::integrator::workspace::{BATCH, Workspace};
 use crate::scene::{Integrator, Rgb};
+use crate::world::{DevicePath, DevicePaths};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -72,7 +72,7 @@ fn take(
 ) {
     let pixels: Vec<(u32, u32)> = tiles.iter().flat_map(|tile| tile.pixels()).collect();
     let radiance = device.follow(&pixels, samples.clone()).map(|paths| {
-        count(job, &paths, work);
+        count_rays(job, &paths, work);
         work.clock.end(Stage::Trace);
         complete(job, &pixels, samples, &paths, work)
     });
@@ -105,12 +105,14 @@ fn take(
             },
         )
         .collect();
-    counted.iter().for_each(|counters| work.counters.add(counters));
+    for counters in &counted {
+        work.counters.add(counters);
+    }
     work.clock.end(Stage::Film);
 }
 
 /// Counts the rays of the paths that the device knows.
-fn count(job: &Job, paths: &[DevicePath], work: &mut Workspace) {
+fn count_rays(job: &Job, paths: &[DevicePath], work: &mut Workspace) {
     let known = || paths.iter().filter(|path| path.radiance().is_some());
     let further: u64 = known().map(DevicePath::rays).sum();
     work.counters.camera_rays += known().count() as u64;

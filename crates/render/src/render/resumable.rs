@@ -10,7 +10,7 @@ use super::{
 };
 use crate::film::{Film, Region, View};
 use crate::integrator::Job;
-use crate::integrator::device::DeviceJob;
+use crate::integrator::device::device_job;
 use crate::noise::{FIRST_SAMPLES, StopCondition};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
@@ -264,7 +264,7 @@ impl ResumableRender {
 /// Returns why a device that traces rays does not follow whole paths of a render, if so: words that complete "the
 /// processor shades, for".
 pub fn shaded_by_the_processor(world: &World, settings: &Settings) -> Option<&'static str> {
-    with_processor(world, settings, &Options::default(), |job| DeviceJob::new(job).err())
+    with_processor(world, settings, &Options::default(), |job| device_job(job).err())
 }
 
 /// Calls `work` with the job that all tasks of a render use.
@@ -276,7 +276,7 @@ fn with_job<T>(
 ) -> T {
     with_processor(world, settings, options, |job| {
         let integrator = world.device_paths.as_ref();
-        let paths = integrator.and_then(|device| device.begin(&DeviceJob::new(job).ok()?));
+        let paths = integrator.and_then(|device| device.begin(&device_job(job).ok()?));
         work(&Job { device: paths.as_deref(), ..*job })
     })
 }

@@ -12,6 +12,7 @@ mod caustics;
 mod census;
 mod check;
 mod cut;
+mod device;
 mod environment;
 mod fit;
 pub mod framing;
@@ -32,6 +33,10 @@ pub(crate) use caustics::{
 };
 pub use census::Features;
 pub use cut::{Cut, Span};
+pub use device::{
+    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DeviceRoulette,
+    DeviceSky,
+};
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
 };
@@ -48,7 +53,6 @@ pub use visibility::Visibility;
 
 use crate::bvh::builders::Builder;
 use crate::bvh::{Bvh, DeviceTracer};
-use crate::integrator::device::DeviceIntegrator;
 use crate::memory::Shortage;
 use crate::ray::GROUND;
 use crate::scene::{self, Background, Footprint, Rgb, Scene};
