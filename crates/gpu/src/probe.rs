@@ -145,7 +145,7 @@ fn double_operands() -> Vec<[f64; 3]> {
     let triple = |row: usize| {
         let [x, y, z] = [row % 4, row / 4 % 2, row / 8 % 2].map(&mut number);
         // Also such as cancel.
-        [x, y, if row % 3 == 0 { f64::from((-x * y) as f32) } else { z }]
+        [x, y, if row.is_multiple_of(3) { f64::from((-x * y) as f32) } else { z }]
     };
     (0..ORDINARY).map(triple).collect()
 }

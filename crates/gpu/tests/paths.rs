@@ -88,7 +88,7 @@ fn ambient_occlusion_of_all_scenes_is_the_processors() {
     let mut all = Answered::default();
     for path in files() {
         let mut scene = load(&path);
-        let far = scene.spheres.len() % 2 == 0;
+        let far = scene.spheres.len().is_multiple_of(2);
         let distance = if far { f64::INFINITY } else { 0.7 };
         scene.settings.integrator = Integrator::Ao { distance };
         let found = compare(&path.display().to_string(), &scene, &device);
@@ -131,10 +131,13 @@ fn paths_among_diffuse_surfaces_are_the_processors() {
     assert!(all.unknown_paths * 100 < all.paths, "{all:?}");
 }
 
+/// A change of a scene.
+type Change = fn(&mut Scene);
+
 #[test]
 fn settings_of_paths_are_heeded() {
     let Some(device) = device() else { return };
-    let changes: [(&str, fn(&mut Scene)); 9] = [
+    let changes: [(&str, Change); 9] = [
         ("box", |scene| scene.settings.filter = Filter::Box),
         ("gaussian", |scene| scene.settings.filter = Filter::Gaussian),
         ("harris", |scene| scene.settings.filter = Filter::BlackmanHarris),
@@ -217,7 +220,7 @@ fn parts_of_both_merge_to_the_whole() {
     let second = run(&world, part(13..40));
     // Without the tiles that see no sphere.
     let paths = on_device.tally().paths;
-    assert!(paths > 45 * 34 * 27 / 2 && paths % 27 == 0, "{paths}");
+    assert!(paths > 45 * 34 * 27 / 2 && paths.is_multiple_of(27), "{paths}");
     let mut film = first.film().clone();
     assert!(film.merge(second.film().clone()));
     assert_eq!(film.resolve(), whole.image);

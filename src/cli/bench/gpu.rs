@@ -12,7 +12,7 @@ use spherule_render::bvh::builders::{Builder, build};
 use spherule_render::bvh::{Tracer, Tree};
 use spherule_render::ray::{Hits, MISS, Rays};
 use spherule_render::render::{self, render};
-use spherule_render::scene::{Integrator, Settings};
+use spherule_render::scene::{EnvironmentMap, Integrator, Material, Rgb, Settings};
 use spherule_render::world::World;
 use std::sync::Arc;
 use std::time::Instant;
@@ -61,6 +61,8 @@ struct ImageOutcome {
     scene: String,
     samples: u32,
     rmse: f64,
+    /// Fraction of the paths that the processor followed; `None` if the device followed none.
+    unknown: Option<f64>,
     /// Of the device, and of the processor.
     times: Times,
 }
@@ -99,7 +101,9 @@ pub(super) fn measure(options: &Options, progress: Progress) -> Result<Report, B
     let mut settings = options.settings();
     settings.push(("adapter".to_owned(), adapter.clone()));
     let mut tables = vec![rates(&outcomes), prepared(&preparations), errors(&images)];
-    tables.iter_mut().for_each(|table| table.notes.push(format!("{note}Adapter: {adapter}.")));
+    for table in &mut tables {
+        table.notes.push(format!("{note}Adapter: {adapter}."));
+    }
     Ok(Report {
         name: "gpu".to_owned(),
         title: "The GPU".to_owned(),
@@ -223,7 +227,14 @@ fn pictures(options: &Options) -> Result<Vec<NamedScene>, BenchError> {
     let mut occlusion = field.clone();
     occlusion.name = format!("{FIELD}, ambient occlusion");
     occlusion.scene.settings.integrator = Integrator::Ao { distance: f64::INFINITY };
-    Ok(vec![field, occlusion])
+    let mut chalk = field.clone();
+    chalk.name = format!("{FIELD}, chalk under a sky");
+    chalk.scene.lights.clear();
+    chalk.scene.environment.map = EnvironmentMap::Constant(Rgb::ONE);
+    for row in &mut chalk.scene.materials {
+        row.material = Material::Lambertian { color: Rgb::splat(0.8) };
+    }
+    Ok(vec![field, occlusion, chalk])
 }
 
 fn measure_images(
@@ -260,11 +271,13 @@ fn measure_images(
             }
             Ok(seconds)
         })?;
+        let summary = device.summary().filter(|summary| summary.paths > 0);
         let rmse = (reference.squares(&expected).absolute - reference.error.absolute).max(0.0);
         outcomes.push(ImageOutcome {
             scene: scene.name.clone(),
             samples,
             rmse: rmse.sqrt(),
+            unknown: summary.map(|all| all.unknown_paths as f64 / all.paths as f64),
             times,
         });
     }
@@ -343,16 +356,19 @@ fn errors(images: &[ImageOutcome]) -> Table {
         Column::new("samples", "Samples per pixel."),
         Column::new("RMSE", "Root mean squared error, minus the reference's own: of both images.")
             .style(Style::Power(2)),
+        Column::new("unknown", "Fraction of the paths that the processor follows; none if the device only traces rays.")
+            .style(Style::Percent),
         Column::new("GPU", "Time to this error with the GPU.").group("time to it").unit("ms"),
         Column::new("processor", "Time to this error without it.").unit("ms"),
         Column::new("ratio", "Speedup with the GPU.").unit("processor"),
     ];
     let mut table = Table::new("gpu-error", "Time to error", columns);
-    for ImageOutcome { scene, samples, rmse, times } in images {
+    for ImageOutcome { scene, samples, rmse, unknown, times } in images {
         table.push([
             scene.as_str().into(),
             u64::from(*samples).into(),
             (*rmse).into(),
+            (*unknown).into(),
             times.seconds(0).times(1e3).into(),
             times.seconds(1).times(1e3).into(),
             times.ratio(0, 1).into(),

@@ -3,8 +3,7 @@
 use super::Job;
 use super::elisions::Elisions;
 use super::roulette::roulette_threshold;
-use crate::scene::{Integrator, Roulette};
-use crate::settings::SamplerKind;
+use crate::scene::{Integrator, Roulette, SamplerKind};
 use crate::shade::MaterialKind;
 use crate::world::{DeviceIntegration, DeviceJob, DeviceRoulette, DeviceSky, Radiance, World};
 
