@@ -259,6 +259,27 @@ mod tests {
     }
 
     #[test]
+    fn what_paths_lack_is_named() {
+        let operands = operands();
+        let lacks = |doubles: Option<bool>, change: &dyn Fn(&mut [f32; 8])| {
+            let mut results = own(&operands);
+            results.iter_mut().for_each(change);
+            Probe { doubles, ..judge(&operands, &results) }.lacks_for_paths()
+        };
+        assert_eq!(lacks(Some(true), &|_| ()), None);
+        assert_eq!(lacks(None, &|_| ()), Some("its kernels have no double precision"));
+        let unlike = Some("its double precision is not the processor's");
+        assert_eq!(lacks(Some(false), &|_| ()), unlike);
+        let single = Some("its single precision is not the processor's");
+        assert_eq!(lacks(Some(true), &|row| row[0] = row[0].next_up()), single);
+        let flush = |row: &mut [f32; 8]| row[2] = if row[2].is_normal() { row[2] } else { 0.0 };
+        assert_eq!(lacks(Some(true), &flush), single);
+        // Kernels make quotients, roots and fused sums themselves.
+        assert_eq!(lacks(Some(true), &|row| row[3] = row[3].next_up()), None);
+        assert_eq!(lacks(Some(true), &|row| row[4] = row[5]), None);
+    }
+
+    #[test]
     fn what_differs_is_found_and_what_breaks_promises_is_named() {
         let operands = operands();
         let changed = |change: &dyn Fn(&[f32; 4], &mut [f32; 8])| {

@@ -11,8 +11,8 @@ use crate::world::{DevicePath, DevicePaths};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Maximum number of paths at once: enough for all lanes of a device, in 16 MiB of answers.
-const PATHS: usize = 1 << 20;
+/// Maximum number of paths at once: enough for all lanes of the largest GPUs, and few enough that a render is cancelled soon.
+const PATHS: usize = 1 << 18;
 
 /// A tile, and samples of its pixels that it is to get.
 type Step<'a> = (&'a mut Tile, Range<u32>);
