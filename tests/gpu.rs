@@ -45,10 +45,62 @@ fn images_are_the_processors_with_and_without_a_device() {
 }
 
 #[test]
+fn what_the_device_does_is_told() {
+    if std::env::var_os("SPHERULE_GPU_TESTS").is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let render = |device: &str, more: &[&str]| {
+        let args = ["render", "--size", "64x36", "--spp", "4", "--device", device, "-o", "a.pfm"];
+        let (printed, notes) = run(folder.path(), &[&args, more].concat(), None);
+        (std::fs::read(folder.path().join("a.pfm")).expect("an image"), printed, notes)
+    };
+    let occlusion = ["--integrator", "ao", "--json", "--quiet"];
+    let (own, ..) = render("cpu", &occlusion);
+    let (image, printed, _) = render("gpu", &occlusion);
+    assert!(image == own);
+    let summary: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+    let text = summary.to_string();
+    let paths = text.split("\"paths\":").nth(1).and_then(|rest| rest.split([',', '}']).next());
+    assert!(
+        paths.and_then(|paths| paths.parse().ok()).is_some_and(|paths: u64| paths > 1000),
+        "{text}"
+    );
+    let (.., notes) = render("gpu", &["--integrator", "ao", "--verbose"]);
+    assert!(notes.contains("follows paths from the camera to their ends"), "{notes}");
+    let (.., notes) = render("gpu", &["--verbose"]);
+    assert!(notes.contains("the processor shades, for the scene has lights"), "{notes}");
+}
+
+#[test]
 fn devices_are_listed() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (printed, _) = run(folder.path(), &["info", "--devices", "--json"], None);
     let listed: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
     let count = listed.as_array().map_or(0, Vec::len);
     assert!(count > 0 || std::env::var_os("SPHERULE_GPU_TESTS").is_none(), "{printed}");
+}
+
+#[test]
+fn the_device_is_measured_beside_the_processor() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    if std::env::var_os("SPHERULE_GPU_TESTS").is_none() {
+        return;
+    }
+    let args = ["bench", "gpu", "--quick", "--rounds", "1", "-o", "out"];
+    let (printed, _) = run(folder.path(), &args, None);
+    assert!(printed.contains("Adapter: ") && printed.contains("unknown"), "{printed}");
+    let read = |name: &str| std::fs::read(folder.path().join("out").join(name)).expect(name);
+    let report: serde_json::Value = serde_json::from_slice(&read("gpu.json")).expect("JSON");
+    let rows = |table: usize| report["tables"][table]["rows"].as_array().expect("rows").clone();
+    // Classes of rays; one set of spheres; three images with two numbers of samples.
+    assert_eq!([0, 1, 2].map(|table| rows(table).len()), [4, 1, 6]);
+    let stages = ["pack", "upload", "kernel", "read", "decide"];
+    for row in rows(0) {
+        let share = |stage: &&str| row[*stage].as_f64().unwrap_or(f64::NAN);
+        let sum: f64 = stages.iter().map(share).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{row}");
+        assert!(row["unknown"].as_f64().is_some_and(|share| share < 0.05), "{row}");
+    }
+    assert!(!read("gpu-build.csv").is_empty() && !read("gpu-error.csv").is_empty());
 }

@@ -6,9 +6,9 @@ mod gpu;
 mod without;
 
 #[cfg(feature = "gpu")]
-pub(super) use self::gpu::{Attached, list};
+pub(super) use self::gpu::{Attached, list, open};
 #[cfg(not(feature = "gpu"))]
-pub(super) use self::without::{Attached, list};
+pub(super) use self::without::{ADVICE, Attached, list};
 
 use serde::Serialize;
 
@@ -20,4 +20,8 @@ pub(super) struct DeviceSummary {
     pub(super) rays: u64,
     /// Number of rays that the processor decided.
     pub(super) unknown: u64,
+    /// Number of paths that the device followed, whose rays are among the others.
+    pub(super) paths: u64,
+    /// Number of paths that the processor followed, for the device did not know their radiance.
+    pub(super) unknown_paths: u64,
 }

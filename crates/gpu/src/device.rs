@@ -2,14 +2,16 @@
 
 use crate::error::DeviceError;
 use crate::probe::{self, Probe};
+use crate::stages::Kernel;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 /// The longest that one dispatch may take; longer is a device that hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Storage buffers that the kernels bind at once.
+/// Storage buffers that the kernels of queries bind at once, and those of paths.
 const STORAGE_BUFFERS: u32 = 7;
+const PATH_BUFFERS: u32 = 13;
 
 /// An adapter: a GPU as a driver offers it, or a processor that a driver makes one of.
 #[derive(Clone, Debug)]
@@ -117,17 +119,8 @@ pub struct Device {
     handle: wgpu::Device,
     queue: wgpu::Queue,
     faults: Faults,
-    /// The kernels of queries by [`QueryKernel`], once they are compiled.
-    kernels: [OnceLock<Result<wgpu::ComputePipeline, DeviceError>>; 4],
-}
-
-/// A kernel of queries.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct QueryKernel {
-    /// True if any hit ends the search.
-    pub(crate) any: bool,
-    /// True if it answers with visits.
-    pub(crate) counts: bool,
+    /// The kernels, once they are compiled.
+    kernels: [OnceLock<Result<wgpu::ComputePipeline, DeviceError>>; Kernel::COUNT],
 }
 
 impl Device {
@@ -154,6 +147,8 @@ impl Device {
         }
         let descriptor = wgpu::DeviceDescriptor {
             required_limits: adapter.limits(),
+            // Only paths need double precision.
+            required_features: adapter.features() & wgpu::Features::SHADER_F64,
             ..wgpu::DeviceDescriptor::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
@@ -165,7 +160,7 @@ impl Device {
         });
         let failed = faults.clone();
         device.on_uncaptured_error(Arc::new(move |error| failed.add(of_driver(&error))));
-        let (probe, kernels) = (Probe::default(), [const { OnceLock::new() }; 4]);
+        let (probe, kernels) = (Probe::default(), [const { OnceLock::new() }; Kernel::COUNT]);
         let mut opened = Self { summary, probe, handle: device, queue, faults, kernels };
         opened.probe = probe::run(&opened)?;
         match opened.probe.broken() {
@@ -194,6 +189,11 @@ impl Device {
     pub fn destroy(&self) {
         self.handle.destroy();
         self.faults.add(DeviceError::Lost("it was destroyed".to_owned()));
+    }
+
+    /// Notes what has gone wrong, unless something has before.
+    pub(crate) fn fail(&self, error: DeviceError) {
+        self.faults.add(error);
     }
 
     /// Returns nothing if nothing has gone wrong so far.
@@ -238,8 +238,7 @@ impl Device {
         for (piece, offset) in bytes.chunks(PIECE).zip((0_u64..).step_by(PIECE)) {
             self.queue.write_buffer(&buffer, offset, piece);
             if bytes.len() > PIECE {
-                self.queue.submit([]);
-                self.wait()?;
+                self.finish()?;
             }
         }
         self.check()?;
@@ -276,16 +275,24 @@ impl Device {
         Ok(pipeline)
     }
 
-    /// Returns a kernel of queries.
-    pub(crate) fn query_kernel(
-        &self,
-        QueryKernel { any, counts }: QueryKernel,
-    ) -> Result<&wgpu::ComputePipeline, DeviceError> {
-        let numbers = [any, counts].map(u8::from);
-        let place = &self.kernels[usize::from(numbers[0] + 2 * numbers[1])];
-        let constants = [("ANY", numbers[0].into()), ("COUNT", numbers[1].into())];
-        let compile = || self.kernel(("hits", include_str!("hits.wgsl")), &constants);
-        place.get_or_init(compile).as_ref().map_err(Clone::clone)
+    /// Returns a kernel, which is compiled when it is first used.
+    pub(crate) fn compiled(&self, kernel: Kernel) -> Result<&wgpu::ComputePipeline, DeviceError> {
+        let place = &self.kernels[kernel.place()];
+        place.get_or_init(|| kernel.compile(self)).as_ref().map_err(Clone::clone)
+    }
+
+    /// Returns whether kernels may use double precision.
+    pub(crate) fn has_doubles(&self) -> bool {
+        self.handle.features().contains(wgpu::Features::SHADER_F64)
+    }
+
+    /// Returns why the device cannot follow whole paths, if so: what its arithmetic lacks.
+    pub fn lacks_for_paths(&self) -> Option<String> {
+        if self.summary.max_storage_buffers < PATH_BUFFERS {
+            let most = self.summary.max_storage_buffers;
+            return Some(format!("its kernels read {most} buffers, but {PATH_BUFFERS} are needed"));
+        }
+        self.probe.lacks_for_paths().map(str::to_owned)
     }
 
     /// Binds buffers to a kernel, in their order.
@@ -308,6 +315,31 @@ impl Device {
         })
     }
 
+    /// Asks for a kernel over these buffers to be run.
+    pub(crate) fn run(
+        &self,
+        kernel: Kernel,
+        buffers: &[&wgpu::Buffer],
+        invocations: usize,
+    ) -> Result<(), DeviceError> {
+        let kernel = self.compiled(kernel)?;
+        let group = self.bind(kernel, buffers);
+        self.submit(|encoder| pass(encoder, (kernel, &group), invocations));
+        Ok(())
+    }
+
+    /// Asks for the first bytes of a buffer to be copied to another.
+    pub(crate) fn copy(&self, from: &wgpu::Buffer, to: &wgpu::Buffer, bytes: u64) {
+        self.submit(|encoder| encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes));
+    }
+
+    fn submit(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
+        let mut encoder =
+            self.handle.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        record(&mut encoder);
+        self.queue.submit([encoder.finish()]);
+    }
+
     /// Runs a kernel in groups of 64 invocations, and copies the first bytes of a buffer to another.
     pub(crate) fn dispatch(
         &self,
@@ -315,16 +347,16 @@ impl Device {
         invocations: usize,
         (from, to, bytes): (&wgpu::Buffer, &wgpu::Buffer, u64),
     ) {
-        let mut encoder =
-            self.handle.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(kernel);
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups(invocations.div_ceil(64) as u32, 1, 1);
-        }
-        encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
-        self.queue.submit([encoder.finish()]);
+        self.submit(|encoder| {
+            pass(encoder, (kernel, group), invocations);
+            encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
+        });
+    }
+
+    /// Waits for all that the device was asked to do, writes to buffers included.
+    pub(crate) fn finish(&self) -> Result<(), DeviceError> {
+        self.queue.submit([]);
+        self.wait()
     }
 
     /// Waits for all that was submitted.
@@ -369,6 +401,18 @@ impl std::fmt::Debug for Device {
             .field("fault", &self.fault())
             .finish_non_exhaustive()
     }
+}
+
+/// Adds a kernel in groups of 64 invocations to what is asked for.
+fn pass(
+    encoder: &mut wgpu::CommandEncoder,
+    (kernel, group): (&wgpu::ComputePipeline, &wgpu::BindGroup),
+    invocations: usize,
+) {
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(kernel);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(invocations.div_ceil(64) as u32, 1, 1);
 }
 
 /// The first line of a message, or something in its place.

@@ -4,19 +4,9 @@
 // derived in docs/gpu.md for what WGSL promises of f32, and hold however sums are ordered and products are fused
 // between two values that pass `keep`.
 
-struct Params {
-    // 0, which no compiler knows.
-    zero: u32,
-    rays: u32,
-    // Spheres in each column but the last, a multiple of 8; as a power of two.
-    brick_bits: u32,
-    nodes: u32,
-}
-
-@group(0) @binding(0) var<uniform> params: Params;
 // Each node in 14 rows: by axis and side, lower first, eight planes; and eight children.
 @group(0) @binding(1) var<storage, read> nodes: array<vec4<u32>>;
-// Centers and radii, with the sign bit of the radius where there is no sphere.
+// Columns of spheres.
 @group(0) @binding(2) var<storage, read> spheres_0: array<vec4<u32>>;
 @group(0) @binding(3) var<storage, read> spheres_1: array<vec4<u32>>;
 @group(0) @binding(4) var<storage, read> spheres_2: array<vec4<u32>>;
@@ -30,8 +20,6 @@ override ANY: bool = false;
 // True to answer with the numbers of nodes and, from bit 16 on, leaves that the search visits. For measurements.
 override COUNT: bool = false;
 
-const MISS: u32 = 0xffffffffu;
-const UNKNOWN: u32 = 0xfffffffdu;
 const NODE_ROWS: u32 = 14u;
 const CHILD_ROW: u32 = 12u;
 const LEAF: u32 = 0x40000000u;
@@ -50,21 +38,10 @@ const SLACK: f32 = 16.0 * E;
 const SOONER: f32 = 1.0 - 16.0 * E;
 // Directions are kept this far from 0.
 const LEAST: f32 = 0x1p-100f;
-// More than any distance.
-const FAR: f32 = 0x1p100f;
 // Bits of 2^20, 1/4 and 4: the largest coordinate of origins, and the range of that of directions.
 const REACH_BITS: u32 = 0x49800000u;
 const SHORT_BITS: u32 = 0x3e800000u;
 const LONG_BITS: u32 = 0x40800000u;
-
-// The same number, through which nothing is fused or reordered.
-fn keep(x: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(x) ^ params.zero);
-}
-
-fn keep3(v: vec3<f32>) -> vec3<f32> {
-    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(v) ^ vec3<u32>(params.zero));
-}
 
 // No less than the square root of a number.
 fn root_above(x: f32) -> f32 {
@@ -105,16 +82,6 @@ struct Search {
     // A distance before which the search does not end, and one beyond which nothing counts.
     bound: f32,
     t_far: f32,
-}
-
-fn sphere_row(row: u32) -> vec4<u32> {
-    let place = row & ((1u << params.brick_bits) - 1u);
-    switch row >> params.brick_bits {
-        case 0u: { return spheres_0[place]; }
-        case 1u: { return spheres_1[place]; }
-        case 2u: { return spheres_2[place]; }
-        default: { return spheres_3[place]; }
-    }
 }
 
 // Whether a sphere is the one in a row, or coincides with it.
@@ -315,7 +282,7 @@ fn largest(v: vec3<u32>) -> u32 {
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let row = id.x;
-    if row >= params.rays {
+    if row >= params.count {
         return;
     }
     let first = rays[3u * row];

@@ -7,6 +7,7 @@
 //!
 //! - [`Adapters`]: what this machine has.
 //! - [`Device`]: one of them, open, and what a [`Probe`] of its arithmetic has found.
+//! - [`Integrator`]: follows whole paths of renders of a world, whose tree is on the device, as far as it can.
 //! - [`DeviceTree`]: a renderer's tree on a device; [`DeviceSpheres`]: a [`spherule_core::SphereTree`].
 //!
 //! A device that is lost, or that has too little memory, ends no query: the processor answers it.
@@ -17,12 +18,20 @@
 mod bounds;
 mod device;
 mod error;
+mod paths;
 mod probe;
 mod spheres;
+mod stages;
+mod times;
 mod tree;
 
 pub use device::{AdapterSummary, Adapters, Device};
 pub use error::DeviceError;
+#[doc(hidden)]
+pub use paths::FirstStages;
+pub use paths::Integrator;
 pub use probe::{Fma, Operation, Probe, Subnormals};
 pub use spheres::DeviceSpheres;
+#[doc(hidden)]
+pub use times::{QueryStage, QueryTimes};
 pub use tree::{Answered, DeviceTree};

@@ -2,6 +2,8 @@
 
 use crate::device::Device;
 use crate::error::DeviceError;
+use crate::stages::Kernel;
+use crate::tree::Params;
 use spherule_core::internals::random::Random;
 
 /// Operands that are tried, and operands whose results are near the least number.
@@ -53,6 +55,8 @@ pub struct Probe {
     pub subnormals: Subnormals,
     /// True if `x * y + z` is fused, sometimes or always, where nobody asks for it.
     pub contracts: bool,
+    /// Whether double precision gives the processor's results; `None` if kernels have none.
+    pub doubles: Option<bool>,
     /// Operands that were tried.
     pub tried: usize,
 }
@@ -63,6 +67,19 @@ impl Probe {
     pub fn is_like_the_processor(&self) -> bool {
         let equal = self.operations.iter().all(|operation| operation.unequal == 0);
         equal && self.fma == Fma::Fused && self.subnormals == Subnormals::Kept && !self.contracts
+    }
+
+    /// Returns what paths need and the device lacks, if anything.
+    pub(crate) fn lacks_for_paths(&self) -> Option<&'static str> {
+        let unequal = self.operations[..3].iter().any(|operation| operation.unequal > 0);
+        match self.doubles {
+            None => Some("its kernels have no double precision"),
+            Some(false) => Some("its double precision is not the processor's"),
+            Some(true) if unequal || self.subnormals == Subnormals::Flushed => {
+                Some("its single precision is not the processor's")
+            }
+            Some(true) => None,
+        }
     }
 
     /// Returns the operations that break the promises of WGSL on which the kernels rely. They do not rely on roots.
@@ -77,7 +94,60 @@ impl Probe {
 pub(crate) fn run(device: &Device) -> Result<Probe, DeviceError> {
     let operands = operands();
     let results = compute(device, &operands)?;
-    Ok(judge(&operands, &results))
+    let doubles = device.has_doubles().then(|| are_like_the_processor(device)).transpose()?;
+    Ok(Probe { doubles, ..judge(&operands, &results) })
+}
+
+/// Returns whether double precision, and what kernels make of it, gives the processor's results.
+fn are_like_the_processor(device: &Device) -> Result<bool, DeviceError> {
+    let operands = double_operands();
+    let params = Params { count: operands.len() as u32, ..Params::default() };
+    let bytes = (size_of::<[f64; 10]>() * operands.len()) as u64;
+    let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    let numbers = device.buffer("numbers", size_of::<Params>() as u64, uniform)?;
+    device.write(&numbers, bytemuck::bytes_of(&params));
+    let input = device.filled("operands", bytemuck::cast_slice(&operands))?;
+    let output = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+    let output = device.buffer("results", bytes, output)?;
+    let copy = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+    let copy = device.buffer("results to read", bytes, copy)?;
+    device.run(Kernel::Doubles, &[&numbers, &input, &output], operands.len())?;
+    device.copy(&output, &copy, bytes);
+    let mut results = vec![[0.0; 10]; operands.len()];
+    device.read(&copy, bytes, |view| {
+        bytemuck::cast_slice_mut(&mut results).copy_from_slice(view);
+    })?;
+    let own = |&[x, y, z]: &[f64; 3]| {
+        let [a, b, c] = [x, y, z].map(|x| x as f32);
+        let singles = [a, a.mul_add(b, c), a / b, a.abs().sqrt()].map(f64::from);
+        let [rounded, fused, quotient, root] = singles;
+        let doubles = [x + y, x - y, x * y, x / y, x.abs().sqrt(), x * y + z];
+        let [sum, difference, product, ratio, length, plain] = doubles;
+        [sum, difference, product, ratio, length, plain, rounded, fused, quotient, root]
+    };
+    let bits = |row: [f64; 10]| row.map(f64::to_bits);
+    Ok(operands.iter().zip(results).all(|(operands, found)| bits(own(operands)) == bits(found)))
+}
+
+/// Returns triples of numbers, of which single precision holds some, and some are in the middle between two that it holds.
+fn double_operands() -> Vec<[f64; 3]> {
+    let mut random = Random::new(12);
+    let mut number = |kind: usize| {
+        let x = random.sign() * random.decades([-4.0, 4.0]) * random.between([1.0, 2.0]);
+        let single = x as f32;
+        match kind {
+            0 => x,
+            1 => f64::from(single),
+            2 => f64::midpoint(f64::from(single), f64::from(single.next_up())),
+            _ => f64::from(single).next_up(),
+        }
+    };
+    let triple = |row: usize| {
+        let [x, y, z] = [row % 4, row / 4 % 2, row / 8 % 2].map(&mut number);
+        // Also such as cancel.
+        [x, y, if row.is_multiple_of(3) { f64::from((-x * y) as f32) } else { z }]
+    };
+    (0..ORDINARY).map(triple).collect()
 }
 
 /// Returns triples of numbers.
@@ -186,6 +256,27 @@ mod tests {
         let probe = judge(&operands, &own(&operands));
         assert!(probe.is_like_the_processor(), "{probe:?}");
         assert_eq!((probe.broken(), probe.tried), (None, ORDINARY + LEAST));
+    }
+
+    #[test]
+    fn what_paths_lack_is_named() {
+        let operands = operands();
+        let lacks = |doubles: Option<bool>, change: &dyn Fn(&mut [f32; 8])| {
+            let mut results = own(&operands);
+            results.iter_mut().for_each(change);
+            Probe { doubles, ..judge(&operands, &results) }.lacks_for_paths()
+        };
+        assert_eq!(lacks(Some(true), &|_| ()), None);
+        assert_eq!(lacks(None, &|_| ()), Some("its kernels have no double precision"));
+        let unlike = Some("its double precision is not the processor's");
+        assert_eq!(lacks(Some(false), &|_| ()), unlike);
+        let single = Some("its single precision is not the processor's");
+        assert_eq!(lacks(Some(true), &|row| row[0] = row[0].next_up()), single);
+        let flush = |row: &mut [f32; 8]| row[2] = if row[2].is_normal() { row[2] } else { 0.0 };
+        assert_eq!(lacks(Some(true), &flush), single);
+        // Kernels make quotients, roots and fused sums themselves.
+        assert_eq!(lacks(Some(true), &|row| row[3] = row[3].next_up()), None);
+        assert_eq!(lacks(Some(true), &|row| row[4] = row[5]), None);
     }
 
     #[test]

@@ -32,11 +32,16 @@ impl<'a> DeviceSpheres<'a> {
         let count = hits.t.len() as u64;
         let Ok(found) = self.tree.find(&scaled, &bounds, false) else {
             let exact = self.spheres.intersect_columns(rays, hits)?.exact;
-            return Ok(Answered { rays: count, unknown: count, exact });
+            return Ok(Answered { rays: count, unknown: count, exact, ..Answered::default() });
         };
         let unheld = count_unheld(&bounds, hits.t);
         let exact = self.spheres.intersect_found(rays, hits, &found)?.exact;
-        Ok(Answered { rays: count, unknown: unknown(&found) + unheld, exact })
+        Ok(Answered {
+            rays: count,
+            unknown: unknown(&found) + unheld,
+            exact,
+            ..Answered::default()
+        })
     }
 
     /// Finds whether each ray hits anything nearer than its bound in `t`, as [`SphereTree::occluded_columns`];
@@ -54,10 +59,15 @@ impl<'a> DeviceSpheres<'a> {
         let count = t.len() as u64;
         let Ok(found) = self.tree.find(&scaled, &bounds, true) else {
             let exact = self.spheres.occluded_columns(rays, t, occluded)?.exact;
-            return Ok(Answered { rays: count, unknown: count, exact });
+            return Ok(Answered { rays: count, unknown: count, exact, ..Answered::default() });
         };
         let exact = self.spheres.occluded_found(rays, t, occluded, &found)?.exact;
-        Ok(Answered { rays: count, unknown: unknown(&found) + count_unheld(&bounds, t), exact })
+        Ok(Answered {
+            rays: count,
+            unknown: unknown(&found) + count_unheld(&bounds, t),
+            exact,
+            ..Answered::default()
+        })
     }
 }
 

@@ -1,7 +1,9 @@
 //! Trees and spheres on a device, and queries of rays in the tree's units.
 
-use crate::device::{Device, QueryKernel};
+use crate::device::Device;
 use crate::error::DeviceError;
+use crate::stages::Kernel;
+use crate::times::{QueryStage, QueryTimes, Stopwatch};
 use spherule_core::internals::bvh::{
     Any, Closest, DeviceTracer, NodeRow, Query, Tracer, Tree, UNKNOWN, decide_found,
 };
@@ -24,7 +26,7 @@ const RAY: usize = 12;
 const NONE: u32 = 1 << 31;
 
 /// A distance that counts as infinite.
-const FAR: f32 = (1_u128 << 100) as f32;
+pub(crate) const FAR: f32 = (1_u128 << 100) as f32;
 
 /// Numbers of rays that were asked about, and of those that the processor decided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,6 +37,10 @@ pub struct Answered {
     pub unknown: u64,
     /// Decisions that were made on integers, by the processor.
     pub exact: u64,
+    /// Paths that the device followed, the rays of which are among the others.
+    pub paths: u64,
+    /// Paths that it did not know the radiance of, so that the processor followed them, too.
+    pub unknown_paths: u64,
 }
 
 impl std::ops::AddAssign for Answered {
@@ -42,17 +48,23 @@ impl std::ops::AddAssign for Answered {
         self.rays += other.rays;
         self.unknown += other.unknown;
         self.exact += other.exact;
+        self.paths += other.paths;
+        self.unknown_paths += other.unknown_paths;
     }
 }
 
-/// The numbers that a kernel gets.
+/// The numbers that a kernel gets, as `params.wgsl` has them.
 #[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Params {
-    zero: u32,
-    rays: u32,
-    brick_bits: u32,
-    nodes: u32,
+#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
+pub(crate) struct Params {
+    pub(crate) zero: u32,
+    pub(crate) count: u32,
+    pub(crate) brick_bits: u32,
+    pub(crate) nodes: u32,
+    pub(crate) first_sample: u32,
+    pub(crate) samples: u32,
+    pub(crate) bounce: u32,
+    pub(crate) unused: u32,
 }
 
 /// Buffers of one dispatch.
@@ -145,6 +157,67 @@ impl DeviceTree {
         *self.tally.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Measures the stages of a query, by waiting for each. The hits are those of [`DeviceTree::closest`], or of
+    /// [`DeviceTree::occluded`] if any hit will do.
+    ///
+    /// # Errors
+    /// The device fails.
+    #[doc(hidden)]
+    pub fn timed(
+        &self,
+        tree: Tree,
+        rays: &Rays,
+        hits: &mut Hits,
+        any: bool,
+    ) -> Result<(Answered, QueryTimes), DeviceError> {
+        let mut watch = Stopwatch::start();
+        let kernel = Kernel::Hits { any, counts: false };
+        let found = self.run(kernel, rays, hits, &mut watch)?;
+        let exact = if any {
+            decide_found::<Any>(tree, rays, hits, |row| found[row])
+        } else {
+            decide_found::<Closest>(tree, rays, hits, |row| found[row])
+        };
+        watch.end(QueryStage::Decide, &self.device)?;
+        let answered = Answered {
+            rays: rays.len() as u64,
+            unknown: unknown(&found),
+            exact,
+            ..Answered::default()
+        };
+        Ok((self.counted(answered), watch.times()))
+    }
+
+    /// Returns the numbers of kernels for so many rays or paths.
+    pub(crate) fn params(&self, count: usize) -> Params {
+        Params {
+            count: count as u32,
+            brick_bits: self.brick_bits,
+            nodes: self.size[0] as u32,
+            ..Params::default()
+        }
+    }
+
+    /// Returns whether single precision holds the spheres.
+    pub(crate) fn is_single(&self) -> bool {
+        self.single
+    }
+
+    /// Returns the nodes.
+    pub(crate) fn nodes(&self) -> &wgpu::Buffer {
+        &self.columns[0]
+    }
+
+    /// Returns the columns of spheres.
+    pub(crate) fn spheres(&self) -> Vec<&wgpu::Buffer> {
+        self.columns[1..].iter().collect()
+    }
+
+    /// Adds what became of paths to the sums.
+    pub(crate) fn count_paths(&self, answered: Answered) {
+        self.counted(answered);
+    }
+
     fn query<Q: Query>(
         &self,
         tree: Tree,
@@ -156,10 +229,20 @@ impl DeviceTree {
         let found = (size(tree) == self.size).then(|| self.find(rays, hits, Q::ANY));
         let Some(Ok(found)) = found else {
             let exact = otherwise(Tracer::default(), tree, rays, hits);
-            return self.counted(Answered { rays: count, unknown: count, exact });
+            return self.counted(Answered {
+                rays: count,
+                unknown: count,
+                exact,
+                ..Answered::default()
+            });
         };
         let exact = decide_found::<Q>(tree, rays, hits, |row| found[row]);
-        self.counted(Answered { rays: count, unknown: unknown(&found), exact })
+        self.counted(Answered {
+            rays: count,
+            unknown: unknown(&found),
+            exact,
+            ..Answered::default()
+        })
     }
 
     /// Adds what a query was answered to the sums.
@@ -174,7 +257,7 @@ impl DeviceTree {
     /// # Errors
     /// The device fails.
     pub fn find(&self, rays: &Rays, hits: &Hits, any: bool) -> Result<Vec<u32>, DeviceError> {
-        self.run(QueryKernel { any, counts: false }, rays, hits)
+        self.run(Kernel::Hits { any, counts: false }, rays, hits, &mut Stopwatch::off())
     }
 
     /// Returns how many nodes and leaves the search for the hit of each ray visits on the device; 65 535 at most. For
@@ -189,11 +272,18 @@ impl DeviceTree {
         hits: &Hits,
         any: bool,
     ) -> Result<Vec<[u16; 2]>, DeviceError> {
-        let visits = self.run(QueryKernel { any, counts: true }, rays, hits)?;
+        let kernel = Kernel::Hits { any, counts: true };
+        let visits = self.run(kernel, rays, hits, &mut Stopwatch::off())?;
         Ok(visits.into_iter().map(|both| [both as u16, (both >> 16) as u16]).collect())
     }
 
-    fn run(&self, kernel: QueryKernel, rays: &Rays, hits: &Hits) -> Result<Vec<u32>, DeviceError> {
+    fn run(
+        &self,
+        kernel: Kernel,
+        rays: &Rays,
+        hits: &Hits,
+        watch: &mut Stopwatch,
+    ) -> Result<Vec<u32>, DeviceError> {
         self.device.check()?;
         let mut found = vec![UNKNOWN; rays.len()];
         if rays.is_empty() || !self.single || !rays.precise.is_empty() {
@@ -204,8 +294,9 @@ impl DeviceTree {
         for first in (0..rays.len()).step_by(self.batch) {
             let batch = first..rays.len().min(first + self.batch);
             rows.clear();
-            rows.extend(batch.clone().flat_map(|row| ray_row(rays, hits, row, kernel.any)));
-            self.ask(kernel, &lane, &rows, &mut found[batch])?;
+            rows.extend(batch.clone().flat_map(|row| ray_row(rays, hits, row, kernel.is_any())));
+            watch.end(QueryStage::Pack, &self.device)?;
+            self.ask(kernel, &lane, (&rows, &mut found[batch]), watch)?;
         }
         // Not after a fault: what is left of such buffers is unknown.
         self.lanes.lock().unwrap_or_else(PoisonError::into_inner).push(lane);
@@ -242,29 +333,27 @@ impl DeviceTree {
     /// Asks the device about some rays.
     fn ask(
         &self,
-        kernel: QueryKernel,
+        kernel: Kernel,
         lane: &Lane,
-        rows: &[u32],
-        found: &mut [u32],
+        (rows, found): (&[u32], &mut [u32]),
+        watch: &mut Stopwatch,
     ) -> Result<(), DeviceError> {
-        let params = Params {
-            zero: 0,
-            rays: found.len() as u32,
-            brick_bits: self.brick_bits,
-            nodes: self.size[0] as u32,
-        };
+        let params = self.params(found.len());
         self.device.write(&lane.params, bytemuck::bytes_of(&params));
         self.device.write(&lane.rays, bytemuck::cast_slice(rows));
+        watch.end(QueryStage::Upload, &self.device)?;
         let bytes = size_of_val(found) as u64;
-        let kernel = self.device.query_kernel(kernel)?;
+        let kernel = self.device.compiled(kernel)?;
         let mut buffers = vec![&lane.params];
         buffers.extend(&self.columns);
         buffers.extend([&lane.rays, &lane.found]);
         let group = self.device.bind(kernel, &buffers);
         self.device.dispatch((kernel, &group), found.len(), (&lane.found, &lane.copy, bytes));
+        watch.end(QueryStage::Kernel, &self.device)?;
         self.device.read(&lane.copy, bytes, |view| {
             bytemuck::cast_slice_mut(found).copy_from_slice(view);
-        })
+        })?;
+        watch.end(QueryStage::Read, &self.device)
     }
 }
 

@@ -38,7 +38,10 @@ pub(super) enum Measurement {
     /// Russian roulette: error over time for each probability, in the paper's ray tracer and here
     #[command(after_help = ROULETTE)]
     Roulette(Common),
-    /// All of these, in one page: report.html
+    /// A GPU: rays per second, shares of stages and time to error, beside the processor; not part of `all`
+    #[command(after_help = GPU)]
+    Gpu(Common),
+    /// All of these but `gpu`, in one page: report.html
     #[command(after_help = EVERYTHING)]
     All(Common),
 }
@@ -197,6 +200,14 @@ Scenes: two-spheres, grid, field.
 Examples:
   spherule bench roulette
   spherule bench roulette --scenes two-spheres field --rounds 9";
+
+const GPU: &str = "\
+The report names the adapter, and says if it is software. A GPU needs many rays: --full takes a
+million of each class, and ten million spheres.
+
+Examples:
+  spherule bench gpu --full
+  spherule bench gpu --scenes volume1m --rounds 9";
 
 const EVERYTHING: &str = "\
 Examples:

@@ -2,6 +2,8 @@
 
 mod args;
 mod files;
+#[cfg(feature = "gpu")]
+mod gpu;
 
 pub(super) use self::args::{Args, EXAMPLES};
 use self::args::{Common, Measurement};
@@ -24,6 +26,14 @@ const ERROR: Benchmark = ("error", convergence::measure);
 const PAPER: Benchmark = ("paper", paper::measure);
 const ROULETTE: Benchmark = ("roulette", roulette::measure);
 
+/// Not one of `all`: most machines have no GPU.
+#[cfg(feature = "gpu")]
+const GPU: Benchmark = ("gpu", gpu::measure);
+#[cfg(not(feature = "gpu"))]
+const GPU: Benchmark = ("gpu", |_, _| {
+    Err(BenchError::Device(format!("no GPU can be measured: {}", super::devices::ADVICE)))
+});
+
 /// The benchmarks of `all`, in order.
 const ALL: [Benchmark; 7] = [TRAVERSAL, BUILD, THREADS, SKIPS, ERROR, PAPER, ROULETTE];
 
@@ -37,6 +47,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         Measurement::Error(common) => run_one(common, &common.options(), ERROR),
         Measurement::Paper(args) => run_one(&args.common, &args.options(), PAPER),
         Measurement::Roulette(common) => run_one(common, &common.options(), ROULETTE),
+        Measurement::Gpu(common) => run_one(common, &common.options(), GPU),
         Measurement::All(common) if common.has_scenes() => {
             let message = "--scenes does not apply to `all`; run the benchmarks one by one";
             Err(Failure::usage("bench", message))

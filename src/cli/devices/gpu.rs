@@ -6,10 +6,13 @@ use crate::cli::output;
 use indicatif::BinaryBytes;
 use serde::Serialize;
 use spherule_gpu::{
-    AdapterSummary, Adapters, Device, DeviceError, DeviceTree, Fma, Operation, Probe, Subnormals,
+    AdapterSummary, Adapters, Answered, Device, DeviceError, DeviceTree, Fma, Integrator,
+    Operation, Probe, Subnormals,
 };
 use spherule_render::World;
 use spherule_render::bvh::Tree;
+use spherule_render::render::shaded_by_the_processor;
+use spherule_render::scene::Settings;
 use std::sync::{Arc, OnceLock};
 
 /// The device of this process. Once it is lost, the processor does all that follows.
@@ -20,6 +23,8 @@ static DEVICE: OnceLock<Result<Arc<Device>, DeviceError>> = OnceLock::new();
 pub(in crate::cli) struct Attached {
     choice: Choice,
     tree: Option<Arc<DeviceTree>>,
+    /// Why the device follows no whole paths, whatever the render, if so.
+    no_paths: Option<String>,
     refusal: Option<String>,
     /// True once it was told that the device is lost.
     told: bool,
@@ -28,12 +33,16 @@ pub(in crate::cli) struct Attached {
 impl Attached {
     /// Copies a world's spheres to a device if that is wanted and possible, and lets it trace their rays.
     pub(in crate::cli) fn to(world: &mut World, choice: Choice) -> Self {
-        let mut attached = Self { choice, tree: None, refusal: None, told: false };
+        let mut attached = Self { choice, tree: None, no_paths: None, refusal: None, told: false };
         if choice != Choice::Gpu {
             return attached;
         }
         match on_device(world) {
             Ok(tree) => {
+                match Integrator::new(&tree, world) {
+                    Ok(paths) => world.device_paths = Some(Arc::new(paths)),
+                    Err(why) => attached.no_paths = Some(why),
+                }
                 world.device = Some(tree.clone());
                 attached.tree = Some(tree);
             }
@@ -52,17 +61,21 @@ impl Attached {
         self.refusal.clone()
     }
 
-    /// Returns lines about the device.
-    pub(in crate::cli) fn facts(&self) -> Vec<String> {
+    /// Returns lines about the device, and what it does of a render.
+    pub(in crate::cli) fn facts(&self, world: &World, settings: &Settings) -> Vec<String> {
         let Some(tree) = &self.tree else { return Vec::new() };
         let device = tree.device();
         let AdapterSummary { name, backend, .. } = device.summary();
         let bytes = BinaryBytes(tree.bytes());
+        let shaded = shaded_by_the_processor(world, settings).map(str::to_owned);
+        let stages = match self.no_paths.clone().or(shaded) {
+            None => "follows paths from the camera to their ends".to_owned(),
+            Some(why) => format!("traces rays; the processor shades, for {why}"),
+        };
         vec![
-            format!("device: {name} ({backend}) traces rays, with {bytes} of spheres and tree"),
+            format!("device: {name} ({backend}), with {bytes} of spheres and tree, {stages}"),
             format!(
-                "its arithmetic: {}; pictures are the processor's all the same, which decides what is not certain, \
-                 and shades",
+                "its arithmetic: {}; images are the processor's to the byte, which does what the device is not certain of",
                 arithmetic(device.probe())
             ),
         ]
@@ -84,9 +97,9 @@ impl Attached {
     /// Returns the counts of the device's rays.
     pub(in crate::cli) fn summary(&self) -> Option<DeviceSummary> {
         let tree = self.tree.as_ref()?;
-        let tally = tree.tally();
         let name = tree.device().summary().name.clone();
-        Some(DeviceSummary { name, rays: tally.rays, unknown: tally.unknown })
+        let Answered { rays, unknown, paths, unknown_paths, .. } = tree.tally();
+        Some(DeviceSummary { name, rays, unknown, paths, unknown_paths })
     }
 }
 
@@ -95,10 +108,15 @@ fn on_device(world: &World) -> Result<Arc<DeviceTree>, String> {
     if world.is_sliced() {
         return Err("slices are traced by the processor".to_owned());
     }
-    let device = DEVICE.get_or_init(|| Device::best(true).map(Arc::new));
+    let device = open()?;
     let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-    let tree = device.clone().and_then(|device| DeviceTree::new(&device, tree));
-    tree.map(Arc::new).map_err(|error| error.to_string())
+    DeviceTree::new(&device, tree).map(Arc::new).map_err(|error| error.to_string())
+}
+
+/// Returns the device of this process, or why there is none.
+pub(in crate::cli) fn open() -> Result<Arc<Device>, String> {
+    let device = DEVICE.get_or_init(|| Device::best(true).map(Arc::new));
+    device.clone().map_err(|error| error.to_string())
 }
 
 /// An adapter in JSON.
@@ -204,6 +222,11 @@ fn arithmetic(probe: &Probe) -> String {
         Subnormals::Kept => "subnormal numbers are kept".to_owned(),
         Subnormals::Flushed => "subnormal numbers become 0".to_owned(),
     });
+    facts.push(match probe.doubles {
+        Some(true) => "double precision as on the processor".to_owned(),
+        Some(false) => "double precision differs".to_owned(),
+        None => "no double precision".to_owned(),
+    });
     facts.join(", ")
 }
 
@@ -217,12 +240,13 @@ mod tests {
         for (operation, name) in probe.operations.iter_mut().zip(["+", "-", "*", "/", "sqrt"]) {
             operation.name = name;
         }
-        let same = "+ - * / sqrt as on the processor, fma rounds once, subnormal numbers are kept";
+        let same = "+ - * / sqrt as on the processor, fma rounds once, subnormal numbers are kept, no double precision";
         assert_eq!(arithmetic(&probe), same);
         probe.operations[3].unequal = 4;
         (probe.fma, probe.subnormals, probe.contracts) = (Fma::Mixed, Subnormals::Flushed, true);
+        probe.doubles = Some(false);
         let other = "+ - * sqrt as on the processor, / differs in 4 of 9 results, fma rounds once or twice, \
-                     products and sums are fused unasked, subnormal numbers become 0";
+                     products and sums are fused unasked, subnormal numbers become 0, double precision differs";
         assert_eq!(arithmetic(&probe), other);
     }
 }

@@ -4,9 +4,10 @@ use super::DeviceSummary;
 use crate::cli::names::Device;
 use crate::cli::output;
 use spherule_render::World;
+use spherule_render::scene::Settings;
 
 /// Advice to who wants one.
-const ADVICE: &str =
+pub(in crate::cli) const ADVICE: &str =
     "this program was built without it (build it with cargo build --release --features gpu)";
 
 /// The processor.
@@ -30,7 +31,7 @@ impl Attached {
 
     /// Nothing.
     #[expect(clippy::unused_self, reason = "as with a device")]
-    pub(in crate::cli) fn facts(&self) -> Vec<String> {
+    pub(in crate::cli) fn facts(&self, _: &World, _: &Settings) -> Vec<String> {
         Vec::new()
     }
 

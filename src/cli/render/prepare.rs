@@ -259,7 +259,9 @@ impl Prepared {
             notices.note(&text);
         }
         if job.report.verbose {
-            self.device.facts().iter().for_each(|text| notices.note(text));
+            for text in self.device.facts(&self.world, &self.scene.settings) {
+                notices.note(&text);
+            }
             output::note(format_args!("found: {}", found(&self.world).join(", ")));
             for skipped in self.world.features.skipped() {
                 output::note(format_args!("skipped: {skipped}"));

@@ -187,10 +187,12 @@ impl<'a> Summary<'a> {
         ));
         if let Some(device) = &self.tracer.device {
             output::print(format_args!(
-                "device  {}: {}, of which the processor decided {}",
+                "device  {}: {}, of which the processor decided {}; {}, of which it followed {}",
                 device.name,
                 plural(device.rays, "ray"),
                 HumanCount(device.unknown),
+                plural(device.paths, "path"),
+                HumanCount(device.unknown_paths),
             ));
         }
         self.noise.iter().for_each(NoiseSummary::print);

@@ -52,6 +52,9 @@ pub enum BenchError {
     /// The paper's tracer does not support the scene.
     #[error("{0}")]
     Unsupported(#[from] Unsupported),
+    /// A device is not there, or fails.
+    #[error("{0}")]
+    Device(String),
     /// Results that must be equal are not.
     #[error("{0}; the times are meaningless; please report this bug")]
     Differ(String),

@@ -85,7 +85,7 @@ impl Options {
     }
 
     /// The options as names and values, for a report.
-    pub(crate) fn settings(&self) -> Vec<(String, String)> {
+    pub fn settings(&self) -> Vec<(String, String)> {
         let effort = self.pick(["quick: the numbers are meaningless", "usual", "full"]);
         let scenes = if self.scenes.is_empty() { "usual" } else { &self.scenes.join(", ") };
         let pairs = [("rounds", self.rounds.to_string()), ("effort", effort.to_owned())];

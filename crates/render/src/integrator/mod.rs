@@ -10,6 +10,7 @@ mod caustics;
 pub mod clock;
 pub mod columns;
 pub mod counters;
+pub mod device;
 mod direct_light;
 pub mod elisions;
 mod emission;
@@ -38,7 +39,7 @@ use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::shade::MaterialId;
 use crate::trace::Tracer;
-use crate::world::{Ground, World};
+use crate::world::{DevicePaths, Ground, World};
 use elisions::Elisions;
 use glam::DVec3;
 use workspace::Workspace;
@@ -58,6 +59,8 @@ pub struct Job<'a> {
     pub tracer: Tracer,
     /// Work that may be omitted without changing the image.
     pub elisions: Elisions,
+    /// The device that follows the paths of the picture's samples, if one does.
+    pub device: Option<&'a dyn DevicePaths>,
 }
 
 impl Job<'_> {

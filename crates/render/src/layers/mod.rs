@@ -242,7 +242,8 @@ pub fn features(
     let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
     let filter = PixelFilter::new(settings.filter);
     let (tracer, elisions) = (options.tracer, options.elisions);
-    let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions };
+    let job =
+        Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions, device: None };
     let traced = |layer: &Layer| *layer != Layer::Id && !layer.is_statistic();
     let sampled = wanted.iter().any(traced);
     let samples = if sampled { settings.spp.min(SAMPLES) } else { 0 };

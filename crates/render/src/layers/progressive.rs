@@ -65,7 +65,15 @@ impl ProgressiveLayers {
         let sampler = Sampler::new(settings.sampler, settings.seed, settings.spp);
         let filter = PixelFilter::new(settings.filter);
         let (tracer, elisions) = (options.tracer, options.elisions);
-        let job = Job { world, settings, sampler: &sampler, filter: &filter, tracer, elisions };
+        let job = Job {
+            world,
+            settings,
+            sampler: &sampler,
+            filter: &filter,
+            tracer,
+            elisions,
+            device: None,
+        };
         let next = AtomicUsize::new(0);
         let queue: Vec<Mutex<&mut TileLayers>> = self.tiles.iter_mut().map(Mutex::new).collect();
         rayon::broadcast(|_| {

@@ -1,5 +1,6 @@
 //! Renders with an error target or a time limit: rounds over the tiles that need more samples.
 
+use super::device;
 use super::end::End;
 use super::pass::{self, PASS};
 use super::schedule::TURNS;
@@ -111,6 +112,14 @@ fn refine(
     let count = state.plan.iter().take_while(fits).count();
     let count = count.max(rayon::current_num_threads()).max(state.begun).min(state.plan.len());
     let expected = expected_work(stop, noise, spent, state.slope);
+    let steps = state.take(count).into_iter().map(|(tile, to)| {
+        let samples = tile.samples.min(to)..to;
+        (tile, samples)
+    });
+    device::run(job, steps, None, watch, |work, _| {
+        let done = expected.map_or(0.0, |expected| (spent / expected).min(1.0));
+        watch.report(work, None, done, noise);
+    });
     let added = AtomicU64::new(0);
     let paths = |tile: &Tile, to| pass::probe_paths(tile, to - tile.probes.samples.min(to));
     for_each_batch(job, batches(state.take(count), paths), watch, |(tiles, to), work| {

@@ -5,6 +5,7 @@
 //! stopped and resumed without changing the picture: see [`ResumableRender`].
 
 mod adapt;
+mod device;
 mod end;
 mod error;
 mod header;
@@ -30,7 +31,7 @@ pub(crate) use incompatible::difference;
 pub use part::ImagePart;
 pub(crate) use pass::view;
 pub use preview::preview;
-pub use resumable::ResumableRender;
+pub use resumable::{ResumableRender, shaded_by_the_processor};
 pub use status::Status;
 pub use tasks::Tasks;
 pub use watch::Totals;

@@ -205,7 +205,7 @@ pub(super) fn pilot_paths(tile: &Tile, (block, samples): (u32, u32)) -> usize {
 }
 
 /// Traces the paths of samples of pixels in these regions to their ends.
-fn trace_paths(
+pub(super) fn trace_paths(
     job: &Job,
     (view, regions): (View, impl Iterator<Item = Region>),
     (streams, samples): (impl Iterator<Item = (u32, u32, Sampler)>, Range<u32>),

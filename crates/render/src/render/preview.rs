@@ -41,8 +41,15 @@ pub fn preview(
     let (tracer, elisions) = (options.tracer, options.elisions);
     // The glint of a light in glass is left to the mirrored ray.
     let chosen = Settings { caustics: false, ..settings.clone() };
-    let job =
-        Job { world, settings: &chosen, sampler: &sampler, filter: &filter, tracer, elisions };
+    let job = Job {
+        world,
+        settings: &chosen,
+        sampler: &sampler,
+        filter: &filter,
+        tracer,
+        elisions,
+        device: None,
+    };
     let occlusion = matches!(settings.integrator, Integrator::Ao { .. });
     let irradiance = if occlusion {
         Irradiance::constant(Rgb::splat(PI))

@@ -10,6 +10,7 @@ use super::{
 };
 use crate::film::{Film, Region, View};
 use crate::integrator::Job;
+use crate::integrator::device::device_job;
 use crate::noise::{FIRST_SAMPLES, StopCondition};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
@@ -260,8 +261,28 @@ impl ResumableRender {
     }
 }
 
+/// Returns why a device that traces rays does not follow whole paths of a render, if so: words that complete "the
+/// processor shades, for".
+pub fn shaded_by_the_processor(world: &World, settings: &Settings) -> Option<&'static str> {
+    with_processor(world, settings, &Options::default(), |job| device_job(job).err())
+}
+
 /// Calls `work` with the job that all tasks of a render use.
 fn with_job<T>(
+    world: &World,
+    settings: &Settings,
+    options: &Options,
+    work: impl FnOnce(&Job) -> T,
+) -> T {
+    with_processor(world, settings, options, |job| {
+        let integrator = world.device_paths.as_ref();
+        let paths = integrator.and_then(|device| device.begin(&device_job(job).ok()?));
+        work(&Job { device: paths.as_deref(), ..*job })
+    })
+}
+
+/// Calls `work` with the job without a device.
+fn with_processor<T>(
     world: &World,
     settings: &Settings,
     options: &Options,
@@ -277,6 +298,7 @@ fn with_job<T>(
         filter: &filter,
         tracer: options.tracer,
         elisions: options.elisions,
+        device: None,
     })
 }
 

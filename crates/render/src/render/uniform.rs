@@ -1,5 +1,6 @@
 //! Renders with the same number of samples for every pixel.
 
+use super::device;
 use super::end::End;
 use super::pass::{PASS, TileSamples, TileView, probe_pass};
 use super::schedule::{Schedule, Task};
@@ -20,6 +21,17 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 /// in any order.
 pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch) -> End {
     let spp = part.len() as u32;
+    let pixels = state.film.pixels().max(1) as f64 * f64::from(spp.max(1));
+    let mut followed: u64 = state.film.tiles.iter().map(samples_taken).sum();
+    let lacking = |tile: &Tile| part.start + tile.samples.min(spp)..part.end;
+    let steps = state.film.tiles.iter_mut().map(|tile| {
+        let samples = lacking(tile);
+        (tile, samples)
+    });
+    device::run(job, steps, Some(part.start), watch, |work, added| {
+        followed += added;
+        watch.report(work, None, (followed as f64 / pixels).min(1.0), None);
+    });
     let taken: Vec<u32> = state.film.tiles.iter().map(|tile| tile.samples).collect();
     let all = taken.len() as u64 * u64::from(spp);
     let done = AtomicU64::new(taken.iter().map(|&taken| u64::from(taken.min(spp))).sum());
@@ -48,6 +60,11 @@ pub(super) fn run(job: &Job, part: Range<u32>, state: &mut State, watch: &Watch)
     state.round = rounds_taken(&state.film);
     let complete = state.film.tiles.iter().all(|tile| tile.samples >= spp);
     if complete { End::Samples } else { End::Cancelled }
+}
+
+/// Returns the number of samples of all pixels of a tile.
+fn samples_taken(tile: &Tile) -> u64 {
+    u64::from(tile.len()) * u64::from(tile.samples)
 }
 
 /// A tile that all threads may add samples to.

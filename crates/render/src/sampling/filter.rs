@@ -51,6 +51,11 @@ impl PixelFilter {
         Self { table }
     }
 
+    /// Returns the table of offsets; `None` for the box filter.
+    pub fn offsets(&self) -> Option<&[f32]> {
+        self.table.as_ref().map(|table| &table.offsets[..])
+    }
+
     /// Returns the offset (dx, dy) from the pixel's center in pixels, for two numbers in [0, 1).
     ///
     /// Each coordinate increases with its draw, so that strata of draws are strata of the filter.

@@ -78,6 +78,20 @@ impl Sampler {
         Self { seed: mix(seed), points }
     }
 
+    /// Returns the hash of the seed, from which the keys of pixels are made.
+    pub fn hashed_seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Returns the sums of Sobol's direction vectors, by set of dimensions, nibble of the index from the lowest bits on, and
+    /// value of the nibble; empty for points of another kind.
+    pub fn table(&self) -> Vec<[u32; 4]> {
+        match &self.points {
+            Points::Sobol(sobol) => sobol.table().collect(),
+            Points::Stratified(_) | Points::Independent => Vec::new(),
+        }
+    }
+
     /// Returns a sampler of the same kind, independent of this one and of all other replicas; number 0
     /// is a replica too.
     pub fn replica(&self, number: u64) -> Self {

@@ -44,6 +44,11 @@ impl Sobol {
         Self { sets: &TABLE, row_sets: &ROW_TABLE }
     }
 
+    /// Returns the sums of direction vectors: for each set and nibble, by value.
+    pub(super) fn table(&self) -> impl Iterator<Item = [u32; 4]> {
+        self.sets.iter().flatten().flatten().map(|&sums| sums.into())
+    }
+
     /// Returns four numbers in [0, 1), multiples of 2^-23, of the sequence of `seed`; `None` beyond its
     /// 256 dimensions. The position must have been shuffled by the same seed.
     #[inline]

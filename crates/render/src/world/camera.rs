@@ -32,7 +32,36 @@ pub struct Camera {
     target: f64,
 }
 
+/// The numbers of a camera's rays, for devices: see [`Camera`].
+#[derive(Clone, Copy, Debug)]
+pub struct CameraTerms {
+    /// Origin of rays, and the axes to the right, upward and into the scene.
+    pub frame: [DVec3; 4],
+    /// Width and height in pixels, and half of each as tangents or lengths.
+    pub size: [[f64; 2]; 2],
+    /// True in parallel projection.
+    pub orthographic: bool,
+    /// Radius of the lens, 0 without one.
+    pub lens_radius: f64,
+    /// Distance of the plane in focus.
+    pub focus: f64,
+    /// Distance of the plane on which rays start.
+    pub near: f64,
+}
+
 impl Camera {
+    /// Returns the numbers of the rays.
+    pub fn terms(&self) -> CameraTerms {
+        CameraTerms {
+            frame: [self.eye, self.right, self.up, self.forward],
+            size: [[self.width.into(), self.height.into()], [self.half_width, self.half_height]],
+            orthographic: self.orthographic,
+            lens_radius: self.lens_radius,
+            focus: self.focus,
+            near: self.near,
+        }
+    }
+
     pub(super) fn build(scene: &Scene, at: &Placement, transform: &Transform) -> Self {
         let orthographic = matches!(scene.camera.projection, Projection::Orthographic { .. });
         let size = if orthographic { transform.scale } else { 1.0 };

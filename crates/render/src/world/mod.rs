@@ -12,6 +12,7 @@ mod caustics;
 mod census;
 mod check;
 mod cut;
+mod device;
 mod environment;
 mod fit;
 pub mod framing;
@@ -24,7 +25,7 @@ mod transform;
 mod visibility;
 
 pub use appearance::{Appearance, Colors, Column};
-pub use camera::Camera;
+pub use camera::{Camera, CameraTerms};
 pub use camera_visible::CameraVisible;
 pub use caustics::CausticCasters;
 pub(crate) use caustics::{
@@ -32,6 +33,10 @@ pub(crate) use caustics::{
 };
 pub use census::Features;
 pub use cut::{Cut, Span};
+pub use device::{
+    DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DeviceRoulette,
+    DeviceSky,
+};
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
 };
@@ -106,6 +111,9 @@ pub struct World {
     /// Traces rays in place of the processor, where nothing is sliced.
     #[doc(hidden)]
     pub device: Option<Arc<dyn DeviceTracer>>,
+    /// Follows whole paths in place of the processor, where it can.
+    #[doc(hidden)]
+    pub device_paths: Option<Arc<dyn DeviceIntegrator>>,
     /// Features of the world, which decide which stages run.
     pub features: Features,
 }
@@ -249,6 +257,7 @@ impl World {
             environment,
             camera,
             device: None,
+            device_paths: None,
             features: Features::default(),
         };
         world.features = Features::census(&world, omitted);
@@ -282,6 +291,7 @@ impl World {
             environment: self.environment.clone(),
             camera: self.camera,
             device: None,
+            device_paths: None,
             features,
         }
     }

@@ -1,0 +1,101 @@
+//! Kernels, as the files of WGSL that each is made of.
+
+use crate::device::Device;
+use crate::error::DeviceError;
+
+/// A kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kernel {
+    /// Hits of rays: the first, or any if `any`; or, if `counts`, the visits of the search.
+    Hits { any: bool, counts: bool },
+    /// The test of double precision.
+    Doubles,
+    /// Camera rays.
+    Generate,
+    /// Surfaces and shadow rays of ambient occlusion.
+    Occlusion,
+    /// Light of shadow rays.
+    Shadows,
+    /// A bounce of paths among diffuse surfaces.
+    Path,
+}
+
+impl Kernel {
+    /// The number of kernels.
+    pub(crate) const COUNT: usize = 9;
+
+    /// Returns its place among all kernels.
+    pub(crate) fn place(self) -> usize {
+        match self {
+            Self::Hits { any, counts } => usize::from(any) + 2 * usize::from(counts),
+            Self::Generate => 4,
+            Self::Occlusion => 5,
+            Self::Shadows => 6,
+            Self::Path => 7,
+            Self::Doubles => 8,
+        }
+    }
+
+    /// Returns whether any hit ends its search.
+    pub(crate) fn is_any(self) -> bool {
+        matches!(self, Self::Hits { any: true, .. })
+    }
+
+    /// Compiles it.
+    pub(crate) fn compile(self, device: &Device) -> Result<wgpu::ComputePipeline, DeviceError> {
+        let (name, files) = self.files();
+        let constants: &[(&str, f64)] = match self {
+            Self::Hits { any, counts } => {
+                &[("ANY", u8::from(any).into()), ("COUNT", u8::from(counts).into())]
+            }
+            _ => &[],
+        };
+        device.kernel((name, &files.concat()), constants)
+    }
+
+    /// Returns its name, and its files.
+    fn files(self) -> (&'static str, Vec<&'static str>) {
+        const PARAMS: &str = include_str!("stages/params.wgsl");
+        const SPHERES: &str = include_str!("stages/spheres.wgsl");
+        const RAYS: &str = include_str!("stages/rays.wgsl");
+        // What paths need of a job, its arithmetic and its samples.
+        const JOB: [&str; 7] = [
+            PARAMS,
+            include_str!("stages/arithmetic.wgsl"),
+            include_str!("stages/job.wgsl"),
+            include_str!("stages/hash.wgsl"),
+            include_str!("stages/sobol.wgsl"),
+            include_str!("stages/warp.wgsl"),
+            include_str!("stages/ground.wgsl"),
+        ];
+        const SURFACE: [&str; 4] = [
+            SPHERES,
+            include_str!("stages/surface.wgsl"),
+            include_str!("stages/basis.wgsl"),
+            include_str!("stages/environment.wgsl"),
+        ];
+        let of = |groups: &[&[&'static str]]| groups.concat();
+        match self {
+            Self::Hits { .. } => ("hits", vec![PARAMS, SPHERES, include_str!("hits.wgsl")]),
+            Self::Doubles => {
+                let arithmetic = include_str!("stages/arithmetic.wgsl");
+                ("doubles", vec![PARAMS, arithmetic, include_str!("doubles.wgsl")])
+            }
+            Self::Generate => {
+                let camera = include_str!("stages/camera.wgsl");
+                let generate = include_str!("stages/generate.wgsl");
+                ("generate", of(&[&JOB, &[RAYS, camera, generate]]))
+            }
+            Self::Occlusion => {
+                ("ao", of(&[&JOB, &SURFACE, &[RAYS, include_str!("stages/ao.wgsl")]]))
+            }
+            Self::Shadows => {
+                let shadows = include_str!("stages/shadow_queue.wgsl");
+                ("shadow_queue", vec![PARAMS, RAYS, shadows])
+            }
+            Self::Path => {
+                ("path", of(&[&JOB, &SURFACE, &[RAYS, include_str!("stages/path.wgsl")]]))
+            }
+        }
+    }
+}

@@ -1,0 +1,51 @@
+// Ambient occlusion: `integrator/ao.rs`. Replaces each camera ray by a shadow ray, and stores the light
+// that it carries.
+
+@group(0) @binding(1) var<storage, read> job: Job;
+@group(0) @binding(2) var<storage, read> spheres_0: array<vec4<u32>>;
+@group(0) @binding(3) var<storage, read> spheres_1: array<vec4<u32>>;
+@group(0) @binding(4) var<storage, read> spheres_2: array<vec4<u32>>;
+@group(0) @binding(5) var<storage, read> spheres_3: array<vec4<u32>>;
+@group(0) @binding(6) var<storage, read> albedos: array<f32>;
+@group(0) @binding(7) var<storage, read> sobol: array<vec4<u32>>;
+@group(0) @binding(8) var<storage, read> sequences: array<Sequence>;
+@group(0) @binding(9) var<storage, read> found: array<u32>;
+@group(0) @binding(10) var<storage, read_write> rays: array<vec4<u32>>;
+@group(0) @binding(11) var<storage, read_write> lights: array<vec4<f32>>;
+@group(0) @binding(12) var<storage, read_write> paths: array<vec4<u32>>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    let path = id.x;
+    if path >= params.count {
+        return;
+    }
+    let surface = surface_of(path, found[path]);
+    if !surface.known {
+        paths[path].w |= 1u;
+        end_ray(path);
+        return;
+    }
+    if surface.hit == MISS {
+        paths[path] = vec4<u32>(bitcast<vec3<u32>>(seen_by_camera(ray_direction(path))), 0u);
+        end_ray(path);
+        return;
+    }
+    let light = albedo_of(surface.hit);
+    let draw = draw4(sequences[path], directions(0u));
+    let direction = to_world(basis_about(surface.facing), cosine_hemisphere(draw.xy));
+    let lit = max(max(light.x, light.y), light.z) > 0.0;
+    let hidden = surface.inside && surface.hit != GROUND && chord_length(surface, direction) < job.distance;
+    if !lit || hidden {
+        end_ray(path);
+        return;
+    }
+    paths[path].w += 2u;
+    lights[path] = vec4<f32>(light, 0.0);
+    let ground = cross_ground(surface.point, direction, surface.hit);
+    if ground.crossed && ground.t < job.distance {
+        end_ray(path);
+        return;
+    }
+    write_ray(path, surface.point, direction, surface.hit, bounds_around(job.distance));
+}

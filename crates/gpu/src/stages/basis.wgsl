@@ -1,0 +1,23 @@
+// Orthonormal bases about unit vectors: `sampling/basis.rs`.
+
+struct Basis {
+    tangent: vec3<f32>,
+    bitangent: vec3<f32>,
+    normal: vec3<f32>,
+}
+
+fn basis_about(normal: vec3<f32>) -> Basis {
+    let sign = select(1.0, -1.0, (bitcast<u32>(normal.z) >> 31u) != 0u);
+    let a = quotient(-1.0, keep(sign + normal.z));
+    let b = keep(keep(normal.x * normal.y) * a);
+    let x2 = keep(keep(keep(sign * normal.x) * normal.x) * a);
+    let y2 = keep(keep(normal.y * normal.y) * a);
+    let tangent = vec3<f32>(1.0 + x2, sign * b, -sign * normal.x);
+    return Basis(tangent, vec3<f32>(b, sign + y2, -normal.y), normal);
+}
+
+// A local direction in world axes, of unit length.
+fn to_world(basis: Basis, local: vec3<f32>) -> vec3<f32> {
+    let up = keep3(basis.normal * local.z);
+    return normalized(along(along(up, basis.bitangent, local.y), basis.tangent, local.x));
+}

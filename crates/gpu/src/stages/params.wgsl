@@ -1,0 +1,35 @@
+// What every kernel is given, and values through which nothing is fused or reordered.
+
+struct Params {
+    // 0, which no compiler knows.
+    zero: u32,
+    // Rays, or paths.
+    count: u32,
+    // Spheres in each column but the last, a multiple of 8; as a power of two.
+    brick_bits: u32,
+    nodes: u32,
+    // The first of the samples of each pixel, and their number.
+    first_sample: u32,
+    samples: u32,
+    // Index of the bounce, from 0.
+    bounce: u32,
+    unused: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+
+const MISS: u32 = 0xffffffffu;
+const GROUND: u32 = 0xfffffffeu;
+const UNKNOWN: u32 = 0xfffffffdu;
+
+// More than any distance.
+const FAR: f32 = 0x1p100f;
+
+// The same number, through which nothing is fused or reordered.
+fn keep(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) ^ params.zero);
+}
+
+fn keep3(v: vec3<f32>) -> vec3<f32> {
+    return bitcast<vec3<f32>>(bitcast<vec3<u32>>(v) ^ vec3<u32>(params.zero));
+}

@@ -1,0 +1,272 @@
+//! Pictures whose paths a device follows: the bytes of the processor's pictures.
+
+#![allow(clippy::unwrap_used, reason = "tests fail so")]
+#![allow(clippy::print_stdout, reason = "shares of unknown paths, with --nocapture")]
+
+mod common;
+
+use common::device;
+use glam::DVec3;
+use spherule_gpu::{Answered, Device, DeviceError, DeviceTree, Integrator as DeviceIntegrator};
+use spherule_render::World;
+use spherule_render::bvh::Tree;
+use spherule_render::film::Region;
+use spherule_render::render::{
+    End, ImagePart, Options, Progress, Render, ResumableRender, render, shaded_by_the_processor,
+};
+use spherule_render::scene::{EnvironmentMap, Integrator, Lens, Material, Rgb, Roulette, Scene};
+use spherule_render::settings::{Filter, SamplerKind};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Returns the files of scenes.
+fn files() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut files: Vec<PathBuf> =
+        folder.read_dir().unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    files
+}
+
+/// Reads a scene, for a small picture of few samples.
+fn load(path: &Path) -> Scene {
+    let mut scene = Scene::load(path).unwrap();
+    let settings = &mut scene.settings;
+    (settings.width, settings.height, settings.spp, settings.until_error) = (45, 34, 5, None);
+    settings.sampler = SamplerKind::Sobol;
+    scene
+}
+
+/// Reads a scene of the repository by its name.
+fn named(name: &str) -> Scene {
+    load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name))
+}
+
+/// Gives the paths of a world to a device.
+fn attach(world: &mut World, device: &Arc<Device>) -> Arc<DeviceTree> {
+    let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
+    let on_device = Arc::new(DeviceTree::new(device, tree).unwrap());
+    let paths = DeviceIntegrator::new(&on_device, world).unwrap();
+    world.device = Some(on_device.clone());
+    world.device_paths = Some(Arc::new(paths));
+    on_device
+}
+
+fn image(world: &World, scene: &Scene) -> Render {
+    render(world, &scene.settings, &Options::default()).unwrap()
+}
+
+/// Compares pictures of the device and of the processor; returns what the device answered.
+fn compare(name: &str, scene: &Scene, device: &Arc<Device>) -> Answered {
+    let mut world = World::build(scene).unwrap();
+    assert_eq!(shaded_by_the_processor(&world, &scene.settings), None, "{name}");
+    let own = image(&world, scene);
+    let on_device = attach(&mut world, device);
+    let found = image(&world, scene);
+    let bits = |render: &Render| -> Vec<[u32; 3]> {
+        render.image.pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+    };
+    let (expected, pixels) = (bits(&own), bits(&found));
+    let differ = expected.iter().zip(&pixels).filter(|(a, b)| a != b).count();
+    let tally = on_device.tally();
+    let share = tally.unknown_paths as f64 / tally.paths.max(1) as f64;
+    println!("{name}: {differ} pixels differ; {} paths, {share:.1e} unknown", tally.paths);
+    assert_eq!(differ, 0, "{name}");
+    let [own, found] = [own, found].map(|render| render.counters);
+    assert_eq!(found.camera_rays, own.camera_rays, "{name}");
+    assert_eq!(found.bounce_rays, own.bounce_rays, "{name}");
+    assert_eq!(found.shadow_rays, own.shadow_rays, "{name}");
+    assert_eq!(device.fault(), None);
+    tally
+}
+
+#[test]
+fn ambient_occlusion_of_all_scenes_is_the_processors() {
+    let Some(device) = device() else { return };
+    let mut all = Answered::default();
+    for path in files() {
+        let mut scene = load(&path);
+        let far = scene.spheres.len().is_multiple_of(2);
+        let distance = if far { f64::INFINITY } else { 0.7 };
+        scene.settings.integrator = Integrator::Ao { distance };
+        let found = compare(&path.display().to_string(), &scene, &device);
+        // Its walls are spheres of a thousand times the box, of which single precision knows little.
+        if !path.ends_with("smallpt.toml") {
+            all += found;
+        }
+    }
+    assert!(all.paths > 50_000, "{all:?}");
+    assert!(all.unknown_paths * 100 < all.paths, "{all:?}");
+}
+
+/// Makes all surfaces diffuse, under the sky alone.
+fn diffuse(scene: &mut Scene) {
+    scene.lights.clear();
+    if !matches!(scene.environment.map, EnvironmentMap::Gradient { .. }) {
+        scene.environment.map = EnvironmentMap::Constant(Rgb::new(0.9, 0.7, 0.4));
+    }
+    for (row, material) in scene.materials.iter_mut().enumerate() {
+        let color = Rgb::new(0.8, 0.75 - 0.02 * (row % 9) as f32, 0.6);
+        material.material = Material::Lambertian { color };
+    }
+    scene.settings.integrator = Integrator::Path;
+}
+
+#[test]
+fn paths_among_diffuse_surfaces_are_the_processors() {
+    let Some(device) = device() else { return };
+    let mut all = Answered::default();
+    for path in files() {
+        let mut scene = load(&path);
+        diffuse(&mut scene);
+        let found = compare(&path.display().to_string(), &scene, &device);
+        // Where the camera is inside of a sphere, all paths are the processor's.
+        if !path.ends_with("smallpt.toml") && !path.ends_with("furnace-inside.toml") {
+            all += found;
+        }
+    }
+    assert!(all.paths > 50_000, "{all:?}");
+    assert!(all.unknown_paths * 100 < all.paths, "{all:?}");
+}
+
+/// A change of a scene.
+type Change = fn(&mut Scene);
+
+#[test]
+fn settings_of_paths_are_heeded() {
+    let Some(device) = device() else { return };
+    let changes: [(&str, Change); 9] = [
+        ("box", |scene| scene.settings.filter = Filter::Box),
+        ("gaussian", |scene| scene.settings.filter = Filter::Gaussian),
+        ("harris", |scene| scene.settings.filter = Filter::BlackmanHarris),
+        ("depth", |scene| scene.settings.depth = Some(2)),
+        ("none", |scene| scene.settings.roulette = Roulette::None),
+        ("fixed", |scene| scene.settings.roulette = Roulette::Fixed(0.6)),
+        ("lens", |scene| scene.camera.lens = Some(Lens { aperture: 0.5, focus: Some(9.0) })),
+        ("near", |scene| scene.camera.near = 0.3),
+        ("gradient", |scene| {
+            let (bottom, top, up) = (Rgb::new(0.1, 0.2, 0.1), Rgb::new(0.5, 0.8, 1.0), DVec3::Z);
+            scene.environment.map = EnvironmentMap::Gradient { bottom, top, up };
+            scene.settings.seed = u64::MAX - 9;
+        }),
+    ];
+    for (name, change) in changes {
+        let mut scene = named("paper-field-20.toml");
+        diffuse(&mut scene);
+        change(&mut scene);
+        compare(name, &scene, &device);
+    }
+}
+
+/// A picture of diffuse spheres for tests of renders that are divided.
+fn divided_scene() -> Scene {
+    let mut scene = named("paper-field-20.toml");
+    diffuse(&mut scene);
+    scene.settings.spp = 40;
+    scene
+}
+
+#[test]
+fn renders_that_are_resumed_or_meet_an_error_are_the_processors() {
+    let Some(device) = device() else { return };
+    let mut scene = divided_scene();
+    let mut world = World::build(&scene).unwrap();
+    let whole = image(&world, &scene);
+    scene.settings.until_error = Some(0.04);
+    scene.settings.spp = 4000;
+    let exact = image(&world, &scene);
+    let statistics = Options { statistics: true, ..Options::default() };
+    let mut measured = scene.clone();
+    (measured.settings.until_error, measured.settings.spp) = (None, 40);
+    let expected = render(&world, &measured.settings, &statistics).unwrap();
+    let on_device = attach(&mut world, &device);
+    // It is stopped after its first batch, and goes on with other samples there.
+    let stop = AtomicBool::new(false);
+    let show = |_: Progress| stop.store(true, Ordering::Relaxed);
+    let stopped = Options { progress: Some(&show), cancel: Some(&stop), ..Options::default() };
+    let mut resumed = ResumableRender::begin(&world, &measured.settings, &stopped).unwrap();
+    assert_eq!(resumed.run(&world, &stopped), End::Cancelled);
+    let part = resumed.samples();
+    assert!(part.most > 0 && part.least < 40, "{part:?}");
+    assert_eq!(resumed.run(&world, &Options::default()), End::Samples);
+    assert_eq!(resumed.render().image, whole.image);
+    let found = image(&world, &scene);
+    assert_eq!((found.image, found.samples), (exact.image, exact.samples));
+    let found = render(&world, &measured.settings, &statistics).unwrap();
+    assert_eq!((found.image, found.statistics), (expected.image, expected.statistics));
+    assert!(on_device.tally().paths > 100_000, "{:?}", on_device.tally());
+    assert_eq!(device.fault(), None);
+}
+
+#[test]
+fn parts_of_both_merge_to_the_whole() {
+    let Some(device) = device() else { return };
+    let scene = divided_scene();
+    let mut world = World::build(&scene).unwrap();
+    let whole = image(&world, &scene);
+    let region = Region { x: 0, y: 0, width: 45, height: 34 };
+    let part = |samples| ImagePart { samples, ..ImagePart::whole(region, 40) };
+    let run = |world: &World, part: ImagePart| {
+        let options = Options::default();
+        let mut render =
+            ResumableRender::begin_part(world, &scene.settings, &options, part).unwrap();
+        render.run(world, &options);
+        render
+    };
+    let first = run(&world, part(0..13));
+    let on_device = attach(&mut world, &device);
+    let second = run(&world, part(13..40));
+    // Without the tiles that see no sphere.
+    let paths = on_device.tally().paths;
+    assert!(paths > 45 * 34 * 27 / 2 && paths.is_multiple_of(27), "{paths}");
+    let mut film = first.film().clone();
+    assert!(film.merge(second.film().clone()));
+    assert_eq!(film.resolve(), whole.image);
+}
+
+#[test]
+fn paths_are_finished_without_the_device_that_is_taken_away() {
+    let Some(device) = device() else { return };
+    let scene = divided_scene();
+    let mut world = World::build(&scene).unwrap();
+    let own = image(&world, &scene).image;
+    let on_device = attach(&mut world, &device);
+    let show = |_: Progress| device.destroy();
+    let options = Options { progress: Some(&show), ..Options::default() };
+    assert_eq!(render(&world, &scene.settings, &options).unwrap().image, own);
+    assert!(matches!(device.fault(), Some(DeviceError::Lost(_))));
+    // The first of three passes, without the tiles that see no sphere.
+    let paths = on_device.tally().paths;
+    assert!(paths > 45 * 34 * 16 / 2 && paths <= 45 * 34 * 16, "{paths}");
+    assert_eq!(image(&world, &scene).image, own);
+    assert_eq!(on_device.tally().paths, paths);
+}
+
+#[test]
+fn what_devices_do_not_do_is_told() {
+    let told = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = named("paper-field-20.toml");
+        diffuse(&mut scene);
+        change(&mut scene);
+        let world = World::build(&scene).unwrap();
+        shaded_by_the_processor(&world, &scene.settings)
+    };
+    assert_eq!(told(&|_| ()), None);
+    let metal = |scene: &mut Scene| {
+        scene.materials[0].material =
+            Material::Reflective { color: Rgb::ONE, diffuse: 0.5, mirror: 0.5 };
+    };
+    assert_eq!(told(&metal), Some("not all materials are diffuse"));
+    let whitted = |scene: &mut Scene| {
+        scene.settings.integrator = Integrator::Whitted { shadow_samples: 1 };
+    };
+    assert_eq!(told(&whitted), Some("devices have no whitted integrator"));
+    let independent = |scene: &mut Scene| scene.settings.sampler = SamplerKind::Independent;
+    assert_eq!(told(&independent), Some("devices have Sobol points only"));
+    let scene = named("veach.toml");
+    let world = World::build(&scene).unwrap();
+    let why = shaded_by_the_processor(&world, &scene.settings);
+    assert_eq!(why, Some("the scene has lights other than an even sky"));
+}

@@ -1,0 +1,74 @@
+//! Jobs as devices get them: see [`DeviceIntegrator`](crate::world::DeviceIntegrator).
+
+use super::Job;
+use super::elisions::Elisions;
+use super::roulette::roulette_threshold;
+use crate::scene::{Integrator, Roulette, SamplerKind};
+use crate::shade::MaterialKind;
+use crate::world::{DeviceIntegration, DeviceJob, DeviceRoulette, DeviceSky, Radiance, World};
+
+/// Returns the numbers of a job, or what it has that devices do not do.
+///
+/// # Errors
+/// A reason, which completes "the processor shades, for".
+pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
+    let world = job.world;
+    let integration = match job.settings.integrator {
+        Integrator::Ao { distance } => DeviceIntegration::Occlusion { distance },
+        Integrator::Whitted { .. } => return Err("devices have no whitted integrator"),
+        Integrator::Path => DeviceIntegration::Diffuse {
+            depth: job.depth(),
+            roulette: match job.settings.roulette {
+                Roulette::None => DeviceRoulette::None,
+                Roulette::Throughput => DeviceRoulette::ByThroughput(roulette_threshold(world)),
+                Roulette::Fixed(p) => DeviceRoulette::Fixed(p as f32),
+            },
+        },
+    };
+    if let Some(reason) = unsupported(world, integration) {
+        return Err(reason);
+    }
+    if job.settings.sampler != SamplerKind::Sobol {
+        return Err("devices have Sobol points only");
+    }
+    if job.elisions != Elisions::ALL {
+        return Err("no work is to be skipped");
+    }
+    let Some(sky) = sky(world) else { return Err("the sky is a picture") };
+    Ok(DeviceJob {
+        world,
+        integration,
+        camera: world.camera.terms(),
+        sky,
+        seed: job.sampler.hashed_seed(),
+        sobol: job.sampler.table(),
+        offsets: job.filter.offsets(),
+    })
+}
+
+/// Returns what a world has that devices do not do.
+fn unsupported(world: &World, integration: DeviceIntegration) -> Option<&'static str> {
+    if world.is_sliced() {
+        return Some("the scene has slices");
+    }
+    if let DeviceIntegration::Occlusion { .. } = integration {
+        return None;
+    }
+    if !world.lights.is_empty() {
+        return Some("the scene has lights other than an even sky");
+    }
+    let mut others = MaterialKind::ALL.into_iter().filter(|&kind| kind != MaterialKind::Lambertian);
+    others.any(|kind| world.features.has(kind)).then_some("not all materials are diffuse")
+}
+
+/// Returns the sky, unless it is a picture.
+fn sky(world: &World) -> Option<DeviceSky> {
+    let environment = &world.environment;
+    let (middle, gradient) = match &environment.radiance {
+        Radiance::Constant(color) => (*color, None),
+        Radiance::Gradient { middle, slope, up } => (*middle, Some((*slope, *up))),
+        Radiance::Picture(_) => return None,
+    };
+    let (background, illuminates) = (environment.background, environment.illuminates);
+    Some(DeviceSky { middle, gradient, background, illuminates })
+}

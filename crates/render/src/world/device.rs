@@ -1,0 +1,112 @@
+//! Devices that follow whole paths, in place of the processor.
+//!
+//! A device gets a job as numbers, and returns the radiance of each sample with the bits of the processor's, or says that
+//! it does not know it: then the processor follows that path.
+
+use super::{CameraTerms, World};
+use crate::ray::GROUND;
+use crate::scene::Rgb;
+use bytemuck::{Pod, Zeroable};
+use std::fmt::Debug;
+use std::ops::Range;
+
+/// A device that follows the paths of a world whose spheres it has.
+pub trait DeviceIntegrator: Debug + Send + Sync {
+    /// Prepares for a job; `None` if the device fails.
+    fn begin(&self, job: &DeviceJob) -> Option<Box<dyn DevicePaths>>;
+}
+
+/// A device that is prepared for a job.
+pub trait DevicePaths: Send + Sync {
+    /// Follows the paths of these samples of pixels, given by column and row: sample by sample of the first pixel, then of
+    /// the next. `None` if the device fails.
+    fn follow(&self, pixels: &[(u32, u32)], samples: Range<u32>) -> Option<Vec<DevicePath>>;
+}
+
+/// A path that a device has followed.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct DevicePath {
+    radiance: [f32; 3],
+    /// Bit 0 is set if the radiance is not known; the others count rays after the camera's.
+    state: u32,
+}
+
+impl DevicePath {
+    /// Returns the radiance, if it is known.
+    pub fn radiance(&self) -> Option<Rgb> {
+        (self.state & 1 == 0).then_some(self.radiance.into())
+    }
+
+    /// Returns the number of rays, but for the camera's.
+    pub fn rays(&self) -> u64 {
+        u64::from(self.state >> 1)
+    }
+}
+
+/// The integrator of a job, as far as devices have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DeviceIntegration {
+    /// Ambient occlusion, with a distance in the world's unit.
+    Occlusion {
+        /// Distance beyond which nothing occludes.
+        distance: f64,
+    },
+    /// Paths among diffuse surfaces under the sky alone.
+    Diffuse {
+        /// Maximum number of bounces.
+        depth: u32,
+        /// Russian roulette.
+        roulette: DeviceRoulette,
+    },
+}
+
+/// Russian roulette.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DeviceRoulette {
+    /// None.
+    None,
+    /// From some bounce on, of paths with a throughput below this.
+    ByThroughput(f32),
+    /// Paths survive each bounce with this probability.
+    Fixed(f32),
+}
+
+/// Radiance of the sky: `middle`, plus `slope` times the cosine of the angle to `up`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeviceSky {
+    /// The mean.
+    pub middle: Rgb,
+    /// Half of the difference between top and bottom, and the direction; `None` if the sky is even.
+    pub gradient: Option<(Rgb, glam::Vec3)>,
+    /// Radiance that the camera sees in its place.
+    pub background: Option<Rgb>,
+    /// True if it lights diffuse surfaces.
+    pub illuminates: bool,
+}
+
+/// The numbers of a job.
+#[derive(Clone, Debug)]
+pub struct DeviceJob<'a> {
+    /// The world.
+    pub world: &'a World,
+    /// The integrator.
+    pub integration: DeviceIntegration,
+    /// The camera.
+    pub camera: CameraTerms,
+    /// The sky.
+    pub sky: DeviceSky,
+    /// Hash of the seed of samples.
+    pub seed: u64,
+    /// Sobol's direction vectors: [`Sampler::table`](crate::sampling::Sampler::table).
+    pub sobol: Vec<[u32; 4]>,
+    /// Offsets of the pixel filter, if it is tabulated.
+    pub offsets: Option<&'a [f32]>,
+}
+
+impl DeviceJob<'_> {
+    /// Returns the color of the ground, if there is one.
+    pub fn ground_albedo(&self) -> Option<Rgb> {
+        self.world.ground.map(|_| self.world.albedo(GROUND))
+    }
+}
