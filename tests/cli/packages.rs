@@ -25,7 +25,8 @@ fn every_command_has_a_manual_page() {
         "stress",
         "view",
     ];
-    let kinds = ["all", "build", "error", "paper", "roulette", "skips", "threads", "traversal"];
+    let kinds =
+        ["all", "build", "error", "gpu", "paper", "roulette", "skips", "threads", "traversal"];
     let pages = commands.map(|command| format!("spherule-{command}.1"));
     let of_bench = kinds.map(|kind| format!("spherule-bench-{kind}.1"));
     let mut expected: Vec<String> = pages.into_iter().chain(of_bench).collect();
