@@ -10,8 +10,12 @@
 //!
 //! It takes microseconds, and is needed about never: [`crate::intersect::confirm`] says when.
 
+mod capsule;
 mod dyadic;
 
+pub use capsule::{CapsuleRoot, capsule_hit};
+
+use crate::capsules::Capsule;
 use crate::ray::ExactRay;
 use dyadic::{Dyadic, dot, nearest_root};
 use glam::DVec3;
@@ -96,24 +100,55 @@ pub fn normal(ray: &ExactRay, center: DVec3, radius: f64) -> DVec3 {
 pub enum Distance {
     /// The distance at which the ray hits this sphere; it must hit it.
     Hit(DVec3, f64),
+    /// The distance at which the ray hits this capsule; it must hit it.
+    Capsule(Capsule),
     /// This number.
     Number(f64),
 }
 
+/// A number `(p + sign sqrt(q)) / a`; `a` is positive, `q` not negative.
+struct Quotient {
+    p: Dyadic,
+    sign: i32,
+    q: Dyadic,
+    a: Dyadic,
+}
+
+impl Quotient {
+    /// -1, 0 or 1.
+    fn sign(&self) -> i32 {
+        sign_of_sum(&self.p, (self.sign, &self.q), (0, &self.q))
+    }
+
+    fn compare(&self, other: &Self) -> Ordering {
+        let (p, q) = (&self.p * &other.a, &self.q * &other.a.square());
+        let (other_p, other_q) = (&other.p * &self.a, &other.q * &self.a.square());
+        sign_of_sum(&(&p - &other_p), (self.sign, &q), (-other.sign, &other_q)).cmp(&0)
+    }
+
+    /// The nearest number of double precision, of a positive number.
+    fn nearest(&self) -> f64 {
+        nearest_root(&self.a, &self.p, (self.sign, &self.q))
+    }
+}
+
 impl Distance {
-    /// `(p, sign, q)` with `a` times the distance `p + sign sqrt(q)`.
-    fn value(&self, ray: &ExactRay) -> (Dyadic, i32, Dyadic) {
+    fn value(&self, ray: &ExactRay) -> Quotient {
+        let number = |t: f64| {
+            let (p, q) = (Dyadic::new(t), Dyadic::new(0.0));
+            Quotient { p, sign: 0, q, a: Dyadic::new(1.0) }
+        };
         match *self {
             Self::Hit(center, radius) => {
                 let encounter = Encounter::new(ray, center, radius);
                 let sign = encounter.root().unwrap_or(0);
-                (encounter.b, sign, encounter.discriminant)
+                let Encounter { a, b, discriminant, .. } = encounter;
+                Quotient { p: b, sign, q: discriminant, a }
             }
-            Self::Number(t) => {
-                let direction = ray.direction.to_array().map(Dyadic::new);
-                let a = dot(&direction, &direction);
-                (&a * &Dyadic::new(t), 0, Dyadic::new(0.0))
+            Self::Capsule(capsule) => {
+                capsule::first(ray, &capsule).map_or_else(|| number(0.0), |hit| hit.0)
             }
+            Self::Number(t) => number(t),
         }
     }
 }
@@ -126,9 +161,7 @@ pub fn is_inside(point: DVec3, center: DVec3, radius: f64) -> bool {
 
 /// Compares two distances along a ray, exactly.
 pub fn compare(ray: &ExactRay, first: &Distance, second: &Distance) -> Ordering {
-    let (p, s, q) = first.value(ray);
-    let (other_p, other_s, other_q) = second.value(ray);
-    sign_of_sum(&(&p - &other_p), (s, &q), (-other_s, &other_q)).cmp(&0)
+    first.value(ray).compare(&second.value(ray))
 }
 
 /// The sign of `p + s1 sqrt(q1) + s2 sqrt(q2)`; signs are -1, 0 or 1, radicands not negative.

@@ -35,6 +35,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
 
 mod bvh;
+mod capsules;
 mod conservative;
 mod elementary;
 mod exact;
@@ -60,6 +61,10 @@ pub mod internals {
     /// The bounding volume hierarchy, its builders and its traversal.
     pub mod bvh {
         pub use crate::bvh::*;
+    }
+    /// Capsules: cylinders with round ends.
+    pub mod capsules {
+        pub use crate::capsules::*;
     }
     /// The conservative test in single precision.
     pub mod conservative {

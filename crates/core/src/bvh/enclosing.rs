@@ -24,22 +24,26 @@ impl Bvh {
     /// between them continues the crease that is seen on their surfaces. (Aurenhammer, "Power Diagrams:
     /// Properties, Algorithms and Applications", SIAM Journal on Computing 1987.)
     pub fn enclosing_sphere(&self, spheres: &Spheres, point: Vec3) -> Option<u32> {
-        if self.is_empty() {
-            return None;
-        }
-        let (mut open, mut deepest) = (vec![Child::node(0)], None);
+        let mut deepest = None;
+        self.for_each_block_at(point, |block| {
+            let rows = block * LEAF..spheres.len().min((block + 1) * LEAF);
+            rows.for_each(|row| deeper(&mut deepest, spheres, row, point));
+        });
+        deepest.map(|deepest| deepest.row)
+    }
+
+    /// Calls a function with each block in whose box a point is.
+    pub(crate) fn for_each_block_at(&self, point: Vec3, mut each: impl FnMut(usize)) {
+        let mut open = if self.is_empty() { Vec::new() } else { vec![Child::node(0)] };
         while let Some(child) = open.pop() {
             if child.kind() == Child::BLOCK {
-                let first = child.index() * LEAF;
-                let rows = first..spheres.len().min(first + LEAF);
-                rows.for_each(|row| deeper(&mut deepest, spheres, row, point));
+                each(child.index());
             } else {
                 let node = &self.nodes()[child.index()];
                 let inside = (0..WIDTH).filter(|&i| contains(node, i, point));
                 open.extend(inside.map(|i| node.child[i]));
             }
         }
-        deepest.map(|deepest| deepest.row)
     }
 }
 

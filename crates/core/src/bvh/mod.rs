@@ -24,6 +24,7 @@ mod traversal;
 pub use beam::Beam;
 pub use found::{DeviceTracer, UNKNOWN, decide_found};
 pub use one_ray::{OneHit, trace_far, trace_one};
+pub(crate) use one_ray::{SMALL_STACK, STACK, Search, walk};
 pub use plain_ray::{PlainAnswer, PlainHit, PlainRay};
 pub use rows::NodeRow;
 pub use traversal::{
@@ -207,6 +208,27 @@ impl Bvh {
         let mean_leaf_extent =
             elementary::exp2f(edges.iter().sum::<f32>() / edges.len().max(1) as f32);
         Self { nodes, mean_leaf_extent }
+    }
+
+    /// The same tree with the smallest boxes that hold those of its leaves, which `leaf` returns by block.
+    pub(crate) fn refitted(mut self, leaf: impl Fn(usize) -> Bounds) -> Self {
+        // Children come after their parents.
+        for index in (0..self.nodes.len()).rev() {
+            for i in 0..WIDTH {
+                let child = self.nodes[index].child[i];
+                if child == Child::NONE {
+                    continue;
+                }
+                let bounds = if child.kind() == Child::BLOCK {
+                    leaf(child.index())
+                } else {
+                    let below = self.nodes[child.index()].children();
+                    below.fold(Bounds::EMPTY, |all, (_, bounds)| all.union(&bounds))
+                };
+                self.nodes[index].set(i, child, &bounds);
+            }
+        }
+        Self::new(self.nodes)
     }
 
     /// The geometric mean of the longest edges of some leaves' boxes.

@@ -20,7 +20,7 @@ use super::decision::{Decision, Nearest};
 use super::resolver::rounded_out;
 use super::single::{certainly_hits, chords};
 use super::traversal::Query;
-use super::{Child, DEPTH, Tree, WIDTH};
+use super::{Bvh, Child, DEPTH, Tree, WIDTH};
 use crate::conservative::ConservativeRay;
 use crate::lanes::{F32x8, Lanes, Mask, least_lane, set_bits, shuffle, shuffle_numbers};
 use crate::ray::{ExactRay, MISS};
@@ -28,10 +28,10 @@ use crate::slabs::{RaySlabs, Slabs};
 use crate::spheres::{LEAF, SphereBlock};
 
 /// Capacity of a stack that every tree needs: the children still to visit, and a whole row of them after the last.
-const STACK: usize = DEPTH * (WIDTH - 1) + 2 * WIDTH;
+pub(crate) const STACK: usize = DEPTH * (WIDTH - 1) + 2 * WIDTH;
 
 /// Capacity of a stack that suffices for about all rays: what is not there is not zeroed.
-pub(super) const SMALL_STACK: usize = 64;
+pub(crate) const SMALL_STACK: usize = 64;
 
 /// The hit of one ray.
 #[derive(Clone, Copy, Debug)]
@@ -107,31 +107,35 @@ fn decide<Q: Query, const PLACES: usize, const MOVED: bool>(
         t_far: 0.0,
     };
     search.update_bound();
-    walk::<_, PLACES>(tree, &slabs, &mut search)?;
+    walk::<_, PLACES>(tree.bvh, tree.spheres.blocks(), &slabs, &mut search)?;
     let Nearest { t, sphere, .. } = search.decision.nearest;
     Some(OneHit { t, sphere, exact: search.decision.exact })
 }
 
 /// A search for the hit of a ray, block by block.
-pub(super) trait Search {
+pub(crate) trait Search {
     /// True if the search ends at the first hit: until then its bound does not change.
     const ANY: bool;
+
+    /// Bodies of a leaf.
+    type Block;
 
     /// Returns the distance beyond which nothing counts.
     fn t_far(&self) -> f32;
 
-    /// Tests the spheres of the block at `index`. Returns whether the search has ended.
-    fn test_block(&mut self, index: usize, block: &SphereBlock) -> bool;
+    /// Tests the bodies of the block at `index`. Returns whether the search has ended.
+    fn test_block(&mut self, index: usize, block: &Self::Block) -> bool;
 }
 
 /// Passes the tree with a stack of so many places; `None` if they do not suffice.
 #[inline(always)]
-pub(super) fn walk<S: Search, const PLACES: usize>(
-    tree: Tree,
+pub(crate) fn walk<S: Search, const PLACES: usize>(
+    bvh: &Bvh,
+    blocks: &[S::Block],
     slabs: &RaySlabs,
     search: &mut S,
 ) -> Option<()> {
-    let (nodes, blocks) = (tree.bvh.nodes(), tree.spheres.blocks());
+    let nodes = bvh.nodes();
     if nodes.is_empty() {
         return Some(());
     }
@@ -200,6 +204,7 @@ impl<Q: Query, const MOVED: bool> DecidedSearch<'_, Q, MOVED> {
 
 impl<Q: Query, const MOVED: bool> Search for DecidedSearch<'_, Q, MOVED> {
     const ANY: bool = Q::ANY;
+    type Block = SphereBlock;
 
     #[inline(always)]
     fn t_far(&self) -> f32 {

@@ -74,7 +74,7 @@ impl PlainRay {
             ray: self.conservative(),
             hit: DeferredHit::new::<ClosestRounded>((f32::INFINITY, f32::INFINITY)),
         };
-        match walk::<_, SMALL_STACK>(tree, &self.slabs(), &mut search) {
+        match walk::<_, SMALL_STACK>(tree.bvh, tree.spheres.blocks(), &self.slabs(), &mut search) {
             Some(()) => search.decide(self),
             None => PlainAnswer::Undecided,
         }
@@ -91,7 +91,7 @@ impl PlainRay {
             bounds: rounded_out(bound as f32),
             found: false,
         };
-        walk::<_, SMALL_STACK>(tree, &self.slabs(), &mut search)?;
+        walk::<_, SMALL_STACK>(tree.bvh, tree.spheres.blocks(), &self.slabs(), &mut search)?;
         Some(search.found)
     }
 }
@@ -112,6 +112,7 @@ struct DeferredSearch<'a> {
 
 impl Search for DeferredSearch<'_> {
     const ANY: bool = false;
+    type Block = SphereBlock;
 
     #[inline(always)]
     fn t_far(&self) -> f32 {
@@ -176,6 +177,7 @@ struct AnySearch<'a> {
 
 impl Search for AnySearch<'_> {
     const ANY: bool = true;
+    type Block = SphereBlock;
 
     #[inline(always)]
     fn t_far(&self) -> f32 {

@@ -161,6 +161,15 @@ pub(crate) fn build_items(
     (spheres, bvh)
 }
 
+/// Builds a tree over bodies that are not spheres, each given by a sphere around it; the ids of the items are the rows
+/// of the bodies, and come back in the order of the tree. Its boxes hold the spheres: [`Bvh::refitted`] makes them tight.
+pub(crate) fn build_around(mut items: Vec<Item>, builder: Builder) -> (Vec<u32>, Bvh) {
+    let binary = Binary::over(&mut items, builder);
+    let around = Spheres::from_rows(items.len(), |row| (items[row].sphere, items[row].id));
+    let bvh = Bvh::new(collapse::nodes(binary.branches, &around));
+    (around.id, bvh)
+}
+
 /// Returns what a function gives for each number below `count`. All threads write the memory, for the system to give
 /// it to all at once.
 pub(crate) fn collected<T: Send>(count: usize, each: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
