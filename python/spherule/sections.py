@@ -211,6 +211,19 @@ class Sphere(_Sphere, total=False):
     color: Color
 
 
+class _Stick(TypedDict):
+    to: Vector
+    radius: float
+
+
+class Stick(_Stick, total=False):
+    """``[[stick]]``: a cylinder with round ends. ``from``, a keyword of Python, is written as ``{"from": ...}``."""
+
+    material: str
+    color: Color
+    colors: Sequence[Color]
+
+
 class _Generate(TypedDict):
     kind: Literal["grid", "field", "volume", "lattice", "sphereflake", "weekend"]
 
@@ -269,5 +282,6 @@ class Sections(TypedDict, total=False):
     light: Sequence[Light]
     material: Mapping[str, Material]
     sphere: Sequence[Sphere]
+    stick: Sequence[Stick]
     generate: Sequence[Generate]
     file: Sequence[File]

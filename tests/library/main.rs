@@ -13,5 +13,6 @@ mod resume;
 mod scenes;
 mod slices;
 mod split;
+mod sticks;
 mod stress;
 mod truths;

@@ -17,7 +17,9 @@
 
 // Exact ray queries on spheres.
 pub use spherule_core as query;
-pub use spherule_core::internals::{bvh, elementary, exact, intersect, lanes, ray, spheres, vec3};
+pub use spherule_core::internals::{
+    bvh, capsules, elementary, exact, intersect, lanes, ray, spheres, vec3,
+};
 
 // Particle files, and what their readers share with scene files.
 pub use spherule_particles::internals::{memory, suggest};

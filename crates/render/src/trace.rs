@@ -1,11 +1,13 @@
-//! Ray tracing in a world: tests the ground, and then the tree of the visible spheres.
+//! Ray tracing in a world: tests the ground, then the tree of the visible spheres, then that of sticks.
 
+mod bodies;
 mod clipped;
 mod ground;
 
 pub(crate) use self::ground::{intersect_ground, occlude_by_ground};
 pub use crate::bvh::{PacketWidth, Tracer, Traversal};
 
+use self::bodies::Bodies;
 use self::clipped::ClippedRays;
 use crate::bvh::Tree;
 use crate::ray::{Hits, MISS, Rays};
@@ -47,32 +49,31 @@ pub fn occluded(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> 
     trace(tracer, Query::Any, world, rays, hits)
 }
 
-/// Traces rays among the spheres that they can hit.
+/// Traces rays among the bodies that they can hit.
 fn trace(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
-    if !world.is_sliced() {
-        let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-        return match (&world.device, query) {
-            (None, _) => query.trace(tracer, tree, rays, hits),
-            (Some(device), Query::Closest) => device.closest(tree, rays, hits),
-            (Some(device), Query::Any) => device.occluded(tree, rays, hits),
-        };
+    if world.is_sliced() {
+        return trace_sliced(tracer, query, world, rays, hits);
     }
-    trace_sliced(tracer, query, world, rays, hits)
+    let (bodies, tree) = (Bodies::all(world), Tree { bvh: &world.bvh, spheres: &world.spheres });
+    let exact = match (&world.device, query) {
+        (None, _) => return bodies.trace(tracer, query, rays, hits),
+        (Some(device), Query::Closest) => device.closest(tree, rays, hits),
+        (Some(device), Query::Any) => device.occluded(tree, rays, hits),
+    };
+    exact + bodies.trace_sticks(query, rays, hits)
 }
 
-/// Traces rays where slices hide spheres from the camera, or cut them.
+/// Traces rays where slices hide bodies from the camera, or cut them.
 #[cold]
 fn trace_sliced(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
-    // Only camera rays start on no sphere, and they are never mixed with other rays.
-    let from_camera = rays.own.first() == Some(&MISS);
-    let Some(visible) = world.camera_visible.as_ref().filter(|_| from_camera) else {
-        let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-        return trace_clipped(tracer, query, world, tree, rays, hits);
-    };
-    let tree = Tree { bvh: &visible.bvh, spheres: &visible.spheres };
-    let exact = trace_clipped(tracer, query, world, tree, rays, hits);
+    // Only camera rays start on no surface, and they are never mixed with other rays.
+    if rays.own.first() != Some(&MISS) {
+        return trace_clipped(tracer, query, world, Bodies::all(world), rays, hits);
+    }
+    let bodies = Bodies::visible(world);
+    let exact = trace_clipped(tracer, query, world, bodies, rays, hits);
     for hit in &mut hits.sphere[..rays.len()] {
-        *hit = visible.row.get(*hit as usize).copied().unwrap_or(*hit);
+        *hit = bodies.hit_in(world, *hit);
     }
     exact
 }
@@ -82,24 +83,15 @@ fn trace_clipped(
     tracer: Tracer,
     query: Query,
     world: &World,
-    tree: Tree,
+    bodies: Bodies,
     rays: &Rays,
     hits: &mut Hits,
 ) -> u64 {
     if world.cut.is_empty() {
-        return query.trace(tracer, tree, rays, hits);
+        return bodies.trace(tracer, query, rays, hits);
     }
-    let mut clipped = ClippedRays::new(world, tree, rays, hits);
-    let exact = query.trace(tracer, tree, &clipped.rays, &mut clipped.hits);
+    let mut clipped = ClippedRays::new(world, bodies, rays, hits);
+    let exact = bodies.trace(tracer, query, &clipped.rays, &mut clipped.hits);
     clipped.write_hits(hits);
     exact
-}
-
-impl Query {
-    fn trace(self, tracer: Tracer, tree: Tree, rays: &Rays, hits: &mut Hits) -> u64 {
-        match self {
-            Self::Closest => tracer.closest(tree, rays, hits),
-            Self::Any => tracer.occluded(tree, rays, hits),
-        }
-    }
 }

@@ -87,13 +87,18 @@ impl Beam {
 impl Bvh {
     /// Returns whether any ray in a beam may hit a sphere: never false if one does.
     pub fn may_be_hit(&self, spheres: &Spheres, beam: &Beam) -> bool {
+        self.may_meet(beam, |block| beam.meets_spheres(&spheres.blocks()[block]) != 0)
+    }
+
+    /// Returns whether a beam meets the box of a block that `meets` accepts.
+    pub(crate) fn may_meet(&self, beam: &Beam, meets: impl Fn(usize) -> bool) -> bool {
         let mut open = Vec::new();
         if !self.is_empty() {
             open.push(Child::node(0));
         }
         while let Some(child) = open.pop() {
             if child.kind() == Child::BLOCK {
-                if beam.meets_spheres(&spheres.blocks()[child.index()]) != 0 {
+                if meets(child.index()) {
                     return true;
                 }
                 continue;

@@ -11,6 +11,7 @@ use super::{Capsule, Part};
 use crate::exact;
 use crate::intersect::Root;
 use crate::ray::ExactRay;
+use glam::DVec3;
 
 /// Relative errors of distances above this are not put up with.
 const COARSE: f64 = 1.0 / (1 << 30) as f64;
@@ -38,18 +39,18 @@ struct Doubt;
 /// and anything infinite or NaN, miss.
 pub fn intersect(ray: &ExactRay, capsule: &Capsule) -> Option<CapsuleHit> {
     if ray.origin_error > 0.0
-        && let Some(enters) = starts_on_surface(ray, capsule)
+        && let Some((part, normal)) = surface_at_origin(ray, capsule)
     {
         let root = Root { t: 0.0, error: 0.0, exact: false };
-        return enters.map(|part| CapsuleHit { root, part });
+        return (ray.direction.dot(normal) < 0.0).then_some(CapsuleHit { root, part });
     }
     decide(ray, capsule).unwrap_or_else(|Doubt| decide_exactly(ray, capsule))
 }
 
-/// Returns `None` if the origin is not on the surface, within its own rounding; or else the part that the ray enters there, if
-/// it enters.
+/// Returns the part of the surface on which the origin is, within its own rounding, and the outward normal there; `None` if it
+/// is elsewhere.
 #[inline(always)]
-fn starts_on_surface(ray: &ExactRay, capsule: &Capsule) -> Option<Option<Part>> {
+fn surface_at_origin(ray: &ExactRay, capsule: &Capsule) -> Option<(Part, DVec3)> {
     let from = ray.origin - capsule.ends[0];
     let axis = capsule.ends[1] - capsule.ends[0];
     let (normal, along) = capsule.normal(from);
@@ -59,7 +60,7 @@ fn starts_on_surface(ray: &ExactRay, capsule: &Capsule) -> Option<Option<Part>> 
         1.0 => Part::End(1),
         _ => Part::Body,
     };
-    (off.abs() <= ray.origin_error).then(|| (ray.direction.dot(normal) < 0.0).then_some(part))
+    (off.abs() <= ray.origin_error).then_some((part, normal))
 }
 
 #[cold]
@@ -74,18 +75,29 @@ fn decide_exactly(ray: &ExactRay, capsule: &Capsule) -> Option<CapsuleHit> {
     Some(CapsuleHit { root, part: hit.part })
 }
 
+/// Returns the distance at which a line leaves a capsule, ahead of its origin, which is on the surface or inside, within
+/// rounding; 0 if it has left it.
+pub fn exit_distance(ray: &ExactRay, capsule: &Capsule) -> f64 {
+    let leave = |line: Line| line.crossing(Bounded::exact(1.0));
+    let t = match Line::new(ray, capsule).and_then(|line| line.map_or(Ok(None), leave)) {
+        Ok(crossing) => crossing.map_or(0.0, |(t, _)| t.value),
+        // From inside, and otherwise as close to the surface as can be.
+        Err(Doubt) => exact::capsule_hit(ray, capsule).map_or(0.0, |hit| hit.t),
+    };
+    t.max(0.0)
+}
+
 fn decide(ray: &ExactRay, capsule: &Capsule) -> Result<Option<CapsuleHit>, Doubt> {
     let Some(line) = Line::new(ray, capsule)? else { return Ok(None) };
     let Some(enter) = line.crossing(Bounded::exact(-1.0))? else { return Ok(None) };
-    let (t, part) = match enter.0.sign().ok_or(Doubt)? {
-        1 => enter,
-        _ => {
-            let Some(leave) = line.crossing(Bounded::exact(1.0))? else { return Ok(None) };
-            if leave.0.sign().ok_or(Doubt)? < 0 {
-                return Ok(None);
-            }
-            leave
+    let (t, part) = if enter.0.sign().ok_or(Doubt)? > 0 {
+        enter
+    } else {
+        let Some(leave) = line.crossing(Bounded::exact(1.0))? else { return Ok(None) };
+        if leave.0.sign().ok_or(Doubt)? < 0 {
+            return Ok(None);
         }
+        leave
     };
     if t.error > t.value * COARSE {
         return Err(Doubt);

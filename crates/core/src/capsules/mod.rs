@@ -8,11 +8,11 @@ mod filter;
 mod intersect;
 mod search;
 
-pub use intersect::{CapsuleHit, intersect};
+pub use intersect::{CapsuleHit, exit_distance, intersect};
 pub use search::{BodyTrees, closest, enclosing_capsule, occluded};
 
 use crate::bvh::builders::{Builder, Item, build_around};
-use crate::bvh::{Bounds, Bvh};
+use crate::bvh::{Beam, Bounds, Bvh};
 use crate::ray::GROUND;
 use crate::slabs::MARGIN;
 use crate::spheres::LEAF;
@@ -140,6 +140,11 @@ impl Capsules {
     /// Bytes of capsules and tree.
     pub fn bytes(&self) -> usize {
         size_of_val(self.blocks.as_slice()) + size_of_val(self.id.as_slice()) + self.bvh.bytes()
+    }
+
+    /// Returns whether any ray in a beam may hit a capsule: never false if one does.
+    pub fn may_be_hit(&self, beam: &Beam) -> bool {
+        self.bvh.may_meet(beam, |_| true)
     }
 
     /// The box of all capsules; `None` if there is none.

@@ -68,7 +68,11 @@ fn trace<const ANY: bool>(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u6
         let nearest = match known {
             MISS => Nearest { t, error: 0.0, body: Body::Nothing },
             GROUND => Nearest { t, error: 0.0, body: Body::Ground },
-            sphere => Nearest { t, error: t * CLEAR, body: Body::Sphere(sphere as usize) },
+            sphere if (sphere as usize) < spheres.len() => {
+                Nearest { t, error: t * CLEAR, body: Body::Sphere(sphere as usize) }
+            }
+            // The exit of a ray that is inside a capsule: a given number.
+            _ => Nearest { t, error: 0.0, body: Body::Nothing },
         };
         let (origin, direction) = (rays.origin.row(row), rays.direction.row(row));
         let mut search = RaySearch::<ANY> {

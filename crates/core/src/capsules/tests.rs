@@ -287,7 +287,9 @@ fn trees_find_the_hits_of_brute_force() {
             let mut by_order = Spheres::with_capacity(spheres.len());
             let mut order: Vec<usize> = (0..spheres.len()).collect();
             order.sort_by_key(|&i| spheres.id[i]);
-            order.iter().for_each(|&i| by_order.push(spheres.center(i), spheres.radius(i), 0));
+            for &i in &order {
+                by_order.push(spheres.center(i), spheres.radius(i), 0);
+            }
             let expected = brute(&ray, &by_order, &rows, None);
             assert_eq!(
                 found.map(|f| f.1),

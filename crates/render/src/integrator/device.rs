@@ -51,6 +51,9 @@ fn unsupported(world: &World, integration: DeviceIntegration) -> Option<&'static
     if world.is_sliced() {
         return Some("the scene has slices");
     }
+    if !world.sticks.is_empty() {
+        return Some("the scene has sticks");
+    }
     if let DeviceIntegration::Occlusion { .. } = integration {
         return None;
     }

@@ -24,7 +24,7 @@ use super::probe_batch::ProbeSample;
 use super::workspace::Workspace;
 use crate::elementary::acos;
 use crate::film::{ChanceLight, Term};
-use crate::ray::{GROUND, MISS};
+use crate::ray::MISS;
 use crate::sampling::{Basis, Cone, cap, mix, next_in_square};
 use crate::scene::{Integrator, Rgb};
 use crate::shade::{MaterialKind, fresnel};
@@ -272,11 +272,7 @@ fn near_miss(
 fn mirrored_probability(world: &World, work: &Workspace, row: usize) -> f32 {
     let own = work.rays.own[row];
     let (origin, toward) = (work.rays.origin.row(row), work.rays.direction.row(row));
-    let normal = match (own, &world.ground) {
-        (GROUND, Some(ground)) => ground.normal.as_vec3(),
-        (MISS | GROUND, _) => return 1.0,
-        _ => (origin - world.spheres.center(own as usize)).normalize_or(toward),
-    };
+    let Some(normal) = world.normal_at(own, origin) else { return 1.0 };
     let (id, cosine) = (world.material(own), normal.dot(toward).abs().min(1.0));
     match id.kind() {
         MaterialKind::Dielectric => {

@@ -159,8 +159,13 @@ pub(super) fn compute_surfaces(world: &World, work: &mut Workspace) {
         Some(table) => compute_rows(world, work, |hits| table.gather(hits)),
         None => compute_rows(world, work, |hits| gather_spheres(spheres, hits)),
     }
+    if !world.sticks.is_empty() {
+        (0..work.len()).for_each(|row| compute_stick(world, work, row));
+    }
     if !world.cut.is_empty() {
         (0..work.len()).for_each(|row| compute_cut_sphere(world, work, row));
+    }
+    if !world.cut.is_empty() || !world.sticks.is_empty() {
         for first in (0..work.len()).step_by(ROW) {
             let normal = work.surface.normal.load(first);
             work.surface.set_facing(first, normal, load(&work.rays.direction, first));
@@ -240,6 +245,19 @@ fn chord_exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
     entry - direction * (F64x8::splat(2.0) * entry.dot_unfused(direction) / length2)
 }
 
+/// Computes the point and the normal of a hit on a stick.
+fn compute_stick(world: &World, work: &mut Workspace, row: usize) {
+    let hit = work.hits.sphere[row];
+    let Some((stick, _)) = world.sticks.at(hit, world.spheres.len()) else { return };
+    let (ray, t) = (work.rays.exact(row), work.hits.t[row]);
+    let (normal, along) = stick.normal(ray.at_from(stick.ends[0], t));
+    // The normal of a stick that is thinner than rounding is against the ray: nothing else is known.
+    let normal = if normal == DVec3::ZERO { -ray.direction.normalize() } else { normal };
+    let axis = stick.ends[0].lerp(stick.ends[1], along);
+    work.surface.point.set(row, (axis + normal * stick.radius).as_vec3());
+    work.surface.normal.set(row, normal);
+}
+
 /// Corrects the hits on spheres that are cut: points of caps, and exits from spheres entered by a cap.
 #[cold]
 fn compute_cut_sphere(world: &World, work: &mut Workspace, row: usize) {
@@ -251,6 +269,9 @@ fn compute_cut_sphere(world: &World, work: &mut Workspace, row: usize) {
     if let Some(normal) = world.cut.cap(&ray, own, t) {
         work.surface.point.set(row, ray.at(t).as_vec3());
         work.surface.normal.set(row, normal);
+        return;
+    }
+    if world.sticks.at(hit, world.spheres.len()).is_some() {
         return;
     }
     let (center, radius) = world.spheres.exact(hit as usize);

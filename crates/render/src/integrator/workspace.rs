@@ -15,9 +15,10 @@ use super::probe_batch::ProbeBatch;
 use super::shading_row::SurfaceRow;
 use super::shadow_queue::ShadowQueue;
 use super::surface::{Surface, chord_length, exit_distance};
+use crate::capsules;
 use crate::film::{Region, View};
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
-use crate::ray::{GROUND, Hits, MISS, Rays};
+use crate::ray::{ExactRay, GROUND, Hits, MISS, Rays};
 use crate::sampling::{SampleRow, Sampler, SamplerRow, SamplerState, SamplerStates, StartRow};
 use crate::scene::Rgb;
 use crate::vec3 as row;
@@ -216,19 +217,26 @@ impl Workspace {
     /// through the inside to where `direction` leaves the sphere.
     #[inline]
     pub fn chord_length(&self, world: &World, row: usize, direction: Vec3) -> f64 {
-        if !world.cut.is_empty() {
+        if !world.cut.is_empty() || !world.sticks.is_empty() {
             return self.chord_length_cut(world, row, direction);
         }
         let radius = f64::from(world.spheres.radius(self.hits.sphere[row] as usize));
         chord_length(self.surface.normal.row(row).into(), radius, direction.as_dvec3().into())
     }
 
-    /// Returns the chord's length where spheres are cut; a separate function, out of the way of the
+    /// Returns the chord's length where spheres are cut or where there are sticks; a separate function, out of the way of the
     /// usual case.
     #[cold]
     fn chord_length_cut(&self, world: &World, row: usize, direction: Vec3) -> f64 {
-        let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
         let direction = direction.as_dvec3();
+        if let Some((stick, _)) = world.sticks.at(self.hits.sphere[row], world.spheres.len()) {
+            let origin = self.surface.point.row(row).as_dvec3();
+            return capsules::exit_distance(
+                &ExactRay { origin, direction, origin_error: 0.0 },
+                &stick,
+            );
+        }
+        let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
         if world.cut.divides(center, radius) {
             return exit_distance(
                 self.surface.point.row(row).as_dvec3() - center,

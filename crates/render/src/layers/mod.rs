@@ -68,7 +68,7 @@ pub struct Features {
     /// Fraction of the rays that hit the ground, 0..=1, included in `coverage`.
     pub ground: f32,
     /// The sphere at the pixel's center, through the center of the lens: its index in the scene, from
-    /// 0; or else [`NOTHING`] or [`GROUND_PLANE`].
+    /// 0, or the number of spheres plus the index of a stick; or else [`NOTHING`] or [`GROUND_PLANE`].
     pub id: u32,
 }
 

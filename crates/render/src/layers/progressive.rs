@@ -159,7 +159,7 @@ impl TileLayers {
         generate_centers(job, self.region.morton(), work);
         stages::intersect(job, work);
         for (sums, &hit) in self.sums.iter_mut().zip(&work.hits.sphere) {
-            sums.id = job.world.spheres.id.get(hit as usize).copied().unwrap_or(hit);
+            sums.id = job.world.id_of(hit);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Hashes of scenes, so that a scene can be compared with one that is no longer in memory.
 
 use super::write::sections;
-use super::{EnvironmentMap, Scene, Spheres};
+use super::{EnvironmentMap, Scene, Spheres, Sticks};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -36,7 +36,7 @@ impl Identity {
         let annotations = sections::annotations(&scene.annotations);
         let hash = |text: String| *blake3::hash(text.as_bytes()).as_bytes();
         Self {
-            spheres: spheres(&scene.spheres),
+            spheres: bodies(&scene.spheres, &scene.sticks),
             materials: hash(materials.collect()),
             ground: hash(ground),
             slices: hash(scene.slices.iter().map(sections::slice).collect()),
@@ -81,7 +81,8 @@ impl fmt::Display for Identity {
     }
 }
 
-fn spheres(spheres: &Spheres) -> [u8; 32] {
+/// Hashes the spheres, and the sticks if there are any.
+fn bodies(spheres: &Spheres, sticks: &Sticks) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     for column in [&spheres.x, &spheres.y, &spheres.z, &spheres.radius] {
         add(&mut hasher, column, |number| number.to_le_bytes());
@@ -92,6 +93,9 @@ fn spheres(spheres: &Spheres) -> [u8; 32] {
         let [[a, b, c, d], [e, f, g, h], [i, j, k, l]] = [red, green, blue];
         [a, b, c, d, e, f, g, h, i, j, k, l]
     });
+    if !sticks.is_empty() {
+        hasher.update(sections::sticks(sticks, |row| row.to_string()).as_bytes());
+    }
     *hasher.finalize().as_bytes()
 }
 

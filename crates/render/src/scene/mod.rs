@@ -19,6 +19,7 @@ pub mod particles;
 mod preset;
 mod slice;
 mod spheres;
+mod sticks;
 pub(crate) mod write;
 
 pub use crate::color::{Rgb, linear_from_srgb, srgb};
@@ -41,6 +42,7 @@ pub use preset::Preset;
 pub use slice::{Slice, SliceMode, SlicePlane, bounds};
 pub use spheres::Spheres;
 pub use spherule_particles::{FileError, Place};
+pub use sticks::Sticks;
 pub use write::{Header, text_without_columns, write, write_as};
 
 /// A whole scene: objects, lights, camera and settings.
@@ -50,6 +52,8 @@ pub struct Scene {
     pub title: String,
     /// The spheres, in columns.
     pub spheres: Spheres,
+    /// Sticks, in columns. They are numbered after the spheres.
+    pub sticks: Sticks,
     /// Materials of spheres and ground; `Spheres::material` and `Ground::material` are rows of it.
     pub materials: Vec<NamedMaterial>,
     /// The infinite ground plane, if there is one.

@@ -1,6 +1,6 @@
 //! Rays clipped to the half spaces that are kept: see [`Cut`](crate::world::Cut).
 
-use crate::bvh::Tree;
+use super::bodies::Bodies;
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::world::{Span, World};
 
@@ -18,7 +18,7 @@ pub(super) struct ClippedRays {
 
 impl ClippedRays {
     /// Clips rays. Hits that are known at once go to `hits`: caps that are hit where a ray enters.
-    pub(super) fn new(world: &World, tree: Tree, rays: &Rays, hits: &mut Hits) -> Self {
+    pub(super) fn new(world: &World, bodies: Bodies, rays: &Rays, hits: &mut Hits) -> Self {
         let mut clipped = Self {
             rays: Rays::with_capacity(rays.len()),
             hits: Hits::with_capacity(rays.len()),
@@ -29,9 +29,9 @@ impl ClippedRays {
             clipped.rays.target[row] = rays.target[row];
             let span = world.cut.clip(&rays.exact(row), rays.own[row]);
             if span.from > 0.0 {
-                clipped.clip_entering(tree, rays, (row, &span), hits);
+                clipped.clip_entering(bodies, rays, (row, &span), hits);
             } else {
-                clipped.clip_inside(world, tree, rays, (row, &span), hits);
+                clipped.clip_inside(world, bodies, rays, (row, &span), hits);
             }
         }
         clipped
@@ -40,7 +40,7 @@ impl ClippedRays {
     /// Clips a ray that starts outside of the region.
     fn clip_entering(
         &mut self,
-        tree: Tree,
+        bodies: Bodies,
         rays: &Rays,
         (row, span): (usize, &Span),
         hits: &mut Hits,
@@ -51,7 +51,7 @@ impl ClippedRays {
             return;
         }
         let point = rays.exact(row).at(span.from).as_vec3();
-        if let Some(sphere) = tree.bvh.enclosing_sphere(tree.spheres, point) {
+        if let Some(sphere) = bodies.enclosing(point) {
             return hits.set(row, span.from, sphere);
         }
         self.start[row] = span.from;
@@ -65,7 +65,7 @@ impl ClippedRays {
     fn clip_inside(
         &mut self,
         world: &World,
-        tree: Tree,
+        bodies: Bodies,
         rays: &Rays,
         (row, span): (usize, &Span),
         hits: &Hits,
@@ -77,7 +77,7 @@ impl ClippedRays {
         // The ray is inside the sphere that it starts on; or the camera is inside a sphere, and then so
         // may be points of the ground and of other spheres.
         let around = || {
-            let enclosing = |point| tree.bvh.enclosing_sphere(tree.spheres, point);
+            let enclosing = |point| bodies.enclosing(point);
             let inside = world.features.around_camera
                 && span.to > 0.0
                 && enclosing(rays.origin.row(row)).is_some();

@@ -49,7 +49,7 @@ pub enum Colors {
 
 impl Colors {
     /// Stores colors in as few bytes as possible.
-    fn new(colors: Cow<[Rgb]>) -> Self {
+    pub(super) fn new(colors: Cow<[Rgb]>) -> Self {
         coded(&colors).unwrap_or_else(|| Self::Rows(colors.into_owned()))
     }
 

@@ -15,6 +15,8 @@ const TOUCH: f64 = 1e-5;
 pub struct Features {
     /// Spheres of each kind of material, in the order of [`MaterialKind::ALL`].
     pub spheres_by_kind: [u64; MaterialKind::COUNT],
+    /// Sticks of each kind of material, likewise.
+    pub sticks_by_kind: [u64; MaterialKind::COUNT],
     /// Spheres too small for single precision relative to the largest coordinate, omitted.
     pub vanished: u64,
     /// Spheres that coincide with an earlier one, among many about one center, omitted.
@@ -51,8 +53,10 @@ impl Features {
         for row in 0..world.spheres.len() {
             spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
         }
+        let sticks = |kind| world.sticks.count_of(&world.appearance, world.spheres.len(), kind);
         Self {
             spheres_by_kind,
+            sticks_by_kind: MaterialKind::ALL.map(sticks),
             vanished: omitted.vanished,
             cut_away: omitted.cut_away,
             cuts: world.cut.len() as u64,
@@ -86,7 +90,9 @@ impl Features {
 
     /// Returns whether anything has this kind of material.
     pub fn has(&self, kind: MaterialKind) -> bool {
-        self.spheres_by_kind[kind as usize] > 0 || self.ground_kind == Some(kind)
+        self.spheres_by_kind[kind as usize] > 0
+            || self.sticks_by_kind[kind as usize] > 0
+            || self.ground_kind == Some(kind)
     }
 
     /// Returns descriptions of the work that the render omits.

@@ -7,8 +7,9 @@ use crate::image::Image;
 use crate::memory;
 use crate::scene::particles::Cell;
 use crate::scene::{
-    BRIGHTEST, Background, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground, Lens,
-    Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Slice, is_radiance,
+    self, BRIGHTEST, Background, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground,
+    Lens, Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Slice, Sticks,
+    is_radiance,
 };
 use glam::DVec3;
 
@@ -29,6 +30,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
     environment(&scene.environment)?;
     scene.ground.as_ref().map_or(Ok(()), |plane| ground(plane, &scene.materials))?;
     look(&scene.look)?;
+    sticks(&scene.sticks, scene.spheres.len(), &scene.materials)?;
     let invalid = scene.spheres.color.iter().position(|&color| !is_fraction(color));
     invalid.map_or(Ok(()), |row| {
         let color = scene.spheres.color[row];
@@ -250,6 +252,38 @@ fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError
     require(solid, || "the ground cannot be glass or an emitter; use a sphere".to_owned())
 }
 
+/// Checks columns of sticks.
+fn sticks(sticks: &Sticks, spheres: usize, materials: &[NamedMaterial]) -> Result<(), WorldError> {
+    let Sticks { from, to, radius, material, colors } = sticks;
+    let n = radius.len();
+    require([from.len(), to.len(), material.len(), colors.len()] == [n; 4], || {
+        format!("the columns of the sticks differ in length from `radius`, {n}")
+    })?;
+    let most = Sticks::MAX.min((scene::Spheres::MAX as usize).saturating_sub(spheres) / 2);
+    require(n <= most, || {
+        format!("too many sticks: {n}, but at most {most} fit; render a part of them")
+    })?;
+    for row in 0..n {
+        let valid = from[row].is_finite() && to[row].is_finite();
+        require(valid, || format!("the ends of stick {row} must be finite"))?;
+        more_than_0(&format!("the radius of stick {row}"), radius[row])?;
+        colors[row].iter().try_for_each(|&color| {
+            require(is_fraction(color), || {
+                format!("a color of stick {row} is {color}, but must be 0 to 1 in each channel")
+            })
+        })?;
+        let material = materials.get(material[row] as usize).map(|named| &named.material);
+        let solid = !matches!(
+            material,
+            None | Some(Material::Dielectric { .. } | Material::Emitter { .. })
+        );
+        require(solid, || {
+            format!("stick {row} must have a material, which cannot be glass or an emitter")
+        })?;
+    }
+    Ok(())
+}
+
 /// Checks the scene and that `bytes` of memory are available, and computes coordinates and camera.
 pub(super) fn place(scene: &Scene, bytes: u64) -> Result<(Transform, Placement), WorldError> {
     memory::check(bytes).map_err(|shortage| WorldError::Memory(scene.spheres.len(), shortage))?;
@@ -257,7 +291,7 @@ pub(super) fn place(scene: &Scene, bytes: u64) -> Result<(Transform, Placement),
     spheres::validate(scene)?;
     check(scene)?;
     let pose = fit::pose(scene)?;
-    Ok((Transform::of(&scene.spheres, &pose), pose))
+    Ok((Transform::of(scene, &pose), pose))
 }
 
 /// Checks that memory suffices for the light of the environment.

@@ -2,7 +2,7 @@
 
 use super::WorldError;
 use crate::elementary::{atan, cos, sin, tan};
-use crate::scene::{Insets, Pose, Projection, Scene, Spheres};
+use crate::scene::{Insets, Pose, Projection, Scene};
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -88,7 +88,7 @@ pub(super) fn pose(scene: &Scene) -> Result<Placement, WorldError> {
 
 /// Returns whether there is nothing to frame.
 fn is_empty(scene: &Scene) -> bool {
-    scene.shown().next().is_none()
+    scene.framed().next().is_none()
 }
 
 fn camera_error(eye: DVec3, why: &'static str) -> WorldError {
@@ -203,12 +203,11 @@ struct ViewBox {
 
 impl ViewBox {
     fn of(scene: &Scene, axes: &Axes) -> Self {
-        let spheres = &scene.spheres;
         let mut bounds = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        for i in scene.shown() {
-            let center = axes.coordinates(center(spheres, i));
-            bounds.low = bounds.low.min(center - spheres.radius[i]);
-            bounds.high = bounds.high.max(center + spheres.radius[i]);
+        for (center, radius) in scene.framed() {
+            let center = axes.coordinates(center);
+            bounds.low = bounds.low.min(center - radius);
+            bounds.high = bounds.high.max(center + radius);
         }
         bounds
     }
@@ -221,10 +220,9 @@ impl ViewBox {
 /// radius`: the minimum of the right side over all spheres bounds the eye. The two planes of an axis
 /// give its coordinate, and each pair gives how far forward it may go.
 fn nearest_eye(scene: &Scene, axes: &Axes, sides: &Sides) -> DVec3 {
-    let spheres = &scene.spheres;
     let mut slack = [f64::INFINITY; 4];
-    for i in scene.shown() {
-        let planes = sides.slack(axes.coordinates(center(spheres, i)), spheres.radius[i]);
+    for (center, radius) in scene.framed() {
+        let planes = sides.slack(axes.coordinates(center), radius);
         for (slack, plane) in slack.iter_mut().zip(planes) {
             *slack = slack.min(plane);
         }
@@ -333,14 +331,10 @@ impl Limits {
     }
 }
 
-fn center(spheres: &Spheres, i: usize) -> DVec3 {
-    DVec3::new(spheres.x[i], spheres.y[i], spheres.z[i])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Rgb};
+    use crate::scene::{Camera, Rgb, Spheres};
 
     fn spheres() -> Spheres {
         let mut spheres = Spheres::default();
@@ -361,7 +355,7 @@ mod tests {
         let placed = pose(&scene).unwrap();
         let mut largest: f64 = 0.0;
         for i in 0..scene.spheres.len() {
-            let c = placed.axes.coordinates(center(&scene.spheres, i) - placed.eye);
+            let c = placed.axes.coordinates(scene.spheres.center(i) - placed.eye);
             // Extent of the sphere's outline on each axis, as the tangent of an angle.
             let edge = |along: f64, half: f64| {
                 let distance = along.hypot(c.z);
@@ -378,7 +372,7 @@ mod tests {
         let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let parallel = matches!(scene.camera.projection, Projection::Orthographic { .. });
         for i in 0..scene.spheres.len() {
-            let c = placed.axes.coordinates(center(&scene.spheres, i) - placed.eye);
+            let c = placed.axes.coordinates(scene.spheres.center(i) - placed.eye);
             let r = scene.spheres.radius[i];
             let ends = |along: f64, half: f64| {
                 let (angle, reach) = (along.atan2(c.z), (r / along.hypot(c.z)).asin());

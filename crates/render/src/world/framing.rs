@@ -29,7 +29,7 @@ const TILT: f64 = 0.5;
 pub fn include_points(scene: &mut Scene, points: &[DVec3]) -> Result<(), WorldError> {
     let open = matches!(scene.camera.projection, Projection::Orthographic { height: None });
     let placed = matches!(scene.camera.pose, Pose::LookAt { .. }) && !open;
-    if placed || scene.spheres.is_empty() {
+    if placed || scene.is_empty() {
         return Ok(());
     }
     let count = scene.spheres.len();
@@ -68,15 +68,15 @@ pub fn orbit(scene: &mut Scene, points: &[DVec3], angle: f64) {
     let rotation = rotation(up, angle);
     let (eye, target) = match scene.camera.pose {
         Pose::LookAt { eye, target } => (eye, target),
-        Pose::Fit { .. } if scene.spheres.is_empty() => return,
+        Pose::Fit { .. } if scene.is_empty() => return,
         Pose::Fit { direction, margin } if scene.camera.insets != Insets::default() => {
-            let (center, radius) = bounding_sphere(&scene.spheres, points);
+            let (center, radius) = bounding_sphere(scene, points);
             scene.camera.pose = Pose::Fit { direction: rotation * direction, margin };
             fit_sphere(scene, center, radius);
             return;
         }
         Pose::Fit { direction, margin } => {
-            let (center, radius) = bounding_sphere(&scene.spheres, points);
+            let (center, radius) = bounding_sphere(scene, points);
             let used = 1.0 - margin;
             let distance = fit_distance(scene, radius / used);
             let direction = direction.normalize_or(DVec3::NEG_Z);
@@ -134,9 +134,12 @@ fn fit_distance(scene: &mut Scene, radius: f64) -> f64 {
 }
 
 /// Returns a sphere about the middle of the bounds that contains all spheres and points.
-fn bounding_sphere(spheres: &Spheres, points: &[DVec3]) -> (DVec3, f64) {
+fn bounding_sphere(scene: &Scene, points: &[DVec3]) -> (DVec3, f64) {
+    let Scene { spheres, sticks, .. } = scene;
     let rows = || (0..spheres.len()).map(|row| (spheres.center(row), spheres.radius[row]));
-    let all = || rows().chain(points.iter().map(|&point| (point, 0.0)));
+    let ends =
+        || (0..sticks.len()).flat_map(|row| sticks.ends(row).map(|end| (end, sticks.radius[row])));
+    let all = || rows().chain(ends()).chain(points.iter().map(|&point| (point, 0.0)));
     let low = all().fold(DVec3::INFINITY, |low, (center, radius)| low.min(center - radius));
     let high = all().fold(DVec3::NEG_INFINITY, |high, (center, radius)| high.max(center + radius));
     let middle = (low + high) / 2.0;

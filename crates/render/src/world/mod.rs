@@ -21,6 +21,7 @@ mod light_images;
 mod lights;
 mod parts;
 mod spheres;
+mod sticks;
 mod transform;
 mod visibility;
 
@@ -48,13 +49,14 @@ pub use lights::{
     Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
 };
 pub(crate) use parts::{OmittedSpheres, Parts};
+pub use sticks::WorldSticks;
 pub use transform::Transform;
 pub use visibility::Visibility;
 
 use crate::bvh::builders::Builder;
 use crate::bvh::{Bvh, DeviceTracer};
 use crate::memory::Shortage;
-use crate::ray::GROUND;
+use crate::ray::{GROUND, MISS};
 use crate::scene::{self, Background, Footprint, Rgb, Scene};
 use crate::settings::{InvalidSetting, Settings};
 use crate::shade::{MaterialId, MaterialKind, Materials};
@@ -82,6 +84,9 @@ pub struct World {
     /// The tree over them.
     #[doc(hidden)]
     pub bvh: Bvh,
+    /// Sticks, whose halves have rows of the appearance after those of the spheres.
+    #[doc(hidden)]
+    pub sticks: WorldSticks,
     /// Planes at which spheres are cut.
     #[doc(hidden)]
     pub cut: Cut,
@@ -226,9 +231,12 @@ impl World {
     /// Completes the spheres and their tree by all that follows from them and from the rest of the
     /// scene.
     pub(crate) fn complete(scene: &Scene, parts: Parts) -> Self {
-        let Parts { transform, placement, spheres, bvh, appearance, camera_visible, omitted } =
+        let Parts { transform, placement, spheres, bvh, mut appearance, camera_visible, omitted } =
             parts;
         let materials = Materials::build(&scene.materials);
+        let sticks = WorldSticks::build(scene, &transform);
+        let rows = (&sticks.all, spheres.len());
+        sticks::append_appearance(&mut appearance, (scene, &materials), rows);
         let cut = Cut::build(&scene.slices, &transform);
         let camera = Camera::build(scene, &placement, &transform);
         let environment = Environment::build(&scene.environment, &scene.look);
@@ -247,6 +255,7 @@ impl World {
             spheres,
             appearance,
             bvh,
+            sticks,
             cut,
             camera_visible,
             ground,
@@ -268,7 +277,7 @@ impl World {
 
     /// Returns whether slices hide or cut spheres, so that the processor traces all rays.
     pub fn is_sliced(&self) -> bool {
-        self.camera_visible.is_some() || !self.cut.is_empty()
+        self.camera_visible.is_some() || self.sticks.visible.is_some() || !self.cut.is_empty()
     }
 
     /// Returns the same world without its spheres, and without the light of emissive spheres.
@@ -281,6 +290,7 @@ impl World {
             spheres: Spheres::default(),
             appearance: Appearance::NONE,
             bvh: Bvh::default(),
+            sticks: WorldSticks::default(),
             cut: Cut::default(),
             camera_visible: None,
             ground: self.ground,
@@ -332,7 +342,31 @@ impl World {
         !self.caustic_casters.is_empty() || (mirrors && self.lights.samples_mirrored_light())
     }
 
-    /// Returns the material at a hit: a sphere's row or [`GROUND`].
+    /// Returns the number of what is hit: of spheres and, after them, sticks, in the scene's order; other hits are unchanged.
+    pub(crate) fn id_of(&self, hit: u32) -> u32 {
+        let given = self.omitted();
+        let spheres = self.spheres.len() as u64 + given.cut_away + given.vanished + given.hidden;
+        match self.sticks.at(hit, self.spheres.len()) {
+            Some((_, row)) => spheres as u32 + self.sticks.all.ids()[row.capsule],
+            None => self.spheres.id.get(hit as usize).copied().unwrap_or(hit),
+        }
+    }
+
+    /// Returns the outward normal of the surface of a hit at a point of it; `None` for a miss.
+    pub(crate) fn normal_at(&self, hit: u32, point: glam::Vec3) -> Option<glam::Vec3> {
+        match (hit, &self.ground) {
+            (GROUND, Some(ground)) => Some(ground.normal.as_vec3()),
+            (MISS | GROUND, _) => None,
+            _ => match self.sticks.at(hit, self.spheres.len()) {
+                Some((stick, _)) => {
+                    Some(stick.normal(point.as_dvec3() - stick.ends[0]).0.as_vec3())
+                }
+                None => Some((point - self.spheres.center(hit as usize)).normalize_or_zero()),
+            },
+        }
+    }
+
+    /// Returns the material at a hit: a row of the appearance or [`GROUND`].
     #[inline(always)]
     pub fn material(&self, hit: u32) -> MaterialId {
         match &self.ground {

@@ -1,7 +1,7 @@
 //! The transform from the user's coordinates to the world's: a shift and a power of two.
 
 use crate::elementary::{ceil_log2, power_of_two};
-use crate::scene::Spheres;
+use crate::scene::{Scene, Spheres};
 use crate::world::fit::Placement;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -32,11 +32,22 @@ pub struct Transform {
 }
 
 impl Transform {
-    pub(super) fn of(spheres: &Spheres, camera: &Placement) -> Self {
-        let shift = if spheres.is_empty() { DVec3::ZERO } else { middle(spheres) };
+    /// Of a scene, with all its spheres.
+    pub(super) fn of(scene: &Scene, camera: &Placement) -> Self {
+        let (spheres, sticks) = (&scene.spheres, &scene.sticks);
+        let shift = match (spheres.is_empty(), sticks.from.first()) {
+            (false, _) => middle(spheres),
+            (true, Some(_)) => middle(&first_ends(scene)),
+            (true, None) => DVec3::ZERO,
+        };
+        let reach_of = |center: DVec3, radius: f64| (center - shift).abs().max_element() + radius;
         let reach = (0..spheres.len())
-            .map(|i| (center(spheres, i) - shift).abs().max_element() + spheres.radius[i])
+            .map(|i| reach_of(center(spheres, i), spheres.radius[i]))
             .fold(0.0, f64::max);
+        let ends = sticks.from.iter().chain(&sticks.to);
+        let radii = sticks.radius.iter().chain(&sticks.radius);
+        let reach =
+            ends.zip(radii).map(|(&end, &radius)| reach_of(end, radius)).fold(reach, f64::max);
         Self { shift, scale: 1.0, reach }.with_camera(camera)
     }
 
@@ -78,6 +89,14 @@ impl Transform {
     pub fn length(&self, user: f64) -> f64 {
         user * self.scale
     }
+}
+
+/// Returns spheres about the first ends of the sticks.
+fn first_ends(scene: &Scene) -> Spheres {
+    let ends = &scene.sticks.from;
+    let column = |axis: usize| ends.iter().map(|end| end[axis]).collect();
+    let radius = scene.sticks.radius.clone();
+    Spheres { x: column(0), y: column(1), z: column(2), radius, ..Spheres::default() }
 }
 
 fn center(spheres: &Spheres, i: usize) -> DVec3 {
@@ -122,7 +141,7 @@ mod tests {
             ..Spheres::default()
         };
         Transform::of(
-            &spheres,
+            &Scene { spheres, ..Scene::default() },
             &Placement { eye: DVec3::from(centers[0]), reach: 0.0, ..Placement::default() },
         )
     }

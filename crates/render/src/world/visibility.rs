@@ -29,6 +29,9 @@ impl World {
     pub fn visibility(&self, region: Region, samples: u32) -> Visibility {
         let spheres =
             self.camera_visible.as_ref().map_or(&self.spheres, |visible| &visible.spheres);
+        if self.sticks_in_view(region) {
+            return Visibility::Visible;
+        }
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
         let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
         let rows = || (0..spheres.len()).into_par_iter();
@@ -53,6 +56,17 @@ impl World {
         } else {
             Visibility::Visible
         }
+    }
+
+    /// Returns whether an end of a stick is in a region of the picture.
+    fn sticks_in_view(&self, region: Region) -> bool {
+        let low = DVec2::new(f64::from(region.x), f64::from(region.y));
+        let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
+        let sticks = self.sticks.visible.as_ref().map_or(&self.sticks.all, |visible| &visible.0);
+        (0..sticks.len()).into_par_iter().any(|row| {
+            let stick = sticks.capsule(row);
+            stick.ends.iter().any(|&end| self.camera.coverage((end, stick.radius), low, high) > 0.0)
+        })
     }
 
     /// Returns the number of spheres whose centers are outside of the picture.

@@ -4,7 +4,7 @@ use crate::integrator::Job;
 use crate::integrator::light_images;
 use crate::integrator::path_state::PreviousBounce;
 use crate::integrator::workspace::Workspace;
-use crate::ray::{GROUND, MISS, Rays};
+use crate::ray::{MISS, Rays};
 use crate::shade::MaterialKind;
 use crate::world::{
     CausticCasters, CausticHit, CausticSource, LightImage, Receiver, SeenLight, World,
@@ -16,7 +16,7 @@ use glam::Vec3;
 pub(super) struct SpecularChain {
     /// Point and normal where it left that surface.
     start: [Vec3; 2],
-    /// The sphere of that surface, or [`GROUND`]; [`MISS`] for the camera, which has no density.
+    /// The hit on that surface; [`MISS`] for the camera, which has no density.
     own: u32,
     toward: Vec3,
     pdf: f32,
@@ -70,10 +70,7 @@ fn start_at_camera(rays: &Rays, row: usize, sphere: u32) -> SpecularChain {
 /// outside of a sphere or above the ground.
 fn start_chain(world: &World, rays: &Rays, row: usize, (pdf, sphere): (f32, u32)) -> SpecularChain {
     let (point, toward) = (rays.origin.row(row), rays.direction.row(row));
-    let normal = match (rays.own[row], &world.ground) {
-        (GROUND, Some(ground)) => ground.normal.as_vec3(),
-        (own, _) => (point - world.spheres.center(own as usize)).normalize(),
-    };
+    let Some(normal) = world.normal_at(rays.own[row], point) else { return SpecularChain::NONE };
     if normal.dot(toward) <= 0.0 {
         return SpecularChain::NONE;
     }

@@ -15,6 +15,7 @@ mod render;
 mod schema;
 mod slices;
 mod spheres;
+mod sticks;
 mod value;
 
 use self::block::{Block, Source};
@@ -188,6 +189,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     };
     let mut materials = materials::read(root)?;
     spheres::read(source, root, (&mut scene, &mut materials))?;
+    sticks::read(root, (&mut scene.sticks, &mut materials))?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block("environment", &schema::ENVIRONMENT)?;

@@ -52,6 +52,7 @@ pub(super) const ROOT: Schema = plain(
         ("light", &[]),
         ("material", &[]),
         ("sphere", &[]),
+        ("stick", &[]),
         ("generate", &[]),
         ("file", &[]),
     ],
@@ -204,6 +205,18 @@ pub(super) const MATERIAL: Schema = Schema {
 pub(super) const SPHERE: Schema =
     plain("[[sphere]]", &[("center", &[]), ("radius", &[]), ("material", &[]), ("color", &[])]);
 
+pub(super) const STICK: Schema = plain(
+    "[[stick]]",
+    &[
+        ("from", &[]),
+        ("to", &[]),
+        ("radius", &[]),
+        ("material", &[]),
+        ("color", &[]),
+        ("colors", &[]),
+    ],
+);
+
 pub(super) const GENERATE: Schema = Schema {
     section: "[[generate]]",
     selector: "kind",
@@ -239,7 +252,7 @@ pub(super) const FILE: Schema = plain(
 mod tests {
     use super::*;
 
-    const ALL: [&Schema; 18] = [
+    const ALL: [&Schema; 19] = [
         &ROOT,
         &RENDER,
         &CAMERA,
@@ -256,6 +269,7 @@ mod tests {
         &LIGHT,
         &MATERIAL,
         &SPHERE,
+        &STICK,
         &GENERATE,
         &FILE,
     ];

@@ -133,6 +133,12 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// Returns two colors, each as [`Value::color`] does.
+    pub(super) fn two_colors(&self, limits: Limits) -> Result<[Rgb; 2], FileError> {
+        let [first, second] = self.list()?;
+        Ok([first.color(limits)?, second.color(limits)?])
+    }
+
     /// Returns a number that is parsed in single precision, so that an `f32` survives writing and
     /// reading.
     pub(super) fn single(&self, limits: Limits) -> Result<f32, FileError> {

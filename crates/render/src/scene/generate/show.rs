@@ -3,7 +3,7 @@
 use super::{Field, Group};
 use crate::scene::{
     Annotations, Camera, Environment, EnvironmentMap, Ground, Insets, Lens, Light, Look, Material,
-    NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Tone,
+    NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Sticks, Tone,
 };
 use glam::DVec3;
 
@@ -26,6 +26,7 @@ pub fn default_scene(seed: u64) -> Scene {
     Scene {
         title: "A random field of spheres".to_owned(),
         spheres,
+        sticks: Sticks::default(),
         materials,
         ground: Some(ground),
         slices: Vec::new(),

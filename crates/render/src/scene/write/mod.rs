@@ -111,6 +111,7 @@ fn check(scene: &Scene) -> Result<(), String> {
     let spheres = &scene.spheres;
     let used = (0..spheres.len()).map(|sphere| spheres.material_of(sphere));
     let used = used.chain(scene.ground.iter().map(|ground| ground.material));
+    let used = used.chain(scene.sticks.material.iter().copied());
     match used.max() {
         Some(row) if row as usize >= scene.materials.len() => {
             Err(format!("row {row} of the materials is used, but not there"))
@@ -158,6 +159,8 @@ fn document(scene: &Scene, header: &Header, sky: &str) -> String {
     }
     scene.slices.iter().for_each(|row| text += &slice(row));
     scene.lights.iter().for_each(|row| text += &light(row));
+    let name = |row: u32| quoted(&scene.materials[row as usize].name);
+    text += &sections::sticks(&scene.sticks, name);
     text
 }
 

@@ -4,7 +4,7 @@ use crate::color::{Scale, Spacing};
 use crate::scene::{
     Annotations, AxisTripod, Background, Camera, ColorBar, ColorLegend, ConductorFresnel,
     Environment, EnvironmentMap, Insets, Label, Lens, Lettering, Light, Look, Material, Pose,
-    Projection, Rgb, ScaleBar, Slice,
+    Projection, Rgb, ScaleBar, Slice, Sticks,
 };
 use crate::settings::{SETTINGS, Setting, Settings, Value};
 use glam::DVec3;
@@ -233,6 +233,22 @@ pub(super) fn quoted(text: &str) -> String {
 
 pub(in crate::scene) fn vector(vector: DVec3) -> String {
     format!("{:?}", vector.to_array())
+}
+
+/// The sections of the sticks; `material` gives the name of a row of the materials.
+pub(in crate::scene) fn sticks(sticks: &Sticks, material: impl Fn(u32) -> String) -> String {
+    let mut text = String::new();
+    for row in 0..sticks.len() {
+        let ([from, to], [first, second]) =
+            (sticks.ends(row).map(vector), sticks.colors[row].map(rgb));
+        let (radius, material) = (sticks.radius[row], material(sticks.material[row]));
+        let _ = write!(
+            text,
+            "[[stick]]\nfrom = {from}\nto = {to}\nradius = {radius:?}\nmaterial = {material}\n\
+             colors = [{first}, {second}]\n\n"
+        );
+    }
+    text
 }
 
 fn rgb(color: Rgb) -> String {

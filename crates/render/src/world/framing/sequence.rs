@@ -34,10 +34,8 @@ impl SequenceBounds {
 
     /// Adds the visible spheres of a scene, and points that must be in the picture too.
     pub fn add(&mut self, scene: &Scene, points: &[DVec3]) {
-        let spheres =
-            scene.shown().map(|row| (scene.spheres.center(row), scene.spheres.radius[row]));
         let mut any = false;
-        for (center, radius) in spheres.chain(points.iter().map(|&point| (point, 0.0))) {
+        for (center, radius) in scene.framed().chain(points.iter().map(|&point| (point, 0.0))) {
             any = true;
             for (deciding, limit) in self.deciding.iter_mut().zip(self.limits.of(center, radius)) {
                 if deciding.is_none_or(|(least, ..)| limit < least) {
@@ -46,7 +44,7 @@ impl SequenceBounds {
             }
         }
         if any {
-            let own = bounding_sphere(&scene.spheres, points);
+            let own = bounding_sphere(scene, points);
             self.bounding_sphere =
                 Some(self.bounding_sphere.map_or(own, |earlier| enclosing(earlier, own)));
         }
@@ -141,7 +139,7 @@ mod tests {
             let reach = whole.spheres.center(row).distance(center) + whole.spheres.radius[row];
             assert!(reach <= radius * (1.0 + 1e-12), "{reach} {radius}");
         }
-        assert!(radius < 2.0 * bounding_sphere(&whole.spheres, &[]).1);
+        assert!(radius < 2.0 * bounding_sphere(&whole, &[]).1);
         let distance = |angle: f64| match bounds.view(Some(angle)).unwrap().camera.pose {
             Pose::LookAt { eye, target } => eye.distance(target),
             Pose::Fit { .. } => panic!("a fixed camera"),

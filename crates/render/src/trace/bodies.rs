@@ -1,0 +1,80 @@
+//! The bodies that rays may hit: spheres, and sticks.
+
+use super::{Query, Tracer};
+use crate::bvh::Tree;
+use crate::capsules::{self, BodyTrees, CapsuleRow, Capsules};
+use crate::ray::{Hits, Rays};
+use crate::world::World;
+
+/// Spheres and sticks, all or those that the camera sees. Hits are rows of the spheres, and after them two for each stick.
+#[derive(Clone, Copy)]
+pub(super) struct Bodies<'a> {
+    tree: Tree<'a>,
+    sticks: &'a Capsules,
+}
+
+impl<'a> Bodies<'a> {
+    /// All bodies of a world.
+    pub(super) fn all(world: &'a World) -> Self {
+        let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
+        Self { tree, sticks: &world.sticks.all }
+    }
+
+    /// The bodies that the camera sees.
+    pub(super) fn visible(world: &'a World) -> Self {
+        let mut bodies = Self::all(world);
+        if let Some(visible) = &world.camera_visible {
+            bodies.tree = Tree { bvh: &visible.bvh, spheres: &visible.spheres };
+        }
+        if let Some((sticks, _)) = &world.sticks.visible {
+            bodies.sticks = sticks;
+        }
+        bodies
+    }
+
+    /// Returns the hit in a world of a hit on a body that the camera sees.
+    pub(super) fn hit_in(&self, world: &World, hit: u32) -> u32 {
+        let spheres = self.tree.spheres.len();
+        if let Some(row) = CapsuleRow::of_hit(hit, spheres).filter(|_| !self.sticks.is_empty()) {
+            let rows = world.sticks.visible.as_ref().map(|(_, rows)| rows);
+            let capsule = rows.map_or(row.capsule, |rows| rows[row.capsule] as usize);
+            return CapsuleRow { capsule, ..row }.hit(world.spheres.len());
+        }
+        let rows = world.camera_visible.as_ref().map(|visible| &visible.row);
+        rows.and_then(|rows| rows.get(hit as usize)).copied().unwrap_or(hit)
+    }
+
+    /// Traces rays with the processor.
+    pub(super) fn trace(self, tracer: Tracer, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
+        let exact = match query {
+            Query::Closest => tracer.closest(self.tree, rays, hits),
+            Query::Any => tracer.occluded(self.tree, rays, hits),
+        };
+        exact + self.trace_sticks(query, rays, hits)
+    }
+
+    /// Traces rays whose hits on spheres are known.
+    #[inline(always)]
+    pub(super) fn trace_sticks(self, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
+        if self.sticks.is_empty() {
+            return 0;
+        }
+        let bodies = BodyTrees { spheres: self.tree.spheres, capsules: self.sticks };
+        match query {
+            Query::Closest => capsules::closest(bodies, rays, hits),
+            Query::Any => capsules::occluded(bodies, rays, hits),
+        }
+    }
+
+    /// Returns the hit on the cap of the body that contains a point; `None` if none does.
+    pub(super) fn enclosing(&self, point: glam::Vec3) -> Option<u32> {
+        let Self { tree, sticks } = self;
+        tree.bvh.enclosing_sphere(tree.spheres, point).or_else(|| {
+            let point = point.as_dvec3();
+            let capsule = capsules::enclosing_capsule(sticks, point)?;
+            let body = sticks.capsule(capsule);
+            let half = usize::from(body.normal(point - body.ends[0]).1 > 0.5);
+            Some(CapsuleRow { capsule, half }.hit(tree.spheres.len()))
+        })
+    }
+}
