@@ -3,6 +3,7 @@
 use super::categories::{Kinds, TextColumn, pick};
 use super::options::{Format, Role};
 use crate::Rgb;
+use crate::bonds::Bonds;
 use crate::categories::retain;
 use crate::cell::Cell;
 use glam::DVec3;
@@ -33,6 +34,8 @@ pub struct ParticleFrame {
     pub columns: Vec<String>,
     /// Columns from which positions, radii, types, colors and materials were read.
     pub roles: Vec<(Role, String)>,
+    /// Bonds, if they were asked for and there are any.
+    pub bonds: Option<Bonds>,
     /// The simulation cell, if the file has one.
     pub cell: Option<Cell>,
     /// The file's title or comment; empty if it has none.
@@ -131,6 +134,7 @@ impl ParticleFrame {
         let texts = self.texts.iter_mut().chain([&mut self.materials]);
         let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
         codes.for_each(|codes| codes.retain(keep));
+        self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
     }
 
     /// Gathers rows: row `i` becomes the former row `rows[i]`.
@@ -142,6 +146,7 @@ impl ParticleFrame {
         let texts = self.texts.iter_mut().chain([&mut self.materials]);
         let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
         codes.for_each(|codes| codes.pick(rows));
+        self.bonds.iter_mut().for_each(|bonds| bonds.pick(rows));
     }
 
     /// Frees the unused capacity of columns.

@@ -34,6 +34,7 @@
 mod aliases;
 mod alternates;
 mod binary;
+pub mod bonds;
 mod builder;
 mod categories;
 mod cell;
@@ -59,6 +60,7 @@ mod memory;
 mod mol2;
 mod molfile;
 mod naming;
+pub mod neighbors;
 mod netcdf;
 mod number;
 mod numpy;
@@ -90,6 +92,7 @@ mod xyz;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+pub use bonds::{BondRules, BondSource, Bonds};
 pub use categories::{Codes, Kind, Kinds, TextColumn};
 pub use cell::Cell;
 pub use element::Element;

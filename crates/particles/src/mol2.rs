@@ -1,15 +1,18 @@
 //! Reads MOL2 of Tripos: molecules, one frame each, in angstrom (zhanggroup.org/DockRMSD/mol2.pdf).
 
+use super::bonds::{Listed, Numbering};
 use super::builder::Builder;
 use super::cell::Cell;
 use super::fields::Fields;
 use super::frame::{LengthUnit, ParticleFrame};
 use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
+use super::number;
 use super::options::{Format, ReadOptions};
 use super::schema::{Schema, Slot};
 use super::source::Source;
 use crate::FileError;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Names of the columns; the last three may be missing.
@@ -29,12 +32,14 @@ const SECTION: &[u8] = b"@<TRIPOS>";
 pub(crate) struct Mol2 {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
+    reads_bonds: bool,
 }
 
 impl Mol2 {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
-        Self { lines: Lines::new(source), schema: schema.map(Arc::new) }
+        let reads_bonds = options.reads_bonds();
+        Self { lines: Lines::new(source), schema: schema.map(Arc::new), reads_bonds }
     }
 
     /// Moves past the line that begins the next molecule. Returns whether there is one.
@@ -46,6 +51,26 @@ impl Mol2 {
         }
         Ok(false)
     }
+}
+
+/// Adds the bond of a row: its number, the numbers of its atoms and its type, which may be `1`, `2`, `3`,
+/// `am`, `ar`, `du`, `un` or `nc`, not connected.
+fn add_bond(
+    bonds: &mut Listed,
+    numbering: &Numbering,
+    line: &Line,
+    path: &Path,
+) -> Result<(), FileError> {
+    let mut fields = line.fields().skip(1);
+    let [Some(first), Some(second), Some(kind)] = [(); 3].map(|()| fields.next()) else {
+        let help = "a row is a number, the numbers of two atoms, and a type";
+        return Err(line.whole("not the columns of a bond").with_help(help));
+    };
+    if kind == b"nc" {
+        return Ok(());
+    }
+    let bond = (numbering.row(line, first)?, numbering.row(line, second)?, [0; 3]);
+    bonds.push_named(path, bond, kind)
 }
 
 /// Returns the name of the section that a line begins.
@@ -74,6 +99,8 @@ impl FrameReader for Mol2 {
         builder.declare(&TEXTS, &["charge"]);
         let has_kind = schema.slots.contains(&Slot::Kind);
         let (mut inside, mut edges) = (Vec::new(), None);
+        let path = self.lines.path().clone();
+        let (mut numbers, mut numbering, mut bonds) = (Vec::new(), None, Listed::default());
         while let Some(line) = self.lines.next()? {
             if let Some(section) = section(line.bytes) {
                 inside = section.to_vec();
@@ -87,19 +114,26 @@ impl FrameReader for Mol2 {
                     let help = "a row is a number, name, x, y, z and type, and may have more";
                     return Err(line.whole("not the columns of an atom").with_help(help));
                 }
+                if self.reads_bonds {
+                    numbers.push(number::parse(row[0]).unwrap_or(f64::NAN));
+                }
                 row.resize(NAMES.len().max(row.len()), b"");
                 builder.row(&line, row.iter().copied())?;
                 if !has_kind {
                     let kind = row[TYPE];
                     builder.kind(kind.split(|&byte| byte == b'.').next().unwrap_or(kind));
                 }
+            } else if inside == b"BOND" && self.reads_bonds && !line.is_blank() {
+                let numbering = numbering.get_or_insert_with(|| Numbering::of(&numbers));
+                add_bond(&mut bonds, numbering, &line, &path)?;
             } else if inside == b"CRYSIN" && !line.is_blank() && edges.is_none() {
                 edges = cell(&line)?;
             }
         }
         let frame = builder.finish();
+        let bonds = numbering.map(|_| bonds.finish());
         let title = title.unwrap_or_default();
-        Ok(Some(ParticleFrame { cell: edges, title, unit: LengthUnit::Angstrom, ..frame }))
+        Ok(Some(ParticleFrame { bonds, cell: edges, title, unit: LengthUnit::Angstrom, ..frame }))
     }
 
     fn skip(&mut self) -> Result<bool, FileError> {

@@ -1,6 +1,7 @@
 //! Reads MDL molfiles and SDF, versions V2000 and V3000: molecules, one frame each, in angstrom ("CT file
 //! Formats", BIOVIA 2020).
 
+use super::bonds::{Bonds, Listed, row_from_one};
 use super::builder::Builder;
 use super::fields::Fields;
 use super::frame::{LengthUnit, ParticleFrame};
@@ -29,17 +30,19 @@ const V3000: &[u8] = b"M  V30 ";
 pub(crate) struct Molfile {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
+    reads_bonds: bool,
 }
 
 impl Molfile {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
-        Self { lines: Lines::new(source), schema: schema.map(Arc::new) }
+        let reads_bonds = options.reads_bonds();
+        Self { lines: Lines::new(source), schema: schema.map(Arc::new), reads_bonds }
     }
 
-    /// Reads the header: the title, and the number of atoms, which version V3000 has elsewhere. Returns
-    /// `None` at the end of the file.
-    fn header(&mut self) -> Result<Option<(String, Option<u64>)>, FileError> {
+    /// Reads the header: the title, and the numbers of atoms and bonds, which version V3000 has elsewhere.
+    /// Returns `None` at the end of the file.
+    fn header(&mut self) -> Result<Option<(String, Option<Counts>)>, FileError> {
         let Some(title) = self.lines.next()? else { return Ok(None) };
         let title = title.text().trim().to_owned();
         self.lines.skip(HEADER as u64 - 1)?;
@@ -55,8 +58,10 @@ impl Molfile {
         if line.bytes.trim_ascii_end().ends_with(b"V3000") {
             return Ok(Some((title, None)));
         }
-        let count = line.whole_number(line.bytes.get(..3).unwrap_or(line.bytes))?;
-        Ok(Some((title, Some(count))))
+        let atoms = line.whole_number(line.bytes.get(..3).unwrap_or(line.bytes))?;
+        let bonds =
+            if self.reads_bonds { line.whole_number(columns(line.bytes, 3, 6))? } else { 0 };
+        Ok(Some((title, Some(Counts { atoms, bonds }))))
     }
 
     /// Finds the rows of atoms of version V3000, and returns their number.
@@ -75,6 +80,58 @@ impl Molfile {
         count.ok_or_else(|| self.lines.ended("the molecule has no COUNTS of atoms"))
     }
 
+    /// Reads the rows of bonds: the numbers of both atoms, and the type. Version V3000 has them between
+    /// `BEGIN BOND` and `END BOND`.
+    fn bonds(&mut self, atoms: usize, plain: Option<u64>) -> Result<Bonds, FileError> {
+        let path = self.lines.path().clone();
+        let mut bonds = Listed::default();
+        let mut rest = plain;
+        let mut inside = plain.is_some();
+        while rest != Some(0) {
+            let Some(line) = self.lines.next()? else {
+                return if plain.is_none() {
+                    Ok(bonds.finish())
+                } else {
+                    Err(self.lines.ended("the file ends before the last bond"))
+                };
+            };
+            let wrong = || {
+                let help = "a row is the numbers of two atoms and a type in three columns each, or \
+                            `M  V30 index type atom atom`";
+                line.whole("not the columns of a bond").with_help(help)
+            };
+            let fields = if let Some(rest) = &mut rest {
+                *rest -= 1;
+                [(6, 9), (0, 3), (3, 6)].map(|(start, end)| columns(line.bytes, start, end))
+            } else {
+                let row = line.bytes.strip_prefix(V3000);
+                let words: Vec<&[u8]> = row.map(Fields::blanks).into_iter().flatten().collect();
+                match words[..] {
+                    [b"BEGIN", b"BOND"] => inside = true,
+                    [b"END", b"BOND" | b"CTAB"] => break,
+                    _ if line.bytes.trim_ascii_end() == END => {
+                        self.lines.back();
+                        break;
+                    }
+                    _ => (),
+                }
+                match words[..] {
+                    [b"BEGIN", ..] => continue,
+                    [_, kind, first, second, ..] if inside => [kind, first, second],
+                    _ if inside => return Err(wrong()),
+                    _ => continue,
+                }
+            };
+            let [kind, first, second] = fields;
+            if fields.iter().any(|field| field.is_empty()) {
+                return Err(wrong());
+            }
+            let row = |field| row_from_one(&line, field, atoms);
+            bonds.push_named(&path, (row(first)?, row(second)?, [0; 3]), kind)?;
+        }
+        Ok(bonds.finish())
+    }
+
     /// Moves past the end of a molecule.
     fn finish(&mut self) -> Result<(), FileError> {
         while let Some(line) = self.lines.next()? {
@@ -84,6 +141,18 @@ impl Molfile {
         }
         Ok(())
     }
+}
+
+/// Numbers of atoms and bonds in a header.
+#[derive(Clone, Copy)]
+struct Counts {
+    atoms: u64,
+    bonds: u64,
+}
+
+/// Returns columns of a line, clamped to its length and trimmed.
+fn columns(line: &[u8], start: usize, end: usize) -> &[u8] {
+    line.get(start..end.min(line.len())).unwrap_or_default().trim_ascii()
 }
 
 /// Returns the position and symbol of a row: in fixed columns, or after an index in version V3000.
@@ -99,10 +168,7 @@ fn fields<'l>(line: &Line<'l>, extended: bool) -> Result<[&'l [u8]; 4], FileErro
         let [symbol, x, y, z] = words.try_into().map_err(|_| wrong())?;
         return Ok([x, y, z, symbol]);
     }
-    let part = |start: usize, end: usize| {
-        let part = line.bytes.get(start..end.min(line.bytes.len())).unwrap_or_default();
-        part.trim_ascii()
-    };
+    let part = |start: usize, end: usize| columns(line.bytes, start, end);
     let fields = [part(0, 10), part(10, 20), part(20, 30), part(31, 34)];
     if fields.iter().any(|field| field.is_empty()) { Err(wrong()) } else { Ok(fields) }
 }
@@ -112,7 +178,7 @@ impl FrameReader for Molfile {
         let schema = self.schema.clone().map_err(|message| self.lines.ended(message))?;
         let Some((title, plain)) = self.header()? else { return Ok(None) };
         let count = match plain {
-            Some(count) => count,
+            Some(counts) => counts.atoms,
             None => self.extended()?,
         };
         let mut builder = Builder::new(self.lines.path(), Format::Sdf, &schema);
@@ -123,8 +189,13 @@ impl FrameReader for Molfile {
             };
             builder.row(&line, fields(&line, plain.is_none())?.into_iter())?;
         }
+        let bonds = if self.reads_bonds {
+            Some(self.bonds(builder.frame.len(), plain.map(|counts| counts.bonds))?)
+        } else {
+            None
+        };
         self.finish()?;
-        Ok(Some(ParticleFrame { title, unit: LengthUnit::Angstrom, ..builder.finish() }))
+        Ok(Some(ParticleFrame { bonds, title, unit: LengthUnit::Angstrom, ..builder.finish() }))
     }
 
     fn skip(&mut self) -> Result<bool, FileError> {

@@ -1,5 +1,6 @@
 //! Options of readers: format, columns, frame, radii.
 
+use super::bonds::BondSource;
 use super::progress::ReadProgress;
 use crate::suggest;
 use std::path::PathBuf;
@@ -282,6 +283,8 @@ pub struct ReadOptions {
     /// The file that says what the particles of a trajectory are: all that its first frame has but
     /// positions, velocities, forces and the cell.
     pub topology: Option<PathBuf>,
+    /// Source of bonds; they are read or found only if they are asked for.
+    pub bonds: BondSource,
     /// True if a frame without spheres is valid, as in a trajectory, and not an error.
     pub allow_empty: bool,
     /// Counter of the bytes read.
@@ -289,6 +292,11 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
+    /// Returns whether bonds that the file lists are read.
+    pub(crate) fn reads_bonds(&self) -> bool {
+        matches!(self.bonds, BondSource::Auto | BondSource::File)
+    }
+
     /// Checks that every number is in range.
     ///
     /// # Errors
@@ -303,6 +311,7 @@ impl ReadOptions {
             scale,
             atom_style: _,
             topology: _,
+            bonds: _,
             allow_empty: _,
             progress: _,
         } = self;
@@ -331,6 +340,7 @@ impl Default for ReadOptions {
             scale: 1.0,
             atom_style: None,
             topology: None,
+            bonds: BondSource::None,
             allow_empty: false,
             progress: ReadProgress::default(),
         }

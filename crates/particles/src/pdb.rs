@@ -6,6 +6,7 @@
 //! numbers that aren't needed.
 
 use super::alternates::{AlternateAtom, Alternates};
+use super::bonds::{Bonds, Listed, unknown};
 use super::builder::Builder;
 use super::categories::Kind;
 use super::cell::Cell;
@@ -15,11 +16,13 @@ use super::frame_reader::FrameReader;
 use super::lines::{Line, Lines};
 use super::number;
 use super::options::{Format, ReadOptions, Role};
+use super::progress::ReadProgress;
 use super::schema::{Naming, Schema, Slot};
-use super::source::Source;
+use super::source::{Source, is_standard_input};
 use super::undrawn::Undrawn;
 use crate::FileError;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Names of the columns, with their byte ranges.
@@ -70,6 +73,20 @@ pub(crate) struct Pdb {
     /// True if each `CRYST1` follows its model, as it does if none precedes the first model.
     cell_follows: bool,
     title: String,
+    /// The records of bonds, if they are read.
+    bonds: Option<BondRecords>,
+}
+
+/// Serial number of an atom, as text: it may be hexadecimal or hybrid-36.
+type Serial = [u8; 5];
+
+/// A bond of a record: the serial numbers of its atoms, and the number of its line.
+type ListedBond = ([Serial; 2], usize);
+
+/// Bonds of the file.
+struct BondRecords {
+    /// Bonds that follow the last model, once they are needed for another one.
+    last: Option<Vec<ListedBond>>,
 }
 
 /// Record type.
@@ -107,7 +124,8 @@ impl Pdb {
         let named = |schema| Arc::new(if typed { schema } else { of_atom_names(schema) });
         let lines = Lines::new(source);
         let title = String::new();
-        Self { lines, schema: schema.map(named), cell: None, cell_follows: false, title }
+        let bonds = options.reads_bonds().then_some(BondRecords { last: None });
+        Self { lines, schema: schema.map(named), cell: None, cell_follows: false, title, bonds }
     }
 }
 
@@ -121,6 +139,9 @@ impl FrameReader for Pdb {
         let has_kind = others.iter().any(|(_, slot)| *slot == Slot::Kind);
         let mut alternates = Alternates::default();
         let mut bonds = HashSet::new();
+        let mut serials: HashMap<Serial, u32> = HashMap::new();
+        let (reads_bonds, mut own_bonds) = (self.bonds.is_some(), Vec::new());
+        let mut at_end = true;
         let (mut atoms, mut ended) = (false, false);
         while let Some(line) = self.lines.next()? {
             let record = Record::of(line.bytes);
@@ -133,11 +154,16 @@ impl FrameReader for Pdb {
             };
             if ended && !belongs {
                 self.lines.back();
+                at_end = false;
                 break;
             }
             match record {
                 Record::Atom => {
                     atoms = true;
+                    if reads_bonds && let Some(serial) = serial(line.bytes, 6) {
+                        let row = builder.frame.len() as u32;
+                        serials.entry(serial).and_modify(|row| *row = MANY).or_insert(row);
+                    }
                     if !matches!(line.bytes.get(16), None | Some(b' ')) {
                         alternates.add(builder.frame.len(), alternate(line.bytes));
                     }
@@ -153,9 +179,14 @@ impl FrameReader for Pdb {
                 Record::Title => add_title(&mut self.title, line.bytes),
                 Record::Begin if atoms => {
                     self.lines.back();
+                    at_end = false;
                     break;
                 }
-                Record::Bond => add_bonds(&mut bonds, line.bytes),
+                Record::Bond if reads_bonds => {
+                    let number = line.number_in_file();
+                    own_bonds.extend(bonds_of(line.bytes).map(|ends| (ends, number)));
+                }
+                Record::Bond => bonds.extend(bonds_of(line.bytes)),
                 Record::EndModel if atoms => {
                     ended = true;
                     self.cell_follows |= self.cell.is_none();
@@ -171,6 +202,12 @@ impl FrameReader for Pdb {
             return Ok(None);
         }
         let mut frame = builder.finish();
+        if let Some(records) = &mut self.bonds {
+            let path = self.lines.path();
+            let list =
+                if own_bonds.is_empty() && !at_end { records.last(path)? } else { &own_bonds };
+            add_bonds(path, &mut frame, list, &serials)?;
+        }
         alternates.choose(&mut frame);
         frame.add_undrawn(Undrawn::Bonds, bonds.len() as u64);
         let title = self.title.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -218,19 +255,85 @@ fn of_atom_names(mut schema: Schema) -> Schema {
     Schema { naming: Naming::Names, ..schema }
 }
 
-/// Adds the bonds of a `CONECT` record, by the unparsed serial numbers of both atoms. Records list each
-/// bond from both ends, and double bonds twice.
-fn add_bonds(bonds: &mut HashSet<[[u8; 5]; 2]>, line: &[u8]) {
-    let serial = |start: usize| {
-        let mut serial = [b' '; 5];
-        let field = bytes(line, start, start + 5);
-        serial[..field.len()].copy_from_slice(field);
-        (!field.is_empty()).then_some(serial)
-    };
-    let Some(first) = serial(6) else { return };
-    for other in [11, 16, 21, 26].into_iter().filter_map(serial) {
-        bonds.insert([first.min(other), first.max(other)]);
+/// Marks a serial number that several atoms have.
+const MANY: u32 = u32::MAX;
+
+/// Returns the serial number in the five columns from `start`.
+fn serial(line: &[u8], start: usize) -> Option<Serial> {
+    let mut serial = [b' '; 5];
+    let field = bytes(line, start, start + 5);
+    serial[..field.len()].copy_from_slice(field);
+    (!field.is_empty()).then_some(serial)
+}
+
+/// Returns the bonds of a `CONECT` record, by the serial numbers of both atoms. Records list each bond from
+/// both ends, and double bonds twice.
+fn bonds_of(line: &[u8]) -> impl Iterator<Item = [Serial; 2]> {
+    let first = serial(line, 6);
+    let others = [11, 16, 21, 26].into_iter().filter_map(|start| serial(line, start));
+    others.filter_map(move |other| first.map(|first| [first.min(other), first.max(other)]))
+}
+
+/// Adds bonds to a model whose atoms have these serial numbers.
+fn add_bonds(
+    path: &Arc<Path>,
+    frame: &mut ParticleFrame,
+    list: &[ListedBond],
+    serials: &HashMap<Serial, u32>,
+) -> Result<(), FileError> {
+    let (mut bonds, mut ambiguous) = (Listed::default(), 0_u64);
+    for (ends, number) in list {
+        let mut rows = [0; 2];
+        for (row, serial) in rows.iter_mut().zip(ends) {
+            *row = *serials.get(serial).ok_or_else(|| {
+                let text = [&b"CONECT"[..], &ends[0], &ends[1]].concat();
+                unknown(&Line::new(path, *number, &text), serial)
+            })?;
+        }
+        if rows.contains(&MANY) {
+            ambiguous += 1;
+        } else {
+            bonds.push(path, (rows[0], rows[1], [0; 3]))?;
+        }
     }
+    if ambiguous > 0 {
+        let warning =
+            format!("{ambiguous} bonds to serial numbers that several atoms have are left out");
+        frame.warnings.push(warning);
+    }
+    frame.bonds = Some(Bonds { partial: true, ..bonds.finish() });
+    Ok(())
+}
+
+impl BondRecords {
+    /// Returns the bonds that follow the last model, which are those of all models. Of standard input, which
+    /// is read only once, only the last model has them.
+    fn last(&mut self, path: &Path) -> Result<&[ListedBond], FileError> {
+        if self.last.is_none() {
+            self.last = Some(last_bonds(path)?);
+        }
+        Ok(self.last.as_deref().unwrap_or_default())
+    }
+}
+
+fn last_bonds(path: &Path) -> Result<Vec<ListedBond>, FileError> {
+    let mut list = Vec::new();
+    if is_standard_input(path) {
+        return Ok(list);
+    }
+    // Not counted as progress, since the file is read on.
+    let mut lines = Lines::new(Source::open(path, &ReadProgress::default())?);
+    while let Some(line) = lines.next()? {
+        match Record::of(line.bytes) {
+            Record::Atom => list.clear(),
+            Record::Bond => {
+                let number = line.number_in_file();
+                list.extend(bonds_of(line.bytes).map(|ends| (ends, number)));
+            }
+            _ => (),
+        }
+    }
+    Ok(list)
 }
 
 fn add_title(title: &mut String, line: &[u8]) {

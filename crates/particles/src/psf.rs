@@ -1,6 +1,7 @@
 //! Reads PSF, topologies of CHARMM, NAMD and X-PLOR: what the atoms of a trajectory are
 //! (charmm-gui.org/charmmdoc/struct.html). They have no positions: those of the frame are NaN.
 
+use super::bonds::{Bonds, Listed, row_from_one};
 use super::builder::Builder;
 use super::categories::Kind;
 use super::element::{Element, is_virtual_site};
@@ -42,13 +43,54 @@ pub(crate) struct Psf {
     lines: Lines,
     schema: Result<Arc<Schema>, String>,
     done: bool,
+    reads_bonds: bool,
 }
 
 impl Psf {
     pub(crate) fn new(source: Source, options: &ReadOptions) -> Self {
         let schema = Schema::new(NAMES.map(str::to_owned).into(), options);
         let named = |schema| Arc::new(Schema { naming: Naming::Names, ..schema });
-        Self { lines: Lines::new(source), schema: schema.map(named), done: false }
+        let reads_bonds = options.reads_bonds();
+        Self { lines: Lines::new(source), schema: schema.map(named), done: false, reads_bonds }
+    }
+
+    /// Reads the section of bonds: pairs of numbers of atoms, four in a line; `None` without the section.
+    fn bonds(&mut self, atoms: usize) -> Result<Option<Bonds>, FileError> {
+        let path = self.lines.path().clone();
+        let mut bonds = Listed::default();
+        let mut rest = None;
+        while rest != Some(0) {
+            let Some(line) = self.lines.next()? else {
+                return match rest {
+                    None => Ok(None),
+                    Some(rest) => {
+                        let message = format!("the file ends before the last {rest} bonds");
+                        Err(self.lines.ended(message).with_help("the file is cut off"))
+                    }
+                };
+            };
+            let mut fields = line.fields();
+            let Some(rest) = &mut rest else {
+                let (count, name) = (fields.next(), fields.next());
+                if name.is_some_and(|name| name.starts_with(b"!NBOND")) {
+                    rest = Some(line.whole_number(count.unwrap_or_default())?);
+                }
+                continue;
+            };
+            while let Some(first) = fields.next() {
+                let Some(second) = fields.next() else {
+                    let help = "a row of bonds has the numbers of two atoms for each";
+                    return Err(line.whole("an atom without another one").with_help(help));
+                };
+                let row = |field| row_from_one(&line, field, atoms);
+                bonds.push(&path, (row(first)?, row(second)?, [0; 3]))?;
+                *rest = rest.checked_sub(1).ok_or_else(|| {
+                    let help = "correct the number of bonds before !NBOND";
+                    line.error_at(first, "more bonds than the section has").with_help(help)
+                })?;
+            }
+        }
+        Ok(Some(bonds.finish()))
     }
 
     /// Finds the section of atoms; returns their number.
@@ -114,7 +156,11 @@ impl FrameReader for Psf {
                 builder.kind_of(&[fields[7], fields[4], fields[3]].join(&b' '), kind);
             }
         }
-        Ok(Some(builder.finish()))
+        let mut frame = builder.finish();
+        if self.reads_bonds {
+            frame.bonds = self.bonds(frame.len())?;
+        }
+        Ok(Some(frame))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Reads the frames of a file, one after another.
 
+use super::bonds::BondSource;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::options::{Format, FrameChoice, ReadOptions};
@@ -10,11 +11,13 @@ use super::{
     pqr, psf, sniff, text, xsf, xyz,
 };
 use crate::FileError;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The frames of a file of particles, read one at a time. After an error there are no more.
 pub struct Frames {
     reader: Box<dyn FrameReader>,
+    path: PathBuf,
+    bonds: BondSource,
     failed: bool,
 }
 
@@ -29,8 +32,25 @@ impl Frames {
             None => open_positions(path, options)?,
             Some(topology) => Box::new(Joined::new(path, topology, options)?),
         };
-        Ok(Self { reader, failed: false })
+        let (path, bonds) = (path.to_owned(), options.bonds.clone());
+        Ok(Self { reader, path, bonds, failed: false })
     }
+
+    /// Returns the next frame with its bonds, and with warnings about columns that are not drawn.
+    fn next_frame(&mut self) -> Result<Option<ParticleFrame>, FileError> {
+        let Some(mut frame) = self.reader.next()? else { return Ok(None) };
+        frame.add_undrawn_columns();
+        if frame.format.lacks_names() && frame.kinds.codes.is_empty() && !frame.is_empty() {
+            let warning =
+                "its particles have no names; --topology FILE reads them from another file";
+            frame.warnings.push(warning.to_owned());
+        }
+        frame
+            .find_bonds(&self.bonds)
+            .map_err(|message| FileError::whole_file(&self.path, message))?;
+        Ok(Some(frame))
+    }
+
     /// Skips the next frame with as little work as the format allows. Returns whether there was one.
     ///
     /// # Errors
@@ -100,24 +120,10 @@ impl Iterator for Frames {
         if self.failed {
             return None;
         }
-        let frame = next_frame(&mut *self.reader);
+        let frame = self.next_frame();
         self.failed = frame.is_err();
         frame.transpose()
     }
-}
-
-/// Returns the next frame, with warnings about columns that are not drawn.
-fn next_frame(reader: &mut dyn FrameReader) -> Result<Option<ParticleFrame>, FileError> {
-    let mut frame = reader.next()?;
-    if let Some(frame) = &mut frame {
-        frame.add_undrawn_columns();
-        if frame.format.lacks_names() && frame.kinds.codes.is_empty() && !frame.is_empty() {
-            let warning =
-                "its particles have no names; --topology FILE reads them from another file";
-            frame.warnings.push(warning.to_owned());
-        }
-    }
-    Ok(frame)
 }
 
 /// Reads the frame that the options select, unmodified: nothing is scaled or dropped. Earlier frames
@@ -141,7 +147,7 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
             return Err(FileError::whole_file(path, message));
         }
     }
-    let frame = next_frame(&mut *frames.reader)?;
+    let frame = frames.next_frame()?;
     let mut frame = match (frame, index) {
         (Some(frame), _) => frame,
         (None, 0) => return Err(FileError::whole_file(path, "holds no particles")),

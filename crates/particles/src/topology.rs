@@ -1,6 +1,7 @@
 //! Frames of a trajectory whose particles another file names.
 
 use super::aliases;
+use super::bonds::{BondSource, Bonds};
 use super::error::clipped;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
@@ -92,6 +93,7 @@ impl Joined {
             columns: columns(positions),
             radii: Radii::Auto,
             topology: None,
+            bonds: BondSource::None,
             ..options.clone()
         };
         let options = ReadOptions {
@@ -99,6 +101,7 @@ impl Joined {
             columns: columns(others),
             radii: options.radii.clone(),
             atom_style: options.atom_style.clone(),
+            bonds: options.bonds.clone(),
             ..ReadOptions::default()
         };
         let frames = reader::open_positions(path, &trajectory)?;
@@ -127,6 +130,8 @@ impl Joined {
         particles.texts.retain(|column| is_kept(&column.name));
         particles.columns.retain(|name| !varies(name));
         particles.roles.retain(|(role, _)| ![Role::X, Role::Y, Role::Z].contains(role));
+        // Shifts follow from the positions of each frame.
+        particles.bonds.iter_mut().for_each(Bonds::forget_images);
         (particles.y, particles.z) = (Vec::new(), Vec::new());
         Ok(particles)
     }
@@ -146,6 +151,7 @@ impl Joined {
         if !particles.kinds.codes.is_empty() {
             frame.kinds.clone_from(&particles.kinds);
         }
+        frame.bonds.clone_from(&particles.bonds);
         if !particles.radius.is_empty() {
             // Radii are in the topology's unit.
             let factor = frame.unit.per_angstrom() / particles.unit.per_angstrom();

@@ -2,11 +2,13 @@
 //! (CIF core dictionary, <https://www.iucr.org/resources/cif/dictionaries/cif_core>).
 
 use super::declared::{Contents, Declared, Resolved};
+use super::geometry::{self, Geometry, ListedBond, NOWHERE};
 use super::hall::MOST;
 use super::occupancy::{Occupancies, Positions};
 use super::rows::Rows;
 use super::symmetry::{Operation, images};
 use super::tokens::{Token, Tokens};
+use crate::bonds::Bonds;
 use crate::builder::Builder;
 use crate::cell::Cell;
 use crate::element::Element;
@@ -22,6 +24,7 @@ use crate::undrawn::Undrawn;
 use crate::{FileError, Rgb};
 use glam::DVec3;
 use memchr::memmem;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Bytes of an atom as a sphere: four numbers in double precision, a material and a color.
@@ -79,6 +82,7 @@ struct Block {
     /// Rows of bonds and of anisotropic displacements.
     bonds: u64,
     displacements: u64,
+    geometry: Vec<ListedBond>,
 }
 
 /// Atoms of the asymmetric unit, as listed.
@@ -86,6 +90,8 @@ struct Atoms {
     /// Positions are fractional coordinates.
     frame: ParticleFrame,
     occupancies: Occupancies,
+    /// Row of each label before rows are dropped, if bonds are read.
+    labels: HashMap<Vec<u8>, u32>,
 }
 
 impl Default for Block {
@@ -99,6 +105,7 @@ impl Default for Block {
             atoms: None,
             bonds: 0,
             displacements: 0,
+            geometry: Vec::new(),
         }
     }
 }
@@ -191,7 +198,11 @@ impl Crystal {
                 }
             }
         } else if tags_now.iter().any(|tag| tag.starts_with("_geom_bond_atom_site_label")) {
-            block.bonds += self.count_rows(tags.len())?;
+            if self.options.reads_bonds() {
+                block.geometry.extend(geometry::read(&mut self.tokens, &tags_now)?);
+            } else {
+                block.bonds += self.count_rows(tags.len())?;
+            }
         } else if tags_now.iter().any(|tag| tag.starts_with("_atom_site_aniso_")) {
             block.displacements += self.count_rows(tags.len())?;
         }
@@ -224,11 +235,18 @@ impl Crystal {
         let mut builder = Builder::new(self.tokens.path(), Format::Cif, &Arc::new(schema));
         builder.declare(&["label"], &NUMBERS);
         let (mut rows, mut nowhere) = (Rows::new(tags.len()), 0_u64);
+        let label = tags.iter().position(|tag| plain(tag) == "_atom_site_label");
+        let label = label.filter(|_| self.options.reads_bonds());
+        let mut labels = HashMap::new();
         while rows.read(&mut self.tokens)? {
             let unknown = |column: &usize| matches!(rows.field(*column), b"." | b"?");
+            let text = label.map(|label| rows.field(label).to_vec());
             if places.iter().flatten().any(unknown) {
+                labels.extend(text.map(|text| (text, NOWHERE)));
                 nowhere += 1;
             } else {
+                let row = builder.frame.len() as u32;
+                labels.extend(text.map(|text| (text, row)));
                 builder.row(&self.tokens.line(), rows.fields().map(strip_uncertainty))?;
                 occupancies.read(&rows);
             }
@@ -243,12 +261,13 @@ impl Crystal {
                 kind.element = kind.element.or_else(|| element(&kind.name));
             }
         }
-        Ok(Atoms { frame, occupancies })
+        Ok(Atoms { frame, occupancies, labels })
     }
 
     /// Returns the frame of a block; `None` if it has no atoms.
     fn frame(&self, mut block: Block) -> Result<Option<ParticleFrame>, FileError> {
-        let Some(Atoms { frame: mut atoms, mut occupancies }) = block.atoms.take() else {
+        let Some(Atoms { frame: mut atoms, mut occupancies, mut labels }) = block.atoms.take()
+        else {
             return Ok(None);
         };
         let fault = |message: String| FileError::whole_file(self.tokens.path(), message);
@@ -257,15 +276,27 @@ impl Crystal {
             let message = format!("there is no cell with edges {lengths:?} and angles {angles:?}");
             fault(message).with_help("a crystal needs _cell_length_a, _b and _c, and its angles")
         })?;
-        keep_main_groups(&mut atoms, &mut occupancies);
+        keep_main_groups(&mut atoms, &mut occupancies, &mut labels);
         let positions: Vec<DVec3> = (0..atoms.len()).map(|row| atoms.position(row)).collect();
         let contents = Contents { cell: &cell, positions: &positions };
+        let declared = block.symmetry.operations.clone();
         let Resolved { operations, warnings } = block.symmetry.resolve(contents);
         atoms.warnings.extend(warnings);
         let images = operations.len().max(1) as u64 * atoms.len() as u64;
         memory::check(images.saturating_mul(ATOM_BYTES))
             .map_err(|shortage| fault(format!("its {images} atoms need {shortage}")))?;
-        place(&mut atoms, &repeat(&positions, &operations, &cell), &occupancies, &cell);
+        let images = repeat(&positions, &operations, &cell);
+        let bonds = self.options.reads_bonds().then(|| {
+            let crystal = Geometry { positions: &positions, labels: &labels, declared: &declared };
+            let Images { rows, places } = &images;
+            crystal.bonds(
+                self.tokens.path(),
+                &block.geometry,
+                &operations,
+                Positions { rows, places, cell: &cell },
+            )
+        });
+        place(&mut atoms, &images, &occupancies, &cell, bonds.transpose()?);
         let (unit, title) = (LengthUnit::Angstrom, block.title.1);
         atoms.add_undrawn(Undrawn::Bonds, block.bonds);
         atoms.add_undrawn(Undrawn::Displacements, block.displacements);
@@ -293,12 +324,24 @@ impl FrameReader for Crystal {
 }
 
 /// Removes the atoms of all disorder groups but the main ones.
-fn keep_main_groups(atoms: &mut ParticleFrame, occupancies: &mut Occupancies) {
+fn keep_main_groups(
+    atoms: &mut ParticleFrame,
+    occupancies: &mut Occupancies,
+    labels: &mut HashMap<Vec<u8>, u32>,
+) {
     let keep = occupancies.main_groups();
     let lesser = keep.iter().filter(|keep| !**keep).count();
     if lesser > 0 {
         atoms.retain(&keep);
         occupancies.retain(&keep);
+        let mut next = 0..;
+        let places: Vec<u32> = keep
+            .iter()
+            .map(|keep| if *keep { next.next().unwrap_or(NOWHERE) } else { NOWHERE })
+            .collect();
+        for row in labels.values_mut().filter(|row| **row != NOWHERE) {
+            *row = places[*row as usize];
+        }
         atoms.warnings.push(format!(
             "{} left out: of each disorder, the group with the greatest occupancy is drawn",
             count_text(lesser, "listed atom is", "listed atoms are"),
@@ -335,13 +378,20 @@ fn repeat(positions: &[DVec3], operations: &[Operation], cell: &Cell) -> Images 
 }
 
 /// Places an atom at each image; at shared sites, only the atom with the greatest occupancy.
-fn place(atoms: &mut ParticleFrame, images: &Images, occupancies: &Occupancies, cell: &Cell) {
+fn place(
+    atoms: &mut ParticleFrame,
+    images: &Images,
+    occupancies: &Occupancies,
+    cell: &Cell,
+    bonds: Option<Bonds>,
+) {
     let Images { rows, places } = images;
     let shared = occupancies.select_on_sites(Positions { rows, places, cell });
     atoms.pick(rows);
     for (row, place) in places.iter().enumerate() {
         [atoms.x[row], atoms.y[row], atoms.z[row]] = cell.cartesian(place.to_array()).to_array();
     }
+    atoms.bonds = bonds;
     if shared.sites > 0 {
         let others = shared.keep.iter().filter(|keep| !**keep).count();
         atoms.retain(&shared.keep);

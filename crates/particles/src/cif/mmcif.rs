@@ -1,9 +1,11 @@
 //! Reads mmCIF: the loop `_atom_site` of Protein Data Bank files, lengths in angstrom.
 
+use super::connections::{self, Atoms, Connections};
 use super::rows::Rows;
 use super::tokens::{Token, Tokens};
 use crate::FileError;
 use crate::alternates::{AlternateAtom, Alternates};
+use crate::bonds::Bonds;
 use crate::builder::Builder;
 use crate::cell::Cell;
 use crate::frame::{LengthUnit, ParticleFrame};
@@ -32,6 +34,26 @@ pub(in super::super) struct MmCif {
     angles: [f64; 3],
     /// Rows of `_struct_conn` before the atoms.
     bonds: u64,
+    /// Tables of bonds, if they are read, and the items of one outside of a loop.
+    connections: Option<Connections>,
+    items: Items,
+}
+
+/// Items of a table with one row.
+#[derive(Default)]
+struct Items {
+    names: Vec<String>,
+    values: Vec<Vec<u8>>,
+    /// The number and text of the last line.
+    line: (usize, Vec<u8>),
+}
+
+/// The frame that a model is read into.
+struct Model<'m> {
+    builder: &'m mut Builder,
+    alternates: &'m mut Alternates,
+    /// Atoms by their names, if bonds are read.
+    atoms: Option<&'m mut Atoms>,
 }
 
 /// The loop that is being read.
@@ -99,6 +121,8 @@ impl MmCif {
             lengths: [0.0; 3],
             angles: [0.0; 3],
             bonds: 0,
+            connections: options.reads_bonds().then(Connections::default),
+            items: Items::default(),
         }
     }
 
@@ -115,7 +139,11 @@ impl MmCif {
                     let tag = tag.to_owned();
                     self.item(&tag)?;
                 }
-                Token::Value(_) | Token::Block => (),
+                Token::Block => {
+                    self.items = Items::default();
+                    self.connections.iter_mut().for_each(|own| *own = Connections::default());
+                }
+                Token::Value(_) => (),
             }
         }
         Ok(None)
@@ -129,7 +157,12 @@ impl MmCif {
         };
         let axis = |letters: [&str; 3]| letters.iter().position(|letter| tag.ends_with(letter));
         let number = || number::parse(value).unwrap_or(0.0);
-        if tag == "_struct_conn.id" {
+        if self.connections.is_some() && connections::is_of(tag, connections::CONNECTIONS) {
+            self.items.names.push(tag[connections::CONNECTIONS.len()..].to_owned());
+            self.items.values.push(value.to_vec());
+            let line = self.tokens.line();
+            self.items.line = (line.number_in_file(), line.bytes.to_vec());
+        } else if tag == "_struct_conn.id" {
             self.bonds += 1;
         } else if tag == "_struct.title" {
             self.title = String::from_utf8_lossy(value).trim().to_owned();
@@ -158,7 +191,13 @@ impl MmCif {
                 let help = "this is a crystal in fractional coordinates: read it with --format cif";
                 return Err(self.tokens.error("no _atom_site.Cartn_x").with_help(help));
             }
-            if tags.iter().any(|tag| tag.starts_with("_struct_conn.")) {
+            let first = tags.first().map_or("", String::as_str);
+            let is_of = |category| connections::is_of(first, category);
+            if let Some(connections) = &mut self.connections
+                && (is_of(connections::CONNECTIONS) || is_of(connections::COMPONENT_BONDS))
+            {
+                connections.read(&mut self.tokens, &tags)?;
+            } else if is_of(connections::CONNECTIONS) {
                 let mut rows = Rows::new(tags.len());
                 while rows.read(&mut self.tokens)? {
                     self.bonds += 1;
@@ -179,10 +218,7 @@ impl MmCif {
     }
 
     /// Reads the atoms of the next model into a builder, or skips them. Returns whether there are any.
-    fn model(
-        &mut self,
-        mut taken: Option<(&mut Builder, &mut Alternates)>,
-    ) -> Result<bool, FileError> {
+    fn model(&mut self, mut taken: Option<Model>) -> Result<bool, FileError> {
         let Some(sites) = &mut self.sites else { return Ok(false) };
         let mut model: Option<Vec<u8>> = None;
         while std::mem::take(&mut sites.pending) || sites.rows.read(&mut self.tokens)? {
@@ -194,14 +230,34 @@ impl MmCif {
             if model.is_none() {
                 model = Some(own.to_vec());
             }
-            let Some((builder, alternates)) = &mut taken else { continue };
+            let Some(Model { builder, alternates, atoms }) = &mut taken else { continue };
             if let Some(atom) = sites.alternates.atom(&sites.rows) {
                 alternates.add(builder.frame.len(), atom);
+            }
+            if let Some(atoms) = atoms {
+                atoms.add(builder.frame.len() as u32, &sites.rows);
             }
             builder.row(&self.tokens.line(), sites.rows.fields())?;
         }
         self.sites = None;
         Ok(model.is_some())
+    }
+
+    /// Returns the bonds of a model's atoms.
+    fn bonds(
+        &mut self,
+        atoms: &Atoms,
+        frame: &mut ParticleFrame,
+    ) -> Result<Option<Bonds>, FileError> {
+        let Some(connections) = &mut self.connections else { return Ok(None) };
+        if self.sites.is_none() {
+            connections::read_rest(&mut self.tokens, connections)?;
+        }
+        let Items { names, values, line } = std::mem::take(&mut self.items);
+        if !names.is_empty() {
+            connections.add(&names, &values, line);
+        }
+        connections.bonds(self.tokens.path(), atoms, frame).map(Some)
     }
 
     /// Returns whether the reader is in a loop of atoms.
@@ -220,10 +276,16 @@ impl FrameReader for MmCif {
             let mut builder = Builder::new(self.tokens.path(), Format::MmCif, &schema);
             builder.declare(&[], &NUMBERS);
             let mut alternates = Alternates::default();
-            if !self.model(Some((&mut builder, &mut alternates)))? {
+            let mut atoms = self.connections.is_some().then(|| Atoms::new(&schema.names));
+            let (own, atoms_now) = (&mut builder, atoms.as_mut());
+            let model = Model { builder: own, alternates: &mut alternates, atoms: atoms_now };
+            if !self.model(Some(model))? {
                 continue;
             }
             let mut frame = builder.finish();
+            if let Some(atoms) = &atoms {
+                frame.bonds = self.bonds(atoms, &mut frame)?;
+            }
             alternates.choose(&mut frame);
             frame.add_undrawn(Undrawn::Bonds, self.bonds);
             let cell = Cell::of_lengths(self.lengths, self.angles);

@@ -4,8 +4,10 @@
 //! as columns. The syntax is that of Hall, Allen and Brown, "The crystallographic information file
 //! (CIF)", Acta Crystallographica A47, 1991.
 
+mod connections;
 mod crystal;
 mod declared;
+mod geometry;
 mod hall;
 mod mmcif;
 mod occupancy;

@@ -9,6 +9,7 @@ pub(super) use file::MAGIC;
 
 use self::file::File;
 use super::aliases;
+use super::bonds::{Bonds, Listed};
 use super::categories::Kind;
 use super::cell::Cell;
 use super::frame::{NumberColumn, ParticleFrame};
@@ -229,10 +230,45 @@ impl Gsd {
         FileError::whole_file(&self.path, message)
     }
 
+    /// Reads the bonds: rows of both particles, and types.
+    fn bonds(&mut self, particles: usize) -> Result<Bonds, FileError> {
+        let types = match self.file.texts(self.next, "bonds/types")? {
+            Some(types) => Some(types),
+            None => self.file.texts(0, "bonds/types")?,
+        };
+        let types = types.unwrap_or_default();
+        let groups = self.whole("bonds/group")?.unwrap_or_default();
+        let kinds = self.whole("bonds/typeid")?.unwrap_or_default();
+        let mut bonds = Listed::default();
+        for (bond, ends) in groups.chunks(2).enumerate() {
+            let row = |end: usize| {
+                let row =
+                    ends.get(end).copied().filter(|row| (0.0..particles as f64).contains(row));
+                row.map(|row| row as u32)
+            };
+            let (Some(first), Some(second)) = (row(0), row(1)) else {
+                let frame = self.next;
+                let message = format!(
+                    "bond {bond} of frame {frame} is of particles {ends:?}, but there are {particles}"
+                );
+                let help = "write its chunk bonds/group again, or read no bonds of it";
+                return Err(self.fault(message).with_help(help));
+            };
+            let kind = kinds.get(bond).copied().unwrap_or(0.0) as usize;
+            let name = types.get(kind).map_or("", String::as_str);
+            bonds.push_named(&self.path, (first, second, [0; 3]), name.as_bytes())?;
+        }
+        Ok(bonds.finish())
+    }
+
     /// Adds warnings about shapes other than spheres.
     fn add_undrawn(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
-        let bonds = self.whole("bonds/N")?.and_then(|count| count.first().copied());
-        frame.add_undrawn(Undrawn::Bonds, bonds.unwrap_or(0.0) as u64);
+        if self.options.reads_bonds() {
+            frame.bonds = Some(self.bonds(frame.len())?);
+        } else {
+            let bonds = self.whole("bonds/N")?.and_then(|count| count.first().copied());
+            frame.add_undrawn(Undrawn::Bonds, bonds.unwrap_or(0.0) as u64);
+        }
         let shapes = match self.file.texts(self.next, "particles/type_shapes")? {
             Some(shapes) => Some(shapes),
             None => self.file.texts(0, "particles/type_shapes")?,

@@ -3,8 +3,9 @@
 use super::bounds::tilted;
 use super::style::{self, Chosen, Facts, Layout, Sample};
 use super::unit;
-use super::velocities::Velocities;
+use super::velocities::{self, Velocities};
 use crate::FileError;
+use crate::bonds::{Bonds, Listed, Numbering};
 use crate::builder::Builder;
 use crate::cell::Cell;
 use crate::element::Element;
@@ -102,6 +103,32 @@ impl Data {
             head.labels.insert(number, String::from_utf8_lossy(label).into_owned());
             Ok(())
         })
+    }
+
+    /// Reads the section `Bonds`, which follows the atoms: the number and type of each bond, and the numbers
+    /// of its atoms.
+    fn bonds(&mut self, frame: Option<&ParticleFrame>) -> Result<Bonds, FileError> {
+        let column = |frame: &ParticleFrame| {
+            let ids = frame.numbers.iter().find(|column| column.name == velocities::ID);
+            ids.map(|ids| Numbering::of(&ids.values))
+        };
+        let Some(ids) = frame.and_then(column) else {
+            let error = self.lines.ended("the section `Bonds` precedes the atoms");
+            return Err(error.with_help("move it below the section `Atoms`"));
+        };
+        let path = self.lines.path().clone();
+        let mut bonds = Listed::default();
+        while !self.at_section()? {
+            let Some(line) = Self::line(&mut self.lines)? else { break };
+            let mut fields = Fields::blanks(content(line.bytes).unwrap_or_default()).skip(1);
+            let [Some(kind), Some(first), Some(second)] = [(); 3].map(|()| fields.next()) else {
+                let help = "a row is a number, a type and the numbers of two atoms";
+                return Err(line.whole("not the columns of a bond").with_help(help));
+            };
+            let bond = (ids.row(&line, first)?, ids.row(&line, second)?, [0; 3]);
+            bonds.push_named(&path, bond, kind)?;
+        }
+        Ok(bonds.finish())
     }
 
     /// Calls a function with the first two fields of each row of a section.
@@ -235,8 +262,9 @@ impl FrameReader for Data {
         }
         let Some(title) = self.lines.next()? else { return Ok(None) };
         let mut head = Head { title: title.text().trim().to_owned(), ..Head::default() };
+        let lends_ids = self.options.reads_bonds() && velocities::want_ids(&mut self.options);
         let mut velocities = Velocities::take(&mut self.options);
-        let mut frame = None;
+        let (mut frame, mut bonds) = (None, None);
         let mut undrawn = Vec::new();
         while let Some(line) = Self::line(&mut self.lines)? {
             if !is_section(line.bytes) {
@@ -255,6 +283,7 @@ impl FrameReader for Data {
                         line.iter().try_for_each(|line| velocities.row(line))?;
                     }
                 }
+                "Bonds" if self.options.reads_bonds() => bonds = Some(self.bonds(frame.as_ref())?),
                 section => {
                     let count = self.pass(section == "Bodies")?;
                     undrawn.extend(super::undrawn(section).map(|kind| (kind, count)));
@@ -267,6 +296,10 @@ impl FrameReader for Data {
                 .with_help("the file is cut off, or not a data file")
         })?;
         velocities.complete(&mut frame, &self.lines)?;
+        if lends_ids {
+            frame.numbers.retain(|column| column.name != velocities::ID);
+        }
+        frame.bonds = bonds;
         for (kind, count) in undrawn {
             frame.add_undrawn(kind, count);
         }

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 const NAMES: [&str; 3] = ["vx", "vy", "vz"];
 
 /// Column of atoms that identifies them.
-const ID: &str = "id";
+pub(super) const ID: &str = "id";
 
 /// The requested columns of the section.
 #[derive(Default)]
@@ -33,6 +33,17 @@ fn axis(name: &str) -> Option<usize> {
     NAMES.iter().position(|own| own.eq_ignore_ascii_case(name))
 }
 
+/// Requests ids; returns whether they weren't requested before.
+pub(super) fn want_ids(options: &mut ReadOptions) -> bool {
+    let columns = &mut options.columns;
+    let is_id = |name: &String| name.eq_ignore_ascii_case(ID);
+    let has_ids = columns.kept.iter().chain(&columns.wanted).any(is_id);
+    if !has_ids {
+        columns.wanted.push(ID.to_owned());
+    }
+    !has_ids && columns.rest.is_none()
+}
+
 impl Velocities {
     /// Moves the section's columns out of the options, and requests ids if they are needed.
     pub(super) fn take(options: &mut ReadOptions) -> Self {
@@ -48,12 +59,8 @@ impl Velocities {
         for list in [&mut columns.kept, &mut columns.wanted] {
             list.retain(|name| axis(name).is_none());
         }
-        let is_id = |name: &String| name.eq_ignore_ascii_case(ID);
-        let has_ids = columns.kept.iter().chain(&columns.wanted).any(is_id);
-        let lends_ids = !asked.is_empty() && !has_ids;
-        if lends_ids {
-            columns.wanted.push(ID.to_owned());
-        }
+        let lends_ids = !asked.is_empty() && want_ids(options);
+        let columns = &options.columns;
         let rest = columns.rest.map_or(0, |values| values / NAMES.len());
         let most = if asked.is_empty() { rest as u64 } else { u64::MAX };
         if columns.rest.is_some() {

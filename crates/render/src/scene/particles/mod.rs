@@ -15,9 +15,9 @@ pub use periodic::PeriodicError;
 pub use select::{Fault, Selection};
 pub use spheres::Particles;
 pub use spherule_particles::{
-    Cell, Codes, Columns, Element, Format, FrameChoice, FrameCount, Frames, Kind, Kinds,
-    LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions, ReadProgress, Role, SharedNames,
-    TextColumn, count_frames, read_frame,
+    BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice, FrameCount,
+    Frames, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions, ReadProgress,
+    Role, SharedNames, TextColumn, count_frames, read_frame,
 };
 pub use style::{
     Category, Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, TypeMaterial, TypeStyle,

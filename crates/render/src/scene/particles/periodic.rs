@@ -1,5 +1,6 @@
 //! Periodic particles: wrapping into the cell, and replication of the cell.
 
+use super::Bonds;
 use super::Cell;
 use super::Codes;
 use super::spheres::Particles;
@@ -45,6 +46,7 @@ impl Particles {
             return Err(PeriodicError::NotPeriodic);
         }
         let inverse = cell.matrix().inverse();
+        let mut moves = vec![[0; 3]; self.bonds.as_ref().map_or(0, |_| self.spheres.len())];
         let spheres = &mut self.spheres;
         for row in 0..spheres.len() {
             let center = spheres.center(row);
@@ -52,6 +54,12 @@ impl Particles {
             let edges = cell.periodic.map(f64::from);
             let wrapped = center - cell.matrix() * (cells * DVec3::from(edges));
             [spheres.x[row], spheres.y[row], spheres.z[row]] = wrapped.to_array();
+            if let Some(edges_of_row) = moves.get_mut(row) {
+                *edges_of_row = (cells * DVec3::from(edges)).to_array().map(|edges| edges as i32);
+            }
+        }
+        if let Some(bonds) = &mut self.bonds {
+            bonds.move_particles(|row| moves[row]);
         }
         Ok(())
     }
@@ -79,6 +87,9 @@ impl Particles {
         spheres.material = spheres.material.repeat(count);
         spheres.color = spheres.color.repeat(count);
         self.repeat_columns(count);
+        if let Some(bonds) = &mut self.bonds {
+            bonds.replicate(self.spheres.len() / count, copies);
+        }
         let vectors = std::array::from_fn(|edge| cell.vectors[edge] * f64::from(copies[edge]));
         self.cell = Some(Cell { vectors, ..cell });
         Ok(())
@@ -114,7 +125,10 @@ impl Particles {
         let codes = texts.chain([&self.kinds.codes]).filter(|codes| !codes.is_empty());
         let codes: usize = codes.map(Codes::width).sum();
         let numbers = size_of::<f64>() * self.numbers.len();
-        spheres.row_bytes() + (numbers + codes) as u64
+        // Bonds are sorted beside their columns; they are spread over the particles.
+        let bonds = self.bonds.as_ref().map_or(0, Bonds::len) * 3 * size_of::<[u32; 3]>();
+        let bonds = bonds.div_ceil(self.spheres.len().max(1));
+        spheres.row_bytes() + (numbers + codes + bonds) as u64
     }
 
     fn repeat_columns(&mut self, count: usize) {
@@ -208,6 +222,38 @@ mod tests {
             cell.vectors,
             [tilted().vectors[0] * 2.0, DVec3::new(3.0, 9.0, 0.0), tilted().vectors[2]]
         );
+    }
+
+    #[test]
+    fn bonds_follow_wrapped_and_copied_particles() {
+        let mut particles = particles();
+        let cell = tilted();
+        let mut bonds =
+            Bonds { first: (0..39).collect(), second: (1..40).collect(), ..Bonds::default() };
+        bonds.move_particles(|row| [row as i32 % 3, row as i32 % 2, 0]);
+        let vector = |particles: &Particles, bonds: &Bonds, bond: usize, cell: &Cell| {
+            let ends = [bonds.first[bond], bonds.second[bond]];
+            bonds.vector(bond, ends.map(|row| particles.spheres.center(row as usize)), Some(cell))
+        };
+        let before: Vec<DVec3> =
+            (0..39).map(|bond| vector(&particles, &bonds, bond, &cell)).collect();
+        particles.bonds = Some(bonds);
+        particles.wrap().unwrap();
+        let wrapped = particles.bonds.clone().unwrap();
+        for (bond, before) in before.iter().enumerate() {
+            assert!((vector(&particles, &wrapped, bond, &cell) - *before).length() < 1e-9);
+        }
+        particles.replicate([3, 2, 1]).unwrap();
+        let copies = particles.bonds.clone().unwrap();
+        assert_eq!(copies.len(), 6 * 39);
+        for bond in 0..copies.len() {
+            let one = copies.first[bond].min(copies.second[bond]) as usize % 40;
+            let other = copies.first[bond].max(copies.second[bond]) as usize % 40;
+            let vector = vector(&particles, &copies, bond, &particles.cell.unwrap());
+            let expected = before[one.min(other)];
+            let same = (vector - expected).length().min((vector + expected).length());
+            assert!(same < 1e-9, "{bond}");
+        }
     }
 
     #[test]

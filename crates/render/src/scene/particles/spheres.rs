@@ -2,7 +2,7 @@
 
 use super::radii::{FoundRadii, half_spacing, radii};
 use super::style::{Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::{Cell, LengthUnit, NumberColumn, ParticleFrame};
+use super::{Bonds, Cell, LengthUnit, NumberColumn, ParticleFrame};
 use super::{Format, ReadOptions, Role};
 use super::{Kinds, TextColumn};
 use crate::color::category;
@@ -24,6 +24,8 @@ pub struct Particles {
     pub numbers: Vec<NumberColumn>,
     /// Columns of texts that were asked for, one row per sphere.
     pub texts: Vec<TextColumn>,
+    /// Bonds between the spheres, if they were asked for ([`ReadOptions::bonds`]) and there are any.
+    pub bonds: Option<Bonds>,
     /// The cell of the simulation, scaled like positions.
     pub cell: Option<Cell>,
     /// Format of the file.
@@ -86,6 +88,7 @@ impl Particles {
         self.numbers.iter_mut().for_each(|column| retain(&mut column.values, keep));
         let texts = self.texts.iter_mut().map(|column| &mut column.codes);
         texts.chain([&mut self.kinds.codes]).for_each(|codes| codes.retain(keep));
+        self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
     }
 }
 
@@ -146,6 +149,7 @@ pub(super) fn spheres(
         kinds: frame.kinds,
         numbers: frame.numbers,
         texts: frame.texts,
+        bonds: frame.bonds,
         cell,
         format: frame.format,
         columns: frame.columns,
