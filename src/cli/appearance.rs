@@ -8,7 +8,8 @@ use spherule_render::color::{Map, Spacing};
 use spherule_render::graphics::Format;
 use spherule_render::scene::Anchor;
 use spherule_render::scene::particles::{
-    Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, Selection, TypeStyle,
+    BondSource, Coloring, ColumnColors, ElementColors, Legend, Model, ParticleStyle, Selection,
+    TypeStyle,
 };
 use spherule_render::suggest;
 use std::path::PathBuf;
@@ -46,6 +47,22 @@ pub(super) struct AppearanceArgs {
     /// Logarithmic color scale
     #[arg(long, requires = "color_by")]
     color_log: bool,
+    /// Model of molecules: spheres of the particles' radii, small spheres with sticks for bonds, or sticks alone
+    /// [default: space-filling, or ball-and-stick with --bonds]
+    #[arg(long, value_name = "MODEL", value_parser = model())]
+    model: Option<Model>,
+    /// Bonds to draw: file, those of the file; auto, those of the file or else by covalent radii; none; or rules
+    /// for types or elements, in the file's unit, as in C-C<1.7,*-H<1.2 [default: auto with a model that draws
+    /// bonds]
+    #[arg(
+        long,
+        value_name = "auto|file|none|RULES",
+        value_parser = |text: &str| text.parse::<WithText<BondSource>>()
+    )]
+    bonds: Option<WithText<BondSource>>,
+    /// Radius of the sticks of bonds, in the file's unit [default: a tenth of the median radius, 0.15 in licorice]
+    #[arg(long, value_name = "R", value_parser = radius)]
+    bond_radius: Option<f64>,
     /// Radius, color and material of a particle type, by its name or element; overrides all else; may be
     /// repeated. Colors are #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and
     /// emitter
@@ -119,6 +136,19 @@ fn map() -> impl TypedValueParser<Value = MapChoice> {
     })
 }
 
+fn model() -> impl TypedValueParser<Value = Model> {
+    let names = Model::ALL.map(|(name, _)| PossibleValue::new(name));
+    PossibleValuesParser::new(names).try_map(|name| {
+        let found = Model::ALL.iter().find(|(own, _)| *own == name);
+        found.map(|(_, model)| *model).ok_or("not one of the names")
+    })
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| *number > 0.0 && *number < f64::INFINITY);
+    number.ok_or_else(|| "give a number greater than 0".to_owned())
+}
+
 /// `LOW,HIGH` or `auto`.
 fn ends(text: &str) -> Result<Ends, String> {
     if text == "auto" {
@@ -165,7 +195,15 @@ impl AppearanceArgs {
         radii.for_each(|radius| *radius *= radius_scale);
         let select = self.select.as_deref().cloned();
         let coloring = self.coloring();
-        ParticleStyle { select, coloring, types, ..ParticleStyle::default() }
+        let given = self.bonds.as_deref().cloned();
+        let bonded = given.as_ref().is_some_and(|bonds| *bonds != BondSource::None);
+        let usual = if bonded { Model::BallAndStick } else { Model::SpaceFilling };
+        let model = self.model.unwrap_or(usual);
+        let usual = if model.draws_bonds() { BondSource::Auto } else { BondSource::None };
+        let bonds = given.unwrap_or(usual);
+        let bond_radius = self.bond_radius;
+        let rest = ParticleStyle::default();
+        ParticleStyle { select, coloring, model, bonds, bond_radius, types, ..rest }
     }
 
     /// Settings for the image's metadata; the color range is that of the `legend`.
@@ -185,6 +223,13 @@ impl AppearanceArgs {
                 put("color_log", json!(true));
             }
         }
+        if let Some(model) = self.model {
+            put("model", json!(model.name()));
+        }
+        if let Some(radius) = self.bond_radius {
+            put("bond_radius", json!(radius));
+        }
+        with_text::insert(&mut list, "bonds", &self.bonds);
         with_text::insert(&mut list, "type", &self.types);
         list
     }

@@ -161,3 +161,52 @@ fn topologies_name_the_particles_of_trajectories() {
         folder.run(&["info", &trajectory, "--topology", &format!("{data}/particles/water.pqr")]);
     assert!(text(&other.stderr).contains("has 184 particles, but its topology 12"));
 }
+
+/// Two molecules of water, one of which is cut by the periodic cell.
+const WATER: &str = "\
+6
+Lattice=\"8 0 0 0 8 0 0 0 8\" Properties=species:S:1:pos:R:3 pbc=\"T T T\"
+O 4 4 4
+H 4.757 4.586 4
+H 3.243 4.586 4
+O 0.2 1 4
+H 0.957 1.586 4
+H 7.443 1.586 4
+";
+
+#[test]
+fn bonds_are_drawn_where_they_are_asked_for() {
+    let folder = Folder::new();
+    folder.write("water.xyz", WATER);
+    // Without metadata, which names the options.
+    let pixels = |more: &[&str]| {
+        let usual = ["render", "water.xyz", "--size", "48x48", "--spp", "4", "-o", "a.ppm"];
+        folder.succeed(&[&usual, more].concat());
+        folder.read("a.ppm")
+    };
+    let spheres = pixels(&[]);
+    let balls = pixels(&["--model", "ball-and-stick"]);
+    let sticks = pixels(&["--model", "licorice"]);
+    assert!(spheres != balls && balls != sticks && spheres != sticks);
+    assert!(pixels(&["--model", "space-filling"]) == spheres);
+    assert!(pixels(&["--bonds", "none"]) == spheres);
+    // The rule gives the bonds that covalent radii give.
+    assert!(pixels(&["--bonds", "O-H<1.1"]) == balls);
+    assert!(pixels(&["--bonds", "O-H<0.9"]) != balls);
+}
+
+#[test]
+fn bonds_that_cannot_be_drawn_are_refused() {
+    let folder = Folder::new();
+    folder.write("water.xyz", WATER);
+    let refused = |args: &[&str]| {
+        let output = folder.run(&[&["render", "water.xyz", "-o", "a.png"], args].concat());
+        assert!(!output.status.success() && !folder.path("a.png").exists());
+        text(&output.stderr)
+    };
+    assert!(refused(&["--bonds", "file"]).contains("water.xyz"));
+    assert!(refused(&["--bonds", "O-X<1.1"]).contains("`X`"));
+    assert!(refused(&["--bonds", "fil"]).contains("file"));
+    assert!(refused(&["--model", "sticks"]).contains("licorice"));
+    assert!(refused(&["--bond-radius", "0"]).contains("greater than 0"));
+}

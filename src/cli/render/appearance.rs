@@ -23,6 +23,7 @@ pub(super) fn with_columns(source: Source, looks: &ParticleStyle) -> Result<Sour
     match source {
         Source::Particles(path, mut options) => {
             options.columns.wanted = looks.columns();
+            options.bonds = looks.bonds.clone();
             Ok(Source::Particles(path, options))
         }
         other if *looks == ParticleStyle::default() => Ok(other),

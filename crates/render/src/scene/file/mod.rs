@@ -152,12 +152,15 @@ impl Scene {
             let reason = format!("unknown materials, replaced by the default (known are {known})");
             particles.warnings.push(format!("{title}: {}", clipped(listed(&reason, &unknown))));
         }
+        let materials = materials.into_rows();
+        let sticks = particles.sticks(&materials, &rows);
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);
         Self {
             title: title.to_owned(),
             spheres,
-            materials: materials.into_rows(),
+            sticks,
+            materials,
             warnings: particles.warnings,
             ..Self::default()
         }

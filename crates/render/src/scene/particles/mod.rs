@@ -3,6 +3,7 @@
 //! The package `spherule-particles` reads files into a [`ParticleFrame`]; here it becomes [`Particles`],
 //! whose spheres have radii and colors.
 
+mod model;
 mod orientation;
 mod periodic;
 mod radii;
@@ -10,6 +11,7 @@ mod select;
 mod spheres;
 mod style;
 
+pub use model::Model;
 pub use orientation::{Orientation, UpReason};
 pub use periodic::PeriodicError;
 pub use select::{Fault, Selection};

@@ -26,6 +26,8 @@ pub struct Particles {
     pub texts: Vec<TextColumn>,
     /// Bonds between the spheres, if they were asked for ([`ReadOptions::bonds`]) and there are any.
     pub bonds: Option<Bonds>,
+    /// Radius of the sticks that are drawn for bonds ([`Model`](super::Model)); 0: none are drawn.
+    pub stick_radius: f64,
     /// The cell of the simulation, scaled like positions.
     pub cell: Option<Cell>,
     /// Format of the file.
@@ -150,6 +152,7 @@ pub(super) fn spheres(
         numbers: frame.numbers,
         texts: frame.texts,
         bonds: frame.bonds,
+        stick_radius: 0.0,
         cell,
         format: frame.format,
         columns: frame.columns,

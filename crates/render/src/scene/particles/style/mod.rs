@@ -12,7 +12,7 @@ pub use types::{TypeMaterial, TypeStyle};
 
 use super::NumberColumn;
 use super::select::Selection;
-use super::{Particles, SharedNames};
+use super::{BondSource, Model, Particles, SharedNames};
 use crate::scene::FileError;
 use spherule_particles::internals::aliases;
 use std::path::Path;
@@ -38,6 +38,12 @@ pub struct ParticleStyle {
     pub select: Option<Selection>,
     /// Source of colors.
     pub coloring: Coloring,
+    /// The way in which particles and bonds are drawn.
+    pub model: Model,
+    /// Source of bonds, for [`ReadOptions::bonds`](super::ReadOptions::bonds).
+    pub bonds: BondSource,
+    /// Radius of the sticks of bonds; `None` for the model's usual one.
+    pub bond_radius: Option<f64>,
     /// Styles of single types, which override all else; the last one for a type applies.
     pub types: Vec<TypeStyle>,
     /// True if ids are read although neither colors nor the selection need them.
@@ -101,6 +107,7 @@ impl ParticleStyle {
             Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None)?,
             Coloring::Column(colors) => colors.apply(path, particles, self.allow_empty)?,
         };
+        self.model.apply(particles, self.bond_radius);
         let table = &particles.kinds.table;
         let known =
             |style: &&TypeStyle| !self.allow_empty || style.check_known(path, table).is_ok();

@@ -1,0 +1,159 @@
+//! Models of molecules: particles as spheres of their radii, or as balls and sticks.
+
+use super::Particles;
+use crate::scene::{Material, NamedMaterial, Sticks};
+use glam::DVec3;
+
+/// The way in which particles and their bonds are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Model {
+    /// Spheres of the particles' radii, without bonds.
+    #[default]
+    SpaceFilling,
+    /// Small spheres, with sticks for bonds.
+    BallAndStick,
+    /// Sticks for bonds; particles are no thicker than they.
+    Licorice,
+}
+
+/// Radius of a ball, relative to that of its particle, as in `PyMOL`'s preset of the same name.
+const BALL: f64 = 0.25;
+
+/// Radius of sticks between balls, relative to the median radius of particles.
+const STICK: f64 = 0.1;
+
+/// Radius of sticks without balls, likewise: 0.25 angstrom for carbon, as in `PyMOL`.
+const LICORICE: f64 = 0.15;
+
+impl Model {
+    /// All models, with their names in options.
+    pub const ALL: [(&'static str, Self); 3] = [
+        ("space-filling", Self::SpaceFilling),
+        ("ball-and-stick", Self::BallAndStick),
+        ("licorice", Self::Licorice),
+    ];
+
+    /// Returns the name in options.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, model)| *model == self).map_or("", |(name, _)| name)
+    }
+
+    /// Returns whether bonds are drawn.
+    pub fn draws_bonds(self) -> bool {
+        self != Self::SpaceFilling
+    }
+
+    /// Changes the radii of particles to those of the model, and sets that of sticks, which is `bond_radius` if it is given.
+    pub(super) fn apply(self, particles: &mut Particles, bond_radius: Option<f64>) {
+        let radii = &mut particles.spheres.radius;
+        let Some(median) = median(radii).filter(|_| self.draws_bonds()) else { return };
+        let usual = if self == Self::Licorice { LICORICE } else { STICK };
+        let stick = bond_radius.unwrap_or(usual * median);
+        match self {
+            Self::Licorice => radii.fill(stick),
+            _ => radii.iter_mut().for_each(|radius| *radius *= BALL),
+        }
+        particles.stick_radius = stick;
+    }
+}
+
+fn median(values: &[f64]) -> Option<f64> {
+    let mut values = values.to_vec();
+    let half = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(half, f64::total_cmp).1)
+}
+
+impl Particles {
+    /// Returns the bonds as sticks with the colors of both ends; `materials` are those of the scene, and `rows` the row there of
+    /// each material of the particles.
+    ///
+    /// A bond that crosses the cell becomes two halves, one at each end, and so does one between different materials.
+    /// Materials that sticks cannot have are replaced by the first one.
+    pub(in crate::scene) fn sticks(&self, materials: &[NamedMaterial], rows: &[u32]) -> Sticks {
+        let mut sticks = Sticks::default();
+        let Some(bonds) = self.bonds.as_ref().filter(|_| self.stick_radius > 0.0) else {
+            return sticks;
+        };
+        let solid = |row: u32| {
+            let material = materials.get(row as usize).map(|named| &named.material);
+            !matches!(material, Some(Material::Dielectric { .. } | Material::Emitter { .. }))
+        };
+        let material = |sphere: usize| {
+            let row = rows.get(self.spheres.material_of(sphere) as usize).copied().unwrap_or(0);
+            if solid(row) { row } else { 0 }
+        };
+        for bond in 0..bonds.len() {
+            let ends = [bonds.first[bond], bonds.second[bond]].map(|row| row as usize);
+            let at = ends.map(|row| self.spheres.center(row));
+            let along = bonds.vector(bond, at, self.cell.as_ref());
+            let (of, colors) = (ends.map(material), ends.map(|row| self.spheres.color_of(row)));
+            if bonds.shift_of(bond) == [0; 3] && of[0] == of[1] {
+                sticks.push(at, self.stick_radius, of[0], colors);
+                continue;
+            }
+            for (end, half) in [along / 2.0, along / -2.0].into_iter().enumerate() {
+                let ends: [DVec3; 2] = [at[end], at[end] + half];
+                sticks.push(ends, self.stick_radius, of[end], [colors[end]; 2]);
+            }
+        }
+        sticks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::particles::{Bonds, Cell};
+    use crate::scene::{Rgb, Scene};
+
+    /// Three particles in a row, the last of which is bonded to the first over the cell.
+    fn particles() -> Particles {
+        let mut particles = Particles {
+            bonds: Some(Bonds {
+                first: vec![0, 0],
+                second: vec![1, 2],
+                shift: vec![[0; 3], [-1, 0, 0]],
+                ..Bonds::default()
+            }),
+            cell: Some(Cell {
+                origin: DVec3::ZERO,
+                vectors: [DVec3::X * 10.0, DVec3::Y * 10.0, DVec3::Z * 10.0],
+                periodic: [true; 3],
+            }),
+            ..Particles::default()
+        };
+        for (x, color) in [(1.0, Rgb::X), (3.0, Rgb::Y), (9.0, Rgb::Z)] {
+            particles.spheres.push(DVec3::new(x, 5.0, 5.0), 0.8, 0, color);
+        }
+        particles
+    }
+
+    #[test]
+    fn bonds_become_sticks_of_both_colors_and_halves_at_the_border() {
+        let mut own = particles();
+        assert!(Scene::of_particles(own.clone(), "").sticks.is_empty());
+        Model::BallAndStick.apply(&mut own, None);
+        assert_eq!(own.spheres.radius, [0.2; 3]);
+        let sticks = Scene::of_particles(own, "").sticks;
+        let x: Vec<[f64; 2]> = (0..3).map(|row| sticks.ends(row).map(|end| end.x)).collect();
+        assert_eq!(x, [[1.0, 3.0], [1.0, 0.0], [9.0, 10.0]]);
+        assert_eq!(sticks.colors, [[Rgb::X, Rgb::Y], [Rgb::X; 2], [Rgb::Z; 2]]);
+        assert!(sticks.radius.iter().all(|radius| (radius - 0.08).abs() < 1e-12));
+    }
+
+    #[test]
+    fn licorice_has_one_radius() {
+        let mut own = particles();
+        own.spheres.radius[1] = 3.0;
+        Model::Licorice.apply(&mut own, Some(0.3));
+        let scene = Scene::of_particles(own, "");
+        assert_eq!((scene.spheres.radius, scene.sticks.radius), (vec![0.3; 3], vec![0.3; 3]));
+    }
+
+    #[test]
+    fn space_filling_leaves_particles_as_they_are() {
+        let mut own = particles();
+        Model::SpaceFilling.apply(&mut own, Some(0.3));
+        assert_eq!(own, particles());
+    }
+}
