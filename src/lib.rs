@@ -100,7 +100,7 @@ pub mod scene {
         Ground, Header, Identity, Insets, Integrator, InvalidSetting, Label, Lens, Lettering,
         Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset, Projection, Rgb,
         Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode, SlicePlane, Spheres,
-        Tone, bounds, text_without_columns, write, write_as,
+        Sticks, Tone, bounds, text_without_columns, write, write_as,
     };
 
     /// Generators of spheres.
@@ -116,8 +116,9 @@ pub mod scene {
     pub mod particles {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
-            Cell, Coloring, ColumnColors, ElementColors, Legend, Orientation, ParticleStyle,
-            Particles, PeriodicError, Selection, TypeMaterial, TypeStyle, UpReason, of_frame, read,
+            BondRules, BondSource, Bonds, Cell, Coloring, ColumnColors, ElementColors, Legend,
+            Model, Orientation, ParticleStyle, Particles, PeriodicError, Selection, TypeMaterial,
+            TypeStyle, UpReason, of_frame, read,
         };
     }
 }

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         ColorBar,
         ColorMap,
         LayerName,
+        Model,
         Position,
         Preset,
         Render,
@@ -49,6 +50,9 @@ if TYPE_CHECKING:
         color_log: bool
         color_bar: bool | Position | ColorBar
         label_of_values: str
+        model: Model
+        bonds: str
+        bond_radius: float
         types: Mapping[str, TypeStyle]
         preset: Preset
         background: Color
@@ -78,14 +82,14 @@ PARTICLES = frozenset("radius color kinds materials columns cell origin periodic
 
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(
-    "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types preset "
-    "background view up wrap replicate show_cell slices slice_mode".split()
+    "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types model "
+    "bonds bond_radius preset background view up wrap replicate show_cell slices slice_mode".split()
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.
 SECTIONS = frozenset(
     "title render camera look legend axes scale_bar label lettering environment ground slice light material sphere "
-    "generate file".split()
+    "stick generate file".split()
 )
 
 #: Keys of the section `render`.

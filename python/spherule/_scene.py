@@ -41,6 +41,9 @@ class Scene:
         color_bar: True or a position: draw the bar of these colors. A dict is the section of a scene file.
         colors: ``"jmol"`` or ``"cpk"``: colors of elements.
         types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``.
+        model: ``"space-filling"``, ``"ball-and-stick"`` or ``"licorice"``: whether bonds are drawn, as sticks.
+        bonds: ``"auto"`` for bonds by covalent radii, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
+            ``bond_radius`` is the radius of their sticks.
         select: Draw only particles for which this is true, as in ``"element != H and z > 10"``.
         radius_scale: A factor on all radii.
         preset: ``"figure"``, ``"chalk"``, ``"studio"``, ``"cloudy"``, ``"glossy"``, ``"depthcue"`` or ``"outline"``.
@@ -281,8 +284,10 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
         if not low <= high:
             raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
         ends = (low, high)
-    names = ("select", "colors", "color_by", "color_map")
+    names = ("select", "colors", "color_by", "color_map", "model", "bonds")
     style = {name: given.get(name) for name in names}
+    radius = given.get("bond_radius")
+    style["bond_radius"] = None if radius is None else float(radius)
     return {**style, "color_range": ends, "color_log": bool(given.get("color_log", False)), "types": types}
 
 

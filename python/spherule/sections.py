@@ -18,6 +18,7 @@ ColorMap = Literal[
     "viridis_r", "cividis_r", "inferno_r", "magma_r", "plasma_r", "turbo_r", "coolwarm_r",
 ]  # fmt: skip
 LayerName = Literal["albedo", "normal", "depth", "coverage", "id", "variance", "samples"]
+Model = Literal["space-filling", "ball-and-stick", "licorice"]
 Preset = Literal["figure", "chalk", "studio", "cloudy", "glossy", "depthcue", "outline"]
 Side = Literal["auto", "iso", "x", "y", "z", "-x", "-y", "-z"]
 UpAxis = Literal["x", "y", "z", "-x", "-y", "-z"]

@@ -10,7 +10,8 @@ use spherule::particles::{
     TextColumn,
 };
 use spherule::scene::particles::{
-    Coloring, ColumnColors, ElementColors, ParticleStyle, Selection, TypeMaterial, TypeStyle,
+    BondSource, Coloring, ColumnColors, ElementColors, Model, ParticleStyle, Selection,
+    TypeMaterial, TypeStyle,
 };
 use std::str::FromStr;
 
@@ -54,6 +55,9 @@ pub(crate) struct StyleTable {
     color_map: Option<String>,
     color_range: Option<[f64; 2]>,
     color_log: bool,
+    model: Option<String>,
+    bonds: Option<String>,
+    bond_radius: Option<f64>,
     types: Vec<TypeTuple>,
 }
 
@@ -143,6 +147,22 @@ impl StyleTable {
                 return Err(fault(format!("`colors` is \"{other}\", but must be jmol or cpk")));
             }
         };
+        let bonds = self.bonds.as_deref().map(BondSource::from_str).transpose().map_err(fault)?;
+        let model = match self.model.as_deref() {
+            Some(name) => model_of(name).map_err(fault)?,
+            None if bonds.as_ref().is_some_and(|bonds| *bonds != BondSource::None) => {
+                Model::BallAndStick
+            }
+            None => Model::SpaceFilling,
+        };
+        let usual = if model.draws_bonds() { BondSource::Auto } else { BondSource::None };
+        let bonds = bonds.unwrap_or(usual);
+        if let Some(radius) =
+            self.bond_radius.filter(|radius| !(*radius > 0.0 && radius.is_finite()))
+        {
+            return Err(fault(format!("`bond_radius` is {radius}, but must be more than 0")));
+        }
+        let bond_radius = self.bond_radius;
         let types = self.types.into_iter().map(|(name, radius, color, material)| {
             let named = |word: &String| TypeMaterial::ALL.iter().find(|(own, _)| own == word);
             let known = material.as_ref().map(|word| {
@@ -155,8 +175,17 @@ impl StyleTable {
             Ok(TypeStyle { name, radius, color, material: known.transpose()? })
         });
         let types = types.collect::<Result<_, _>>().map_err(fault)?;
-        Ok(ParticleStyle { select, coloring, types, ..ParticleStyle::default() })
+        let rest = ParticleStyle::default();
+        Ok(ParticleStyle { select, coloring, model, bonds, bond_radius, types, ..rest })
     }
+}
+
+fn model_of(name: &str) -> Result<Model, String> {
+    let found = Model::ALL.iter().find(|(own, _)| *own == name).map(|(_, model)| *model);
+    found.ok_or_else(|| {
+        let names = Model::ALL.map(|(name, _)| name).join(", ");
+        format!("unknown model \"{name}\"; models are {names}")
+    })
 }
 
 /// The map with a name, which may end in `_r` for the reversed one.

@@ -353,6 +353,8 @@ impl Work {
         let Self { options, style, staging, given, .. } = &self;
         let path = Path::new(ARRAYS);
         let title = frame.title.clone();
+        let found = frame.find_bonds(&style.bonds);
+        found.map_err(|message| FileError::whole_file(path, message))?;
         let mut particles = of_frame(path, frame, options)?;
         particles.materials.clone_from(&given.materials);
         let legend = style.apply(path, &mut particles)?;
@@ -404,7 +406,7 @@ impl Work {
         if !has_pose(camera) {
             framing::choose(&mut scene, staging.view, Some(&orientation), &normals);
         }
-        self.append_spheres(&mut scene);
+        self.append_bodies(&mut scene);
         if let Some(rows) = &mut rows {
             let added = scene.spheres.len() - rows.len();
             rows.extend((count..count + added).map(|row| row as u32));
@@ -435,14 +437,19 @@ impl Work {
         self.style.select.is_some() || self.staging.replicate.is_some() || scaled
     }
 
-    /// Adds the spheres of the sections, and their materials.
-    fn append_spheres(&self, scene: &mut spherule::Scene) {
-        if self.given.spheres.is_empty() {
+    /// Adds the spheres and sticks of the sections, and their materials.
+    fn append_bodies(&self, scene: &mut spherule::Scene) {
+        if self.given.is_empty() {
             return;
         }
         let count = self.given.materials.len() as u32;
         let rows: Vec<u32> = (0..count).map(|row| material_row(scene, &self.given, row)).collect();
         scene.spheres.append(self.given.spheres.clone(), &rows);
+        let sticks = &self.given.sticks;
+        for row in 0..sticks.len() {
+            let material = rows.get(sticks.material[row] as usize).copied().unwrap_or(0);
+            scene.sticks.push(sticks.ends(row), sticks.radius[row], material, sticks.colors[row]);
+        }
     }
 }
 

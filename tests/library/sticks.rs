@@ -44,6 +44,7 @@ fn at(features: &[Features], x: f64, y: f64) -> Features {
 fn a_stick_of_no_length_is_a_sphere() {
     let scene = |stick: bool| {
         let mut scene = furnace();
+        scene.settings.depth = Some(3);
         let row = material(&mut scene, lambertian(0.6));
         for (x, radius) in [(-1.0, 0.7), (0.8, 1.0)] {
             let center = DVec3::new(x, 0.1, 0.0);
@@ -227,6 +228,7 @@ fn hidden_sticks_still_throw_shadows() {
 #[test]
 fn nothing_is_seen_from_within() {
     let mut scene = furnace();
+    scene.settings.depth = Some(3);
     let row = material(&mut scene, lambertian(0.9));
     scene.sticks.push([DVec3::NEG_X * 3.0, DVec3::X * 3.0], 1.0, row, [Rgb::ONE; 2]);
     look(&mut scene, DVec3::new(0.2, 0.1, 0.0), DVec3::new(1.0, 0.5, 0.2), 60.0);
