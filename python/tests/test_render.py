@@ -43,6 +43,10 @@ def of_program(program, folder, source, *options):
             ["--spp", "2", "--preset", "outline", "--select", "z > 0.5"],
         ),
         (
+            {"spp": 2, "bonds": "*-*<0.2", "bond_radius": 0.01},
+            ["--spp", "2", "--bonds", "*-*<0.2", "--bond-radius", "0.01"],
+        ),
+        (
             {"spp": 2, "integrator": "ao", "ao_distance": 0.3},
             ["--spp", "2", "--integrator", "ao", "--ao-distance", "0.3"],
         ),
@@ -52,6 +56,31 @@ def test_pictures_are_those_of_the_program(program, tmp_path, cloud, options, wo
     np.save(tmp_path / "cloud.npy", cloud)
     expected = of_program(program, tmp_path, "cloud.npy", "--size", "120x80", *words)
     assert spherule.render(cloud, size=(120, 80), **options).encode("pfm") == expected
+
+
+def test_molecules_are_drawn_with_their_bonds():
+    water = [[0, 0, 0], [0.757, 0.586, 0], [-0.757, 0.586, 0]]
+    kinds = ["O", "H", "H"]
+    pixels = {
+        model: spherule.render(water, kinds=kinds, model=model, **SMALL).pixels
+        for model in ("space-filling", "ball-and-stick", "licorice")
+    }
+    assert not np.array_equal(pixels["space-filling"], pixels["ball-and-stick"])
+    assert not np.array_equal(pixels["licorice"], pixels["ball-and-stick"])
+    rules = spherule.render(water, kinds=kinds, bonds="O-H<1", **SMALL).pixels
+    assert np.array_equal(rules, pixels["ball-and-stick"])
+    for wrong in ({"model": "wires"}, {"bonds": "file"}, {"bonds": "O-X<1"}, {"bond_radius": 0}):
+        with pytest.raises(spherule.Error, match="wires|no bonds|`X`|bond_radius"):
+            spherule.render(water, kinds=kinds, **wrong, **SMALL)
+
+
+def test_sticks_are_sections():
+    stick = {"from": [0, 0, 0], "to": [2, 1, 0], "radius": 0.3, "colors": ["red", "blue"]}
+    picture = spherule.Scene(stick=[stick]).render(layers=["id", "albedo"], **SMALL)
+    ids = picture.layers["id"]
+    assert set(np.unique(ids)) == {0, ids.max()}
+    red, blue = (picture.layers["albedo"][..., channel].max() for channel in (0, 2))
+    assert red > 0 and blue > 0
 
 
 def test_scene_files_give_the_pictures_of_the_program(program, tmp_path):

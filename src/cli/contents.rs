@@ -40,6 +40,15 @@ pub(super) fn spheres(count: u64) -> String {
     plural(count, "sphere")
 }
 
+/// `2 spheres`, or `2 spheres, 1 stick`.
+pub(super) fn bodies(count: u64, sticks: u64) -> String {
+    if sticks == 0 {
+        spheres(count)
+    } else {
+        format!("{}, {}", spheres(count), plural(sticks, "stick"))
+    }
+}
+
 /// A count and its noun.
 pub(super) fn plural(count: u64, noun: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };

@@ -23,6 +23,7 @@ struct Info {
     /// Null for scenes.
     particles: Option<ParticleInfo>,
     spheres: usize,
+    sticks: usize,
     dropped_spheres: u64,
     /// Lower and upper corner; null without spheres.
     bounds: Option<[[f64; 3]; 2]>,
@@ -121,6 +122,7 @@ impl Info {
             title: source.title(scene).into_owned(),
             particles: None,
             spheres: scene.spheres.len(),
+            sticks: scene.sticks.len(),
             dropped_spheres: world.features.vanished + world.features.hidden,
             bounds: bounds(&scene.spheres).map(|ends| ends.map(|end| end.to_array())),
             radius: radii(scene),
@@ -142,6 +144,9 @@ impl Info {
         output::print(format_args!("{}: {}", self.file, self.title));
         self.particles.iter().for_each(ParticleInfo::print);
         output::print(format_args!("spheres      {}", HumanCount(self.spheres as u64)));
+        if self.sticks > 0 {
+            output::print(format_args!("sticks       {}", HumanCount(self.sticks as u64)));
+        }
         if let (Some([low, high]), Some([least, greatest])) = (self.bounds, self.radius) {
             output::print(format_args!("bounds       {low:?} to {high:?}"));
             output::print(format_args!("radius       {least} to {greatest}"));

@@ -6,7 +6,7 @@ use super::noise::{NoiseSummary, missed};
 use super::notices::Notices;
 use super::prepare::Prepared;
 use crate::cli::args::ReportArgs;
-use crate::cli::contents::{found, plural, spheres};
+use crate::cli::contents::{bodies, found, plural};
 use crate::cli::devices::DeviceSummary;
 use crate::cli::names::TRAVERSALS;
 use crate::cli::output;
@@ -61,6 +61,7 @@ struct TracerSummary {
 #[derive(Serialize)]
 struct Statistics {
     spheres: u64,
+    sticks: u64,
     dropped_spheres: u64,
     sphere_bytes: usize,
     tree_bytes: usize,
@@ -173,7 +174,7 @@ impl<'a> Summary<'a> {
             self.output,
             plural(statistics.samples, "sample"),
             statistics.load_seconds,
-            spheres(statistics.spheres),
+            bodies(statistics.spheres, statistics.sticks),
             statistics.build_seconds,
             BinaryBytes(statistics.tree_bytes as u64),
             statistics.render_seconds,
@@ -232,6 +233,7 @@ impl Statistics {
         let seconds = render.elapsed.as_secs_f64();
         Self {
             spheres: world.spheres.len() as u64,
+            sticks: world.sticks.len() as u64,
             dropped_spheres: world.features.vanished + world.features.hidden,
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),

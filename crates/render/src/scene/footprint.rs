@@ -20,6 +20,13 @@ const BUILDING: u64 = 48;
 /// An emissive sphere in the light tree during its construction.
 const EMITTER: u64 = 220;
 
+/// A stick in the scene's columns: ends, radius, material and two colors.
+const STICK: u64 = 84;
+
+/// A stick while its tree is built, in addition: rows and their copy, the sphere around it, its block, and the materials and
+/// colors of both halves.
+const STICK_BUILDING: u64 = 172;
+
 /// A flag, such as for spheres that slices hide from the camera.
 const FLAG: u64 = 1;
 
@@ -52,6 +59,8 @@ pub struct Footprint {
     pub materials: bool,
     /// Spheres that emit light.
     pub emitters: u64,
+    /// Sticks.
+    pub sticks: u64,
     /// Spheres that the camera sees, if slices hide others.
     pub visible: Option<u64>,
 }
@@ -65,7 +74,8 @@ impl Footprint {
             scene.slices.iter().filter(|slice| slice.mode == SliceMode::Hide).collect();
         let hidden = |row: &usize| hiding.iter().any(|slice| slice.hides(spheres.center(*row)));
         let visible = || (0..spheres.len()).filter(|row| !hidden(row)).count() as u64;
-        Self { visible: (!hiding.is_empty()).then(visible), ..columns }
+        let sticks = scene.sticks.len() as u64;
+        Self { visible: (!hiding.is_empty()).then(visible), sticks, ..columns }
     }
 
     /// Counts spheres in their columns.
@@ -75,6 +85,7 @@ impl Footprint {
             colors: ColorColumn::of(&spheres.color),
             materials: !spheres.material.is_empty(),
             emitters: emitters(spheres, materials),
+            sticks: 0,
             visible: None,
         }
     }
@@ -86,6 +97,7 @@ impl Footprint {
             colors: self.colors.max(other.colors),
             materials: self.materials || other.materials,
             emitters: self.emitters.saturating_add(other.emitters),
+            sticks: self.sticks.saturating_add(other.sticks),
             visible: None,
         }
     }
@@ -94,7 +106,7 @@ impl Footprint {
     pub fn scene(&self) -> u64 {
         let colors = if self.colors == ColorColumn::None { 0 } else { size_of::<Rgb>() as u64 };
         let each = Spheres::POSITION_BYTES + colors + self.material_bytes();
-        self.spheres.saturating_mul(each)
+        self.spheres.saturating_mul(each).saturating_add(self.sticks.saturating_mul(STICK))
     }
 
     /// Returns the peak memory in bytes of scene and world, while
@@ -126,7 +138,9 @@ impl Footprint {
         let world = self.resident().saturating_add(kept);
         let hiding = world.saturating_add(each(flags)).saturating_add(hiding);
         let lighting = world.saturating_add(self.emitters.saturating_mul(EMITTER));
-        encoding.max(placing).max(building).max(hiding).max(lighting)
+        let sticks = if kept > 0 { STICK_BUILDING } else { STICK + STICK_BUILDING };
+        let spheres = encoding.max(placing).max(building).max(hiding).max(lighting);
+        spheres.saturating_add(self.sticks.saturating_mul(sticks))
     }
 
     fn material_bytes(&self) -> u64 {
@@ -223,6 +237,7 @@ mod tests {
             colors: ColorColumn::Rows,
             materials: true,
             emitters: u64::MAX,
+            sticks: u64::MAX,
             visible: Some(u64::MAX),
         };
         assert_eq!((all.scene(), all.peak(), all.resident()), (u64::MAX, u64::MAX, u64::MAX));
