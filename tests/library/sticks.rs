@@ -31,8 +31,10 @@ fn parallel() -> Scene {
 }
 
 fn features(scene: &Scene) -> Vec<Features> {
-    let world = World::build(scene).unwrap();
-    layers(&world, &scene.settings, &Options::default(), &Layer::ALL).unwrap().pixels
+    let world = World::build(scene).expect("a valid scene");
+    layers(&world, &scene.settings, &Options::default(), &Layer::ALL)
+        .expect("valid settings")
+        .pixels
 }
 
 fn at(features: &[Features], x: f64, y: f64) -> Features {
