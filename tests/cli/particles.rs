@@ -180,9 +180,9 @@ fn bonds_are_drawn_where_they_are_asked_for() {
     folder.write("water.xyz", WATER);
     // Without metadata, which names the options.
     let pixels = |more: &[&str]| {
-        let usual = ["render", "water.xyz", "--size", "48x48", "--spp", "4", "-o", "a.ppm"];
+        let usual = ["render", "water.xyz", "--size", "48x48", "--spp", "4", "-o", "a.pfm"];
         folder.succeed(&[&usual, more].concat());
-        folder.read("a.ppm")
+        folder.read("a.pfm")
     };
     let spheres = pixels(&[]);
     let balls = pixels(&["--model", "ball-and-stick"]);
