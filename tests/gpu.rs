@@ -69,7 +69,7 @@ fn what_the_device_does_is_told() {
     let (.., notes) = render("gpu", &["--integrator", "ao", "--verbose"]);
     assert!(notes.contains("follows paths from the camera to their ends"), "{notes}");
     let (.., notes) = render("gpu", &["--verbose"]);
-    assert!(notes.contains("the processor shades, for the scene has lights"), "{notes}");
+    assert!(notes.contains("the processor shades, for caustics are sampled"), "{notes}");
 }
 
 #[test]

@@ -10,8 +10,8 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Storage buffers that the kernels of queries bind at once, and those of paths.
-const STORAGE_BUFFERS: u32 = 7;
-const PATH_BUFFERS: u32 = 13;
+const STORAGE_BUFFERS: u32 = 8;
+const PATH_BUFFERS: u32 = 17;
 
 /// An adapter: a GPU as a driver offers it, or a processor that a driver makes one of.
 #[derive(Clone, Debug)]

@@ -16,8 +16,11 @@
 
 #[cfg(test)]
 mod bounds;
+mod columns;
 mod device;
 mod error;
+mod job;
+mod materials;
 mod paths;
 mod probe;
 mod spheres;

@@ -103,8 +103,8 @@ fn are_like_the_processor(device: &Device) -> Result<bool, DeviceError> {
     let operands = double_operands();
     let params = Params { count: operands.len() as u32, ..Params::default() };
     let bytes = (size_of::<[f64; 10]>() * operands.len()) as u64;
-    let uniform = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-    let numbers = device.buffer("numbers", size_of::<Params>() as u64, uniform)?;
+    let storage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    let numbers = device.buffer("numbers", size_of::<Params>() as u64, storage)?;
     device.write(&numbers, bytemuck::bytes_of(&params));
     let input = device.filled("operands", bytemuck::cast_slice(&operands))?;
     let output = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
@@ -129,7 +129,8 @@ fn are_like_the_processor(device: &Device) -> Result<bool, DeviceError> {
     Ok(operands.iter().zip(results).all(|(operands, found)| bits(own(operands)) == bits(found)))
 }
 
-/// Returns triples of numbers, of which single precision holds some, and some are in the middle between two that it holds.
+/// Returns triples of numbers, of which single precision holds some, and some are in the middle between two that it
+/// holds.
 fn double_operands() -> Vec<[f64; 3]> {
     let mut random = Random::new(12);
     let mut number = |kind: usize| {

@@ -16,7 +16,7 @@ pub(crate) enum Kernel {
     Occlusion,
     /// Light of shadow rays.
     Shadows,
-    /// A bounce of paths among diffuse surfaces.
+    /// A bounce of paths.
     Path,
 }
 
@@ -58,6 +58,7 @@ impl Kernel {
         const PARAMS: &str = include_str!("stages/params.wgsl");
         const SPHERES: &str = include_str!("stages/spheres.wgsl");
         const RAYS: &str = include_str!("stages/rays.wgsl");
+        const PATH_STATE: &str = include_str!("stages/path_state.wgsl");
         // What paths need of a job, its arithmetic and its samples.
         const JOB: [&str; 7] = [
             PARAMS,
@@ -68,11 +69,29 @@ impl Kernel {
             include_str!("stages/warp.wgsl"),
             include_str!("stages/ground.wgsl"),
         ];
-        const SURFACE: [&str; 4] = [
+        const SURFACE: [&str; 5] = [
             SPHERES,
+            include_str!("stages/materials.wgsl"),
             include_str!("stages/surface.wgsl"),
             include_str!("stages/basis.wgsl"),
             include_str!("stages/environment.wgsl"),
+        ];
+        const BSDFS: [&str; 7] = [
+            include_str!("stages/shade.wgsl"),
+            include_str!("stages/fresnel.wgsl"),
+            include_str!("stages/ggx.wgsl"),
+            include_str!("stages/lambertian.wgsl"),
+            include_str!("stages/conductor.wgsl"),
+            include_str!("stages/plastic.wgsl"),
+            include_str!("stages/reflective.wgsl"),
+        ];
+        const PATH: [&str; 6] = [
+            PATH_STATE,
+            RAYS,
+            include_str!("stages/direct_light.wgsl"),
+            include_str!("stages/emission.wgsl"),
+            include_str!("stages/roulette.wgsl"),
+            include_str!("stages/path.wgsl"),
         ];
         let of = |groups: &[&[&'static str]]| groups.concat();
         match self {
@@ -84,7 +103,7 @@ impl Kernel {
             Self::Generate => {
                 let camera = include_str!("stages/camera.wgsl");
                 let generate = include_str!("stages/generate.wgsl");
-                ("generate", of(&[&JOB, &[RAYS, camera, generate]]))
+                ("generate", of(&[&JOB, &[PATH_STATE, RAYS, camera, generate]]))
             }
             Self::Occlusion => {
                 ("ao", of(&[&JOB, &SURFACE, &[RAYS, include_str!("stages/ao.wgsl")]]))
@@ -93,9 +112,7 @@ impl Kernel {
                 let shadows = include_str!("stages/shadow_queue.wgsl");
                 ("shadow_queue", vec![PARAMS, RAYS, shadows])
             }
-            Self::Path => {
-                ("path", of(&[&JOB, &SURFACE, &[RAYS, include_str!("stages/path.wgsl")]]))
-            }
+            Self::Path => ("path", of(&[&JOB, &SURFACE, &BSDFS, &PATH])),
         }
     }
 }

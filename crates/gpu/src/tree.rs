@@ -64,7 +64,7 @@ pub(crate) struct Params {
     pub(crate) first_sample: u32,
     pub(crate) samples: u32,
     pub(crate) bounce: u32,
-    pub(crate) unused: u32,
+    pub(crate) shadows: u32,
 }
 
 /// Buffers of one dispatch.
@@ -322,7 +322,7 @@ impl DeviceTree {
         let words = |words: usize| (size_of::<u32>() * words) as u64;
         let buffer = |what, bytes, usage| self.device.buffer(what, bytes, usage);
         let params =
-            buffer("numbers", size_of::<Params>() as u64, Usage::UNIFORM | Usage::COPY_DST)?;
+            buffer("numbers", size_of::<Params>() as u64, Usage::STORAGE | Usage::COPY_DST)?;
         let column = buffer("rays", words(RAY * rays), Usage::STORAGE | Usage::COPY_DST)?;
         let found = buffer("answers", words(rays), Usage::STORAGE | Usage::COPY_SRC)?;
         let copy = buffer("answers to read", words(rays), Usage::MAP_READ | Usage::COPY_DST)?;

@@ -14,7 +14,10 @@ use spherule_render::film::Region;
 use spherule_render::render::{
     End, ImagePart, Options, Progress, Render, ResumableRender, render, shaded_by_the_processor,
 };
-use spherule_render::scene::{EnvironmentMap, Integrator, Lens, Material, Rgb, Roulette, Scene};
+use spherule_render::scene::{
+    Background, ConductorFresnel, EnvironmentMap, Integrator, Lens, Light, Material, Preset, Rgb,
+    Roulette, Scene,
+};
 use spherule_render::settings::{Filter, SamplerKind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -129,6 +132,115 @@ fn paths_among_diffuse_surfaces_are_the_processors() {
     }
     assert!(all.paths > 50_000, "{all:?}");
     assert!(all.unknown_paths * 100 < all.paths, "{all:?}");
+}
+
+/// Makes surfaces of these materials in turn, by the order of the scene's.
+fn of_materials(scene: &mut Scene, materials: &[Material]) {
+    for (named, material) in scene.materials.iter_mut().zip(materials.iter().cycle()) {
+        named.material = material.clone();
+    }
+}
+
+/// Returns a material of each kind that is opaque, or several.
+fn opaque_materials() -> Vec<(&'static str, Material)> {
+    let color = Rgb::new(0.9, 0.6, 0.3);
+    let (eta, k) = (Rgb::new(0.143, 0.375, 1.442), Rgb::new(3.983, 2.386, 1.603));
+    let metal = |fresnel, roughness| Material::Conductor { fresnel, roughness };
+    vec![
+        ("lambertian", Material::Lambertian { color }),
+        ("mirror", metal(ConductorFresnel::Constant(color), 0.0)),
+        ("schlick", metal(ConductorFresnel::Schlick(color), 0.3)),
+        ("gold", metal(ConductorFresnel::Exact { eta, k }, 0.0)),
+        ("rough gold", metal(ConductorFresnel::Exact { eta, k }, 0.15)),
+        ("plastic", Material::Plastic { color, ior: 1.5 }),
+        ("reflective", Material::Reflective { color, diffuse: 0.6, mirror: 0.3 }),
+        ("black", Material::Reflective { color, diffuse: 0.0, mirror: 0.0 }),
+    ]
+}
+
+/// Adds a sun, the only light beside the sky.
+fn add_sun(scene: &mut Scene, angular_radius: f64) {
+    let direction = DVec3::new(0.4, 0.7, 0.5).normalize();
+    let irradiance = Rgb::new(2.0, 1.8, 1.5);
+    scene.lights = vec![Light::Sun { direction, irradiance, angular_radius }];
+}
+
+/// Compares a scene of one material, with other colors for each sphere, under the sky and under suns of these
+/// angular radii.
+fn compare_material(name: &str, material: &Material, suns: &[f64], device: &Arc<Device>) {
+    for sun in [None].into_iter().chain(suns.iter().copied().map(Some)) {
+        let mut scene = named("paper-field-20.toml");
+        diffuse(&mut scene);
+        for named in scene.materials.iter_mut().filter(|row| row.name != "floor") {
+            named.material = material.clone();
+        }
+        scene.settings.caustics = false;
+        if let Some(radius) = sun {
+            add_sun(&mut scene, radius);
+        }
+        let found = compare(&format!("{name}, sun {sun:?}"), &scene, device);
+        assert!(found.unknown_paths * 50 < found.paths, "{name} {sun:?} {found:?}");
+    }
+}
+
+#[test]
+fn each_material_under_sky_and_sun_is_the_processors() {
+    let Some(device) = device() else { return };
+    for (name, material) in opaque_materials() {
+        compare_material(name, &material, &[0.0, 3.0, 30.0], &device);
+    }
+}
+
+#[test]
+fn light_that_coats_mirror_is_the_processors() {
+    let Some(device) = device() else { return };
+    for name in ["plastic", "reflective", "lambertian"] {
+        let all = opaque_materials();
+        let (_, material) = all.iter().find(|row| row.0 == name).unwrap();
+        for background in [false, true] {
+            let mut scene = named("paper-field-20.toml");
+            diffuse(&mut scene);
+            of_materials(&mut scene, std::slice::from_ref(material));
+            // So large that no caustics are sampled.
+            add_sun(&mut scene, 25.0);
+            if background {
+                scene.look.background = Background::Color(Rgb::new(0.1, 0.5, 0.3));
+            } else {
+                scene.environment.illuminates = false;
+            }
+            compare(&format!("{name} {background}"), &scene, &device);
+        }
+    }
+}
+
+#[test]
+fn mixed_materials_in_all_scenes_are_the_processors() {
+    let Some(device) = device() else { return };
+    let materials: Vec<Material> =
+        opaque_materials().into_iter().map(|(_, material)| material).collect();
+    for path in files() {
+        let mut scene = load(&path);
+        diffuse(&mut scene);
+        of_materials(&mut scene, &materials);
+        add_sun(&mut scene, 12.0);
+        scene.settings.caustics = false;
+        compare(&path.display().to_string(), &scene, &device);
+    }
+}
+
+#[test]
+fn looks_of_particles_are_the_processors() {
+    let Some(device) = device() else { return };
+    for preset in Preset::ALL {
+        let mut scene = named("paper-field-20.toml");
+        diffuse(&mut scene);
+        scene.look = preset.look();
+        preset.replace_materials(&mut scene);
+        preset.set(&mut scene);
+        preset.light(&mut scene, DVec3::Y);
+        let found = compare(preset.name(), &scene, &device);
+        assert!(found.paths > 1000 && found.unknown_paths * 50 < found.paths, "{found:?}");
+    }
 }
 
 /// A change of a scene.
@@ -254,11 +366,16 @@ fn what_devices_do_not_do_is_told() {
         shaded_by_the_processor(&world, &scene.settings)
     };
     assert_eq!(told(&|_| ()), None);
-    let metal = |scene: &mut Scene| {
-        scene.materials[0].material =
-            Material::Reflective { color: Rgb::ONE, diffuse: 0.5, mirror: 0.5 };
+    let glass = |scene: &mut Scene| {
+        scene.materials[0].material = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
     };
-    assert_eq!(told(&metal), Some("not all materials are diffuse"));
+    assert_eq!(told(&glass), Some("the scene has glass"));
+    let caustics = |scene: &mut Scene| {
+        let (_, plastic) = opaque_materials().swap_remove(5);
+        of_materials(scene, &[plastic]);
+        add_sun(scene, 5.0);
+    };
+    assert_eq!(told(&caustics), Some("caustics are sampled"));
     let whitted = |scene: &mut Scene| {
         scene.settings.integrator = Integrator::Whitted { shadow_samples: 1 };
     };
@@ -268,5 +385,5 @@ fn what_devices_do_not_do_is_told() {
     let scene = named("veach.toml");
     let world = World::build(&scene).unwrap();
     let why = shaded_by_the_processor(&world, &scene.settings);
-    assert_eq!(why, Some("the scene has lights other than an even sky"));
+    assert_eq!(why, Some("the scene has lights other than a sun and an even sky"));
 }

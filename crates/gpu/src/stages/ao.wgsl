@@ -6,13 +6,14 @@
 @group(0) @binding(3) var<storage, read> spheres_1: array<vec4<u32>>;
 @group(0) @binding(4) var<storage, read> spheres_2: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> spheres_3: array<vec4<u32>>;
-@group(0) @binding(6) var<storage, read> albedos: array<f32>;
-@group(0) @binding(7) var<storage, read> sobol: array<vec4<u32>>;
-@group(0) @binding(8) var<storage, read> sequences: array<Sequence>;
-@group(0) @binding(9) var<storage, read> found: array<u32>;
-@group(0) @binding(10) var<storage, read_write> rays: array<vec4<u32>>;
-@group(0) @binding(11) var<storage, read_write> lights: array<vec4<f32>>;
-@group(0) @binding(12) var<storage, read_write> paths: array<vec4<u32>>;
+@group(0) @binding(6) var<storage, read> appearance: array<vec4<u32>>;
+@group(0) @binding(7) var<storage, read> materials: array<vec4<u32>>;
+@group(0) @binding(8) var<storage, read> sobol: array<vec4<u32>>;
+@group(0) @binding(9) var<storage, read> sequences: array<Sequence>;
+@group(0) @binding(10) var<storage, read> found: array<u32>;
+@group(0) @binding(11) var<storage, read_write> rays: array<vec4<u32>>;
+@group(0) @binding(12) var<storage, read_write> lights: array<vec4<f32>>;
+@group(0) @binding(13) var<storage, read_write> paths: array<vec4<u32>>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -33,14 +34,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let light = albedo_of(surface.hit);
     let draw = draw4(sequences[path], directions(0u));
-    let direction = to_world(basis_about(surface.facing), cosine_hemisphere(draw.xy));
+    let direction = normalized(to_world(basis_about(surface.facing), cosine_hemisphere(draw.xy)));
     let lit = max(max(light.x, light.y), light.z) > 0.0;
     let hidden = surface.inside && surface.hit != GROUND && chord_length(surface, direction) < job.distance;
     if !lit || hidden {
         end_ray(path);
         return;
     }
-    paths[path].w += 2u;
+    paths[path].w += SHADOW_RAY;
     lights[path] = vec4<f32>(light, 0.0);
     let ground = cross_ground(surface.point, direction, surface.hit);
     if ground.crossed && ground.t < job.distance {

@@ -20,12 +20,12 @@ fn kept3(v: vec3<f64>) -> vec3<f64> {
 // A quotient of single precision: that of double precision is never so close to the middle of two numbers that rounding
 // it again would matter.
 fn quotient(x: f32, y: f32) -> f32 {
-    return f32(f64(x) / f64(y));
+    return keep(f32(f64(x) / f64(y)));
 }
 
 // A square root of single precision; as for quotients.
 fn root(x: f32) -> f32 {
-    return f32(sqrt(f64(x)));
+    return keep(f32(sqrt(f64(x))));
 }
 
 // x * y + z, rounded once.
@@ -50,6 +50,11 @@ fn mul_add(x: f32, y: f32, z: f32) -> f32 {
     return select(near, other, (lost > 0.0) == (above > 0.0));
 }
 
+// A color or vector times a number.
+fn scaled(v: vec3<f32>, factor: f32) -> vec3<f32> {
+    return vec3<f32>(keep(v.x * factor), keep(v.y * factor), keep(v.z * factor));
+}
+
 fn dot_fused(a: vec3<f32>, b: vec3<f32>) -> f32 {
     return mul_add(a.x, b.x, mul_add(a.y, b.y, keep(a.z * b.z)));
 }
@@ -63,7 +68,7 @@ fn along(base: vec3<f32>, direction: vec3<f32>, t: f32) -> vec3<f32> {
 }
 
 fn normalized(v: vec3<f32>) -> vec3<f32> {
-    return keep3(v * quotient(1.0, root(dot_fused(v, v))));
+    return scaled(v, quotient(1.0, root(dot_fused(v, v))));
 }
 
 fn dot_unfused(a: vec3<f64>, b: vec3<f64>) -> f64 {

@@ -16,8 +16,17 @@ fn basis_about(normal: vec3<f32>) -> Basis {
     return Basis(tangent, vec3<f32>(b, sign + y2, -normal.y), normal);
 }
 
-// A local direction in world axes, of unit length.
+// A local direction in world axes.
 fn to_world(basis: Basis, local: vec3<f32>) -> vec3<f32> {
-    let up = keep3(basis.normal * local.z);
-    return normalized(along(along(up, basis.bitangent, local.y), basis.tangent, local.x));
+    let up = scaled(basis.normal, local.z);
+    return along(along(up, basis.bitangent, local.y), basis.tangent, local.x);
+}
+
+// A direction of the world in local axes.
+fn to_local(basis: Basis, world: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(
+        dot_fused(world, basis.tangent),
+        dot_fused(world, basis.bitangent),
+        dot_fused(world, basis.normal),
+    );
 }

@@ -9,9 +9,8 @@
 // As `hits.wgsl` reads them.
 @group(0) @binding(5) var<storage, read_write> rays: array<vec4<u32>>;
 @group(0) @binding(6) var<storage, read_write> sequences: array<Sequence>;
-// Throughput; later of ambient occlusion, the light of the shadow ray.
-@group(0) @binding(7) var<storage, read_write> lights: array<vec4<f32>>;
-// Radiance, in bits; and a word: its bit 0 is set if the radiance is unknown, the others count rays after the camera's.
+@group(0) @binding(7) var<storage, read_write> states: array<PathState>;
+// Radiance, in bits; and a word that says whether it is unknown, and counts rays.
 @group(0) @binding(8) var<storage, read_write> paths: array<vec4<u32>>;
 
 const STEPS: u32 = 1024u;
@@ -58,6 +57,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         bounds = bounds_around(ground.t);
     }
     write_ray(path, origin, direction, MISS, bounds);
-    lights[path] = vec4<f32>(1.0);
+    states[path] = PathState(vec3<f32>(1.0), CAMERA);
     paths[path] = vec4<u32>(0u);
 }

@@ -21,7 +21,8 @@ struct Job {
     flags: u32,
     // The number of bounces after which paths are cut.
     depth: u32,
-    ground_albedo: array<f32, 3>,
+    // Row of the ground's material.
+    ground_material: u32,
     // Radiance of the environment: its mean, half of its difference, and the direction in which it increases.
     middle: array<f32, 3>,
     slope: array<f32, 3>,
@@ -31,7 +32,15 @@ struct Job {
     // Throughput below which roulette may end paths, and the probability with which they survive if it is fixed.
     threshold: f32,
     survival: f32,
-    unused: f32,
+    // Of `world/lights/sun.rs`: the basis about its direction, 1 - cos of its angular radius, the density of directions
+    // toward it, its radiance, and the weight of light samples.
+    sun_tangent: array<f32, 3>,
+    sun_bitangent: array<f32, 3>,
+    sun_direction: array<f32, 3>,
+    sun_height: f32,
+    sun_pdf: f32,
+    sun_radiance: array<f32, 3>,
+    sun_weight: array<f32, 3>,
 }
 
 // Bits of the flags.
@@ -44,6 +53,9 @@ const GRADIENT: u32 = 32u;
 const ILLUMINATES: u32 = 64u;
 const ROULETTE_BY_THROUGHPUT: u32 = 128u;
 const ROULETTE_FIXED: u32 = 256u;
+const SUN: u32 = 512u;
+const SUN_DISC: u32 = 1024u;
+const MIRRORED_LIGHT: u32 = 2048u;
 
 fn has(flag: u32) -> bool {
     return (job.flags & flag) != 0u;

@@ -13,10 +13,12 @@ struct Params {
     samples: u32,
     // Index of the bounce, from 0.
     bounce: u32,
-    unused: u32,
+    // Shadow rays of each path at most: in rows `count` apart.
+    shadows: u32,
 }
 
-@group(0) @binding(0) var<uniform> params: Params;
+// Not a uniform buffer: drivers may compile kernels anew for its values, and then they know the 0.
+@group(0) @binding(0) var<storage, read> params: Params;
 
 const MISS: u32 = 0xffffffffu;
 const GROUND: u32 = 0xfffffffeu;

@@ -1,63 +1,68 @@
-// A bounce of paths among diffuse surfaces under the sky alone: `integrator/path.rs`, `integrator/roulette.rs`,
-// `shade/lambertian.rs`. Replaces each ray by the next one of its path.
+// A bounce of paths: `integrator/path.rs`. Replaces each ray by the next one of its path, and writes its shadow rays
+// with the light that they carry.
 
 @group(0) @binding(1) var<storage, read> job: Job;
 @group(0) @binding(2) var<storage, read> spheres_0: array<vec4<u32>>;
 @group(0) @binding(3) var<storage, read> spheres_1: array<vec4<u32>>;
 @group(0) @binding(4) var<storage, read> spheres_2: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> spheres_3: array<vec4<u32>>;
-@group(0) @binding(6) var<storage, read> albedos: array<f32>;
-@group(0) @binding(7) var<storage, read> sobol: array<vec4<u32>>;
-@group(0) @binding(8) var<storage, read> sequences: array<Sequence>;
-@group(0) @binding(9) var<storage, read> found: array<u32>;
-@group(0) @binding(10) var<storage, read_write> rays: array<vec4<u32>>;
-// Throughput.
-@group(0) @binding(11) var<storage, read_write> lights: array<vec4<f32>>;
-@group(0) @binding(12) var<storage, read_write> paths: array<vec4<u32>>;
+@group(0) @binding(6) var<storage, read> appearance: array<vec4<u32>>;
+@group(0) @binding(7) var<storage, read> materials: array<vec4<u32>>;
+@group(0) @binding(8) var<storage, read> sobol: array<vec4<u32>>;
+@group(0) @binding(9) var<storage, read> sequences: array<Sequence>;
+@group(0) @binding(10) var<storage, read> found: array<u32>;
+@group(0) @binding(11) var<storage, read_write> rays: array<vec4<u32>>;
+@group(0) @binding(12) var<storage, read_write> states: array<PathState>;
+@group(0) @binding(13) var<storage, read_write> paths: array<vec4<u32>>;
 // The number of paths that go on.
-@group(0) @binding(13) var<storage, read_write> alive: atomic<u32>;
+@group(0) @binding(14) var<storage, read_write> alive: atomic<u32>;
+@group(0) @binding(15) var<storage, read_write> shadow_rays: array<vec4<u32>>;
+@group(0) @binding(16) var<storage, read_write> lights: array<vec4<f32>>;
 
-// True if roulette may end paths at this bounce.
-fn roulette_active() -> bool {
-    return has(ROULETTE_FIXED) || (has(ROULETTE_BY_THROUGHPUT) && params.bounce >= 3u);
+// A shadow ray to infinity, with the light that it carries. The ground may be in between.
+fn write_shadow_ray(path: u32, slot: u32, surface: ptr<function, Surface>, direction: vec3<f32>, light: vec3<f32>) {
+    paths[path].w += SHADOW_RAY;
+    if cross_ground((*surface).point, direction, (*surface).hit).crossed {
+        return;
+    }
+    let row = path + slot * params.count;
+    let start = bitcast<vec3<u32>>((*surface).point);
+    let toward = bitcast<vec3<u32>>(direction);
+    shadow_rays[3u * row] = vec4<u32>(start, toward.x);
+    shadow_rays[3u * row + 1u] = vec4<u32>(toward.yz, (*surface).hit, MISS);
+    shadow_rays[3u * row + 2u] = vec4<u32>(bitcast<vec2<u32>>(vec2<f32>(FAR)), 0u, 0u);
+    lights[row] = vec4<f32>(light, 0.0);
 }
 
-fn survival_probability(greatest: f32) -> f32 {
-    if !roulette_active() {
-        return 1.0;
+fn clear_shadow_rays(path: u32) {
+    for (var slot = 0u; slot < params.shadows; slot++) {
+        let row = path + slot * params.count;
+        shadow_rays[3u * row + 2u] = vec4<u32>(bitcast<vec2<u32>>(vec2<f32>(-1.0)), 0u, 0u);
     }
-    if has(ROULETTE_FIXED) {
-        return job.survival;
-    }
-    return min(max(quotient(greatest, job.threshold), 0.05), 1.0);
-}
-
-// Adds the light of the environment to a path that leaves the scene.
-fn add_environment(path: u32) {
-    var light = vec3<f32>(0.0);
-    if params.bounce == 0u {
-        light = seen_by_camera(ray_direction(path));
-    } else if has(ILLUMINATES) {
-        light = environment_radiance(ray_direction(path));
-    }
-    let radiance = keep3(lights[path].xyz * light);
-    paths[path] = vec4<u32>(bitcast<vec3<u32>>(radiance), paths[path].w);
 }
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let path = id.x;
-    if path >= params.count || is_ended(path) {
+    if path >= params.count {
         return;
     }
-    let surface = surface_of(path, found[path]);
-    if surface.known && surface.hit == MISS {
-        add_environment(path);
+    clear_shadow_rays(path);
+    if is_ended(path) {
+        return;
+    }
+    var surface = surface_of(path, found[path]);
+    let state = states[path];
+    let cut = params.bounce == job.depth;
+    let known = surface.known && (paths[path].w & 1u) == 0u;
+    if known && surface.hit == MISS {
+        let light = keep3(state.throughput * escaped_light(ray_direction(path), state.previous));
+        let radiance = keep3(bitcast<vec3<f32>>(paths[path].xyz) + light);
+        paths[path] = vec4<u32>(bitcast<vec3<u32>>(radiance), paths[path].w);
         end_ray(path);
         return;
     }
-    let cut = params.bounce == job.depth;
-    if !surface.known || surface.inside || (!cut && choices(params.bounce) >= SETS) {
+    if !known || surface.inside || (!cut && lights_set(params.bounce) >= SETS) {
         paths[path].w |= 1u;
         end_ray(path);
         return;
@@ -67,31 +72,65 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let sequence = sequences[path];
-    let draw = draw4(sequence, directions(params.bounce));
-    var roulette = 0.0;
-    if roulette_active() {
-        roulette = draw4(sequence, choices(params.bounce)).w;
+    var bsdf = bsdf_at(surface.hit);
+    let basis = basis_about(surface.facing);
+    var outgoing = to_local(basis, -ray_direction(path));
+    outgoing.z = max(outgoing.z, 0x1p-23f);
+    if has(SUN) && !is_delta(&bsdf) {
+        var u = vec2<f32>(0.0);
+        if has(SUN_DISC) {
+            u = draw4(sequence, lights_set(params.bounce)).xy;
+        }
+        let toward = sample_sun(u);
+        let incoming = to_local(basis, toward);
+        let light = sun_light(&bsdf, state.throughput, outgoing, incoming);
+        if 0.0 < incoming.z && 0.0 < greatest_of(light) {
+            write_shadow_ray(path, 0u, &surface, toward, light);
+        }
     }
-    let throughput = keep3(lights[path].xyz * albedo_of(surface.hit));
-    let greatest = max(max(throughput.x, throughput.y), throughput.z);
+    let mirrors = has(MIRRORED_LIGHT) && has_diffuse_base(&bsdf);
+    if mirrors {
+        let toward = normalized(to_world(basis, mirror(outgoing)));
+        if sun_is_toward(toward) {
+            let factor = keep3(state.throughput * bsdf_mirrored(&bsdf, outgoing));
+            let light = keep3(factor * vector32(job.sun_radiance));
+            if 0.0 < greatest_of(light) {
+                write_shadow_ray(path, 1u, &surface, toward, light);
+            }
+        }
+    }
+    let draw = draw4(sequence, directions(params.bounce));
+    var choice = vec2<f32>(0.0);
+    if !is_diffuse(&bsdf) || roulette_active() {
+        choice = draw4(sequence, choices(params.bounce)).zw;
+    }
+    let scatter = bsdf_sample(&bsdf, outgoing, draw.xy, choice.x);
+    let throughput = keep3(state.throughput * scatter.weight);
+    let greatest = greatest_of(throughput);
     let survival = survival_probability(greatest);
-    if !(roulette < survival && 0.0 < greatest) {
+    if !(choice.y < survival && 0.0 < greatest) {
         end_ray(path);
         return;
     }
-    lights[path] = vec4<f32>(
-        quotient(throughput.x, survival),
-        quotient(throughput.y, survival),
-        quotient(throughput.z, survival),
-        0.0,
+    var previous = next_bounce(state.previous, scatter.pdf, is_diffuse(&bsdf));
+    if mirrors && scatter.pdf <= 0.0 {
+        previous = with_mirrored_light(previous);
+    }
+    states[path] = PathState(
+        vec3<f32>(
+            quotient(throughput.x, survival),
+            quotient(throughput.y, survival),
+            quotient(throughput.z, survival),
+        ),
+        previous,
     );
-    let direction = to_world(basis_about(surface.facing), cosine_hemisphere(draw.xy));
+    let direction = normalized(to_world(basis, scatter.incoming));
     let ground = cross_ground(surface.point, direction, surface.hit);
     var bounds = vec2<f32>(FAR);
     if ground.crossed {
         bounds = bounds_around(ground.t);
     }
     write_ray(path, surface.point, direction, surface.hit, bounds);
-    paths[path].w += 2u;
+    paths[path].w += BOUNCE_RAY;
     atomicAdd(&alive, 1u);
 }

@@ -29,3 +29,8 @@ fn ray_direction(row: u32) -> vec3<f32> {
 fn ray_own(row: u32) -> u32 {
     return rays[3u * row + 1u].z;
 }
+
+// What a path's last word counts: bit 0 is set if its radiance is unknown, then follow rays of bounces, and shadow
+// rays.
+const BOUNCE_RAY: u32 = 2u;
+const SHADOW_RAY: u32 = 0x10000u;

@@ -11,12 +11,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if path >= params.count {
         return;
     }
-    if is_ended(path) {
-        return;
+    var radiance = bitcast<vec3<f32>>(paths[path].xyz);
+    for (var row = path; row < params.shadows * params.count; row += params.count) {
+        if is_ended(row) {
+            continue;
+        }
+        if found[row] == UNKNOWN {
+            paths[path].w |= 1u;
+        } else if found[row] == MISS {
+            radiance = keep3(radiance + lights[row].xyz);
+        }
     }
-    if found[path] == UNKNOWN {
-        paths[path].w |= 1u;
-    } else if found[path] == MISS {
-        paths[path] = vec4<u32>(bitcast<vec3<u32>>(lights[path].xyz), paths[path].w);
-    }
+    paths[path] = vec4<u32>(bitcast<vec3<u32>>(radiance), paths[path].w);
 }

@@ -1,7 +1,7 @@
 // Owen-scrambled Sobol points: `sampling/sobol.rs`, and the assignment of dimensions to decisions, `sampling/plan.rs`.
 //
-// `sobol` is bound by the kernels: for each set of four dimensions, and each nibble of an index from the lowest bits on, the
-// sum of its direction vectors by value.
+// `sobol` is bound by the kernels: for each set of four dimensions, and each nibble of an index from the lowest bits
+// on, the sum of its direction vectors by value.
 
 const INDEX_BITS: u32 = 16u;
 
@@ -72,4 +72,9 @@ fn choices(bounce: u32) -> u32 {
 // The set with the direction of a bounce.
 fn directions(bounce: u32) -> u32 {
     return select(choices(bounce), 0u, bounce == 0u);
+}
+
+// The set with the numbers of the light sample of a bounce.
+fn lights_set(bounce: u32) -> u32 {
+    return 2u + 2u * bounce;
 }

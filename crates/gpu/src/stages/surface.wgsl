@@ -1,4 +1,5 @@
-// Points and normals of hits: `integrator/surface.rs`, and distances as `intersect/terms.rs` of spherule-core computes them.
+// Points and normals of hits: `integrator/surface.rs`, and distances as `intersect/terms.rs` of spherule-core computes
+// them.
 
 struct Surface {
     // False where the device does not know the processor's numbers.
@@ -96,12 +97,4 @@ fn chord_length(surface: Surface, toward: vec3<f32>) -> f64 {
     let length2 = dot_unfused(direction, direction);
     let t = kept(kept(-2.0 * surface.radius) * dot_unfused(surface.normal, direction)) / length2;
     return max(t, 0.0);
-}
-
-// The characteristic color of a surface.
-fn albedo_of(hit: u32) -> vec3<f32> {
-    if hit == GROUND {
-        return vector32(job.ground_albedo);
-    }
-    return vec3<f32>(albedos[3u * hit], albedos[3u * hit + 1u], albedos[3u * hit + 2u]);
 }

@@ -46,3 +46,11 @@ fn cosine_hemisphere(u: vec2<f32>) -> vec3<f32> {
     let z = root(keep(keep(1.0 - disk.radius) * keep(1.0 + disk.radius)));
     return vec3<f32>(disk.point, z);
 }
+
+// A local direction, uniform over the cap about z of this height: 1 - cos of its half-angle.
+fn cap(u: vec2<f32>, height: f32) -> vec3<f32> {
+    let disk = concentric(u);
+    let drop = keep(keep(height * disk.radius) * disk.radius);
+    let scale = root(keep(height * keep(2.0 - drop)));
+    return vec3<f32>(keep(disk.point.x * scale), keep(disk.point.y * scale), keep(1.0 - drop));
+}

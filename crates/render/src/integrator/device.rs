@@ -5,7 +5,7 @@ use super::elisions::Elisions;
 use super::roulette::roulette_threshold;
 use crate::scene::{Integrator, Roulette, SamplerKind};
 use crate::shade::MaterialKind;
-use crate::world::{DeviceIntegration, DeviceJob, DeviceRoulette, DeviceSky, Radiance, World};
+use crate::world::{DeviceIntegration, DeviceJob, DeviceRoulette, DeviceSky, Radiance, Sun, World};
 
 /// Returns the numbers of a job, or what it has that devices do not do.
 ///
@@ -16,8 +16,10 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
     let integration = match job.settings.integrator {
         Integrator::Ao { distance } => DeviceIntegration::Occlusion { distance },
         Integrator::Whitted { .. } => return Err("devices have no whitted integrator"),
-        Integrator::Path => DeviceIntegration::Diffuse {
+        Integrator::Path => DeviceIntegration::Paths {
             depth: job.depth(),
+            sun: world.lights.single_sun().map(Sun::terms),
+            mirrored_light: job.samples_mirrored_light(),
             roulette: match job.settings.roulette {
                 Roulette::None => DeviceRoulette::None,
                 Roulette::Throughput => DeviceRoulette::ByThroughput(roulette_threshold(world)),
@@ -25,7 +27,7 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
             },
         },
     };
-    if let Some(reason) = unsupported(world, integration) {
+    if let Some(reason) = unsupported(job) {
         return Err(reason);
     }
     if job.settings.sampler != SamplerKind::Sobol {
@@ -46,22 +48,28 @@ pub fn device_job<'a>(job: &Job<'a>) -> Result<DeviceJob<'a>, &'static str> {
     })
 }
 
-/// Returns what a world has that devices do not do.
-fn unsupported(world: &World, integration: DeviceIntegration) -> Option<&'static str> {
+/// Returns what a job has that devices do not do.
+fn unsupported(job: &Job) -> Option<&'static str> {
+    let world = job.world;
     if world.is_sliced() {
         return Some("the scene has slices");
     }
     if !world.sticks.is_empty() {
         return Some("the scene has sticks");
     }
-    if let DeviceIntegration::Occlusion { .. } = integration {
+    if let Integrator::Ao { .. } = job.settings.integrator {
         return None;
     }
-    if !world.lights.is_empty() {
-        return Some("the scene has lights other than an even sky");
+    if !world.lights.is_empty() && world.lights.single_sun().is_none() {
+        return Some("the scene has lights other than a sun and an even sky");
     }
-    let mut others = MaterialKind::ALL.into_iter().filter(|&kind| kind != MaterialKind::Lambertian);
-    others.any(|kind| world.features.has(kind)).then_some("not all materials are diffuse")
+    if job.settings.caustics && world.has_caustics() {
+        return Some("caustics are sampled");
+    }
+    if world.features.has(MaterialKind::Dielectric) {
+        return Some("the scene has glass");
+    }
+    world.features.has(MaterialKind::Emitter).then_some("the scene has emitters")
 }
 
 /// Returns the sky, unless it is a picture.

@@ -6,19 +6,20 @@ use crate::film::{Tile, View};
 use crate::integrator::Job;
 use crate::integrator::clock::Stage;
 use crate::integrator::workspace::{BATCH, Workspace};
-use crate::scene::{Integrator, Rgb};
+use crate::scene::Rgb;
 use crate::world::{DevicePath, DevicePaths};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Maximum number of paths at once: enough for all lanes of the largest GPUs, and few enough that a render is cancelled soon.
+/// Maximum number of paths at once: enough for all lanes of the largest GPUs, and few enough that a render is cancelled
+/// soon.
 const PATHS: usize = 1 << 18;
 
 /// A tile, and samples of its pixels that it is to get.
 type Step<'a> = (&'a mut Tile, Range<u32>);
 
-/// Takes samples of tiles of which the device follows the paths, a pass at a time; and of their probes, from `probed` on,
-/// if it is given, which the processor follows. `report` gets the number of samples of each batch.
+/// Takes samples of tiles of which the device follows the paths, a pass at a time; and of their probes, from `probed`
+/// on, if it is given, which the processor follows. `report` gets the number of samples of each batch.
 ///
 /// Tiles whose camera rays hit no sphere get none: they take the processor no time.
 pub(super) fn run<'a>(
@@ -72,7 +73,7 @@ fn take(
 ) {
     let pixels: Vec<(u32, u32)> = tiles.iter().flat_map(|tile| tile.pixels()).collect();
     let radiance = device.follow(&pixels, samples.clone()).map(|paths| {
-        count_rays(job, &paths, work);
+        count_rays(&paths, work);
         work.clock.end(Stage::Trace);
         complete(job, &pixels, samples, &paths, work)
     });
@@ -112,13 +113,11 @@ fn take(
 }
 
 /// Counts the rays of the paths that the device knows.
-fn count_rays(job: &Job, paths: &[DevicePath], work: &mut Workspace) {
-    let known = || paths.iter().filter(|path| path.radiance().is_some());
-    let further: u64 = known().map(DevicePath::rays).sum();
-    work.counters.camera_rays += known().count() as u64;
-    match job.settings.integrator {
-        Integrator::Ao { .. } => work.counters.shadow_rays += further,
-        Integrator::Path | Integrator::Whitted { .. } => work.counters.bounce_rays += further,
+fn count_rays(paths: &[DevicePath], work: &mut Workspace) {
+    for path in paths.iter().filter(|path| path.radiance().is_some()) {
+        work.counters.camera_rays += 1;
+        work.counters.bounce_rays += path.bounce_rays();
+        work.counters.shadow_rays += path.shadow_rays();
     }
 }
 

@@ -41,7 +41,7 @@ pub struct ReflectiveBsdf<L> {
 
 impl Reflective {
     /// Returns the probability of the mirror component: its fraction of the reflected light.
-    fn mirror_probability(&self) -> f32 {
+    pub fn mirror_probability(&self) -> f32 {
         let all = self.diffuse + self.mirror;
         if all > 0.0 { self.mirror / all } else { 0.0 }
     }

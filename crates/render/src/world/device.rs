@@ -1,10 +1,10 @@
 //! Devices that follow whole paths, in place of the processor.
 //!
-//! A device gets a job as numbers, and returns the radiance of each sample with the bits of the processor's, or says that
-//! it does not know it: then the processor follows that path.
+//! A device gets a job as numbers, and returns the radiance of each sample with the bits of the processor's, or says
+//! that it does not know it: then the processor follows that path.
 
 use super::{CameraTerms, World};
-use crate::ray::GROUND;
+use crate::sampling::Basis;
 use crate::scene::Rgb;
 use bytemuck::{Pod, Zeroable};
 use std::fmt::Debug;
@@ -18,8 +18,8 @@ pub trait DeviceIntegrator: Debug + Send + Sync {
 
 /// A device that is prepared for a job.
 pub trait DevicePaths: Send + Sync {
-    /// Follows the paths of these samples of pixels, given by column and row: sample by sample of the first pixel, then of
-    /// the next. `None` if the device fails.
+    /// Follows the paths of these samples of pixels, given by column and row: sample by sample of the first pixel, then
+    /// of the next. `None` if the device fails.
     fn follow(&self, pixels: &[(u32, u32)], samples: Range<u32>) -> Option<Vec<DevicePath>>;
 }
 
@@ -28,7 +28,7 @@ pub trait DevicePaths: Send + Sync {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct DevicePath {
     radiance: [f32; 3],
-    /// Bit 0 is set if the radiance is not known; the others count rays after the camera's.
+    /// Bit 0 is set if the radiance is not known; up to bit 15, the others count rays of bounces, and then shadow rays.
     state: u32,
 }
 
@@ -38,9 +38,14 @@ impl DevicePath {
         (self.state & 1 == 0).then_some(self.radiance.into())
     }
 
-    /// Returns the number of rays, but for the camera's.
-    pub fn rays(&self) -> u64 {
-        u64::from(self.state >> 1)
+    /// Returns the number of rays of bounces.
+    pub fn bounce_rays(&self) -> u64 {
+        u64::from(self.state as u16 >> 1)
+    }
+
+    /// Returns the number of shadow rays.
+    pub fn shadow_rays(&self) -> u64 {
+        u64::from(self.state >> 16)
     }
 }
 
@@ -52,12 +57,16 @@ pub enum DeviceIntegration {
         /// Distance beyond which nothing occludes.
         distance: f64,
     },
-    /// Paths among diffuse surfaces under the sky alone.
-    Diffuse {
+    /// Paths.
+    Paths {
         /// Maximum number of bounces.
         depth: u32,
         /// Russian roulette.
         roulette: DeviceRoulette,
+        /// The sun, if it is the only light.
+        sun: Option<DeviceSun>,
+        /// True if the sun is sampled where smooth surfaces mirror it.
+        mirrored_light: bool,
     },
 }
 
@@ -70,6 +79,19 @@ pub enum DeviceRoulette {
     ByThroughput(f32),
     /// Paths survive each bounce with this probability.
     Fixed(f32),
+}
+
+/// A sun.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeviceSun {
+    /// The basis about its direction.
+    pub basis: Basis,
+    /// 1 - cos of its angular radius, and the density of directions toward it; `None` if it has no extent.
+    pub disc: Option<[f32; 2]>,
+    /// Radiance of the disc.
+    pub radiance: Rgb,
+    /// Weight of a light sample.
+    pub weight: Rgb,
 }
 
 /// Radiance of the sky: `middle`, plus `slope` times the cosine of the angle to `up`.
@@ -102,11 +124,4 @@ pub struct DeviceJob<'a> {
     pub sobol: Vec<[u32; 4]>,
     /// Offsets of the pixel filter, if it is tabulated.
     pub offsets: Option<&'a [f32]>,
-}
-
-impl DeviceJob<'_> {
-    /// Returns the color of the ground, if there is one.
-    pub fn ground_albedo(&self) -> Option<Rgb> {
-        self.world.ground.map(|_| self.world.albedo(GROUND))
-    }
 }

@@ -36,7 +36,7 @@ pub use census::Features;
 pub use cut::{Cut, Span};
 pub use device::{
     DeviceIntegration, DeviceIntegrator, DeviceJob, DevicePath, DevicePaths, DeviceRoulette,
-    DeviceSky,
+    DeviceSky, DeviceSun,
 };
 pub use environment::{
     Environment, Irradiance, PartBounds, Picture, Radiance, SkyLight, SkySamples,
@@ -278,6 +278,11 @@ impl World {
     /// Returns whether slices hide or cut spheres, so that the processor traces all rays.
     pub fn is_sliced(&self) -> bool {
         self.camera_visible.is_some() || self.sticks.visible.is_some() || !self.cut.is_empty()
+    }
+
+    /// Returns whether light is sampled by way of specular spheres, or in the pixels that see it, where a render does.
+    pub(crate) fn has_caustics(&self) -> bool {
+        self.caustic_casters.has_pairs() || !self.light_images.is_empty()
     }
 
     /// Returns the same world without its spheres, and without the light of emissive spheres.

@@ -143,6 +143,18 @@ impl CausticCasters {
         self.casters.is_empty()
     }
 
+    /// Returns whether some sphere may cast caustics that are sampled: not if all emitters are suns that are too large.
+    pub(super) fn has_pairs(&self) -> bool {
+        // The directions of a sun from the spheres differ by less than rounding.
+        let is_small = |emitter: &CausticEmitter| match emitter.source {
+            CausticSource::Sphere(_) => true,
+            CausticSource::Sun(_) => {
+                emitter.radius < emitter.center.length() * MAX_EMITTER_SINE * (1.0 + 1e-9)
+            }
+        };
+        !self.is_empty() && self.emitters.iter().any(is_small)
+    }
+
     /// Returns the number of specular spheres.
     pub(crate) fn len(&self) -> usize {
         self.casters.len()

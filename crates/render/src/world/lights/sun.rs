@@ -6,6 +6,7 @@ use crate::ray::MISS;
 use crate::sampling::{Basis, Cone};
 use crate::scene::{BRIGHTEST, Rgb};
 use crate::vec3::Vec3 as Row3;
+use crate::world::DeviceSun;
 use glam::{DVec3, Vec3};
 use std::f32::consts::PI;
 
@@ -47,6 +48,12 @@ impl Sun {
             radiance,
             weight: disc.map_or(irradiance, |cone| radiance / cone.pdf()),
         }
+    }
+
+    /// Returns its numbers for devices.
+    pub(crate) fn terms(&self) -> DeviceSun {
+        let disc = self.disc.map(|cone| [cone.height(), cone.pdf()]);
+        DeviceSun { basis: self.basis, disc, radiance: self.radiance, weight: self.weight }
     }
 
     /// Returns whether the disc is visible in unit direction `toward`.
