@@ -42,6 +42,7 @@ mod cfg;
 mod cif;
 mod csv;
 mod dcd;
+mod derived;
 mod element;
 mod error;
 mod extra;
@@ -76,10 +77,12 @@ mod record;
 mod scalar;
 mod schema;
 mod shared_names;
+mod smoothing;
 mod sniff;
 mod source;
 mod srgb;
 mod suggest;
+mod superposition;
 mod text;
 mod topology;
 mod undrawn;
@@ -102,6 +105,7 @@ pub use options::{Columns, Format, FrameChoice, Radii, ReadOptions, Role};
 pub use progress::ReadProgress;
 pub use reader::{FrameCount, Frames, count_frames, read_frame};
 pub use shared_names::SharedNames;
+pub use superposition::AlignBy;
 
 /// A linear RGB triple with the primaries of sRGB.
 pub type Rgb = glam::Vec3;

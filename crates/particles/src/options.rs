@@ -2,6 +2,7 @@
 
 use super::bonds::BondSource;
 use super::progress::ReadProgress;
+use super::superposition::AlignBy;
 use crate::suggest;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -285,6 +286,12 @@ pub struct ReadOptions {
     pub topology: Option<PathBuf>,
     /// Source of bonds; they are read or found only if they are asked for.
     pub bonds: BondSource,
+    /// True if molecules are made whole: no bond crosses the periodic cell.
+    pub whole: bool,
+    /// Number of frames before and after each one whose positions are averaged.
+    pub smooth: u32,
+    /// The particles by which each frame is superposed on the first one; `None`: frames stay where they are.
+    pub align: Option<AlignBy>,
     /// True if a frame without spheres is valid, as in a trajectory, and not an error.
     pub allow_empty: bool,
     /// Counter of the bytes read.
@@ -312,6 +319,9 @@ impl ReadOptions {
             atom_style: _,
             topology: _,
             bonds: _,
+            whole: _,
+            smooth: _,
+            align: _,
             allow_empty: _,
             progress: _,
         } = self;
@@ -341,6 +351,9 @@ impl Default for ReadOptions {
             atom_style: None,
             topology: None,
             bonds: BondSource::None,
+            whole: false,
+            smooth: 0,
+            align: None,
             allow_empty: false,
             progress: ReadProgress::default(),
         }

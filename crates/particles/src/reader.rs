@@ -1,11 +1,14 @@
 //! Reads the frames of a file, one after another.
 
 use super::bonds::BondSource;
+use super::derived::Derived;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::options::{Format, FrameChoice, ReadOptions};
+use super::smoothing::Window;
 use super::source::{Source, is_standard_input};
-use super::topology::Joined;
+use super::superposition::{AlignBy, Reference};
+use super::topology::{self, Joined};
 use super::{
     cfg, cif, csv, dcd, gro, gromacs, gsd, lammps, mol2, molfile, netcdf, numpy, pdb, ply, poscar,
     pqr, psf, sniff, text, xsf, xyz,
@@ -18,7 +21,23 @@ pub struct Frames {
     reader: Box<dyn FrameReader>,
     path: PathBuf,
     bonds: BondSource,
+    /// True if only other columns or whole molecules need the bonds.
+    drops_bonds: bool,
+    whole: bool,
+    derived: Vec<Derived>,
+    smoothing: Option<Window>,
+    /// Options with which the first frame is read, and it itself once it is needed.
+    align: Option<Alignment>,
+    /// Number of frames that were read or skipped.
+    passed: u64,
     failed: bool,
+}
+
+/// The first frame, on which others are superposed.
+struct Alignment {
+    by: AlignBy,
+    options: ReadOptions,
+    reference: Option<Reference>,
 }
 
 impl Frames {
@@ -28,27 +47,86 @@ impl Frames {
     ///
     /// The file cannot be read, or its format is unknown.
     pub fn open(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
-        let reader: Box<dyn FrameReader> = match &options.topology {
-            None => open_positions(path, options)?,
-            Some(topology) => Box::new(Joined::new(path, topology, options)?),
+        let (derived, mut inner) = Derived::take(options);
+        if options.whole && inner.bonds == BondSource::None {
+            inner.bonds = BondSource::Auto;
+        }
+        if let Some(align) = &options.align {
+            inner.columns.wanted.extend_from_slice(align.columns());
+        }
+        let columns = inner.columns.clone();
+        if options.smooth > 0 {
+            // Rows of LAMMPS files are sorted by them.
+            inner.columns.wanted.push(topology::ID.to_owned());
+        }
+        let reader: Box<dyn FrameReader> = match &inner.topology {
+            None => open_positions(path, &inner)?,
+            Some(topology) => Box::new(Joined::new(path, topology, &inner)?),
         };
-        let (path, bonds) = (path.to_owned(), options.bonds.clone());
-        Ok(Self { reader, path, bonds, failed: false })
+        Ok(Self {
+            reader,
+            path: path.to_owned(),
+            bonds: inner.bonds,
+            drops_bonds: options.bonds == BondSource::None,
+            whole: options.whole,
+            derived,
+            smoothing: (options.smooth > 0).then(|| Window::new(options.smooth)),
+            align: options.align.clone().map(|by| Alignment {
+                by,
+                options: ReadOptions { align: None, columns, ..options.clone() },
+                reference: None,
+            }),
+            passed: 0,
+            failed: false,
+        })
     }
 
     /// Returns the next frame with its bonds, and with warnings about columns that are not drawn.
     fn next_frame(&mut self) -> Result<Option<ParticleFrame>, FileError> {
-        let Some(mut frame) = self.reader.next()? else { return Ok(None) };
+        let next = match &mut self.smoothing {
+            Some(window) => window.next(&mut *self.reader)?,
+            None => self.reader.next()?,
+        };
+        let Some(mut frame) = next else { return Ok(None) };
         frame.add_undrawn_columns();
         if frame.format.lacks_names() && frame.kinds.codes.is_empty() && !frame.is_empty() {
             let warning =
                 "its particles have no names; --topology FILE reads them from another file";
             frame.warnings.push(warning.to_owned());
         }
-        frame
-            .find_bonds(&self.bonds)
-            .map_err(|message| FileError::whole_file(&self.path, message))?;
+        let fault = |message: String| FileError::whole_file(&self.path, message);
+        frame.find_bonds(&self.bonds).map_err(fault)?;
+        for column in &self.derived {
+            column.add(&mut frame).map_err(fault)?;
+        }
+        if let Some(window) = &mut self.smoothing {
+            window.smooth(&self.path, &mut frame)?;
+            window.advance();
+        }
+        if self.whole {
+            if frame.bonds.is_none() && !frame.is_empty() {
+                let message =
+                    "has neither bonds nor elements by which molecules could be made whole";
+                let help = "give a --topology with bonds or elements";
+                return Err(fault(message.to_owned()).with_help(help));
+            }
+            frame.make_whole();
+        }
+        if let Some(alignment) = &mut self.align {
+            alignment.apply(&self.path, self.passed == 0, &mut frame)?;
+        }
+        self.passed += 1;
+        if self.drops_bonds {
+            frame.bonds = None;
+        }
         Ok(Some(frame))
+    }
+
+    /// Skips the next frame of the file, which isn't averaged with later ones.
+    fn pass_frame(&mut self) -> Result<bool, FileError> {
+        let skipped = self.reader.skip()?;
+        self.passed += u64::from(skipped);
+        Ok(skipped)
     }
 
     /// Skips the next frame with as little work as the format allows. Returns whether there was one.
@@ -57,9 +135,48 @@ impl Frames {
     ///
     /// The file cannot be read, or the part that was parsed is malformed.
     pub fn skip_frame(&mut self) -> Result<bool, FileError> {
-        let skipped = if self.failed { Ok(false) } else { self.reader.skip() };
+        let skipped = match &mut self.smoothing {
+            _ if self.failed => Ok(false),
+            Some(window) => window.next(&mut *self.reader).map(|frame| {
+                window.advance();
+                frame.is_some()
+            }),
+            None => self.reader.skip(),
+        };
         self.failed |= skipped.is_err();
+        self.passed += u64::from(matches!(skipped, Ok(true)));
         skipped
+    }
+}
+
+impl Alignment {
+    /// Superposes a frame on the first one of the file.
+    fn apply(
+        &mut self,
+        path: &Path,
+        is_first: bool,
+        frame: &mut ParticleFrame,
+    ) -> Result<(), FileError> {
+        let fault = |message: String| FileError::whole_file(path, message);
+        let reference = match &mut self.reference {
+            Some(reference) => reference,
+            none if is_first => {
+                *none = Some(Reference::new(frame, &self.by).map_err(fault)?);
+                return Ok(());
+            }
+            _ if is_standard_input(path) => {
+                let help = "write it to a file";
+                let message =
+                    "frames are aligned to the first one, which standard input has only once";
+                return Err(fault(message.to_owned()).with_help(help));
+            }
+            none => {
+                let first = ReadOptions { frame: FrameChoice::Index(0), ..self.options.clone() };
+                let first = read_frame(path, &first)?;
+                none.insert(Reference::new(&first, &self.by).map_err(fault)?)
+            }
+        };
+        reference.align(frame).map_err(fault)
     }
 }
 
@@ -141,8 +258,11 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
         FrameChoice::Last => count_frames(path, options)?.saturating_sub(1),
     };
     let mut frames = Frames::open(path, options)?;
+    // Frames that are averaged with the chosen one are read.
+    let passed = index.saturating_sub(u64::from(options.smooth));
     for before in 0..index {
-        if !frames.reader.skip()? {
+        let skipped = if before < passed { frames.pass_frame() } else { frames.skip_frame() };
+        if !skipped? {
             let message = format!("has no frame {index}, only {before} (the first is 0)");
             return Err(FileError::whole_file(path, message));
         }

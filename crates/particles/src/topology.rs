@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const VARYING: [&str; 9] = ["vx", "vy", "vz", "fx", "fy", "fz", "xu", "yu", "zu"];
 
 /// Name of the column of numbers of particles, as `aliases` knows it.
-const ID: &str = "id";
+pub(crate) const ID: &str = "id";
 
 /// Reader of a trajectory together with its topology.
 pub(crate) struct Joined {
@@ -55,7 +55,7 @@ fn is_id(name: &str) -> bool {
 }
 
 /// Sorts the rows of a frame by their numbers, if they come in any order.
-fn sort(frame: &mut ParticleFrame) {
+pub(crate) fn sort(frame: &mut ParticleFrame) {
     if !is_unordered(frame.format) {
         return;
     }
@@ -93,6 +93,7 @@ impl Joined {
             columns: columns(positions),
             radii: Radii::Auto,
             topology: None,
+            align: None,
             bonds: BondSource::None,
             ..options.clone()
         };

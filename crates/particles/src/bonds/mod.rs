@@ -1,11 +1,13 @@
 //! Bonds between the particles of a frame, in columns: those of the file, or those found by distance.
 
+mod components;
 mod distance;
 mod images;
 mod listed;
 mod rules;
 
 pub use distance::from_distance;
+pub(crate) use images::nearest;
 pub(crate) use listed::{Listed, Numbering, row_from_one, unknown};
 pub use rules::{BondRules, BondSource};
 

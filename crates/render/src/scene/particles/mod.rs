@@ -17,9 +17,9 @@ pub use periodic::PeriodicError;
 pub use select::{Fault, Selection};
 pub use spheres::Particles;
 pub use spherule_particles::{
-    BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice, FrameCount,
-    Frames, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions, ReadProgress,
-    Role, SharedNames, TextColumn, count_frames, read_frame,
+    AlignBy, BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice,
+    FrameCount, Frames, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions,
+    ReadProgress, Role, SharedNames, TextColumn, count_frames, read_frame,
 };
 pub use style::{
     Category, Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, TypeMaterial, TypeStyle,

@@ -1,6 +1,7 @@
 //! Binding names to columns, and evaluating conditions on rows.
 
-use super::grammar::{Node, Tree};
+use super::grammar::{Node, Tree, Value};
+use super::spatial;
 use super::words::{Sign, SpannedError};
 use crate::scene::particles::Codes;
 use crate::scene::particles::Particles;
@@ -17,6 +18,10 @@ enum Truth<'p> {
     Compare(Sign, Number<'p>, Number<'p>),
     /// Result of the comparison for each text of a column.
     Texts(Cow<'p, Codes>, Vec<bool>),
+    /// True for numbers in one of these ranges.
+    Ranges(Cow<'p, [f64]>, Vec<[f64; 2]>),
+    /// Result for each row.
+    Rows(Vec<bool>),
 }
 
 /// A numeric expression, bound to columns.
@@ -32,10 +37,17 @@ enum Number<'p> {
 /// Evaluates the condition for each row.
 pub(super) fn rows(tree: &Tree, particles: &Particles) -> Result<Vec<bool>, SpannedError> {
     let truth = truth(tree, particles)?;
-    Ok((0..particles.spheres.len()).into_par_iter().map(|row| truth.at(row)).collect())
+    Ok(truth.rows(particles.spheres.len()))
 }
 
 impl Truth<'_> {
+    fn rows(self, count: usize) -> Vec<bool> {
+        if let Self::Rows(rows) = self {
+            return rows;
+        }
+        (0..count).into_par_iter().map(|row| self.at(row)).collect()
+    }
+
     fn at(&self, row: usize) -> bool {
         match self {
             Self::Any(parts) => parts.iter().any(|part| part.at(row)),
@@ -43,6 +55,11 @@ impl Truth<'_> {
             Self::Not(inner) => !inner.at(row),
             Self::Compare(sign, left, right) => compare(*sign, left.at(row), right.at(row)),
             Self::Texts(codes, truths) => truths[codes.code(row) as usize],
+            Self::Ranges(values, ranges) => {
+                let value = values[row];
+                ranges.iter().any(|[low, high]| (*low..=*high).contains(&value))
+            }
+            Self::Rows(rows) => rows[row],
         }
     }
 }
@@ -86,7 +103,21 @@ pub(super) fn absent(tree: &Tree, particles: &Particles) -> Option<String> {
         Node::Any(parts) | Node::All(parts) => {
             parts.iter().find_map(|part| absent(part, particles))
         }
-        Node::Not(inner) => absent(inner, particles),
+        Node::Not(inner) | Node::Within { of: inner, .. } | Node::Same { of: inner, .. } => {
+            absent(inner, particles)
+        }
+        Node::OneOf(column, values) => {
+            let Some(Column::Texts { names, .. }) = column_of(column, particles) else {
+                return None;
+            };
+            let missing = |value: &Value| {
+                let text = value.text().filter(|_| !fits_any(value, &names))?.to_owned();
+                let known = names.iter().copied();
+                let help = suggest::help(&text, known, "there are");
+                Some(format!("no particle has `{text}`; {help}"))
+            };
+            values.iter().find_map(missing)
+        }
         Node::Compare(_, sides) => {
             let [left, right] = &**sides;
             [(left, right), (right, left)].into_iter().find_map(|(column, other)| {
@@ -113,7 +144,80 @@ fn truth<'p>(tree: &Tree, particles: &'p Particles) -> Result<Truth<'p>, Spanned
         Node::All(parts) => Ok(Truth::All(all(parts)?)),
         Node::Not(inner) => Ok(Truth::Not(Box::new(truth(inner, particles)?))),
         Node::Compare(sign, sides) => comparison(*sign, sides, particles),
+        Node::OneOf(column, values) => one_of(column, values, particles),
+        Node::Group(group) => {
+            let rows = group.rows(particles).map_err(|message| (tree.span.clone(), message))?;
+            Ok(Truth::Rows(rows))
+        }
+        Node::Within { distance, others, of } => {
+            let of = truth(of, particles)?.rows(particles.spheres.len());
+            let rows = spatial::within(particles, &of, *distance, *others);
+            rows.map(Truth::Rows).map_err(|message| (tree.span.clone(), message))
+        }
+        Node::Same { column, of } => {
+            let of = truth(of, particles)?.rows(particles.spheres.len());
+            let rows = spatial::same(particles, &of, column).map_err(|message| {
+                let message = message.unwrap_or_else(|| unknown(particles, column));
+                (tree.span.clone(), message)
+            })?;
+            Ok(Truth::Rows(rows))
+        }
         _ => Err((tree.span.clone(), "expected a comparison, as in `z > 10`".to_owned())),
+    }
+}
+
+impl Value {
+    /// Returns the text or the beginning of a pattern.
+    fn text(&self) -> Option<&str> {
+        match self {
+            Self::Text(text) | Self::Pattern(text) => Some(text),
+            Self::Range(..) => None,
+        }
+    }
+
+    /// Returns whether a text is this value.
+    fn fits(&self, name: &str) -> bool {
+        match self {
+            Self::Text(text) => name == text,
+            Self::Pattern(start) => name.starts_with(start),
+            Self::Range(low, high) => {
+                name.parse().is_ok_and(|number: f64| (*low..=*high).contains(&number))
+            }
+        }
+    }
+}
+
+fn fits_any(value: &Value, names: &[&str]) -> bool {
+    names.iter().any(|name| value.fits(name))
+}
+
+/// Binds a list of values of a column.
+fn one_of<'p>(
+    column: &Tree,
+    values: &[Value],
+    particles: &'p Particles,
+) -> Result<Truth<'p>, SpannedError> {
+    let (Node::Word(name) | Node::Column(name)) = &column.node else {
+        return Err((column.span.clone(), "expected the name of a column".to_owned()));
+    };
+    match Column::find(particles, name) {
+        Some(Column::Texts { names, codes }) => {
+            let truths = names.iter().map(|name| values.iter().any(|value| value.fits(name)));
+            Ok(Truth::Texts(codes, truths.collect()))
+        }
+        Some(Column::Numbers(numbers)) => {
+            let range = |value: &Value| match value {
+                Value::Range(low, high) => Ok([*low, *high]),
+                Value::Text(text) | Value::Pattern(text) => {
+                    text.parse().map(|number: f64| [number; 2]).map_err(|_| {
+                        let message = format!("`{text}` is not a number, but `{name}` has numbers");
+                        (column.span.clone(), message)
+                    })
+                }
+            };
+            Ok(Truth::Ranges(numbers, values.iter().map(range).collect::<Result<_, _>>()?))
+        }
+        None => Err((column.span.clone(), unknown(particles, name))),
     }
 }
 
@@ -164,9 +268,7 @@ fn number<'p>(tree: &Tree, particles: &'p Particles) -> Result<Number<'p>, Spann
             let rest = rest.iter().map(|(sign, part)| Ok((*sign, number(part, particles)?)));
             Ok(Number::Arithmetic(Box::new(first), rest.collect::<Result<_, SpannedError>>()?))
         }
-        Node::Compare(..) | Node::Not(_) | Node::All(_) | Node::Any(_) => {
-            wrong("expected a number, but this is a condition")
-        }
+        _ => wrong("expected a number, but this is a condition"),
     }
 }
 

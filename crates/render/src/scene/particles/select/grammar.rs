@@ -1,5 +1,6 @@
 //! Syntax trees of conditions, by recursive descent no deeper than [`MAX_DEPTH`].
 
+use super::vocabulary::Group;
 use super::words::{Sign, SpannedError, Word, Words};
 use std::ops::Range;
 
@@ -26,23 +27,51 @@ pub(super) enum Node {
     Not(Box<Tree>),
     All(Vec<Tree>),
     Any(Vec<Tree>),
+    /// A word for a group of atoms, such as `protein`.
+    Group(Group),
+    /// A column, and the values of which it has one.
+    OneOf(Box<Tree>, Vec<Value>),
+    /// Particles within a distance of those of a condition; without these themselves if `others` is true.
+    Within {
+        distance: f64,
+        others: bool,
+        of: Box<Tree>,
+    },
+    /// Particles with the same residue or value of a column as one of those of a condition.
+    Same {
+        column: String,
+        of: Box<Tree>,
+    },
+}
+
+/// A value in a list, as in `name CA C*` or `resid 5 to 10`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    /// A text, or a number as it is written.
+    Text(String),
+    /// The beginning of texts, before a `*`.
+    Pattern(String),
+    /// Numbers from the first to the second, both included.
+    Range(f64, f64),
 }
 
 /// A parser: the words that are not parsed yet.
-struct Parser {
-    words: std::iter::Peekable<std::vec::IntoIter<(Word, Range<usize>)>>,
-    length: usize,
-    depth: usize,
+pub(super) struct Parser<'t> {
+    pub(super) words: Vec<(Word, Range<usize>)>,
+    /// Index of the next word.
+    pub(super) next: usize,
+    pub(super) text: &'t str,
+    pub(super) depth: usize,
 }
 
 const COMPARISONS: [Sign; 6] =
     [Sign::Equal, Sign::NotEqual, Sign::Less, Sign::LessEqual, Sign::Greater, Sign::GreaterEqual];
 
 /// Parses all words.
-pub(super) fn parse((words, length): (Words, usize)) -> Result<Tree, SpannedError> {
-    let mut parser = Parser { words: words.into_iter().peekable(), length, depth: 0 };
+pub(super) fn parse(words: Words, text: &str) -> Result<Tree, SpannedError> {
+    let mut parser = Parser { words, next: 0, text, depth: 0 };
     let tree = parser.any()?;
-    match parser.words.next() {
+    match parser.advance() {
         None => Ok(tree),
         Some((Word::Sign(Sign::Close), span)) => Err((span, "unmatched `)`".to_owned())),
         Some((_, span)) => {
@@ -51,20 +80,31 @@ pub(super) fn parse((words, length): (Words, usize)) -> Result<Tree, SpannedErro
     }
 }
 
-impl Parser {
+impl Parser<'_> {
     /// Takes the next word if it is one of these operators.
     fn take(&mut self, signs: &[Sign]) -> Option<(Sign, Range<usize>)> {
-        match self.words.peek()? {
+        match self.peek(0)? {
             (Word::Sign(sign), span) if signs.contains(sign) => {
                 let found = (*sign, span.clone());
-                self.words.next();
+                self.next += 1;
                 Some(found)
             }
             _ => None,
         }
     }
 
-    fn deeper(&mut self, span: &Range<usize>) -> Result<(), SpannedError> {
+    /// Returns the word that is `ahead` words after the next one.
+    pub(super) fn peek(&self, ahead: usize) -> Option<&(Word, Range<usize>)> {
+        self.words.get(self.next + ahead)
+    }
+
+    pub(super) fn advance(&mut self) -> Option<(Word, Range<usize>)> {
+        let word = self.words.get(self.next).cloned();
+        self.next += usize::from(word.is_some());
+        word
+    }
+
+    pub(super) fn deeper(&mut self, span: &Range<usize>) -> Result<(), SpannedError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
             return Err((span.clone(), format!("more than {MAX_DEPTH} levels of nesting")));
@@ -101,8 +141,13 @@ impl Parser {
         Ok(Tree { node: node(parts), span })
     }
 
-    fn not(&mut self) -> Result<Tree, SpannedError> {
-        let Some((_, span)) = self.take(&[Sign::Not]) else { return self.comparison() };
+    pub(super) fn not(&mut self) -> Result<Tree, SpannedError> {
+        let Some((_, span)) = self.take(&[Sign::Not]) else {
+            return match self.group_or_list()? {
+                Some(tree) => Ok(tree),
+                None => self.comparison(),
+            };
+        };
         self.deeper(&span)?;
         let inner = self.not()?;
         self.depth -= 1;
@@ -152,14 +197,16 @@ impl Parser {
     }
 
     fn operand(&mut self) -> Result<Tree, SpannedError> {
-        let Some((word, span)) = self.words.next() else {
-            return Err((self.length..self.length, "expected a number or a name here".to_owned()));
+        let Some((word, span)) = self.advance() else {
+            let end = self.text.len();
+            return Err((end..end, "expected a number or a name here".to_owned()));
         };
         let node = match word {
             Word::Number(number) => Node::Number(number),
             Word::Bare(name) => Node::Word(name),
             Word::Column(name) => Node::Column(name),
             Word::Text(text) => Node::Text(text),
+            Word::Mixed(_, message) => return Err((span, message)),
             Word::Sign(Sign::Minus) => return self.negative(span),
             Word::Sign(Sign::Open) => return self.parentheses(span),
             Word::Sign(_) => {

@@ -11,11 +11,15 @@
 
 mod bind;
 mod grammar;
+mod lists;
+mod spatial;
+mod vocabulary;
 mod words;
 
 use self::grammar::{Node, Tree};
-use super::Particles;
-use crate::scene::FileError;
+use super::style::add_numbers;
+use super::{AlignBy, ParticleFrame, Particles};
+use crate::scene::{FileError, Spheres};
 use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
@@ -34,11 +38,28 @@ const NAME: &str = "selection";
 /// text        a word, or "anything" in quotes
 /// ```
 ///
+/// The words of VMD and `MDAnalysis` are conditions too:
+///
+/// ```text
+/// protein                      also backbone, sidechain, calpha, nucleic, nucleicbackbone, nucleicbase,
+///                              water, ions, lipids, hydrogen, noh, all, none
+/// name CA C* "O5'"             a column and the values it may have; `*` ends a beginning of texts
+/// resid 5 to 10 12             numbers from 5 to 10, and 12; also 5:10 and 5-10
+/// within 5 of resname LIG      with the ligand itself, over the periodic cell; exwithin: without it
+/// around 5 resname LIG         the same as exwithin 5 of resname LIG
+/// same residue as name ZN      also of any column, as in same chain as; byres name ZN
+/// ```
+///
+/// Distances are in the unit of positions, which GRO files have in nanometers. `within`, `around`, `same` and
+/// `byres` bind like `not`: before `and`.
+///
 /// Precedence, from low to high: `or`, `and`, `not`, comparisons, `+ -`, `* /`; parentheses as usual. A
 /// word that is compared with a column of texts is a text, even if a column has this name. Missing
 /// numbers are NaN: every comparison with them is false except `!=`. A column of texts is also one of
 /// numbers if its texts are numbers. Columns are those of the file, by its own names or their aliases
-/// in other programs, and `x`, `y`, `z`, `radius`, `type`, `element`, `id`, `index`.
+/// in other programs, and `x`, `y`, `z`, `radius`, `type`, `element`, `id`, `index`. `coordination` is
+/// the number of bonds, and `cluster` the number of the connected component, 1 for the largest;
+/// `coordination[3.2]` and `cluster[3.2]` are those of neighbors closer than 3.2 in the file's unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
     text: String,
@@ -78,12 +99,42 @@ impl FromStr for Selection {
 
     fn from_str(text: &str) -> Result<Self, Fault> {
         let fault = |(span, message): (Range<usize>, String)| Fault::new(text, span, message);
-        let tree = words::words(text).and_then(grammar::parse).map_err(fault)?;
+        let tree =
+            words::words(text).and_then(|words| grammar::parse(words, text)).map_err(fault)?;
         Ok(Self { text: text.to_owned(), tree })
     }
 }
 
 impl Selection {
+    /// Returns the choice of the particles that the condition is true of, by which frames are superposed
+    /// ([`ReadOptions::align`](super::ReadOptions::align)).
+    pub fn align_by(&self) -> AlignBy {
+        let selection = self.clone();
+        AlignBy::rows(&self.text, &self.columns(), move |frame| {
+            let text = &selection.text;
+            selection.rows(frame).map_err(|why| format!("cannot be aligned by `{text}`: {why}"))
+        })
+    }
+
+    /// Returns for each particle of a frame whether the condition is true of it, or a message.
+    fn rows(&self, frame: &ParticleFrame) -> Result<Vec<bool>, String> {
+        let (x, y, z) = (frame.x.clone(), frame.y.clone(), frame.z.clone());
+        let radius = vec![1.0; frame.len()];
+        let mut particles = Particles {
+            spheres: Spheres { x, y, z, radius, ..Spheres::default() },
+            material_names: vec![String::new()],
+            kinds: frame.kinds.clone(),
+            numbers: frame.numbers.clone(),
+            texts: frame.texts.clone(),
+            cell: frame.cell,
+            columns: frame.columns.clone(),
+            roles: frame.roles.clone(),
+            ..Particles::default()
+        };
+        add_numbers(&mut particles, &self.columns());
+        bind::rows(&self.tree, &particles).map_err(|(_, message)| message)
+    }
+
     /// All words that may be columns.
     pub fn columns(&self) -> Vec<String> {
         let mut names = Vec::new();
@@ -136,6 +187,13 @@ fn collect(tree: &Tree, names: &mut Vec<String>) {
             }
         }
         Node::All(parts) | Node::Any(parts) => parts.iter().for_each(|part| collect(part, names)),
+        Node::OneOf(column, _) => collect(column, names),
+        Node::Group(group) => names.extend(group.columns().iter().map(|&name| name.to_owned())),
+        Node::Within { of, .. } => collect(of, names),
+        Node::Same { column, of } => {
+            names.extend(spatial::columns_of(column));
+            collect(of, names);
+        }
     }
 }
 

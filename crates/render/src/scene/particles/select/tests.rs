@@ -1,3 +1,5 @@
+mod molecules;
+
 use super::*;
 use crate::scene::particles::{Columns, ParticleStyle, ReadOptions, read};
 
@@ -12,7 +14,7 @@ fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
     let selection: Selection = condition
         .parse()
         .map_err(|fault: Fault| format!("{}: {}", &fault.text[fault.span], fault.message))?;
-    let style = ParticleStyle { select: Some(selection), ..ParticleStyle::default() };
+    let style = ParticleStyle { select: Some(selection), ids: true, ..ParticleStyle::default() };
     let columns = Columns { wanted: style.columns(), ..Columns::default() };
     let options = ReadOptions { columns, ..ReadOptions::default() };
     let mut particles = read(&path, &options).expect("particles");
@@ -21,6 +23,9 @@ fn select(content: &str, condition: &str) -> Result<Vec<f64>, String> {
         None => format!("{} {}", error.message, error.help.unwrap_or_default()),
     })?;
     assert_eq!(particles.kinds.codes.len(), particles.spheres.len());
+    if let Some(ids) = particles.numbers.iter().find(|column| column.name == "id") {
+        return Ok(ids.values.clone());
+    }
     Ok(particles.spheres.x.iter().map(|x| x + 1.0).collect())
 }
 

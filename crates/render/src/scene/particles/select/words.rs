@@ -15,6 +15,9 @@ pub(super) enum Word {
     Column(String),
     /// A text in quotes.
     Text(String),
+    /// A text that begins like a number, such as `5:10` or `1HB`, which only lists of values may hold, and the
+    /// error anywhere else.
+    Mixed(String, String),
     Sign(Sign),
 }
 
@@ -60,8 +63,8 @@ const SIGNS: [(&str, Sign); 15] = [
 /// Words with their bytes.
 pub(super) type Words = Vec<(Word, Range<usize>)>;
 
-/// Splits a condition into words; returns also its length.
-pub(super) fn words(text: &str) -> Result<(Words, usize), SpannedError> {
+/// Splits a condition into words.
+pub(super) fn words(text: &str) -> Result<Words, SpannedError> {
     let mut words = Vec::new();
     let mut at = 0;
     loop {
@@ -69,7 +72,7 @@ pub(super) fn words(text: &str) -> Result<(Words, usize), SpannedError> {
         at += rest.len() - rest.trim_start().len();
         let rest = rest.trim_start();
         if rest.is_empty() {
-            return Ok((words, text.len()));
+            return Ok(words);
         }
         let (word, length) = word(rest).map_err(|(length, message)| (at..at + length, message))?;
         words.push((word, at..at + length));
@@ -85,12 +88,17 @@ fn word(rest: &str) -> Result<(Word, usize), (usize, String)> {
     }
     let fraction = first == '.' && rest[1..].starts_with(|c: char| c.is_ascii_digit());
     if first.is_ascii_digit() || fraction {
-        return number(rest);
+        return Ok(number(rest));
     }
     if let Some((sign, meaning)) = SIGNS.iter().find(|(sign, _)| rest.starts_with(sign)) {
         return Ok((Word::Sign(*meaning), sign.len()));
     }
-    let length = rest.find(|c| !is_name_char(c)).unwrap_or(rest.len());
+    let mut length = rest.find(|c| !is_name_char(c)).unwrap_or(rest.len());
+    // Names of atoms of nucleic acids end with primes.
+    let primes = rest[length..].len() - rest[length..].trim_start_matches('\'').len();
+    if length > 0 && primes <= 2 && !rest[length + primes..].starts_with(is_name_char) {
+        length += primes;
+    }
     let name = &rest[..length];
     match name.to_ascii_lowercase().as_str() {
         "" if first == '=' => Err((1, "use `==` for equality".to_owned())),
@@ -114,8 +122,9 @@ fn quoted(rest: &str, quote: char) -> Result<(Word, usize), (usize, String)> {
     Ok((if quote == '`' { Word::Column(text) } else { Word::Text(text) }, length + 2))
 }
 
-fn number(rest: &str) -> Result<(Word, usize), (usize, String)> {
+fn number(rest: &str) -> (Word, usize) {
     let mut length = rest.find(|c| !is_name_char(c)).unwrap_or(rest.len());
+    length += rest[length..].len() - rest[length..].trim_start_matches('\'').len();
     // The sign of an exponent.
     let exponent = rest[..length].ends_with(['e', 'E']);
     if exponent && rest[length..].starts_with(['+', '-']) {
@@ -123,13 +132,15 @@ fn number(rest: &str) -> Result<(Word, usize), (usize, String)> {
         length += 1 + after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
     }
     let number = rest[..length].parse().ok().filter(|number: &f64| number.is_finite());
-    number.map(|number| (Word::Number(number), length)).ok_or_else(|| {
-        let text = &rest[..length];
-        (
-            length,
-            format!(
+    number.map_or_else(
+        || {
+            let text = rest[..length].trim_end_matches(['+', '-']).to_owned();
+            let length = text.len();
+            let message = format!(
                 "`{text}` is not a number; write names like this in backticks, texts in quotes"
-            ),
-        )
-    })
+            );
+            (Word::Mixed(text, message), length)
+        },
+        |number| (Word::Number(number), length),
+    )
 }

@@ -128,7 +128,7 @@ impl ParticleStyle {
 }
 
 /// Adds the columns of ids and indices, if they are asked for and missing, before rows are dropped.
-fn add_numbers(particles: &mut Particles, names: &[String]) {
+pub(super) fn add_numbers(particles: &mut Particles, names: &[String]) {
     for own in [ID, INDEX] {
         let names_column = |name: &String| {
             name.eq_ignore_ascii_case(own)
