@@ -19,16 +19,18 @@ use std::path::PathBuf;
 #[command(next_help_heading = "Particle appearance")]
 pub(super) struct AppearanceArgs {
     /// Draw only particles for which EXPR is true, as in 'element != H and z > 10'. Operators: == != < <= > >=,
-    /// and, or, not, + - * /, parentheses. Strings are words or quoted; names with other characters than
-    /// letters, digits and _ . : [ ] need backticks. Columns have the file's names, or the names of other
-    /// programs: resname, resid, chainid, segid, name, bfactor, occ, serial, q, mol
+    /// and, or, not, + - * /, parentheses. Also words of VMD and MDAnalysis: protein, backbone, water, name CA CB,
+    /// resid 5 to 10, within 5 of resname LIG, same residue as name ZN. Strings are words or quoted; names with
+    /// other characters than letters, digits and _ . : [ ] need backticks. Columns have the file's names, or the
+    /// names of other programs: resname, resid, chainid, segid, name, bfactor, occ, serial, q, mol
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<WithText<Selection>>())]
     select: Option<WithText<Selection>>,
     /// Color scheme for elements, also where the file has colors [default: the file's colors, or else jmol]
     #[arg(long, value_enum, value_name = "SCHEME", conflicts_with = "color_by")]
     colors: Option<Scheme>,
-    /// Color by a column of the file, or by x, y, z, radius, type, element, id or index: numbers by a color
-    /// map, strings by a cycle of ten colors. Names of other programs are accepted, as for --select
+    /// Color by a column of the file, or by x, y, z, radius, type, element, id, index, coordination (number of
+    /// bonds) or cluster (connected particles, by size): numbers by a color map, strings by a cycle of ten colors.
+    /// Names of other programs are accepted, as for --select
     #[arg(long, value_name = "COLUMN")]
     color_by: Option<String>,
     /// Color map for --color-by; append _r to reverse it, as in `viridis_r` [default: viridis]
