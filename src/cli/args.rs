@@ -59,7 +59,7 @@ pub(super) enum Command {
     Field(FieldArgs),
     /// Show the contents of a scene, and the work that a render of it skips
     #[command(after_help = examples::INFO)]
-    Info(InfoArgs),
+    Info(Box<InfoArgs>),
     /// Measure the difference between an image and a reference
     #[command(after_help = examples::COMPARE)]
     Compare(compare::Args),

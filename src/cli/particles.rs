@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::json;
 use spherule_render::scene::particles::{
     Columns, Element, Format, FrameChoice, LengthUnit, Orientation, Particles, Radii, ReadOptions,
-    count_frames,
+    Selection, count_frames,
 };
 use spherule_render::suggest;
 use std::path::{Path, PathBuf};
@@ -43,6 +43,23 @@ pub(super) struct ParticleArgs {
     /// File that names the particles of a trajectory: their types, elements, residues, radii and other columns
     #[arg(long, value_name = "FILE")]
     topology: Option<PathBuf>,
+    /// Make molecules whole that the periodic cell divides: by the file's bonds, or by distance
+    #[arg(long)]
+    whole: bool,
+    /// Superpose every frame on the first one by translation and rotation, by the particles of a selection, as in
+    /// --align='name CA'; without one, by all. The first frame of the file is read, too
+    #[arg(
+        long,
+        value_name = "EXPR",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "all",
+        value_parser = |text: &str| text.parse::<WithText<Selection>>()
+    )]
+    align: Option<WithText<Selection>>,
+    /// Average the positions of each frame with those of N frames before and N after it, as far as there are any
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    smooth: Option<u32>,
 }
 
 fn format(name: &str) -> Result<Format, String> {
@@ -71,6 +88,9 @@ impl ParticleArgs {
             radius_scale: self.radius_scale.unwrap_or(1.0),
             atom_style: self.atom_style.clone(),
             topology: self.topology.clone(),
+            whole: self.whole,
+            align: self.align.as_deref().map(Selection::align_by),
+            smooth: self.smooth.unwrap_or(0),
             ..ReadOptions::default()
         }
     }
@@ -111,6 +131,13 @@ impl ParticleArgs {
         // Without folders, which are private.
         if let Some(name) = self.topology.as_deref().and_then(Path::file_name) {
             list.insert("topology".to_owned(), json!(name.to_string_lossy()));
+        }
+        if self.whole {
+            list.insert("whole".to_owned(), json!(true));
+        }
+        with_text::insert(&mut list, "align", &self.align);
+        if let Some(frames) = self.smooth {
+            list.insert("smooth".to_owned(), json!(frames));
         }
         list
     }

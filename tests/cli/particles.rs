@@ -209,4 +209,46 @@ fn bonds_that_cannot_be_drawn_are_refused() {
     assert!(refused(&["--bonds", "fil"]).contains("file"));
     assert!(refused(&["--model", "sticks"]).contains("licorice"));
     assert!(refused(&["--bond-radius", "0"]).contains("greater than 0"));
+
+/// A water that the cell divides, and that moves from frame to frame, beside an argon.
+fn waters(frames: usize) -> String {
+    let frame = |step: usize| {
+        let x = (9.8 + 0.3 * step as f64).rem_euclid(10.0);
+        let hydrogen = (x + 0.96).rem_euclid(10.0);
+        format!(
+            "4\nLattice=\"10 0 0 0 10 0 0 0 10\" Properties=species:S:1:pos:R:3\n\
+             O {x} 5 5\nH {hydrogen} 5 5\nH {x} 5.96 5\nAr 3 3 3\n"
+        )
+    };
+    (0..frames).map(frame).collect()
+}
+
+#[test]
+fn frames_are_made_whole_aligned_and_smoothed() {
+    let folder = Folder::new();
+    folder.write("w.xyz", &waters(4));
+    let bytes = |name: &str, args: &str| {
+        let line = format!("render w.xyz --size 32x24 --spp 1 -q -o {name}.pfm {args}");
+        let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{line}: {}", text(&output.stderr));
+        folder.read(&format!("{name}.pfm"))
+    };
+    // The first water is divided in frame 0, and moves.
+    for (frame, name, args) in
+        [(0, "whole", "--whole"), (1, "align", "--align"), (0, "smooth", "--smooth 1")]
+    {
+        let plain = bytes("plain", &format!("--frame {frame}"));
+        assert_ne!(bytes(name, &format!("--frame {frame} {args}")), plain, "{args}");
+    }
+    for (args, part) in [
+        ("--frame 1 --align=resname", "expected a comparison"),
+        ("--frame 1 --align=element==O", "cannot be aligned by 1 particles"),
+        ("--frame 1 --smooth 0", "0 is not in 1..=1000"),
+        ("--frame 1 --select coordination==7", "none of its 4 particles"),
+    ] {
+        let line = format!("render w.xyz --size 32x24 --spp 1 -q -o no.png {args}");
+        let output = folder.run(&line.split(' ').collect::<Vec<_>>());
+        let stderr = text(&output.stderr);
+        assert!(output.status.code() != Some(0) && stderr.contains(part), "{line}: {stderr}");
+    }
 }
