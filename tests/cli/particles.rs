@@ -209,6 +209,7 @@ fn bonds_that_cannot_be_drawn_are_refused() {
     assert!(refused(&["--bonds", "fil"]).contains("file"));
     assert!(refused(&["--model", "sticks"]).contains("licorice"));
     assert!(refused(&["--bond-radius", "0"]).contains("greater than 0"));
+}
 
 /// A water that the cell divides, and that moves from frame to frame, beside an argon.
 fn waters(frames: usize) -> String {
