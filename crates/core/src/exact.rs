@@ -15,7 +15,7 @@ mod dyadic;
 
 pub use capsule::{CapsuleRoot, capsule_hit};
 
-use crate::capsules::Capsule;
+use crate::capsule::Capsule;
 use crate::ray::ExactRay;
 use dyadic::{Dyadic, dot, nearest_root};
 use glam::DVec3;

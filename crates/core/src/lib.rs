@@ -35,6 +35,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
 
 mod bvh;
+mod capsule;
 mod capsules;
 mod conservative;
 mod elementary;

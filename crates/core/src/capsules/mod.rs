@@ -8,6 +8,7 @@ mod filter;
 mod intersect;
 mod search;
 
+pub use crate::capsule::{Capsule, Part};
 pub use intersect::{CapsuleHit, exit_distance, intersect};
 pub use search::{BodyTrees, closest, enclosing_capsule, occluded};
 
@@ -17,36 +18,6 @@ use crate::ray::GROUND;
 use crate::slabs::MARGIN;
 use crate::spheres::LEAF;
 use glam::{DVec3, Vec3};
-
-/// All points within `radius` of the line segment between two ends, which may be the same point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Capsule {
-    /// The ends.
-    pub ends: [DVec3; 2],
-    /// The radius, more than 0.
-    pub radius: f64,
-}
-
-/// A part of a capsule's surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// The cylinder between the ends.
-    Body,
-    /// The half sphere about the first or the second end.
-    End(usize),
-}
-
-impl Capsule {
-    /// The outward unit normal at a point of the surface, given relative to the first end, and where on the axis the point
-    /// belongs, from 0 to 1. The point need not be on the surface by more than rounding.
-    pub fn normal(&self, from_start: DVec3) -> (DVec3, f64) {
-        let axis = self.ends[1] - self.ends[0];
-        let length2 = axis.length_squared();
-        let along =
-            if length2 > 0.0 { (from_start.dot(axis) / length2).clamp(0.0, 1.0) } else { 0.0 };
-        ((from_start - axis * along).normalize_or_zero(), along)
-    }
-}
 
 /// A hit on a capsule as a number beside the rows of spheres: each capsule has two rows after theirs, for the halves of its
 /// axis.

@@ -7,7 +7,7 @@
 
 use super::dyadic::{Dyadic, dot};
 use super::{Encounter, Quotient, sign_of_sum};
-use crate::capsules::{Capsule, Part};
+use crate::capsule::{Capsule, Part};
 use crate::ray::ExactRay;
 
 /// The distance at which a ray hits a capsule.
