@@ -54,6 +54,17 @@ pub struct CapsuleBlock {
     radius: [f32; LEAF],
 }
 
+/// A capsule from which a tree is built.
+#[derive(Clone, Copy, Debug)]
+pub struct CapsuleItem {
+    /// The ends, with coordinates of about 1 at most.
+    pub ends: [Vec3; 2],
+    /// The radius, more than 0.
+    pub radius: f32,
+    /// Place in the user's order.
+    pub id: u32,
+}
+
 /// Capsules, and the tree over them.
 #[derive(Clone, Debug, Default)]
 pub struct Capsules {
@@ -67,18 +78,18 @@ impl Capsules {
     /// The most capsules there can be.
     pub const MAX: usize = 1 << 30;
 
-    /// Builds the tree over capsules with ids, whose coordinates are about 1 at most, and whose radii are more than 0.
-    pub fn build(rows: &[([Vec3; 2], f32, u32)], builder: Builder) -> Self {
-        let around = |(row, (ends, radius, _)): (usize, &([Vec3; 2], f32, u32))| {
+    /// Builds the tree over capsules.
+    pub fn build(items: &[CapsuleItem], builder: Builder) -> Self {
+        let around = |(row, &CapsuleItem { ends, radius, .. }): (usize, &CapsuleItem)| {
             let center = (ends[0] + ends[1]) * 0.5;
             let reach = ends[0].distance(ends[1]) * 0.5 + radius;
             Item { sphere: [center.x, center.y, center.z, reach], id: row as u32 }
         };
-        let (order, bvh) = build_around(rows.iter().enumerate().map(around).collect(), builder);
-        let block = |rows_of: &[u32]| {
+        let (order, bvh) = build_around(items.iter().enumerate().map(around).collect(), builder);
+        let block = |rows: &[u32]| {
             let mut block = CapsuleBlock { ends: [[[0.0; LEAF]; 3]; 2], radius: [f32::NAN; LEAF] };
-            for (lane, &row) in rows_of.iter().enumerate() {
-                let (ends, radius, _) = rows[row as usize];
+            for (lane, &row) in rows.iter().enumerate() {
+                let CapsuleItem { ends, radius, .. } = items[row as usize];
                 for (columns, end) in block.ends.iter_mut().zip(ends) {
                     (0..3).for_each(|axis| columns[axis][lane] = end[axis]);
                 }
@@ -87,7 +98,7 @@ impl Capsules {
             block
         };
         let blocks: Vec<CapsuleBlock> = order.chunks(LEAF).map(block).collect();
-        let id = order.iter().map(|&row| rows[row as usize].2).collect();
+        let id = order.iter().map(|&row| items[row as usize].id).collect();
         let mut capsules = Self { blocks, id, bvh: Bvh::default() };
         capsules.bvh = bvh.refitted(|block| capsules.bounds_of(block));
         capsules

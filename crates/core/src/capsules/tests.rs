@@ -156,6 +156,11 @@ fn capsule(random: &mut Random) -> Capsule {
     Capsule { ends: [start, end], radius: f64::from(radius) }
 }
 
+fn item(capsule: &Capsule) -> CapsuleItem {
+    let radius = capsule.radius as f32;
+    CapsuleItem { ends: capsule.ends.map(DVec3::as_vec3), radius, id: 0 }
+}
+
 #[test]
 fn hits_are_those_of_150_decimal_places() {
     let mut random = Random::new(11);
@@ -210,7 +215,7 @@ fn tangents_hit_and_the_next_ray_misses() {
 }
 
 /// Spheres, capsules about some of them with equal radii, and rays.
-fn scene(random: &mut Random, count: usize) -> (Spheres, Vec<([Vec3; 2], f32, u32)>) {
+fn scene(random: &mut Random, count: usize) -> (Spheres, Vec<CapsuleItem>) {
     let centers: Vec<Vec3> = (0..count).map(|_| point(random).as_vec3()).collect();
     let mut spheres = Spheres::with_capacity(count);
     for (id, &center) in centers.iter().enumerate().take(count / 2) {
@@ -220,7 +225,7 @@ fn scene(random: &mut Random, count: usize) -> (Spheres, Vec<([Vec3; 2], f32, u3
         let ends = [0, 1].map(|_| centers[random.index(count)]);
         let near = ends[0] + (ends[1] - ends[0]).clamp_length_max(0.3);
         let ends = if random.coin() { ends } else { [ends[0], near] };
-        (ends, [0.04, 0.01][random.index(2)], id as u32)
+        CapsuleItem { ends, radius: [0.04, 0.01][random.index(2)], id: id as u32 }
     });
     let rows = rows.collect();
     (spheres, rows)
@@ -230,21 +235,21 @@ fn scene(random: &mut Random, count: usize) -> (Spheres, Vec<([Vec3; 2], f32, u3
 fn brute(
     ray: &ExactRay,
     spheres: &Spheres,
-    rows: &[([Vec3; 2], f32, u32)],
+    rows: &[CapsuleItem],
     own: Option<u32>,
 ) -> Option<(Fixed, usize)> {
     let sphere = |i: usize| {
         let (center, radius) = spheres.exact(i);
         Capsule { ends: [center; 2], radius }
     };
-    let capsule = |&(ends, radius, _): &([Vec3; 2], f32, u32)| Capsule {
+    let capsule = |&CapsuleItem { ends, radius, .. }: &CapsuleItem| Capsule {
         ends: ends.map(Vec3::as_dvec3),
         radius: f64::from(radius),
     };
     let bodies = (0..spheres.len()).map(sphere).enumerate().chain(
         rows.iter()
-            .filter(|row| Some(row.2) != own)
-            .map(|row| (spheres.len() + row.2 as usize, capsule(row))),
+            .filter(|row| Some(row.id) != own)
+            .map(|row| (spheres.len() + row.id as usize, capsule(row))),
     );
     let first = |body: &Capsule| {
         crossings(ray, body).and_then(|all| all.into_iter().find(|t| *t > Fixed::new(0.0)))
@@ -265,7 +270,7 @@ fn trees_find_the_hits_of_brute_force() {
         let capsules = Capsules::build(&rows, builder);
         let mut rays = Rays::with_capacity(200);
         for _ in 0..200 {
-            let toward = rows[random.index(rows.len())].0[0].as_dvec3();
+            let toward = rows[random.index(rows.len())].ends[0].as_dvec3();
             let origin = point(&mut random) * 2.0;
             let aim = if random.coin() { toward } else { point(&mut random) };
             rays.push(origin.as_vec3(), (aim - origin).as_vec3(), MISS);
@@ -317,8 +322,7 @@ fn the_filter_keeps_what_is_hit() {
     for _ in 0..20_000 {
         let body = capsule(&mut random);
         let ray = grazing(&mut random, &body);
-        let ends = body.ends.map(DVec3::as_vec3);
-        let capsules = Capsules::build(&[(ends, body.radius as f32, 0)], Builder::default());
+        let capsules = Capsules::build(&[item(&body)], Builder::default());
         if intersect(&ray, &body).is_none() {
             continue;
         }
@@ -339,10 +343,7 @@ fn rays_from_a_surface_do_not_hit_it() {
     let spheres = Spheres::default();
     for _ in 0..2000 {
         let body = capsule(&mut random);
-        let capsules = Capsules::build(
-            &[(body.ends.map(DVec3::as_vec3), body.radius as f32, 0)],
-            Builder::default(),
-        );
+        let capsules = Capsules::build(&[item(&body)], Builder::default());
         let normal = random.direction();
         let along = random.unit();
         let axis = body.ends[1] - body.ends[0];
@@ -366,14 +367,14 @@ fn points_are_enclosed_by_the_first_capsule() {
     let mut inside = 0;
     for _ in 0..5000 {
         let point = point(&mut random) * 0.7;
-        let contains = |(ends, radius, _): &&([Vec3; 2], f32, u32)| {
+        let contains = |CapsuleItem { ends, radius, .. }: &&CapsuleItem| {
             let ends = ends.map(Vec3::as_dvec3);
             let axis = ends[1] - ends[0];
             let along = (point - ends[0]).dot(axis) / axis.length_squared().max(1e-300);
             let nearest = ends[0] + axis * along.clamp(0.0, 1.0);
             nearest.distance(point) < f64::from(*radius)
         };
-        let expected = rows.iter().find(contains).map(|row| row.2);
+        let expected = rows.iter().find(contains).map(|row| row.id);
         let found = enclosing_capsule(&capsules, point).map(|row| capsules.ids()[row]);
         assert_eq!(found, expected);
         inside += u32::from(found.is_some());

@@ -26,8 +26,8 @@ impl<'a> Bodies<'a> {
         if let Some(visible) = &world.camera_visible {
             bodies.tree = Tree { bvh: &visible.bvh, spheres: &visible.spheres };
         }
-        if let Some((sticks, _)) = &world.sticks.visible {
-            bodies.sticks = sticks;
+        if let Some(visible) = &world.sticks.visible {
+            bodies.sticks = &visible.capsules;
         }
         bodies
     }
@@ -36,7 +36,7 @@ impl<'a> Bodies<'a> {
     pub(super) fn hit_in(&self, world: &World, hit: u32) -> u32 {
         let spheres = self.tree.spheres.len();
         if let Some(row) = CapsuleRow::of_hit(hit, spheres).filter(|_| !self.sticks.is_empty()) {
-            let rows = world.sticks.visible.as_ref().map(|(_, rows)| rows);
+            let rows = world.sticks.visible.as_ref().map(|visible| &visible.row);
             let capsule = rows.map_or(row.capsule, |rows| rows[row.capsule] as usize);
             return CapsuleRow { capsule, ..row }.hit(world.spheres.len());
         }

@@ -49,7 +49,7 @@ pub use lights::{
     Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
 };
 pub(crate) use parts::{OmittedSpheres, Parts};
-pub use sticks::WorldSticks;
+pub use sticks::{VisibleSticks, WorldSticks};
 pub use transform::Transform;
 pub use visibility::Visibility;
 
@@ -235,8 +235,8 @@ impl World {
             parts;
         let materials = Materials::build(&scene.materials);
         let sticks = WorldSticks::build(scene, &transform);
-        let rows = (&sticks.all, spheres.len());
-        sticks::append_appearance(&mut appearance, (scene, &materials), rows);
+        let count = spheres.len();
+        sticks::append_appearance(&mut appearance, scene, &materials, &sticks.all, count);
         let cut = Cut::build(&scene.slices, &transform);
         let camera = Camera::build(scene, &placement, &transform);
         let environment = Environment::build(&scene.environment, &scene.look);

@@ -3,7 +3,7 @@
 use super::appearance::{Colors, Column};
 use super::{Appearance, Materials, Transform};
 use crate::bvh::builders::Builder;
-use crate::capsules::{Capsule, CapsuleRow, Capsules};
+use crate::capsules::{Capsule, CapsuleItem, CapsuleRow, Capsules};
 use crate::scene::{Rgb, Scene};
 use crate::shade::MaterialKind;
 use std::borrow::Cow;
@@ -13,8 +13,17 @@ use std::borrow::Cow;
 pub struct WorldSticks {
     /// All sticks.
     pub all: Capsules,
-    /// The sticks that the camera sees, and their rows among all; `None` if slices hide none.
-    pub visible: Option<(Capsules, Vec<u32>)>,
+    /// The sticks that the camera sees; `None` if slices hide none.
+    pub visible: Option<VisibleSticks>,
+}
+
+/// The sticks that camera rays are tested against.
+#[derive(Clone, Debug, Default)]
+pub struct VisibleSticks {
+    /// Sticks, in the order of their tree.
+    pub capsules: Capsules,
+    /// Their rows among all.
+    pub row: Vec<u32>,
 }
 
 impl WorldSticks {
@@ -23,21 +32,23 @@ impl WorldSticks {
         let sticks = &scene.sticks;
         let place = |row: usize| {
             let ends = sticks.ends(row).map(|end| transform.point(end).as_vec3());
-            (ends, transform.length(sticks.radius[row]) as f32, row as u32)
+            let radius = transform.length(sticks.radius[row]) as f32;
+            CapsuleItem { ends, radius, id: row as u32 }
         };
-        let rows: Vec<_> = scene.shown_sticks().map(place).filter(|row| row.1 > 0.0).collect();
+        let rows: Vec<_> =
+            scene.shown_sticks().map(place).filter(|item| item.radius > 0.0).collect();
         let all = Capsules::build(&rows, Builder::default());
         let hidden =
             |row: u32| scene.slices.iter().any(|slice| slice.hides(sticks.middle(row as usize)));
-        let seen: Vec<_> = rows.iter().copied().filter(|row| !hidden(row.2)).collect();
+        let seen: Vec<_> = rows.iter().copied().filter(|item| !hidden(item.id)).collect();
         let visible = (seen.len() < rows.len()).then(|| {
-            let visible = Capsules::build(&seen, Builder::default());
+            let capsules = Capsules::build(&seen, Builder::default());
             let mut of_id = vec![0; sticks.len()];
             for (row, &id) in all.ids().iter().enumerate() {
                 of_id[id as usize] = row as u32;
             }
-            let rows = visible.ids().iter().map(|&id| of_id[id as usize]).collect();
-            (visible, rows)
+            let row = capsules.ids().iter().map(|&id| of_id[id as usize]).collect();
+            VisibleSticks { capsules, row }
         });
         Self { all, visible }
     }
@@ -74,8 +85,10 @@ impl WorldSticks {
 /// Appends rows for the halves of sticks to the appearance of `spheres` spheres.
 pub(super) fn append_appearance(
     appearance: &mut Appearance,
-    (scene, materials): (&Scene, &Materials),
-    (sticks, spheres): (&Capsules, usize),
+    scene: &Scene,
+    materials: &Materials,
+    sticks: &Capsules,
+    spheres: usize,
 ) {
     if sticks.is_empty() {
         return;

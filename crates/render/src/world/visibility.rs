@@ -62,7 +62,7 @@ impl World {
     fn sticks_in_view(&self, region: Region) -> bool {
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
         let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
-        let sticks = self.sticks.visible.as_ref().map_or(&self.sticks.all, |visible| &visible.0);
+        let sticks = self.sticks.visible.as_ref().map_or(&self.sticks.all, |seen| &seen.capsules);
         (0..sticks.len()).into_par_iter().any(|row| {
             let stick = sticks.capsule(row);
             stick.ends.iter().any(|&end| self.camera.coverage((end, stick.radius), low, high) > 0.0)
