@@ -217,6 +217,13 @@ fn distances_complete_partial_lists() {
         File::new(xyz).read("auto", "first").expect("a frame").bonds.expect("bonds").len(),
         2
     );
+    // Crystals without a table of bonds.
+    let cif = "data_a\n_cell_length_a 5\n_cell_length_b 5\n_cell_length_c 5\n_cell_angle_alpha 90\n\
+               _cell_angle_beta 90\n_cell_angle_gamma 90\nloop_\n_atom_site_label\n_atom_site_fract_x\n\
+               _atom_site_fract_y\n_atom_site_fract_z\nC1 0.95 0 0\nO1 0.2 0 0\n";
+    let bonds = File::new(cif).read("auto", "first").expect("a frame").bonds.expect("bonds");
+    assert_eq!((bonds.len(), bonds.shift_of(0)), (1, [1, 0, 0]));
+    assert!(File::new(cif).read("file", "first").is_err());
     let error = File::new(xyz).read("file", "first").expect_err("no bonds");
     assert!(error.starts_with("input: has no bonds in it"), "{error}");
 }

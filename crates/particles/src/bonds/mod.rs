@@ -185,7 +185,8 @@ impl ParticleFrame {
             BondSource::Rules(rules) => self.bonds = Some(from_distance(self, rules)?),
             BondSource::Auto => {
                 let has_elements = self.kinds.table.iter().any(|kind| kind.element.is_some());
-                let needs = self.bonds.as_ref().is_none_or(|bonds| bonds.partial);
+                let needs =
+                    self.bonds.as_ref().is_none_or(|bonds| bonds.partial || bonds.is_empty());
                 if needs && has_elements {
                     let by_distance = from_distance(self, &BondRules::covalent())?;
                     match &mut self.bonds {

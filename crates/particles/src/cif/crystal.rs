@@ -286,7 +286,7 @@ impl Crystal {
         memory::check(images.saturating_mul(ATOM_BYTES))
             .map_err(|shortage| fault(format!("its {images} atoms need {shortage}")))?;
         let images = repeat(&positions, &operations, &cell);
-        let bonds = self.options.reads_bonds().then(|| {
+        let bonds = (!block.geometry.is_empty()).then(|| {
             let crystal = Geometry { positions: &positions, labels: &labels, declared: &declared };
             let Images { rows, places } = &images;
             crystal.bonds(
