@@ -8,7 +8,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use tempfile::TempDir;
 
 /// A package with the launcher and scripts for these levels, in a folder with a space in its name.
@@ -46,13 +46,19 @@ impl Package {
     }
 }
 
-/// Runs a command again while the system still writes the program that was copied (ETXTBSY): another
-/// test's child may hold the file for a moment.
+/// Runs a command to its end.
 fn run(command: &mut Command) -> Output {
+    start(command).wait_with_output().expect("the launcher ends")
+}
+
+/// Starts a command, again while the system still writes the program that was copied (ETXTBSY): another
+/// test's child may hold the file for a moment.
+fn start(command: &mut Command) -> Child {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     loop {
-        match command.output() {
+        match command.spawn() {
             Err(error) if error.kind() == std::io::ErrorKind::ExecutableFileBusy => {}
-            output => return output.expect("the launcher starts"),
+            child => return child.expect("the launcher starts"),
         }
     }
 }
@@ -87,7 +93,7 @@ fn links_lead_to_the_package() {
 #[test]
 fn the_process_becomes_the_programs() {
     let package = Package::new(Level::PACKAGED, "echo $$; exit 37");
-    let child = package.command().stdout(std::process::Stdio::piped()).spawn().expect("it starts");
+    let child = start(&mut package.command());
     let id = child.id();
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(37));
