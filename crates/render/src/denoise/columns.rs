@@ -1,6 +1,6 @@
 //! Columns of a tile's pixels and of those around it, for the regression.
 
-use super::regression::REGRESSORS;
+use super::regression::{REGRESSORS, SQUARE};
 use super::tile::Input;
 use crate::film::Region;
 use crate::lanes::{Lanes, Mask};
@@ -8,7 +8,7 @@ use crate::layers::Features;
 
 /// Columns and rows of pixels around a tile that its result depends on, and a few columns more, so that rows of lanes
 /// fit.
-pub(super) const MARGIN: [usize; 2] = [16, 11];
+pub(super) const MARGIN: [usize; 2] = [20, 17];
 
 /// Least albedo that radiance is divided by: darker surfaces reflect too little light for a ratio.
 const MIN_ALBEDO: f32 = 0.02;
@@ -20,24 +20,33 @@ const OUTLIERS: f32 = 16.0;
 /// Distance within which the deviation of neighbors is averaged.
 const DEVIATION_RADIUS: usize = 3;
 
+/// Observations that regressions are fitted to: of pixels, or of squares of pixels.
+#[derive(Debug, Default)]
+pub(super) struct Observations {
+    /// Normal and coverage.
+    pub(super) features: [Vec<f32>; REGRESSORS - 1],
+    /// Mean radiance over albedo.
+    pub(super) irradiance: [Vec<f32>; 3],
+    /// Reliability: 0 outside of the picture, 1 without noise.
+    pub(super) weight: Vec<f32>,
+}
+
 /// Pixels of a tile and its margins, row by row. Pixels outside of the picture have no weight.
 #[derive(Debug, Default)]
 pub(super) struct Columns {
     /// Number of pixels in a row, margins included.
     pub(super) stride: usize,
     pub(super) rows: usize,
-    /// Normal and coverage.
-    pub(super) features: [Vec<f32>; REGRESSORS - 1],
+    pub(super) pixels: Observations,
+    /// Means over the squares of [`SQUARE`] pixels around each pixel, once [`Columns::average`] has computed them.
+    pub(super) squares: Observations,
+    has_squares: bool,
     /// The sphere at the pixel's center.
     pub(super) id: Vec<f32>,
     /// Mean albedo; 1 for the background, whose radiance is its color.
     pub(super) albedo: [Vec<f32>; 3],
-    /// Mean radiance over albedo.
-    pub(super) irradiance: [Vec<f32>; 3],
-    /// Variance of the same.
+    /// Variance of the irradiance.
     pub(super) variance: [Vec<f32>; 3],
-    /// Reliability of the pixel: 0 outside of the picture, 1 without noise.
-    pub(super) weight: Vec<f32>,
     /// Standard deviation over channels.
     deviation: Vec<f32>,
     /// Number of pixels: 1 inside of the picture.
@@ -68,10 +77,12 @@ impl Columns {
     /// Fills the columns with the pixels of a tile, at most `width` wide, and those around it.
     pub(super) fn fill(&mut self, input: &Input, tile: Region, width: usize) {
         (self.stride, self.rows) = (width + 2 * MARGIN[0], tile.height as usize + 2 * MARGIN[1]);
+        self.has_squares = false;
         let count = self.stride * self.rows;
-        let columns = [&mut self.id, &mut self.weight, &mut self.deviation, &mut self.inside];
-        let columns = columns.into_iter().chain(&mut self.features).chain(&mut self.albedo);
-        for column in columns.chain(&mut self.irradiance).chain(&mut self.variance) {
+        let Observations { features, irradiance, weight } = &mut self.pixels;
+        let columns = [&mut self.id, weight, &mut self.deviation, &mut self.inside];
+        let columns = columns.into_iter().chain(features).chain(&mut self.albedo);
+        for column in columns.chain(irradiance).chain(&mut self.variance) {
             column.clear();
             column.resize(count, 0.0);
         }
@@ -92,7 +103,7 @@ impl Columns {
     fn set(&mut self, at: usize, input: &Input, pixel: usize) {
         let features: &Features = &input.features[pixel];
         let [x, y, z] = features.normal;
-        for (column, feature) in self.features.iter_mut().zip([x, y, z, features.coverage]) {
+        for (column, feature) in self.pixels.features.iter_mut().zip([x, y, z, features.coverage]) {
             column[at] = feature;
         }
         // Compared by its bits only.
@@ -102,7 +113,7 @@ impl Columns {
             let albedo = (features.albedo[channel] + 1.0 - features.coverage).max(MIN_ALBEDO);
             let variance = input.variance.pixels[pixel][channel] / (albedo * albedo);
             self.albedo[channel][at] = albedo;
-            self.irradiance[channel][at] = input.image.pixels[pixel][channel] / albedo;
+            self.pixels.irradiance[channel][at] = input.image.pixels[pixel][channel] / albedo;
             self.variance[channel][at] = variance;
             sum += variance;
         }
@@ -118,12 +129,35 @@ impl Columns {
         }
         let around = deviation.iter().zip(count.iter());
         let pixels = self.inside.iter().zip(&self.deviation).zip(around);
-        for (weight, ((&inside, &deviation), (&sum, &count))) in self.weight.iter_mut().zip(pixels)
-        {
+        let weights = &mut self.pixels.weight;
+        for (weight, ((&inside, &deviation), (&sum, &count))) in weights.iter_mut().zip(pixels) {
             let usual = sum / count.max(1.0);
             let usual = OUTLIERS * usual * usual + f32::MIN_POSITIVE;
             *weight = inside * usual / (usual + deviation * deviation);
         }
+    }
+
+    /// Computes the means over squares, unless they are known. The pixels of a square count by their weights, and the square
+    /// has their mean weight.
+    pub(super) fn average(&mut self) {
+        if self.has_squares {
+            return;
+        }
+        self.has_squares = true;
+        let Self { pixels, squares, sums: [products, _], scratch, stride, .. } = self;
+        box_sums(&pixels.weight, *stride, SQUARE / 2, &mut squares.weight, scratch);
+        let columns = pixels.features.iter().chain(&pixels.irradiance);
+        let means = squares.features.iter_mut().chain(&mut squares.irradiance);
+        for (column, mean) in columns.zip(means) {
+            products.clear();
+            products
+                .extend(column.iter().zip(&pixels.weight).map(|(value, weight)| value * weight));
+            box_sums(products, *stride, SQUARE / 2, mean, scratch);
+            for (mean, weight) in mean.iter_mut().zip(&squares.weight) {
+                *mean /= weight.max(f32::MIN_POSITIVE);
+            }
+        }
+        squares.weight.iter_mut().for_each(|weight| *weight /= (SQUARE * SQUARE) as f32);
     }
 }
 

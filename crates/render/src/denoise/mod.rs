@@ -11,8 +11,9 @@
 //!
 //! # The choice of the window
 //!
-//! Each pixel has a prediction for each of two windows, and stays as it is where none is better. The squared error
-//! of a prediction that is linear in the radiance is estimated without a reference (Stein, "Estimation of the Mean of
+//! Each pixel has a prediction for each of three windows, and stays as it is where none is better. The widest consists of
+//! squares of pixels, whose means are the neighbors of its regression, and is tried where there is much noise. The squared
+//! error of a prediction that is linear in the radiance is estimated without a reference (Stein, "Estimation of the Mean of
 //! a Multivariate Normal Distribution", 1981; Li et al., "SURE-Based Optimization for Adaptive Sampling and
 //! Reconstruction", TOG 2012):
 //!
@@ -64,7 +65,7 @@ pub struct Denoised {
 
 /// Denoises a picture, by the variance of its pixels and their features. All three must have the same size.
 ///
-/// The result has the same bytes for any number of threads. Pixels depend on others up to seven pixels away.
+/// The result has the same bytes for any number of threads. Pixels depend on others up to 17 pixels away.
 ///
 /// # Panics
 /// The sizes differ.

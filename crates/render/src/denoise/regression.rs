@@ -1,13 +1,20 @@
 //! Weighted linear regression in square windows: a row of lanes is a row of pixels.
 
-use super::columns::Columns;
+use super::columns::{Columns, Observations};
 use crate::lanes::Lanes;
 
 /// Number of regressors: a constant, the normal and the coverage.
 pub(super) const REGRESSORS: usize = 5;
 
-/// Radii of the windows.
+/// Radii of the windows of pixels.
 pub(super) const RADII: [usize; 2] = [1, 3];
+
+/// Edge of the squares of pixels of which the widest window consists, and its radius in squares.
+pub(super) const SQUARE: usize = 3;
+pub(super) const SQUARES_RADIUS: usize = RADII[1];
+
+/// Number of windows: those of pixels, and the one of squares.
+pub(super) const WINDOWS: usize = RADII.len() + 1;
 
 /// Weight of a neighbor of another sphere.
 const OTHER_SPHERE: f32 = 0.5;
@@ -47,83 +54,106 @@ static OFFSETS: [[isize; 2]; PIXELS] = {
     offsets
 };
 
-/// Fits the windows around the pixels from `at` on, one in each lane.
+/// Fits the windows of pixels around the pixels from `at` on, one in each lane.
+#[inline(always)]
+pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>; RADII.len()] {
+    fit::<{ RADII.len() }, 1, L>(columns, &columns.pixels, RADII, at)
+}
+
+/// Fits the window of squares, which must be known, around the pixels from `at` on, one in each lane.
+#[inline(always)]
+pub(super) fn predict_by_squares<L: Lanes>(columns: &Columns, at: usize) -> Prediction<L> {
+    let squares = &columns.squares;
+    let [Prediction { irradiance, leverage }] =
+        fit::<1, { SQUARE as isize }, L>(columns, squares, [SQUARES_RADIUS], at);
+    let own = L::load(&columns.pixels.weight[at..]);
+    let all = L::splat((SQUARE * SQUARE) as f32) * L::load(&squares.weight[at..]);
+    let share = own / Lanes::max(all, L::splat(f32::MIN_POSITIVE));
+    Prediction { irradiance, leverage: leverage * share }
+}
+
+/// Fits windows of ascending radii around the pixels from `at` on, one in each lane, to observations that are `STEP` pixels
+/// apart. Leverages are the derivatives by the observation in the middle.
 ///
 /// The first pass over a window adds up its normal equations, which give the coefficient of each neighbor's irradiance;
 /// the second applies them. So the sums of a pass stay in registers.
 #[inline(always)]
-pub(super) fn predict<L: Lanes>(columns: &Columns, at: usize) -> [Prediction<L>; RADII.len()] {
+fn fit<const WINDOWS: usize, const STEP: isize, L: Lanes>(
+    columns: &Columns,
+    observations: &Observations,
+    radii: [usize; WINDOWS],
+    at: usize,
+) -> [Prediction<L>; WINDOWS] {
     let zero = L::splat(0.0);
-    let middle = load(&columns.features, at);
+    let middle = load(&columns.pixels.features, at);
     let id = L::load(&columns.id[at..]);
     let mut products = [[zero; REGRESSORS]; REGRESSORS];
     let mut weights = [zero; PIXELS];
-    let mut solutions = [[zero; REGRESSORS]; RADII.len()];
+    let mut solutions = [[zero; REGRESSORS]; WINDOWS];
     let mut first = 0;
-    for (radius, solution) in RADII.iter().zip(&mut solutions) {
+    let neighbor = |[x, y]: [isize; 2]| columns.neighbor(at, [STEP * x, STEP * y]);
+    for (radius, solution) in radii.iter().zip(&mut solutions) {
         let end = pixels(*radius);
         for (weight, &offset) in weights[first..end].iter_mut().zip(&OFFSETS[first..end]) {
-            let neighbor = columns.neighbor(at, offset);
-            let differences = differences(columns, &middle, neighbor);
-            *weight = weigh(columns, id, &differences, neighbor);
+            let neighbor = neighbor(offset);
+            let differences = differences(observations, &middle, neighbor);
+            let same = L::load(&columns.id[neighbor..]).has_bits_of(id);
+            *weight = closeness(&differences, same) * L::load(&observations.weight[neighbor..]);
             add_products(&mut products, &differences, *weight);
         }
         *solution = solve(&products);
         first = end;
     }
-    let mut sums = [[zero; 3]; RADII.len()];
-    let inner = pixels(RADII[0]);
+    let mut sums = [[zero; 3]; WINDOWS];
+    let inner = pixels(radii[0]);
     let all = weights.iter().zip(&OFFSETS);
+    let fitted = Fitted { observations, middle, solutions };
     for (&weight, &offset) in all.clone().take(inner) {
-        apply::<0, L>(
-            (columns, &middle),
-            (&solutions, weight),
-            columns.neighbor(at, offset),
-            &mut sums,
-        );
+        fitted.apply::<0>(neighbor(offset), weight, &mut sums);
     }
     for (&weight, &offset) in all.skip(inner) {
-        apply::<1, L>(
-            (columns, &middle),
-            (&solutions, weight),
-            columns.neighbor(at, offset),
-            &mut sums,
-        );
+        fitted.apply::<1>(neighbor(offset), weight, &mut sums);
     }
-    let prediction = |window: usize| Prediction {
-        irradiance: sums[window],
-        leverage: solutions[window][0] * weights[0],
-    };
-    [prediction(0), prediction(1)]
+    let mut predictions = [Prediction { irradiance: [zero; 3], leverage: zero }; WINDOWS];
+    for ((prediction, irradiance), solution) in
+        predictions.iter_mut().zip(sums).zip(&fitted.solutions)
+    {
+        *prediction = Prediction { irradiance, leverage: solution[0] * weights[0] };
+    }
+    predictions
+}
+
+/// Regressions of windows around the same pixels.
+struct Fitted<'a, const WINDOWS: usize, L> {
+    observations: &'a Observations,
+    middle: [L; REGRESSORS - 1],
+    solutions: [[L; REGRESSORS]; WINDOWS],
+}
+
+impl<const WINDOWS: usize, L: Lanes> Fitted<'_, WINDOWS, L> {
+    /// Adds the irradiance of a neighbor to the predictions of the windows from the `FIRST` on, times the neighbor's
+    /// coefficients.
+    #[inline(always)]
+    fn apply<const FIRST: usize>(&self, neighbor: usize, weight: L, sums: &mut [[L; 3]; WINDOWS]) {
+        let differences = differences(self.observations, &self.middle, neighbor);
+        let light: [L; 3] = load(&self.observations.irradiance, neighbor);
+        for (sums, solution) in sums.iter_mut().zip(&self.solutions).skip(FIRST) {
+            let [constant, slopes @ ..] = solution;
+            let mut coefficient = *constant;
+            for (slope, difference) in slopes.iter().zip(&differences) {
+                coefficient = slope.mul_add(*difference, coefficient);
+            }
+            coefficient = coefficient * weight;
+            for (sum, light) in sums.iter_mut().zip(&light) {
+                *sum = coefficient.mul_add(*light, *sum);
+            }
+        }
+    }
 }
 
 /// Returns the number of pixels of a window.
 pub(super) const fn pixels(radius: usize) -> usize {
     (2 * radius + 1).pow(2)
-}
-
-/// Adds the irradiance of a neighbor to the predictions of the windows from the `FIRST` on, times the neighbor's
-/// coefficients.
-#[inline(always)]
-fn apply<const FIRST: usize, L: Lanes>(
-    (columns, middle): (&Columns, &[L; REGRESSORS - 1]),
-    (solutions, weight): (&[[L; REGRESSORS]; RADII.len()], L),
-    neighbor: usize,
-    sums: &mut [[L; 3]; RADII.len()],
-) {
-    let differences = differences(columns, middle, neighbor);
-    let light: [L; 3] = load(&columns.irradiance, neighbor);
-    for window in FIRST..RADII.len() {
-        let [constant, slopes @ ..] = &solutions[window];
-        let mut coefficient = *constant;
-        for (slope, difference) in slopes.iter().zip(&differences) {
-            coefficient = slope.mul_add(*difference, coefficient);
-        }
-        coefficient = coefficient * weight;
-        for (sum, light) in sums[window].iter_mut().zip(&light) {
-            *sum = coefficient.mul_add(*light, *sum);
-        }
-    }
 }
 
 /// Returns the rows of lanes of some columns.
@@ -140,34 +170,28 @@ pub(super) fn load<const N: usize, L: Lanes>(columns: &[Vec<f32>; N], at: usize)
 /// Returns the differences of a neighbor's features from those of the middle.
 #[inline(always)]
 fn differences<L: Lanes>(
-    columns: &Columns,
+    observations: &Observations,
     middle: &[L; REGRESSORS - 1],
     neighbor: usize,
 ) -> [L; REGRESSORS - 1] {
-    let mut differences: [L; REGRESSORS - 1] = load(&columns.features, neighbor);
+    let mut differences: [L; REGRESSORS - 1] = load(&observations.features, neighbor);
     for (difference, &middle) in differences.iter_mut().zip(middle) {
         *difference = *difference - middle;
     }
     differences
 }
 
-/// Returns the weight of a neighbor, which falls with the distance of its features.
+/// Returns the factor of a neighbor's weight that falls with the distance of its features; `same` selects neighbors of the same
+/// sphere.
 #[inline(always)]
-fn weigh<L: Lanes>(
-    columns: &Columns,
-    id: L,
-    differences: &[L; REGRESSORS - 1],
-    neighbor: usize,
-) -> L {
+fn closeness<L: Lanes>(differences: &[L; REGRESSORS - 1], same: L::Mask) -> L {
     let one = L::splat(1.0);
     let mut closeness = one;
     for &difference in differences {
         closeness = (-difference).mul_add(difference, closeness);
     }
     let closeness = Lanes::max(closeness, L::splat(0.0));
-    let same = L::load(&columns.id[neighbor..]).has_bits_of(id);
-    let sphere = L::select(same, one, L::splat(OTHER_SPHERE));
-    closeness * closeness * sphere * L::load(&columns.weight[neighbor..])
+    closeness * closeness * L::select(same, one, L::splat(OTHER_SPHERE))
 }
 
 /// Adds a neighbor to the upper triangle of the normal equations.

@@ -1,6 +1,6 @@
 use super::*;
 use crate::denoise::columns::Columns;
-use crate::denoise::regression::predict;
+use crate::denoise::regression::{SQUARE, predict, predict_by_squares};
 use crate::lanes::{F32x16, Lanes, MAX_LANES};
 use crate::layers::{Features, Layer, layers};
 use crate::noise::CONFIDENCE;
@@ -86,7 +86,8 @@ fn noise_falls_and_edges_stay() {
     }
     let stated = denoised.squared_error.iter().map(|&x| f64::from(x)).sum::<f64>();
     let stated = stated / f64::from(WIDTH * HEIGHT);
-    assert!(stated > after / 2.0 && stated < 2.0 * after, "{stated} {after}");
+    // Estimates of single pixels are not below 0, which raises their mean.
+    assert!(stated > after / 2.0 && stated < 3.0 * after, "{stated} {after}");
 }
 
 #[test]
@@ -101,6 +102,55 @@ fn rare_bright_pixels_leave_no_stain() {
 }
 
 #[test]
+fn squares_are_means_of_their_pixels() {
+    let (image, statistics, layers) = picture(0.3);
+    let input = tile::Input {
+        image: &image,
+        variance: &statistics.variance,
+        features: &layers.pixels,
+        floor: mean_square(&image),
+    };
+    let mut columns = Columns::default();
+    columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 }, 120);
+    columns.average();
+    // At a corner of the picture, on a surface, and across the edge of both.
+    for (x, y) in [(0, 0), (20, 30), (75, 30)] {
+        let at = columns.origin() + y * columns.stride + x;
+        let around = (0..SQUARE * SQUARE).map(|i| {
+            let [x, y] = [i % SQUARE, i / SQUARE].map(|step| step as isize - 1);
+            columns.neighbor(at, [x, y])
+        });
+        let pixels = &columns.pixels;
+        let weight: f32 = around.clone().map(|i| pixels.weight[i]).sum();
+        let mean = |column: &[f32]| {
+            around.clone().map(|i| pixels.weight[i] * column[i]).sum::<f32>() / weight
+        };
+        let squares = &columns.squares;
+        assert!((squares.weight[at] - weight / 9.0).abs() < 1e-6);
+        assert!((squares.irradiance[0][at] - mean(&pixels.irradiance[0])).abs() < 1e-6);
+        assert!((squares.features[0][at] - mean(&pixels.features[0])).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn much_noise_is_averaged_over_squares() {
+    let (truth, ..) = picture(0.0);
+    let (image, mut statistics, layers) = picture(1.0);
+    let of_light = |light: &[f32; 3]| light.map(|x| x * x / 12.0);
+    statistics.variance.pixels = truth.pixels.iter().map(of_light).collect();
+    let denoised = denoise(&image, &statistics, &layers);
+    // Of the surface on the right, far from its edges.
+    let error = |image: &Image| {
+        let rows = image.pixels.chunks(WIDTH as usize).zip(truth.pixels.chunks(WIDTH as usize));
+        let inner = rows.skip(20).take(30).flat_map(|(a, b)| a[100..130].iter().zip(&b[100..130]));
+        inner.map(|(a, b)| f64::from(a[0] - b[0]).powi(2)).sum::<f64>()
+    };
+    // A window of pixels alone would leave a 49th.
+    let (before, after) = (error(&image), error(&denoised.image));
+    assert!(after < before / 80.0, "{before} {after}");
+}
+
+#[test]
 fn lanes_do_not_change_predictions() {
     let (image, statistics, layers) = picture(0.3);
     let input = tile::Input {
@@ -111,12 +161,14 @@ fn lanes_do_not_change_predictions() {
     };
     let mut columns = Columns::default();
     columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 }, 120);
+    columns.average();
     for first in [0, 64, 96] {
         let at = columns.origin() + 30 * columns.stride + first;
-        let wide = predict::<F32x16>(&columns, at);
+        let wide = [&predict::<F32x16>(&columns, at)[..], &[predict_by_squares(&columns, at)]];
         for lane in 0..MAX_LANES {
-            let one = predict::<f32>(&columns, at + lane);
-            for (wide, one) in wide.iter().zip(one) {
+            let [near, far] = predict::<f32>(&columns, at + lane);
+            let one = [near, far, predict_by_squares(&columns, at + lane)];
+            for (wide, one) in wide.concat().iter().zip(one) {
                 let mut row = [0.0; MAX_LANES];
                 Lanes::store(wide.leverage, &mut row);
                 assert_eq!(row[lane].to_bits(), one.leverage.to_bits());

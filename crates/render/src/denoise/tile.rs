@@ -1,10 +1,12 @@
 //! Denoising of a tile: predictions, their errors, and the choice among them.
 
 use super::columns::{Columns, MARGIN, box_sums};
-use super::regression::{Prediction, RADII, load, pixels, predict};
+use super::regression::{
+    Prediction, RADII, SQUARE, SQUARES_RADIUS, WINDOWS, load, pixels, predict, predict_by_squares,
+};
 use crate::film::Region;
 use crate::image::Image;
-use crate::lanes::{F32x16, Lanes, MAX_LANES};
+use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 use crate::layers::Features;
 
 /// Size of a tile. Predictions are also needed for [`BORDER`] pixels around it, which together fill rows of lanes.
@@ -24,14 +26,23 @@ const FLOOR: f32 = 0.3;
 const OUTLIER_VARIANCES: f32 = 4.0;
 
 /// Number of choices: the pixel itself, and the prediction of each window.
-const CHOICES: usize = 1 + RADII.len();
+const CHOICES: usize = 1 + WINDOWS;
 
 /// Fraction of the pixel's variance by which a choice is handicapped, times the noise that it keeps: estimated errors are
 /// uncertain, and noise that stays shows more than a little blur.
-const CAUTION: f32 = 0.5;
+const CAUTION: f32 = 1.0;
 
 /// Fraction of the variance that each choice keeps: that of a mean over its pixels.
-const KEPT: [f32; CHOICES] = [1.0, 1.0 / pixels(RADII[0]) as f32, 1.0 / pixels(RADII[1]) as f32];
+const KEPT: [f32; CHOICES] = [
+    1.0,
+    1.0 / pixels(RADII[0]) as f32,
+    1.0 / pixels(RADII[1]) as f32,
+    1.0 / (SQUARE * SQUARE * pixels(SQUARES_RADIUS)) as f32,
+];
+
+/// Relative squared error of a pixel above which the window of squares is tried: the windows of pixels leave a 49th of it at
+/// least.
+const NOISY: f32 = 0.03;
 
 /// The picture that is denoised.
 pub(super) struct Input<'a> {
@@ -48,7 +59,7 @@ pub(super) struct Input<'a> {
 pub(super) struct Workspace {
     columns: Columns,
     /// Irradiance by each window.
-    predictions: [[Vec<f32>; 3]; RADII.len()],
+    predictions: [[Vec<f32>; 3]; WINDOWS],
     /// Relative squared error of each choice, times the pixel's weight.
     errors: [Vec<f32>; CHOICES],
     /// Their sums over neighbors.
@@ -106,18 +117,18 @@ impl Workspace {
     fn predict_row<L: Lanes>(&mut self, floor: f32, at: usize) {
         let columns = &self.columns;
         let [albedo, irradiance]: [[L; 3]; 2] =
-            [load(&columns.albedo, at), load(&columns.irradiance, at)];
+            [load(&columns.albedo, at), load(&columns.pixels.irradiance, at)];
         let variance: [L; 3] = load(&columns.variance, at);
         let predictions = if columns.has_noise::<L>(at) {
             predict::<L>(columns, at)
         } else {
             [Prediction { irradiance, leverage: L::splat(0.0) }; RADII.len()]
         };
-        let [.., widest] = &predictions;
+        let [near, wide] = predictions;
         let mut scale = L::splat(floor);
         let mut own = L::splat(0.0);
         for channel in 0..3 {
-            let radiance = widest.irradiance[channel] * albedo[channel];
+            let radiance = wide.irradiance[channel] * albedo[channel];
             let noise = variance[channel] * albedo[channel] * albedo[channel];
             scale = radiance.mul_add(radiance, scale + noise);
             own = own + noise;
@@ -126,10 +137,16 @@ impl Workspace {
         scale = Lanes::max(scale, L::splat(f32::MIN_POSITIVE));
         scale.store(&mut self.scale[at..]);
         // Rare bright paths would keep themselves: their variance is not that of well-distributed samples.
-        let weight = L::load(&columns.weight[at..]) / scale;
+        let weight = L::load(&columns.pixels.weight[at..]) / scale;
         (weight * own).store(&mut self.errors[0][at..]);
+        let widest = if Lanes::lt(scale * L::splat(NOISY), own).bits() == 0 {
+            wide
+        } else {
+            self.columns.average();
+            predict_by_squares(&self.columns, at)
+        };
         for (window, Prediction { irradiance: predicted, leverage }) in
-            predictions.iter().enumerate()
+            [near, wide, widest].iter().enumerate()
         {
             let penalty = L::splat(2.0) * *leverage - L::splat(1.0);
             let mut error = L::splat(0.0);
@@ -150,7 +167,7 @@ impl Workspace {
         for (sums, errors) in self.sums.iter_mut().zip(&self.errors) {
             box_sums(errors, stride, ERROR_RADIUS, sums, &mut self.scratch);
         }
-        let weight = &self.columns.weight;
+        let weight = &self.columns.pixels.weight;
         box_sums(weight, stride, ERROR_RADIUS, &mut self.weights, &mut self.scratch);
         let [own, ..] = &self.sums;
         let handicapped = |(sum, own): (&f32, &f32), kept: f32| sum + CAUTION * kept * own;
@@ -203,7 +220,7 @@ impl Workspace {
                     if sums[0][at] == all && outlier == 0.0 {
                         return input.image.pixels[pixel][channel];
                     }
-                    let own = columns.irradiance[channel][at];
+                    let own = columns.pixels.irradiance[channel][at];
                     let usual = self.predictions[0][channel][at].max(0.0);
                     let own = sums[0][at] * outlier.mul_add(usual - own, own);
                     let windows = sums[1..].iter().zip(&self.predictions);
@@ -227,10 +244,10 @@ fn outlier_share(columns: &Columns, prediction: &[Vec<f32>; 3], at: usize) -> f3
     for (channel, prediction) in prediction.iter().enumerate() {
         let squared = columns.albedo[channel][at].powi(2);
         noise += squared * columns.variance[channel][at];
-        change += squared * (prediction[at] - columns.irradiance[channel][at]).powi(2);
+        change += squared * (prediction[at] - columns.pixels.irradiance[channel][at]).powi(2);
     }
-    (1.0 - columns.weight[at]) * (OUTLIER_VARIANCES * noise / change).min(1.0)
+    (1.0 - columns.pixels.weight[at]) * (OUTLIER_VARIANCES * noise / change).min(1.0)
 }
 
 const _: () = assert!((TILE[0] as usize + 2 * BORDER).is_multiple_of(MAX_LANES));
-const _: () = assert!(BORDER + RADII[RADII.len() - 1] + 3 <= MARGIN[1]);
+const _: () = assert!(BORDER + SQUARES_RADIUS * SQUARE + SQUARE / 2 + 3 <= MARGIN[1]);
