@@ -249,7 +249,8 @@ def read(
     """Reads a frame of a particle file into NumPy columns.
 
     All formats of the program are read, compressed or not: XYZ, LAMMPS dumps and data, GRO, PDB, mmCIF, CIF, GSD, PLY,
-    NPY, NPZ, CSV, plain columns, PQR, POSCAR, SDF, MOL2, XSF, CFG, and the trajectories DCD, XTC, TRR and NetCDF of Amber.
+    NPY, NPZ, CSV, plain columns, PQR, POSCAR, SDF, MOL2, XSF, CFG, HDF5 of Gadget,
+    and the trajectories DCD, XTC, TRR, NetCDF of Amber and H5MD.
 
     Args:
         path: The file.

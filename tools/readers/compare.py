@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds Spherule's readers of particle files against other programs: counts, frames, cells, first and last rows.
 
-    pip install ase chemfiles gemmi gsd MDAnalysis plyfile
+    pip install ase chemfiles gemmi gsd h5py MDAnalysis plyfile
     cargo build --release
     tools/readers/compare.py FOLDER ...       # all files that Spherule reads, folders within them too
     tools/readers/compare.py --answers        # write tests/data/particles/answers.toml
@@ -83,7 +83,7 @@ def arguments():
 
 def spherule(options, file):
     own = spherule_frame(options, file, "first")
-    if own["format"] in ("dcd", "xtc", "trr", "netcdf"):
+    if own["format"] in ("dcd", "xtc", "trr", "netcdf", "hdf5"):
         last = spherule_frame(options, file, "last")
         own |= {"last_frame": last["rows"], "last_cell": last["cell"]}
     return own
@@ -178,6 +178,7 @@ def programs(file, format):
         "xtc": [by_mdanalysis_trajectory],
         "trr": [by_mdanalysis_trajectory],
         "netcdf": [by_mdanalysis_trajectory],
+        "hdf5": [by_h5py if file.suffix in (".h5", ".hdf5", ".nc") or "latest" in file.name else by_mdanalysis_trajectory],
         "pqr": [by_mdanalysis],
         "poscar": [by_ase_poscar],
         "xsf": [by_ase_xsf],
@@ -343,6 +344,31 @@ def by_mdanalysis_trajectory(file):
                       last_cell=universe.trajectory.ts.triclinic_dimensions)
 
 
+def by_h5py(file):
+    """Conventions that MDAnalysis does not read: several groups of H5MD, and those of Amber and of Gadget."""
+    import h5py
+    with h5py.File(file) as data:
+        program = f"h5py {h5py.__version__}"
+        if "PartType0" in data:
+            places = np.concatenate([data[name]["Coordinates"][:] for name in data if name.startswith("PartType")])
+            cell = np.eye(3) * data["Header"].attrs["BoxSize"] if "Header" in data else None
+            return answer(program, places, cell, 1)
+        if "particles" in data:
+            groups = data["particles"].values()
+            places = np.concatenate([group["position/value"][:] for group in groups], axis=1)
+            cells = next(iter(groups))["box/edges/value"]
+            return answer(program, places[0], cells[0], len(places), last_frame=places[-1], last_cell=cells[-1])
+        scale = 10.0 if "nano" in str(data["coordinates"].attrs["units"]) else 1.0
+        places = data["coordinates"][:] * scale
+        cells = [edges_of([*(data["cell_lengths"][frame] * scale), *data["cell_angles"][frame]]) for frame in (0, -1)]
+        return answer(program, places[0], cells[0], len(places), last_frame=places[-1], last_cell=cells[1])
+
+
+def edges_of(lengths):
+    from MDAnalysis.lib.mdamath import triclinic_vectors
+    return triclinic_vectors(lengths)
+
+
 def by_mdanalysis_dump(file):
     # It sorts by ids, and moves the box to the origin.
     return by_mdanalysis(file, topology_format="LAMMPSDUMP", format="LAMMPSDUMP") | {"reordered": True}
@@ -396,7 +422,7 @@ def by_numpy_text(file):
     return answer(f"NumPy {np.__version__}", rows[:, :3], None, 1, **more)
 
 
-FORMATS = {".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf", ".pqr": "pqr", ".poscar": "poscar", ".xdatcar": "poscar", ".sdf": "sdf", ".xsf": "xsf", ".axsf": "xsf", ".cfg": "cfg",
+FORMATS = {".h5md": "hdf5", ".h5": "hdf5", ".hdf5": "hdf5", ".nc": "hdf5", ".dcd": "dcd", ".xtc": "xtc", ".trr": "trr", ".ncdf": "netcdf", ".pqr": "pqr", ".poscar": "poscar", ".xdatcar": "poscar", ".sdf": "sdf", ".xsf": "xsf", ".axsf": "xsf", ".cfg": "cfg",
            ".mol2": "mol2",
            ".extxyz": "xyz", ".xyz": "xyz", ".data": "lammps-data", ".lammpstrj": "lammps-dump", ".gro": "gro", ".pdb": "pdb",
            ".gsd": "gsd", ".ply": "ply", ".npy": "npy", ".npz": "npz", ".csv": "csv", ".txt": "xyzr", ".cif": "cif"}

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the small trajectories and structures of tests/data/particles and the files in tests/data/topologies that name their particles.
 
-    pip install ase MDAnalysis chemfiles mdtraj netCDF4 parmed
+    pip install ase MDAnalysis chemfiles h5py mdtraj netCDF4 parmed tables
     tools/readers/trajectories.py
     tools/readers/compare.py --answers        # what MDAnalysis reads from them
 
@@ -17,8 +17,10 @@ from pathlib import Path
 import ase.build
 import ase.io
 import chemfiles
+import h5py
 import MDAnalysis
 import mdtraj
+import netCDF4
 import numpy as np
 import parmed
 
@@ -51,6 +53,7 @@ def main():
     atoms.write(str(TOPOLOGIES / "water.pqr"))
     variants((OUT / "water.dcd").read_bytes())
     structures(atoms)
+    hdf5()
 
 
 def water():
@@ -96,6 +99,99 @@ def mdtraj_copies():
         file.write(frames[:2, :20])
     with mdtraj.formats.NetCDFTrajectoryFile(str(OUT / "no_cell.ncdf"), "w", force_overwrite=True) as file:
         file.write(frames[:2, :20])
+
+
+def hdf5():
+    """H5MD by MDAnalysis; its frames by h5py with the newest structures of HDF5, by mdtraj and as NetCDF 4; a snapshot of Gadget."""
+    # A trajectory in memory has no units, which H5MD needs.
+    universe = MDAnalysis.Universe(str(TOPOLOGIES / "water.gro"), str(OUT / "water.trr"))
+    atoms = universe.atoms
+    writer = MDAnalysis.Writer(str(OUT / "water.h5md"), len(atoms), positions=True, velocities=True, compression="gzip")
+    for _ in universe.trajectory:
+        writer.write(atoms)
+    writer.close()
+    del writer
+    frames = np.array([atoms.positions for _ in universe.trajectory])
+    cells = np.array([step.triclinic_dimensions for step in universe.trajectory])
+    species = np.array(["ONaH".index(name[0]) for name in atoms.names])
+    with h5py.File(OUT / "water_latest.h5md", "w", libver="latest") as file:
+        for group, own in [("bulk", slice(0, 180)), ("ions", slice(180, 184))]:
+            particles = file.create_group(f"particles/{group}")
+            position = particles.create_group("position")
+            part = frames[:, own]
+            value = position.create_dataset("value", data=part, maxshape=(None, *part.shape[1:]), chunks=(3, min(70, part.shape[1]), 2),
+                                            compression="gzip", shuffle=True, fletcher32=True)
+            value.attrs["unit"] = "Angstrom"
+            position.create_dataset("step", data=5).attrs["offset"] = 100
+            names = h5py.enum_dtype({"O": 0, "Na": 1, "H": 3}, basetype="i1")
+            particles.create_dataset("species", data=species[own], dtype=names)
+            # Names of more than eight links are in a heap.
+            for column in "mass charge a b c d e f g h".split():
+                particles[column] = np.arange(part.shape[1], dtype="f4")
+            box = particles.create_group("box")
+            box.attrs["boundary"] = ["periodic", "periodic", "none"]
+            edges = box.create_group("edges")
+            edges["value"], edges["step"] = cells, position["step"]
+    copy = mdtraj.formats.HDF5TrajectoryFile(str(OUT / "water_mdtraj.h5"), "w")
+    with mdtraj.formats.DCDTrajectoryFile(str(OUT / "water.dcd")) as source:
+        places, lengths, angles = source.read()
+    copy.write(places / 10, cell_lengths=lengths / 10, cell_angles=angles)
+    copy.close()
+    with netCDF4.Dataset(OUT / "water.ncdf") as source, netCDF4.Dataset(OUT / "water_netcdf4.nc", "w", format="NETCDF4") as copy:
+        source.set_auto_maskandscale(False)
+        for name, dimension in source.dimensions.items():
+            copy.createDimension(name, None if dimension.isunlimited() else len(dimension))
+        for name, variable in source.variables.items():
+            own = copy.createVariable(name, variable.dtype, variable.dimensions, zlib=variable.dtype.kind == "f")
+            own.set_auto_maskandscale(False)
+            own.setncatts({key: variable.getncattr(key) for key in variable.ncattrs()})
+            own[:] = variable[:]
+    random = np.random.default_rng(4)
+    with h5py.File(OUT / "snapshot.hdf5", "w") as file:
+        header = file.create_group("Header")
+        header.attrs.update({"BoxSize": 25.0, "Time": 0.5, "NumFilesPerSnapshot": 1, "NumPart_ThisFile": [5, 7, 0, 0, 0, 0]})
+        for kind, count in [(0, 5), (1, 7)]:
+            part = file.create_group(f"PartType{kind}")
+            part["Coordinates"] = random.uniform(0, 25, (count, 3))
+            part["Velocities"] = random.normal(size=(count, 3)).astype("f4")
+            part["ParticleIDs"] = np.arange(count) + 10 * kind
+            if kind == 0:
+                part["Density"] = random.uniform(size=count)
+    layouts()
+
+
+def layouts():
+    """A snapshot whose columns are the numbers of particles, in every layout and under every index of chunks."""
+    count = 90
+    numbers = np.arange(count)
+    with h5py.File(OUT / "layouts.hdf5", "w", libver="latest") as file:
+        part = file.create_group("PartType0")
+        part["Coordinates"] = np.stack([numbers, 2 * numbers, -numbers], axis=1).astype("f4")
+        options = {
+            "fixed": {"maxshape": (count,), "chunks": (7,), "compression": "gzip", "shuffle": True},
+            "fixed_raw": {"maxshape": (2 * count,), "chunks": (7,)},
+            "extensible": {"maxshape": (None,), "chunks": (1,), "compression": "gzip"},
+            "extensible_raw": {"maxshape": (None,), "chunks": (1,)},
+            "single": {"maxshape": (count,), "chunks": (count,), "compression": "gzip"},
+            "single_raw": {"maxshape": (count,), "chunks": (count,)},
+            "lzf": {"maxshape": (count,), "chunks": (40,), "compression": "lzf", "fletcher32": True},
+        }
+        for name, own in options.items():
+            part.create_dataset(name, data=numbers.astype(">i4"), **own)
+        table = np.stack([numbers, numbers], axis=1).astype("u2")
+        for name, filters in [("tree", {"compression": "gzip"}), ("tree_raw", {})]:
+            part.create_dataset(name, data=table, maxshape=(None, None), chunks=(1, 1), **filters)
+        # Chunks that are allocated at once are one after another, and compact values are in the header.
+        for name, chunks in [("implicit", (7,)), ("compact", None)]:
+            properties = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+            if chunks:
+                properties.set_chunk(chunks)
+                properties.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+            else:
+                properties.set_layout(h5py.h5d.COMPACT)
+            space = h5py.h5s.create_simple((count,))
+            dataset = h5py.h5d.create(part.id, name.encode(), h5py.h5t.NATIVE_DOUBLE, space, properties)
+            dataset.write(space, space, numbers.astype("f8"))
 
 
 def structures(atoms):

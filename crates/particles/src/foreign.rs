@@ -38,9 +38,8 @@ const BINARY_DUMP: &str = "have LAMMPS' tool write it as text: binary2txt {file}
 const CLOUD: &str = "write it as PLY: pdal translate {file} {stem}.ply";
 
 /// Magic numbers of binary files: offset, bytes, name, conversion.
-const MAGICS: [(usize, &[u8], &str, &str); 22] = [
+const MAGICS: [(usize, &[u8], &str, &str); 21] = [
     (0, b"# vtk DataFile", "a VTK file", MESH),
-    (0, b"\x89HDF\r\n\x1A\n", "an HDF5 file", HDF5),
     (0, b"LammpS RestartT", "a binary restart file of LAMMPS", RESTART),
     (8, b"DUMPATOM", "a binary dump of LAMMPS", BINARY_DUMP),
     (8, b"DUMPCUSTOM", "a binary dump of LAMMPS", BINARY_DUMP),
@@ -155,6 +154,11 @@ fn foreign(name: &str, conversion: &str, path: &Path) -> Foreign {
     let kind = if name.contains("Parquet") { "parquet" } else { "feather" };
     let command = conversion.replace("{kind}", kind).replace("{{", "{").replace("}}", "}");
     Foreign { name: name.to_owned(), help: fill_in(&command, path) }
+}
+
+/// Returns advice on an HDF5 file whose particles are not found.
+pub(crate) fn hdf5_help(path: &Path) -> String {
+    foreign("", HDF5, path).help
 }
 
 /// Returns the format of a binary file with this head, if it is known.
@@ -327,7 +331,6 @@ mod tests {
         let gadget = [&256_u32.to_le_bytes()[..], &[0; 256], &256_u32.to_le_bytes()].concat();
         let zip = |name: &[u8]| [b"PK\x03\x04", &[0; 26][..], name, &[0; 9]].concat();
         for (content, words) in [
-            (b"\x89HDF\r\n\x1A\n\0\0".to_vec(), ["HDF5", "h5py.File('run.bin')"]),
             (gadget, ["Gadget", "pynbody.load('run.bin')"]),
             (zip(b"[Content_Types].xml"), ["spreadsheet", "--convert-to csv run.bin"]),
             (
@@ -347,10 +350,9 @@ mod tests {
         }
         assert_eq!(binary(&zip(b"position.npy"), Path::new("a.npz")), None);
         assert_eq!(binary(&[0; 300], Path::new("a")), None);
-        assert!(
-            named(b"\x89HDF\r\n\x1A\n", "-").contains("'FILE'")
-                && named(b"\x89HDF\r\n\x1A\n", "a b.h5").contains("'FILE'")
-        );
+        for path in ["-", "a b.h5"] {
+            assert!(hdf5_help(Path::new(path)).contains("'FILE'"), "{path}");
+        }
     }
 
     #[test]

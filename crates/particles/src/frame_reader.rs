@@ -4,7 +4,7 @@ use super::frame::ParticleFrame;
 use crate::FileError;
 
 /// Reader of a file's frames.
-pub(crate) trait FrameReader {
+pub(crate) trait FrameReader: Send {
     /// Returns the next frame, if there is one.
     fn next(&mut self) -> Result<Option<ParticleFrame>, FileError>;
 

@@ -10,7 +10,7 @@
 //! XYZ and extended XYZ, LAMMPS dumps and data files, GRO, PDB, mmCIF, CIF of crystals with their
 //! symmetry, GSD, PLY, NPY and NPZ, tables and plain columns are recognized by their content, and so are the
 //! trajectories DCD, XTC, TRR and NetCDF of Amber, whose particles a topology names, PQR, POSCAR and XDATCAR,
-//! SDF, MOL2, XSF, CFG and PSF. Files may be compressed with gzip, bzip2, xz or zstd.
+//! SDF, MOL2, XSF, CFG, PSF, and HDF5 of H5MD, mdtraj and Gadget. Files may be compressed with gzip, bzip2, xz or zstd.
 //!
 //! Every reader streams: it stores columns, never the file, and doesn't allocate by counts in the file.
 //! A malformed number is an error with its line. To add a format, add it to [`Format`], its detection to
@@ -53,6 +53,7 @@ mod frame_reader;
 mod gro;
 mod gromacs;
 mod gsd;
+mod hdf5;
 mod header;
 mod lammps;
 mod line;

@@ -319,15 +319,21 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Neighbors by testing all pairs and images: row, shift and distance, sorted.
-    fn brute(points: Points, point: DVec3, radius: f64, images: i32) -> Vec<(u32, [i32; 3])> {
+    /// Neighbors by testing all pairs, and all images whose fractional coordinates can be within the radius: row and
+    /// shift, sorted.
+    fn brute(points: Points, point: DVec3, radius: f64) -> Vec<(u32, [i32; 3])> {
         let mut found = Vec::new();
-        let steps = |axis: usize| {
-            let periodic = points.cell.is_some_and(|cell| cell.periodic[axis]);
-            if periodic { -images..=images } else { 0..=0 }
-        };
         let matrix = points.cell.map_or(DMat3::IDENTITY, Cell::matrix);
+        let inverse = matrix.inverse();
         for row in 0..points.len() {
+            let away = (inverse * (point - points.position(row))).to_array();
+            let steps = |axis: usize| {
+                let periodic = points.cell.is_some_and(|cell| cell.periodic[axis]);
+                let reach = radius * inverse.row(axis).length() + 0.5;
+                let low = if periodic { (away[axis] - reach).floor() } else { 0.0 };
+                let high = if periodic { (away[axis] + reach).ceil() } else { 0.0 };
+                low as i32..=high as i32
+            };
             for a in steps(0) {
                 for b in steps(1) {
                     for c in steps(2) {
@@ -385,7 +391,7 @@ mod tests {
                 let point = points.position(row) + DVec3::splat(0.01);
                 prop_assert_eq!(
                     listed(&list, point, radius),
-                    brute(points, point, radius, 12),
+                    brute(points, point, radius),
                     "{}", row
                 );
             }

@@ -48,6 +48,8 @@ pub enum Format {
     Trr,
     /// A NetCDF trajectory of Amber.
     NetCdf,
+    /// HDF5: an H5MD trajectory, one of mdtraj, NetCDF 4 of Amber, or a snapshot of Gadget.
+    Hdf5,
     /// PQR: PDB with charges and radii.
     Pqr,
     /// POSCAR, CONTCAR or XDATCAR of VASP.
@@ -66,7 +68,7 @@ pub enum Format {
 
 impl Format {
     /// All formats with their names in scene files and on the command line.
-    pub const ALL: [(&'static str, Self); 24] = [
+    pub const ALL: [(&'static str, Self); 25] = [
         ("xyzr", Self::Xyzr),
         ("csv", Self::Csv),
         ("xyz", Self::Xyz),
@@ -84,6 +86,7 @@ impl Format {
         ("xtc", Self::Xtc),
         ("trr", Self::Trr),
         ("netcdf", Self::NetCdf),
+        ("hdf5", Self::Hdf5),
         ("pqr", Self::Pqr),
         ("poscar", Self::Poscar),
         ("sdf", Self::Sdf),
@@ -101,7 +104,7 @@ impl Format {
 
     /// Returns whether files of this format have positions alone, and a topology tells what they are of.
     pub(crate) fn lacks_names(self) -> bool {
-        matches!(self, Self::Dcd | Self::Xtc | Self::Trr | Self::NetCdf)
+        matches!(self, Self::Dcd | Self::Xtc | Self::Trr | Self::NetCdf | Self::Hdf5)
     }
 
     /// Returns the name in scene files and on the command line.

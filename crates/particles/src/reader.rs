@@ -10,8 +10,8 @@ use super::source::{Source, is_standard_input};
 use super::superposition::{AlignBy, Reference};
 use super::topology::{self, Joined};
 use super::{
-    cfg, cif, csv, dcd, gro, gromacs, gsd, lammps, mol2, molfile, netcdf, numpy, pdb, ply, poscar,
-    pqr, psf, sniff, text, xsf, xyz,
+    cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2, molfile, netcdf, numpy, pdb, ply,
+    poscar, pqr, psf, sniff, text, xsf, xyz,
 };
 use crate::FileError;
 use std::path::{Path, PathBuf};
@@ -219,6 +219,7 @@ pub(crate) fn open(
         Format::Xtc => Box::new(gromacs::Xtc::new(source, options)?),
         Format::Trr => Box::new(gromacs::Trr::new(source, options)?),
         Format::NetCdf => Box::new(netcdf::NetCdf::new(source, options)?),
+        Format::Hdf5 => Box::new(hdf5::Hdf5::new(source, options)?),
         Format::Pqr => Box::new(pqr::Pqr::new(source, options)),
         Format::Poscar => Box::new(poscar::Poscar::new(source, options)),
         Format::Sdf => Box::new(molfile::Molfile::new(source, options)),

@@ -5,8 +5,8 @@ use super::foreign::{self, Foreign};
 use super::options::{Format, ReadOptions, Role};
 use super::source::Source;
 use super::{
-    cfg, cif, dcd, gro, gromacs, gsd, header, line, mol2, molfile, netcdf, number, numpy, pdb, ply,
-    poscar, pqr, psf, units, utf16, xsf,
+    cfg, cif, dcd, gro, gromacs, gsd, hdf5, header, line, mol2, molfile, netcdf, number, numpy,
+    pdb, ply, poscar, pqr, psf, units, utf16, xsf,
 };
 use crate::FileError;
 
@@ -14,7 +14,7 @@ use crate::FileError;
 const KNOWN: &str = "files of particles are rows of `x y z [radius]`, tables with a header that \
                      names x, y and z, XYZ, dumps and data files of LAMMPS, GRO, PDB, mmCIF, CIF \
                      of crystals, GSD, PLY, arrays of NumPy, DCD, XTC, TRR and NetCDF of Amber, PQR, \
-                     POSCAR, SDF, MOL2, XSF, CFG and PSF; of others, name the format, as in --format xyz, \
+                     POSCAR, SDF, MOL2, XSF, CFG, PSF and H5MD; of others, name the format, as in --format xyz, \
                      or the columns, as in --format csv --columns x=NAME,y=NAME,z=NAME";
 
 /// Maximum number of lines before the number of atoms in a LAMMPS data file.
@@ -99,6 +99,9 @@ fn structured(head: &[u8]) -> Option<Format> {
 fn binary(head: &[u8]) -> Option<Format> {
     if head.starts_with(&gsd::MAGIC) {
         return Some(Format::Gsd);
+    }
+    if head.starts_with(hdf5::MAGIC) {
+        return Some(Format::Hdf5);
     }
     if head.starts_with(numpy::MAGIC) {
         return Some(Format::Npy);

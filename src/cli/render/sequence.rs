@@ -140,12 +140,13 @@ fn survey_frames(
         return Ok(survey);
     }
     let mut first_pass = FrameReader::open(path, options)?;
-    let mut last = None;
-    for number in plan.shots().filter_map(|shot| shot.frame) {
-        if last.replace(number) == Some(number) {
-            continue;
-        }
+    let mut numbers: Vec<u64> = plan.shots().filter_map(|shot| shot.frame).collect();
+    numbers.dedup();
+    for (at, &number) in numbers.iter().enumerate() {
         let Some(frame) = first_pass.take(number)? else { break };
+        if let Some(&next) = numbers.get(at + 1) {
+            first_pass.read_ahead(next, frame.len());
+        }
         add(&mut survey, number, frame)?;
     }
     if let Some(error) =
@@ -236,6 +237,9 @@ impl Sequence<'_> {
             let again = self.plan.shot(index + 1).is_some_and(|next| next.frame == shot.frame);
             let frame = if again { reader.look(number)? } else { reader.take(number)? };
             let Some(frame) = frame else { break };
+            if let Some(next) = self.next_frame(index).filter(|&next| next > number) {
+                reader.read_ahead(next, frame.len());
+            }
             let angle = shot.turn.map(|turn| self.job.views.angle(turn));
             let result = survey.particles(path, frame, options).map_err(Failure::from);
             let result = result.and_then(|particles| {
@@ -256,6 +260,12 @@ impl Sequence<'_> {
     /// Returns whether an image is rendered in this run.
     fn is_rendered_here(&self, index: u64) -> bool {
         is_assigned(&self.job, index) && index >= self.job.sequence.first_picture.unwrap_or(0)
+    }
+
+    /// Returns the frame of the next image that is rendered in this run, if there is one.
+    fn next_frame(&self, index: u64) -> Option<u64> {
+        let mut shots = (index + 1..).map_while(|next| Some((next, self.plan.shot(next)?)));
+        shots.find(|(next, _)| self.is_rendered_here(*next))?.1.frame
     }
 
     /// Returns whether no image of this process follows, as far as is known.

@@ -39,7 +39,7 @@ pub(crate) fn is_netcdf(head: &[u8]) -> bool {
 }
 
 /// Returns the unit of length of this name.
-fn unit(name: &str) -> LengthUnit {
+pub(crate) fn unit(name: &str) -> LengthUnit {
     match name.to_ascii_lowercase().trim_end_matches('s') {
         "angstrom" => LengthUnit::Angstrom,
         "nanometer" | "nm" => LengthUnit::Nanometer,
