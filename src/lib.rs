@@ -117,8 +117,8 @@ pub mod scene {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
             BondRules, BondSource, Bonds, Cell, Coloring, ColumnColors, ElementColors, Legend,
-            Model, Orientation, ParticleStyle, Particles, PeriodicError, Selection, TypeMaterial,
-            TypeStyle, UpReason, of_frame, read,
+            Model, Opacity, Orientation, ParticleStyle, Particles, PeriodicError, Selection,
+            TypeMaterial, TypeStyle, UpReason, of_frame, read,
         };
     }
 }

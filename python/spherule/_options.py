@@ -53,6 +53,8 @@ if TYPE_CHECKING:
         model: Model
         bonds: str
         bond_radius: float
+        opacity: float | str
+        translucent: str
         types: Mapping[str, TypeStyle]
         preset: Preset
         background: Color
@@ -83,7 +85,7 @@ PARTICLES = frozenset("radius color kinds materials columns cell origin periodic
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(
     "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types model "
-    "bonds bond_radius preset background view up wrap replicate show_cell slices slice_mode".split()
+    "bonds bond_radius opacity translucent preset background view up wrap replicate show_cell slices slice_mode".split()
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.

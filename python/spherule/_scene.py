@@ -40,13 +40,18 @@ class Scene:
         color_map, color_range, color_log: The map, the numbers at its ends, and whether it is logarithmic.
         color_bar: True or a position: draw the bar of these colors. A dict is the section of a scene file.
         colors: ``"jmol"`` or ``"cpk"``: colors of elements.
-        types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``.
+        types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``, and
+            ``"opacity"``.
         model: ``"space-filling"``, ``"ball-and-stick"`` or ``"licorice"``: whether bonds are drawn, as sticks.
         bonds: ``"auto"`` for bonds by covalent radii, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
             ``bond_radius`` is the radius of their sticks.
+        opacity: A number from 0 to 1, or the name of a column whose numbers it is, perhaps with those that become 0 and
+            1, as in ``"charge:-1,1"``: what is behind is seen without refraction.
+        translucent: Draw only particles for which this is true with ``opacity`` (0.2 if that is not given).
         select: Draw only particles for which this is true, as in ``"element != H and z > 10"``.
         radius_scale: A factor on all radii.
-        preset: ``"figure"``, ``"chalk"``, ``"studio"``, ``"cloudy"``, ``"glossy"``, ``"depthcue"`` or ``"outline"``.
+        preset: ``"figure"``, ``"chalk"``, ``"studio"``, ``"cloudy"``, ``"glossy"``, ``"depthcue"``, ``"outline"``,
+            ``"ghost"`` or ``"x-ray"``.
         background: A color, ``"transparent"`` or ``"sky"``.
         view: The side from which the camera sees everything: ``"auto"``, ``"iso"``, ``"x"``, ``"-x"`` and so on.
         up: The direction of particles that is up.
@@ -271,21 +276,23 @@ def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[s
 def _style(given: Mapping[str, Any]) -> dict[str, Any]:
     types = []
     for name, style in given.get("types", {}).items():
-        unknown = set(style) - {"radius", "color", "material"}
+        unknown = set(style) - {"radius", "color", "material", "opacity"}
         if unknown:
-            raise Error(f"type `{name}`: `{sorted(unknown)[0]}` is not radius, color or material")
+            raise Error(f"type `{name}`: `{sorted(unknown)[0]}` is not radius, color, material or opacity")
         color = style.get("color")
         if color is not None:
             color = tuple(float(value) for value in _arrays.colors("color", color, 1)[0])
-        types.append((name, style.get("radius"), color, style.get("material")))
+        types.append((name, style.get("radius"), color, style.get("material"), style.get("opacity")))
     ends = given.get("color_range")
     if ends is not None:
         low, high = (float(end) for end in ends)
         if not low <= high:
             raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
         ends = (low, high)
-    names = ("select", "colors", "color_by", "color_map", "model", "bonds")
+    names = ("select", "colors", "color_by", "color_map", "model", "bonds", "translucent")
     style = {name: given.get(name) for name in names}
+    opacity = given.get("opacity")
+    style["opacity"] = opacity if opacity is None or isinstance(opacity, str) else repr(float(opacity))
     radius = given.get("bond_radius")
     style["bond_radius"] = None if radius is None else float(radius)
     return {**style, "color_range": ends, "color_log": bool(given.get("color_log", False)), "types": types}

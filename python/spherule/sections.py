@@ -19,7 +19,7 @@ ColorMap = Literal[
 ]  # fmt: skip
 LayerName = Literal["albedo", "normal", "depth", "coverage", "id", "variance", "samples"]
 Model = Literal["space-filling", "ball-and-stick", "licorice"]
-Preset = Literal["figure", "chalk", "studio", "cloudy", "glossy", "depthcue", "outline"]
+Preset = Literal["figure", "chalk", "studio", "cloudy", "glossy", "depthcue", "outline", "ghost", "x-ray"]
 Side = Literal["auto", "iso", "x", "y", "z", "-x", "-y", "-z"]
 UpAxis = Literal["x", "y", "z", "-x", "-y", "-z"]
 SliceMode = Literal["remove", "caps", "hide"]
@@ -198,6 +198,7 @@ class Material(_Material, total=False):
     mirror: float
     radiance: Color
     albedo: Color
+    opacity: float
 
 
 class _Sphere(TypedDict):
@@ -263,6 +264,7 @@ class TypeStyle(TypedDict, total=False):
     radius: float
     color: Color
     material: Literal["lambertian", "plastic", "metal", "glass", "mirror", "emitter"]
+    opacity: float
 
 
 class Sections(TypedDict, total=False):

@@ -10,7 +10,7 @@ use spherule::particles::{
     TextColumn,
 };
 use spherule::scene::particles::{
-    BondSource, Coloring, ColumnColors, ElementColors, Model, ParticleStyle, Selection,
+    BondSource, Coloring, ColumnColors, ElementColors, Model, Opacity, ParticleStyle, Selection,
     TypeMaterial, TypeStyle,
 };
 use std::str::FromStr;
@@ -42,8 +42,8 @@ pub(crate) struct ParticleTable<'py> {
     unit: String,
 }
 
-/// The style of a type: name, radius, color, material.
-type TypeTuple = (String, Option<f64>, Option<[f32; 3]>, Option<String>);
+/// The style of a type: name, radius, color, material, opacity.
+type TypeTuple = (String, Option<f64>, Option<[f32; 3]>, Option<String>, Option<f64>);
 
 /// The style of particles.
 #[derive(FromPyObject)]
@@ -58,6 +58,8 @@ pub(crate) struct StyleTable {
     model: Option<String>,
     bonds: Option<String>,
     bond_radius: Option<f64>,
+    opacity: Option<String>,
+    translucent: Option<String>,
     types: Vec<TypeTuple>,
 }
 
@@ -128,8 +130,13 @@ impl StyleTable {
     /// The style of the program's options of the same names.
     pub(crate) fn style(self, py: Python<'_>, radius_scale: f64) -> PyResult<ParticleStyle> {
         let fault = |message: String| error(py, &message);
-        let select = self.select.as_deref().map(Selection::from_str).transpose();
-        let select = select.map_err(|why| fault(why.to_string()))?;
+        let selection = |text: Option<&str>| {
+            text.map(Selection::from_str).transpose().map_err(|why| fault(why.to_string()))
+        };
+        let select = selection(self.select.as_deref())?;
+        let translucent = selection(self.translucent.as_deref())?;
+        let opacity = self.opacity.as_deref().map(Opacity::from_str).transpose();
+        let opacity = opacity.map_err(|why| fault(format!("`opacity`: {why}")))?;
         let coloring = match (self.color_by, self.colors.as_deref()) {
             (Some(column), _) => {
                 let (map, reversed) = match self.color_map.as_deref() {
@@ -163,7 +170,7 @@ impl StyleTable {
             return Err(fault(format!("`bond_radius` is {radius}, but must be more than 0")));
         }
         let bond_radius = self.bond_radius;
-        let types = self.types.into_iter().map(|(name, radius, color, material)| {
+        let types = self.types.into_iter().map(|(name, radius, color, material, opacity)| {
             let named = |word: &String| TypeMaterial::ALL.iter().find(|(own, _)| own == word);
             let known = material.as_ref().map(|word| {
                 let names = TypeMaterial::ALL.map(|(name, _)| name).join(", ");
@@ -172,11 +179,23 @@ impl StyleTable {
             });
             let radius = radius.map(|radius| radius * radius_scale);
             let color = color.map(Rgb::from);
-            Ok(TypeStyle { name, radius, color, material: known.transpose()? })
+            if let Some(opacity) = opacity.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
+                return Err(format!("the opacity of `{name}` is {opacity}, but must be 0 to 1"));
+            }
+            Ok(TypeStyle { name, radius, color, material: known.transpose()?, opacity })
         });
         let types = types.collect::<Result<_, _>>().map_err(fault)?;
-        let rest = ParticleStyle::default();
-        Ok(ParticleStyle { select, coloring, model, bonds, bond_radius, types, ..rest })
+        Ok(ParticleStyle {
+            select,
+            coloring,
+            model,
+            bonds,
+            bond_radius,
+            opacity,
+            translucent,
+            types,
+            ..ParticleStyle::default()
+        })
     }
 }
 

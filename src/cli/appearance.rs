@@ -8,8 +8,8 @@ use spherule_render::color::{Map, Spacing};
 use spherule_render::graphics::Format;
 use spherule_render::scene::Anchor;
 use spherule_render::scene::particles::{
-    BondSource, Coloring, ColumnColors, ElementColors, Legend, Model, ParticleStyle, Selection,
-    TypeStyle,
+    BondSource, Coloring, ColumnColors, ElementColors, Legend, Model, Opacity, ParticleStyle,
+    Selection, TypeStyle,
 };
 use spherule_render::suggest;
 use std::path::PathBuf;
@@ -65,12 +65,24 @@ pub(super) struct AppearanceArgs {
     /// Radius of the sticks of bonds, in the file's unit [default: a tenth of the median radius, 0.15 in licorice]
     #[arg(long, value_name = "R", value_parser = radius)]
     bond_radius: Option<f64>,
-    /// Radius, color and material of a particle type, by its name or element; overrides all else; may be
+    /// Opacity of particles, and of their bonds: a number from 0 to 1, or a column whose numbers it is, perhaps with
+    /// those that become 0 and 1, as in charge:-1,1. What is behind is seen without refraction, and shadows are as
+    /// thin [default: 1, or 0.2 with --translucent]
+    #[arg(
+        long,
+        value_name = "NUMBER|COLUMN[:LOW,HIGH]",
+        value_parser = |text: &str| text.parse::<WithText<Opacity>>()
+    )]
+    opacity: Option<WithText<Opacity>>,
+    /// Draw only particles for which EXPR is true with --opacity, the others opaque; as in --select
+    #[arg(long, value_name = "EXPR", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<WithText<Selection>>())]
+    translucent: Option<WithText<Selection>>,
+    /// Radius, color, material and opacity of a particle type, by its name or element; overrides all else; may be
     /// repeated. Colors are #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and
     /// emitter
     #[arg(
         long = "type",
-        value_name = "NAME:radius=R,color=COLOR,material=M",
+        value_name = "NAME:radius=R,color=COLOR,material=M,opacity=A",
         value_parser = |text: &str| text.parse::<WithText<TypeStyle>>()
     )]
     types: Vec<WithText<TypeStyle>>,
@@ -204,8 +216,17 @@ impl AppearanceArgs {
         let usual = if model.draws_bonds() { BondSource::Auto } else { BondSource::None };
         let bonds = given.unwrap_or(usual);
         let bond_radius = self.bond_radius;
-        let rest = ParticleStyle::default();
-        ParticleStyle { select, coloring, model, bonds, bond_radius, types, ..rest }
+        ParticleStyle {
+            select,
+            coloring,
+            model,
+            bonds,
+            bond_radius,
+            opacity: self.opacity.as_deref().cloned(),
+            translucent: self.translucent.as_deref().cloned(),
+            types,
+            ..ParticleStyle::default()
+        }
     }
 
     /// Settings for the image's metadata; the color range is that of the `legend`.
@@ -232,6 +253,8 @@ impl AppearanceArgs {
             put("bond_radius", json!(radius));
         }
         with_text::insert(&mut list, "bonds", &self.bonds);
+        with_text::insert(&mut list, "opacity", &self.opacity);
+        with_text::insert(&mut list, "translucent", &self.translucent);
         with_text::insert(&mut list, "type", &self.types);
         list
     }

@@ -51,7 +51,7 @@ fn colors_follow_elements_or_columns() {
 #[test]
 fn type_options_override_presets() {
     let materials = ["plastic", "metal", "glass", "mirror", "emitter"];
-    for preset in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
+    for preset in ["chalk", "studio", "cloudy", "glossy", "depthcue", "outline", "ghost", "x-ray"] {
         let look = |typed: &str| picture(&["--preset", preset, "--type", typed]);
         let mut pictures = vec![picture(&["--preset", preset])];
         for typed in materials.map(|name| format!("O:material={name}")) {

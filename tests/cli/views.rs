@@ -152,13 +152,19 @@ fn settings_without_effect_are_refused() {
 fn looks_and_backgrounds_differ() {
     let folder = folder();
     let mut pictures = Vec::new();
-    for look in ["figure", "chalk", "studio", "cloudy", "glossy", "depthcue", "outline"] {
+    for look in
+        ["figure", "chalk", "studio", "cloudy", "glossy", "depthcue", "outline", "ghost", "x-ray"]
+    {
         let image = picture(&folder, "look.png", &["--preset", look, "--wrap"]);
         // The corner is background or, in the studio, ground of the same light gray.
         let corner = image.pixel(0, 0).unwrap();
-        let white = if look == "studio" { 0.8 } else { 1.0 };
-        assert!(corner.iter().all(|&value| value >= white), "{look}: {corner:?}");
-        assert!(image.pixels.iter().any(|pixel| pixel[1] < 0.7), "{look}");
+        let background = match look {
+            "studio" => 0.8..=1.0,
+            "x-ray" => 0.0..=0.0,
+            _ => 1.0..=1.0,
+        };
+        assert!(corner.iter().all(|value| background.contains(value)), "{look}: {corner:?}");
+        assert!(image.pixels.iter().any(|pixel| (0.01..0.7).contains(&pixel[1])), "{look}");
         assert!(!pictures.contains(&image), "{look}");
         pictures.push(image);
     }

@@ -15,4 +15,5 @@ mod slices;
 mod split;
 mod sticks;
 mod stress;
+mod translucency;
 mod truths;

@@ -48,6 +48,7 @@ mod random;
 mod ray;
 mod slabs;
 mod spheres;
+mod translucency;
 mod vec3;
 
 #[cfg(doctest)]
@@ -102,6 +103,10 @@ pub mod internals {
     /// Spheres in columns.
     pub mod spheres {
         pub use crate::spheres::*;
+    }
+    /// Rays among translucent bodies.
+    pub mod translucency {
+        pub use crate::translucency::*;
     }
     /// Vectors of lanes.
     pub mod vec3 {

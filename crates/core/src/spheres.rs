@@ -184,6 +184,34 @@ impl Spheres {
         firsts.into_iter().map(|first| first.1).collect()
     }
 
+    /// Returns the rows of spheres that coincide with one that comes before them in the user's order, ascending.
+    pub fn later_of_equals(&self) -> Vec<u32> {
+        let key = |row: u32| {
+            let (center, radius) = self.exact(row as usize);
+            // Zeros of both signs are equal.
+            [center.x, center.y, center.z, radius].map(|number| (number + 0.0).to_bits())
+        };
+        let hash = |row: u32| {
+            let multiply = |hash: u64, word: u64| {
+                (hash.rotate_left(23) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            };
+            key(row).into_iter().fold(0, multiply)
+        };
+        let mut rows: Vec<(u64, u32)> =
+            (0..self.len() as u32).into_par_iter().map(|row| (hash(row), row)).collect();
+        rows.par_sort_unstable();
+        let mut later = Vec::new();
+        for equal in rows.chunk_by(|a, b| a.0 == b.0).filter(|rows| rows.len() > 1) {
+            let mut equal: Vec<u32> = equal.iter().map(|&(_, row)| row).collect();
+            equal.sort_unstable_by_key(|&row| (key(row), self.id[row as usize]));
+            later.extend(
+                equal.windows(2).filter(|pair| key(pair[0]) == key(pair[1])).map(|pair| pair[1]),
+            );
+        }
+        later.sort_unstable();
+        later
+    }
+
     /// Bytes that the columns occupy.
     pub fn bytes(&self) -> usize {
         size_of_val(self.blocks.as_slice())

@@ -3,12 +3,14 @@
 mod bodies;
 mod clipped;
 mod ground;
+mod translucent;
 
 pub(crate) use self::ground::{intersect_ground, occlude_by_ground};
 pub use crate::bvh::{PacketWidth, Tracer, Traversal};
 
 use self::bodies::Bodies;
 use self::clipped::ClippedRays;
+use self::translucent::Thresholds;
 use crate::bvh::Tree;
 use crate::ray::{Hits, MISS, Rays};
 use crate::world::World;
@@ -23,11 +25,36 @@ enum Query {
 }
 
 /// Finds the first hit of each ray. On entry `hits.t` bounds the search, and `hits.sphere` is the hit
-/// at that bound, if any; on return both describe the hit.
+/// at that bound, if any; on return both describe the hit. Translucent bodies end rays at random, decided by a hash of the ray.
 ///
 /// Returns the number of decisions made by exact integer arithmetic.
 pub fn closest(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+    closest_by(tracer, world, rays, hits, Thresholds::Hashed)
+}
+
+/// Finds what [`closest`] does for rays of the camera, with a number for each, from 0 up to 1, that decides at which translucent
+/// body it ends; none if there are no such bodies.
+pub(crate) fn closest_from_camera(
+    tracer: Tracer,
+    world: &World,
+    rays: &Rays,
+    hits: &mut Hits,
+    numbers: &[f32],
+) -> u64 {
+    closest_by(tracer, world, rays, hits, Thresholds::Given(numbers))
+}
+
+fn closest_by(
+    tracer: Tracer,
+    world: &World,
+    rays: &Rays,
+    hits: &mut Hits,
+    thresholds: Thresholds,
+) -> u64 {
     closest_ground(world, rays, hits);
+    if world.features.translucent {
+        return translucent::trace(tracer, Query::Closest, world, (rays, hits), thresholds);
+    }
     trace(tracer, Query::Closest, world, rays, hits)
 }
 
@@ -45,6 +72,9 @@ pub fn closest_ground(world: &World, rays: &Rays, hits: &mut Hits) {
 pub fn occluded(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
     if let Some(ground) = &world.ground {
         occlude_by_ground(ground, rays, hits);
+    }
+    if world.features.translucent {
+        return translucent::trace(tracer, Query::Any, world, (rays, hits), Thresholds::Hashed);
     }
     trace(tracer, Query::Any, world, rays, hits)
 }
@@ -90,7 +120,7 @@ fn trace_clipped(
     if world.cut.is_empty() {
         return bodies.trace(tracer, query, rays, hits);
     }
-    let mut clipped = ClippedRays::new(world, bodies, rays, hits);
+    let mut clipped = ClippedRays::new(world, rays, hits, |_, point, _| bodies.enclosing(point));
     let exact = bodies.trace(tracer, query, &clipped.rays, &mut clipped.hits);
     clipped.write_hits(hits);
     exact

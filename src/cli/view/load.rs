@@ -416,19 +416,7 @@ fn apply_style(
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
     let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
-    let (types, ids) = (job.looks.types.clone(), job.looks.ids);
-    let (model, bonds, bond_radius) =
-        (job.looks.model, job.looks.bonds.clone(), job.looks.bond_radius);
-    let looks = ParticleStyle {
-        select,
-        coloring,
-        model,
-        bonds,
-        bond_radius,
-        types,
-        ids,
-        allow_empty: false,
-    };
+    let looks = ParticleStyle { select, coloring, allow_empty: false, ..job.looks.clone() };
     let name = job.source.name();
     Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }

@@ -10,7 +10,7 @@ use spherule_render::{color, suggest};
 #[command(next_help_heading = "Style")]
 pub(in crate::cli) struct StyleArgs {
     /// Preset of material, light and outlines for particle files: figure, chalk, studio, cloudy, glossy,
-    /// depthcue or outline. Radii, colors and materials of --type override it [default: figure]
+    /// depthcue, outline, ghost or x-ray. Radii, colors and materials of --type override it [default: figure]
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<Preset>,
     /// Background: a CSS color such as white or #rrggbb, before --exposure; transparent, for PNG, EXR, TIFF

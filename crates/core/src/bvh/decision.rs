@@ -3,6 +3,7 @@
 //! Hits are decided by [`intersect::confirm`] alone, and of spheres at equal distances the one that
 //! comes first in the user's scene is hit. So traversals differ in time, never in their answers.
 
+use super::enclosing::power;
 use super::resolver::{DONE, rounded_out};
 use super::traversal::Query;
 use crate::exact::{self, Distance};
@@ -85,10 +86,32 @@ impl<'a, Q: Query> Decision<'a, Q> {
     /// Does what [`Decision::test_sphere`] does where the short test in double precision can't tell.
     #[inline(never)]
     fn test_sphere_closely(&mut self, sphere: usize) -> bool {
+        let root = self.confirm(sphere);
+        self.update_if_root(sphere, root)
+    }
+
+    /// Decides whether and where the ray hits a sphere, which is neither its own nor its target.
+    fn confirm(&self, sphere: usize) -> Option<Root> {
         let (center, radius) = self.spheres.exact(sphere);
         let inside = || self.starts_within(center, radius);
-        let root = intersect::confirm(&self.ray, center, radius, inside);
-        self.update_if_root(sphere, root)
+        intersect::confirm(&self.ray, center, radius, inside)
+    }
+
+    /// Returns the distance of a sphere along the ray, whether or not others are nearer, and whether the ray starts inside.
+    pub(super) fn intersects(&self, sphere: usize) -> Option<(Root, bool)> {
+        if self.is_same(sphere, self.own) || self.is_same(sphere, self.target) {
+            return None;
+        }
+        let (center, radius) = self.spheres.exact(sphere);
+        let (plain, t) = intersect::confirm_plain(&Pairs::one(&self.ray, center, radius));
+        if plain {
+            return Some((Root { t, error: t * CLEAR, exact: false }, false));
+        }
+        let root = self.confirm(sphere)?;
+        let (outside, error) = (power(self.ray.origin, center, radius), self.ray.origin_error);
+        let on_surface = error > 0.0 && outside.abs() <= error * (2.0 * radius + error);
+        let inside = if on_surface { self.starts_within(center, radius) } else { outside < 0.0 };
+        Some((root, inside))
     }
 
     /// Does what [`Decision::test_sphere`] does for a ray that starts far from all spheres: the distance gets its

@@ -32,6 +32,23 @@ impl Bvh {
         deepest.map(|deepest| deepest.row)
     }
 
+    /// Returns all spheres that enclose a point, the one that [`Bvh::enclosing_sphere`] returns first, and after each the one
+    /// that it would return without those before.
+    pub fn enclosing_spheres(&self, spheres: &Spheres, point: Vec3) -> Vec<u32> {
+        let mut found = Vec::new();
+        self.for_each_block_at(point, |block| {
+            for row in block * LEAF..spheres.len().min((block + 1) * LEAF) {
+                let (center, radius) = spheres.exact(row);
+                let power = power(point.as_dvec3(), center, radius);
+                if power < 0.0 {
+                    found.push((power, spheres.id[row], row as u32));
+                }
+            }
+        });
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.into_iter().map(|(.., row)| row).collect()
+    }
+
     /// Calls a function with each block in whose box a point is.
     pub(crate) fn for_each_block_at(&self, point: Vec3, mut each: impl FnMut(usize)) {
         let mut open = if self.is_empty() { Vec::new() } else { vec![Child::node(0)] };
@@ -67,7 +84,7 @@ fn deeper(deepest: &mut Option<Deepest>, spheres: &Spheres, row: usize, point: V
 }
 
 /// Returns the power of a point. Its sign is exact: negative inside, and 0 or more elsewhere.
-fn power(point: DVec3, center: DVec3, radius: f64) -> f64 {
+pub(super) fn power(point: DVec3, center: DVec3, radius: f64) -> f64 {
     /// A bound of the rounding error, relative to the terms.
     const ERROR: f64 = 8.0 * f64::EPSILON;
     let distance2 = point.distance_squared(center);
@@ -108,6 +125,15 @@ mod tests {
             (0..spheres.len()).for_each(|row| deeper(&mut deepest, &spheres, row, point));
             let found_row = bvh.enclosing_sphere(&spheres, point);
             assert_eq!(found_row, deepest.map(|deepest| deepest.row));
+            let all = bvh.enclosing_spheres(&spheres, point);
+            assert_eq!(all.first().copied(), found_row);
+            let at = |&row: &u32| {
+                let (center, radius) = spheres.exact(row as usize);
+                power(point.as_dvec3(), center, radius)
+            };
+            assert!(all.iter().map(at).is_sorted(), "{point}");
+            let count = (0..spheres.len() as u32).filter(|row| at(row) < 0.0).count();
+            assert_eq!(all.len(), count, "{point}");
             found[usize::from(found_row.is_some())] += 1;
         }
         assert!(found[0] > 100 && found[1] > 100, "{found:?}");

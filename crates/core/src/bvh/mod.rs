@@ -11,6 +11,7 @@ mod decision;
 mod enclosing;
 mod found;
 mod interleaved;
+mod intersections;
 mod nearest;
 mod one_ray;
 mod packet;
@@ -23,6 +24,7 @@ mod traversal;
 
 pub use beam::Beam;
 pub use found::{DeviceTracer, UNKNOWN, decide_found};
+pub(crate) use intersections::{Intersection, for_each_intersection};
 pub use one_ray::{OneHit, trace_far, trace_one};
 pub(crate) use one_ray::{SMALL_STACK, STACK, Search, walk};
 pub use plain_ray::{PlainAnswer, PlainHit, PlainRay};

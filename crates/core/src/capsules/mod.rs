@@ -6,15 +6,17 @@
 mod bounded;
 mod filter;
 mod intersect;
+mod intersections;
 mod search;
 
 pub use crate::capsule::{Capsule, Part};
 pub use intersect::{CapsuleHit, exit_distance, intersect};
-pub use search::{BodyTrees, closest, enclosing_capsule, occluded};
+pub(crate) use intersections::for_each_intersection;
+pub use search::{BodyTrees, closest, enclosing_capsule, enclosing_capsules, occluded};
 
 use crate::bvh::builders::{Builder, Item, build_around};
 use crate::bvh::{Beam, Bounds, Bvh};
-use crate::ray::GROUND;
+use crate::ray::{ExactRay, GROUND};
 use crate::slabs::MARGIN;
 use crate::spheres::LEAF;
 use glam::{DVec3, Vec3};
@@ -139,6 +141,13 @@ impl Capsules {
         let (block, lane) = (&self.blocks[i / LEAF], i % LEAF);
         let end = |end: usize| DVec3::from(block.ends[end].map(|column| f64::from(column[lane])));
         Capsule { ends: [end(0), end(1)], radius: f64::from(block.radius[lane]) }
+    }
+
+    /// The row of a hit on a capsule at a distance of a ray.
+    pub(crate) fn row_at(&self, capsule: usize, ray: &ExactRay, t: f64) -> CapsuleRow {
+        let body = self.capsule(capsule);
+        let along = body.normal(ray.at_from(body.ends[0], t)).1;
+        CapsuleRow { capsule, half: usize::from(along > 0.5) }
     }
 
     /// A box that holds the capsules of a block, and more than rounding about them.

@@ -1,7 +1,7 @@
 //! Traces rays among capsules, after they were traced among spheres.
 
 use super::filter::FilterRay;
-use super::{Capsule, CapsuleBlock, CapsuleHit, CapsuleRow, Capsules, Part, intersect};
+use super::{CapsuleBlock, CapsuleHit, CapsuleRow, Capsules, Part, intersect};
 use crate::bvh::{SMALL_STACK, STACK, Search, walk};
 use crate::exact::{self, Distance};
 use crate::intersect::{CLEAR, Root, confirm_closely};
@@ -39,21 +39,29 @@ pub fn occluded(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u64 {
 /// Returns the capsule that contains a point, not on its surface; of several the first in the user's order. Decided in double
 /// precision: a point that is on a surface but for rounding may be called either.
 pub fn enclosing_capsule(capsules: &Capsules, point: DVec3) -> Option<usize> {
-    let contains = |capsule: &Capsule| {
-        let (from, axis) = (point - capsule.ends[0], capsule.ends[1] - capsule.ends[0]);
-        let along = capsule.normal(from).1;
-        (from - axis * along).length_squared() < capsule.radius * capsule.radius
-    };
     let mut found: Option<usize> = None;
-    capsules.bvh.for_each_block_at(point.as_vec3(), |block| {
-        for row in block * LEAF..capsules.len().min((block + 1) * LEAF) {
-            let first = found.is_none_or(|known| capsules.id[row] < capsules.id[known]);
-            if first && contains(&capsules.capsule(row)) {
-                found = Some(row);
-            }
+    for_each_around(capsules, point, |row| {
+        if found.is_none_or(|known| capsules.id[row] < capsules.id[known]) {
+            found = Some(row);
         }
     });
     found
+}
+
+/// Returns all capsules that contain a point, in the user's order.
+pub fn enclosing_capsules(capsules: &Capsules, point: DVec3) -> Vec<usize> {
+    let mut found = Vec::new();
+    for_each_around(capsules, point, |row| found.push(row));
+    found.sort_unstable_by_key(|&row| capsules.id[row]);
+    found
+}
+
+/// Calls a function with each capsule that contains a point.
+fn for_each_around(capsules: &Capsules, point: DVec3, mut visit: impl FnMut(usize)) {
+    capsules.bvh.for_each_block_at(point.as_vec3(), |block| {
+        let rows = block * LEAF..capsules.len().min((block + 1) * LEAF);
+        rows.filter(|&row| capsules.capsule(row).contains(point)).for_each(&mut visit);
+    });
 }
 
 fn trace<const ANY: bool>(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u64 {
@@ -90,10 +98,7 @@ fn trace<const ANY: bool>(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u6
         }
         exact += search.exact;
         if let Nearest { t, body: Body::Capsule(capsule, _), .. } = search.nearest {
-            let body = capsules.capsule(capsule);
-            let along = body.normal(ray.at_from(body.ends[0], t)).1;
-            let hit = CapsuleRow { capsule, half: usize::from(along > 0.5) };
-            hits.set(row, t, hit.hit(spheres.len()));
+            hits.set(row, t, capsules.row_at(capsule, &ray, t).hit(spheres.len()));
         }
     }
     exact

@@ -5,5 +5,6 @@
 mod distances;
 mod queries;
 mod reference;
+mod translucency;
 mod traversals;
 mod trees;

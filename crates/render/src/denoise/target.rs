@@ -21,6 +21,9 @@ const BUDGET: f64 = (1 << 25) as f64;
 /// default field.
 const DIFFUSE: f64 = 2.75;
 
+/// Cost of a sample among translucent bodies, whose rays find all of them on their way, relative to one among opaque ones.
+const TRANSLUCENT: f64 = 4.0;
+
 /// Binary logarithm of the number of spheres that have unit cost, and the power of it that costs grow with.
 const UNIT_COST: (f64, i32) = (10.0, 3);
 
@@ -33,9 +36,11 @@ pub fn max_samples(region: Region, spheres: usize, materials: &[NamedMaterial]) 
     let depth = f64::from((spheres.max(1) as u64).ilog2() + 1);
     let cost = (depth / UNIT_COST.0).max(1.0).powi(UNIT_COST.1);
     let is_diffuse = |row: &NamedMaterial| {
-        matches!(row.material, Material::Lambertian { .. } | Material::Emitter { .. })
+        matches!(row.material.surface(), Material::Lambertian { .. } | Material::Emitter { .. })
     };
     let budget = if materials.iter().all(is_diffuse) { BUDGET * DIFFUSE } else { BUDGET };
+    let translucent = materials.iter().any(|row| row.material.opacity() < 1.0);
+    let budget = if translucent { budget / TRANSLUCENT } else { budget };
     let samples = budget / (cost * region.area() as f64);
     samples.clamp(*LIMITS.start(), *LIMITS.end()) as u32
 }

@@ -9,6 +9,9 @@ use crate::sampling::{self, SampleRow, Sampler};
 use crate::world::World;
 use std::ops::Range;
 
+/// Number of the event at which the numbers of [`Workspace::thresholds`] are sampled.
+const THRESHOLD: u32 = u32::MAX;
+
 /// Starts a path for each of `samples` of each of some pixels, no more than a batch. In the order of
 /// [`Tile::pixels`](crate::film::Tile::pixels), packets are square.
 pub fn generate(
@@ -37,7 +40,19 @@ pub fn generate_streams(
             job.has_lens().then(|| sampling::concentric_disk(job.sampler.lens_row(&numbers)));
         generate_rays(job, work, first, (offset, lens));
     }
+    sample_thresholds(job, work, count);
     finish_camera_rays(job, work);
+}
+
+/// Samples at which translucent bodies camera rays end.
+fn sample_thresholds(job: &Job, work: &mut Workspace, count: usize) {
+    if work.thresholds.is_empty() {
+        return;
+    }
+    for row in 0..count {
+        let [number, _] = job.sampler.split(&work.sampler_state(row), THRESHOLD, 1).pair(0);
+        work.thresholds[row] = number;
+    }
 }
 
 /// Starts the samples of streams, and returns their number.
@@ -71,10 +86,23 @@ fn start(
     count
 }
 
-/// Starts a path through the center of each of some pixels, no more than a batch, and of the lens.
+/// Replaces the numbers that decide at which translucent bodies the camera rays of some pixels end by a pattern of dots: in
+/// each square of four by four pixels, as many see a body as its part is of 16.
+///
+/// Bayer, "An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures", ICC 1973.
+pub fn dither_thresholds(pixels: impl Iterator<Item = (u32, u32)>, work: &mut Workspace) {
+    const ORDER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
+    for (number, (x, y)) in work.thresholds.iter_mut().zip(pixels) {
+        *number = (f32::from(ORDER[y as usize % 4][x as usize % 4]) + 0.5) / 16.0;
+    }
+}
+
+/// Starts a path through the center of each of some pixels, no more than a batch, and of the lens. Camera rays end at the first
+/// body, translucent or not.
 pub fn generate_centers(job: &Job, pixels: impl Iterator<Item = (u32, u32)>, work: &mut Workspace) {
     let count = start(job, pixels.map(|(x, y)| (x, y, *job.sampler)), 0..1, work);
     work.start_paths(count);
+    work.thresholds.fill(0.0);
     let middle = [F32x16::splat(0.0); 2];
     for first in (0..count).step_by(MAX_LANES) {
         work.states.init_camera(first);

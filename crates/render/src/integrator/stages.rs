@@ -6,6 +6,7 @@ use super::shadow_queue;
 use super::surface::compute_surfaces;
 use super::workspace::Workspace;
 use crate::film::View;
+use crate::ray::MISS;
 use crate::shade::{Material, MaterialId, MaterialKind};
 use crate::trace;
 use crate::world::World;
@@ -18,8 +19,12 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
     match std::mem::replace(&mut work.view, View::Anything) {
         View::Background => trace::closest_ground(job.world, &work.rays, &mut work.hits),
         View::Anything => {
-            work.counters.exact_decisions +=
-                trace::closest(job.tracer, job.world, &work.rays, &mut work.hits);
+            let (tracer, rays, hits) = (job.tracer, &work.rays, &mut work.hits);
+            work.counters.exact_decisions += if rays.own.first() == Some(&MISS) {
+                trace::closest_from_camera(tracer, job.world, rays, hits, &work.thresholds)
+            } else {
+                trace::closest(tracer, job.world, rays, hits)
+            };
         }
     }
     work.probes.count_rays((0..work.rays.len()).map(|row| work.states.path(row) as u32));

@@ -54,6 +54,8 @@ pub struct Workspace {
     pub states: PathStates,
     /// By path: radiance and sampler states.
     pub paths: Paths,
+    /// By row: numbers from 0 up to 1 that decide at which translucent bodies camera rays end; empty if there are none.
+    pub thresholds: Vec<f32>,
     /// Hits by kind of material.
     pub queues: MaterialQueues,
     /// Materials of the spheres, if there are few.
@@ -106,6 +108,7 @@ impl Workspace {
                 interiors: vec![MISS; BATCH * nesting],
                 nesting,
             },
+            thresholds: if world.features.translucent { vec![0.0; ROWS] } else { Vec::new() },
             queues: MaterialQueues::new(world, normals),
             material_table: MaterialTable::new(world, ESCAPED),
             next_rays: NextRays::new(normals),

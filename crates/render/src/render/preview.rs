@@ -5,7 +5,7 @@ use super::{Options, RenderError, check};
 use crate::film::{Film, Region, TILE, View};
 use crate::image::Image;
 use crate::integrator::Job;
-use crate::integrator::generate::generate_centers;
+use crate::integrator::generate::{dither_thresholds, generate_centers};
 use crate::integrator::preview::{self, Lighting};
 use crate::integrator::workspace::{BATCH, Workspace};
 use crate::sampling::{PixelFilter, Sampler};
@@ -95,6 +95,7 @@ fn render_row(
             }
             work.view = which;
             generate_centers(job, places(), work);
+            dither_thresholds(places(), work);
             preview::integrate(job, work, lighting);
             for (place, radiance) in places().zip(&work.paths.radiance) {
                 pixels[index(place)] = radiance.to_array();

@@ -58,6 +58,43 @@ pub enum Material {
         /// Albedo, 0..=1; black by default.
         albedo: Rgb,
     },
+    /// A part of another material, so that what is behind is seen too, without refraction. A body is seen where a ray enters
+    /// it, and lets light pass there; rays leave it freely.
+    Translucent {
+        /// Part of what is behind that is hidden, 0..=1.
+        opacity: f64,
+        /// The material of the surface, neither glass nor an emitter, and not translucent itself.
+        surface: Box<Self>,
+    },
+}
+
+impl Material {
+    /// The material of the surface: the material itself if it is not translucent.
+    pub fn surface(&self) -> &Self {
+        match self {
+            Self::Translucent { surface, .. } => surface,
+            _ => self,
+        }
+    }
+
+    /// The part of what is behind that a body hides, 1 of all materials but translucent ones; glass refracts, and has its own
+    /// ways.
+    pub fn opacity(&self) -> f64 {
+        match self {
+            Self::Translucent { opacity, .. } => *opacity,
+            _ => 1.0,
+        }
+    }
+
+    /// The same material with another opacity, 0..=1; glass and emitters stay as they are.
+    #[must_use]
+    pub fn with_opacity(&self, opacity: f64) -> Self {
+        match self.surface() {
+            Self::Dielectric { .. } | Self::Emitter { .. } => self.clone(),
+            surface if opacity >= 1.0 => surface.clone(),
+            surface => Self::Translucent { opacity, surface: Box::new(surface.clone()) },
+        }
+    }
 }
 
 /// Reflectance of a metal.

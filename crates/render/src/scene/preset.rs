@@ -7,7 +7,7 @@
 //! spheres are darker than a white background, and colors can be compared with a color bar. Overlays of
 //! a look, such as contours, are drawn by [`crate::overlay`].
 
-use super::particles::{Orientation, Particles};
+use super::particles::{GHOST, Orientation, Particles};
 use super::{
     Background, Camera, Environment, EnvironmentMap, Ground, Integrator, Light, Look, Material,
     NamedMaterial, Pose, Rgb, Scene,
@@ -42,6 +42,10 @@ pub enum Preset {
     DepthCue,
     /// Matte under a white sky, with outlines around spheres.
     Outline,
+    /// As `Figure`, but translucent: what is inside is seen too.
+    Ghost,
+    /// Translucent before black, lit uniformly: the more bodies there are behind each other, the brighter.
+    XRay,
 }
 
 /// The lights of a preset. Directions are right, up, and toward the camera.
@@ -96,11 +100,14 @@ const GLOSSY: Lighting = Lighting {
 const EVEN: Lighting =
     Lighting { tilted: false, sky: Sky { radiance: [1.0, 1.0], toward: UP }, sun: None };
 
+/// Opacity of bodies in an x-ray picture.
+const FAINT: f64 = 0.06;
+
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 
 impl Preset {
     /// All presets.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Figure,
         Self::Chalk,
         Self::Studio,
@@ -108,6 +115,8 @@ impl Preset {
         Self::Glossy,
         Self::DepthCue,
         Self::Outline,
+        Self::Ghost,
+        Self::XRay,
     ];
 
     /// Returns the name in scene files and options.
@@ -120,6 +129,8 @@ impl Preset {
             Self::Glossy => "glossy",
             Self::DepthCue => "depthcue",
             Self::Outline => "outline",
+            Self::Ghost => "ghost",
+            Self::XRay => "x-ray",
         }
     }
 
@@ -144,13 +155,19 @@ impl Preset {
 
     /// Sets the integrator of a scene whose other materials are the user's choice.
     pub fn set(self, scene: &mut Scene) {
-        let own = scene.materials.iter().any(|row| row.material != self.material());
+        let usual = self.material();
+        let is_own = |row: &NamedMaterial| row.material.surface() != usual.surface();
+        let own = scene.materials.iter().any(is_own);
         scene.settings.integrator = self.integrator(own);
     }
 
     /// Returns the overlays and the background.
     pub fn look(self) -> Look {
-        let background = if self == Self::Studio { SWEEP } else { 1.0 };
+        let background = match self {
+            Self::Studio => SWEEP,
+            Self::XRay => 0.0,
+            _ => 1.0,
+        };
         Look {
             background: Background::Color(Rgb::splat(background)),
             depth_cue: self == Self::DepthCue,
@@ -159,10 +176,16 @@ impl Preset {
         }
     }
 
-    /// Gives every sphere and the ground this look's material; names stay.
+    /// Gives every sphere this look's material; names stay, and opacities of less than 1.
     pub fn replace_materials(self, scene: &mut Scene) {
-        for row in &mut scene.materials {
-            row.material = self.material();
+        let ground = scene.ground.as_ref().map(|ground| ground.material as usize);
+        for (index, row) in scene.materials.iter_mut().enumerate() {
+            let opacity = match row.material.opacity() {
+                _ if Some(index) == ground => 1.0,
+                1.0 => self.material().opacity(),
+                opacity => opacity,
+            };
+            row.material = self.material().with_opacity(opacity);
         }
     }
 
@@ -182,19 +205,22 @@ impl Preset {
     /// Returns the material of particles that have none of their own; their colors are factors on
     /// its albedo.
     pub fn material(self) -> Material {
+        let matte = Material::Lambertian { color: Rgb::splat(MATTE) };
         match self {
             Self::Glossy => Material::Plastic { color: Rgb::splat(POLISHED), ior: 1.5 },
-            _ => Material::Lambertian { color: Rgb::splat(MATTE) },
+            Self::Ghost => matte.with_opacity(GHOST),
+            Self::XRay => matte.with_opacity(FAINT),
+            _ => matte,
         }
     }
 
     fn lighting(self) -> Lighting {
         match self {
-            Self::Figure | Self::DepthCue => FIGURE,
+            Self::Figure | Self::DepthCue | Self::Ghost => FIGURE,
             Self::Studio => STUDIO,
             Self::Cloudy => CLOUDY,
             Self::Glossy => GLOSSY,
-            Self::Chalk | Self::Outline => EVEN,
+            Self::Chalk | Self::Outline | Self::XRay => EVEN,
         }
     }
 }

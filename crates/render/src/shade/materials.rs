@@ -8,6 +8,7 @@ use super::plastic::Plastic;
 use super::reflective::Reflective;
 use crate::elementary::power_of_two;
 use crate::scene::{Material, NamedMaterial, Rgb};
+use crate::translucency::OpticalDepth;
 
 /// The kinds of material, in the order in which they are shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,6 +45,7 @@ impl MaterialKind {
     /// The kind of a scene's material.
     pub fn of(material: &Material) -> Self {
         match material {
+            Material::Translucent { surface, .. } => Self::of(surface),
             Material::Lambertian { .. } => Self::Lambertian,
             Material::Conductor { .. } => Self::Conductor,
             Material::Dielectric { .. } => Self::Dielectric,
@@ -112,14 +114,18 @@ pub struct Materials {
     pub emitter: Vec<Emitter>,
     /// From the scene's rows.
     ids: Vec<MaterialId>,
+    /// Optical depths, by kind and row.
+    optical_depth: [Vec<OpticalDepth>; MaterialKind::COUNT],
 }
 
 impl Materials {
     pub(crate) fn build(scene: &[NamedMaterial]) -> Self {
         let mut tables = Self::default();
         for named in scene {
-            let id = tables.add(&named.material);
+            let id = tables.add(named.material.surface());
             tables.ids.push(id);
+            let depth = OpticalDepth::of_opacity(named.material.opacity());
+            tables.optical_depth[id.kind() as usize].push(depth);
         }
         tables
     }
@@ -135,6 +141,17 @@ impl Materials {
             MaterialKind::Reflective => self.reflective[id.row()].color,
             MaterialKind::Emitter => self.emitter[id.row()].radiance.min(Rgb::ONE),
         }
+    }
+
+    /// Returns whether any material is translucent.
+    pub(crate) fn has_translucent(&self) -> bool {
+        self.optical_depth.iter().flatten().any(|depth| !depth.is_opaque())
+    }
+
+    /// The optical depth of a body of this material.
+    #[inline(always)]
+    pub(crate) fn optical_depth(&self, id: MaterialId) -> OpticalDepth {
+        self.optical_depth[id.kind() as usize][id.row()]
     }
 
     /// The material of a number that [`MaterialId::bits`] gave; `None` if there is none.
@@ -189,6 +206,7 @@ impl Materials {
             Material::Emitter { radiance, albedo } => {
                 push(&mut self.emitter, MaterialKind::Emitter, Emitter { radiance, albedo })
             }
+            Material::Translucent { ref surface, .. } => self.add(surface),
         }
     }
 }

@@ -4,6 +4,7 @@ use super::{Query, Tracer};
 use crate::bvh::Tree;
 use crate::capsules::{self, BodyTrees, CapsuleRow, Capsules};
 use crate::ray::{Hits, Rays};
+use crate::translucency::{OpticalDepth, TranslucentBodies};
 use crate::world::World;
 
 /// Spheres and sticks, all or those that the camera sees. Hits are rows of the spheres, and after them two for each stick.
@@ -44,6 +45,14 @@ impl<'a> Bodies<'a> {
         rows.and_then(|rows| rows.get(hit as usize)).copied().unwrap_or(hit)
     }
 
+    /// The same bodies, with what light loses at each, by its hit.
+    pub(super) fn translucent<D: Fn(u32) -> OpticalDepth>(
+        self,
+        depth: D,
+    ) -> TranslucentBodies<'a, D> {
+        TranslucentBodies { tree: self.tree, capsules: self.sticks, depth }
+    }
+
     /// Traces rays with the processor.
     pub(super) fn trace(self, tracer: Tracer, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
         let exact = match query {
@@ -70,11 +79,24 @@ impl<'a> Bodies<'a> {
     pub(super) fn enclosing(&self, point: glam::Vec3) -> Option<u32> {
         let Self { tree, sticks } = self;
         tree.bvh.enclosing_sphere(tree.spheres, point).or_else(|| {
-            let point = point.as_dvec3();
-            let capsule = capsules::enclosing_capsule(sticks, point)?;
-            let body = sticks.capsule(capsule);
-            let half = usize::from(body.normal(point - body.ends[0]).1 > 0.5);
-            Some(CapsuleRow { capsule, half }.hit(tree.spheres.len()))
+            let capsule = capsules::enclosing_capsule(sticks, point.as_dvec3())?;
+            Some(self.cap_of_stick(capsule, point))
         })
+    }
+
+    /// Returns the hits on the caps of all bodies that contain a point, in their order on the cut: the first is that of
+    /// [`Bodies::enclosing`].
+    pub(super) fn all_enclosing(self, point: glam::Vec3) -> impl Iterator<Item = u32> {
+        let Self { tree, sticks } = self;
+        let sticks = capsules::enclosing_capsules(sticks, point.as_dvec3());
+        let sticks = sticks.into_iter().map(move |capsule| self.cap_of_stick(capsule, point));
+        tree.bvh.enclosing_spheres(tree.spheres, point).into_iter().chain(sticks)
+    }
+
+    /// The hit on the cap of a stick at a point.
+    fn cap_of_stick(&self, capsule: usize, point: glam::Vec3) -> u32 {
+        let body = self.sticks.capsule(capsule);
+        let half = usize::from(body.normal(point.as_dvec3() - body.ends[0]).1 > 0.5);
+        CapsuleRow { capsule, half }.hit(self.tree.spheres.len())
     }
 }

@@ -1,11 +1,20 @@
 //! Rays clipped to the half spaces that are kept: see [`Cut`](crate::world::Cut).
 
-use super::bodies::Bodies;
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::world::{Span, World};
+use glam::Vec3;
 
 /// Upper bound of a ray that is not traced: all hits are farther.
 const NOT_TRACED: f64 = -1.0;
+
+/// The side on which a ray crosses a cut.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Crossing {
+    /// Into the region that is kept.
+    Entry,
+    /// Out of it.
+    Exit,
+}
 
 /// Rays clipped to the region that is kept, row by row, and their hits.
 pub(super) struct ClippedRays {
@@ -17,8 +26,14 @@ pub(super) struct ClippedRays {
 }
 
 impl ClippedRays {
-    /// Clips rays. Hits that are known at once go to `hits`: caps that are hit where a ray enters.
-    pub(super) fn new(world: &World, bodies: Bodies, rays: &Rays, hits: &mut Hits) -> Self {
+    /// Clips rays. Hits that are known at once go to `hits`: caps that are hit where a ray enters. `cap` returns the body whose
+    /// cap a ray hits at a point of a cut, from the ray's row.
+    pub(super) fn new(
+        world: &World,
+        rays: &Rays,
+        hits: &mut Hits,
+        mut cap: impl FnMut(usize, Vec3, Crossing) -> Option<u32>,
+    ) -> Self {
         let mut clipped = Self {
             rays: Rays::with_capacity(rays.len()),
             hits: Hits::with_capacity(rays.len()),
@@ -29,9 +44,9 @@ impl ClippedRays {
             clipped.rays.target[row] = rays.target[row];
             let span = world.cut.clip(&rays.exact(row), rays.own[row]);
             if span.from > 0.0 {
-                clipped.clip_entering(bodies, rays, (row, &span), hits);
+                clipped.clip_entering(rays, (row, &span), hits, &mut cap);
             } else {
-                clipped.clip_inside(world, bodies, rays, (row, &span), hits);
+                clipped.clip_inside(world, rays, (row, &span), hits, &mut cap);
             }
         }
         clipped
@@ -40,10 +55,10 @@ impl ClippedRays {
     /// Clips a ray that starts outside of the region.
     fn clip_entering(
         &mut self,
-        bodies: Bodies,
         rays: &Rays,
         (row, span): (usize, &Span),
         hits: &mut Hits,
+        cap: &mut impl FnMut(usize, Vec3, Crossing) -> Option<u32>,
     ) {
         self.hits.set(row, NOT_TRACED, MISS);
         let bound = hits.t[row];
@@ -51,7 +66,7 @@ impl ClippedRays {
             return;
         }
         let point = rays.exact(row).at(span.from).as_vec3();
-        if let Some(sphere) = bodies.enclosing(point) {
+        if let Some(sphere) = cap(row, point, Crossing::Entry) {
             return hits.set(row, span.from, sphere);
         }
         self.start[row] = span.from;
@@ -65,10 +80,10 @@ impl ClippedRays {
     fn clip_inside(
         &mut self,
         world: &World,
-        bodies: Bodies,
         rays: &Rays,
         (row, span): (usize, &Span),
         hits: &Hits,
+        cap: &mut impl FnMut(usize, Vec3, Crossing) -> Option<u32>,
     ) {
         let (bound, known) = (hits.t[row], hits.sphere[row]);
         if span.to >= bound {
@@ -76,8 +91,8 @@ impl ClippedRays {
         }
         // The ray is inside the sphere that it starts on; or the camera is inside a sphere, and then so
         // may be points of the ground and of other spheres.
-        let around = || {
-            let enclosing = |point| bodies.enclosing(point);
+        let mut around = || {
+            let mut enclosing = |point| cap(row, point, Crossing::Exit);
             let inside = world.features.around_camera
                 && span.to > 0.0
                 && enclosing(rays.origin.row(row)).is_some();

@@ -33,6 +33,8 @@ pub struct Features {
     pub ground_kind: Option<MaterialKind>,
     /// True if spheres have their own colors.
     pub colors: bool,
+    /// True if bodies are translucent.
+    pub translucent: bool,
     /// True if there are lights to sample: otherwise there are no shadow rays.
     pub lights: bool,
     /// True if rays start on a lens.
@@ -69,6 +71,7 @@ impl Features {
             hidden: omitted.hidden,
             ground_kind: world.ground.map(|ground| ground.material.kind()),
             colors: world.appearance.color.is_some(),
+            translucent: world.has_translucent(),
             lights: !world.lights.is_empty(),
             lens: false,
             environment: !world.environment.is_black(),
@@ -106,6 +109,7 @@ impl Features {
         skip(self.cuts == 0, "no flat cuts: no ray clipping");
         skip(self.ground_kind.is_none(), "no ground: no plane test");
         skip(!self.lights, "no lights to sample: no shadow rays");
+        skip(!self.translucent, "no translucent bodies: every body that is hit ends its ray");
         skip(!self.lens, "no lens: no lens samples");
         skip(!self.colors, "no colors of single spheres: no color column");
         skip(!self.environment, "black environment: no environment lookup");

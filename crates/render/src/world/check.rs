@@ -147,6 +147,20 @@ fn material(named: &NamedMaterial) -> Result<(), WorldError> {
         check_number((0.0..=1.0).contains(&value), &field(name), value, "0 to 1")
     };
     match *material {
+        Material::Translucent { opacity, ref surface } => {
+            fraction("opacity", opacity)?;
+            let refused = match **surface {
+                Material::Dielectric { .. } => Some("glass"),
+                Material::Emitter { .. } => Some("an emitter"),
+                Material::Translucent { .. } => Some("translucent itself"),
+                _ => None,
+            };
+            if let Some(kind) = refused {
+                let whose = format!("the surface of the translucent material \"{name}\"");
+                return Err(WorldError::Invalid(format!("{whose} must not be {kind}")));
+            }
+            self::material(&NamedMaterial { name: name.clone(), material: (**surface).clone() })
+        }
         Material::Lambertian { color } => albedo(&field("color"), color),
         Material::Conductor { fresnel, roughness } => {
             fraction("roughness", roughness)?;
@@ -248,8 +262,11 @@ fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError
     unit("the ground's `normal`", normal)?;
     check_number(height.is_finite(), "the ground's `height`", height, "finite")?;
     let material = materials.get(material as usize).map(|named| &named.material);
-    let solid = !matches!(material, Some(Material::Dielectric { .. } | Material::Emitter { .. }));
-    require(solid, || "the ground cannot be glass or an emitter; use a sphere".to_owned())
+    let solid = !matches!(
+        material,
+        Some(Material::Dielectric { .. } | Material::Emitter { .. } | Material::Translucent { .. })
+    );
+    require(solid, || "the ground cannot be glass, an emitter or translucent".to_owned())
 }
 
 /// Checks columns of sticks.

@@ -61,6 +61,7 @@ use crate::scene::{self, Background, Footprint, Rgb, Scene};
 use crate::settings::{InvalidSetting, Settings};
 use crate::shade::{MaterialId, MaterialKind, Materials};
 use crate::spheres::Spheres;
+use crate::translucency::OpticalDepth;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -93,6 +94,8 @@ pub struct World {
     /// The spheres that the camera sees, if slices hide some from it.
     #[doc(hidden)]
     pub camera_visible: Option<CameraVisible>,
+    /// In worlds with translucent bodies, the rows of spheres that coincide with an earlier one, which is seen alone.
+    coincident: Vec<u32>,
     /// The ground plane, if there is one.
     #[doc(hidden)]
     pub ground: Option<Ground>,
@@ -258,6 +261,7 @@ impl World {
             sticks,
             cut,
             camera_visible,
+            coincident: Vec::new(),
             ground,
             materials,
             lights,
@@ -270,6 +274,9 @@ impl World {
             features: Features::default(),
         };
         world.features = Features::census(&world, omitted);
+        if world.features.translucent {
+            world.coincident = world.spheres.later_of_equals();
+        }
         world.caustic_casters = CausticCasters::find(&world);
         world.light_images = LightImages::find(&world);
         world
@@ -278,6 +285,27 @@ impl World {
     /// Returns whether slices hide or cut spheres, so that the processor traces all rays.
     pub fn is_sliced(&self) -> bool {
         self.camera_visible.is_some() || self.sticks.visible.is_some() || !self.cut.is_empty()
+    }
+
+    /// Returns whether any body is translucent.
+    fn has_translucent(&self) -> bool {
+        if !self.materials.has_translucent() {
+            return false;
+        }
+        let passes = |id: MaterialId| !self.materials.optical_depth(id).is_opaque();
+        match &self.appearance.material {
+            Column::Uniform(id) => passes(*id),
+            Column::Rows(rows) => rows.iter().any(|&id| passes(id)),
+        }
+    }
+
+    /// The optical depth of the body of a hit.
+    #[inline(always)]
+    pub(crate) fn optical_depth(&self, hit: u32) -> OpticalDepth {
+        if self.coincident.binary_search(&hit).is_ok() {
+            return OpticalDepth::NONE;
+        }
+        self.materials.optical_depth(self.material(hit))
     }
 
     /// Returns whether light is sampled by way of specular spheres, or in the pixels that see it, where a render does.
@@ -298,6 +326,7 @@ impl World {
             sticks: WorldSticks::default(),
             cut: Cut::default(),
             camera_visible: None,
+            coincident: Vec::new(),
             ground: self.ground,
             materials: self.materials.clone(),
             lights: self.lights.without_spheres(&self.environment),

@@ -71,7 +71,10 @@ pub(super) fn read(root: &Block) -> Result<Materials, FileError> {
                 block.error("a material's name is empty, or has leading or trailing blanks");
             return Err(error.with_help("write [material.NAME] with another name"));
         }
-        let material = material(&block)?;
+        let mut material = material(&block)?;
+        if let Some(value) = block.value("opacity") {
+            material = material.with_opacity(value.number(Limits::Share)?);
+        }
         materials.row_or_add(NamedMaterial { name: name.to_owned(), material });
     }
     Ok(materials)
@@ -89,6 +92,7 @@ pub(super) fn read_ground(
     let unsupported = match materials.rows[material as usize].material {
         Material::Dielectric { .. } => Some("a dielectric"),
         Material::Emitter { .. } => Some("an emitter"),
+        Material::Translucent { .. } => Some("translucent"),
         _ => None,
     };
     if let Some(kind) = unsupported {

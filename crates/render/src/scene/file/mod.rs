@@ -138,14 +138,26 @@ impl Scene {
         let mut materials = Materials::default();
         materials.row_or_add(named(PARTICLES));
         let mut rows = Vec::new();
-        let mut unknown = Vec::new();
+        let (mut unknown, mut refused) = (Vec::new(), false);
         for (code, name) in particles.material_names.iter().enumerate() {
             let own = particles.own_material(code as u32);
             if own.is_none() && !name.is_empty() {
                 unknown.push(name.as_str());
             }
             let name = if name.is_empty() { PARTICLES } else { name };
-            rows.push(materials.row_or_add(own.unwrap_or_else(|| named(name))));
+            let mut own = own.unwrap_or_else(|| named(name));
+            if let Some(opacity) = particles.opacities.get(code).copied().flatten() {
+                let material = own.material.with_opacity(opacity);
+                refused |= material.opacity() != opacity;
+                if material != own.material {
+                    own = NamedMaterial { name: format!("{name} {opacity:.4}"), material };
+                }
+            }
+            rows.push(materials.row_or_add(own));
+        }
+        if refused {
+            let message = "glass and emitters have no opacity, and stay as they are";
+            particles.warnings.push(format!("{title}: {message}"));
         }
         if !unknown.is_empty() {
             let known = TypeMaterial::ALL.map(|(name, _)| name).join(", ");

@@ -199,6 +199,7 @@ pub(super) const MATERIAL: Schema = Schema {
         ("mirror", &["reflective"]),
         ("radiance", &["emitter"]),
         ("albedo", &["emitter"]),
+        ("opacity", &["lambertian", "conductor", "plastic", "reflective"]),
     ],
 };
 

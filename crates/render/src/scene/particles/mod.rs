@@ -22,7 +22,8 @@ pub use spherule_particles::{
     ReadProgress, Role, SharedNames, TextColumn, count_frames, read_frame,
 };
 pub use style::{
-    Category, Coloring, ColumnColors, ElementColors, Legend, ParticleStyle, TypeMaterial, TypeStyle,
+    Category, Coloring, ColumnColors, ElementColors, GHOST, Legend, Opacity, ParticleStyle,
+    TypeMaterial, TypeStyle,
 };
 
 use super::FileError;

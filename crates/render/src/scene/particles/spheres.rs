@@ -18,6 +18,8 @@ pub struct Particles {
     pub spheres: Spheres,
     /// Names of materials in the file; an empty name means none.
     pub material_names: Vec<String>,
+    /// Opacities by row of `material_names`, 0 to 1; `None`, or no row, for that of the material.
+    pub opacities: Vec<Option<f64>>,
     /// Types of the spheres, if the file has types.
     pub kinds: Kinds,
     /// Columns of numbers that were asked for, one row per sphere.
@@ -148,6 +150,7 @@ pub(super) fn spheres(
             color,
         },
         material_names: material_names(frame.materials),
+        opacities: Vec::new(),
         kinds: frame.kinds,
         numbers: frame.numbers,
         texts: frame.texts,

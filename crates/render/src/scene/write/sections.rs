@@ -161,6 +161,9 @@ pub(in crate::scene) fn environment(environment: &Environment, picture: &str) ->
 
 pub(in crate::scene) fn material(material: &Material) -> String {
     match material {
+        Material::Translucent { opacity, surface } => {
+            format!("{}opacity = {opacity:?}\n", self::material(surface))
+        }
         Material::Lambertian { color } => {
             format!("kind = \"lambertian\"\ncolor = {}\n", rgb(*color))
         }

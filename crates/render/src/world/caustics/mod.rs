@@ -246,12 +246,13 @@ fn sampled_kinds(world: &World) -> &'static [MaterialKind] {
     [&KINDS[..], &KINDS[..2]].into_iter().find(count).unwrap_or_default()
 }
 
-/// Returns the spheres of these kinds that are smooth mirrors, coated, or glass that stands alone.
+/// Returns the spheres of these kinds that are smooth mirrors, coated, or glass that stands alone, and not translucent.
 fn casters(world: &World, kinds: &[MaterialKind]) -> Vec<Caster> {
     let rows = (0..world.spheres.len() as u32).into_par_iter();
     let smooth = |&row: &u32| {
         let id = world.appearance.material.row(row as usize);
         kinds.contains(&id.kind())
+            && world.materials.optical_depth(id).is_opaque()
             && match id.kind() {
                 MaterialKind::Conductor => world.materials.conductor[id.row()].roughness == 0.0,
                 MaterialKind::Dielectric => world.materials.dielectric[id.row()].ior > 1.0,

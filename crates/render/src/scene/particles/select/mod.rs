@@ -144,6 +144,12 @@ impl Selection {
         names
     }
 
+    /// Returns whether each particle is selected.
+    pub(super) fn chosen(&self, particles: &Particles) -> Result<Vec<bool>, FileError> {
+        bind::rows(&self.tree, particles)
+            .map_err(|(span, message)| FileError::at(Path::new(NAME), &self.text, 1, span, message))
+    }
+
     /// Drops the particles that the condition is false of, all of them only if that is allowed.
     ///
     /// # Errors
@@ -156,9 +162,7 @@ impl Selection {
         particles: &mut Particles,
         allow_empty: bool,
     ) -> Result<(), FileError> {
-        let keep = bind::rows(&self.tree, particles).map_err(|(span, message)| {
-            FileError::at(Path::new(NAME), &self.text, 1, span, message)
-        })?;
+        let keep = self.chosen(particles)?;
         if !keep.contains(&true) && !allow_empty {
             let message = format!("none of its {} particles is selected", keep.len());
             let error = FileError::whole_file(path, message);

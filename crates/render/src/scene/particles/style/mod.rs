@@ -3,11 +3,13 @@
 mod categories;
 mod colors;
 mod columns;
+mod opacity;
 mod types;
 
 pub use categories::Category;
 pub use colors::{ColumnColors, ElementColors, Legend};
 pub(super) use columns::{Column, ID, INDEX, unknown};
+pub use opacity::{GHOST, Opacity};
 pub use types::{TypeMaterial, TypeStyle};
 
 use super::NumberColumn;
@@ -44,6 +46,11 @@ pub struct ParticleStyle {
     pub bonds: BondSource,
     /// Radius of the sticks of bonds; `None` for the model's usual one.
     pub bond_radius: Option<f64>,
+    /// Opacity of the particles that `translucent` selects; `None` for [`GHOST`] if there is a selection, and else for opaque
+    /// particles.
+    pub opacity: Option<Opacity>,
+    /// Selection of the particles that `opacity` is for; `None` selects all.
+    pub translucent: Option<Selection>,
     /// Styles of single types, which override all else; the last one for a type applies.
     pub types: Vec<TypeStyle>,
     /// True if ids are read although neither colors nor the selection need them.
@@ -71,6 +78,10 @@ impl ParticleStyle {
         if let Coloring::Column(colors) = &self.coloring {
             columns.push(colors.column.clone());
         }
+        if let Some(Opacity::Column { name, .. }) = &self.opacity {
+            columns.push(name.clone());
+        }
+        columns.extend(self.translucent.iter().flat_map(Selection::columns));
         if self.ids {
             columns.push(ID.to_owned());
         }
@@ -114,6 +125,12 @@ impl ParticleStyle {
         let types: Vec<&TypeStyle> = self.types.iter().filter(known).collect();
         types.iter().try_for_each(|style| style.apply(path, particles))?;
         types.iter().try_for_each(|style| style.apply_material(path, particles))?;
+        let by_type = types.iter().filter_map(|style| Some((style, style.opacity?)));
+        let by_type: Vec<_> = by_type
+            .map(|(style, opacity)| Ok((style.rows(path, particles)?, opacity)))
+            .collect::<Result<_, FileError>>()?;
+        let chosen = (self.opacity.as_ref(), self.translucent.as_ref());
+        opacity::apply(path, particles, chosen, by_type.into_iter())?;
         Ok(legend)
     }
 

@@ -232,7 +232,9 @@ fn unknown_types_are_reported_with_known_ones() {
         ("N:material=wood", "materials are: lambertian, plastic"),
         ("N:material=Glass", "did you mean `glass`"),
         ("N:colour=red", "did you mean `color`"),
-        ("N:size=1", "`size` is not radius, color or material"),
+        ("N:opacity=1.5", "`1.5` is not a valid opacity"),
+        ("N:opacity=nan", "`nan` is not a valid opacity"),
+        ("N:size=1", "`size` is not radius, color, material or opacity"),
     ] {
         let error = text.parse::<TypeStyle>().expect_err(text);
         assert!(error.contains(expected), "{text}: {error}");
@@ -288,4 +290,78 @@ fn diameters_are_twice_the_radii() {
         apply(&DUMP.replace("radius", "diameter"), &colored(ranged)).expect("colors");
     let at = |position: f64| Map::Viridis.at(position);
     assert_eq!(particles.spheres.color, [at(0.25), at(0.5), at(1.0)]);
+}
+
+/// Opacities of the spheres of a scene.
+fn opacities(text: &str, style: &ParticleStyle) -> Vec<f64> {
+    let (particles, _) = apply(text, style).expect("a valid style");
+    let scene = Scene::of_particles(particles, "some");
+    let material = |row| &scene.materials[scene.spheres.material_of(row) as usize].material;
+    (0..scene.spheres.len()).map(|row| material(row).opacity()).collect()
+}
+
+#[test]
+fn opacities_are_of_all_of_a_selection_of_a_column_or_of_a_type() {
+    let table = "x,y,z,charge\n0,0,0,-1\n1,0,0,0\n2,0,0,1\n3,0,0,9\n";
+    let style = |opacity: &str, translucent: &str| ParticleStyle {
+        opacity: Some(opacity).filter(|text| !text.is_empty()).map(|text| text.parse().unwrap()),
+        translucent: Some(translucent)
+            .filter(|text| !text.is_empty())
+            .map(|text| text.parse().unwrap()),
+        ..ParticleStyle::default()
+    };
+    assert_eq!(opacities(table, &style("", "")), [1.0; 4]);
+    assert_eq!(opacities(table, &style("0.3", "")), [0.3; 4]);
+    assert_eq!(opacities(table, &style("0", "x > 1")), [1.0, 1.0, 0.0, 0.0]);
+    assert_eq!(opacities(table, &style("", "x < 1")), [GHOST, 1.0, 1.0, 1.0]);
+    let half = 128.0 / 255.0;
+    assert_eq!(opacities(table, &style("charge:-1,1", "")), [0.0, half, 1.0, 1.0]);
+    assert_eq!(opacities(table, &style("charge:1,-1", "x < 3")), [1.0, half, 0.0, 1.0]);
+    let typed = ParticleStyle { opacity: Some(Opacity::Number(0.5)), ..typed(&["H:opacity=0.25"]) };
+    let mut by_type = opacities(WATER, &typed);
+    by_type.sort_by(f64::total_cmp);
+    by_type.dedup();
+    assert_eq!(by_type, [0.25, 0.5]);
+}
+
+#[test]
+fn opacities_replace_those_of_presets_where_they_are_given() {
+    let ghost = crate::scene::Preset::Ghost.material();
+    let of = |style: &ParticleStyle| {
+        let (particles, _) = apply(WATER, style).expect("a valid style");
+        let scene = Scene::of_particles_with(particles, "water", &ghost);
+        let material = |row| &scene.materials[scene.spheres.material_of(row) as usize].material;
+        [0, 1].map(|row| material(row).opacity())
+    };
+    let opacity = |number| Some(Opacity::Number(number));
+    assert_eq!(of(&ParticleStyle::default()), [GHOST; 2]);
+    assert_eq!(of(&typed(&["H:opacity=1"])), [GHOST, 1.0]);
+    assert_eq!(of(&ParticleStyle { opacity: opacity(1.0), ..ParticleStyle::default() }), [1.0; 2]);
+    let translucent = Some("element == O".parse().expect("a condition"));
+    let style = ParticleStyle { opacity: opacity(0.5), translucent, ..ParticleStyle::default() };
+    assert_eq!(of(&style), [0.5, 1.0]);
+}
+
+#[test]
+fn opacities_that_are_none_are_refused() {
+    for (text, expected) in [
+        ("1.5", "`1.5` is not between 0 and 1"),
+        ("-0.1", "`-0.1` is not between 0 and 1"),
+        ("nan", "`nan` is not between 0 and 1"),
+        ("", "give a number from 0 to 1"),
+        ("charge:1,1", "`1,1` is not two different numbers"),
+        ("charge:a,b", "`a,b` is not two different numbers"),
+        ("charge:0,inf", "`0,inf` is not two different numbers"),
+    ] {
+        let error = text.parse::<Opacity>().expect_err(text);
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+    let by = |text: &str| ParticleStyle {
+        opacity: Some(text.parse().expect("a column")),
+        ..ParticleStyle::default()
+    };
+    let error = apply(WATER, &by("weight")).expect_err("no such column");
+    assert!(error.message.contains("weight"), "{error}");
+    let error = apply(WATER, &by("type")).expect_err("texts");
+    assert!(error.message.contains("texts"), "{error}");
 }

@@ -83,12 +83,14 @@ pub struct TypeStyle {
     pub color: Option<Rgb>,
     /// The material.
     pub material: Option<TypeMaterial>,
+    /// The opacity, 0 to 1.
+    pub opacity: Option<f64>,
 }
 
 impl FromStr for TypeStyle {
     type Err = String;
 
-    /// Parses `NAME:radius=R,color=#rrggbb,material=NAME`, in which entries may be missing.
+    /// Parses `NAME:radius=R,color=#rrggbb,material=NAME,opacity=A`, in which entries may be missing.
     fn from_str(text: &str) -> Result<Self, String> {
         let usage =
             "expected a type and its style, as in Na:radius=1.2,color=#ab5cf2,material=glass";
@@ -100,9 +102,13 @@ impl FromStr for TypeStyle {
                 "radius" => style.radius = Some(radius(value.trim())?),
                 "color" => style.color = Some(color(value.trim())?),
                 "material" => style.material = Some(material(value.trim())?),
+                "opacity" => style.opacity = Some(opacity(value.trim())?),
                 other => {
-                    let near = suggest::question(other, ["radius", "color", "material"]);
-                    return Err(format!("`{other}` is not radius, color or material{near}"));
+                    let names = ["radius", "color", "material", "opacity"];
+                    let near = suggest::question(other, names);
+                    return Err(format!(
+                        "`{other}` is not radius, color, material or opacity{near}"
+                    ));
                 }
             }
         }
@@ -113,6 +119,11 @@ impl FromStr for TypeStyle {
 fn radius(text: &str) -> Result<f64, String> {
     let radius = text.parse().ok().filter(|radius| *radius > 0.0 && *radius < f64::INFINITY);
     radius.ok_or_else(|| format!("`{text}` is not a valid radius: write a number greater than 0"))
+}
+
+fn opacity(text: &str) -> Result<f64, String> {
+    let opacity = text.parse().ok().filter(|opacity| (0.0..=1.0).contains(opacity));
+    opacity.ok_or_else(|| format!("`{text}` is not a valid opacity: write a number from 0 to 1"))
 }
 
 fn color(text: &str) -> Result<Rgb, String> {
@@ -134,7 +145,10 @@ fn material(text: &str) -> Result<TypeMaterial, String> {
 impl TypeStyle {
     /// Checks that radius and color are in their ranges.
     pub(super) fn check(&self) -> Result<(), String> {
-        let Self { name, radius, color, material: _ } = self;
+        let Self { name, radius, color, material: _, opacity } = self;
+        if let Some(opacity) = opacity.filter(|opacity| !(0.0..=1.0).contains(opacity)) {
+            return Err(format!("`opacity` of the type `{name}` is {opacity}, but must be 0 to 1"));
+        }
         if let Some(radius) = radius.filter(|radius| !(*radius > 0.0 && radius.is_finite())) {
             let must = "but must be finite and more than 0";
             return Err(format!("`radius` of the type `{name}` is {radius}, {must}"));
@@ -195,7 +209,7 @@ impl TypeStyle {
     }
 
     /// Returns the spheres of this type.
-    fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, FileError> {
+    pub(super) fn rows(&self, path: &Path, particles: &Particles) -> Result<Vec<usize>, FileError> {
         let kinds = &particles.kinds;
         self.check_known(path, &kinds.table)?;
         let (chosen, codes) = (self.kinds(&kinds.table), &kinds.codes);

@@ -1,0 +1,70 @@
+//! All capsules that one ray intersects, not only the first.
+
+use super::filter::FilterRay;
+use super::{CapsuleBlock, Capsules, intersect};
+use crate::bvh::{Intersection, STACK, Search, walk};
+use crate::lanes::set_bits;
+use crate::ray::ExactRay;
+use crate::slabs::RaySlabs;
+use crate::spheres::LEAF;
+use std::ops::ControlFlow;
+
+/// Calls a function with each capsule that a ray intersects, in no order. The function returns a distance beyond which no capsule
+/// matters any more, no more than before, or breaks; the first such distance is `t_far`. Capsules in `ends` are left out.
+pub(crate) fn for_each_intersection(
+    capsules: &Capsules,
+    ray: &ExactRay,
+    ends: [Option<usize>; 2],
+    t_far: f32,
+    visit: impl FnMut(Intersection) -> ControlFlow<(), f32>,
+) {
+    let (origin, direction) = (ray.origin.as_vec3(), ray.direction.as_vec3());
+    let filter = FilterRay::new(origin, direction);
+    let mut search = IntersectionSearch { capsules, filter, ray, ends, t_far, visit };
+    walk::<_, STACK>(
+        &capsules.bvh,
+        &capsules.blocks,
+        &RaySlabs::new(origin, direction),
+        &mut search,
+    );
+}
+
+/// A search that visits each capsule.
+struct IntersectionSearch<'a, V> {
+    capsules: &'a Capsules,
+    filter: FilterRay,
+    ray: &'a ExactRay,
+    ends: [Option<usize>; 2],
+    t_far: f32,
+    visit: V,
+}
+
+impl<V: FnMut(Intersection) -> ControlFlow<(), f32>> Search for IntersectionSearch<'_, V> {
+    const ANY: bool = false;
+    type Block = CapsuleBlock;
+
+    #[inline(always)]
+    fn t_far(&self) -> f32 {
+        self.t_far
+    }
+
+    #[inline(always)]
+    fn test_block(&mut self, index: usize, block: &CapsuleBlock) -> bool {
+        let (lanes, near) = self.filter.may_hit(block, self.t_far);
+        let near = near.to_array();
+        for lane in set_bits(lanes) {
+            let row = index * LEAF + lane;
+            if near[lane] > self.t_far || self.ends.contains(&Some(row)) {
+                continue;
+            }
+            let capsule = self.capsules.capsule(row);
+            let Some(hit) = intersect(self.ray, &capsule) else { continue };
+            let inside = capsule.contains(self.ray.origin);
+            match (self.visit)(Intersection { row, root: hit.root, inside }) {
+                ControlFlow::Continue(t_far) => self.t_far = t_far,
+                ControlFlow::Break(()) => return true,
+            }
+        }
+        false
+    }
+}

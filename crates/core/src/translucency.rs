@@ -1,0 +1,284 @@
+//! Rays among translucent bodies. A body lets part of the light through where a ray enters it, however long its path inside.
+//!
+//! The opacity of a body is given as an [`OpticalDepth`], and those of bodies that a ray intersects add up (Bouguer, Lambert and
+//! Beer). A ray ends at the body at which their sum reaches the ray's threshold. If thresholds are distributed exponentially, it
+//! ends at each body with the probability that is the body's weight in the image, composited in front of all that are farther
+//! (Enderton, Sintorn, Shirley and Luebke, "Stochastic Transparency", I3D 2010). Optical depths are integers, so that no sum
+//! depends on the order of its terms.
+//!
+//! The bodies that a ray intersects, and their order along it, are decided as exactly as for opaque bodies. A ray that starts
+//! inside of a translucent body leaves it unattenuated.
+
+use crate::bvh::{Intersection, Tree, for_each_intersection};
+use crate::capsules::{self, CapsuleRow, Capsules, Part};
+use crate::elementary;
+use crate::exact::{self, Distance};
+use crate::intersect::{Root, confirm_closely};
+use crate::ray::{ExactRay, GROUND, MISS};
+use glam::DVec3;
+use std::cell::Cell;
+use std::cmp::Ordering;
+use std::ops::ControlFlow;
+
+/// Attenuation of light by a body, in units of 2^-32 halvings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct OpticalDepth(u64);
+
+impl OpticalDepth {
+    /// No attenuation.
+    pub const NONE: Self = Self(0);
+
+    /// That of an opaque body.
+    pub const OPAQUE: Self = Self(1 << 62);
+
+    const HALVING: f64 = (1_u64 << 32) as f64;
+
+    /// The optical depth of a body of an opacity from 0 to 1.
+    pub fn of_opacity(opacity: f64) -> Self {
+        if opacity >= 1.0 {
+            return Self::OPAQUE;
+        }
+        Self((-elementary::log2(1.0 - opacity) * Self::HALVING).round() as u64)
+    }
+
+    /// The threshold of a ray, from a number that is distributed uniformly from 0 up to 1, not 1 itself. A single body stops
+    /// the ray if the number is less than its opacity.
+    pub fn threshold(uniform: f32) -> Self {
+        let depth = -elementary::log2(1.0 - f64::from(uniform)) * Self::HALVING;
+        // More than 0: rays do not end before the first body.
+        Self(depth.round() as u64 + 1)
+    }
+
+    /// Returns whether it is opaque.
+    pub fn is_opaque(self) -> bool {
+        self >= Self::OPAQUE
+    }
+
+    /// The sum of two depths.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self(self.0.saturating_add(other.0))
+    }
+
+    /// What is left of a threshold after a body that does not stop the ray.
+    #[must_use]
+    pub fn after(self, body: Self) -> Self {
+        Self(self.0.saturating_sub(body.0))
+    }
+}
+
+/// Spheres and capsules, with the depth of each.
+#[derive(Clone, Copy, Debug)]
+pub struct TranslucentBodies<'a, D> {
+    /// Spheres and their tree.
+    pub tree: Tree<'a>,
+    /// Capsules.
+    pub capsules: &'a Capsules,
+    /// The depth of the body of a hit.
+    pub depth: D,
+}
+
+/// A ray that ends where its attenuation reaches a threshold.
+#[derive(Clone, Copy, Debug)]
+pub struct AttenuatedRay {
+    /// The ray.
+    pub ray: ExactRay,
+    /// The body that it starts on, and the one that it is aimed at, which it does not intersect; or [`MISS`].
+    pub ends: [u32; 2],
+    /// The depth at which it ends.
+    pub threshold: OpticalDepth,
+    /// Distance beyond which nothing counts, and the hit there: [`GROUND`], or [`MISS`] for none.
+    pub known: (f64, u32),
+}
+
+/// A body that a ray intersects.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment {
+    root: Root,
+    hit: u32,
+    /// True if the ray starts inside.
+    inside: bool,
+    depth: OpticalDepth,
+}
+
+impl Fragment {
+    /// The ground, or the distance beyond which nothing counts.
+    fn known((t, hit): (f64, u32)) -> Self {
+        let root = Root { t, error: 0.0, exact: false };
+        Self { root, hit, inside: false, depth: OpticalDepth::OPAQUE }
+    }
+
+    /// A distance beyond which nothing is nearer.
+    fn far(&self) -> f32 {
+        ((self.root.t + self.root.error) as f32).next_up()
+    }
+}
+
+impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
+    /// Returns the distance and the hit at which a ray ends: `attenuated.known` if no body ends it before. `fragments` is memory to
+    /// work with. Also returns how many decisions were made on integers.
+    pub fn closest(
+        &self,
+        attenuated: &AttenuatedRay,
+        fragments: &mut Vec<Fragment>,
+    ) -> (f64, u32, u64) {
+        fragments.clear();
+        let mut end = Fragment::known(attenuated.known);
+        let mut exact = 0;
+        self.for_each_body(attenuated, end.far(), |fragment| {
+            exact += u64::from(fragment.root.exact);
+            let before = |other: &Fragment, exact: &mut u64| {
+                self.order(&attenuated.ray, other, &fragment, exact) == Ordering::Less
+            };
+            if before(&end, &mut exact) {
+                return ControlFlow::Continue(end.far());
+            }
+            let place = fragments.iter().rposition(|other| before(other, &mut exact));
+            fragments.insert(place.map_or(0, |place| place + 1), fragment);
+            let mut sum = OpticalDepth::NONE;
+            let last = fragments.iter().position(|fragment| {
+                sum = sum.plus(fragment.depth);
+                sum >= attenuated.threshold
+            });
+            if let Some(last) = last {
+                end = fragments[last];
+                fragments.truncate(last);
+            }
+            ControlFlow::Continue(end.far())
+        });
+        (end.root.t, end.hit, exact)
+    }
+
+    /// Returns whether a ray ends before `attenuated.known`, and how many decisions were made on integers.
+    pub fn occluded(&self, attenuated: &AttenuatedRay) -> (bool, u64) {
+        let end = Fragment::known(attenuated.known);
+        let (mut sum, mut exact) = (OpticalDepth::NONE, 0);
+        self.for_each_body(attenuated, end.far(), |fragment| {
+            exact += u64::from(fragment.root.exact);
+            if self.order(&attenuated.ray, &fragment, &end, &mut exact) == Ordering::Less {
+                sum = sum.plus(fragment.depth);
+                if sum >= attenuated.threshold {
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(end.far())
+        });
+        (sum >= attenuated.threshold, exact)
+    }
+
+    /// Calls a function with each body that may end the ray. The function returns a distance beyond which no body matters, or breaks.
+    fn for_each_body(
+        &self,
+        attenuated: &AttenuatedRay,
+        mut t_far: f32,
+        mut visit: impl FnMut(Fragment) -> ControlFlow<(), f32>,
+    ) {
+        let AttenuatedRay { ref ray, ends, .. } = *attenuated;
+        let ended = Cell::new(false);
+        let mut body =
+            |hit: u32, Intersection { root, inside, .. }: Intersection, t_far: &mut f32| {
+                let depth = (self.depth)(hit);
+                if inside && !depth.is_opaque() {
+                    return ControlFlow::Continue(*t_far);
+                }
+                let flow = visit(Fragment { root, hit, inside, depth });
+                match flow {
+                    ControlFlow::Continue(far) => *t_far = far,
+                    ControlFlow::Break(()) => ended.set(true),
+                }
+                flow
+            };
+        for_each_intersection(self.tree, ray, ends, t_far, |found| {
+            body(found.row as u32, found, &mut t_far)
+        });
+        if ended.get() || self.capsules.is_empty() {
+            return;
+        }
+        let spheres = self.tree.spheres.len();
+        let own = ends.map(|end| CapsuleRow::of_hit(end, spheres).map(|row| row.capsule));
+        let first = t_far;
+        capsules::for_each_intersection(self.capsules, ray, own, first, |found| {
+            let row = self.capsules.row_at(found.row, ray, found.root.t);
+            body(row.hit(spheres), found, &mut t_far)
+        });
+    }
+
+    /// Compares the distances of two bodies; of those at the same distance the one that comes first in the user's order, spheres
+    /// before capsules, counts as the nearer one. The ground comes last, and a bound first.
+    fn order(&self, ray: &ExactRay, a: &Fragment, b: &Fragment, exact: &mut u64) -> Ordering {
+        if a.root.t + a.root.error < b.root.t - b.root.error {
+            return Ordering::Less;
+        }
+        if a.root.t - a.root.error > b.root.t + b.root.error {
+            return Ordering::Greater;
+        }
+        self.compare_closely(ray, a, b, exact)
+            .then_with(|| self.place(a.hit).cmp(&self.place(b.hit)))
+    }
+
+    #[cold]
+    fn compare_closely(
+        &self,
+        ray: &ExactRay,
+        a: &Fragment,
+        b: &Fragment,
+        exact: &mut u64,
+    ) -> Ordering {
+        if a.inside == b.inside
+            && let (Some(first), Some(second)) = (self.sphere_at(ray, a), self.sphere_at(ray, b))
+            && first == second
+        {
+            return Ordering::Equal;
+        }
+        let [(first, a), (second, b)] = [a, b].map(|fragment| self.distance(ray, fragment));
+        let gap = first.t - second.t;
+        if gap.abs() > first.error + second.error {
+            return gap.total_cmp(&0.0);
+        }
+        *exact += 1;
+        exact::compare(ray, &a, &b)
+    }
+
+    /// The center and the radius of the sphere whose surface is hit; `None` if it is that of a cylinder. In molecules drawn with sticks the ends
+    /// of these coincide with atoms and with each other.
+    fn sphere_at(&self, ray: &ExactRay, fragment: &Fragment) -> Option<(DVec3, f64)> {
+        if fragment.hit >= GROUND {
+            return None;
+        }
+        let Some(row) = CapsuleRow::of_hit(fragment.hit, self.tree.spheres.len()) else {
+            return Some(self.tree.spheres.exact(fragment.hit as usize));
+        };
+        let capsule = self.capsules.capsule(row.capsule);
+        match capsules::intersect(ray, &capsule)?.part {
+            Part::End(end) => Some((capsule.ends[end], capsule.radius)),
+            Part::Body => None,
+        }
+    }
+
+    /// Returns the distance of a body with its closest bound, and its definition.
+    fn distance(&self, ray: &ExactRay, fragment: &Fragment) -> (Root, Distance) {
+        let number = Root { error: 0.0, ..fragment.root };
+        if fragment.root.error == 0.0 {
+            return (number, Distance::Number(fragment.root.t));
+        }
+        if let Some(row) = CapsuleRow::of_hit(fragment.hit, self.tree.spheres.len()) {
+            return (fragment.root, Distance::Capsule(self.capsules.capsule(row.capsule)));
+        }
+        let (center, radius) = self.tree.spheres.exact(fragment.hit as usize);
+        match confirm_closely(ray, center, radius, || false) {
+            Some(root) if root.error > 0.0 => (root, Distance::Hit(center, radius)),
+            // The sphere is hit where the ray starts.
+            _ => (number, Distance::Number(fragment.root.t)),
+        }
+    }
+
+    /// The place of a hit among those at the same distance.
+    fn place(&self, hit: u32) -> (u8, u32) {
+        match (hit, CapsuleRow::of_hit(hit, self.tree.spheres.len())) {
+            (MISS, _) => (0, 0),
+            (GROUND, _) => (3, 0),
+            (_, Some(row)) => (2, self.capsules.ids()[row.capsule]),
+            _ => (1, self.tree.spheres.id[hit as usize]),
+        }
+    }
+}

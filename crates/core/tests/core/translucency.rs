@@ -1,0 +1,185 @@
+//! Rays among translucent bodies beside their definition: all hits of a ray, decided and sorted on integers, and their optical
+//! depths added up in that order.
+
+use glam::{DVec3, Vec3};
+use spherule_core::internals::bvh::Tree;
+use spherule_core::internals::bvh::builders::{Builder, build};
+use spherule_core::internals::capsules::{Capsule, CapsuleItem, CapsuleRow, Capsules};
+use spherule_core::internals::exact::{self, Distance};
+use spherule_core::internals::random::Random;
+use spherule_core::internals::ray::{ExactRay, MISS};
+use spherule_core::internals::spheres::Spheres;
+use spherule_core::internals::translucency::{AttenuatedRay, OpticalDepth, TranslucentBodies};
+
+const OPACITIES: [f64; 5] = [0.0, 0.1, 0.5, 0.8, 1.0];
+
+/// A body of the oracle, in the user's order.
+#[derive(Clone, Copy)]
+enum Body {
+    Sphere(DVec3, f64),
+    Capsule(Capsule),
+}
+
+impl Body {
+    /// The distance at which a ray hits it; `None` if it does not, or if it starts inside of it and it is translucent.
+    fn distance(&self, ray: &ExactRay, is_opaque: bool) -> Option<Distance> {
+        match *self {
+            Self::Sphere(center, radius) => {
+                if !is_opaque && exact::is_inside(ray.origin, center, radius) {
+                    return None;
+                }
+                exact::hit(ray, center, radius).map(|_| Distance::Hit(center, radius))
+            }
+            Self::Capsule(capsule) => {
+                if !is_opaque && capsule.contains(ray.origin) {
+                    return None;
+                }
+                exact::capsule_hit(ray, &capsule).map(|_| Distance::Capsule(capsule))
+            }
+        }
+    }
+}
+
+/// Bodies on a coarse lattice, so that many coincide, touch, and are at equal distances.
+struct Scene {
+    bodies: Vec<Body>,
+    count: usize,
+    spheres: Spheres,
+    capsules: Capsules,
+}
+
+impl Scene {
+    fn new(seed: u64, builder: Builder) -> (Self, spherule_core::internals::bvh::Bvh) {
+        let mut random = Random::new(seed);
+        let mut step = |n: u32| (random.single() * n as f32).floor();
+        let mut point = || Vec3::new(step(5), step(5), step(5)) * 0.5;
+        let rows: Vec<(Vec3, f32)> = (0..30).map(|i| (point(), [0.25, 0.5, 0.75][i % 3])).collect();
+        let sticks: Vec<CapsuleItem> = (0..20)
+            .map(|i| CapsuleItem {
+                ends: [point(), point()],
+                radius: [0.25, 0.125][i % 2],
+                id: i as u32,
+            })
+            .collect();
+        let mut spheres = Spheres::with_capacity(rows.len());
+        for (id, &(center, radius)) in rows.iter().enumerate() {
+            spheres.push(center, radius, id as u32);
+        }
+        let bvh = build(&mut spheres, builder);
+        let capsules = Capsules::build(&sticks, builder);
+        let of_spheres =
+            rows.iter().map(|&(center, r)| Body::Sphere(center.as_dvec3(), f64::from(r)));
+        let of_sticks = sticks.iter().map(|item| {
+            let ends = item.ends.map(Vec3::as_dvec3);
+            Body::Capsule(Capsule { ends, radius: f64::from(item.radius) })
+        });
+        let bodies = of_spheres.chain(of_sticks).collect();
+        (Self { bodies, count: rows.len(), spheres, capsules }, bvh)
+    }
+
+    /// The place of the body of a hit in the user's order.
+    fn place(&self, hit: u32) -> Option<usize> {
+        if hit == MISS {
+            return None;
+        }
+        Some(match CapsuleRow::of_hit(hit, self.count) {
+            Some(row) => self.count + self.capsules.ids()[row.capsule] as usize,
+            None => self.spheres.id[hit as usize] as usize,
+        })
+    }
+
+    fn opacity(place: usize) -> f64 {
+        OPACITIES[place * 7 % OPACITIES.len()]
+    }
+
+    /// The body at which a ray ends.
+    fn oracle(&self, ray: &ExactRay, threshold: OpticalDepth) -> Option<usize> {
+        let depth = |place| OpticalDepth::of_opacity(Self::opacity(place));
+        let mut hits: Vec<(usize, Distance)> = (0..self.bodies.len())
+            .filter_map(|place| {
+                Some((place, self.bodies[place].distance(ray, depth(place).is_opaque())?))
+            })
+            .collect();
+        // A stable sort: of equal distances the first in the user's order stays first.
+        hits.sort_by(|a, b| exact::compare(ray, &a.1, &b.1));
+        let mut sum = OpticalDepth::NONE;
+        let end = |&&(place, _): &&(usize, Distance)| {
+            sum = sum.plus(depth(place));
+            sum >= threshold
+        };
+        hits.iter().find(end).map(|hit| hit.0)
+    }
+}
+
+/// A ray from inside or outside, mostly between points of the lattice, so that it goes along tangents and through corners.
+fn ray(random: &mut Random) -> ExactRay {
+    let mut point = |scale: f32| {
+        let [x, y, z] = [(); 3].map(|()| (random.single() * 9.0).floor() * 0.25);
+        (Vec3::new(x, y, z) - 1.0) * scale
+    };
+    let origin = point(3.0) + 1.0;
+    let direction = point(1.0) + 1.0 - origin;
+    let direction = if direction == Vec3::ZERO { Vec3::X } else { direction };
+    ExactRay { origin: origin.as_dvec3(), direction: direction.as_dvec3(), origin_error: 0.0 }
+}
+
+#[test]
+fn rays_end_where_all_hits_in_their_exact_order_end_them() {
+    let builders = Builder::ALL;
+    let (mut ends, mut misses) = ([0; 2], 0);
+    for seed in 0..6 {
+        let (scene, bvh) = Scene::new(seed, builders[seed as usize % 3]);
+        let bodies = TranslucentBodies {
+            tree: Tree { bvh: &bvh, spheres: &scene.spheres },
+            capsules: &scene.capsules,
+            depth: |hit| {
+                let place = scene.place(hit).expect("a hit on a body");
+                OpticalDepth::of_opacity(Scene::opacity(place))
+            },
+        };
+        let mut random = Random::new(100 + seed);
+        let mut fragments = Vec::new();
+        for _ in 0..400 {
+            let (ray, threshold) = (ray(&mut random), OpticalDepth::threshold(random.single()));
+            let known = (f64::INFINITY, MISS);
+            let attenuated = AttenuatedRay { ray, ends: [MISS; 2], threshold, known };
+            let (t, hit, _) = bodies.closest(&attenuated, &mut fragments);
+            let expected = scene.oracle(&ray, threshold);
+            assert_eq!(scene.place(hit), expected, "{ray:?}");
+            assert_eq!(t.is_finite(), expected.is_some());
+            assert_eq!(bodies.occluded(&attenuated).0, expected.is_some(), "{ray:?}");
+            match expected {
+                Some(place) => ends[usize::from(place >= scene.count)] += 1,
+                None => misses += 1,
+            }
+            if expected.is_some() {
+                // A bound before the body leaves the ray free of it.
+                let known = (t * 0.999, MISS);
+                let shorter = AttenuatedRay { known, ..attenuated };
+                assert_ne!(bodies.closest(&shorter, &mut fragments).1, hit);
+            }
+        }
+    }
+    assert!(ends[0] > 300 && ends[1] > 100 && misses > 200, "{ends:?} {misses}");
+}
+
+#[test]
+fn one_body_ends_the_share_of_rays_that_is_its_opacity() {
+    for opacity in [0.0, 1e-3, 0.25, 0.5, 0.9, 1.0 - 1e-12, 1.0] {
+        let depth = OpticalDepth::of_opacity(opacity);
+        let count = 1 << 16;
+        let ended = (0..count)
+            .filter(|&i| depth >= OpticalDepth::threshold((i as f32 + 0.5) / count as f32))
+            .count();
+        let share = ended as f64 / f64::from(count);
+        assert!((share - opacity).abs() <= 1.0 / f64::from(count), "{opacity}: {share}");
+    }
+    assert!(OpticalDepth::of_opacity(1.0).is_opaque());
+    assert!(OpticalDepth::NONE < OpticalDepth::threshold(0.0));
+    // The largest random number ends no ray at a body that is not there, and every ray at an opaque one.
+    let largest = OpticalDepth::threshold(1.0_f32.next_down());
+    assert!(OpticalDepth::of_opacity(0.999) < largest && largest < OpticalDepth::OPAQUE);
+    let half = OpticalDepth::of_opacity(0.5);
+    assert_eq!(half.plus(half), OpticalDepth::of_opacity(0.75));
+    assert_eq!(OpticalDepth::OPAQUE.after(half).plus(half), OpticalDepth::OPAQUE);
+}

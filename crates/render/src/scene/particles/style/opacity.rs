@@ -1,0 +1,132 @@
+//! Opacity of particles: for all, for a selection, or by the numbers of a column.
+
+use super::columns::{Column, missing};
+use crate::scene::FileError;
+use crate::scene::particles::Particles;
+use crate::scene::particles::select::Selection;
+use std::collections::HashMap;
+use std::path::Path;
+use std::str::FromStr;
+
+/// Number of steps between a particle that is not there and an opaque one, for opacities of columns: as fine as a picture
+/// shows them.
+const STEPS: f64 = 255.0;
+
+/// Opacity of particles that are selected without saying how much.
+pub const GHOST: f64 = 0.2;
+
+/// Where opacities come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Opacity {
+    /// The same for all particles, 0 to 1.
+    Number(f64),
+    /// A column of numbers.
+    Column {
+        /// Its name.
+        name: String,
+        /// The numbers that become 0 and 1; those beyond are as these are.
+        ends: [f64; 2],
+    },
+}
+
+impl FromStr for Opacity {
+    type Err = String;
+
+    /// Parses a number from 0 to 1, or the name of a column, perhaps with the values that become 0 and 1, as in
+    /// `occupancy` and `charge:-1,1`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Ok(number) = text.trim().parse::<f64>() {
+            let valid = (0.0..=1.0).contains(&number).then_some(Self::Number(number));
+            return valid.ok_or_else(|| format!("`{text}` is not between 0 and 1"));
+        }
+        let ends = |text: &str| -> Option<[f64; 2]> {
+            let (low, high) = text.split_once(',')?;
+            let [low, high] = [low, high].map(|end| end.trim().parse::<f64>().ok());
+            Some([low?, high?])
+                .filter(|ends| ends.iter().all(|end| end.is_finite()) && ends[0] != ends[1])
+        };
+        let (name, ends) = match text.rsplit_once(':') {
+            Some((name, range)) if range.contains(',') => {
+                let fault = || format!("`{range}` is not two different numbers, as in charge:-1,1");
+                (name, ends(range).ok_or_else(fault)?)
+            }
+            _ => (text, [0.0, 1.0]),
+        };
+        let name = name.trim();
+        if name.is_empty() {
+            return Err("give a number from 0 to 1, or the name of a column".to_owned());
+        }
+        Ok(Self::Column { name: name.to_owned(), ends })
+    }
+}
+
+impl Opacity {
+    /// Returns the opacity of each particle.
+    fn values(&self, path: &Path, particles: &Particles) -> Result<Vec<f64>, FileError> {
+        let (name, [low, high]) = match self {
+            Self::Number(number) => return Ok(vec![*number; particles.spheres.len()]),
+            Self::Column { name, ends } => (name, *ends),
+        };
+        match Column::find(particles, name) {
+            Some(Column::Numbers(numbers)) => {
+                let opacity = |number: &f64| {
+                    let share = ((number - low) / (high - low)).clamp(0.0, 1.0);
+                    // A particle without a value is not hidden.
+                    if share.is_nan() { 1.0 } else { (share * STEPS).round() / STEPS }
+                };
+                Ok(numbers.iter().map(opacity).collect())
+            }
+            Some(Column::Texts { .. }) => {
+                let message = format!("the column `{name}` has texts, but opacities are numbers");
+                Err(FileError::whole_file(path, message).with_help("name a column of numbers"))
+            }
+            None => Err(missing(path, particles, name)),
+        }
+    }
+}
+
+/// Gives particles their opacities: those of `opacity` to those that are selected, and then those of types, `by_type`, as pairs
+/// of rows and opacity.
+pub(super) fn apply(
+    path: &Path,
+    particles: &mut Particles,
+    (opacity, select): (Option<&Opacity>, Option<&Selection>),
+    by_type: impl Iterator<Item = (Vec<usize>, f64)>,
+) -> Result<(), FileError> {
+    let count = particles.spheres.len();
+    let mut all = Vec::new();
+    if opacity.is_some() || select.is_some() {
+        let mut given = opacity.unwrap_or(&Opacity::Number(GHOST)).values(path, particles)?;
+        if let Some(select) = select {
+            let chosen = select.chosen(particles)?;
+            (0..count).filter(|&row| !chosen[row]).for_each(|row| given[row] = 1.0);
+        }
+        all = given.into_iter().map(Some).collect();
+    }
+    for (rows, opacity) in by_type {
+        all.resize(count, None);
+        for row in rows {
+            all[row] = Some(opacity);
+        }
+    }
+    split_materials(particles, &all);
+    Ok(())
+}
+
+/// Gives each opacity of each material a row of the materials; no opacities leave all as they are.
+fn split_materials(particles: &mut Particles, opacities: &[Option<f64>]) {
+    if opacities.is_empty() {
+        return;
+    }
+    particles.opacities.resize(particles.material_names.len(), None);
+    particles.spheres.material.resize(opacities.len(), 0);
+    let mut rows = HashMap::new();
+    for (material, opacity) in particles.spheres.material.iter_mut().zip(opacities) {
+        let Some(opacity) = opacity else { continue };
+        *material = *rows.entry((*material, opacity.to_bits())).or_insert_with(|| {
+            particles.material_names.push(particles.material_names[*material as usize].clone());
+            particles.opacities.push(Some(*opacity));
+            particles.opacities.len() as u32 - 1
+        });
+    }
+}
