@@ -1,8 +1,9 @@
 //! The bodies that rays may hit: spheres, and sticks.
 
 use super::{Query, Tracer};
+use crate::bodies::{self, BodyTrees};
 use crate::bvh::Tree;
-use crate::capsules::{self, BodyTrees, CapsuleRow, Capsules};
+use crate::capsules::{CapsuleRow, Capsules};
 use crate::ray::{Hits, Rays};
 use crate::world::World;
 
@@ -59,10 +60,11 @@ impl<'a> Bodies<'a> {
         if self.sticks.is_empty() {
             return 0;
         }
-        let bodies = BodyTrees { spheres: self.tree.spheres, capsules: self.sticks };
+        let bodies =
+            BodyTrees { spheres: self.tree.spheres, capsules: self.sticks, ellipsoids: None };
         match query {
-            Query::Closest => capsules::closest(bodies, rays, hits),
-            Query::Any => capsules::occluded(bodies, rays, hits),
+            Query::Closest => bodies::closest(bodies, rays, hits),
+            Query::Any => bodies::occluded(bodies, rays, hits),
         }
     }
 
@@ -71,8 +73,8 @@ impl<'a> Bodies<'a> {
         let Self { tree, sticks } = self;
         tree.bvh.enclosing_sphere(tree.spheres, point).or_else(|| {
             let point = point.as_dvec3();
-            let capsule = capsules::enclosing_capsule(sticks, point)?;
-            let body = sticks.capsule(capsule);
+            let capsule = sticks.enclosing(point)?;
+            let body = sticks.body(capsule);
             let half = usize::from(body.normal(point - body.ends[0]).1 > 0.5);
             Some(CapsuleRow { capsule, half }.hit(tree.spheres.len()))
         })
