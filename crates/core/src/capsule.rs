@@ -30,12 +30,4 @@ impl Capsule {
             if length2 > 0.0 { (from_start.dot(axis) / length2).clamp(0.0, 1.0) } else { 0.0 };
         ((from_start - axis * along).normalize_or_zero(), along)
     }
-
-    /// Returns whether a point is inside, not on the surface. A point that is on the surface but for rounding may be called either.
-    pub fn contains(&self, point: DVec3) -> bool {
-        let from_start = point - self.ends[0];
-        let along = self.normal(from_start).1;
-        let from_axis = from_start - (self.ends[1] - self.ends[0]) * along;
-        from_axis.length_squared() < self.radius * self.radius
-    }
 }

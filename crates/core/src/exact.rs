@@ -12,10 +12,13 @@
 
 mod capsule;
 mod dyadic;
+mod ellipsoid;
 
 pub use capsule::{CapsuleRoot, capsule_hit};
+pub use ellipsoid::ellipsoid_hit;
 
 use crate::capsule::Capsule;
+use crate::ellipsoid::Ellipsoid;
 use crate::ray::ExactRay;
 use dyadic::{Dyadic, dot, nearest_root};
 use glam::DVec3;
@@ -34,10 +37,14 @@ impl Encounter {
         let exact = |v: DVec3| v.to_array().map(Dyadic::new);
         let (origin, center) = (exact(ray.origin), exact(center));
         let from_center: [Dyadic; 3] = std::array::from_fn(|i| &origin[i] - &center[i]);
-        let direction = exact(ray.direction);
-        let a = dot(&direction, &direction);
-        let b = -dot(&from_center, &direction);
-        let outside = &dot(&from_center, &from_center) - &Dyadic::new(radius).square();
+        Self::between(&from_center, &exact(ray.direction), &Dyadic::new(radius).square())
+    }
+
+    /// The origin is given relative to the center, and the square of the radius.
+    fn between(from_center: &[Dyadic; 3], direction: &[Dyadic; 3], radius2: &Dyadic) -> Self {
+        let a = dot(direction, direction);
+        let b = -dot(from_center, direction);
+        let outside = &dot(from_center, from_center) - radius2;
         let discriminant = &b.square() - &(&a * &outside);
         Self { a, b, outside, discriminant }
     }
@@ -102,6 +109,8 @@ pub enum Distance {
     Hit(DVec3, f64),
     /// The distance at which the ray hits this capsule; it must hit it.
     Capsule(Capsule),
+    /// The distance at which the ray hits this ellipsoid; it must hit it.
+    Ellipsoid(Ellipsoid),
     /// This number.
     Number(f64),
 }
@@ -147,6 +156,9 @@ impl Distance {
             }
             Self::Capsule(capsule) => {
                 capsule::first(ray, &capsule).map_or_else(|| number(0.0), |hit| hit.0)
+            }
+            Self::Ellipsoid(ellipsoid) => {
+                ellipsoid::first(ray, &ellipsoid).unwrap_or_else(|| number(0.0))
             }
             Self::Number(t) => number(t),
         }

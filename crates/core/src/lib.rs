@@ -34,12 +34,19 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
 
+mod bodies;
+mod body_tree;
+mod bounded;
 mod bvh;
 mod capsule;
 mod capsules;
 mod conservative;
 mod elementary;
+mod ellipsoid;
+mod ellipsoids;
 mod exact;
+#[cfg(test)]
+mod fixed;
 mod intersect;
 mod lanes;
 mod query;
@@ -60,6 +67,14 @@ pub use query::{Hit, Hits, NOTHING, QueryError, RayColumns, SphereTree, Surface,
 /// Items for the renderer and for measurements. Anything here may change in any release.
 #[doc(hidden)]
 pub mod internals {
+    /// Rays among bodies of all kinds.
+    pub mod bodies {
+        pub use crate::bodies::*;
+    }
+    /// Bodies of one kind in columns, with their tree.
+    pub mod body_tree {
+        pub use crate::body_tree::{BodyTree, FilterRay, Shape};
+    }
     /// The bounding volume hierarchy, its builders and its traversal.
     pub mod bvh {
         pub use crate::bvh::*;
@@ -75,6 +90,10 @@ pub mod internals {
     /// Elementary functions that are the same on every platform.
     pub mod elementary {
         pub use crate::elementary::*;
+    }
+    /// Ellipsoids.
+    pub mod ellipsoids {
+        pub use crate::ellipsoids::*;
     }
     /// The exact decision, on integers.
     pub mod exact {

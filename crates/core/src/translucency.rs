@@ -198,7 +198,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         let own = ends.map(|end| CapsuleRow::of_hit(end, spheres).map(|row| row.capsule));
         let first = t_far;
         capsules::for_each_intersection(self.capsules, ray, own, first, |found| {
-            let row = self.capsules.row_at(found.row, ray, found.root.t);
+            let row = CapsuleRow::at(self.capsules, found.row, ray, found.root.t);
             body(row.hit(spheres), found, &mut t_far)
         });
     }
@@ -248,7 +248,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         let Some(row) = CapsuleRow::of_hit(fragment.hit, self.tree.spheres.len()) else {
             return Some(self.tree.spheres.exact(fragment.hit as usize));
         };
-        let capsule = self.capsules.capsule(row.capsule);
+        let capsule = self.capsules.body(row.capsule);
         match capsules::intersect(ray, &capsule)?.part {
             Part::End(end) => Some((capsule.ends[end], capsule.radius)),
             Part::Body => None,
@@ -262,7 +262,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
             return (number, Distance::Number(fragment.root.t));
         }
         if let Some(row) = CapsuleRow::of_hit(fragment.hit, self.tree.spheres.len()) {
-            return (fragment.root, Distance::Capsule(self.capsules.capsule(row.capsule)));
+            return (fragment.root, Distance::Capsule(self.capsules.body(row.capsule)));
         }
         let (center, radius) = self.tree.spheres.exact(fragment.hit as usize);
         match confirm_closely(ray, center, radius, || false) {

@@ -6,15 +6,12 @@
 //! The form of the discriminant, by the distance of two lines, and the choice of the part by the height of the point of entry
 //! into the infinite cylinder are known from Quilez, "Intersectors" (2016), and Lagrange's identity.
 
-use super::bounded::{Bounded, BoundedVector};
 use super::{Capsule, Part};
+use crate::bounded::{Bounded, BoundedVector, COARSE};
 use crate::exact;
 use crate::intersect::Root;
 use crate::ray::ExactRay;
 use glam::DVec3;
-
-/// Relative errors of distances above this are not put up with.
-const COARSE: f64 = 1.0 / (1 << 30) as f64;
 
 /// Relative error of a distance that integers gave, which is rounded once.
 const NEAREST: f64 = f64::EPSILON;

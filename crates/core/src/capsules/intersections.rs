@@ -1,7 +1,7 @@
 //! All capsules that one ray intersects, not only the first.
 
-use super::filter::FilterRay;
-use super::{CapsuleBlock, Capsules, intersect};
+use super::{Capsule, CapsuleBlock, Capsules, intersect};
+use crate::body_tree::{FilterRay, Shape};
 use crate::bvh::{Intersection, STACK, Search, walk};
 use crate::lanes::set_bits;
 use crate::ray::ExactRay;
@@ -21,12 +21,8 @@ pub(crate) fn for_each_intersection(
     let (origin, direction) = (ray.origin.as_vec3(), ray.direction.as_vec3());
     let filter = FilterRay::new(origin, direction);
     let mut search = IntersectionSearch { capsules, filter, ray, ends, t_far, visit };
-    walk::<_, STACK>(
-        &capsules.bvh,
-        &capsules.blocks,
-        &RaySlabs::new(origin, direction),
-        &mut search,
-    );
+    let (blocks, bvh) = capsules.parts();
+    walk::<_, STACK>(bvh, blocks, &RaySlabs::new(origin, direction), &mut search);
 }
 
 /// A search that visits each capsule.
@@ -50,14 +46,14 @@ impl<V: FnMut(Intersection) -> ControlFlow<(), f32>> Search for IntersectionSear
 
     #[inline(always)]
     fn test_block(&mut self, index: usize, block: &CapsuleBlock) -> bool {
-        let (lanes, near) = self.filter.may_hit(block, self.t_far);
+        let (lanes, near) = Capsule::may_hit(&self.filter, block, self.t_far);
         let near = near.to_array();
         for lane in set_bits(lanes) {
             let row = index * LEAF + lane;
             if near[lane] > self.t_far || self.ends.contains(&Some(row)) {
                 continue;
             }
-            let capsule = self.capsules.capsule(row);
+            let capsule = self.capsules.body(row);
             let Some(hit) = intersect(self.ray, &capsule) else { continue };
             let inside = capsule.contains(self.ray.origin);
             match (self.visit)(Intersection { row, root: hit.root, inside }) {

@@ -1,83 +1,13 @@
 //! Hits on capsules against an independent reference with 150 decimal places, and closed forms.
 
 use super::*;
+use crate::bodies::{BodyTrees, closest, occluded};
+use crate::bvh::builders::Builder;
+use crate::fixed::{Fixed, PLACES, dot, minus, roots, vector};
 use crate::random::Random;
 use crate::ray::{ExactRay, Hits, MISS, Rays};
 use crate::spheres::Spheres;
 use num_bigint::BigInt;
-
-/// Binary places of the reference.
-const PLACES: u64 = 512;
-
-/// A fixed-point number.
-#[derive(Clone, Debug, PartialEq, PartialOrd)]
-struct Fixed(BigInt);
-
-impl Fixed {
-    fn new(x: f64) -> Self {
-        // A multiple of 2^-149, of at most 53 bits.
-        let (mut places, mut x) = (PLACES, x);
-        while x.fract() != 0.0 {
-            (places, x) = (places - 1, x * 2.0);
-        }
-        Self(BigInt::from(x as i128) << places)
-    }
-
-    fn times(&self, other: &Self) -> Self {
-        Self((&self.0 * &other.0) >> PLACES)
-    }
-
-    fn over(&self, other: &Self) -> Self {
-        Self((&self.0 << PLACES) / &other.0)
-    }
-
-    fn plus(&self, other: &Self) -> Self {
-        Self(&self.0 + &other.0)
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        Self(&self.0 - &other.0)
-    }
-
-    fn root(&self) -> Self {
-        Self((&self.0 << PLACES).sqrt())
-    }
-
-    fn is_negative(&self) -> bool {
-        self.0.sign() == num_bigint::Sign::Minus
-    }
-
-    fn to_f64(&self) -> f64 {
-        let surplus = self.0.bits().saturating_sub(80);
-        let top = i128::try_from(&self.0 >> surplus).unwrap() as f64;
-        top * 2.0_f64.powi((surplus as i64 - PLACES as i64) as i32)
-    }
-}
-
-type Vector = [Fixed; 3];
-
-fn vector(v: DVec3) -> Vector {
-    v.to_array().map(Fixed::new)
-}
-
-fn minus(a: &Vector, b: &Vector) -> Vector {
-    std::array::from_fn(|i| a[i].minus(&b[i]))
-}
-
-fn dot(a: &Vector, b: &Vector) -> Fixed {
-    let product = |i: usize| a[i].times(&b[i]);
-    product(0).plus(&product(1)).plus(&product(2))
-}
-
-/// The roots of `a t^2 - 2 b t + c`.
-fn roots(a: &Fixed, b: &Fixed, c: &Fixed) -> Option<[Fixed; 2]> {
-    let discriminant = b.times(b).minus(&a.times(c));
-    if discriminant.is_negative() || *a == Fixed::new(0.0) {
-        return None;
-    }
-    let root = discriminant.root();
-    Some([b.minus(&root).over(a), b.plus(&root).over(a)])
-}
 
 /// Where a line enters and leaves the union of two spheres and the cylinder between them: the least and the greatest root
 /// of all three.
@@ -95,7 +25,7 @@ fn crossings(ray: &ExactRay, capsule: &Capsule) -> Option<[Fixed; 2]> {
     }
     let (axis, from) = (minus(&ends[1], &ends[0]), minus(&o, &ends[0]));
     let length2 = dot(&axis, &axis);
-    let across = |v: &Vector| -> Vector {
+    let across = |v: &[Fixed; 3]| -> [Fixed; 3] {
         let along = dot(v, &axis).over(&length2);
         std::array::from_fn(|i| v[i].minus(&along.times(&axis[i])))
     };
@@ -104,7 +34,7 @@ fn crossings(ray: &ExactRay, capsule: &Capsule) -> Option<[Fixed; 2]> {
         let b = Fixed::new(0.0).minus(&dot(&from, &d));
         let crossed = roots(&dot(&d, &d), &b, &dot(&from, &from).minus(&radius2));
         all.extend(crossed.into_iter().flatten().filter(|t| {
-            let at: Vector = std::array::from_fn(|i| {
+            let at: [Fixed; 3] = std::array::from_fn(|i| {
                 o[i].plus(&t.times(&vector(ray.direction)[i])).minus(&ends[0][i])
             });
             let height = dot(&at, &axis);
@@ -279,7 +209,7 @@ fn trees_find_the_hits_of_brute_force() {
         let tree = crate::bvh::Tree { bvh: &bvh, spheres: &spheres };
         crate::bvh::Tracer::default().closest(tree, &rays, &mut hits);
         crate::bvh::Tracer::default().occluded(tree, &rays, &mut shadows);
-        let bodies = BodyTrees { spheres: &spheres, capsules: &capsules };
+        let bodies = BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None };
         closest(bodies, &rays, &mut hits);
         occluded(bodies, &rays, &mut shadows);
         for row in 0..200 {
@@ -330,7 +260,11 @@ fn the_filter_keeps_what_is_hit() {
         rays.push(ray.origin.as_vec3(), ray.direction.as_vec3(), MISS);
         let mut hits = Hits::with_capacity(1);
         let spheres = Spheres::default();
-        closest(BodyTrees { spheres: &spheres, capsules: &capsules }, &rays, &mut hits);
+        closest(
+            BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None },
+            &rays,
+            &mut hits,
+        );
         assert!(hits.sphere[0] < 2, "{ray:?} {body:?}");
         kept += 1;
     }
@@ -353,7 +287,11 @@ fn rays_from_a_surface_do_not_hit_it() {
             let mut rays = Rays::with_capacity(1);
             rays.push(on.as_vec3(), random.direction().as_vec3(), own);
             let mut hits = Hits::with_capacity(1);
-            closest(BodyTrees { spheres: &spheres, capsules: &capsules }, &rays, &mut hits);
+            closest(
+                BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None },
+                &rays,
+                &mut hits,
+            );
             assert_eq!(hits.sphere[0], MISS);
         }
     }
@@ -375,7 +313,7 @@ fn points_are_enclosed_by_the_first_capsule() {
             nearest.distance(point) < f64::from(*radius)
         };
         let expected = rows.iter().find(contains).map(|row| row.id);
-        let found = enclosing_capsule(&capsules, point).map(|row| capsules.ids()[row]);
+        let found = capsules.enclosing(point).map(|row| capsules.ids()[row]);
         assert_eq!(found, expected);
         inside += u32::from(found.is_some());
     }

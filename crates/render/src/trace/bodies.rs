@@ -1,8 +1,9 @@
 //! The bodies that rays may hit: spheres, and sticks.
 
 use super::{Query, Tracer};
+use crate::bodies::{self, BodyTrees};
 use crate::bvh::Tree;
-use crate::capsules::{self, BodyTrees, CapsuleRow, Capsules};
+use crate::capsules::{CapsuleRow, Capsules};
 use crate::ray::{Hits, Rays};
 use crate::translucency::{OpticalDepth, TranslucentBodies};
 use crate::world::World;
@@ -68,10 +69,11 @@ impl<'a> Bodies<'a> {
         if self.sticks.is_empty() {
             return 0;
         }
-        let bodies = BodyTrees { spheres: self.tree.spheres, capsules: self.sticks };
+        let bodies =
+            BodyTrees { spheres: self.tree.spheres, capsules: self.sticks, ellipsoids: None };
         match query {
-            Query::Closest => capsules::closest(bodies, rays, hits),
-            Query::Any => capsules::occluded(bodies, rays, hits),
+            Query::Closest => bodies::closest(bodies, rays, hits),
+            Query::Any => bodies::occluded(bodies, rays, hits),
         }
     }
 
@@ -79,7 +81,7 @@ impl<'a> Bodies<'a> {
     pub(super) fn enclosing(&self, point: glam::Vec3) -> Option<u32> {
         let Self { tree, sticks } = self;
         tree.bvh.enclosing_sphere(tree.spheres, point).or_else(|| {
-            let capsule = capsules::enclosing_capsule(sticks, point.as_dvec3())?;
+            let capsule = sticks.enclosing(point.as_dvec3())?;
             Some(self.cap_of_stick(capsule, point))
         })
     }
@@ -88,14 +90,14 @@ impl<'a> Bodies<'a> {
     /// [`Bodies::enclosing`].
     pub(super) fn all_enclosing(self, point: glam::Vec3) -> impl Iterator<Item = u32> {
         let Self { tree, sticks } = self;
-        let sticks = capsules::enclosing_capsules(sticks, point.as_dvec3());
+        let sticks = sticks.all_enclosing(point.as_dvec3());
         let sticks = sticks.into_iter().map(move |capsule| self.cap_of_stick(capsule, point));
         tree.bvh.enclosing_spheres(tree.spheres, point).into_iter().chain(sticks)
     }
 
     /// The hit on the cap of a stick at a point.
     fn cap_of_stick(&self, capsule: usize, point: glam::Vec3) -> u32 {
-        let body = self.sticks.capsule(capsule);
+        let body = self.sticks.body(capsule);
         let half = usize::from(body.normal(point.as_dvec3() - body.ends[0]).1 > 0.5);
         CapsuleRow { capsule, half }.hit(self.tree.spheres.len())
     }

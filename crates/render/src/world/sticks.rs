@@ -67,7 +67,7 @@ impl WorldSticks {
     #[inline(always)]
     pub(crate) fn at(&self, hit: u32, spheres: usize) -> Option<(Capsule, CapsuleRow)> {
         let row = CapsuleRow::of_hit(hit, spheres).filter(|_| !self.is_empty())?;
-        Some((self.all.capsule(row.capsule), row))
+        Some((self.all.body(row.capsule), row))
     }
 
     /// Number of sticks of a kind of material.

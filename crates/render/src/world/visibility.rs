@@ -64,7 +64,7 @@ impl World {
         let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
         let sticks = self.sticks.visible.as_ref().map_or(&self.sticks.all, |seen| &seen.capsules);
         (0..sticks.len()).into_par_iter().any(|row| {
-            let stick = sticks.capsule(row);
+            let stick = sticks.body(row);
             stick.ends.iter().any(|&end| self.camera.coverage((end, stick.radius), low, high) > 0.0)
         })
     }

@@ -4,6 +4,9 @@
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// Relative errors of distances above this are not put up with.
+pub(crate) const COARSE: f64 = 1.0 / (1 << 30) as f64;
+
 /// Twice the unit roundoff: room for the rounding of the bounds.
 const ROUNDING: f64 = f64::EPSILON;
 
@@ -15,15 +18,15 @@ const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// A number, and a bound of its error; infinite or NaN where nothing is known.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounded {
-    pub(super) value: f64,
-    pub(super) error: f64,
+pub(crate) struct Bounded {
+    pub(crate) value: f64,
+    pub(crate) error: f64,
 }
 
 impl Bounded {
     /// A number without error.
     #[inline(always)]
-    pub(super) fn exact(value: f64) -> Self {
+    pub(crate) fn exact(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
 
@@ -35,7 +38,7 @@ impl Bounded {
 
     /// -1 or 1 where the sign is certain.
     #[inline(always)]
-    pub(super) fn sign(self) -> Option<i32> {
+    pub(crate) fn sign(self) -> Option<i32> {
         if self.value > self.error {
             Some(1)
         } else if self.value < -self.error {
@@ -47,7 +50,7 @@ impl Bounded {
 
     /// The square root of a number that is known to be positive.
     #[inline(always)]
-    pub(super) fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         // |sqrt(x) - sqrt(y)| = |x - y| / (sqrt(x) + sqrt(y)).
         let root = self.value.sqrt();
         Self::rounded(root, self.error / root)
@@ -55,7 +58,7 @@ impl Bounded {
 
     /// The square.
     #[inline(always)]
-    pub(super) fn square(self) -> Self {
+    pub(crate) fn square(self) -> Self {
         self * self
     }
 }
@@ -110,32 +113,32 @@ impl Div for Bounded {
 
 /// A vector of bounded numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BoundedVector(pub(super) [Bounded; 3]);
+pub(crate) struct BoundedVector(pub(super) [Bounded; 3]);
 
 impl BoundedVector {
     /// A vector without error.
     #[inline(always)]
-    pub(super) fn exact(v: DVec3) -> Self {
+    pub(crate) fn exact(v: DVec3) -> Self {
         Self(v.to_array().map(Bounded::exact))
     }
 
     /// The difference of two vectors without error.
     #[inline(always)]
-    pub(super) fn between(from: DVec3, to: DVec3) -> Self {
+    pub(crate) fn between(from: DVec3, to: DVec3) -> Self {
         let (from, to) = (Self::exact(from), Self::exact(to));
         Self(std::array::from_fn(|i| to.0[i] - from.0[i]))
     }
 
     /// Scalar product.
     #[inline(always)]
-    pub(super) fn dot(&self, other: &Self) -> Bounded {
+    pub(crate) fn dot(&self, other: &Self) -> Bounded {
         let [x, y, z] = std::array::from_fn(|i| self.0[i] * other.0[i]);
         x + y + z
     }
 
     /// Vector product.
     #[inline(always)]
-    pub(super) fn cross(&self, other: &Self) -> Self {
+    pub(crate) fn cross(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|i| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             self.0[j] * other.0[k] - self.0[k] * other.0[j]
