@@ -213,8 +213,23 @@ impl Parser<'_> {
         }
     }
 
-    /// Returns a text, or a pattern if a `*` follows it without a blank.
-    fn pattern(&mut self, text: String, span: Range<usize>) -> (Value, usize) {
+    /// Returns a text with the charge that follows it without a blank, as in `NA+`, or a pattern if a `*` does.
+    fn pattern(&mut self, mut text: String, span: Range<usize>) -> (Value, usize) {
+        let (mut signs, mut end) = (0, span.end);
+        while let Some((Word::Sign(Sign::Plus | Sign::Minus), sign)) = self.peek(signs)
+            && sign.start == end
+        {
+            (signs, end) = (signs + 1, sign.end);
+        }
+        if signs > 0
+            && self
+                .peek(signs)
+                .is_none_or(|(_, next)| next.start > end || &self.text[next.clone()] == ")")
+        {
+            self.next += signs;
+            text.push_str(&self.text[span.end..end]);
+            return (Value::Text(text), end);
+        }
         match self.peek(0) {
             Some((Word::Sign(Sign::Times), star)) if star.start == span.end => {
                 let end = star.end;

@@ -86,6 +86,22 @@ fn groups_lists_and_neighborhoods_select_atoms() {
 }
 
 #[test]
+fn names_of_ions_have_charges() {
+    let ions = "id,element,resname,x,y,z\n1,Na,NA+,0,0,0\n2,Cl,CL-,1,0,0\n3,Mg,MG2+,2,0,0\n4,Na,NA,3,0,0\n";
+    for (condition, expected) in [
+        ("resname NA+", &[1.0][..]),
+        ("resname CL- NA+ and x > 0.5", &[2.0]),
+        ("(resname MG2+) or resname NA", &[3.0, 4.0]),
+        ("within 1 of resname CL-", &[1.0, 2.0, 3.0]),
+    ] {
+        assert_eq!(select(ions, condition).expect(condition), expected, "{condition}");
+    }
+    for condition in ["resname NA+1", "resname NA +", "resname NA-CL"] {
+        assert!(select(ions, condition).is_err(), "{condition}");
+    }
+}
+
+#[test]
 fn faults_are_reported_at_their_place() {
     for (condition, expected) in [
         ("within 5 protein", "protein: expected `of` here"),
