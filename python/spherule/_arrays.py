@@ -24,6 +24,7 @@ def floats(name: str, value: Any) -> npt.NDArray[Any]:
     import numpy as np
 
     array: npt.NDArray[Any]
+    refuse_masked(name, value)
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -36,6 +37,63 @@ def floats(name: str, value: Any) -> npt.NDArray[Any]:
         return np.array(array)
     converted: npt.NDArray[np.float64] = array.astype(np.float64)
     return converted
+
+
+def refuse_masked(name: str, value: Any) -> None:
+    """Refuses a masked array with entries that are masked: NumPy would take what is behind the mask."""
+    import numpy as np
+
+    if isinstance(value, np.ma.MaskedArray) and (mask := np.ma.getmaskarray(value)).any():
+        row = ", ".join(str(int(index)) for index in np.argwhere(mask)[0])
+        raise Error(f"{name}[{row}] is masked, but must be a value; leave such rows out")
+
+
+def integer(name: str, value: Any) -> int:
+    """An integer of Python or NumPy."""
+    import operator
+
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise Error(f"`{name}` is {value!r}, but must be an integer") from None
+
+
+def bonds(value: Any, shifts: Any, count: int) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.int8] | None]:
+    """Pairs of rows, the lesser one first, sorted, each once; and the edges of the cell to add to the second one."""
+    import numpy as np
+
+    refuse_masked("bonds", value)
+    pairs = np.asarray(value)
+    if pairs.size == 0:
+        return np.zeros((0, 2), np.uint32), None
+    if pairs.ndim != 2 or pairs.shape[1] != 2:
+        raise Error(f"`bonds` has the shape {pairs.shape}, but must have (n, 2): the rows of both particles")
+    if pairs.dtype.kind not in "iu":
+        raise Error(f"`bonds` is an array of {pairs.dtype}, but must be one of integers")
+    wrong = np.flatnonzero(((pairs < 0) | (pairs >= count)).any(axis=1))
+    if len(wrong):
+        first, second = pairs[wrong[0]].tolist()
+        raise Error(f"bonds[{wrong[0]}] is {first}, {second}, but must be rows of the {count} particles")
+    pairs = pairs.astype(np.int64)
+    edges = np.zeros((len(pairs), 0), np.int64)
+    if shifts is not None:
+        edges = np.asarray(shifts)
+        if edges.shape != (len(pairs), 3) or edges.dtype.kind not in "iu" or (abs(edges.astype(np.int64)) > 127).any():
+            raise Error(f"`bond_shifts` must be ({len(pairs)}, 3) integers from -127 to 127")
+        edges = edges.astype(np.int64)
+    same = pairs[:, 0] == pairs[:, 1]
+    if (wrong := np.flatnonzero(same & ~edges.any(axis=1))).size:
+        raise Error(f"bonds[{wrong[0]}] bonds particle {pairs[wrong[0], 0]} to itself")
+    back = pairs[:, 0] > pairs[:, 1]
+    if edges.shape[1]:
+        # Of the two ways to name a bond to an image of the same particle, the one whose first edge is negative.
+        leading = edges[np.arange(len(edges)), (edges != 0).argmax(axis=1)]
+        back |= same & (leading > 0)
+    table = np.hstack([np.sort(pairs, axis=1), np.where(back[:, None], -edges, edges)])
+    table = table[np.lexsort(table.T[::-1])]
+    table = table[np.append(True, (table[1:] != table[:-1]).any(axis=1))]
+    found = None if shifts is None else np.ascontiguousarray(table[:, 2:], np.int8)
+    return np.ascontiguousarray(table[:, :2], np.uint32), found
 
 
 def table(name: str, value: Any, width: int = 3) -> npt.NDArray[Any]:
@@ -81,6 +139,7 @@ def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.
     """Names in the order in which they first occur, and the row in them of each particle."""
     import numpy as np
 
+    refuse_masked(name, value)
     array = np.asarray(value)
     if array.ndim == 0:
         return [str(array[()])], np.zeros(count, np.uint32)

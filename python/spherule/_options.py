@@ -120,13 +120,15 @@ def part(given: Mapping[str, Any], names: frozenset[str]) -> dict[str, Any]:
 
 def render_table(given: Mapping[str, Any]) -> dict[str, Any]:
     """The settings of a render for the extension module."""
-    from . import _toml
+    from . import _arrays, _toml
 
     text, keys = _toml.document({"render": part(given, RENDER)})
     layers = given.get("layers") or ()
     if isinstance(layers, str):
         layers = (layers,)
     threads = given.get("threads")
-    if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 4096):
-        raise Error(f"`threads` is {threads!r}, but must be an integer from 1 to 4096")
+    if threads is not None:
+        threads = _arrays.integer("threads", threads)
+        if not 1 <= threads <= 4096:
+            raise Error(f"`threads` is {threads!r}, but must be an integer from 1 to 4096")
     return {"text": text, "keys": keys.get("render", []), "layers": list(layers), "threads": threads}

@@ -72,6 +72,10 @@ class Particles:
         materials: A name or (n,) names of materials.
         columns: Other columns by name, (n,) numbers or strings each, for colors and selections.
         cell: The periodic cell: three edges (3, 3), three lengths (3,), or lengths and angles in degrees (6,).
+        bonds: (m, 2) rows of bonded particles, which models with sticks draw: those of the source, without which bonds
+            are found by distance.
+        bond_shifts: (m, 3) integers, -127 to 127: the edges of the cell to add to the second particle of each bond; by
+            default those to its nearest image.
         origin: The corner of the cell at which its edges begin.
         periodic: Whether the simulation is periodic along each edge.
         title, step, time, unit: Facts of the frame. The unit scales the radii of elements: ``"angstrom"``,
@@ -92,6 +96,8 @@ class Particles:
     color: npt.NDArray[Any] | None
     columns: dict[str, npt.NDArray[Any]]
     cell: Cell | None
+    bonds: npt.NDArray[np.uint32] | None
+    bond_shifts: npt.NDArray[np.int8] | None
     title: str
     step: int | None
     time: float | None
@@ -100,6 +106,7 @@ class Particles:
     warnings: list[str]
     _kinds: tuple[list[str], npt.NDArray[np.uint32]] | None
     _elements: list[str | None]
+    _virtual_sites: list[bool]
     _materials: tuple[list[str], npt.NDArray[np.uint32]] | None
 
     def __init__(
@@ -112,6 +119,8 @@ class Particles:
         elements: Sequence[str | None] | None = None,
         materials: Any = None,
         columns: Mapping[str, Any] | None = None,
+        bonds: Any = None,
+        bond_shifts: Any = None,
         cell: Any = None,
         origin: Any = (0.0, 0.0, 0.0),
         periodic: Any = True,
@@ -131,6 +140,12 @@ class Particles:
             raise Error("`elements` must have an entry for each distinct kind, in the order of first occurrence")
         names = self._kinds[0] if self._kinds else []
         self._elements = list(elements) if elements is not None else [_native.element_of(name) for name in names]
+        self._virtual_sites = []
+        self.bonds, self.bond_shifts = None, None
+        if bonds is not None:
+            self.bonds, self.bond_shifts = _arrays.bonds(bonds, bond_shifts, count)
+        elif bond_shifts is not None:
+            raise Error("`bond_shifts` needs `bonds`")
         self._materials = None if materials is None else _arrays.coded("materials", materials, count)
         self.columns = {}
         for name, values in (columns or {}).items():
@@ -149,6 +164,8 @@ class Particles:
             facts.append("kinds " + ", ".join(self._kinds[0][:5]) + (", ..." if len(self._kinds[0]) > 5 else ""))
         if self.columns:
             facts.append("columns " + ", ".join(self.columns))
+        if self.bonds is not None:
+            facts.append(f"{len(self.bonds)} bonds")
         if self.cell:
             facts.append("periodic cell" if any(self.cell[2]) else "cell")
         return f"<spherule.Particles: {'; '.join(facts)}>"
@@ -201,6 +218,9 @@ class Particles:
             "color": self.color,
             "kinds": self._kinds,
             "elements": self._elements,
+            "virtual_sites": self._virtual_sites,
+            "bonds": None if self.bonds is None else _arrays.bonds(self.bonds, self.bond_shifts, len(self)),
+            "format": self.format,
             "materials": self._materials,
             "numbers": numbers,
             "texts": texts,
@@ -220,6 +240,7 @@ def _column(name: str, values: Any, count: int) -> npt.NDArray[Any]:
     """A column of numbers or of strings."""
     import numpy as np
 
+    _arrays.refuse_masked(name, values)
     array = np.asarray(values)
     if array.dtype.kind in "OS":
         array = np.array([item.decode() if isinstance(item, bytes) else str(item) for item in array.tolist()], np.str_)
@@ -231,10 +252,14 @@ def _column(name: str, values: Any, count: int) -> npt.NDArray[Any]:
 
 
 def _options(
-    format: str | None, columns: str | None, atom_style: str | None, topology: str | os.PathLike[str] | None
+    format: str | None,
+    columns: str | None,
+    atom_style: str | None,
+    topology: str | os.PathLike[str] | None,
+    bonds: str | None = None,
 ) -> dict[str, Any]:
     path = None if topology is None else os.fspath(topology)
-    return {"format": format, "columns": columns, "atom_style": atom_style, "topology": path}
+    return {"format": format, "columns": columns, "atom_style": atom_style, "topology": path, "bonds": bonds}
 
 
 def read(
@@ -245,12 +270,13 @@ def read(
     columns: str | None = None,
     atom_style: str | None = None,
     topology: str | os.PathLike[str] | None = None,
+    bonds: str | None = None,
 ) -> Particles:
     """Reads a frame of a particle file into NumPy columns.
 
     All formats of the program are read, compressed or not: XYZ, LAMMPS dumps and data, GRO, PDB, mmCIF, CIF, GSD, PLY,
-    NPY, NPZ, CSV, plain columns, PQR, POSCAR, SDF, MOL2, XSF, CFG, HDF5 of Gadget,
-    and the trajectories DCD, XTC, TRR, NetCDF of Amber and H5MD.
+    NPY, NPZ, CSV, plain columns, PQR, POSCAR, SDF, MOL2, XSF, CFG, HDF5 of Gadget, and the trajectories DCD, XTC, TRR,
+    NetCDF of Amber and H5MD.
 
     Args:
         path: The file.
@@ -259,6 +285,8 @@ def read(
         columns: Roles of columns, as in ``"x=px,type=species"``.
         atom_style: The atom style of a LAMMPS data file, as ``"full"``.
         topology: The file that names the particles of a trajectory.
+        bonds: Whether bonds are read: ``"file"`` for those of the file, ``"auto"`` for those or else by covalent radii,
+            or rules such as ``"C-C<1.7"``; by default none are.
 
     Returns:
         All columns in the file's units, nothing scaled or dropped. Numbers are float64.
@@ -276,14 +304,15 @@ def read(
     """
     from . import _native
 
-    if not isinstance(frame, int):
-        raise Error(f"`frame` is {frame!r}, but must be an integer; -1 is the last frame")
-    table = _native.read(os.fspath(path), frame, _options(format, columns, atom_style, topology))
+    frame = _arrays.integer("frame", frame)
+    options = _options(format, columns, atom_style, topology, bonds)
+    table = _native.read(os.fspath(path), frame, options)
     particles = Particles.__new__(Particles)
     particles.positions = table["positions"].T
     particles.radius, particles.color = table["radius"], table["color"]
     particles._kinds, particles._elements = table["kinds"], table["elements"]
-    particles._materials = table["materials"]
+    particles._materials, particles._virtual_sites = table["materials"], table["virtual_sites"]
+    particles.bonds, particles.bond_shifts = table["bonds"] or (None, None)
     particles.columns = dict(table["numbers"])
     for name, texts in table["texts"].items():
         column = _texts(texts)
@@ -334,11 +363,12 @@ def frames(
     columns: str | None = None,
     atom_style: str | None = None,
     topology: str | os.PathLike[str] | None = None,
+    bonds: str | None = None,
 ) -> Iterator[Particles]:
     """The frames of a particle file, one after the other.
 
     Args:
-        path, format, columns, atom_style, topology: As for :func:`read`.
+        path, format, columns, atom_style, topology, bonds: As for :func:`read`.
 
     Raises:
         Error: As for :func:`read`.
@@ -352,4 +382,6 @@ def frames(
     """
     count = count_frames(path, format=format, columns=columns, atom_style=atom_style, topology=topology)
     for number in range(count):
-        yield read(path, number, format=format, columns=columns, atom_style=atom_style, topology=topology)
+        yield read(
+            path, number, format=format, columns=columns, atom_style=atom_style, topology=topology, bonds=bonds
+        )

@@ -147,7 +147,8 @@ async def render_async(source: Any = None, **options: Unpack[AllOptions]) -> Pic
 
     from . import _native
 
-    stop = options.setdefault("stop", _native.Stop())
+    stop = options.get("stop") or _native.Stop()
+    options["stop"] = stop
     options.setdefault("progress", False)
     try:
         return await asyncio.to_thread(lambda: render(source, **options))

@@ -43,7 +43,8 @@ class Scene:
         types: For names of types or elements: ``{"radius": 1.2, "color": "gold", "material": "metal"}``, and
             ``"opacity"``.
         model: ``"space-filling"``, ``"ball-and-stick"`` or ``"licorice"``: whether bonds are drawn, as sticks.
-        bonds: ``"auto"`` for bonds by covalent radii, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
+        bonds: ``"auto"`` for those of the particles, or else by covalent radii; ``"file"`` for those of the
+            particles alone, ``"none"``, or rules such as ``"C-C<1.7,*-H<1.2"``;
             ``bond_radius`` is the radius of their sticks.
         opacity: A number from 0 to 1, or the name of a column whose numbers it is, perhaps with those that become 0 and
             1, as in ``"charge:-1,1"``: what is behind is seen without refraction.
@@ -132,7 +133,12 @@ class Scene:
         name = os.fspath(path)
         if not name.lower().endswith(".toml"):
             options.setdefault("title", os.path.basename(name))
-            return cls(read(name), **options)
+            bonds = options.get("bonds")
+            texts = f"{options.get('select')} {options.get('color_by')}".lower()
+            counts = any(word in texts for word in ("coordination", "cluster"))
+            if bonds is None and (counts or options.get("model") not in (None, "space-filling")):
+                bonds = "auto"
+            return cls(read(name, bonds=None if bonds == "none" else bonds), **options)
         if options:
             raise Error("options for particles need a particle file; a scene defines its own colors and materials")
         scene = cls.__new__(cls)
@@ -268,7 +274,8 @@ def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[s
         wrong = np.flatnonzero(~np.isfinite(column))
         if len(wrong):
             raise Error(f"values[{wrong[0]}] is {column[wrong[0]]}, but must be finite")
-        table["numbers"].append((name, column))
+        # By this name they are found before any other column.
+        table["numbers"] = [(name, column), *(own for own in table["numbers"] if own[0] != name)]
         given["color_by"] = name
     return table
 

@@ -65,8 +65,8 @@ def from_ase(atoms: Any) -> Particles:
 def from_mdanalysis(group: Any) -> Particles:
     """The particles of an MDAnalysis ``Universe`` or ``AtomGroup``, in its current frame, in angstrom.
 
-    Elements are those of the topology, or else follow from the types and names. The cell is kept, and names, residues
-    and charges become columns where the topology has them.
+    Elements are those of the topology, or else follow from the types and names. The cell and bonds are kept, and
+    names, residues and charges become columns where the topology has them.
 
     Args:
         group: ``MDAnalysis.Universe`` or ``AtomGroup``.
@@ -111,11 +111,17 @@ def from_mdanalysis(group: Any) -> Particles:
     box = _optional(atoms, "dimensions")
     has_cell = box is not None and bool(np.all(np.asarray(box)[:3] > 0))
     timestep = _optional(_optional(atoms, "universe"), "trajectory")
+    # Rows of the universe as rows of the group; bonds to atoms outside of it are left out.
+    bonds = _optional(_optional(atoms, "bonds"), "indices")
+    if bonds is not None:
+        places = {int(index): row for row, index in enumerate(atoms.indices)}
+        bonds = [(places[a], places[b]) for a, b in np.asarray(bonds).tolist() if a in places and b in places]
     return Particles(
         _need(atoms, "positions", "an MDAnalysis Universe or AtomGroup"),
         kinds=kinds,
         elements=elements,
         columns=columns,
+        bonds=bonds,
         cell=box if has_cell else None,
         unit="angstrom",
         step=_optional(timestep, "frame"),
@@ -126,8 +132,8 @@ def from_mdanalysis(group: Any) -> Particles:
 def from_ovito(data: Any) -> Particles:
     """The particles of OVITO's ``DataCollection``, as ``pipeline.compute()`` returns it.
 
-    Positions, types with their names, radii and colors of particles, or else of their types, the cell, the time step,
-    and all other properties as columns. OVITO's colors are those of the screen: they are taken as sRGB.
+    Positions, types with their names, radii and colors of particles, or else of their types, bonds, the cell, the time
+    step, and all other properties as columns. OVITO's colors are those of the screen: they are taken as sRGB.
 
     Args:
         data: ``ovito.data.DataCollection``.
@@ -178,6 +184,12 @@ def from_ovito(data: Any) -> Particles:
     for name, property in properties.items():
         if name not in ("Position", "Particle Type", "Radius", "Color"):
             columns.update(_components(name, np.asarray(property)))
+    bonds = shifts = None
+    listed = _optional(found, "bonds")
+    if listed is not None and "Topology" in listed.keys():
+        bonds = np.asarray(listed["Topology"])
+        if "Periodic Image" in listed.keys():
+            shifts = np.asarray(listed["Periodic Image"])
     cell = _optional(data, "cell")
     matrix = None if cell is None else np.asarray(cell)
     if matrix is not None and not abs(np.linalg.det(matrix[:, :3])) > 0:
@@ -189,6 +201,8 @@ def from_ovito(data: Any) -> Particles:
         kinds=kinds,
         elements=elements,
         radius=radius if count and bool(np.all(radius > 0)) else None,
+        bonds=bonds,
+        bond_shifts=shifts,
         color=None if color is None else np.rint(np.clip(color, 0.0, 1.0) * 255.0).astype(np.uint8),
         columns=columns,
         cell=None if matrix is None else matrix[:, :3].T,
@@ -200,7 +214,8 @@ def from_ovito(data: Any) -> Particles:
 
 
 def from_gsd(frame: Any) -> Particles:
-    """The particles of a frame of ``gsd.hoomd``: positions, diameters, types, the box, and other properties as columns.
+    """The particles of a frame of ``gsd.hoomd``: positions, diameters, types, bonds, the box, and other properties as
+    columns.
 
     Args:
         frame: ``gsd.hoomd.Frame``, an item of ``gsd.hoomd.open(...)``.
@@ -237,6 +252,7 @@ def from_gsd(frame: Any) -> Particles:
         values = _optional(particles, name)
         if values is not None and len(values) == count:
             columns.update(_components(name, values))
+    bonds = _optional(_optional(frame, "bonds"), "group")
     cell, origin = None, np.zeros(3)
     periodic: bool | tuple[bool, bool, bool] = True
     box = _optional(configuration, "box")
@@ -253,6 +269,7 @@ def from_gsd(frame: Any) -> Particles:
         kinds=kinds,
         radius=None if diameter is None or len(diameter) != count else np.asarray(diameter, np.float64) / 2,
         columns=columns,
+        bonds=bonds if bonds is not None and len(bonds) else None,
         cell=cell,
         origin=origin,
         periodic=periodic,

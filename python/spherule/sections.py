@@ -253,6 +253,7 @@ class File(_File, total=False):
     """``[[file]]``: spheres from a particle file."""
 
     format: str
+    topology: str | PathLike[str]
     material: str
     radius: float
     scale: float

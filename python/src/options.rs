@@ -1,13 +1,14 @@
 //! Particles and their style, from tables that the package's Python modules fill.
 
-use crate::arrays::{Column, Table, check_points, check_positive};
+use crate::arrays::{Column, Table, check_points, check_positive, refused};
 use crate::errors::error;
 use glam::DVec3;
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use spherule::color::{Map, Rgb, Spacing};
 use spherule::particles::{
-    Cell, Codes, Element, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions,
-    TextColumn,
+    Bonds, Cell, Codes, Element, Format, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame,
+    Radii, ReadOptions, TextColumn,
 };
 use spherule::scene::particles::{
     BondSource, Coloring, ColumnColors, ElementColors, Model, Opacity, ParticleStyle, Selection,
@@ -34,13 +35,22 @@ pub(crate) struct ParticleTable<'py> {
     kinds: Option<Coded<'py>>,
     /// The symbol of the element of each kind, where it has one.
     elements: Vec<Option<String>>,
+    /// True for kinds of virtual sites, which are not drawn; empty if there are none.
+    virtual_sites: Vec<bool>,
     materials: Option<Coded<'py>>,
     numbers: Vec<(String, Bound<'py, PyAny>)>,
     texts: Vec<(String, Coded<'py>)>,
     cell: Option<CellTuple>,
+    bonds: Option<BondTuple<'py>>,
     title: String,
     unit: String,
+    /// The format of the file that the particles were read from, which decides what is up. Rows of files that cannot be
+    /// drawn are left out; those of arrays are refused.
+    format: Option<String>,
 }
+
+/// Rows of bonded particles, and the edges of the cell to add to each second one, if they are known.
+pub(crate) type BondTuple<'py> = (PyReadonlyArray2<'py, u32>, Option<PyReadonlyArray2<'py, i8>>);
 
 /// The style of a type: name, radius, color, material, opacity.
 type TypeTuple = (String, Option<f64>, Option<[f32; 3]>, Option<String>, Option<f64>);
@@ -67,14 +77,21 @@ impl ParticleTable<'_> {
     /// The frame, and the options that complete it.
     pub(crate) fn frame(self, py: Python<'_>) -> PyResult<(ParticleFrame, ReadOptions)> {
         let columns = Table::of(&self.positions)?.to_columns(py)?;
-        check_points(py, "positions", &columns)?;
+        let format = self.format.as_deref().and_then(|name| {
+            Format::ALL.iter().find(|(own, _)| *own == name).map(|(_, format)| *format)
+        });
+        if format.is_none() {
+            check_points(py, "positions", &columns)?;
+        }
         let count = columns.first().map_or(0, Vec::len);
         let [x, y, z] = <[_; 3]>::try_from(columns)
             .map_err(|columns| lengths(py, "positions", 3, columns.len()))?;
         let mut frame = ParticleFrame { x, y, z, title: self.title, ..ParticleFrame::default() };
         if let Some(radius) = &self.radius {
             frame.radius = Column::of(radius)?.to_vec(py)?;
-            check_positive(py, "radius", &frame.radius)?;
+            if format.is_none() {
+                check_positive(py, "radius", &frame.radius)?;
+            }
             check_length(py, "radius", count, frame.radius.len())?;
         }
         if let Some(color) = &self.color {
@@ -93,12 +110,12 @@ impl ParticleTable<'_> {
             }
         }
         if let Some((names, codes)) = &self.kinds {
-            let kind = |(name, element): (&String, &Option<String>)| Kind {
+            let kind = |(row, (name, element)): (usize, (&String, &Option<String>))| Kind {
                 name: name.clone(),
                 element: element.as_deref().and_then(Element::from_symbol),
-                virtual_site: false,
+                virtual_site: self.virtual_sites.get(row).copied().unwrap_or(false),
             };
-            let table = names.iter().zip(&self.elements).map(kind).collect();
+            let table = names.iter().zip(&self.elements).enumerate().map(kind).collect();
             frame.kinds = Kinds { table, codes: codes_of(py, "kinds", names, codes, count)? };
         }
         if let Some((names, codes)) = self.materials {
@@ -115,7 +132,9 @@ impl ParticleTable<'_> {
         frame.columns = frame.numbers.iter().map(|column| column.name.clone()).collect();
         frame.columns.extend(frame.texts.iter().map(|column| column.name.clone()));
         frame.cell = self.cell.map(|cell| cell_of(py, cell)).transpose()?;
+        frame.bonds = self.bonds.map(|bonds| bonds_of(py, bonds, count)).transpose()?;
         frame.unit = unit_of(&self.unit);
+        frame.format = format.unwrap_or_default();
         let radii = self.radii.as_deref().map_or(Ok(Radii::Auto), Radii::from_str);
         let options = ReadOptions {
             radii: radii.map_err(|message| error(py, &message))?,
@@ -230,6 +249,31 @@ pub(crate) fn cell_of(py: Python<'_>, (origin, vectors, periodic): CellTuple) ->
         return Ok(cell);
     }
     Err(error(py, &"`cell` must be finite, with three edges that span a volume"))
+}
+
+/// Sorted bonds of `count` particles.
+fn bonds_of(py: Python<'_>, (pairs, shifts): BondTuple<'_>, count: usize) -> PyResult<Bonds> {
+    let (pairs, shifts) = (pairs.as_array(), shifts.as_ref().map(|shifts| shifts.as_array()));
+    if pairs.ncols() != 2 || shifts.is_some_and(|shifts| shifts.dim() != (pairs.nrows(), 3)) {
+        return Err(error(
+            py,
+            &"`bonds` must have two columns, and three edges of the cell for each",
+        ));
+    }
+    let mut bonds = Bonds::default();
+    for (row, pair) in pairs.rows().into_iter().enumerate() {
+        if let Some(&end) = pair.iter().find(|&&end| end as usize >= count) {
+            let must = format!("a row of the {count} particles");
+            return Err(refused(py, "bonds", row, &end, &must));
+        }
+        bonds.first.push(pair[0]);
+        bonds.second.push(pair[1]);
+    }
+    if let Some(shifts) = shifts {
+        bonds.shift =
+            shifts.rows().into_iter().map(|edges| [0, 1, 2].map(|axis| edges[axis])).collect();
+    }
+    Ok(bonds)
 }
 
 /// The unit with a name; unknown ones are unknown.

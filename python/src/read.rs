@@ -7,8 +7,8 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use spherule::particles::{
-    self as particles, Codes, Columns, Element, FileError, Format, FrameChoice, ParticleFrame,
-    ReadOptions, TextColumn, read_frame,
+    self as particles, BondSource, Codes, Columns, Element, FileError, Format, FrameChoice,
+    ParticleFrame, ReadOptions, TextColumn, read_frame,
 };
 use std::path::{Path, PathBuf};
 
@@ -21,6 +21,8 @@ pub(crate) struct ReadTable {
     columns: Option<String>,
     atom_style: Option<String>,
     topology: Option<PathBuf>,
+    /// The source of bonds, as the style has it.
+    bonds: Option<String>,
 }
 
 impl ReadTable {
@@ -34,11 +36,14 @@ impl ReadTable {
         });
         let columns = self.columns.as_deref().map_or(Ok(Columns::default()), str::parse);
         let columns: Columns = columns.map_err(|why: String| error(py, &why))?;
+        let bonds = self.bonds.as_deref().map(str::parse).transpose();
+        let bonds: Option<BondSource> = bonds.map_err(|why: String| error(py, &why))?;
         Ok(ReadOptions {
             format: format.transpose()?,
             columns: Columns { rest: Some(usize::MAX), ..columns },
             atom_style: self.atom_style.clone(),
             topology: self.topology.clone(),
+            bonds: bonds.unwrap_or_default(),
             allow_empty: true,
             ..ReadOptions::default()
         })
@@ -107,6 +112,17 @@ fn columns(py: Python<'_>, frame: ParticleFrame) -> PyResult<Bound<'_, PyDict>> 
     let coded = (!kinds.codes.is_empty()).then(|| (names, codes(py, &kinds.codes)));
     table.set_item("kinds", coded)?;
     table.set_item("elements", elements)?;
+    let virtual_sites: Vec<bool> = kinds.table.iter().map(|kind| kind.virtual_site).collect();
+    table.set_item("virtual_sites", virtual_sites)?;
+    let bonds = frame.bonds.map(|bonds| -> PyResult<_> {
+        let count = bonds.len();
+        let ends = bonds.first.iter().zip(&bonds.second);
+        let pairs = ends.flat_map(|(&first, &second)| [first, second]).collect();
+        let shifts = (!bonds.shift.is_empty())
+            .then(|| PyArray1::from_vec(py, bonds.shift.into_flattened()).reshape([count, 3]));
+        Ok((PyArray1::from_vec(py, pairs).reshape([count, 2])?, shifts.transpose()?))
+    });
+    table.set_item("bonds", bonds.transpose()?)?;
     let text = |column: TextColumn| (column.names, codes(py, &column.codes));
     let materials = (!frame.materials.codes.is_empty()).then(|| text(frame.materials));
     table.set_item("materials", materials)?;

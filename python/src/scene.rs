@@ -344,7 +344,7 @@ impl Work {
     fn scene(mut self) -> Result<Numbered, Fault> {
         let mut frame = std::mem::take(&mut self.frame);
         let count = frame.len();
-        if self.renumbers() {
+        if self.renumbers() || has_undrawn_rows(&frame) {
             // Columns of numbers follow their rows through selections and copies.
             let values = (0..count).map(|row| row as f64).collect();
             frame.numbers.push(NumberColumn { name: ROWS.to_owned(), values });
@@ -353,8 +353,10 @@ impl Work {
         let Self { options, style, staging, given, .. } = &self;
         let path = Path::new(ARRAYS);
         let title = frame.title.clone();
-        let found = frame.find_bonds(&style.bonds);
-        found.map_err(|message| FileError::whole_file(path, message))?;
+        frame
+            .add_derived_columns(&style.columns(), &style.bonds)
+            .and_then(|()| frame.find_bonds(&style.bonds))
+            .map_err(|message| FileError::whole_file(path, message))?;
         let mut particles = of_frame(path, frame, options)?;
         particles.materials.clone_from(&given.materials);
         let legend = style.apply(path, &mut particles)?;
@@ -451,6 +453,14 @@ impl Work {
             scene.sticks.push(sticks.ends(row), sticks.radius[row], material, sticks.colors[row]);
         }
     }
+}
+
+/// Returns whether a frame has rows that are not drawn: those of a file without a radius, and virtual sites.
+fn has_undrawn_rows(frame: &ParticleFrame) -> bool {
+    let invalid = |column: &Vec<f64>| !column.iter().all(|value| value.is_finite());
+    frame.kinds.table.iter().any(|kind| kind.virtual_site)
+        || frame.radius.iter().any(|radius| !(*radius > 0.0 && radius.is_finite()))
+        || [&frame.x, &frame.y, &frame.z].into_iter().any(invalid)
 }
 
 /// The row in `scene` of a material of `given`, which is added if it is not there.

@@ -97,6 +97,12 @@ def test_arrays_are_not_changed_and_not_kept(cloud):
         ({"values": [1, 2], "color_map": "jet"}, 'unknown color map "jet"; maps are viridis'),
         ({"values": [1, 2], "color_range": (3, 1)}, "`color_range` is 3 to 1, but the lower number comes first"),
         ({"color_bar": True}, "`color_bar` needs colors that stand for numbers"),
+        ({"positions": np.ma.array([[0, 0, 0], [0, 9, 0]], mask=[[0] * 3, [0, 1, 0]])}, "positions[1, 1] is masked"),
+        ({"radius": np.ma.array([1.0, 2], mask=[0, 1])}, "radius[1] is masked, but must be a value"),
+        ({"kinds": np.ma.array(["H", "O"], mask=[1, 0])}, "kinds[0] is masked"),
+        ({"positions": np.array([[0, 0, None]])}, "`positions` is an array of object"),
+        ({"radius": [1, 2**70]}, "`radius` is an array of object"),
+        ({"threads": 2.5}, "`threads` is 2.5, but must be an integer"),
         ({"kinds": ["H"]}, "`kinds` has the shape (1,), but must have (2,)"),
         ({"kinds": [1.5, 2.5]}, "`kinds` is an array of float64, but must be one of strings or integers"),
         ({"cell": [1, 1, 0]}, "`cell` must be finite, with three edges that span a volume"),
@@ -150,3 +156,54 @@ def test_unknown_arguments_are_refused_with_the_nearest():
 def test_no_particles_are_refused():
     with pytest.raises(spherule.Error, match="holds no particles"):
         spherule.render(np.zeros((0, 3)))
+
+
+def test_integers_of_numpy_and_tables_of_bits_are_numbers():
+    grid = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    expected = picture(grid.astype(float), radius=0.4)
+    assert np.array_equal(picture(grid.astype(bool), radius=0.4), expected)
+    assert np.array_equal(picture(np.ma.array(grid), radius=0.4, threads=np.int32(1)), expected)
+
+
+def test_values_come_before_a_column_of_their_name(cloud):
+    values = np.linspace(0, 1, 1000)
+    expected = picture(cloud, values=values, label_of_values="height")
+    particles = spherule.Particles(cloud, radius=0.05, columns={"height": np.zeros(1000)})
+    shown = spherule.render(particles, values=values, label_of_values="height", **SMALL).pixels
+    assert np.array_equal(shown, expected)
+
+
+@pytest.mark.parametrize(
+    ("bonds", "shifts", "text"),
+    [
+        ([0, 1], None, "`bonds` has the shape (2,), but must have (n, 2)"),
+        ([[0, 1.5]], None, "`bonds` is an array of float64"),
+        ([[0, 1], [1, 3]], None, "bonds[1] is 1, 3, but must be rows of the 3 particles"),
+        ([[-1, 1]], None, "bonds[0] is -1, 1"),
+        ([[0, 1], [2, 2]], None, "bonds[1] bonds particle 2 to itself"),
+        ([[0, 1]], [[0, 0, 200]], "`bond_shifts` must be (1, 3) integers from -127 to 127"),
+        (None, [[0, 0, 0]], "`bond_shifts` needs `bonds`"),
+    ],
+)
+def test_bonds_that_cannot_be_drawn_are_named(bonds, shifts, text):
+    with pytest.raises(spherule.Error) as refused:
+        spherule.Particles(np.eye(3), bonds=bonds, bond_shifts=shifts)
+    assert text in str(refused.value)
+
+
+def test_bonds_are_sorted_and_drawn_from_either_end():
+    places = np.array([[0.0, 0, 0], [1.5, 0, 0], [0, 1.5, 0]])
+    bonded = spherule.Particles(places, bonds=[[2, 0], [0, 1], [1, 0]], kinds=["C"] * 3)
+    assert bonded.bonds.tolist() == [[0, 1], [0, 2]] and bonded.bond_shifts is None
+    image = spherule.Particles(places, bonds=[[1, 1], [2, 0]], bond_shifts=[[1, 0, 0], [0, 1, 0]], cell=[3, 3, 3])
+    assert image.bonds.tolist() == [[0, 2], [1, 1]] and image.bond_shifts.tolist() == [[0, -1, 0], [-1, 0, 0]]
+    options = {"radius": 0.5, "model": "ball-and-stick", **SMALL}
+    drawn = spherule.render(bonded, **options).pixels
+    by_distance = spherule.render(places, kinds=["C"] * 3, bonds="C-C<1.6", **options).pixels
+    assert np.array_equal(drawn, by_distance)
+    assert np.array_equal(spherule.render(bonded, bonds="file", **options).pixels, drawn)
+    fewer = spherule.Particles(places, bonds=[[0, 1]], kinds=["C"] * 3)
+    assert not np.array_equal(spherule.render(fewer, **options).pixels, drawn)
+    columns = spherule.render(fewer, radius=0.5, color_by="coordination", color_range=(0, 2), **SMALL).pixels
+    given = spherule.render(fewer, radius=0.5, values=[1, 1, 0], color_range=(0, 2), **SMALL).pixels
+    assert np.array_equal(columns, given)

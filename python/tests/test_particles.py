@@ -1,5 +1,7 @@
 """Files and other packages: NumPy columns, with radii, elements and the cell."""
 
+import subprocess
+
 import numpy as np
 import pytest
 
@@ -47,7 +49,7 @@ def test_frames_are_numbered_from_either_end(folder):
     path = folder / "a.lammpstrj"
     assert spherule.count_frames(path) == 2
     assert [frame.step for frame in spherule.frames(path)] == [5, 9]
-    first, last = spherule.read(path), spherule.read(path, -1)
+    first, last = spherule.read(path), spherule.read(path, np.int64(-1))
     assert spherule.read(path, -2).step == first.step == 5 and last.step == spherule.read(path, 1).step == 9
     assert last.columns["q"].tolist() == [0.25] and first.kinds.tolist() == ["1", "2"]
     origin, edges, periodic = first.cell
@@ -76,11 +78,13 @@ def test_errors_of_files_have_path_and_line(folder):
 
 
 def test_what_is_read_renders_as_the_file(folder):
+    # What is up follows from the format of a file, which arrays do not have.
+    options = {"size": (60, 40), "spp": 2, "view": "z", "up": "y"}
     ways = (
-        spherule.render(folder / "a.xyz", size=(60, 40), spp=2),
-        spherule.render(spherule.read(folder / "a.xyz"), size=(60, 40), spp=2),
+        spherule.render(folder / "a.xyz", **options),
+        spherule.render(spherule.read(folder / "a.xyz"), **options),
         spherule.render(
-            [[0, 0, 0], [0.96, 0, 0], [-0.24, 0.93, 0]], kinds=["O", "H", "H"], unit="angstrom", size=(60, 40), spp=2
+            [[0, 0, 0], [0.96, 0, 0], [-0.24, 0.93, 0]], kinds=["O", "H", "H"], unit="angstrom", **options
         ),
     )
     assert all(np.array_equal(ways[0].pixels, picture.pixels) for picture in ways)
@@ -113,6 +117,12 @@ def test_structures_of_mdanalysis(folder):
     particles = spherule.from_mdanalysis(universe.atoms)
     assert particles.positions.tolist() == [[11, 12, 13]] and particles.positions.dtype == np.float32
     assert particles.elements.tolist() == ["C"] and particles.columns["resname"].tolist() == ["GLY"]
+    assert particles.bonds is None
+    pair = mdanalysis.Universe.empty(3, trajectory=True)
+    pair.atoms.positions = np.eye(3)
+    pair.add_TopologyAttr("bonds", [(0, 1), (1, 2)])
+    assert spherule.from_mdanalysis(pair).bonds.tolist() == [[0, 1], [1, 2]]
+    assert spherule.from_mdanalysis(pair.atoms[[2, 1]]).bonds.tolist() == [[0, 1]]
     universe.dimensions = [10, 10, 10, 90, 90, 90]
     assert np.allclose(spherule.from_mdanalysis(universe).cell[1], np.eye(3) * 10)
 
@@ -125,11 +135,13 @@ def test_frames_of_gsd(tmp_path):
     frame.particles.types, frame.particles.typeid = ["A", "B"], [0, 1, 0]
     frame.particles.diameter = [1, 2, 1]
     frame.configuration.box = [6, 6, 6, 0.1, 0, 0]
+    frame.bonds.N, frame.bonds.group, frame.bonds.types, frame.bonds.typeid = 1, [[2, 0]], ["b"], [0]
     with hoomd.open(tmp_path / "a.gsd", "w") as file:
         file.append(frame)
     with hoomd.open(tmp_path / "a.gsd") as file:
         ours = spherule.from_gsd(file[0])
-    theirs = spherule.read(tmp_path / "a.gsd")
+    theirs = spherule.read(tmp_path / "a.gsd", bonds="file")
+    assert ours.bonds.tolist() == theirs.bonds.tolist() == [[0, 2]]
     assert np.array_equal(ours.positions, theirs.positions) and np.array_equal(ours.radius, theirs.radius)
     assert np.array_equal(ours.kinds, theirs.kinds)
     assert np.allclose(ours.cell[1], theirs.cell[1]) and np.allclose(ours.cell[0], theirs.cell[0])
@@ -181,8 +193,19 @@ def test_frames_of_ovito_are_those_that_are_read(ovito, folder):
         assert particles.kinds.tolist() == ours.kinds.tolist() and particles.radius is None
         assert particles.columns["Charge"].tolist() == ours.columns["q"].tolist()
         assert np.allclose(particles.cell[1], ours.cell[1]) and particles.cell[2] == tuple(ours.cell[2])
+    assert particles.bonds is None
     theirs.particles_.create_property("Color", data=[(0.5, 0, 1)])
     assert np.allclose(spherule.from_ovito(theirs).color, [[0.215861, 0, 1]], atol=1e-6)
+
+
+def test_bonds_of_ovito_cross_the_cell(ovito):
+    data = pytest.importorskip("ovito.data").DataCollection()
+    particles = data.create_particles(count=3)
+    particles.create_property("Position", data=[[0.2, 0, 0], [3.8, 0, 0], [1.5, 0, 0]])
+    data.create_cell(np.hstack([np.eye(3) * 4, np.zeros((3, 1))]), pbc=(True, True, True))
+    data.apply(pytest.importorskip("ovito.modifiers").CreateBondsModifier(cutoff=1.5))
+    found = spherule.from_ovito(data)
+    assert found.bonds.tolist() == [[0, 1], [0, 2]] and found.bond_shifts.tolist() == [[-1, 0, 0], [0, 0, 0]]
 
 
 def test_other_things_are_refused():
@@ -195,3 +218,42 @@ def test_other_things_are_refused():
     ):
         with pytest.raises(spherule.Error, match="but object has no"):
             take(object())
+
+
+def same_as_the_program(program, path, tmp_path, options, arguments):
+    out = tmp_path / "theirs.pfm"
+    subprocess.run([program, "render", path, "-o", out, "--size", "60x40", "--spp", "2", *arguments], check=True)
+    mine = tmp_path / "mine.pfm"
+    spherule.render(path, size=(60, 40), spp=2, **options).save(mine)
+    assert mine.read_bytes() == out.read_bytes()
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("name", [*FILES, "a.npy", "a.npz", "bonds.mol2", "water.gro", "zero.csv"])
+def test_pictures_of_files_are_those_of_the_program(program, folder, tmp_path, name):
+    (folder / "bonds.mol2").write_text(
+        "@<TRIPOS>MOLECULE\nm\n3 1 0 0 0\nSMALL\nNO_CHARGES\n@<TRIPOS>ATOM\n1 C1 0 0 0 C.3\n2 C2 1.5 0 0 C.3\n"
+        "3 C3 0 1.5 0.3 C.3\n@<TRIPOS>BOND\n1 2 3 1\n"
+    )
+    # The site of the charge is not drawn, and neither is what has no radius.
+    (folder / "water.gro").write_text(
+        "t\n4\n    1SOL     OW    1   0.100   0.200   0.300\n    1SOL    HW1    2   0.190   0.200   0.300\n"
+        "    1SOL    HW2    3   0.080   0.290   0.310\n    1SOL     MW    4   0.500   0.900   0.100\n   1.0 1.0 1.0\n"
+    )
+    (folder / "zero.csv").write_text("x,y,z,radius\n0,0,0,1\n5,5,5,0\n1,2,3,0.5\n")
+    same_as_the_program(program, folder / name, tmp_path, {}, [])
+    if name in ("a.xyz", "bonds.mol2", "water.gro"):
+        same_as_the_program(
+            program, folder / name, tmp_path, {"model": "ball-and-stick"}, ["--model", "ball-and-stick"]
+        )
+        same_as_the_program(
+            program, folder / name, tmp_path, {"color_by": "coordination"}, ["--color-by", "coordination"]
+        )
+
+
+def test_rows_that_are_not_drawn_keep_the_numbers_of_others(folder):
+    (folder / "zero.csv").write_text("x,y,z,radius\n0,0,0,0\n1,2,3,0.5\n")
+    with pytest.warns(spherule.SpheruleWarning):
+        picture = spherule.render(folder / "zero.csv", layers="id", size=(60, 40), spp=1)
+    ids = picture.layers["id"]
+    assert set(np.unique(ids[ids < spherule.GROUND]).tolist()) == {1}

@@ -285,7 +285,7 @@ def test_async_renders_leave_the_loop_running(cloud):
 
 def test_cancelled_tasks_end_their_renders(cloud):
     async def cancelled():
-        task = asyncio.create_task(spherule.render_async(cloud, radius=0.05, size=(300, 200), spp=1_000_000))
+        task = asyncio.create_task(spherule.render_async(cloud, radius=0.05, size=(300, 200), spp=1_000_000, stop=None))
         await asyncio.sleep(0.3)
         task.cancel()
         with pytest.raises(asyncio.CancelledError):

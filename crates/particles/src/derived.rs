@@ -81,3 +81,25 @@ impl Derived {
         Ok(())
     }
 }
+
+impl ParticleFrame {
+    /// Adds those of the named columns that follow from neighbors, `coordination` and `cluster`, as reading a file with
+    /// [`Columns::wanted`](super::Columns::wanted) does. Bonds that they need come from `source`, or from
+    /// [`BondSource::Auto`] if that is none.
+    ///
+    /// # Errors
+    ///
+    /// A message, as for [`find_bonds`](Self::find_bonds); or there are neither bonds nor elements to find them by.
+    pub fn add_derived_columns(
+        &mut self,
+        names: &[String],
+        source: &BondSource,
+    ) -> Result<(), String> {
+        let derived: Vec<Derived> = names.iter().filter_map(|name| Derived::named(name)).collect();
+        if derived.iter().any(|column| column.within.is_none()) {
+            let drops = *source == BondSource::None;
+            self.find_bonds(if drops { &BondSource::Auto } else { source })?;
+        }
+        derived.iter().try_for_each(|column| column.add(self))
+    }
+}
