@@ -237,7 +237,9 @@ impl Sequence<'_> {
             let again = self.plan.shot(index + 1).is_some_and(|next| next.frame == shot.frame);
             let frame = if again { reader.look(number)? } else { reader.take(number)? };
             let Some(frame) = frame else { break };
-            if let Some(next) = self.next_frame(index).filter(|&next| next > number) {
+            // Signals end programs that wait for a pipe, which a thread that waits for it would hinder.
+            let next = self.next_frame(index).filter(|&next| next > number);
+            if let Some(next) = next.filter(|_| !self.plan.is_stream()) {
                 reader.read_ahead(next, frame.len());
             }
             let angle = shot.turn.map(|turn| self.job.views.angle(turn));

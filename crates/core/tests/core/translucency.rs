@@ -2,6 +2,7 @@
 //! depths added up in that order.
 
 use glam::{DVec3, Vec3};
+use spherule_core::internals::body_tree::Shape;
 use spherule_core::internals::bvh::Tree;
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::capsules::{Capsule, CapsuleItem, CapsuleRow, Capsules};

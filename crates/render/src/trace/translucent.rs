@@ -52,7 +52,7 @@ pub(super) fn trace(
     let from_camera = rays.own.first() == Some(&MISS);
     let bodies = if from_camera { Bodies::visible(world) } else { Bodies::all(world) };
     let all: Vec<OpticalDepth> = (0..rays.len()).map(|row| thresholds.of(rays, row)).collect();
-    let mut job = TranslucentTrace { tracer, query, world, bodies, thresholds: all };
+    let mut job = TranslucentTrace { tracer, query, world, bodies, from_camera, thresholds: all };
     let exact = if world.cut.is_empty() {
         job.trace(rays, hits)
     } else {
@@ -76,6 +76,8 @@ struct TranslucentTrace<'a> {
     query: Query,
     world: &'a World,
     bodies: Bodies<'a>,
+    /// True if the bodies are those that the camera sees.
+    from_camera: bool,
     thresholds: Vec<OpticalDepth>,
 }
 
@@ -85,7 +87,8 @@ impl TranslucentTrace<'_> {
         if hit >= GROUND {
             return OpticalDepth::OPAQUE;
         }
-        self.world.optical_depth(self.bodies.hit_in(self.world, hit))
+        let hit = if self.from_camera { self.bodies.hit_in(self.world, hit) } else { hit };
+        self.world.optical_depth(hit)
     }
 
     /// Returns the body whose cap a ray hits at a point of a cut. The cap of a translucent body has its opacity where rays

@@ -171,11 +171,11 @@ mod tests {
                 reader.read_ahead(next, 1);
             }
             // The frames between are passed one by one where the input can be read only once.
-            if let Some(&next) = numbers.get(at + 1).filter(|&&next| next > number + 1) {
-                if let Err(error) = reader.pass(next - 1) {
-                    found.push(Err(error.to_string()));
-                    break;
-                }
+            if let Some(&next) = numbers.get(at + 1).filter(|&&next| next > number + 1)
+                && let Err(error) = reader.pass(next - 1)
+            {
+                found.push(Err(error.to_string()));
+                break;
             }
         }
         (found, reader.passed())
