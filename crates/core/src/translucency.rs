@@ -60,7 +60,7 @@ impl OpticalDepth {
         Self(self.0.saturating_add(other.0))
     }
 
-    /// What is left of a threshold after a body that does not stop the ray.
+    /// The rest of a threshold after a body that does not stop the ray.
     #[must_use]
     pub fn after(self, body: Self) -> Self {
         Self(self.0.saturating_sub(body.0))

@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 pub(crate) struct Intersection {
     /// Row of the body.
     pub(crate) row: usize,
-    /// Where the ray enters it, or leaves it if it starts inside.
+    /// The hit at which the ray enters it, or leaves it if it starts inside.
     pub(crate) root: Root,
     /// True if the ray starts inside.
     pub(crate) inside: bool,

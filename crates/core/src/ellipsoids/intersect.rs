@@ -2,7 +2,7 @@
 //!
 //! The matrix `M` takes the ellipsoid to the unit sphere, the origin, relative to the center, to `y`, and the direction to `w`, at the
 //! same distances. `|w|^2 - |y x w|^2` is the discriminant: the form of the sphere's test in which the offset of a far origin does not cancel.
-//! What cancels in `y` and `w` is in their bounds: each number has one ([`Bounded`]). A sign is taken from double precision only where
+//! The bounds of `y` and `w` cover cancellation: each number has one ([`Bounded`]). A sign is taken from double precision only where
 //! the value is beyond its bound; where one is not, [integers](crate::exact) decide all.
 
 use super::Ellipsoid;
@@ -80,7 +80,7 @@ fn decide(ray: &ExactRay, ellipsoid: &Ellipsoid) -> Result<Option<Root>, Doubt> 
     Ok(Some(Root { t: t.value, error, exact: false }))
 }
 
-/// Where a line enters and leaves an ellipsoid; `None` if it misses it.
+/// The distances at which a line enters and leaves an ellipsoid; `None` if it misses it.
 #[inline(always)]
 fn crossings(ray: &ExactRay, ellipsoid: &Ellipsoid) -> Result<Option<[Bounded; 2]>, Doubt> {
     let rows = ellipsoid.to_unit.map(BoundedVector::exact);

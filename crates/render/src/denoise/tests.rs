@@ -101,9 +101,9 @@ fn rare_bright_pixels_leave_no_stain() {
     assert!(denoised.pixels.iter().all(|pixel| pixel.iter().all(|&x| x < 1.0)));
 }
 
-#[test]
-fn squares_are_means_of_their_pixels() {
-    let (image, statistics, layers) = picture(0.3);
+/// The columns of a tile of the picture with noise of this size, squares included.
+fn columns_of(noise: f32) -> Columns {
+    let (image, statistics, layers) = picture(noise);
     let input = tile::Input {
         image: &image,
         variance: &statistics.variance,
@@ -113,6 +113,12 @@ fn squares_are_means_of_their_pixels() {
     let mut columns = Columns::default();
     columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 }, 120);
     columns.average();
+    columns
+}
+
+#[test]
+fn squares_are_means_of_their_pixels() {
+    let columns = columns_of(0.3);
     // At a corner of the picture, on a surface, and across the edge of both.
     for (x, y) in [(0, 0), (20, 30), (75, 30)] {
         let at = columns.origin() + y * columns.stride + x;
@@ -152,16 +158,7 @@ fn much_noise_is_averaged_over_squares() {
 
 #[test]
 fn lanes_do_not_change_predictions() {
-    let (image, statistics, layers) = picture(0.3);
-    let input = tile::Input {
-        image: &image,
-        variance: &statistics.variance,
-        features: &layers.pixels,
-        floor: mean_square(&image),
-    };
-    let mut columns = Columns::default();
-    columns.fill(&input, Region { x: 0, y: 0, width: 120, height: 64 }, 120);
-    columns.average();
+    let columns = columns_of(0.3);
     for first in [0, 64, 96] {
         let at = columns.origin() + 30 * columns.stride + first;
         let wide = [&predict::<F32x16>(&columns, at)[..], &[predict_by_squares(&columns, at)]];

@@ -15,7 +15,7 @@ const STEPS: f64 = 255.0;
 /// Opacity of particles that are selected without saying how much.
 pub const GHOST: f64 = 0.2;
 
-/// Where opacities come from.
+/// The source of opacities.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Opacity {
     /// The same for all particles, 0 to 1.
