@@ -6,8 +6,9 @@
 use super::CausticCasters;
 use crate::elementary::cbrtf;
 use crate::ray::MISS;
+use crate::world::World;
 use crate::world::lights::Receiver;
-use glam::{UVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
 /// Approximate number of cells.
@@ -16,12 +17,14 @@ const CELLS: f32 = 16384.0;
 /// Cells beyond the spheres on each side, as a fraction of their extent.
 const MARGIN: f32 = 0.25;
 
-/// Ratio of the bound of a cell to the largest estimate at its corners, along the axes: estimates are
-/// larger by up to the square root of 3 in other directions, and between the corners.
-const SLACK: f64 = 1.5;
+/// Ratio of the bound of a cell to the largest estimate at its corners: estimates between the corners are larger.
+const SLACK: f64 = 1.25;
 
 /// Most emitters for which there are bounds: each is estimated at each corner.
 const MAX_EMITTERS: usize = 4;
+
+/// Bounds for the normals +x, +y, +z, -x, -y and -z.
+type ByAxis = [f32; 6];
 
 /// A grid of bounds; without cells, there is no bound anywhere.
 #[derive(Clone, Debug, Default)]
@@ -30,20 +33,13 @@ pub(super) struct SampleBounds {
     cells_per_length: f32,
     cells: UVec3,
     /// By cell, x first.
-    bound: Vec<f32>,
+    bound: Vec<ByAxis>,
 }
 
 impl SampleBounds {
-    /// Computes the bounds around the spheres.
-    pub(super) fn build(casters: &CausticCasters) -> Self {
-        let corner = |sign: f64| {
-            move |caster: &super::Caster| (caster.center + sign * caster.radius).as_vec3()
-        };
-        let low = casters.casters.iter().map(corner(-1.0)).reduce(Vec3::min);
-        let high = casters.casters.iter().map(corner(1.0)).reduce(Vec3::max);
-        let (Some(low), Some(high)) = (low, high) else { return Self::default() };
-        let margin = (high - low).max_element() * MARGIN;
-        let (low, high) = (low - margin, high + margin);
+    /// Computes the bounds for the surfaces of `world` that are around the specular spheres.
+    pub(super) fn build(casters: &CausticCasters, world: &World) -> Self {
+        let Some((low, high)) = extent(casters, world) else { return Self::default() };
         let size = high - low;
         let length = cbrtf(size.x * size.y * size.z / CELLS);
         let cells_per_length = 1.0 / length;
@@ -56,28 +52,63 @@ impl SampleBounds {
         let count = corners.element_product() as usize;
         let at_corner = |index: usize| {
             let place = unflatten(index as u32, corners).as_vec3();
-            largest_estimate(casters, low + place * length)
+            largest_estimates(casters, low + place * length)
         };
-        let estimates: Vec<f64> = (0..count).into_par_iter().map(at_corner).collect();
+        let estimates: Vec<ByAxis> = (0..count).into_par_iter().map(at_corner).collect();
         let bound = (0..cells.element_product()).map(|cell| {
             let cell = unflatten(cell, cells);
             let around = (0..8).map(|i| cell + UVec3::new(i & 1, i >> 1 & 1, i >> 2));
             let around = around.map(|corner| estimates[flatten(corner, corners)]);
-            (SLACK * around.fold(0.0, f64::max)) as f32
+            let largest = around.reduce(greater).unwrap_or_default();
+            largest.map(|estimate| SLACK as f32 * estimate)
         });
         Self { low, cells_per_length, cells, bound: bound.collect() }
     }
 
-    /// Returns the bound of the number of samples at a point; infinite where there is none.
+    /// Returns the bound of the number of samples at a point with this unit normal; infinite where there is none.
+    ///
+    /// The light that falls on a surface is at most the sum of what falls on the sides of a box, each in proportion to the
+    /// normal's component along it.
     #[inline(always)]
-    pub(super) fn at(&self, point: Vec3) -> f64 {
+    pub(super) fn at(&self, point: Vec3, normal: Vec3) -> f64 {
         let place = (point - self.low) * self.cells_per_length;
         if place.cmpge(Vec3::ZERO).all() && place.cmplt(self.cells.as_vec3()).all() {
-            f64::from(self.bound[flatten(place.as_uvec3(), self.cells)])
+            let [x, y, z, minus_x, minus_y, minus_z] =
+                self.bound[flatten(place.as_uvec3(), self.cells)];
+            let along = Vec3::select(
+                normal.cmpge(Vec3::ZERO),
+                Vec3::new(x, y, z),
+                Vec3::new(minus_x, minus_y, minus_z),
+            );
+            f64::from(along.dot(normal.abs()))
         } else {
             f64::INFINITY
         }
     }
+}
+
+/// Returns the corners of a box around the surfaces that are around the specular spheres.
+fn extent(casters: &CausticCasters, world: &World) -> Option<(Vec3, Vec3)> {
+    let corner =
+        |sign: f64| move |caster: &super::Caster| (caster.center + sign * caster.radius).as_vec3();
+    let low = casters.casters.iter().map(corner(-1.0)).reduce(Vec3::min)?;
+    let high = casters.casters.iter().map(corner(1.0)).reduce(Vec3::max)?;
+    let margin = (high - low).max_element() * MARGIN;
+    let (low, high) = (low - margin, high + margin);
+    let bodies = world.bvh.bounds()?;
+    let (mut least, mut most) = (bodies.low, bodies.high);
+    if let Some(ground) = &world.ground {
+        for i in 0..8 {
+            let far = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            let corner = DVec3::new(far(0).into(), far(1).into(), far(2).into());
+            let above = ground.normal.dot(corner) - ground.height;
+            let below = (corner - ground.normal * above).as_vec3();
+            (least, most) = (least.min(below), most.max(below));
+        }
+    }
+    // So that points on a plane side of the box are inside.
+    let rounding = margin * 1e-3;
+    Some((low.max(least - rounding), high.min(most + rounding)))
 }
 
 fn flatten(place: UVec3, size: UVec3) -> usize {
@@ -88,13 +119,18 @@ fn unflatten(index: u32, size: UVec3) -> UVec3 {
     UVec3::new(index % size.x, index / size.x % size.y, index / (size.x * size.y))
 }
 
+fn greater(a: ByAxis, b: ByAxis) -> ByAxis {
+    std::array::from_fn(|axis| a[axis].max(b[axis]))
+}
+
 /// Returns the largest expected number of samples at a point, for normals along the axes.
-fn largest_estimate(casters: &CausticCasters, point: Vec3) -> f64 {
+fn largest_estimates(casters: &CausticCasters, point: Vec3) -> ByAxis {
     let normals = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
-    let at = |normal| Receiver { point, normal, own: MISS };
     let emitters = 0..casters.emitters.len();
-    let each = emitters.flat_map(|emitter| normals.map(|normal| (emitter, normal)));
-    each.map(|(emitter, normal)| casters.samples(emitter, &at(normal))).fold(0.0, f64::max)
+    normals.map(|normal| {
+        let at = Receiver { point, normal, own: MISS };
+        emitters.clone().map(|emitter| casters.samples(emitter, &at) as f32).fold(0.0, f32::max)
+    })
 }
 
 #[cfg(test)]
@@ -106,17 +142,21 @@ mod tests {
     #[test]
     fn bounds_of_cells_are_found_at_their_points() {
         let world = World::build(&default_scene(1)).unwrap();
-        let bounds = SampleBounds::build(&world.caustic_casters);
+        let bounds = SampleBounds::build(&world.caustic_casters, &world);
         let cells = bounds.cells.element_product();
         assert_eq!(cells as usize, bounds.bound.len());
         assert!((CELLS / 4.0..8.0 * CELLS).contains(&(cells as f32)), "{cells}");
         for cell in 0..cells {
             let middle = unflatten(cell, bounds.cells).as_vec3() + 0.5;
             let point = bounds.low + middle / bounds.cells_per_length;
-            assert_eq!(bounds.at(point), f64::from(bounds.bound[cell as usize]));
+            for axis in 0..6 {
+                let normal = if axis < 3 { Vec3::AXES[axis] } else { -Vec3::AXES[axis - 3] };
+                let bound = f64::from(bounds.bound[cell as usize][axis]);
+                assert_eq!(bounds.at(point, normal), bound);
+            }
         }
-        assert_eq!(bounds.at(bounds.low - 0.1), f64::INFINITY);
-        assert_eq!(bounds.at(Vec3::splat(1e6)), f64::INFINITY);
-        assert_eq!(SampleBounds::default().at(Vec3::ZERO), f64::INFINITY);
+        assert_eq!(bounds.at(bounds.low - 0.1, Vec3::X), f64::INFINITY);
+        assert_eq!(bounds.at(Vec3::splat(1e6), Vec3::X), f64::INFINITY);
+        assert_eq!(SampleBounds::default().at(Vec3::ZERO, Vec3::X), f64::INFINITY);
     }
 }

@@ -134,7 +134,7 @@ impl CausticCasters {
             bounds: SampleBounds::default(),
             mirrored_light: world.lights.samples_mirrored_light(),
         };
-        found.bounds = SampleBounds::build(&found);
+        found.bounds = SampleBounds::build(&found, world);
         found
     }
 

@@ -68,7 +68,7 @@ impl CausticCasters {
     /// receiver. The expected number of samples is proportional to the light that caustics may bring.
     pub(super) fn choose(&self, at: &Receiver, draw: f64, number: u32) -> Option<CausticChoice> {
         let (emitter, probability, draw) = self.emitter_sampler.choose_around(at, draw);
-        let bound = self.bounds.at(at.point);
+        let bound = self.bounds.at(at.point, at.normal);
         if f64::from(number) + draw >= bound {
             return None;
         }
@@ -132,7 +132,7 @@ impl CausticCasters {
                 rate *= chances.share(lane, path);
             }
             if parent == ROOT {
-                rate *= chances.samples().min(self.bounds.at(at.point));
+                rate *= chances.samples().min(self.bounds.at(at.point, at.normal));
             }
         }
         rate
