@@ -48,14 +48,16 @@ def refuse_masked(name: str, value: Any) -> None:
         raise Error(f"{name}[{row}] is masked, but must be a value; leave such rows out")
 
 
-def integer(name: str, value: Any) -> int:
-    """An integer of Python or NumPy."""
-    import operator
+def refuse_missing(name: str, array: npt.NDArray[Any]) -> None:
+    """Refuses an array of objects with None, NaN or pandas' NA in place of a name."""
+    import numpy as np
 
-    try:
-        return operator.index(value)
-    except TypeError:
-        raise Error(f"`{name}` is {value!r}, but must be an integer") from None
+    if array.dtype.kind not in "OT":
+        return
+    wrong = [not isinstance(item, (str, bytes, int, np.integer)) for item in array.tolist()]
+    if any(wrong):
+        row = wrong.index(True)
+        raise Error(f"{name}[{row}] is {array[row]}, but must be a string or an integer; leave such rows out")
 
 
 def bonds(value: Any, shifts: Any, count: int) -> tuple[npt.NDArray[np.uint32], npt.NDArray[np.int8] | None]:
@@ -128,11 +130,18 @@ def column(name: str, value: Any, count: int) -> npt.NDArray[Any]:
 
 
 def single(name: str, array: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
-    """The array in single precision; without a copy if it is already."""
+    """The array in single precision; without a copy if it is already. Refuses what is too large for it."""
     import numpy as np
 
+    if array.dtype == np.float32:
+        return array
     with np.errstate(over="ignore"):
-        return array.astype(np.float32, copy=False)
+        found: npt.NDArray[np.float32] = array.astype(np.float32)
+    if (over := np.isinf(found) & np.isfinite(array)).any():
+        place = tuple(int(index) for index in np.argwhere(over)[0])
+        at = ", ".join(map(str, place))
+        raise Error(f"{name}[{at}] is {array[place]:g}, which is too large for single precision: at most 3.4e38")
+    return found
 
 
 def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.uint32]]:
@@ -147,6 +156,7 @@ def coded(name: str, value: Any, count: int) -> tuple[list[str], npt.NDArray[np.
         raise Error(f"`{name}` has the shape {array.shape}, but must have ({count},), one entry for each position")
     if array.dtype.kind not in "iuUSOT":
         raise Error(f"`{name}` is an array of {array.dtype}, but must be one of strings or integers")
+    refuse_missing(name, array)
     known: dict[str, int] = {}
     codes = np.empty(count, np.uint32)
     for start in range(0, count, _CHUNK):
@@ -176,7 +186,8 @@ def colors(name: str, value: Any, count: int) -> npt.NDArray[Any]:
                 f"`{name}` is {value!r}, but must be a CSS color, #rrggbb, or an array of linear RGB from 0 to 1"
             )
         return np.broadcast_to(np.array(found, np.float32), (count, 3))
-    if isinstance(value, Sequence) and value and all(isinstance(item, str) for item in value):
+    texts = getattr(getattr(value, "dtype", None), "kind", None) in ("U", "T", "O")
+    if texts or (isinstance(value, Sequence) and value and all(isinstance(item, str) for item in value)):
         names, codes = coded(name, value, count)
         rows = []
         for row, word in enumerate(names):

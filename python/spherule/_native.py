@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         element_of as element_of,
         encode as encode,
         linear_color as linear_color,
+        material_names as material_names,
         merge as merge,
         missing_features as missing_features,
         packaged_levels as packaged_levels,

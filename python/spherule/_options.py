@@ -6,8 +6,6 @@ import difflib
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ._errors import Error
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -120,15 +118,15 @@ def part(given: Mapping[str, Any], names: frozenset[str]) -> dict[str, Any]:
 
 def render_table(given: Mapping[str, Any]) -> dict[str, Any]:
     """The settings of a render for the extension module."""
-    from . import _arrays, _toml
+    from . import _toml, _values
 
     text, keys = _toml.document({"render": part(given, RENDER)})
-    layers = given.get("layers") or ()
-    if isinstance(layers, str):
-        layers = (layers,)
-    threads = given.get("threads")
-    if threads is not None:
-        threads = _arrays.integer("threads", threads)
-        if not 1 <= threads <= 4096:
-            raise Error(f"`threads` is {threads!r}, but must be an integer from 1 to 4096")
-    return {"text": text, "keys": keys.get("render", []), "layers": list(layers), "threads": threads}
+    layers = _values.items("layers", given.get("layers", ()), _values.text)
+    return {"text": text, "keys": keys.get("render", []), "layers": layers, "threads": threads(given.get("threads"))}
+
+
+def threads(value: Any) -> int | None:
+    """A number of threads; None for as many as the process may use."""
+    from . import _values
+
+    return None if value is None else _values.integer("threads", value, 1, 4096)

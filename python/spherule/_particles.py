@@ -7,12 +7,15 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from . import _arrays
+from . import _arrays, _values
 from ._errors import Error, SpheruleWarning
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+
+#: Units of length.
+UNITS = ("unknown", "angstrom", "nanometer", "bohr", "micrometer", "centimeter", "meter")
 
 Cell = tuple[tuple[float, float, float], tuple[tuple[float, float, float], ...], tuple[bool, bool, bool]]
 
@@ -28,6 +31,8 @@ def _periodic(value: Any) -> tuple[bool, bool, bool]:
     import numpy as np
 
     array = np.asarray(value)
+    if array.dtype.kind not in "biu":
+        raise Error(f"`periodic` is {_values.shown(value)}, but must be True or False, or three of these")
     if array.shape == ():
         return (bool(array),) * 3
     if array.shape != (3,):
@@ -148,10 +153,13 @@ class Particles:
             raise Error("`bond_shifts` needs `bonds`")
         self._materials = None if materials is None else _arrays.coded("materials", materials, count)
         self.columns = {}
-        for name, values in (columns or {}).items():
+        for name, values in _values.table("columns", {} if columns is None else columns).items():
             self.columns[name] = _column(name, values, count)
         self.cell = _cell(cell, origin, periodic)
-        self.title, self.step, self.time, self.unit = title, step, time, unit
+        self.title = _values.text("title", title)
+        self.step = None if step is None else _values.integer("step", step)
+        self.time = None if time is None else _values.number("time", time)
+        self.unit = _values.word("unit", unit, UNITS)
         self.format = None
         self.warnings = []
 
@@ -258,7 +266,10 @@ def _options(
     topology: str | os.PathLike[str] | None,
     bonds: str | None = None,
 ) -> dict[str, Any]:
-    path = None if topology is None else os.fspath(topology)
+    path = None if topology is None else _values.path("topology", topology)
+    for name, value in (("format", format), ("columns", columns), ("atom_style", atom_style), ("bonds", bonds)):
+        if value is not None:
+            _values.text(name, value)
     return {"format": format, "columns": columns, "atom_style": atom_style, "topology": path, "bonds": bonds}
 
 
@@ -304,9 +315,10 @@ def read(
     """
     from . import _native
 
-    frame = _arrays.integer("frame", frame)
+    frame = _values.integer("frame", frame, -(2**63), 2**63 - 1)
     options = _options(format, columns, atom_style, topology, bonds)
-    table = _native.read(os.fspath(path), frame, options)
+    name = _values.path("path", path)
+    table = _native.read(name, frame, options)
     particles = Particles.__new__(Particles)
     particles.positions = table["positions"].T
     particles.radius, particles.color = table["radius"], table["color"]
@@ -314,17 +326,17 @@ def read(
     particles._materials, particles._virtual_sites = table["materials"], table["virtual_sites"]
     particles.bonds, particles.bond_shifts = table["bonds"] or (None, None)
     particles.columns = dict(table["numbers"])
-    for name, texts in table["texts"].items():
+    for label, texts in table["texts"].items():
         column = _texts(texts)
         if column is not None:
-            particles.columns[name] = column
+            particles.columns[label] = column
     particles.cell = table["cell"]
     particles.title, particles.step, particles.time = table["title"], table["step"], table["time"]
     particles.unit, particles.format = table["unit"], table["format"]
     particles.warnings = [text.replace("--frame chooses", "`frame` chooses") for text in table["warnings"]]
     for text in particles.warnings:
         if "`frame` chooses" not in text:
-            warnings.warn(f"{os.fspath(path)}: {text}", SpheruleWarning, stacklevel=2)
+            warnings.warn(f"{name}: {text}", SpheruleWarning, stacklevel=2)
     return particles
 
 
@@ -353,7 +365,7 @@ def count_frames(
     """
     from . import _native
 
-    return _native.count_frames(os.fspath(path), _options(format, columns, atom_style, topology))
+    return _native.count_frames(_values.path("path", path), _options(format, columns, atom_style, topology))
 
 
 def frames(

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from . import _values
 from ._errors import Error
 
 if TYPE_CHECKING:
@@ -115,15 +116,16 @@ class Picture:
         """
         from . import _native
 
+        bits = _values.integer("bits", bits)
         if bits not in (8, 16):
-            raise Error(f"`bits` is {bits!r}, but must be 8 or 16")
-        if quality is not None and not 1 <= quality <= 100:
-            raise Error(f"`quality` is {quality!r}, but must be 1 to 100")
+            raise Error(f"`bits` is {bits}, but must be 8 or 16")
+        if quality is not None:
+            quality = _values.integer("quality", quality, 1, 100)
         metadata = [("Software", "spherule " + _version())]
         if self.title:
             metadata.append(("Title", self.title))
         table = {
-            "path": f"picture.{format.lstrip('.')}",
+            "path": f"picture.{_values.text('format', format).lstrip('.')}",
             "exposure": float(self.exposure),
             "filmic": self._filmic(),
             "bits": bits,
@@ -152,7 +154,7 @@ class Picture:
         """
         import tempfile
 
-        name = os.fspath(path)
+        name = _values.path("path", path)
         data = self.encode(os.path.splitext(name)[1] or name, bits=bits, quality=quality)
         folder = os.path.dirname(os.path.abspath(name))
         descriptor, beside = tempfile.mkstemp(prefix=".spherule-", dir=folder)

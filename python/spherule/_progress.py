@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from . import _values
+
 Report = Callable[[float, int, float, "float | None"], object]
 
 #: Seconds before anything is shown, and between two lines.
@@ -30,7 +32,9 @@ def reporting(progress: bool | Report | None) -> Iterator[Report | None]:
     if callable(progress):
         yield progress
         return
-    if progress is None:
+    if progress is not None:
+        progress = _values.flag("progress", progress)
+    else:
         progress = _in_notebook() or sys.stderr.isatty()
     if not progress:
         yield None
@@ -51,6 +55,8 @@ def reporting(progress: bool | Report | None) -> Iterator[Report | None]:
             if seconds < _PATIENCE and done < 1.0:
                 return
             bar = tqdm(total=100, unit="%", leave=False, bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}")
+            # The render began before the bar.
+            bar.start_t -= seconds
         rate = rays / max(seconds, 1e-9) / 1e6
         text = f"{rate:.1f} Mrays/s" + ("" if error is None else f", error {100 * error:.2f} %")
         bar.set_postfix_str(text, refresh=False)

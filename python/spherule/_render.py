@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from . import _options
+from . import _options, _values
 from ._errors import Error, Interrupted, SpheruleWarning
 from ._picture import Picture
 from ._progress import reporting
@@ -34,6 +34,15 @@ def _scene(source: Any, given: dict[str, Any]) -> tuple[Scene, bool]:
     if isinstance(source, (str, os.PathLike)):
         return Scene.load(source, **looks), True
     return Scene(source, **looks), True
+
+
+def _stop(given: dict[str, Any]) -> Any:
+    from . import _native
+
+    stop = given.get("stop")
+    if stop is not None and not isinstance(stop, _native.Stop):
+        raise Error(f"`stop` is {_values.shown(stop)}, but must be a spherule.Stop")
+    return stop
 
 
 def _shown(table: dict[str, Any]) -> Picture:
@@ -87,7 +96,7 @@ def render(source: Any = None, **options: Unpack[AllOptions]) -> Picture:
         raise Error(f"`on_interrupt` is {on_interrupt!r}, but must be return or raise")
     table = _options.render_table(given)
     scene, is_own = _scene(source, given)
-    stop = given.get("stop")
+    stop = _stop(given)
     with reporting(given.get("progress")) as report:
         picture = _shown(_native.render(scene._native, table, is_own, stop, report))
     if picture.complete or (stop is not None and stop.is_set()):
@@ -121,11 +130,12 @@ def refine(source: Any = None, seconds: float = 0.5, **options: Unpack[AllOption
     given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     table = _options.render_table(given)
     scene, _ = _scene(source, given)
-    return _steps(_native.refine(scene._native, table), seconds, given.get("stop"))
+    seconds = _values.number("seconds", seconds)
+    return _steps(_native.refine(scene._native, table), seconds, _stop(given))
 
 
 def _steps(refinement: Any, seconds: float, stop: Any) -> Iterator[Picture]:
-    while (step := refinement.step(float(seconds), stop)) is not None:
+    while (step := refinement.step(seconds, stop)) is not None:
         yield _shown(step)
 
 

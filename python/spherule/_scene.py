@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from . import _arrays, _options, _toml
+from . import _arrays, _options, _toml, _values
 from ._errors import Error, SpheruleWarning
 from ._particles import Particles, read
 
@@ -93,7 +93,7 @@ class Scene:
             raise Error(f"`{sorted(idle)[0]}` needs particles; give their positions first")
         columns = None
         if particles is not None:
-            columns = _columns(particles, given, sections.get("title"))
+            columns = _columns(particles, given, sections)
         self._made(
             _native.Scene(
                 {"text": text, "folder": os.getcwd(), "keys": keys},
@@ -130,7 +130,7 @@ class Scene:
         """
         from . import _native
 
-        name = os.fspath(path)
+        name = _values.path("path", path)
         if not name.lower().endswith(".toml"):
             options.setdefault("title", os.path.basename(name))
             bonds = options.get("bonds")
@@ -161,7 +161,7 @@ class Scene:
             >>> len(Scene.load(path))
             2
         """
-        self._native.save(os.fspath(path))
+        self._native.save(_values.path("path", path))
 
     def __len__(self) -> int:
         """The number of spheres."""
@@ -228,7 +228,7 @@ def _restored(*columns: Any) -> Scene:
     return scene
 
 
-def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[str, Any]:
+def _columns(particles: Any, given: dict[str, Any], sections: Mapping[str, Any]) -> dict[str, Any]:
     """The particles for the extension module."""
     import numpy as np
 
@@ -257,19 +257,21 @@ def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[s
             there = ", ".join(particles.columns) or "none"
             raise Error(f"`radius` is {radii!r}, but there is no column `{name}`; columns are {there}")
         radii, radius = None, particles.columns[name]
-    table: dict[str, Any] = particles._table(radii, float(given.get("radius_scale", 1.0)))
+    table: dict[str, Any] = particles._table(radii, _values.number("radius_scale", given.get("radius_scale", 1.0)))
     if radius is not None:
         table["radius"] = _arrays.column("radius", radius, count)
     if "color" in over:
         table["color"] = _arrays.colors("color", over["color"], count)
     if "materials" in over:
         table["materials"] = _arrays.coded("materials", over["materials"], count)
-    if title is not None:
-        table["title"] = title
+    if "materials" in over or particles.format is None:
+        _check_materials(table["materials"], sections)
+    if (title := sections.get("title")) is not None:
+        table["title"] = _values.text("title", title)
     if (values := given.get("values")) is not None:
         if "color_by" in given:
             raise Error("give either `values` or `color_by`")
-        name = given.get("label_of_values", "values")
+        name = _values.text("label_of_values", given.get("label_of_values", "values"))
         column = _arrays.column("values", values, count)
         wrong = np.flatnonzero(~np.isfinite(column))
         if len(wrong):
@@ -280,37 +282,72 @@ def _columns(particles: Any, given: dict[str, Any], title: str | None) -> dict[s
     return table
 
 
+def _check_materials(coded: Any, sections: Mapping[str, Any]) -> None:
+    """Refuses names of materials that neither the scene nor Spherule knows; those of files are replaced with a warning."""
+    import numpy as np
+
+    from . import _native
+
+    if coded is None:
+        return
+    own = sections.get("material")
+    known = [*(own if isinstance(own, Mapping) else ()), *_native.material_names()]
+    for row, name in enumerate(coded[0]):
+        if name and name not in known and name.lower() not in _native.material_names():
+            at = f"[{int(np.argmax(coded[1] == row))}]" if len(coded[0]) > 1 else ""
+            raise Error(f"materials{at} is {name!r}, but must be a name of `material` or one of {', '.join(known)}")
+
+
 def _style(given: Mapping[str, Any]) -> dict[str, Any]:
     types = []
-    for name, style in given.get("types", {}).items():
-        unknown = set(style) - {"radius", "color", "material", "opacity"}
+    for name, look in _values.table("types", given.get("types", {})).items():
+        look = _values.table(f"types[{name!r}]", look)
+        unknown = set(look) - {"radius", "color", "material", "opacity"}
         if unknown:
             raise Error(f"type `{name}`: `{sorted(unknown)[0]}` is not radius, color, material or opacity")
-        color = style.get("color")
+        color = look.get("color")
         if color is not None:
-            color = tuple(float(value) for value in _arrays.colors("color", color, 1)[0])
-        types.append((name, style.get("radius"), color, style.get("material"), style.get("opacity")))
+            color = tuple(float(value) for value in _arrays.colors(f"types[{name!r}].color", color, 1)[0])
+        radius, opacity = (
+            None if (value := look.get(key)) is None else _values.number(f"types[{name!r}].{key}", value)
+            for key in ("radius", "opacity")
+        )
+        material = look.get("material")
+        if material is not None:
+            material = _values.text(f"types[{name!r}].material", material)
+        types.append((name, radius, color, material, opacity))
     ends = given.get("color_range")
     if ends is not None:
-        low, high = (float(end) for end in ends)
+        low, high = _values.items("color_range", ends, _values.number, 2)
         if not low <= high:
             raise Error(f"`color_range` is {low:g} to {high:g}, but the lower number comes first")
         ends = (low, high)
     names = ("select", "colors", "color_by", "color_map", "model", "bonds", "translucent")
-    style = {name: given.get(name) for name in names}
-    opacity = given.get("opacity")
-    style["opacity"] = opacity if opacity is None or isinstance(opacity, str) else repr(float(opacity))
-    radius = given.get("bond_radius")
-    style["bond_radius"] = None if radius is None else float(radius)
-    return {**style, "color_range": ends, "color_log": bool(given.get("color_log", False)), "types": types}
+    style: dict[str, Any] = {name: _optional(given, name, _values.text) for name in names}
+    through = given.get("opacity")
+    if not (through is None or isinstance(through, str)):
+        through = repr(_values.number("opacity", through))
+    style["opacity"] = through
+    style["bond_radius"] = _optional(given, "bond_radius", _values.number)
+    color_log = _values.flag("color_log", given.get("color_log", False))
+    return {**style, "color_range": ends, "color_log": color_log, "types": types}
 
 
-def _view(given: Mapping[str, Any], color_bar: bool | str | None) -> dict[str, Any]:
-    if color_bar is True:
-        color_bar = "bottom-right"
-    flags = {name: bool(given.get(name, False)) for name in ("wrap", "show_cell")}
-    names = ("preset", "view", "up", "replicate", "slice_mode")
-    slices = given.get("slices", ())
-    slices = [slices] if isinstance(slices, str) else list(slices)
-    words = {name: given.get(name) for name in names}
-    return {**words, **flags, "color_bar": color_bar or None, "slices": slices}
+def _optional(given: Mapping[str, Any], name: str, check: Callable[[str, Any], Any]) -> Any:
+    """A checked value, or None if it is not given."""
+    value = given.get(name)
+    return None if value is None else check(name, value)
+
+
+def _view(given: Mapping[str, Any], color_bar: Any) -> dict[str, Any]:
+    if color_bar is not None and not isinstance(color_bar, str):
+        color_bar = "bottom-right" if _values.flag("color_bar", color_bar) else None
+    flags = {name: _values.flag(name, given.get(name, False)) for name in ("wrap", "show_cell")}
+    words = {name: _optional(given, name, _values.text) for name in ("preset", "view", "up", "slice_mode")}
+    replicate = given.get("replicate")
+    if replicate is not None:
+        replicate = _values.items(
+            "replicate", replicate, lambda name, copies: _values.integer(name, copies, 1, 2**32 - 1), 3
+        )
+    slices = _values.items("slices", given.get("slices", ()), _values.text)
+    return {**words, **flags, "replicate": replicate, "color_bar": color_bar, "slices": slices}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Mapping
 from typing import Any
@@ -27,8 +28,11 @@ def _value(name: str, value: Any) -> str:
         value = value.tolist()
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (int, float)):
-        return repr(value)
+    if isinstance(value, float):
+        return repr(float(value))
+    if hasattr(value, "__index__"):
+        # Integers, and members of enumerations of these.
+        return repr(operator.index(value))
     if isinstance(value, str):
         return _text(value)
     if isinstance(value, os.PathLike):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from . import _arrays
+from . import _arrays, _options, _values
 from ._errors import Error
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class SphereTree:
 
         centers = _arrays.table("positions", positions)
         radii = _arrays.column("radius", radius, len(centers))
-        self._tree = _native.SphereTree(_arrays.single("positions", centers), _arrays.single("radius", radii), threads)
+        self._tree = _native.SphereTree(_arrays.single("positions", centers), _arrays.single("radius", radii), _options.threads(threads))
 
     def __len__(self) -> int:
         """The number of spheres."""
@@ -106,7 +106,8 @@ class SphereTree:
             [[0.0, 0.0, 1.0]]
         """
         rays = self._rays(origins, directions, t_max)
-        t, sphere, surfaces = self._tree.intersect(*rays, surface, threads)
+        surface = _values.flag("surface", surface)
+        t, sphere, surfaces = self._tree.intersect(*rays, surface, _options.threads(threads))
         points, normals = surfaces or (None, None)
         return Hits(t, sphere, points, normals)
 
@@ -128,7 +129,7 @@ class SphereTree:
             >>> SphereTree([[0, 0, 0]], 1).occluded([[-5, 0, 0], [-5, 0, 0]], [1, 0, 0], t_max=[9, 3]).tolist()
             [True, False]
         """
-        return self._tree.occluded(*self._rays(origins, directions, t_max), threads)
+        return self._tree.occluded(*self._rays(origins, directions, t_max), _options.threads(threads))
 
     def count(self, origins: Any, directions: Any, *, t_max: Any = None, threads: int | None = None) -> int:
         """Count the rays that hit anything.
@@ -143,7 +144,7 @@ class SphereTree:
             >>> SphereTree([[0, 0, 0]], 1).count([[-5, 0, 0], [-5, 2, 0]], [1, 0, 0])
             1
         """
-        return self._tree.count(*self._rays(origins, directions, t_max), threads)
+        return self._tree.count(*self._rays(origins, directions, t_max), _options.threads(threads))
 
     @staticmethod
     def _rays(origins: Any, directions: Any, t_max: Any) -> tuple[Any, Any, Any]:
@@ -164,4 +165,7 @@ class SphereTree:
         bound = None
         if t_max is not None:
             bound = _arrays.column("t_max", t_max, count).astype(np.float64)
+            if (wrong := np.isnan(bound)).any():
+                row = f"[{int(wrong.argmax())}]" if np.ndim(t_max) else ""
+                raise Error(f"t_max{row} is nan, but must be a number; inf is no limit")
         return tables["origins"], tables["directions"], bound

@@ -332,6 +332,8 @@ def from_pandas(
         for name in names
         if name not in used and frame[name].to_numpy().dtype.kind in "fiubOUST"
     }
+    if kinds is not None and (missing := frame[kinds].isna().to_numpy()).any():
+        raise Error(f"`{kinds}` is missing in row {int(missing.argmax())} of the data frame; leave such rows out")
     return Particles(
         tuple(np.asarray(frame[name].to_numpy()) for name in positions),
         radius=radii,

@@ -10,6 +10,7 @@ use spherule::particles::{
     self as particles, BondSource, Codes, Columns, Element, FileError, Format, FrameChoice,
     ParticleFrame, ReadOptions, TextColumn, read_frame,
 };
+use spherule::scene::particles::TypeMaterial;
 use std::path::{Path, PathBuf};
 
 /// Options for reading a particle file, by the names that the program has for them.
@@ -157,4 +158,10 @@ fn codes<'py>(py: Python<'py>, codes: &Codes) -> Bound<'py, PyArray1<u32>> {
 #[pyfunction]
 pub(crate) fn element_of(word: &str) -> Option<&'static str> {
     Element::from_symbol(word).map(Element::symbol)
+}
+
+/// The names of materials that a scene need not define.
+#[pyfunction]
+pub(crate) fn material_names() -> Vec<&'static str> {
+    TypeMaterial::ALL.map(|(name, _)| name).to_vec()
 }

@@ -14,6 +14,7 @@ use spherule::World;
 use spherule::denoise::{Asked, Choice, Denoiser, Judged, choose};
 use spherule::layers::{Layer, Layers, layers};
 use spherule::overlay::{Canvas, annotations};
+use spherule::particles::internals::memory;
 use spherule::render::{
     End, Film, Judge, Noise, Options, Region, Render, RenderError, ResumableRender,
 };
@@ -65,6 +66,21 @@ impl From<RenderError> for Fault {
     fn from(error: RenderError) -> Self {
         Self::Text(error.to_string())
     }
+}
+
+/// Bytes per pixel of the finished picture: with alpha, denoised, with its error, and of the look.
+const FINISHED: u64 = 64;
+
+/// Refuses a picture that does not fit into memory.
+fn check_memory(region: Region, statistics: bool, traced: bool) -> Result<(), Fault> {
+    let Region { width, height, .. } = region;
+    let finished = u64::from(width) * u64::from(height) * FINISHED;
+    let layers = if traced { Layers::bytes(region) } else { 0 };
+    let need = Film::bytes(region, statistics) + layers + finished;
+    memory::check(need).map_err(|shortage| {
+        let size = format!("`size` is ({width}, {height}), but such a picture");
+        Fault::Text(format!("{size} needs {shortage}; make it smaller, or render it in parts"))
+    })
 }
 
 /// A render that goes on until its end or a signal, and all that its pictures need.
@@ -131,13 +147,15 @@ impl Session {
         let settings = scene.settings.clone();
         let identity = part.is_some().then(|| Identity::of(scene));
         let samples = u64::from(width) * u64::from(height) * u64::from(settings.spp);
+        let statistics = choice.is_some() || layers.iter().any(|layer| layer.is_statistic());
+        let traced = choice.is_some() || layers.iter().any(|layer| !layer.is_statistic());
+        check_memory(region, statistics, traced)?;
         let builder = World::builder(scene.spheres.len(), samples);
         let world = if taken {
             World::build_taking(scene, builder)?
         } else {
             World::build_with(scene, builder)?
         };
-        let statistics = choice.is_some() || layers.iter().any(|layer| layer.is_statistic());
         let options = Options { region: Some(region), statistics, ..Options::default() };
         let denoiser = |choice: Choice| Denoiser::new(&world, &settings, &options, choice);
         let denoiser = choice.map(denoiser).transpose()?;
@@ -182,7 +200,7 @@ impl Session {
         // Without a pause, the watcher's flag ends the render by itself: at once, not after the next report.
         let cancel = if slice.is_some() { &pause } else { &shared.cancel };
         let options = Options { cancel: Some(cancel), progress: Some(&show), ..Options::default() };
-        let judged = |film: &Film| Some(denoiser?.judge(world, film, &options)?.noise);
+        let judged = |film: &Film| denoiser?.noise(world, film, &options);
         let judge = denoiser.is_some().then_some(&judged as &Judge);
         let end = self.render.run(world, &Options { judge, ..options });
         end != End::Cancelled
@@ -191,8 +209,13 @@ impl Session {
     /// Finishes the picture so far: denoised, with layers, look and annotations. Once the flag is set, it is neither
     /// denoised nor are there layers of camera rays, since these take longer than who interrupts wants to wait.
     pub(crate) fn show(&mut self, cancel: &AtomicBool) -> Result<Shown, Fault> {
-        let mut render = self.render.render();
         let stopped = || cancel.load(Ordering::SeqCst);
+        let has_statistics = self.layers.iter().any(|layer| layer.is_statistic());
+        let mut render = if stopped() && !has_statistics {
+            self.render.unmeasured()
+        } else {
+            self.render.render()
+        };
         let judged = self.denoiser.as_ref().filter(|_| !stopped()).and_then(|denoiser| {
             let options = self.finishing(cancel);
             denoiser.judge(&self.world, self.render.film(), &options)

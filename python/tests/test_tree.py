@@ -108,7 +108,7 @@ def test_bounds_end_searches(spheres, rays):
     [
         (lambda: spherule.SphereTree([[0, 0, 0]], [1, 2]), "`radius` has the shape (2,), but must have (1,)"),
         (lambda: spherule.SphereTree([[0, 0, 0]], -1), "radius[0] is -1, but must be finite and greater than 0"),
-        (lambda: spherule.SphereTree([[0, 0, 0]], 1e300), "radius[0] is inf, but must be finite and greater than 0"),
+        (lambda: spherule.SphereTree([[0, 0, 0]], 1e300), "radius[0] is 1e+300, which is too large for single precision"),
         (lambda: spherule.SphereTree([[0, np.nan, 0]], 1), "positions[0, 1] is NaN, but must be finite"),
         (lambda: tree().intersect([[0, 0]], [[0, 0, 1]]), "`origins` has the shape (1, 2), but must have (n, 3)"),
         (lambda: tree().occluded(np.zeros((3, 3)), np.zeros((2, 3))), "`directions` has 2 rows, but must have 3"),

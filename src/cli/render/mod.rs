@@ -284,8 +284,7 @@ fn trace(
         .denoise
         .map(|choice| Denoiser::new(world, settings, &options, choice))
         .transpose()?;
-    let judged = |film: &Film, options: &Options| denoiser.as_ref()?.judge(world, film, options);
-    let judge = |film: &Film| judged(film, &options).map(|judged| judged.noise);
+    let judge = |film: &Film| denoiser.as_ref()?.noise(world, film, &options);
     let options = Options { judge: denoiser.is_some().then_some(&judge as &Judge), ..options };
     let begin = || ResumableRender::begin_part(world, settings, &options, prepared.part.clone());
     let mut render = unfinished.map_or_else(begin, Ok)?;
@@ -320,7 +319,8 @@ fn trace(
     meter.finish();
     let resume_command = writer.filter(|_| kept).map(CheckpointWriter::resume_command);
     // Also if the render was cancelled.
-    let judged = judged(render.film(), &Options { cancel: None, ..options });
+    let finishing = Options { cancel: None, ..options };
+    let judged = denoiser.as_ref().and_then(|one| one.judge(world, render.film(), &finishing));
     Ok(Traced { render, judged, signal, resume_command })
 }
 

@@ -45,13 +45,14 @@ mod tile;
 pub use choose::{Asked, choose};
 pub use target::{Choice, Denoiser, Judged, MAX_ERROR, max_samples};
 
-use self::tile::{Workspace, tiles};
+use self::tile::{TILE, Workspace, tiles};
 use crate::film::{Film, Region, Role};
 use crate::image::Image;
 use crate::layers::Layers;
 use crate::noise::{self, Noise};
 use crate::render::{Options, Statistics};
 use rayon::prelude::*;
+use std::sync::Mutex;
 
 /// A denoised picture, or a region of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,16 +71,20 @@ pub struct Denoised {
 /// # Panics
 /// The sizes differ.
 pub fn denoise(image: &Image, statistics: &Statistics, layers: &Layers) -> Denoised {
-    denoise_until(image, statistics, layers, &Options::default())
+    let mut denoised = Denoised::black(image.width, image.height);
+    denoise_until(image, statistics, layers, &Options::default(), &mut denoised);
+    denoised
 }
 
-/// Does the same until the flag of the options is set: tiles that are not begun by then stay as they are.
+/// Writes the same to a picture of this size until the flag of the options is set: tiles that are not begun by then stay as they
+/// are. Returns false if there are any.
 fn denoise_until(
     image: &Image,
     statistics: &Statistics,
     layers: &Layers,
     options: &Options,
-) -> Denoised {
+    denoised: &mut Denoised,
+) -> bool {
     let (width, height) = (image.width, image.height);
     let pixels = image.pixels.len();
     assert_eq!((layers.width, layers.height), (width, height), "layers of another size");
@@ -92,23 +97,34 @@ fn denoise_until(
         floor: mean_square(image),
     };
     let regions: Vec<Region> = tiles(width, height).collect();
-    let done: Vec<_> = regions
-        .into_par_iter()
-        .filter(|_| !options.is_cancelled())
-        .map_init(Workspace::default, |work, region| (region, work.denoise(&input, region)))
-        .collect();
-    let mut denoised = Denoised { image: image.clone(), squared_error: vec![0.0; pixels] };
-    for (region, pixels) in done {
-        let rows = pixels.chunks(region.width as usize).zip(region.y..);
-        for (row, y) in rows {
-            let first = (y * width + region.x) as usize;
-            for (at, &(radiance, squared_error)) in (first..).zip(row) {
-                denoised.image.pixels[at] = radiance;
-                denoised.squared_error[at] = squared_error;
+    let band = (width * TILE[1]) as usize;
+    let radiance = denoised.image.pixels.chunks_mut(band);
+    let bands: Vec<_> =
+        radiance.zip(denoised.squared_error.chunks_mut(band)).map(Mutex::new).collect();
+    let done = regions.into_par_iter().map_init(Workspace::default, |work, region| {
+        if options.is_cancelled() {
+            return false;
+        }
+        let tile = work.denoise(&input, region);
+        let Ok(mut band) = bands[(region.y / TILE[1]) as usize].lock() else { return false };
+        for (row, pixels) in tile.chunks(region.width as usize).enumerate() {
+            let first = row * width as usize + region.x as usize;
+            for (at, &(radiance, squared_error)) in (first..).zip(pixels) {
+                (band.0[at], band.1[at]) = (radiance, squared_error);
             }
         }
+        true
+    });
+    done.reduce(|| true, |a, b| a && b)
+}
+
+impl Denoised {
+    /// Returns a black picture without error.
+    fn black(width: u32, height: u32) -> Self {
+        let pixels = width as usize * height as usize;
+        let image = Image { width, height, pixels: vec![[0.0; 3]; pixels] };
+        Self { image, squared_error: vec![0.0; pixels] }
     }
-    denoised
 }
 
 /// Returns whether denoising raised the error of a picture of this film, by its steering probes and more than by chance.

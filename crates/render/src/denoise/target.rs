@@ -9,7 +9,7 @@ use crate::scene::{Material, NamedMaterial};
 use crate::settings::Settings;
 use crate::world::World;
 use std::ops::RangeInclusive;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Error of the denoised picture at which a render stops if nothing else is said: 1 %.
 pub const MAX_ERROR: f64 = 0.01;
@@ -55,7 +55,7 @@ pub struct Denoiser {
 /// Layers accumulated and the last result.
 struct Progress {
     layers: ProgressiveLayers,
-    /// The last result, and the number of samples that it was made from.
+    /// The last result, unless it was returned, and the number of samples that it was made from.
     last: Option<(u64, Judged)>,
 }
 
@@ -102,26 +102,48 @@ impl Denoiser {
     /// # Panics
     /// The film is of another region, or without sums of squares.
     pub fn judge(&self, world: &World, film: &Film, options: &Options) -> Option<Judged> {
+        let mut progress = self.update(world, film, options)?;
+        progress.last.take().map(|(_, judged)| judged)
+    }
+
+    /// Returns the error of the picture that [`Denoiser::judge`] returns, which is kept for it.
+    ///
+    /// # Panics
+    /// The same.
+    pub fn noise(&self, world: &World, film: &Film, options: &Options) -> Option<Noise> {
+        let progress = self.update(world, film, options)?;
+        progress.last.as_ref().map(|(_, judged)| judged.noise)
+    }
+
+    /// Makes the last result that of this film.
+    fn update(
+        &self,
+        world: &World,
+        film: &Film,
+        options: &Options,
+    ) -> Option<MutexGuard<'_, Progress>> {
         let least = film.tiles.iter().map(|tile| tile.samples).min().filter(|&least| least > 0)?;
         // A thread that panicked with the lock has ended the render.
         let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         let total = film.tiles.iter().map(|tile| u64::from(tile.samples) * u64::from(tile.len()));
         let total = total.sum();
+        if progress.last.as_ref().is_some_and(|(of, _)| *of == total) {
+            return Some(progress);
+        }
         let mean = Estimate { value: film.mean(), ..Estimate::default() };
         let before = Noise::new(noise::squared_error(film), film.pixels(), mean);
         if least == 1 {
-            return Some(Judged { denoised: None, before, noise: before });
-        }
-        if let Some((_, judged)) = progress.last.as_ref().filter(|(of, _)| *of == total) {
-            return Some(judged.clone());
+            progress.last = Some((total, Judged { denoised: None, before, noise: before }));
+            return Some(progress);
         }
         let settings = Settings { spp: least.min(SAMPLES), ..self.settings.clone() };
         if !progress.layers.refine(world, &settings, options) {
             return None;
         }
-        let judged = self.judge_picture(film, &progress.layers.layers(), before, options)?;
-        progress.last = Some((total, judged.clone()));
-        Some(judged)
+        let layers = progress.layers.layers();
+        let judged = self.judge_picture(film, &layers, before, options)?;
+        progress.last = Some((total, judged));
+        Some(progress)
     }
 
     fn judge_picture(
@@ -131,14 +153,13 @@ impl Denoiser {
         before: Noise,
         options: &Options,
     ) -> Option<Judged> {
-        if options.is_cancelled() {
-            return None;
-        }
+        let go_on = || (!options.is_cancelled()).then_some(());
+        go_on()?;
         let image = film.resolve();
-        let denoised = denoise_until(&image, &Statistics::of(film), layers, options);
-        if options.is_cancelled() {
-            return None;
-        }
+        go_on()?;
+        let statistics = Statistics::of(film);
+        let mut denoised = Denoised::black(image.width, image.height);
+        denoise_until(&image, &statistics, layers, options, &mut denoised).then_some(())?;
         if self.choice == Choice::UnlessWorse && is_worse(film, &image, &denoised.image) {
             return Some(Judged { denoised: None, before, noise: before });
         }

@@ -61,10 +61,15 @@ fn cancelled_denoising_leaves_the_tiles_that_remain() {
     let until = |flag| {
         let flag = AtomicBool::new(flag);
         let options = Options { cancel: Some(&flag), ..Options::default() };
-        denoise_until(&image, &statistics, &layers, &options).image
+        let mut denoised =
+            Denoised { image: image.clone(), squared_error: vec![0.0; image.pixels.len()] };
+        let is_whole = denoise_until(&image, &statistics, &layers, &options, &mut denoised);
+        (is_whole, denoised)
     };
-    assert_eq!(until(true), image);
-    assert_ne!(until(false), image);
+    let (is_whole, denoised) = until(true);
+    assert!(!is_whole && denoised.image == image);
+    let (is_whole, denoised) = until(false);
+    assert!(is_whole && denoised == denoise(&image, &statistics, &layers));
 }
 
 #[test]
@@ -236,12 +241,11 @@ fn targets_are_those_of_the_denoised_picture() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let denoiser = Denoiser::new(&world, &settings, &options, Choice::Always).unwrap();
-            let judged = |film: &Film| denoiser.judge(&world, film, &options);
-            let judge = |film: &Film| judged(film).map(|judged| judged.noise);
+            let judge = |film: &Film| denoiser.noise(&world, film, &options);
             let options = Options { judge: Some(&judge), ..options };
             let mut render = ResumableRender::begin(&world, &settings, &options).unwrap();
             render.run(&world, &options);
-            (judged(render.film()).unwrap(), render.samples().total)
+            (denoiser.judge(&world, render.film(), &options).unwrap(), render.samples().total)
         })
     };
     let (one, samples) = run(1, Traversal::Auto);

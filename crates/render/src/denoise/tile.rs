@@ -10,7 +10,7 @@ use crate::lanes::{F32x16, Lanes, MAX_LANES, Mask};
 use crate::layers::Features;
 
 /// Size of a tile. Predictions are also needed for [`BORDER`] pixels around it, which together fill rows of lanes.
-const TILE: [u32; 2] = [120, 64];
+pub(super) const TILE: [u32; 2] = [120, 64];
 
 /// Distance within which errors are averaged before the choice, and choices after it.
 const ERROR_RADIUS: usize = 3;

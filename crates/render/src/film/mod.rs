@@ -205,8 +205,10 @@ impl Film {
 
     /// Returns the mean radiance over pixels and channels.
     pub fn mean(&self) -> f64 {
-        let means = self.tiles.iter().flat_map(|tile| tile.sums.means(tile.samples));
-        means.flatten().sum::<f64>() / (3.0 * self.pixels() as f64)
+        let of_tile = |tile: &Tile| tile.sums.means(tile.samples).flatten().sum::<f64>();
+        // In the order of the tiles, so that the sum has the same bits for any number of threads.
+        let sums: Vec<f64> = self.tiles.par_iter().map(of_tile).collect();
+        sums.iter().sum::<f64>() / (3.0 * self.pixels() as f64)
     }
 
     /// Returns the mean radiance of each pixel; black without samples.

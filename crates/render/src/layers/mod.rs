@@ -18,6 +18,7 @@ use crate::render::{self, Options, RenderError, Statistics};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::Settings;
 use crate::world::World;
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -53,7 +54,7 @@ pub enum Layer {
 }
 
 /// Features of a pixel: of the first hits of its rays, for any material.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Zeroable, Serialize, Deserialize)]
 pub struct Features {
     /// Mean of [`World::albedo`], linear RGB, 0..=1; rays that hit nothing count as black.
     pub albedo: [f32; 3],

@@ -91,7 +91,8 @@ impl ProgressiveLayers {
     pub fn layers(&self) -> Layers {
         let Region { x: left, width, height, .. } = self.region;
         let in_row = width as usize;
-        let mut pixels = vec![Features::NONE; in_row * height as usize];
+        // Zeros are memory that is not there before a thread writes to it.
+        let mut pixels = bytemuck::zeroed_vec::<Features>(in_row * height as usize);
         let rows = pixels.par_chunks_mut(in_row * TILE as usize);
         let rows = rows.zip(self.tiles.par_chunks(width.div_ceil(TILE) as usize));
         rows.for_each(|(pixels, tiles)| {

@@ -2,6 +2,7 @@
 
 use crate::film::{Film, Pilot, Reading, Role, Tile};
 use crate::image::Image;
+use rayon::prelude::*;
 use std::ops::Add;
 
 /// Minimum fraction of renders whose error is below [`Noise::bound`].
@@ -110,9 +111,13 @@ impl Add for Estimate {
 
 /// Estimates the sum of the squared errors of all pixels, averaged over channels.
 pub fn squared_error(film: &Film) -> SquaredError {
-    let readings = film.tiles.iter().flat_map(|tile| tile.probes.readings(Role::Judge));
-    let measured =
-        readings.map(|reading| Estimate::of_squared(&reading)).fold(Estimate::default(), Add::add);
+    let of_tile = |tile: &Tile| {
+        let readings = tile.probes.readings(Role::Judge);
+        readings.map(|reading| Estimate::of_squared(&reading)).fold(Estimate::default(), Add::add)
+    };
+    // In the order of the tiles, so that the sum has the same bits for any number of threads.
+    let tiles: Vec<Estimate> = film.tiles.par_iter().map(of_tile).collect();
+    let measured = tiles.into_iter().fold(Estimate::default(), Add::add);
     let missing = missing(film);
     SquaredError { all: measured + missing, expected: missing.value }
 }

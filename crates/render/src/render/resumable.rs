@@ -179,14 +179,20 @@ impl ResumableRender {
     /// Returns the image so far with its statistics.
     pub fn render(&self) -> Render {
         let (film, settings) = (&self.state.film, &self.settings);
-        let statistics = self.statistics.then(|| Statistics::of(film));
         let measured = settings.has_target() || self.statistics;
+        let noise = measured.then(|| self.state.noise(settings.until_error.is_some())).flatten();
+        let statistics = self.statistics.then(|| Statistics::of(film));
+        Render { noise, statistics, ..self.unmeasured() }
+    }
+
+    /// Returns the same without statistics and error, which take a while for large pictures.
+    pub fn unmeasured(&self) -> Render {
         let Totals { counters, times, tasks, elapsed } = self.totals;
         Render {
-            image: film.resolve(),
+            image: self.state.film.resolve(),
             samples: self.samples(),
-            noise: measured.then(|| self.state.noise(settings.until_error.is_some())).flatten(),
-            statistics,
+            noise: None,
+            statistics: None,
             counters,
             times,
             tasks,
