@@ -118,7 +118,7 @@ pub mod scene {
         pub use spherule_render::scene::particles::{
             BondRules, BondSource, Bonds, Cell, Coloring, ColumnColors, ElementColors, Legend,
             Model, Opacity, Orientation, ParticleStyle, Particles, PeriodicError, Selection,
-            TypeMaterial, TypeStyle, UpReason, of_frame, read,
+            Trails, TypeMaterial, TypeStyle, UpReason, of_frame, read,
         };
     }
 }

@@ -60,6 +60,9 @@ pub(super) struct ParticleArgs {
     /// Average the positions of each frame with those of N frames before and N after it, as far as there are any
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     smooth: Option<u32>,
+    /// Draw where each particle was in the N frames before, as far as there are any, as thin sticks of its color
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    trail: Option<u32>,
 }
 
 fn format(name: &str) -> Result<Format, String> {
@@ -91,6 +94,7 @@ impl ParticleArgs {
             whole: self.whole,
             align: self.align.as_deref().map(Selection::align_by),
             smooth: self.smooth.unwrap_or(0),
+            trail: self.trail.unwrap_or(0),
             ..ReadOptions::default()
         }
     }
@@ -138,6 +142,9 @@ impl ParticleArgs {
         with_text::insert(&mut list, "align", &self.align);
         if let Some(frames) = self.smooth {
             list.insert("smooth".to_owned(), json!(frames));
+        }
+        if let Some(frames) = self.trail {
+            list.insert("trail".to_owned(), json!(frames));
         }
         list
     }

@@ -6,6 +6,7 @@ use crate::Rgb;
 use crate::bonds::Bonds;
 use crate::categories::retain;
 use crate::cell::Cell;
+use crate::trails::Trails;
 use glam::DVec3;
 
 /// The particles of one frame, with the frame's metadata. Row `i` of every column belongs to
@@ -36,6 +37,8 @@ pub struct ParticleFrame {
     pub roles: Vec<(Role, String)>,
     /// Bonds, if they were asked for and there are any.
     pub bonds: Option<Bonds>,
+    /// Earlier positions, if they were asked for and there are any.
+    pub trails: Trails,
     /// The simulation cell, if the file has one.
     pub cell: Option<Cell>,
     /// The file's title or comment; empty if it has none.
@@ -135,6 +138,7 @@ impl ParticleFrame {
         let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
         codes.for_each(|codes| codes.retain(keep));
         self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
+        self.trails.retain(keep);
     }
 
     /// Gathers rows: row `i` becomes the former row `rows[i]`.
@@ -147,6 +151,7 @@ impl ParticleFrame {
         let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
         codes.for_each(|codes| codes.pick(rows));
         self.bonds.iter_mut().for_each(|bonds| bonds.pick(rows));
+        self.trails.pick(rows);
     }
 
     /// Frees the unused capacity of columns.

@@ -86,6 +86,7 @@ mod suggest;
 mod superposition;
 mod text;
 mod topology;
+mod trails;
 mod undrawn;
 mod units;
 mod utf16;
@@ -107,6 +108,7 @@ pub use progress::ReadProgress;
 pub use reader::{FrameCount, Frames, count_frames, read_frame};
 pub use shared_names::SharedNames;
 pub use superposition::AlignBy;
+pub use trails::Trails;
 
 /// A linear RGB triple with the primaries of sRGB.
 pub type Rgb = glam::Vec3;

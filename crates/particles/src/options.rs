@@ -293,6 +293,8 @@ pub struct ReadOptions {
     pub whole: bool,
     /// Number of frames before and after each one whose positions are averaged.
     pub smooth: u32,
+    /// Number of frames before each one whose positions it has as [`Trails`](crate::Trails).
+    pub trail: u32,
     /// The particles by which each frame is superposed on the first one; `None`: frames stay where they are.
     pub align: Option<AlignBy>,
     /// True if a frame without spheres is valid, as in a trajectory, and not an error.
@@ -324,6 +326,7 @@ impl ReadOptions {
             bonds: _,
             whole: _,
             smooth: _,
+            trail: _,
             align: _,
             allow_empty: _,
             progress: _,
@@ -356,6 +359,7 @@ impl Default for ReadOptions {
             bonds: BondSource::None,
             whole: false,
             smooth: 0,
+            trail: 0,
             align: None,
             allow_empty: false,
             progress: ReadProgress::default(),

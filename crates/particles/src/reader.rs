@@ -9,6 +9,7 @@ use super::smoothing::Window;
 use super::source::{Source, is_standard_input};
 use super::superposition::{AlignBy, Reference};
 use super::topology::{self, Joined};
+use super::trails::History;
 use super::{
     cfg, cif, csv, dcd, gro, gromacs, gsd, hdf5, lammps, mol2, molfile, netcdf, numpy, pdb, ply,
     poscar, pqr, psf, sniff, text, xsf, xyz,
@@ -26,6 +27,7 @@ pub struct Frames {
     whole: bool,
     derived: Vec<Derived>,
     smoothing: Option<Window>,
+    trails: Option<History>,
     /// Options with which the first frame is read, and it itself once it is needed.
     align: Option<Alignment>,
     /// Number of frames that were read or skipped.
@@ -55,7 +57,7 @@ impl Frames {
             inner.columns.wanted.extend_from_slice(align.columns());
         }
         let columns = inner.columns.clone();
-        if options.smooth > 0 {
+        if options.smooth > 0 || options.trail > 0 {
             // Rows of LAMMPS files are sorted by them.
             inner.columns.wanted.push(topology::ID.to_owned());
         }
@@ -71,9 +73,10 @@ impl Frames {
             whole: options.whole,
             derived,
             smoothing: (options.smooth > 0).then(|| Window::new(options.smooth)),
+            trails: (options.trail > 0).then(|| History::new(options.trail)),
             align: options.align.clone().map(|by| Alignment {
                 by,
-                options: ReadOptions { align: None, columns, ..options.clone() },
+                options: ReadOptions { align: None, trail: 0, columns, ..options.clone() },
                 reference: None,
             }),
             passed: 0,
@@ -88,6 +91,9 @@ impl Frames {
             None => self.reader.next()?,
         };
         let Some(mut frame) = next else { return Ok(None) };
+        if self.trails.is_some() && self.smoothing.is_none() {
+            topology::sort(&mut frame);
+        }
         frame.add_undrawn_columns();
         if frame.format.lacks_names() && frame.kinds.codes.is_empty() && !frame.is_empty() {
             let warning =
@@ -115,6 +121,9 @@ impl Frames {
         if let Some(alignment) = &mut self.align {
             alignment.apply(&self.path, self.passed == 0, &mut frame)?;
         }
+        if let Some(history) = &mut self.trails {
+            history.add(&self.path, &mut frame)?;
+        }
         self.passed += 1;
         if self.drops_bonds {
             frame.bonds = None;
@@ -135,6 +144,11 @@ impl Frames {
     ///
     /// The file cannot be read, or the part that was parsed is malformed.
     pub fn skip_frame(&mut self) -> Result<bool, FileError> {
+        if self.trails.is_some() && !self.failed {
+            let frame = self.next_frame();
+            self.failed = frame.is_err();
+            return frame.map(|frame| frame.is_some());
+        }
         let skipped = match &mut self.smoothing {
             _ if self.failed => Ok(false),
             Some(window) => window.next(&mut *self.reader).map(|frame| {
@@ -259,8 +273,8 @@ pub fn read_frame(path: &Path, options: &ReadOptions) -> Result<ParticleFrame, F
         FrameChoice::Last => count_frames(path, options)?.saturating_sub(1),
     };
     let mut frames = Frames::open(path, options)?;
-    // Frames that are averaged with the chosen one are read.
-    let passed = index.saturating_sub(u64::from(options.smooth));
+    // Frames that are averaged with the chosen one, or in its trails, are read.
+    let passed = index.saturating_sub(u64::from(options.smooth) + u64::from(options.trail));
     for before in 0..index {
         let skipped = if before < passed { frames.pass_frame() } else { frames.skip_frame() };
         if !skipped? {
@@ -311,7 +325,7 @@ impl FrameCount {
     ///
     /// The file cannot be read, or its format is unknown.
     pub fn of(path: &Path, options: &ReadOptions, most: u64) -> Result<Self, FileError> {
-        let mut frames = Frames::open(path, options)?;
+        let mut frames = Frames::open(path, &ReadOptions { trail: 0, ..options.clone() })?;
         let mut whole = 0;
         while whole < most {
             match frames.skip_frame() {

@@ -5,9 +5,21 @@ use super::frame_reader::FrameReader;
 use super::topology;
 use crate::FileError;
 use crate::bonds;
+use crate::cell::Cell;
 use glam::DVec3;
 use std::collections::VecDeque;
 use std::path::Path;
+
+/// Returns the nearest periodic image of a vector.
+pub(crate) fn nearest_image(vector: DVec3, cell: Option<&Cell>) -> DVec3 {
+    match cell {
+        Some(cell) if vector.is_finite() => {
+            let edges = bonds::nearest(vector, cell).map(|edge| edge as f64);
+            vector + cell.matrix() * DVec3::from(edges)
+        }
+        _ => vector,
+    }
+}
 
 /// Frames around the next one.
 pub(crate) struct Window {
@@ -77,14 +89,7 @@ impl Window {
                 let mut place = own;
                 for other in side {
                     let away = self.frames[other].position(row) - place;
-                    let shift = match &cell {
-                        Some(cell) if away.is_finite() => {
-                            let edges = bonds::nearest(away, cell).map(|edge| edge as f64);
-                            cell.matrix() * DVec3::from(edges)
-                        }
-                        _ => DVec3::ZERO,
-                    };
-                    place += away + shift;
+                    place += nearest_image(away, cell.as_ref());
                     sum += place - own;
                 }
             }

@@ -158,3 +158,54 @@ fn frames_are_superposed_on_the_first() {
     assert!((all[1].y[2] - 2.0).abs() < 1e-12 && all[1].z[2].abs() < 1e-12);
     assert!(read_frame(&turning.path, &options("1", 1)).is_ok());
 }
+
+#[test]
+fn trails_are_the_positions_before_as_nearest_images() {
+    let moving = file(&dump(6));
+    let of = |trail: u32, smooth: u32, frame: &str| {
+        let frame = frame.parse().expect("a frame");
+        let options = ReadOptions { trail, smooth, frame, ..ReadOptions::default() };
+        read_frame(&moving.path, &options).expect("a frame")
+    };
+    let along_x = |frame: &ParticleFrame, row: usize| -> Vec<f64> {
+        frame.trails.of(row).map(|step| (step.x * 1e9).round() / 1e9 + 0.0).collect()
+    };
+    // The first particle moves by half, over the side of the cell; rows change places from frame to frame.
+    let frame = of(3, 0, "4");
+    assert_eq!(along_x(&frame, 0), [-0.5, -1.0, -1.5]);
+    assert_eq!(along_x(&frame, 1), [0.0; 3]);
+    assert!(frame.trails.of(0).all(|step| step.y == 0.0 && step.z == 0.0));
+    // No further back than to the first frame, and without a trail in it.
+    assert_eq!(along_x(&of(9, 0, "2"), 0), [-0.5, -1.0]);
+    assert!(of(9, 0, "0").trails.is_empty() && of(0, 0, "4").trails.is_empty());
+    // Of smoothed frames, they are the smoothed positions.
+    assert_eq!(along_x(&of(2, 1, "3"), 0), [-0.5, -1.0]);
+    // Frames that are passed over count.
+    let options = ReadOptions { trail: 2, ..ReadOptions::default() };
+    let mut frames = Frames::open(&moving.path, &options).expect("frames");
+    assert!((0..3).all(|_| frames.skip_frame().expect("a frame")));
+    let next = frames.next().expect("a frame").expect("a frame");
+    assert_eq!(along_x(&next, 0), [-0.5, -1.0]);
+    assert_eq!(spherule_particles::count_frames(&moving.path, &options).expect("frames"), 6);
+}
+
+#[test]
+fn trails_end_where_the_number_of_particles_changes() {
+    let growing = file("1\n\nC 0 0 0\n2\n\nC 0 0 0\nC 1 0 0\n2\n\nC 0 0 3\nC 1 0 0\n");
+    let options = ReadOptions { trail: 5, ..ReadOptions::default() };
+    let frames = Frames::open(&growing.path, &options).expect("frames");
+    let steps: Vec<usize> =
+        frames.map(|frame| frame.expect("a frame").trails.steps.len()).collect();
+    assert_eq!(steps, [0, 0, 1]);
+}
+
+#[test]
+fn trails_follow_the_rows_of_their_particles() {
+    let steps = vec![[vec![1.0, 2.0, 3.0], vec![4.0, 5.0, 6.0], vec![7.0, 8.0, 9.0]]];
+    let mut trails = spherule_particles::Trails { steps };
+    trails.retain(&[true, false, true]);
+    trails.repeat(2);
+    trails.scale(2.0);
+    let rows: Vec<[f64; 3]> = (0..4).flat_map(|row| trails.of(row)).map(|v| v.to_array()).collect();
+    assert_eq!(rows, [[2.0, 8.0, 14.0], [6.0, 12.0, 18.0], [2.0, 8.0, 14.0], [6.0, 12.0, 18.0]]);
+}

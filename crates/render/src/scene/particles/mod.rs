@@ -19,7 +19,7 @@ pub use spheres::Particles;
 pub use spherule_particles::{
     AlignBy, BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice,
     FrameCount, Frames, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions,
-    ReadProgress, Role, SharedNames, TextColumn, count_frames, read_frame,
+    ReadProgress, Role, SharedNames, TextColumn, Trails, count_frames, read_frame,
 };
 pub use style::{
     Category, Coloring, ColumnColors, ElementColors, GHOST, Legend, Opacity, ParticleStyle,

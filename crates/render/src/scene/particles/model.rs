@@ -25,6 +25,9 @@ const STICK: f64 = 0.1;
 /// Radius of sticks without balls, likewise: 0.25 angstrom for carbon, as in `PyMOL`.
 const LICORICE: f64 = 0.15;
 
+/// Radius of the sticks of trails, relative to that of the particle.
+const TRAIL: f64 = 0.25;
+
 impl Model {
     /// All models, with their names in options.
     pub const ALL: [(&'static str, Self); 3] = [
@@ -71,9 +74,6 @@ impl Particles {
     /// Materials that sticks cannot have are replaced by the first one.
     pub(in crate::scene) fn sticks(&self, materials: &[NamedMaterial], rows: &[u32]) -> Sticks {
         let mut sticks = Sticks::default();
-        let Some(bonds) = self.bonds.as_ref().filter(|_| self.stick_radius > 0.0) else {
-            return sticks;
-        };
         let solid = |row: u32| {
             let material = materials.get(row as usize).map(|named| &named.material);
             !matches!(material, Some(Material::Dielectric { .. } | Material::Emitter { .. }))
@@ -81,6 +81,12 @@ impl Particles {
         let material = |sphere: usize| {
             let row = rows.get(self.spheres.material_of(sphere) as usize).copied().unwrap_or(0);
             if solid(row) { row } else { 0 }
+        };
+        if !self.trails.is_empty() {
+            self.append_trails(material, &mut sticks);
+        }
+        let Some(bonds) = self.bonds.as_ref().filter(|_| self.stick_radius > 0.0) else {
+            return sticks;
         };
         for bond in 0..bonds.len() {
             let ends = [bonds.first[bond], bonds.second[bond]].map(|row| row as usize);
@@ -97,6 +103,24 @@ impl Particles {
             }
         }
         sticks
+    }
+
+    /// Appends the trails as chains of sticks, from each sphere back. A chain ends at a position that is not finite.
+    fn append_trails(&self, material: impl Fn(usize) -> u32, sticks: &mut Sticks) {
+        for row in 0..self.spheres.len() {
+            let center = self.spheres.center(row);
+            let (radius, color) = (self.spheres.radius[row], self.spheres.color_of(row));
+            let mut last = center;
+            for place in self.trails.of(row).map(|vector| center + vector) {
+                if !place.is_finite() {
+                    break;
+                }
+                if place != last {
+                    sticks.push([last, place], TRAIL * radius, material(row), [color; 2]);
+                }
+                last = place;
+            }
+        }
     }
 }
 
@@ -148,6 +172,35 @@ mod tests {
         Model::Licorice.apply(&mut own, Some(0.3));
         let scene = Scene::of_particles(own, "");
         assert_eq!((scene.spheres.radius, scene.sticks.radius), (vec![0.3; 3], vec![0.3; 3]));
+    }
+
+    #[test]
+    fn trails_become_chains_of_sticks() {
+        let mut own = particles();
+        own.bonds = None;
+        // The second particle stands still in the last frame, and the third has no known position before that.
+        own.trails.steps = vec![
+            [vec![-1.0, 0.0, 1.0], vec![0.0; 3], vec![0.0; 3]],
+            [vec![-3.0, 2.0, f64::NAN], vec![1.0; 3], vec![0.0; 3]],
+        ];
+        let scene = Scene::of_particles(own, "");
+        let sticks = &scene.sticks;
+        let ends: Vec<[[f64; 3]; 2]> =
+            (0..sticks.len()).map(|row| sticks.ends(row).map(|end| end.to_array())).collect();
+        assert_eq!(
+            ends,
+            [
+                [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+                [[0.0, 0.0, 0.0], [-2.0, 1.0, 0.0]],
+                [[3.0, 0.0, 0.0], [5.0, 1.0, 0.0]],
+                [[9.0, 0.0, 0.0], [10.0, 0.0, 0.0]],
+            ]
+        );
+        assert_eq!(sticks.colors[2], [Rgb::Y; 2]);
+        let thin = |(row, radius): (usize, &f64)| {
+            *radius == TRAIL * scene.spheres.radius[[0, 0, 1, 2][row]]
+        };
+        assert!(sticks.radius.iter().enumerate().all(thin));
     }
 
     #[test]

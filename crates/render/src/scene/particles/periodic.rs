@@ -87,6 +87,7 @@ impl Particles {
         spheres.material = spheres.material.repeat(count);
         spheres.color = spheres.color.repeat(count);
         self.repeat_columns(count);
+        self.trails.repeat(count);
         if let Some(bonds) = &mut self.bonds {
             bonds.replicate(self.spheres.len() / count, copies);
         }
@@ -124,7 +125,7 @@ impl Particles {
         let texts = self.texts.iter().map(|column| &column.codes);
         let codes = texts.chain([&self.kinds.codes]).filter(|codes| !codes.is_empty());
         let codes: usize = codes.map(Codes::width).sum();
-        let numbers = size_of::<f64>() * self.numbers.len();
+        let numbers = size_of::<f64>() * (self.numbers.len() + 3 * self.trails.steps.len());
         // Bonds are sorted beside their columns; they are spread over the particles.
         let bonds = self.bonds.as_ref().map_or(0, Bonds::len) * 3 * size_of::<[u32; 3]>();
         let bonds = bonds.div_ceil(self.spheres.len().max(1));

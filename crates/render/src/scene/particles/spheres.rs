@@ -2,7 +2,7 @@
 
 use super::radii::{FoundRadii, half_spacing, radii};
 use super::style::{Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::{Bonds, Cell, LengthUnit, NumberColumn, ParticleFrame};
+use super::{Bonds, Cell, LengthUnit, NumberColumn, ParticleFrame, Trails};
 use super::{Format, ReadOptions, Role};
 use super::{Kinds, TextColumn};
 use crate::color::category;
@@ -30,6 +30,9 @@ pub struct Particles {
     pub bonds: Option<Bonds>,
     /// Radius of the sticks that are drawn for bonds ([`Model`](super::Model)); 0: none are drawn.
     pub stick_radius: f64,
+    /// Earlier positions of the spheres, which are drawn as sticks; empty if they were not asked for
+    /// ([`ReadOptions::trail`]).
+    pub trails: Trails,
     /// The cell of the simulation, scaled like positions.
     pub cell: Option<Cell>,
     /// Format of the file.
@@ -93,6 +96,7 @@ impl Particles {
         let texts = self.texts.iter_mut().map(|column| &mut column.codes);
         texts.chain([&mut self.kinds.codes]).for_each(|codes| codes.retain(keep));
         self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
+        self.trails.retain(keep);
     }
 }
 
@@ -122,6 +126,7 @@ pub(super) fn spheres(
     if options.scale != 1.0 {
         let columns = [&mut frame.x, &mut frame.y, &mut frame.z];
         columns.into_iter().flatten().for_each(|value| *value *= options.scale);
+        frame.trails.scale(options.scale);
     }
     let FoundRadii { radius, guessed } = radii(path, &mut frame, options, &mut warnings)?;
     frame.radius = radius;
@@ -156,6 +161,7 @@ pub(super) fn spheres(
         texts: frame.texts,
         bonds: frame.bonds,
         stick_radius: 0.0,
+        trails: frame.trails,
         cell,
         format: frame.format,
         columns: frame.columns,
