@@ -12,12 +12,14 @@ use spherule_render::world::World;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Returns plastic and glass under a uniform sky, with tiles that see only the sky.
+/// Returns plastic, glass and a translucent sphere under a uniform sky, with tiles that see only the sky.
 fn still_life() -> Scene {
     let mut scene = furnace();
     sphere(&mut scene, [-0.5, 0.0, 0.0], 1.0, Material::Plastic { color: Rgb::ONE, ior: 1.5 });
     sphere(&mut scene, [0.9, 0.5, 0.3], 0.7, lambertian(0.5));
     sphere(&mut scene, [0.3, -1.0, 0.5], 0.5, glass(1.5));
+    let surface = Box::new(lambertian(0.7));
+    sphere(&mut scene, [-0.2, 1.1, 0.9], 0.5, Material::Translucent { opacity: 0.4, surface });
     look(&mut scene, DVec3::new(1.0, 2.0, 9.0), DVec3::ZERO, 45.0);
     scene.settings.roulette = Roulette::Throughput;
     scene.settings.filter = Filter::Gaussian;

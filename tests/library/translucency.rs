@@ -6,7 +6,7 @@ use crate::common::{
 };
 use glam::DVec3;
 use spherule_render::layers::{Layer, layers};
-use spherule_render::render::Options;
+use spherule_render::render::{Options, preview};
 use spherule_render::scene::{
     Integrator, Light, Material, Rgb, Scene, Slice, SliceMode, Spheres, Sticks, write,
 };
@@ -39,6 +39,26 @@ fn the_background_is_attenuated_by_every_body() {
             scene.settings.integrator = integrator;
             let truth = (1.0 - opacity).powi(4);
             assert_expected(measure(&scene), truth, &format!("{integrator:?} {opacity}"));
+        }
+    }
+}
+
+#[test]
+fn previews_show_opacity_by_a_pattern_of_dots() {
+    for (bodies, seen) in [(0, 16), (1, 8), (2, 4)] {
+        let mut scene = furnace();
+        for z in 0..bodies {
+            sphere(&mut scene, DVec3::Z * f64::from(z), 1.0, black(0.5));
+        }
+        look_parallel(&mut scene, DVec3::Z * 5.0, DVec3::ZERO, 0.1);
+        (scene.settings.width, scene.settings.height) = (20, 12);
+        let world = World::build(&scene).unwrap();
+        let image = preview(&world, &scene.settings, &Options::default(), true).unwrap().unwrap();
+        let light = |x: usize, y: usize| image.pixels[y * 20 + x][1];
+        for (left, top) in (0..12).step_by(4).flat_map(|y| (0..20).step_by(4).map(move |x| (x, y)))
+        {
+            let square = (0..16).map(|i| light(left + i % 4, top + i / 4));
+            assert_eq!(square.filter(|&light| light > 0.5).count(), seen, "{bodies} {left} {top}");
         }
     }
 }

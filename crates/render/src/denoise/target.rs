@@ -21,7 +21,8 @@ const BUDGET: f64 = (1 << 25) as f64;
 /// default field.
 const DIFFUSE: f64 = 2.75;
 
-/// Cost of a sample among translucent bodies, whose rays find all of them on their way, relative to one among opaque ones.
+/// Cost of a sample among translucent bodies, whose rays find all of them on their way, relative to one among opaque ones: 3.5 to
+/// 6.8 with the presets `ghost` and `x-ray` beside `figure`, in two proteins and a lipid bilayer.
 const TRANSLUCENT: f64 = 4.0;
 
 /// Binary logarithm of the number of spheres that have unit cost, and the power of it that costs grow with.
