@@ -1,5 +1,6 @@
 //! Traces rays among bodies of all kinds, after they were traced among spheres.
 
+use crate::body_rows::{BodyRow, BodyRows};
 use crate::body_tree::{BodyTree, FilterRay, Shape};
 use crate::bounded::COARSE;
 use crate::bvh::{SMALL_STACK, STACK, Search, walk};
@@ -8,13 +9,12 @@ use crate::ellipsoids::{self, Ellipsoid, Ellipsoids};
 use crate::exact::{self, Distance};
 use crate::intersect::{CLEAR, Root, confirm_closely};
 use crate::lanes::set_bits;
-use crate::ray::{ExactRay, GROUND, Hits, MISS, Rays};
+use crate::ray::{ExactRay, Hits, MISS, Rays};
 use crate::slabs::RaySlabs;
 use crate::spheres::{LEAF, Spheres};
 use std::cmp::Ordering;
 
-/// The bodies of a scene. Hits are rows of the spheres; after them two for each capsule ([`CapsuleRow`]), and after these one for
-/// each ellipsoid.
+/// The bodies of a scene, whose hits are numbered as [`BodyRows`] says.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyTrees<'a> {
     /// Spheres, whose hits are known.
@@ -26,22 +26,21 @@ pub struct BodyTrees<'a> {
 }
 
 impl BodyTrees<'_> {
-    /// The hit on an ellipsoid, by its row.
+    /// The numbers of hits.
     #[inline(always)]
-    pub fn ellipsoid_hit(&self, row: usize) -> u32 {
-        (self.spheres.len() + 2 * self.capsules.len() + row) as u32
+    fn rows(&self) -> BodyRows {
+        BodyRows { spheres: self.spheres.len(), capsules: self.capsules.len() }
     }
 
     /// The body of a hit.
     #[inline(always)]
     fn body_of(&self, hit: u32) -> Body {
-        let ellipsoids = self.ellipsoid_hit(0);
-        match hit {
-            MISS => Body::Nothing,
-            GROUND => Body::Ground,
-            _ if (hit as usize) < self.spheres.len() => Body::Sphere(hit as usize),
-            _ if hit >= ellipsoids => Body::Ellipsoid((hit - ellipsoids) as usize),
-            _ => Body::Capsule((hit as usize - self.spheres.len()) / 2, Part::Body),
+        match self.rows().row(hit) {
+            Some(BodyRow::Sphere(row)) => Body::Sphere(row),
+            Some(BodyRow::Capsule(row)) => Body::Capsule(row.capsule, Part::Body),
+            Some(BodyRow::Ellipsoid(row)) => Body::Ellipsoid(row),
+            None if hit == MISS => Body::Nothing,
+            None => Body::Ground,
         }
     }
 }
@@ -148,7 +147,8 @@ impl Kind for Capsule {
 
     #[inline(always)]
     fn hit(bodies: &BodyTrees, row: usize, ray: &ExactRay, t: f64) -> u32 {
-        CapsuleRow::at(bodies.capsules, row, ray, t).hit(bodies.spheres.len())
+        let row = CapsuleRow::at(bodies.capsules, row, ray, t);
+        bodies.rows().hit(BodyRow::Capsule(row))
     }
 }
 
@@ -165,7 +165,7 @@ impl Kind for Ellipsoid {
 
     #[inline(always)]
     fn hit(bodies: &BodyTrees, row: usize, _: &ExactRay, _: f64) -> u32 {
-        bodies.ellipsoid_hit(row)
+        bodies.rows().hit(BodyRow::Ellipsoid(row))
     }
 }
 

@@ -35,6 +35,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods, reason = "tests compare with tolerances"))]
 
 mod bodies;
+mod body_rows;
 mod body_tree;
 mod bounded;
 mod bvh;
@@ -70,6 +71,10 @@ pub mod internals {
     /// Rays among bodies of all kinds.
     pub mod bodies {
         pub use crate::bodies::*;
+    }
+    /// Numbers of hits.
+    pub mod body_rows {
+        pub use crate::body_rows::*;
     }
     /// Bodies of one kind in columns, with their tree.
     pub mod body_tree {

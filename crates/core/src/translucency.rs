@@ -9,12 +9,15 @@
 //! The bodies that a ray intersects, and their order along it, are decided as exactly as for opaque bodies. A ray that starts
 //! inside of a translucent body leaves it unattenuated.
 
+use crate::body_rows::{BodyRow, BodyRows};
+use crate::body_tree;
 use crate::bvh::{Intersection, Tree, for_each_intersection};
 use crate::capsules::{self, CapsuleRow, Capsules, Part};
 use crate::elementary;
+use crate::ellipsoids::Ellipsoids;
 use crate::exact::{self, Distance};
 use crate::intersect::{Root, confirm_closely};
-use crate::ray::{ExactRay, GROUND, MISS};
+use crate::ray::{ExactRay, MISS};
 use glam::DVec3;
 use std::cell::Cell;
 use std::cmp::Ordering;
@@ -67,14 +70,16 @@ impl OpticalDepth {
     }
 }
 
-/// Spheres and capsules, with the depth of each.
+/// Bodies of all kinds, with the depth of each.
 #[derive(Clone, Copy, Debug)]
 pub struct TranslucentBodies<'a, D> {
     /// Spheres and their tree.
     pub tree: Tree<'a>,
     /// Capsules.
     pub capsules: &'a Capsules,
-    /// The depth of the body of a hit.
+    /// Ellipsoids.
+    pub ellipsoids: &'a Ellipsoids,
+    /// The depth of the body of a hit, numbered as [`BodyRows`] says.
     pub depth: D,
 }
 
@@ -166,6 +171,11 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         (sum >= attenuated.threshold, exact)
     }
 
+    /// The numbers of hits.
+    fn rows(&self) -> BodyRows {
+        BodyRows { spheres: self.tree.spheres.len(), capsules: self.capsules.len() }
+    }
+
     /// Calls a function with each body that may end the ray. The function returns a distance beyond which no body matters, or breaks.
     fn for_each_body(
         &self,
@@ -191,20 +201,32 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         for_each_intersection(self.tree, ray, ends, t_far, |found| {
             body(found.row as u32, found, &mut t_far)
         });
-        if ended.get() || self.capsules.is_empty() {
-            return;
+        let rows = self.rows();
+        if !ended.get() && !self.capsules.is_empty() {
+            let own = ends.map(|end| match rows.row(end) {
+                Some(BodyRow::Capsule(row)) => Some(row.capsule),
+                _ => None,
+            });
+            let first = t_far;
+            body_tree::for_each_intersection(self.capsules, ray, own, first, |found| {
+                let row = CapsuleRow::at(self.capsules, found.row, ray, found.root.t);
+                body(rows.hit(BodyRow::Capsule(row)), found, &mut t_far)
+            });
         }
-        let spheres = self.tree.spheres.len();
-        let own = ends.map(|end| CapsuleRow::of_hit(end, spheres).map(|row| row.capsule));
-        let first = t_far;
-        capsules::for_each_intersection(self.capsules, ray, own, first, |found| {
-            let row = CapsuleRow::at(self.capsules, found.row, ray, found.root.t);
-            body(row.hit(spheres), found, &mut t_far)
-        });
+        if !ended.get() && !self.ellipsoids.is_empty() {
+            let own = ends.map(|end| match rows.row(end) {
+                Some(BodyRow::Ellipsoid(row)) => Some(row),
+                _ => None,
+            });
+            let first = t_far;
+            body_tree::for_each_intersection(self.ellipsoids, ray, own, first, |found| {
+                body(rows.hit(BodyRow::Ellipsoid(found.row)), found, &mut t_far)
+            });
+        }
     }
 
     /// Compares the distances of two bodies; of those at the same distance the one that comes first in the user's order, spheres
-    /// before capsules, counts as the nearer one. The ground comes last, and a bound first.
+    /// before capsules and these before ellipsoids, counts as the nearer one. The ground comes last, and a bound first.
     fn order(&self, ray: &ExactRay, a: &Fragment, b: &Fragment, exact: &mut u64) -> Ordering {
         if a.root.t + a.root.error < b.root.t - b.root.error {
             return Ordering::Less;
@@ -242,13 +264,11 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
     /// The center and the radius of the sphere whose surface is hit; `None` if it is that of a cylinder. In molecules drawn with sticks the ends
     /// of these coincide with atoms and with each other.
     fn sphere_at(&self, ray: &ExactRay, fragment: &Fragment) -> Option<(DVec3, f64)> {
-        if fragment.hit >= GROUND {
-            return None;
-        }
-        let Some(row) = CapsuleRow::of_hit(fragment.hit, self.tree.spheres.len()) else {
-            return Some(self.tree.spheres.exact(fragment.hit as usize));
+        let capsule = match self.rows().row(fragment.hit)? {
+            BodyRow::Sphere(row) => return Some(self.tree.spheres.exact(row)),
+            BodyRow::Capsule(row) => self.capsules.body(row.capsule),
+            BodyRow::Ellipsoid(_) => return None,
         };
-        let capsule = self.capsules.body(row.capsule);
         match capsules::intersect(ray, &capsule)?.part {
             Part::End(end) => Some((capsule.ends[end], capsule.radius)),
             Part::Body => None,
@@ -261,10 +281,17 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         if fragment.root.error == 0.0 {
             return (number, Distance::Number(fragment.root.t));
         }
-        if let Some(row) = CapsuleRow::of_hit(fragment.hit, self.tree.spheres.len()) {
-            return (fragment.root, Distance::Capsule(self.capsules.body(row.capsule)));
-        }
-        let (center, radius) = self.tree.spheres.exact(fragment.hit as usize);
+        let sphere = match self.rows().row(fragment.hit) {
+            Some(BodyRow::Capsule(row)) => {
+                return (fragment.root, Distance::Capsule(self.capsules.body(row.capsule)));
+            }
+            Some(BodyRow::Ellipsoid(row)) => {
+                return (fragment.root, Distance::Ellipsoid(self.ellipsoids.body(row)));
+            }
+            Some(BodyRow::Sphere(row)) => row,
+            None => return (number, Distance::Number(fragment.root.t)),
+        };
+        let (center, radius) = self.tree.spheres.exact(sphere);
         match confirm_closely(ray, center, radius, || false) {
             Some(root) if root.error > 0.0 => (root, Distance::Hit(center, radius)),
             // The sphere is hit where the ray starts.
@@ -274,11 +301,12 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
 
     /// The place of a hit among those at the same distance.
     fn place(&self, hit: u32) -> (u8, u32) {
-        match (hit, CapsuleRow::of_hit(hit, self.tree.spheres.len())) {
-            (MISS, _) => (0, 0),
-            (GROUND, _) => (3, 0),
-            (_, Some(row)) => (2, self.capsules.ids()[row.capsule]),
-            _ => (1, self.tree.spheres.id[hit as usize]),
+        match self.rows().row(hit) {
+            None if hit == MISS => (0, 0),
+            Some(BodyRow::Sphere(row)) => (1, self.tree.spheres.id[row]),
+            Some(BodyRow::Capsule(row)) => (2, self.capsules.ids()[row.capsule]),
+            Some(BodyRow::Ellipsoid(row)) => (3, self.ellipsoids.ids()[row]),
+            None => (4, 0),
         }
     }
 }

@@ -3,13 +3,17 @@
 //! They are traced after the spheres, in trees of their own, so that scenes of spheres do not pay for them.
 
 mod filter_ray;
+mod intersections;
 
 pub use filter_ray::FilterRay;
 pub(crate) use filter_ray::{cross, magnitude};
+pub(crate) use intersections::for_each_intersection;
 
 use crate::bvh::builders::{Builder, Item, build_around};
 use crate::bvh::{Beam, Bounds, Bvh};
+use crate::intersect::Root;
 use crate::lanes::F32x8;
+use crate::ray::ExactRay;
 use crate::slabs::MARGIN;
 use crate::spheres::LEAF;
 use glam::{DVec3, Vec3};
@@ -38,6 +42,9 @@ pub trait Shape: Copy {
 
     /// Returns whether a point is inside the body, not on its surface, in double precision.
     fn contains(&self, point: DVec3) -> bool;
+
+    /// Decides whether and where a ray hits the body, as arithmetic without rounding would.
+    fn intersect(&self, ray: &ExactRay) -> Option<Root>;
 
     /// Returns a bit for each body of a block that a ray may hit no farther than `t_max`, and distances before which it does
     /// not.

@@ -4,20 +4,18 @@
 
 mod filter;
 mod intersect;
-mod intersections;
 
 pub use crate::capsule::{Capsule, Part};
 pub use intersect::{CapsuleHit, exit_distance, intersect};
-pub(crate) use intersections::for_each_intersection;
 
 use crate::body_tree::{BodyTree, FilterRay, Shape};
+use crate::intersect::Root;
 use crate::lanes::F32x8;
-use crate::ray::{ExactRay, GROUND};
+use crate::ray::ExactRay;
 use crate::spheres::LEAF;
 use glam::{DVec3, Vec3};
 
-/// A hit on a capsule as a number beside the rows of spheres: each capsule has two rows after theirs, for the halves of its
-/// axis.
+/// A half of a capsule: each has a number as a hit ([`BodyRows`](crate::body_rows::BodyRows)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CapsuleRow {
     /// Row of the capsule.
@@ -27,24 +25,11 @@ pub struct CapsuleRow {
 }
 
 impl CapsuleRow {
-    /// The capsule of a hit, in a scene of so many spheres; `None` if it is another hit, or none.
-    #[inline(always)]
-    pub fn of_hit(hit: u32, spheres: usize) -> Option<Self> {
-        let row = (hit as usize).checked_sub(spheres).filter(|_| hit < GROUND)?;
-        Some(Self { capsule: row / 2, half: row % 2 })
-    }
-
     /// The row of a hit on a capsule at a distance of a ray.
     pub(crate) fn at(capsules: &Capsules, capsule: usize, ray: &ExactRay, t: f64) -> Self {
         let body = capsules.body(capsule);
         let along = body.normal(ray.at_from(body.ends[0], t)).1;
         Self { capsule, half: usize::from(along > 0.5) }
-    }
-
-    /// The number of a hit, in a scene of so many spheres.
-    #[inline(always)]
-    pub fn hit(self, spheres: usize) -> u32 {
-        (spheres + 2 * self.capsule + self.half) as u32
     }
 }
 
@@ -104,6 +89,10 @@ impl Shape for Capsule {
         let (from, axis) = (point - self.ends[0], self.ends[1] - self.ends[0]);
         let along = self.normal(from).1;
         (from - axis * along).length_squared() < self.radius * self.radius
+    }
+
+    fn intersect(&self, ray: &ExactRay) -> Option<Root> {
+        intersect(ray, self).map(|hit| hit.root)
     }
 
     #[inline(always)]

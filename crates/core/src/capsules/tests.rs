@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::bodies::{BodyTrees, closest, occluded};
+use crate::body_rows::{BodyRow, BodyRows};
 use crate::bvh::builders::Builder;
 use crate::fixed::{Fixed, PLACES, dot, minus, roots, vector};
 use crate::random::Random;
@@ -214,9 +215,10 @@ fn trees_find_the_hits_of_brute_force() {
         occluded(bodies, &rays, &mut shadows);
         for row in 0..200 {
             let ray = rays.exact(row);
-            let by_id = |hit: u32| match CapsuleRow::of_hit(hit, spheres.len()) {
-                Some(hit) => spheres.len() + capsules.ids()[hit.capsule] as usize,
-                None => spheres.id[hit as usize] as usize,
+            let rows_of = BodyRows { spheres: spheres.len(), capsules: capsules.len() };
+            let by_id = |hit: u32| match rows_of.row(hit) {
+                Some(BodyRow::Capsule(hit)) => spheres.len() + capsules.ids()[hit.capsule] as usize,
+                _ => spheres.id[hit as usize] as usize,
             };
             let found = (hits.sphere[row] != MISS).then(|| (hits.t[row], by_id(hits.sphere[row])));
             let mut by_order = Spheres::with_capacity(spheres.len());

@@ -8,7 +8,9 @@ pub use crate::ellipsoid::Ellipsoid;
 pub use intersect::{exit_distance, intersect};
 
 use crate::body_tree::{BodyTree, FilterRay, Shape};
+use crate::intersect::Root;
 use crate::lanes::F32x8;
+use crate::ray::ExactRay;
 use crate::spheres::LEAF;
 use glam::{DQuat, DVec3, Vec3};
 
@@ -124,6 +126,10 @@ impl Shape for Ellipsoid {
 
     fn contains(&self, point: DVec3) -> bool {
         self.to_unit(point - self.center).length_squared() < 1.0
+    }
+
+    fn intersect(&self, ray: &ExactRay) -> Option<Root> {
+        intersect(ray, self)
     }
 
     #[inline(always)]

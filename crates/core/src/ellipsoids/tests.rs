@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::bodies::{BodyTrees, closest, occluded};
+use crate::body_rows::{BodyRow, BodyRows};
 use crate::bvh::builders::Builder;
 use crate::capsules::{CapsuleItem, Capsules};
 use crate::exact::{self, Distance};
@@ -222,9 +223,11 @@ fn trees_find_the_hits_of_brute_force() {
             let first = first.filter(|(t, _)| other.is_none_or(|other| t.to_f64() < other));
             assert_eq!(shadows.sphere[row] != MISS, first.is_some() || other.is_some());
             if let Some((t, id)) = first {
-                let found = hits.sphere[row].checked_sub(bodies.ellipsoid_hit(0));
-                assert_ne!(hits.sphere[row], MISS, "round {round} row {row}");
-                assert_eq!(found.map(|row| ellipsoids.ids()[row as usize]), Some(id));
+                let rows = BodyRows { spheres: spheres.len(), capsules: capsules.len() };
+                let Some(BodyRow::Ellipsoid(found)) = rows.row(hits.sphere[row]) else {
+                    panic!("round {round} row {row}: {}", hits.sphere[row]);
+                };
+                assert_eq!(ellipsoids.ids()[found], id);
                 assert!((hits.t[row] - t.to_f64()).abs() <= t.to_f64() * 1e-8);
                 counts[0] += 1;
             } else {

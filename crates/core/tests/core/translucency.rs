@@ -1,11 +1,13 @@
 //! Rays among translucent bodies beside their definition: all hits of a ray, decided and sorted on integers, and their optical
 //! depths added up in that order.
 
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
+use spherule_core::internals::body_rows::{BodyRow, BodyRows};
 use spherule_core::internals::body_tree::Shape;
 use spherule_core::internals::bvh::Tree;
 use spherule_core::internals::bvh::builders::{Builder, build};
-use spherule_core::internals::capsules::{Capsule, CapsuleItem, CapsuleRow, Capsules};
+use spherule_core::internals::capsules::{Capsule, CapsuleItem, Capsules};
+use spherule_core::internals::ellipsoids::{Ellipsoid, EllipsoidItem, Ellipsoids};
 use spherule_core::internals::exact::{self, Distance};
 use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::{ExactRay, MISS};
@@ -19,6 +21,7 @@ const OPACITIES: [f64; 5] = [0.0, 0.1, 0.5, 0.8, 1.0];
 enum Body {
     Sphere(DVec3, f64),
     Capsule(Capsule),
+    Ellipsoid(Ellipsoid),
 }
 
 impl Body {
@@ -37,6 +40,12 @@ impl Body {
                 }
                 exact::capsule_hit(ray, &capsule).map(|_| Distance::Capsule(capsule))
             }
+            Self::Ellipsoid(ellipsoid) => {
+                if !is_opaque && ellipsoid.contains(ray.origin) {
+                    return None;
+                }
+                exact::ellipsoid_hit(ray, &ellipsoid).map(|_| Distance::Ellipsoid(ellipsoid))
+            }
         }
     }
 }
@@ -44,9 +53,10 @@ impl Body {
 /// Bodies on a coarse lattice, so that many coincide, touch, and are at equal distances.
 struct Scene {
     bodies: Vec<Body>,
-    count: usize,
+    rows: BodyRows,
     spheres: Spheres,
     capsules: Capsules,
+    ellipsoids: Ellipsoids,
 }
 
 impl Scene {
@@ -62,6 +72,15 @@ impl Scene {
                 id: i as u32,
             })
             .collect();
+        let items: Vec<EllipsoidItem> = (0..20)
+            .map(|i| {
+                let axes = [DVec3::new(0.5, 0.25, 0.25), DVec3::new(0.25, 0.5, 1.0)][i % 2];
+                // Some are spheres but for rounding, and some turned by a right angle.
+                let axes = if i % 5 == 0 { DVec3::splat(0.5) } else { axes };
+                let turned = DQuat::from_rotation_z(f64::from(i as u32 % 3) * 0.5);
+                EllipsoidItem::new(point(), axes, turned, i as u32).expect("an ellipsoid")
+            })
+            .collect();
         let mut spheres = Spheres::with_capacity(rows.len());
         for (id, &(center, radius)) in rows.iter().enumerate() {
             spheres.push(center, radius, id as u32);
@@ -74,18 +93,23 @@ impl Scene {
             let ends = item.ends.map(Vec3::as_dvec3);
             Body::Capsule(Capsule { ends, radius: f64::from(item.radius) })
         });
-        let bodies = of_spheres.chain(of_sticks).collect();
-        (Self { bodies, count: rows.len(), spheres, capsules }, bvh)
+        let ellipsoids = Ellipsoids::build(&items, builder);
+        let mut of_items = vec![None; items.len()];
+        for (row, &id) in ellipsoids.ids().iter().enumerate() {
+            of_items[id as usize] = Some(Body::Ellipsoid(ellipsoids.body(row)));
+        }
+        let bodies = of_spheres.chain(of_sticks).chain(of_items.into_iter().flatten()).collect();
+        let rows = BodyRows { spheres: rows.len(), capsules: sticks.len() };
+        (Self { bodies, rows, spheres, capsules, ellipsoids }, bvh)
     }
 
     /// The place of the body of a hit in the user's order.
     fn place(&self, hit: u32) -> Option<usize> {
-        if hit == MISS {
-            return None;
-        }
-        Some(match CapsuleRow::of_hit(hit, self.count) {
-            Some(row) => self.count + self.capsules.ids()[row.capsule] as usize,
-            None => self.spheres.id[hit as usize] as usize,
+        let BodyRows { spheres, capsules } = self.rows;
+        Some(match self.rows.row(hit)? {
+            BodyRow::Sphere(row) => self.spheres.id[row] as usize,
+            BodyRow::Capsule(row) => spheres + self.capsules.ids()[row.capsule] as usize,
+            BodyRow::Ellipsoid(row) => spheres + capsules + self.ellipsoids.ids()[row] as usize,
         })
     }
 
@@ -127,12 +151,13 @@ fn ray(random: &mut Random) -> ExactRay {
 #[test]
 fn rays_end_where_all_hits_in_their_exact_order_end_them() {
     let builders = Builder::ALL;
-    let (mut ends, mut misses) = ([0; 2], 0);
+    let (mut ends, mut misses) = ([0; 3], 0);
     for seed in 0..6 {
         let (scene, bvh) = Scene::new(seed, builders[seed as usize % 3]);
         let bodies = TranslucentBodies {
             tree: Tree { bvh: &bvh, spheres: &scene.spheres },
             capsules: &scene.capsules,
+            ellipsoids: &scene.ellipsoids,
             depth: |hit| {
                 let place = scene.place(hit).expect("a hit on a body");
                 OpticalDepth::of_opacity(Scene::opacity(place))
@@ -150,7 +175,12 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
             assert_eq!(t.is_finite(), expected.is_some());
             assert_eq!(bodies.occluded(&attenuated).0, expected.is_some(), "{ray:?}");
             match expected {
-                Some(place) => ends[usize::from(place >= scene.count)] += 1,
+                Some(place) => {
+                    let BodyRows { spheres, capsules } = scene.rows;
+                    let kind =
+                        usize::from(place >= spheres) + usize::from(place >= spheres + capsules);
+                    ends[kind] += 1;
+                }
                 None => misses += 1,
             }
             if expected.is_some() {
@@ -161,7 +191,7 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
             }
         }
     }
-    assert!(ends[0] > 300 && ends[1] > 100 && misses > 200, "{ends:?} {misses}");
+    assert!(ends.iter().all(|&ends| ends > 100) && misses > 100, "{ends:?} {misses}");
 }
 
 #[test]

@@ -1,0 +1,81 @@
+//! Numbers of hits: rows of the spheres, after them two for each capsule, and after these one for each ellipsoid.
+
+use crate::capsules::CapsuleRow;
+use crate::ray::GROUND;
+
+/// How many bodies there are of the kinds whose numbers come before those of others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyRows {
+    /// Number of spheres.
+    pub spheres: usize,
+    /// Number of capsules.
+    pub capsules: usize,
+}
+
+/// A body, by its row among those of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyRow {
+    /// A sphere.
+    Sphere(usize),
+    /// A half of a capsule.
+    Capsule(CapsuleRow),
+    /// An ellipsoid.
+    Ellipsoid(usize),
+}
+
+impl BodyRows {
+    /// Returns the body of a hit; `None` for the ground, and for none.
+    #[inline(always)]
+    pub fn row(self, hit: u32) -> Option<BodyRow> {
+        if hit >= GROUND {
+            return None;
+        }
+        let hit = hit as usize;
+        let Some(row) = hit.checked_sub(self.spheres) else { return Some(BodyRow::Sphere(hit)) };
+        Some(match row.checked_sub(2 * self.capsules) {
+            Some(row) => BodyRow::Ellipsoid(row),
+            None => BodyRow::Capsule(CapsuleRow { capsule: row / 2, half: row % 2 }),
+        })
+    }
+
+    /// Returns the hit on a body.
+    #[inline(always)]
+    pub fn hit(self, row: BodyRow) -> u32 {
+        let row = match row {
+            BodyRow::Sphere(row) => row,
+            BodyRow::Capsule(CapsuleRow { capsule, half }) => self.spheres + 2 * capsule + half,
+            BodyRow::Ellipsoid(row) => self.spheres + 2 * self.capsules + row,
+        };
+        row as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ray::MISS;
+
+    #[test]
+    fn every_hit_is_one_body() {
+        let rows = BodyRows { spheres: 3, capsules: 2 };
+        let capsule = |capsule, half| BodyRow::Capsule(CapsuleRow { capsule, half });
+        let expected = [
+            BodyRow::Sphere(0),
+            BodyRow::Sphere(1),
+            BodyRow::Sphere(2),
+            capsule(0, 0),
+            capsule(0, 1),
+            capsule(1, 0),
+            capsule(1, 1),
+            BodyRow::Ellipsoid(0),
+            BodyRow::Ellipsoid(1),
+        ];
+        for (hit, &row) in (0..).zip(&expected) {
+            assert_eq!(rows.row(hit), Some(row));
+            assert_eq!(rows.hit(row), hit);
+        }
+        assert!(rows.row(GROUND).is_none() && rows.row(MISS).is_none());
+        let alone = BodyRows { spheres: 0, capsules: 0 };
+        assert_eq!(alone.row(0), Some(BodyRow::Ellipsoid(0)));
+    }
+}
