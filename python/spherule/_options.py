@@ -89,7 +89,7 @@ STYLE = frozenset(
 #: Sections of scene files; the color bar is one, too, if it is a dict.
 SECTIONS = frozenset(
     "title render camera look legend axes scale_bar label lettering environment ground slice light material sphere "
-    "stick generate file".split()
+    "stick ellipsoid generate file".split()
 )
 
 #: Keys of the section `render`.

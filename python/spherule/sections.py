@@ -213,6 +213,19 @@ class Sphere(_Sphere, total=False):
     color: Color
 
 
+class _Ellipsoid(TypedDict):
+    center: Vector
+    semi_axes: Vector
+
+
+class Ellipsoid(_Ellipsoid, total=False):
+    """``[[ellipsoid]]``: ``orientation`` is a quaternion, its real part first."""
+
+    orientation: Sequence[float]
+    material: str
+    color: Color
+
+
 class _Stick(TypedDict):
     to: Vector
     radius: float
@@ -287,5 +300,6 @@ class Sections(TypedDict, total=False):
     material: Mapping[str, Material]
     sphere: Sequence[Sphere]
     stick: Sequence[Stick]
+    ellipsoid: Sequence[Ellipsoid]
     generate: Sequence[Generate]
     file: Sequence[File]

@@ -439,7 +439,7 @@ impl Work {
         self.style.select.is_some() || self.staging.replicate.is_some() || scaled
     }
 
-    /// Adds the spheres and sticks of the sections, and their materials.
+    /// Adds the bodies of the sections, and their materials.
     fn append_bodies(&self, scene: &mut spherule::Scene) {
         if self.given.is_empty() {
             return;
@@ -451,6 +451,13 @@ impl Work {
         for row in 0..sticks.len() {
             let material = rows.get(sticks.material[row] as usize).copied().unwrap_or(0);
             scene.sticks.push(sticks.ends(row), sticks.radius[row], material, sticks.colors[row]);
+        }
+        let given = &self.given.ellipsoids;
+        for row in 0..given.len() {
+            let material = rows.get(given.material[row] as usize).copied().unwrap_or(0);
+            let (center, semi_axes) = (given.center[row], given.semi_axes[row]);
+            let (orientation, color) = (given.orientation[row], given.color[row]);
+            scene.ellipsoids.push(center, semi_axes, orientation, material, color);
         }
     }
 }

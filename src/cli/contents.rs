@@ -40,13 +40,11 @@ pub(super) fn spheres(count: u64) -> String {
     plural(count, "sphere")
 }
 
-/// `2 spheres`, or `2 spheres, 1 stick`.
-pub(super) fn bodies(count: u64, sticks: u64) -> String {
-    if sticks == 0 {
-        spheres(count)
-    } else {
-        format!("{}, {}", spheres(count), plural(sticks, "stick"))
-    }
+/// `2 spheres`, or `2 spheres, 1 stick, 3 ellipsoids`.
+pub(super) fn bodies(count: u64, sticks: u64, ellipsoids: u64) -> String {
+    let others = [(sticks, "stick"), (ellipsoids, "ellipsoid")];
+    let others = others.into_iter().filter(|(count, _)| *count > 0);
+    others.fold(spheres(count), |text, (count, noun)| format!("{text}, {}", plural(count, noun)))
 }
 
 /// A count and its noun.

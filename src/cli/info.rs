@@ -24,6 +24,7 @@ struct Info {
     particles: Option<ParticleInfo>,
     spheres: usize,
     sticks: usize,
+    ellipsoids: usize,
     dropped_spheres: u64,
     /// Lower and upper corner; null without spheres.
     bounds: Option<[[f64; 3]; 2]>,
@@ -123,6 +124,7 @@ impl Info {
             particles: None,
             spheres: scene.spheres.len(),
             sticks: scene.sticks.len(),
+            ellipsoids: scene.ellipsoids.len(),
             dropped_spheres: world.features.vanished + world.features.hidden,
             bounds: bounds(&scene.spheres).map(|ends| ends.map(|end| end.to_array())),
             radius: radii(scene),
@@ -146,6 +148,9 @@ impl Info {
         output::print(format_args!("spheres      {}", HumanCount(self.spheres as u64)));
         if self.sticks > 0 {
             output::print(format_args!("sticks       {}", HumanCount(self.sticks as u64)));
+        }
+        if self.ellipsoids > 0 {
+            output::print(format_args!("ellipsoids   {}", HumanCount(self.ellipsoids as u64)));
         }
         if let (Some([low, high]), Some([least, greatest])) = (self.bounds, self.radius) {
             output::print(format_args!("bounds       {low:?} to {high:?}"));

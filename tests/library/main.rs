@@ -7,6 +7,7 @@
 mod common;
 
 mod adaptive;
+mod ellipsoids;
 mod layers;
 mod readers;
 mod resume;

@@ -26,6 +26,15 @@ impl Ellipsoid {
         x * unit.x + y * unit.y + z * unit.z
     }
 
+    /// Returns the point of the surface next to one that is off it by rounding, both relative to the center: the end of one step
+    /// of Newton's method along the gradient.
+    pub fn onto_surface(&self, from_center: DVec3) -> DVec3 {
+        let gradient = self.gradient(from_center);
+        let off = self.to_unit(from_center).length_squared() - 1.0;
+        let step = off / (2.0 * gradient.length_squared());
+        if step.is_finite() { from_center - gradient * step } else { from_center }
+    }
+
     /// The outward unit normal at a point of the surface, given relative to the center. The point need not be on the surface
     /// by more than rounding.
     pub fn normal(&self, from_center: DVec3) -> DVec3 {

@@ -1,4 +1,4 @@
-//! Ray tracing in a world: tests the ground, then the tree of the visible spheres, then that of sticks.
+//! Ray tracing in a world: tests the ground, then the tree of the visible spheres, then those of other bodies.
 
 mod bodies;
 mod clipped;
@@ -90,7 +90,7 @@ fn trace(tracer: Tracer, query: Query, world: &World, rays: &Rays, hits: &mut Hi
         (Some(device), Query::Closest) => device.closest(tree, rays, hits),
         (Some(device), Query::Any) => device.occluded(tree, rays, hits),
     };
-    exact + bodies.trace_sticks(query, rays, hits)
+    exact + bodies.trace_others(query, rays, hits)
 }
 
 /// Traces rays where slices hide bodies from the camera, or cut them.

@@ -62,6 +62,7 @@ struct TracerSummary {
 struct Statistics {
     spheres: u64,
     sticks: u64,
+    ellipsoids: u64,
     dropped_spheres: u64,
     sphere_bytes: usize,
     tree_bytes: usize,
@@ -174,7 +175,7 @@ impl<'a> Summary<'a> {
             self.output,
             plural(statistics.samples, "sample"),
             statistics.load_seconds,
-            bodies(statistics.spheres, statistics.sticks),
+            bodies(statistics.spheres, statistics.sticks, statistics.ellipsoids),
             statistics.build_seconds,
             BinaryBytes(statistics.tree_bytes as u64),
             statistics.render_seconds,
@@ -234,6 +235,7 @@ impl Statistics {
         Self {
             spheres: world.spheres.len() as u64,
             sticks: world.sticks.len() as u64,
+            ellipsoids: world.ellipsoids.len() as u64,
             dropped_spheres: world.features.vanished + world.features.hidden,
             sphere_bytes: world.spheres.bytes() + world.appearance.bytes(),
             tree_bytes: world.bvh.bytes(),

@@ -17,13 +17,14 @@ use crate::ray::ExactRay;
 use crate::slabs::MARGIN;
 use crate::spheres::LEAF;
 use glam::{DVec3, Vec3};
+use std::fmt::Debug;
 
 /// A kind of convex body.
-pub trait Shape: Copy {
+pub trait Shape: Copy + Debug {
     /// A body from which a tree is built.
-    type Item: Copy;
+    type Item: Copy + Debug;
     /// The columns of [`LEAF`] bodies side by side.
-    type Block: Copy;
+    type Block: Copy + Debug;
 
     /// A block without bodies: no ray may hit any.
     const EMPTY: Self::Block;

@@ -57,6 +57,9 @@ fn unsupported(job: &Job) -> Option<&'static str> {
     if !world.sticks.is_empty() {
         return Some("the scene has sticks");
     }
+    if !world.ellipsoids.is_empty() {
+        return Some("the scene has ellipsoids");
+    }
     if world.features.translucent {
         return Some("the scene has translucent bodies");
     }

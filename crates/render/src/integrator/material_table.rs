@@ -29,9 +29,9 @@ fn hit_at(place: usize) -> u32 {
     }
 }
 
-/// Returns the number of hits with a material, but for the ground's: spheres, and halves of sticks.
+/// Returns the number of hits with a material, but for the ground's: spheres, halves of sticks, and ellipsoids.
 fn rows(world: &World) -> usize {
-    world.spheres.len() + 2 * world.sticks.len()
+    world.spheres.len() + 2 * world.sticks.len() + world.ellipsoids.len()
 }
 
 /// Returns the material of a hit, `None` if there is no such sphere or ground.

@@ -2,10 +2,10 @@
 
 use super::workspace::{BATCH, Workspace};
 use crate::lanes::{Doubles, F64x8, MAX_LANES, Mask, U32x16, load_doubles, look_up, widen};
-use crate::ray::{Columns3, GROUND, MISS};
+use crate::ray::{Columns3, ExactRay, GROUND, MISS};
 use crate::spheres::{LEAF, Spheres};
 use crate::vec3::Vec3;
-use crate::world::{Ground, World};
+use crate::world::{Ground, World, WorldBody};
 use glam::DVec3;
 
 /// Rows that are computed at once.
@@ -159,13 +159,13 @@ pub(super) fn compute_surfaces(world: &World, work: &mut Workspace) {
         Some(table) => compute_rows(world, work, |hits| table.gather(hits)),
         None => compute_rows(world, work, |hits| gather_spheres(spheres, hits)),
     }
-    if !world.sticks.is_empty() {
-        (0..work.len()).for_each(|row| compute_stick(world, work, row));
+    if world.has_other_bodies() {
+        (0..work.len()).for_each(|row| compute_other_body(world, work, row));
     }
     if !world.cut.is_empty() {
         (0..work.len()).for_each(|row| compute_cut_sphere(world, work, row));
     }
-    if !world.cut.is_empty() || !world.sticks.is_empty() {
+    if !world.cut.is_empty() || world.has_other_bodies() {
         for first in (0..work.len()).step_by(ROW) {
             let normal = work.surface.normal.load(first);
             work.surface.set_facing(first, normal, load(&work.rays.direction, first));
@@ -245,17 +245,29 @@ fn chord_exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
     entry - direction * (F64x8::splat(2.0) * entry.dot_unfused(direction) / length2)
 }
 
-/// Computes the point and the normal of a hit on a stick.
-fn compute_stick(world: &World, work: &mut Workspace, row: usize) {
-    let hit = work.hits.sphere[row];
-    let Some((stick, _)) = world.sticks.at(hit, world.spheres.len()) else { return };
+/// Computes the point and the normal of a hit on a stick or an ellipsoid.
+fn compute_other_body(world: &World, work: &mut Workspace, row: usize) {
     let (ray, t) = (work.rays.exact(row), work.hits.t[row]);
-    let (normal, along) = stick.normal(ray.at_from(stick.ends[0], t));
-    // The normal of a stick that is thinner than rounding is against the ray: nothing else is known.
-    let normal = if normal == DVec3::ZERO { -ray.direction.normalize() } else { normal };
-    let axis = stick.ends[0].lerp(stick.ends[1], along);
-    work.surface.point.set(row, (axis + normal * stick.radius).as_vec3());
+    let (point, normal) = match world.body(work.hits.sphere[row]) {
+        None | Some(WorldBody::Sphere(_)) => return,
+        Some(WorldBody::Stick(stick)) => {
+            let (normal, along) = stick.normal(ray.at_from(stick.ends[0], t));
+            let normal = against_unless_known(&ray, normal);
+            (stick.ends[0].lerp(stick.ends[1], along) + normal * stick.radius, normal)
+        }
+        Some(WorldBody::Ellipsoid(body)) => {
+            let from_center = body.onto_surface(ray.at_from(body.center, t));
+            let normal = against_unless_known(&ray, body.normal(from_center));
+            (body.center + from_center, normal)
+        }
+    };
+    work.surface.point.set(row, point.as_vec3());
     work.surface.normal.set(row, normal);
+}
+
+/// Returns a normal, or that against the ray for a body that is thinner than rounding: nothing else is known.
+fn against_unless_known(ray: &ExactRay, normal: DVec3) -> DVec3 {
+    if normal == DVec3::ZERO { -ray.direction.normalize() } else { normal }
 }
 
 /// Corrects the hits on spheres that are cut: points of caps, and exits from spheres entered by a cap.
@@ -271,10 +283,8 @@ fn compute_cut_sphere(world: &World, work: &mut Workspace, row: usize) {
         work.surface.normal.set(row, normal);
         return;
     }
-    if world.sticks.at(hit, world.spheres.len()).is_some() {
-        return;
-    }
-    let (center, radius) = world.spheres.exact(hit as usize);
+    let Some(WorldBody::Sphere(sphere)) = world.body(hit) else { return };
+    let (center, radius) = world.spheres.exact(sphere);
     if own == hit && world.cut.divides(center, radius) {
         let normal = exit_normal(ray.at_from(center, t), ray.direction.normalize());
         work.surface.point.set(row, (center + normal * radius).as_vec3());

@@ -16,13 +16,14 @@ use super::shading_row::SurfaceRow;
 use super::shadow_queue::ShadowQueue;
 use super::surface::{Surface, chord_length, exit_distance};
 use crate::capsules;
+use crate::ellipsoids;
 use crate::film::{Region, View};
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
 use crate::ray::{ExactRay, GROUND, Hits, MISS, Rays};
 use crate::sampling::{SampleRow, Sampler, SamplerRow, SamplerState, SamplerStates, StartRow};
 use crate::scene::Rgb;
 use crate::vec3 as row;
-use crate::world::World;
+use crate::world::{World, WorldBody};
 use glam::Vec3;
 use std::mem::swap;
 use std::ops::Range;
@@ -220,24 +221,24 @@ impl Workspace {
     /// through the inside to where `direction` leaves the sphere.
     #[inline]
     pub fn chord_length(&self, world: &World, row: usize, direction: Vec3) -> f64 {
-        if !world.cut.is_empty() || !world.sticks.is_empty() {
+        if !world.cut.is_empty() || world.has_other_bodies() {
             return self.chord_length_cut(world, row, direction);
         }
         let radius = f64::from(world.spheres.radius(self.hits.sphere[row] as usize));
         chord_length(self.surface.normal.row(row).into(), radius, direction.as_dvec3().into())
     }
 
-    /// Returns the chord's length where spheres are cut or where there are sticks; a separate function, out of the way of the
+    /// Returns the chord's length where spheres are cut or where there are other bodies; a separate function, out of the way of the
     /// usual case.
     #[cold]
     fn chord_length_cut(&self, world: &World, row: usize, direction: Vec3) -> f64 {
         let direction = direction.as_dvec3();
-        if let Some((stick, _)) = world.sticks.at(self.hits.sphere[row], world.spheres.len()) {
-            let origin = self.surface.point.row(row).as_dvec3();
-            return capsules::exit_distance(
-                &ExactRay { origin, direction, origin_error: 0.0 },
-                &stick,
-            );
+        let origin = self.surface.point.row(row).as_dvec3();
+        let ray = ExactRay { origin, direction, origin_error: 0.0 };
+        match world.body(self.hits.sphere[row]) {
+            Some(WorldBody::Stick(stick)) => return capsules::exit_distance(&ray, &stick),
+            Some(WorldBody::Ellipsoid(body)) => return ellipsoids::exit_distance(&ray, &body),
+            _ => (),
         }
         let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);
         if world.cut.divides(center, radius) {

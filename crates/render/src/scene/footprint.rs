@@ -27,6 +27,13 @@ const STICK: u64 = 84;
 /// colors of both halves.
 const STICK_BUILDING: u64 = 172;
 
+/// An ellipsoid in the scene's columns: center, semi-axes, rotation, material and color.
+const ELLIPSOID: u64 = 96;
+
+/// An ellipsoid while its tree is built, in addition: rows and their copy, the sphere around it, its block, and its material and
+/// color.
+const ELLIPSOID_BUILDING: u64 = 232;
+
 /// A flag, such as for spheres that slices hide from the camera.
 const FLAG: u64 = 1;
 
@@ -61,6 +68,8 @@ pub struct Footprint {
     pub emitters: u64,
     /// Sticks.
     pub sticks: u64,
+    /// Ellipsoids.
+    pub ellipsoids: u64,
     /// Spheres that the camera sees, if slices hide others.
     pub visible: Option<u64>,
 }
@@ -74,8 +83,8 @@ impl Footprint {
             scene.slices.iter().filter(|slice| slice.mode == SliceMode::Hide).collect();
         let hidden = |row: &usize| hiding.iter().any(|slice| slice.hides(spheres.center(*row)));
         let visible = || (0..spheres.len()).filter(|row| !hidden(row)).count() as u64;
-        let sticks = scene.sticks.len() as u64;
-        Self { visible: (!hiding.is_empty()).then(visible), sticks, ..columns }
+        let (sticks, ellipsoids) = (scene.sticks.len() as u64, scene.ellipsoids.len() as u64);
+        Self { visible: (!hiding.is_empty()).then(visible), sticks, ellipsoids, ..columns }
     }
 
     /// Counts spheres in their columns.
@@ -86,6 +95,7 @@ impl Footprint {
             materials: !spheres.material.is_empty(),
             emitters: emitters(spheres, materials),
             sticks: 0,
+            ellipsoids: 0,
             visible: None,
         }
     }
@@ -98,6 +108,7 @@ impl Footprint {
             materials: self.materials || other.materials,
             emitters: self.emitters.saturating_add(other.emitters),
             sticks: self.sticks.saturating_add(other.sticks),
+            ellipsoids: self.ellipsoids.saturating_add(other.ellipsoids),
             visible: None,
         }
     }
@@ -106,7 +117,9 @@ impl Footprint {
     pub fn scene(&self) -> u64 {
         let colors = if self.colors == ColorColumn::None { 0 } else { size_of::<Rgb>() as u64 };
         let each = Spheres::POSITION_BYTES + colors + self.material_bytes();
-        self.spheres.saturating_mul(each).saturating_add(self.sticks.saturating_mul(STICK))
+        let spheres = self.spheres.saturating_mul(each);
+        let others = self.sticks.saturating_mul(STICK);
+        spheres.saturating_add(others).saturating_add(self.ellipsoids.saturating_mul(ELLIPSOID))
     }
 
     /// Returns the peak memory in bytes of scene and world, while
@@ -139,8 +152,11 @@ impl Footprint {
         let hiding = world.saturating_add(each(flags)).saturating_add(hiding);
         let lighting = world.saturating_add(self.emitters.saturating_mul(EMITTER));
         let sticks = if kept > 0 { STICK_BUILDING } else { STICK + STICK_BUILDING };
+        let ellipsoids = if kept > 0 { ELLIPSOID_BUILDING } else { ELLIPSOID + ELLIPSOID_BUILDING };
         let spheres = encoding.max(placing).max(building).max(hiding).max(lighting);
-        spheres.saturating_add(self.sticks.saturating_mul(sticks))
+        spheres
+            .saturating_add(self.sticks.saturating_mul(sticks))
+            .saturating_add(self.ellipsoids.saturating_mul(ellipsoids))
     }
 
     fn material_bytes(&self) -> u64 {
@@ -238,6 +254,7 @@ mod tests {
             materials: true,
             emitters: u64::MAX,
             sticks: u64::MAX,
+            ellipsoids: u64::MAX,
             visible: Some(u64::MAX),
         };
         assert_eq!((all.scene(), all.peak(), all.resident()), (u64::MAX, u64::MAX, u64::MAX));

@@ -1,7 +1,7 @@
 //! Hashes of scenes, so that a scene can be compared with one that is no longer in memory.
 
 use super::write::sections;
-use super::{EnvironmentMap, Scene, Spheres, Sticks};
+use super::{EnvironmentMap, Scene};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -36,7 +36,7 @@ impl Identity {
         let annotations = sections::annotations(&scene.annotations);
         let hash = |text: String| *blake3::hash(text.as_bytes()).as_bytes();
         Self {
-            spheres: bodies(&scene.spheres, &scene.sticks),
+            spheres: bodies(scene),
             materials: hash(materials.collect()),
             ground: hash(ground),
             slices: hash(scene.slices.iter().map(sections::slice).collect()),
@@ -81,8 +81,8 @@ impl fmt::Display for Identity {
     }
 }
 
-/// Hashes the spheres, and the sticks if there are any.
-fn bodies(spheres: &Spheres, sticks: &Sticks) -> [u8; 32] {
+/// Hashes the spheres, and the sticks and ellipsoids if there are any.
+fn bodies(Scene { spheres, sticks, ellipsoids, .. }: &Scene) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     for column in [&spheres.x, &spheres.y, &spheres.z, &spheres.radius] {
         add(&mut hasher, column, |number| number.to_le_bytes());
@@ -95,6 +95,9 @@ fn bodies(spheres: &Spheres, sticks: &Sticks) -> [u8; 32] {
     });
     if !sticks.is_empty() {
         hasher.update(sections::sticks(sticks, |row| row.to_string()).as_bytes());
+    }
+    if !ellipsoids.is_empty() {
+        hasher.update(sections::ellipsoids(ellipsoids, |row| row.to_string()).as_bytes());
     }
     *hasher.finalize().as_bytes()
 }

@@ -8,6 +8,7 @@
 mod annotations;
 mod axis;
 mod camera;
+mod ellipsoids;
 pub mod file;
 mod footprint;
 pub mod generate;
@@ -31,6 +32,7 @@ pub use annotations::{
 };
 pub use axis::Axis;
 pub use camera::{Camera, Insets, Lens, Pose, Projection};
+pub use ellipsoids::Ellipsoids;
 pub use file::included_files;
 pub use footprint::{ColorColumn, Footprint};
 pub use identity::Identity;
@@ -54,6 +56,8 @@ pub struct Scene {
     pub spheres: Spheres,
     /// Sticks, in columns. They are numbered after the spheres.
     pub sticks: Sticks,
+    /// Ellipsoids, in columns. They are numbered after the sticks.
+    pub ellipsoids: Ellipsoids,
     /// Materials of spheres and ground; `Spheres::material` and `Ground::material` are rows of it.
     pub materials: Vec<NamedMaterial>,
     /// The infinite ground plane, if there is one.

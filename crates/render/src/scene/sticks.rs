@@ -80,17 +80,28 @@ impl Scene {
         (0..self.sticks.len()).filter(move |&row| !dropped(row))
     }
 
-    /// Returns spheres whose convex hull is that of what slices leave: the spheres, and those about the ends of sticks.
+    /// Returns the rows of the ellipsoids that slices do not remove.
+    pub fn shown_ellipsoids(&self) -> impl Iterator<Item = usize> {
+        let all = &self.ellipsoids;
+        let dropped = |row| self.slices.iter().any(|slice| slice.drops_ellipsoid(all, row));
+        (0..all.len()).filter(move |&row| !dropped(row))
+    }
+
+    /// Returns spheres whose convex hull holds what slices leave: the spheres, those about the ends of sticks, and those around
+    /// ellipsoids.
     pub fn framed(&self) -> impl Iterator<Item = (DVec3, f64)> {
         let spheres = self.shown().map(|row| (self.spheres.center(row), self.spheres.radius[row]));
         let ends = self
             .shown_sticks()
             .flat_map(|row| self.sticks.ends(row).map(|end| (end, self.sticks.radius[row])));
-        spheres.chain(ends)
+        let around = self
+            .shown_ellipsoids()
+            .map(|row| (self.ellipsoids.center[row], self.ellipsoids.reach(row)));
+        spheres.chain(ends).chain(around)
     }
 
-    /// Returns whether there is no sphere and no stick.
+    /// Returns whether there is no body.
     pub fn is_empty(&self) -> bool {
-        self.spheres.is_empty() && self.sticks.is_empty()
+        self.spheres.is_empty() && self.sticks.is_empty() && self.ellipsoids.is_empty()
     }
 }

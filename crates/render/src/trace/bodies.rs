@@ -1,49 +1,58 @@
-//! The bodies that rays may hit: spheres, and sticks.
+//! The bodies that rays may hit: spheres, sticks and ellipsoids.
 
 use super::{Query, Tracer};
 use crate::bodies::{self, BodyTrees};
+use crate::body_rows::{BodyRow, BodyRows};
 use crate::bvh::Tree;
 use crate::capsules::{CapsuleRow, Capsules};
+use crate::ellipsoids::Ellipsoids;
 use crate::ray::{Hits, Rays};
 use crate::translucency::{OpticalDepth, TranslucentBodies};
 use crate::world::World;
 
-/// Spheres and sticks, all or those that the camera sees. Hits are rows of the spheres, and after them two for each stick.
+/// Bodies of all kinds, all or those that the camera sees. Hits are numbered as [`BodyRows`] says.
 #[derive(Clone, Copy)]
 pub(super) struct Bodies<'a> {
     tree: Tree<'a>,
     sticks: &'a Capsules,
+    ellipsoids: &'a Ellipsoids,
 }
 
 impl<'a> Bodies<'a> {
     /// All bodies of a world.
     pub(super) fn all(world: &'a World) -> Self {
         let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-        Self { tree, sticks: &world.sticks.all }
+        Self { tree, sticks: &world.sticks.all, ellipsoids: &world.ellipsoids.all }
     }
 
     /// The bodies that the camera sees.
     pub(super) fn visible(world: &'a World) -> Self {
-        let mut bodies = Self::all(world);
-        if let Some(visible) = &world.camera_visible {
-            bodies.tree = Tree { bvh: &visible.bvh, spheres: &visible.spheres };
-        }
-        if let Some(visible) = &world.sticks.visible {
-            bodies.sticks = &visible.capsules;
-        }
-        bodies
+        let visible = world.camera_visible.as_ref();
+        let (bvh, spheres) = visible
+            .map_or((&world.bvh, &world.spheres), |visible| (&visible.bvh, &visible.spheres));
+        let (sticks, ellipsoids) = (world.sticks.seen(), world.ellipsoids.seen());
+        Self { tree: Tree { bvh, spheres }, sticks, ellipsoids }
+    }
+
+    /// The numbers of hits.
+    fn rows(&self) -> BodyRows {
+        BodyRows { spheres: self.tree.spheres.len(), capsules: self.sticks.len() }
     }
 
     /// Returns the hit in a world of a hit on a body that the camera sees.
     pub(super) fn hit_in(&self, world: &World, hit: u32) -> u32 {
-        let spheres = self.tree.spheres.len();
-        if let Some(row) = CapsuleRow::of_hit(hit, spheres).filter(|_| !self.sticks.is_empty()) {
-            let rows = world.sticks.visible.as_ref().map(|visible| &visible.row);
-            let capsule = rows.map_or(row.capsule, |rows| rows[row.capsule] as usize);
-            return CapsuleRow { capsule, ..row }.hit(world.spheres.len());
-        }
-        let rows = world.camera_visible.as_ref().map(|visible| &visible.row);
-        rows.and_then(|rows| rows.get(hit as usize)).copied().unwrap_or(hit)
+        let Some(row) = self.rows().row(hit) else { return hit };
+        let row = match row {
+            BodyRow::Sphere(row) => {
+                let rows = world.camera_visible.as_ref().map(|visible| &visible.row);
+                BodyRow::Sphere(rows.map_or(row, |rows| rows[row] as usize))
+            }
+            BodyRow::Capsule(CapsuleRow { capsule, half }) => {
+                BodyRow::Capsule(CapsuleRow { capsule: world.sticks.row_of_seen(capsule), half })
+            }
+            BodyRow::Ellipsoid(row) => BodyRow::Ellipsoid(world.ellipsoids.row_of_seen(row)),
+        };
+        world.body_rows().hit(row)
     }
 
     /// The same bodies, with what light loses at each, by its hit.
@@ -51,7 +60,8 @@ impl<'a> Bodies<'a> {
         self,
         depth: D,
     ) -> TranslucentBodies<'a, D> {
-        TranslucentBodies { tree: self.tree, capsules: self.sticks, depth }
+        let Self { tree, sticks, ellipsoids } = self;
+        TranslucentBodies { tree, capsules: sticks, ellipsoids, depth }
     }
 
     /// Traces rays with the processor.
@@ -60,17 +70,17 @@ impl<'a> Bodies<'a> {
             Query::Closest => tracer.closest(self.tree, rays, hits),
             Query::Any => tracer.occluded(self.tree, rays, hits),
         };
-        exact + self.trace_sticks(query, rays, hits)
+        exact + self.trace_others(query, rays, hits)
     }
 
-    /// Traces rays whose hits on spheres are known.
+    /// Traces rays among bodies other than spheres, whose hits are known.
     #[inline(always)]
-    pub(super) fn trace_sticks(self, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
-        if self.sticks.is_empty() {
+    pub(super) fn trace_others(self, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
+        if self.sticks.is_empty() && self.ellipsoids.is_empty() {
             return 0;
         }
-        let bodies =
-            BodyTrees { spheres: self.tree.spheres, capsules: self.sticks, ellipsoids: None };
+        let ellipsoids = (!self.ellipsoids.is_empty()).then_some(self.ellipsoids);
+        let bodies = BodyTrees { spheres: self.tree.spheres, capsules: self.sticks, ellipsoids };
         match query {
             Query::Closest => bodies::closest(bodies, rays, hits),
             Query::Any => bodies::occluded(bodies, rays, hits),
@@ -79,26 +89,33 @@ impl<'a> Bodies<'a> {
 
     /// Returns the hit on the cap of the body that contains a point; `None` if none does.
     pub(super) fn enclosing(&self, point: glam::Vec3) -> Option<u32> {
-        let Self { tree, sticks } = self;
-        tree.bvh.enclosing_sphere(tree.spheres, point).or_else(|| {
-            let capsule = sticks.enclosing(point.as_dvec3())?;
-            Some(self.cap_of_stick(capsule, point))
-        })
+        let (tree, exact) = (&self.tree, point.as_dvec3());
+        let stick = || Some(self.cap_of_stick(self.sticks.enclosing(exact)?, point));
+        let ellipsoid = || Some(self.cap_of_ellipsoid(self.ellipsoids.enclosing(exact)?));
+        tree.bvh.enclosing_sphere(tree.spheres, point).or_else(stick).or_else(ellipsoid)
     }
 
     /// Returns the hits on the caps of all bodies that contain a point, in their order on the cut: the first is that of
     /// [`Bodies::enclosing`].
     pub(super) fn all_enclosing(self, point: glam::Vec3) -> impl Iterator<Item = u32> {
-        let Self { tree, sticks } = self;
-        let sticks = sticks.all_enclosing(point.as_dvec3());
+        let (tree, exact) = (self.tree, point.as_dvec3());
+        let sticks = self.sticks.all_enclosing(exact);
         let sticks = sticks.into_iter().map(move |capsule| self.cap_of_stick(capsule, point));
-        tree.bvh.enclosing_spheres(tree.spheres, point).into_iter().chain(sticks)
+        let ellipsoids = self.ellipsoids.all_enclosing(exact);
+        let ellipsoids = ellipsoids.into_iter().map(move |row| self.cap_of_ellipsoid(row));
+        let spheres = tree.bvh.enclosing_spheres(tree.spheres, point);
+        spheres.into_iter().chain(sticks).chain(ellipsoids)
     }
 
     /// The hit on the cap of a stick at a point.
     fn cap_of_stick(&self, capsule: usize, point: glam::Vec3) -> u32 {
         let body = self.sticks.body(capsule);
         let half = usize::from(body.normal(point.as_dvec3() - body.ends[0]).1 > 0.5);
-        CapsuleRow { capsule, half }.hit(self.tree.spheres.len())
+        self.rows().hit(BodyRow::Capsule(CapsuleRow { capsule, half }))
+    }
+
+    /// The hit on the cap of an ellipsoid.
+    fn cap_of_ellipsoid(&self, row: usize) -> u32 {
+        self.rows().hit(BodyRow::Ellipsoid(row))
     }
 }

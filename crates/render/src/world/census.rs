@@ -17,6 +17,8 @@ pub struct Features {
     pub spheres_by_kind: [u64; MaterialKind::COUNT],
     /// Sticks of each kind of material, likewise.
     pub sticks_by_kind: [u64; MaterialKind::COUNT],
+    /// Ellipsoids of each kind of material, likewise.
+    pub ellipsoids_by_kind: [u64; MaterialKind::COUNT],
     /// Spheres too small for single precision relative to the largest coordinate, omitted.
     pub vanished: u64,
     /// Spheres that coincide with an earlier one, among many about one center, omitted.
@@ -55,10 +57,10 @@ impl Features {
         for row in 0..world.spheres.len() {
             spheres_by_kind[world.appearance.material.row(row).kind() as usize] += 1;
         }
-        let sticks = |kind| world.sticks.count_of(&world.appearance, world.spheres.len(), kind);
         Self {
             spheres_by_kind,
-            sticks_by_kind: MaterialKind::ALL.map(sticks),
+            sticks_by_kind: MaterialKind::ALL.map(|kind| world.sticks_of(kind)),
+            ellipsoids_by_kind: MaterialKind::ALL.map(|kind| world.ellipsoids_of(kind)),
             vanished: omitted.vanished,
             cut_away: omitted.cut_away,
             cuts: world.cut.len() as u64,
@@ -95,6 +97,7 @@ impl Features {
     pub fn has(&self, kind: MaterialKind) -> bool {
         self.spheres_by_kind[kind as usize] > 0
             || self.sticks_by_kind[kind as usize] > 0
+            || self.ellipsoids_by_kind[kind as usize] > 0
             || self.ground_kind == Some(kind)
     }
 

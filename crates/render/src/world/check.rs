@@ -7,9 +7,9 @@ use crate::image::Image;
 use crate::memory;
 use crate::scene::particles::Cell;
 use crate::scene::{
-    self, BRIGHTEST, Background, Camera, ConductorFresnel, Environment, EnvironmentMap, Ground,
-    Lens, Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Slice, Sticks,
-    is_radiance,
+    self, BRIGHTEST, Background, Camera, ConductorFresnel, Ellipsoids, Environment, EnvironmentMap,
+    Ground, Lens, Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Slice,
+    Sticks, is_radiance,
 };
 use glam::DVec3;
 
@@ -31,6 +31,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
     scene.ground.as_ref().map_or(Ok(()), |plane| ground(plane, &scene.materials))?;
     look(&scene.look)?;
     sticks(&scene.sticks, scene.spheres.len(), &scene.materials)?;
+    ellipsoids(scene)?;
     let invalid = scene.spheres.color.iter().position(|&color| !is_fraction(color));
     invalid.map_or(Ok(()), |row| {
         let color = scene.spheres.color[row];
@@ -269,6 +270,53 @@ fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError
     require(solid, || "the ground cannot be glass, an emitter or translucent".to_owned())
 }
 
+/// Returns whether there is a material, neither glass nor an emitter.
+fn is_solid(materials: &[NamedMaterial], row: u32) -> bool {
+    let material = materials.get(row as usize).map(|named| &named.material);
+    !matches!(material, None | Some(Material::Dielectric { .. } | Material::Emitter { .. }))
+}
+
+/// Checks columns of ellipsoids.
+fn ellipsoids(scene: &Scene) -> Result<(), WorldError> {
+    let Ellipsoids { center, semi_axes, orientation, material, color } = &scene.ellipsoids;
+    let n = center.len();
+    let lengths = [semi_axes.len(), orientation.len(), material.len(), color.len()];
+    require(lengths == [n; 4], || {
+        format!("the columns of the ellipsoids differ in length from `center`, {n}")
+    })?;
+    let others = scene.spheres.len() + 2 * scene.sticks.len();
+    let most = Ellipsoids::MAX.min((scene::Spheres::MAX as usize).saturating_sub(others));
+    require(n <= most, || {
+        format!("too many ellipsoids: {n}, but at most {most} fit; render a part of them")
+    })?;
+    for row in 0..n {
+        require(center[row].is_finite(), || {
+            format!("the center of ellipsoid {row} must be finite")
+        })?;
+        for axis in semi_axes[row].to_array() {
+            more_than_0(&format!("a semi-axis of ellipsoid {row}"), axis)?;
+        }
+        let ratio = semi_axes[row].max_element() / semi_axes[row].min_element();
+        require(ratio <= Ellipsoids::MAX_RATIO, || {
+            let most = Ellipsoids::MAX_RATIO;
+            format!(
+                "a semi-axis of ellipsoid {row} is {ratio} times another, but at most {most} fit"
+            )
+        })?;
+        require(orientation[row].is_finite() && orientation[row].is_normalized(), || {
+            format!("the orientation of ellipsoid {row} must be a unit quaternion")
+        })?;
+        require(is_fraction(color[row]), || {
+            let color = color[row];
+            format!("the color of ellipsoid {row} is {color}, but must be 0 to 1 in each channel")
+        })?;
+        require(is_solid(&scene.materials, material[row]), || {
+            format!("ellipsoid {row} must have a material, which cannot be glass or an emitter")
+        })?;
+    }
+    Ok(())
+}
+
 /// Checks columns of sticks.
 fn sticks(sticks: &Sticks, spheres: usize, materials: &[NamedMaterial]) -> Result<(), WorldError> {
     let Sticks { from, to, radius, material, colors } = sticks;
@@ -289,12 +337,7 @@ fn sticks(sticks: &Sticks, spheres: usize, materials: &[NamedMaterial]) -> Resul
                 format!("a color of stick {row} is {color}, but must be 0 to 1 in each channel")
             })
         })?;
-        let material = materials.get(material[row] as usize).map(|named| &named.material);
-        let solid = !matches!(
-            material,
-            None | Some(Material::Dielectric { .. } | Material::Emitter { .. })
-        );
-        require(solid, || {
+        require(is_solid(materials, material[row]), || {
             format!("stick {row} must have a material, which cannot be glass or an emitter")
         })?;
     }

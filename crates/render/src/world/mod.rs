@@ -6,6 +6,7 @@
 //! All errors of a scene are found here or before; rendering cannot fail.
 
 mod appearance;
+mod bodies;
 mod camera;
 mod camera_visible;
 mod caustics;
@@ -21,11 +22,12 @@ mod light_images;
 mod lights;
 mod parts;
 mod spheres;
-mod sticks;
 mod transform;
 mod visibility;
 
 pub use appearance::{Appearance, Colors, Column};
+pub(crate) use bodies::WorldBody;
+pub use bodies::{VisibleBodies, WorldBodies};
 pub use camera::{Camera, CameraTerms};
 pub use camera_visible::CameraVisible;
 pub use caustics::CausticCasters;
@@ -49,12 +51,14 @@ pub use lights::{
     Disc, LightRow, LightSample, LightView, Lights, Point, ROW, Receiver, ReceiverRow, Sun,
 };
 pub(crate) use parts::{OmittedSpheres, Parts};
-pub use sticks::{VisibleSticks, WorldSticks};
 pub use transform::Transform;
 pub use visibility::Visibility;
 
+use crate::body_rows::BodyRow;
 use crate::bvh::builders::Builder;
 use crate::bvh::{Bvh, DeviceTracer};
+use crate::capsules::Capsule;
+use crate::ellipsoids::Ellipsoid;
 use crate::memory::Shortage;
 use crate::ray::{GROUND, MISS};
 use crate::scene::{self, Background, Footprint, Rgb, Scene};
@@ -87,7 +91,12 @@ pub struct World {
     pub bvh: Bvh,
     /// Sticks, whose halves have rows of the appearance after those of the spheres.
     #[doc(hidden)]
-    pub sticks: WorldSticks,
+    pub sticks: WorldBodies<Capsule>,
+    /// Ellipsoids, which have rows after those.
+    #[doc(hidden)]
+    pub ellipsoids: WorldBodies<Ellipsoid>,
+    /// Number of sticks of the scene, those that slices remove included.
+    scene_sticks: u32,
     /// Planes at which spheres are cut.
     #[doc(hidden)]
     pub cut: Cut,
@@ -237,9 +246,11 @@ impl World {
         let Parts { transform, placement, spheres, bvh, mut appearance, camera_visible, omitted } =
             parts;
         let materials = Materials::build(&scene.materials);
-        let sticks = WorldSticks::build(scene, &transform);
+        let sticks = bodies::sticks(scene, &transform);
+        let ellipsoids = bodies::ellipsoids(scene, &transform);
         let count = spheres.len();
-        sticks::append_appearance(&mut appearance, scene, &materials, &sticks.all, count);
+        let others = (&sticks.all, &ellipsoids.all);
+        bodies::append_appearance(&mut appearance, scene, &materials, others, count);
         let cut = Cut::build(&scene.slices, &transform);
         let camera = Camera::build(scene, &placement, &transform);
         let environment = Environment::build(&scene.environment, &scene.look);
@@ -259,6 +270,8 @@ impl World {
             appearance,
             bvh,
             sticks,
+            ellipsoids,
+            scene_sticks: scene.sticks.len() as u32,
             cut,
             camera_visible,
             coincident: Vec::new(),
@@ -284,7 +297,10 @@ impl World {
 
     /// Returns whether slices hide or cut spheres, so that the processor traces all rays.
     pub fn is_sliced(&self) -> bool {
-        self.camera_visible.is_some() || self.sticks.visible.is_some() || !self.cut.is_empty()
+        self.camera_visible.is_some()
+            || self.sticks.visible.is_some()
+            || self.ellipsoids.visible.is_some()
+            || !self.cut.is_empty()
     }
 
     /// Returns whether any body is translucent.
@@ -323,7 +339,9 @@ impl World {
             spheres: Spheres::default(),
             appearance: Appearance::NONE,
             bvh: Bvh::default(),
-            sticks: WorldSticks::default(),
+            sticks: WorldBodies::default(),
+            ellipsoids: WorldBodies::default(),
+            scene_sticks: 0,
             cut: Cut::default(),
             camera_visible: None,
             coincident: Vec::new(),
@@ -376,13 +394,18 @@ impl World {
         !self.caustic_casters.is_empty() || (mirrors && self.lights.samples_mirrored_light())
     }
 
-    /// Returns the number of what is hit: of spheres and, after them, sticks, in the scene's order; other hits are unchanged.
+    /// Returns the number of what is hit: of spheres, after them sticks, and after these ellipsoids, in the scene's order; other
+    /// hits are unchanged.
     pub(crate) fn id_of(&self, hit: u32) -> u32 {
         let given = self.omitted();
         let spheres = self.spheres.len() as u64 + given.cut_away + given.vanished + given.hidden;
-        match self.sticks.at(hit, self.spheres.len()) {
-            Some((_, row)) => spheres as u32 + self.sticks.all.ids()[row.capsule],
-            None => self.spheres.id.get(hit as usize).copied().unwrap_or(hit),
+        match self.body_rows().row(hit) {
+            Some(BodyRow::Sphere(row)) => self.spheres.id[row],
+            Some(BodyRow::Capsule(row)) => spheres as u32 + self.sticks.all.ids()[row.capsule],
+            Some(BodyRow::Ellipsoid(row)) => {
+                spheres as u32 + self.scene_sticks + self.ellipsoids.all.ids()[row]
+            }
+            None => hit,
         }
     }
 
@@ -391,12 +414,13 @@ impl World {
         match (hit, &self.ground) {
             (GROUND, Some(ground)) => Some(ground.normal.as_vec3()),
             (MISS | GROUND, _) => None,
-            _ => match self.sticks.at(hit, self.spheres.len()) {
-                Some((stick, _)) => {
-                    Some(stick.normal(point.as_dvec3() - stick.ends[0]).0.as_vec3())
+            _ => Some(match self.body(hit)? {
+                WorldBody::Sphere(row) => (point - self.spheres.center(row)).normalize_or_zero(),
+                WorldBody::Stick(stick) => {
+                    stick.normal(point.as_dvec3() - stick.ends[0]).0.as_vec3()
                 }
-                None => Some((point - self.spheres.center(hit as usize)).normalize_or_zero()),
-            },
+                WorldBody::Ellipsoid(body) => body.normal(point.as_dvec3() - body.center).as_vec3(),
+            }),
         }
     }
 

@@ -34,11 +34,16 @@ pub struct Transform {
 impl Transform {
     /// Of a scene, with all its spheres.
     pub(super) fn of(scene: &Scene, camera: &Placement) -> Self {
-        let (spheres, sticks) = (&scene.spheres, &scene.sticks);
-        let shift = match (spheres.is_empty(), sticks.from.first()) {
-            (false, _) => middle(spheres),
-            (true, Some(_)) => middle(&first_ends(scene)),
-            (true, None) => DVec3::ZERO,
+        let Scene { spheres, sticks, ellipsoids, .. } = scene;
+        let shift = if !spheres.is_empty() {
+            middle(spheres)
+        } else if !sticks.is_empty() {
+            middle(&at_points(&sticks.from, &sticks.radius))
+        } else if !ellipsoids.is_empty() {
+            let reach: Vec<f64> = (0..ellipsoids.len()).map(|row| ellipsoids.reach(row)).collect();
+            middle(&at_points(&ellipsoids.center, &reach))
+        } else {
+            DVec3::ZERO
         };
         let reach_of = |center: DVec3, radius: f64| (center - shift).abs().max_element() + radius;
         let reach = (0..spheres.len())
@@ -48,6 +53,9 @@ impl Transform {
         let radii = sticks.radius.iter().chain(&sticks.radius);
         let reach =
             ends.zip(radii).map(|(&end, &radius)| reach_of(end, radius)).fold(reach, f64::max);
+        let reach = (0..ellipsoids.len())
+            .map(|row| reach_of(ellipsoids.center[row], ellipsoids.reach(row)))
+            .fold(reach, f64::max);
         Self { shift, scale: 1.0, reach }.with_camera(camera)
     }
 
@@ -91,11 +99,10 @@ impl Transform {
     }
 }
 
-/// Returns spheres about the first ends of the sticks.
-fn first_ends(scene: &Scene) -> Spheres {
-    let ends = &scene.sticks.from;
-    let column = |axis: usize| ends.iter().map(|end| end[axis]).collect();
-    let radius = scene.sticks.radius.clone();
+/// Returns spheres about points.
+fn at_points(points: &[DVec3], radius: &[f64]) -> Spheres {
+    let column = |axis: usize| points.iter().map(|point| point[axis]).collect();
+    let radius = radius.to_vec();
     Spheres { x: column(0), y: column(1), z: column(2), radius, ..Spheres::default() }
 }
 

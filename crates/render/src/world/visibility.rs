@@ -2,6 +2,7 @@
 //! usually a mistake.
 
 use super::World;
+use crate::body_tree::Shape as _;
 use crate::film::Region;
 use crate::shade::MaterialKind;
 use glam::DVec2;
@@ -29,7 +30,7 @@ impl World {
     pub fn visibility(&self, region: Region, samples: u32) -> Visibility {
         let spheres =
             self.camera_visible.as_ref().map_or(&self.spheres, |visible| &visible.spheres);
-        if self.sticks_in_view(region) {
+        if self.other_bodies_in_view(region) {
             return Visibility::Visible;
         }
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
@@ -58,15 +59,23 @@ impl World {
         }
     }
 
-    /// Returns whether an end of a stick is in a region of the picture.
-    fn sticks_in_view(&self, region: Region) -> bool {
+    /// Returns whether an end of a stick, or the surroundings of an ellipsoid, are in a region of the picture.
+    fn other_bodies_in_view(&self, region: Region) -> bool {
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
         let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
-        let sticks = self.sticks.visible.as_ref().map_or(&self.sticks.all, |seen| &seen.capsules);
-        (0..sticks.len()).into_par_iter().any(|row| {
+        let in_view = |sphere| self.camera.coverage(sphere, low, high) > 0.0;
+        let (sticks, ellipsoids) = (self.sticks.seen(), self.ellipsoids.seen());
+        let stick_in_view = |row: usize| {
             let stick = sticks.body(row);
-            stick.ends.iter().any(|&end| self.camera.coverage((end, stick.radius), low, high) > 0.0)
-        })
+            stick.ends.iter().any(|&end| in_view((end, stick.radius)))
+        };
+        let ellipsoid_in_view = |row: usize| {
+            let body = ellipsoids.body(row);
+            let [least, most] = body.extent();
+            in_view((body.center, (most - least).max_element() / 2.0))
+        };
+        (0..sticks.len()).into_par_iter().any(stick_in_view)
+            || (0..ellipsoids.len()).into_par_iter().any(ellipsoid_in_view)
     }
 
     /// Returns the number of spheres whose centers are outside of the picture.

@@ -104,6 +104,24 @@ pub(super) fn read_ground(
     Ok(Some(Ground { normal, height, material }))
 }
 
+/// Refuses dielectrics and emitters for `body`, which only spheres can be.
+pub(super) fn refuse_lights_and_glass(
+    block: &Block,
+    materials: &Materials,
+    row: u32,
+    body: &str,
+) -> Result<(), FileError> {
+    let kind = match materials.rows()[row as usize].material {
+        Material::Dielectric { .. } => "a dielectric",
+        Material::Emitter { .. } => "an emitter",
+        _ => return Ok(()),
+    };
+    let message = format!("{body} cannot be {kind}");
+    let error = block.value("material").map(|value| value.error(message.as_str()));
+    let error = error.unwrap_or_else(|| block.error(message));
+    Err(error.with_help("name a material of another kind, or use spheres"))
+}
+
 /// Returns the row of the material that the section names, or of the default material.
 pub(super) fn row(block: &Block, materials: &mut Materials) -> Result<u32, FileError> {
     let Some(value) = block.value("material") else {

@@ -7,6 +7,7 @@
 mod annotations;
 mod block;
 mod camera;
+mod ellipsoids;
 mod environment;
 mod lights;
 mod look;
@@ -22,8 +23,8 @@ use self::block::{Block, Source};
 use self::materials::Materials;
 use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
-    Camera, Environment, EnvironmentMap, FileError, Light, Look, Material, NamedMaterial, Preset,
-    Rgb, Scene, Settings, Spheres,
+    Camera, Ellipsoids, Environment, EnvironmentMap, FileError, Light, Look, Material,
+    NamedMaterial, Preset, Rgb, Scene, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
 use memchr::memchr_iter;
@@ -172,6 +173,7 @@ impl Scene {
             title: title.to_owned(),
             spheres,
             sticks,
+            ellipsoids: Ellipsoids::default(),
             materials,
             warnings: particles.warnings,
             ..Self::default()
@@ -205,6 +207,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     let mut materials = materials::read(root)?;
     spheres::read(source, root, (&mut scene, &mut materials))?;
     sticks::read(root, (&mut scene.sticks, &mut materials))?;
+    ellipsoids::read(root, (&mut scene.ellipsoids, &mut materials))?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block("environment", &schema::ENVIRONMENT)?;

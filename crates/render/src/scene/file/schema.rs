@@ -53,6 +53,7 @@ pub(super) const ROOT: Schema = plain(
         ("material", &[]),
         ("sphere", &[]),
         ("stick", &[]),
+        ("ellipsoid", &[]),
         ("generate", &[]),
         ("file", &[]),
     ],
@@ -218,6 +219,11 @@ pub(super) const STICK: Schema = plain(
     ],
 );
 
+pub(super) const ELLIPSOID: Schema = plain(
+    "[[ellipsoid]]",
+    &[("center", &[]), ("semi_axes", &[]), ("orientation", &[]), ("material", &[]), ("color", &[])],
+);
+
 pub(super) const GENERATE: Schema = Schema {
     section: "[[generate]]",
     selector: "kind",
@@ -253,7 +259,7 @@ pub(super) const FILE: Schema = plain(
 mod tests {
     use super::*;
 
-    const ALL: [&Schema; 19] = [
+    const ALL: [&Schema; 20] = [
         &ROOT,
         &RENDER,
         &CAMERA,
@@ -271,6 +277,7 @@ mod tests {
         &MATERIAL,
         &SPHERE,
         &STICK,
+        &ELLIPSOID,
         &GENERATE,
         &FILE,
     ];

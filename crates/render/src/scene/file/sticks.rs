@@ -4,7 +4,7 @@ use super::block::Block;
 use super::materials::{self, Materials};
 use super::schema;
 use super::value::Limits;
-use crate::scene::{FileError, Material, Rgb, Sticks};
+use crate::scene::{FileError, Rgb, Sticks};
 
 pub(super) fn read(
     root: &Block,
@@ -17,17 +17,7 @@ pub(super) fn read(
         let radius = radius.number(Limits::Positive)?;
         let colors = colors(&block)?;
         let material = materials::row(&block, materials)?;
-        let unsupported = match materials.rows()[material as usize].material {
-            Material::Dielectric { .. } => Some("a dielectric"),
-            Material::Emitter { .. } => Some("an emitter"),
-            _ => None,
-        };
-        if let Some(kind) = unsupported {
-            let message = format!("a stick cannot be {kind}");
-            let error = block.value("material").map(|value| value.error(message.as_str()));
-            let error = error.unwrap_or_else(|| block.error(message));
-            return Err(error.with_help("name a material of another kind, or use spheres"));
-        }
+        materials::refuse_lights_and_glass(&block, materials, material, "a stick")?;
         sticks.push([from, to], radius, material, colors);
     }
     Ok(())

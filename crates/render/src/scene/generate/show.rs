@@ -2,8 +2,8 @@
 
 use super::{Field, Group};
 use crate::scene::{
-    Annotations, Camera, Environment, EnvironmentMap, Ground, Insets, Lens, Light, Look, Material,
-    NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Sticks, Tone,
+    Annotations, Camera, Ellipsoids, Environment, EnvironmentMap, Ground, Insets, Lens, Light,
+    Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Sticks, Tone,
 };
 use glam::DVec3;
 
@@ -27,6 +27,7 @@ pub fn default_scene(seed: u64) -> Scene {
         title: "A random field of spheres".to_owned(),
         spheres,
         sticks: Sticks::default(),
+        ellipsoids: Ellipsoids::default(),
         materials,
         ground: Some(ground),
         slices: Vec::new(),

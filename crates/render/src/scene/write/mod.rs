@@ -112,6 +112,7 @@ fn check(scene: &Scene) -> Result<(), String> {
     let used = (0..spheres.len()).map(|sphere| spheres.material_of(sphere));
     let used = used.chain(scene.ground.iter().map(|ground| ground.material));
     let used = used.chain(scene.sticks.material.iter().copied());
+    let used = used.chain(scene.ellipsoids.material.iter().copied());
     match used.max() {
         Some(row) if row as usize >= scene.materials.len() => {
             Err(format!("row {row} of the materials is used, but not there"))
@@ -161,6 +162,7 @@ fn document(scene: &Scene, header: &Header, sky: &str) -> String {
     scene.lights.iter().for_each(|row| text += &light(row));
     let name = |row: u32| quoted(&scene.materials[row as usize].name);
     text += &sections::sticks(&scene.sticks, name);
+    text += &sections::ellipsoids(&scene.ellipsoids, name);
     text
 }
 

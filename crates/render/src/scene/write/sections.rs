@@ -3,11 +3,11 @@
 use crate::color::{Scale, Spacing};
 use crate::scene::{
     Annotations, AxisTripod, Background, Camera, ColorBar, ColorLegend, ConductorFresnel,
-    Environment, EnvironmentMap, Insets, Label, Lens, Lettering, Light, Look, Material, Pose,
-    Projection, Rgb, ScaleBar, Slice, Sticks,
+    Ellipsoids, Environment, EnvironmentMap, Insets, Label, Lens, Lettering, Light, Look, Material,
+    Pose, Projection, Rgb, ScaleBar, Slice, Sticks,
 };
 use crate::settings::{SETTINGS, Setting, Settings, Value};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::fmt::Write as _;
 
 pub(super) fn render(settings: &Settings) -> String {
@@ -249,6 +249,25 @@ pub(in crate::scene) fn sticks(sticks: &Sticks, material: impl Fn(u32) -> String
             text,
             "[[stick]]\nfrom = {from}\nto = {to}\nradius = {radius:?}\nmaterial = {material}\n\
              colors = [{first}, {second}]\n\n"
+        );
+    }
+    text
+}
+
+/// The sections of the ellipsoids, likewise.
+pub(in crate::scene) fn ellipsoids(
+    ellipsoids: &Ellipsoids,
+    material: impl Fn(u32) -> String,
+) -> String {
+    let mut text = String::new();
+    for row in 0..ellipsoids.len() {
+        let [center, semi_axes] = [ellipsoids.center[row], ellipsoids.semi_axes[row]].map(vector);
+        let DQuat { x, y, z, w } = ellipsoids.orientation[row];
+        let (color, material) = (rgb(ellipsoids.color[row]), material(ellipsoids.material[row]));
+        let _ = write!(
+            text,
+            "[[ellipsoid]]\ncenter = {center}\nsemi_axes = {semi_axes}\n\
+             orientation = [{w:?}, {x:?}, {y:?}, {z:?}]\nmaterial = {material}\ncolor = {color}\n\n"
         );
     }
     text

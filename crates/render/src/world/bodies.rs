@@ -1,0 +1,195 @@
+//! The sticks and ellipsoids of a scene in world space.
+
+use super::appearance::{Colors, Column};
+use super::{Appearance, Materials, Transform, World};
+use crate::body_rows::{BodyRow, BodyRows};
+use crate::body_tree::{BodyTree, Shape};
+use crate::bvh::builders::Builder;
+use crate::capsules::{Capsule, CapsuleItem};
+use crate::ellipsoids::{Ellipsoid, EllipsoidItem};
+use crate::scene::{Rgb, Scene};
+use crate::shade::{MaterialId, MaterialKind};
+use glam::DVec3;
+use std::borrow::Cow;
+
+/// Bodies of one kind in world space, with their tree.
+#[derive(Clone, Debug)]
+pub struct WorldBodies<S: Shape> {
+    /// All bodies.
+    pub all: BodyTree<S>,
+    /// The bodies that the camera sees; `None` if slices hide none.
+    pub visible: Option<VisibleBodies<S>>,
+}
+
+/// The bodies that camera rays are tested against.
+#[derive(Clone, Debug)]
+pub struct VisibleBodies<S: Shape> {
+    /// The bodies, in the order of their tree.
+    pub tree: BodyTree<S>,
+    /// Their rows among all.
+    pub row: Vec<u32>,
+}
+
+/// A body that is hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum WorldBody {
+    Sphere(usize),
+    Stick(Capsule),
+    Ellipsoid(Ellipsoid),
+}
+
+impl<S: Shape> Default for WorldBodies<S> {
+    fn default() -> Self {
+        Self { all: BodyTree::default(), visible: None }
+    }
+}
+
+impl<S: Shape> WorldBodies<S> {
+    /// Builds the tree of bodies, whose ids are less than `ids`, and that of those that are not hidden.
+    fn build(items: &[S::Item], ids: usize, is_hidden: impl Fn(u32) -> bool) -> Self {
+        let all = BodyTree::<S>::build(items, Builder::default());
+        let seen: Vec<_> =
+            items.iter().copied().filter(|item| !is_hidden(S::around(item).2)).collect();
+        let visible = (seen.len() < items.len()).then(|| {
+            let tree = BodyTree::<S>::build(&seen, Builder::default());
+            let mut of_id = vec![0; ids];
+            for (row, &id) in all.ids().iter().enumerate() {
+                of_id[id as usize] = row as u32;
+            }
+            let row = tree.ids().iter().map(|&id| of_id[id as usize]).collect();
+            VisibleBodies { tree, row }
+        });
+        Self { all, visible }
+    }
+
+    /// Returns the number of bodies.
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Returns whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// Returns the bodies that the camera sees.
+    pub(crate) fn seen(&self) -> &BodyTree<S> {
+        self.visible.as_ref().map_or(&self.all, |visible| &visible.tree)
+    }
+
+    /// Returns the row among all of a row of [`WorldBodies::seen`].
+    pub(crate) fn row_of_seen(&self, row: usize) -> usize {
+        self.visible.as_ref().map_or(row, |visible| visible.row[row] as usize)
+    }
+}
+
+/// Transforms the sticks that slices leave, and builds their tree.
+pub(super) fn sticks(scene: &Scene, transform: &Transform) -> WorldBodies<Capsule> {
+    let sticks = &scene.sticks;
+    let place = |row: usize| {
+        let ends = sticks.ends(row).map(|end| transform.point(end).as_vec3());
+        let radius = transform.length(sticks.radius[row]) as f32;
+        CapsuleItem { ends, radius, id: row as u32 }
+    };
+    let items: Vec<_> = scene.shown_sticks().map(place).filter(|item| item.radius > 0.0).collect();
+    let is_hidden = |row: u32| hides(scene, sticks.middle(row as usize));
+    WorldBodies::build(&items, sticks.len(), is_hidden)
+}
+
+/// Transforms the ellipsoids that slices leave, and builds their tree. Those that are too small for single precision are left
+/// out.
+pub(super) fn ellipsoids(scene: &Scene, transform: &Transform) -> WorldBodies<Ellipsoid> {
+    let ellipsoids = &scene.ellipsoids;
+    let place = |row: usize| {
+        let center = transform.point(ellipsoids.center[row]).as_vec3();
+        let semi_axes = ellipsoids.semi_axes[row] * transform.scale;
+        EllipsoidItem::new(center, semi_axes, ellipsoids.orientation[row], row as u32).ok()
+    };
+    let items: Vec<_> = scene.shown_ellipsoids().filter_map(place).collect();
+    let is_hidden = |row: u32| hides(scene, ellipsoids.center[row as usize]);
+    WorldBodies::build(&items, ellipsoids.len(), is_hidden)
+}
+
+fn hides(scene: &Scene, middle: DVec3) -> bool {
+    scene.slices.iter().any(|slice| slice.hides(middle))
+}
+
+impl World {
+    /// Returns the numbers of hits on bodies.
+    #[inline(always)]
+    pub(crate) fn body_rows(&self) -> BodyRows {
+        BodyRows { spheres: self.spheres.len(), capsules: self.sticks.len() }
+    }
+
+    /// Returns whether there are bodies other than spheres.
+    #[inline(always)]
+    pub fn has_other_bodies(&self) -> bool {
+        !self.sticks.is_empty() || !self.ellipsoids.is_empty()
+    }
+
+    /// Returns the body of a hit; `None` for the ground, and for none.
+    #[inline(always)]
+    pub(crate) fn body(&self, hit: u32) -> Option<WorldBody> {
+        Some(match self.body_rows().row(hit)? {
+            BodyRow::Sphere(row) => WorldBody::Sphere(row),
+            BodyRow::Capsule(row) => WorldBody::Stick(self.sticks.all.body(row.capsule)),
+            BodyRow::Ellipsoid(row) => WorldBody::Ellipsoid(self.ellipsoids.all.body(row)),
+        })
+    }
+
+    /// Returns the number of sticks of a kind of material.
+    pub(super) fn sticks_of(&self, kind: MaterialKind) -> u64 {
+        let first = self.spheres.len();
+        let is_kind =
+            |&stick: &usize| self.appearance.material.row(first + 2 * stick).kind() == kind;
+        (0..self.sticks.len()).filter(is_kind).count() as u64
+    }
+
+    /// Returns the number of ellipsoids of a kind of material.
+    pub(super) fn ellipsoids_of(&self, kind: MaterialKind) -> u64 {
+        let first = self.body_rows().hit(BodyRow::Ellipsoid(0)) as usize;
+        let is_kind = |&row: &usize| self.appearance.material.row(first + row).kind() == kind;
+        (0..self.ellipsoids.len()).filter(is_kind).count() as u64
+    }
+}
+
+/// Appends rows for the halves of sticks and for ellipsoids to the appearance of `spheres` spheres.
+pub(super) fn append_appearance(
+    appearance: &mut Appearance,
+    scene: &Scene,
+    materials: &Materials,
+    (sticks, ellipsoids): (&BodyTree<Capsule>, &BodyTree<Ellipsoid>),
+    spheres: usize,
+) {
+    let rows = || {
+        let halves = sticks.ids().iter().flat_map(|&id| {
+            let (material, colors) =
+                (scene.sticks.material[id as usize], scene.sticks.colors[id as usize]);
+            colors.map(|color| (materials.id(material), color))
+        });
+        let whole = ellipsoids.ids().iter().map(|&id| {
+            let row = id as usize;
+            (materials.id(scene.ellipsoids.material[row]), scene.ellipsoids.color[row])
+        });
+        halves.chain(whole)
+    };
+    let Some((first, _)): Option<(MaterialId, Rgb)> = rows().next() else { return };
+    let uniform = match &appearance.material {
+        Column::Uniform(id) => spheres == 0 || *id == first,
+        Column::Rows(rows) => rows.is_empty(),
+    };
+    appearance.material = if uniform && rows().all(|(id, _)| id == first) {
+        Column::Uniform(first)
+    } else {
+        let own = (0..spheres).map(|row| appearance.material.row(row));
+        Column::Rows(own.chain(rows().map(|(id, _)| id)).collect())
+    };
+    if appearance.color.is_some() || !rows().all(|(_, color)| color == Rgb::ONE) {
+        let own = (0..spheres).map(|row| match &appearance.color {
+            Some(colors) => colors.row(row),
+            None => Rgb::ONE,
+        });
+        let all: Vec<Rgb> = own.chain(rows().map(|(_, color)| color)).collect();
+        appearance.color = Some(Colors::new(Cow::Owned(all)));
+    }
+}
