@@ -100,7 +100,7 @@ pub mod scene {
         Footprint, Ground, Header, Identity, Insets, Integrator, InvalidSetting, Label, Lens,
         Lettering, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset,
         Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode,
-        SlicePlane, Spheres, Sticks, Tone, bounds, text_without_columns, write, write_as,
+        SlicePlane, Spheres, Sticks, Tone, text_without_columns, write, write_as,
     };
 
     /// Generators of spheres.
@@ -118,7 +118,7 @@ pub mod scene {
         pub use spherule_render::scene::particles::{
             BondRules, BondSource, Bonds, Cell, Coloring, ColumnColors, ElementColors, Legend,
             Model, Opacity, Orientation, ParticleStyle, Particles, PeriodicError, Selection,
-            Trails, TypeMaterial, TypeStyle, UpReason, of_frame, read,
+            Shapes, Trails, TypeMaterial, TypeStyle, UpReason, of_frame, read,
         };
     }
 }

@@ -98,6 +98,34 @@ def bonds(value: Any, shifts: Any, count: int) -> tuple[npt.NDArray[np.uint32], 
     return np.ascontiguousarray(table[:, :2], np.uint32), found
 
 
+def shapes(
+    semi_axes: Any, orientation: Any, count: int
+) -> tuple[npt.NDArray[Any] | None, npt.NDArray[Any] | None]:
+    """Semi-axes and quaternions, a row for each of `count` particles."""
+    import numpy as np
+
+    if semi_axes is None:
+        if orientation is not None:
+            raise Error("`orientation` needs `semi_axes`")
+        return None, None
+
+    def rows(name: str, value: Any, width: int) -> npt.NDArray[Any]:
+        array = floats(name, value)
+        if array.shape == (width,):
+            return np.broadcast_to(array, (count, width))
+        if array.shape != (count, width):
+            raise Error(f"`{name}` has the shape {array.shape}, but must have ({count}, {width}), one row per position")
+        return array
+
+    axes = rows("semi_axes", semi_axes, 3)
+    if orientation is None:
+        return axes, None
+    quaternions = rows("orientation", orientation, 4)
+    if (wrong := np.flatnonzero(~quaternions.any(axis=1))).size:
+        raise Error(f"orientation[{wrong[0]}] is 0, but must be a quaternion w, x, y, z")
+    return axes, quaternions
+
+
 def table(name: str, value: Any, width: int = 3) -> npt.NDArray[Any]:
     """Rows of `width` numbers, from rows or from a tuple of `width` columns."""
     import numpy as np

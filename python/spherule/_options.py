@@ -30,6 +30,8 @@ if TYPE_CHECKING:
         """Keyword arguments of scenes: how particles look, and the sections of scene files."""
 
         radius: Any
+        semi_axes: Any
+        orientation: Any
         color: Any
         kinds: Any
         values: Any
@@ -78,7 +80,7 @@ if TYPE_CHECKING:
 
 
 #: Arguments of particles.
-PARTICLES = frozenset("radius color kinds materials columns cell origin periodic unit".split())
+PARTICLES = frozenset("radius semi_axes orientation color kinds materials columns cell origin periodic unit".split())
 
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(

@@ -69,6 +69,9 @@ class Particles:
     Args:
         positions: (n, 3) numbers, or a tuple of the columns x, y and z; any unit of length.
         radius: One number or (n,), more than 0, in the unit of the positions.
+        semi_axes: (n, 3) numbers that make particles ellipsoids, or three zeros for a sphere; or one triple for all. The
+            radius is that of the longest semi-axis, and one that is given scales all three.
+        orientation: (n, 4) quaternions w, x, y, z of any length but 0, which turn ellipsoids.
         color: A CSS color, ``"#rrggbb"``, a list of those, or (n, 3): floats are linear RGB from 0 to 1, uint8 are
             sRGB codes.
         kinds: (n,) strings or integers: the types. Symbols of elements give radii and colors.
@@ -98,6 +101,8 @@ class Particles:
 
     positions: npt.NDArray[Any]
     radius: npt.NDArray[Any] | None
+    semi_axes: npt.NDArray[Any] | None
+    orientation: npt.NDArray[Any] | None
     color: npt.NDArray[Any] | None
     columns: dict[str, npt.NDArray[Any]]
     cell: Cell | None
@@ -119,6 +124,8 @@ class Particles:
         positions: Any,
         *,
         radius: Any = None,
+        semi_axes: Any = None,
+        orientation: Any = None,
         color: Any = None,
         kinds: Any = None,
         elements: Sequence[str | None] | None = None,
@@ -139,6 +146,7 @@ class Particles:
         self.positions = _arrays.table("positions", positions)
         count = len(self.positions)
         self.radius = None if radius is None else _arrays.column("radius", radius, count)
+        self.semi_axes, self.orientation = _arrays.shapes(semi_axes, orientation, count)
         self.color = None if color is None else _arrays.colors("color", color, count)
         self._kinds = None if kinds is None else _arrays.coded("kinds", kinds, count)
         if elements is not None and (self._kinds is None or len(elements) != len(self._kinds[0])):
@@ -172,6 +180,8 @@ class Particles:
             facts.append("kinds " + ", ".join(self._kinds[0][:5]) + (", ..." if len(self._kinds[0]) > 5 else ""))
         if self.columns:
             facts.append("columns " + ", ".join(self.columns))
+        if self.semi_axes is not None:
+            facts.append(f"{int((self.semi_axes > 0).all(axis=1).sum())} ellipsoids")
         if self.bonds is not None:
             facts.append(f"{len(self.bonds)} bonds")
         if self.cell:
@@ -223,6 +233,8 @@ class Particles:
             "radii": radii,
             "radius": self.radius,
             "radius_scale": radius_scale,
+            "semi_axes": self.semi_axes,
+            "orientation": self.orientation,
             "color": self.color,
             "kinds": self._kinds,
             "elements": self._elements,
@@ -322,6 +334,7 @@ def read(
     particles = Particles.__new__(Particles)
     particles.positions = table["positions"].T
     particles.radius, particles.color = table["radius"], table["color"]
+    particles.semi_axes, particles.orientation = table["semi_axes"], table["orientation"]
     particles._kinds, particles._elements = table["kinds"], table["elements"]
     particles._materials, particles._virtual_sites = table["materials"], table["virtual_sites"]
     particles.bonds, particles.bond_shifts = table["bonds"] or (None, None)

@@ -33,6 +33,7 @@ class Scene:
         radius: A number or (n,) numbers, more than 0, in the unit of the positions; or ``"vdw"`` or ``"covalent"``,
             radii of elements; or ``"column:NAME"``. By default the particles' own, or those of elements, or half of the
             mean spacing.
+        semi_axes, orientation: Semi-axes and quaternions of ellipsoids, as for :class:`Particles`.
         color, kinds, materials, columns, cell, origin, periodic, unit, title: As for :class:`Particles`, whose own
             color and materials they replace.
         values: (n,) finite numbers that a color map turns into colors; ``label_of_values`` names them in the color bar.
@@ -164,7 +165,7 @@ class Scene:
         self._native.save(_values.path("path", path))
 
     def __len__(self) -> int:
-        """The number of spheres."""
+        """The number of spheres and ellipsoids."""
         return len(self._native)
 
     def __repr__(self) -> str:
@@ -184,7 +185,7 @@ class Scene:
 
     @property
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
-        """The lower and the upper corner of the box of all spheres; None without spheres."""
+        """The lower and the upper corner of the box of all spheres and ellipsoids; None without any."""
         found = self._native.bounds
         return found
 

@@ -132,7 +132,7 @@ def from_mdanalysis(group: Any) -> Particles:
 def from_ovito(data: Any) -> Particles:
     """The particles of OVITO's ``DataCollection``, as ``pipeline.compute()`` returns it.
 
-    Positions, types with their names, radii and colors of particles, or else of their types, bonds, the cell, the time
+    Positions, types with their names, radii, shapes and colors of particles, or else of their types, bonds, the cell, the time
     step, and all other properties as columns. OVITO's colors are those of the screen: they are taken as sRGB.
 
     Args:
@@ -184,6 +184,14 @@ def from_ovito(data: Any) -> Particles:
     for name, property in properties.items():
         if name not in ("Position", "Particle Type", "Radius", "Color"):
             columns.update(_components(name, np.asarray(property)))
+    semi_axes = orientation = None
+    if "Aspherical Shape" in properties and np.asarray(properties["Aspherical Shape"]).any():
+        semi_axes = np.asarray(properties["Aspherical Shape"], np.float64)
+        # Its longest semi-axis is the radius of an ellipsoid; the radius of OVITO is that of spheres.
+        radius = np.where(semi_axes.any(axis=1), semi_axes.max(axis=1), radius)
+        if "Orientation" in properties:
+            orientation = np.asarray(properties["Orientation"], np.float64)[:, [3, 0, 1, 2]]
+            orientation = np.where(orientation.any(axis=1)[:, None], orientation, [1.0, 0.0, 0.0, 0.0])
     bonds = shifts = None
     listed = _optional(found, "bonds")
     if listed is not None and "Topology" in listed.keys():
@@ -201,6 +209,8 @@ def from_ovito(data: Any) -> Particles:
         kinds=kinds,
         elements=elements,
         radius=radius if count and bool(np.all(radius > 0)) else None,
+        semi_axes=semi_axes,
+        orientation=orientation,
         bonds=bonds,
         bond_shifts=shifts,
         color=None if color is None else np.rint(np.clip(color, 0.0, 1.0) * 255.0).astype(np.uint8),
@@ -214,7 +224,7 @@ def from_ovito(data: Any) -> Particles:
 
 
 def from_gsd(frame: Any) -> Particles:
-    """The particles of a frame of ``gsd.hoomd``: positions, diameters, types, bonds, the box, and other properties as
+    """The particles of a frame of ``gsd.hoomd``: positions, diameters, ellipsoids, types, bonds, the box, and other properties as
     columns.
 
     Args:
@@ -252,6 +262,19 @@ def from_gsd(frame: Any) -> Particles:
         values = _optional(particles, name)
         if values is not None and len(values) == count:
             columns.update(_components(name, values))
+    radius = None if diameter is None or len(diameter) != count else np.asarray(diameter, np.float64) / 2
+    semi_axes = None
+    described = _optional(particles, "type_shapes")
+    if described and codes is not None:
+        ellipsoids = [shape if shape.get("type") == "Ellipsoid" else {} for shape in described]
+        each = np.array([[float(shape.get(axis, 0.0)) for axis in "abc"] for shape in ellipsoids])
+        if each.any():
+            # Types after the last one that is described are spheres.
+            each = np.vstack([each, np.zeros((max(map(int, codes)) + 1, 3))])
+            semi_axes = each[np.asarray(codes, np.int64)]
+            if radius is not None:
+                radius = np.where(semi_axes.any(axis=1), semi_axes.max(axis=1), radius)
+    orientation = _optional(particles, "orientation")
     bonds = _optional(_optional(frame, "bonds"), "group")
     cell, origin = None, np.zeros(3)
     periodic: bool | tuple[bool, bool, bool] = True
@@ -267,7 +290,9 @@ def from_gsd(frame: Any) -> Particles:
     return Particles(
         positions,
         kinds=kinds,
-        radius=None if diameter is None or len(diameter) != count else np.asarray(diameter, np.float64) / 2,
+        radius=radius,
+        semi_axes=semi_axes,
+        orientation=orientation if semi_axes is not None else None,
         columns=columns,
         bonds=bonds if bonds is not None and len(bonds) else None,
         cell=cell,

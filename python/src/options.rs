@@ -2,7 +2,7 @@
 
 use crate::arrays::{Column, Table, check_points, check_positive, refused};
 use crate::errors::error;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use spherule::color::{Map, Rgb, Spacing};
@@ -31,6 +31,9 @@ pub(crate) struct ParticleTable<'py> {
     radii: Option<String>,
     radius: Option<Bound<'py, PyAny>>,
     radius_scale: f64,
+    /// (n, 3) semi-axes, and (n, 4) quaternions with the real part first.
+    semi_axes: Option<Bound<'py, PyAny>>,
+    orientation: Option<Bound<'py, PyAny>>,
     color: Option<Bound<'py, PyAny>>,
     kinds: Option<Coded<'py>>,
     /// The symbol of the element of each kind, where it has one.
@@ -93,6 +96,19 @@ impl ParticleTable<'_> {
                 check_positive(py, "radius", &frame.radius)?;
             }
             check_length(py, "radius", count, frame.radius.len())?;
+        }
+        if let Some(semi_axes) = &self.semi_axes {
+            let columns = Table::of(semi_axes)?.to_columns(py)?;
+            let turned = self.orientation.as_ref().map(|quaternions| {
+                let columns = Table::of(quaternions)?.to_columns(py)?;
+                if format.is_none() {
+                    check_points(py, "orientation", &columns)?;
+                }
+                quaternions_of(py, &columns, count)
+            });
+            let axes = axes_of(py, &columns, count, format.is_none())?;
+            let keeps_radii = !frame.radius.is_empty();
+            frame.set_shapes(axes, turned.transpose()?.unwrap_or_default(), keeps_radii);
         }
         if let Some(color) = &self.color {
             let columns = Table::of(color)?.to_columns(py)?;
@@ -249,6 +265,34 @@ pub(crate) fn cell_of(py: Python<'_>, (origin, vectors, periodic): CellTuple) ->
         return Ok(cell);
     }
     Err(error(py, &"`cell` must be finite, with three edges that span a volume"))
+}
+
+/// The semi-axes of `count` particles, three zeros for spheres; if `checks`, others must be more than 0.
+fn axes_of(
+    py: Python<'_>,
+    columns: &[Vec<f64>],
+    count: usize,
+    checks: bool,
+) -> PyResult<Vec<DVec3>> {
+    let [x, y, z] = columns else { return Err(lengths(py, "semi_axes", 3, columns.len())) };
+    check_length(py, "semi_axes", count, x.len())?;
+    let axes: Vec<DVec3> = (0..count).map(|row| DVec3::new(x[row], y[row], z[row])).collect();
+    let invalid =
+        |axes: &DVec3| *axes != DVec3::ZERO && !(axes.is_finite() && axes.min_element() > 0.0);
+    match axes.iter().position(invalid).filter(|_| checks) {
+        Some(row) => {
+            let must = "three finite numbers greater than 0, or three zeros for a sphere";
+            Err(refused(py, "semi_axes", row, &axes[row], must))
+        }
+        None => Ok(axes),
+    }
+}
+
+/// The quaternions of `count` particles.
+fn quaternions_of(py: Python<'_>, columns: &[Vec<f64>], count: usize) -> PyResult<Vec<DQuat>> {
+    let [w, x, y, z] = columns else { return Err(lengths(py, "orientation", 4, columns.len())) };
+    check_length(py, "orientation", count, w.len())?;
+    Ok((0..count).map(|row| DQuat::from_xyzw(x[row], y[row], z[row], w[row])).collect())
 }
 
 /// Sorted bonds of `count` particles.

@@ -100,6 +100,23 @@ fn columns(py: Python<'_>, frame: ParticleFrame) -> PyResult<Bound<'_, PyDict>> 
     positions.extend_from_slice(&frame.z);
     table.set_item("positions", PyArray1::from_vec(py, positions).reshape([3, count])?)?;
     let some = |values: Vec<f64>| (!values.is_empty()).then(|| PyArray1::from_vec(py, values));
+    let shapes = frame.shapes;
+    let axes = (!shapes.is_empty()).then(|| {
+        let of_row = |row: usize| {
+            let is_sphere = shapes.is_sphere(row);
+            let axes = shapes.semi_axes[row] * if is_sphere { 0.0 } else { frame.radius[row] };
+            axes.to_array()
+        };
+        let rows: Vec<[f64; 3]> = (0..count).map(of_row).collect();
+        PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
+    });
+    table.set_item("semi_axes", axes.transpose()?)?;
+    let turned = (!shapes.orientation.is_empty()).then(|| {
+        let of_row = |turn: &glam::DQuat| [turn.w, turn.x, turn.y, turn.z];
+        let rows: Vec<[f64; 4]> = shapes.orientation.iter().map(of_row).collect();
+        PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 4])
+    });
+    table.set_item("orientation", turned.transpose()?)?;
     table.set_item("radius", some(frame.radius))?;
     let colors = (!frame.color.is_empty()).then(|| -> PyResult<Bound<'_, PyArray2<f32>>> {
         let rows: Vec<[f32; 3]> = frame.color.iter().map(glam::Vec3::to_array).collect();

@@ -11,11 +11,11 @@ use spherule::color::{self, Rgb};
 use spherule::overlay::annotations;
 use spherule::particles::{FileError, NumberColumn, ParticleFrame, ReadOptions};
 use spherule::scene::particles::{
-    Legend, Orientation, ParticleStyle, Particles, UpReason, of_frame,
+    Legend, Orientation, ParticleStyle, Particles, Shapes, UpReason, of_frame,
 };
 use spherule::scene::{
     Anchor, Axis, Camera, ColorBar, EnvironmentMap, Insets, Pose, Preset, SliceMode, SlicePlane,
-    Spheres, bounds, text_without_columns, write,
+    Spheres, text_without_columns, write,
 };
 use spherule::settings::SETTINGS;
 use spherule::world::WorldError;
@@ -34,7 +34,8 @@ const ROWS: &str = "\0rows";
 #[pyclass(frozen, module = "spherule._spherule")]
 pub(crate) struct Scene {
     scene: Arc<Mutex<spherule::Scene>>,
-    /// Row in the user's arrays of each sphere, unless they are the same; spheres of sections follow.
+    /// Row in the user's arrays of each sphere, unless they are the same; spheres of sections follow. If particles are
+    /// ellipsoids, numbers of sticks, rows of the ellipsoids and numbers of those of sections are next.
     rows: Option<Arc<[u32]>>,
 }
 
@@ -211,9 +212,12 @@ impl Scene {
         Ok(Self::of((scene, rows.map(|rows| rows.as_array().to_vec()))))
     }
 
-    /// The number of spheres.
+    /// The number of spheres and ellipsoids.
     fn __len__(&self, py: Python<'_>) -> usize {
-        py.detach(|| self.lock().spheres.len())
+        py.detach(|| {
+            let scene = self.lock();
+            scene.spheres.len() + scene.ellipsoids.len()
+        })
     }
 
     #[getter]
@@ -236,10 +240,10 @@ impl Scene {
         py.detach(|| self.lock().warnings.clone())
     }
 
-    /// The lower and the upper corner of the box of all spheres.
+    /// The lower and the upper corner of the box of all spheres and ellipsoids.
     #[getter]
     fn bounds(&self, py: Python<'_>) -> Option<([f64; 3], [f64; 3])> {
-        let [low, high] = py.detach(|| bounds(&self.lock().spheres))?;
+        let [low, high] = py.detach(|| self.lock().bounds())?;
         Some((low.to_array(), high.to_array()))
     }
 
@@ -344,7 +348,7 @@ impl Work {
     fn scene(mut self) -> Result<Numbered, Fault> {
         let mut frame = std::mem::take(&mut self.frame);
         let count = frame.len();
-        if self.renumbers() || has_undrawn_rows(&frame) {
+        if self.renumbers() || has_undrawn_rows(&frame) || !frame.shapes.is_empty() {
             // Columns of numbers follow their rows through selections and copies.
             let values = (0..count).map(|row| row as f64).collect();
             frame.numbers.push(NumberColumn { name: ROWS.to_owned(), values });
@@ -375,7 +379,9 @@ impl Work {
         }
         let own = particles.numbers.iter().position(|column| column.name == ROWS);
         let own = own.map(|column| particles.numbers.swap_remove(column).values);
-        let mut rows = own.map(|values| values.into_iter().map(|row| row as u32).collect());
+        let mut rows: Option<Vec<u32>> =
+            own.map(|values| values.into_iter().map(|row| row as u32).collect());
+        let ellipsoids = rows.as_mut().map(|rows| take_ellipsoids(rows, &particles.shapes));
         let orientation = staging.orientation(&particles);
         let preset = staging.preset;
         let mut scene = preset.scene(particles, &title, &orientation);
@@ -411,7 +417,18 @@ impl Work {
         self.append_bodies(&mut scene);
         if let Some(rows) = &mut rows {
             let added = scene.spheres.len() - rows.len();
-            rows.extend((count..count + added).map(|row| row as u32));
+            let mut next = count;
+            let mut number = |more: usize| {
+                next += more;
+                (next - more..next).map(|row| row as u32)
+            };
+            rows.extend(number(added));
+            if let Some(ellipsoids) = ellipsoids.filter(|rows| !rows.is_empty()) {
+                let more = scene.ellipsoids.len() - ellipsoids.len();
+                rows.extend(number(2 * scene.sticks.len()));
+                rows.extend(ellipsoids);
+                rows.extend(number(more));
+            }
         }
         if ["light", "environment", "ground"].into_iter().any(has) {
             scene.lights.clone_from(&given.lights);
@@ -460,6 +477,16 @@ impl Work {
             scene.ellipsoids.push(center, semi_axes, orientation, material, color);
         }
     }
+}
+
+/// Takes the rows of particles that become ellipsoids.
+fn take_ellipsoids(rows: &mut Vec<u32>, shapes: &Shapes) -> Vec<u32> {
+    let numbered = || rows.iter().copied().enumerate();
+    let ellipsoids = numbered().filter(|(at, _)| !shapes.is_sphere(*at)).map(|(_, row)| row);
+    let ellipsoids = ellipsoids.collect();
+    let spheres = numbered().filter(|(at, _)| shapes.is_sphere(*at)).map(|(_, row)| row).collect();
+    *rows = spheres;
+    ellipsoids
 }
 
 /// Returns whether a frame has rows that are not drawn: those of a file without a radius, and virtual sites.
@@ -535,7 +562,7 @@ impl Staging {
         rows: &mut Option<Vec<u32>>,
     ) -> Result<Vec<DVec3>, Fault> {
         if !self.planes.is_empty() {
-            let whole = cell.or_else(|| bounds(&scene.spheres)).unwrap_or_default();
+            let whole = cell.or_else(|| scene.bounds()).unwrap_or_default();
             let slices = self.planes.iter().map(|plane| plane.slice(whole, self.slice_mode));
             scene.slices.extend(slices);
         }
@@ -550,7 +577,7 @@ impl Staging {
             let of = |row: u32| before.as_ref().map_or(row, |before| before[row as usize]);
             *rows = Some(shown.into_iter().map(of).collect());
         }
-        if dropped > 0 && scene.spheres.is_empty() {
+        if dropped > 0 && scene.framed().next().is_none() {
             let message = format!("the slices cut away all of its {dropped} spheres");
             let error = FileError::whole_file(Path::new(ARRAYS), message);
             return Err(error

@@ -134,6 +134,8 @@ def test_frames_of_gsd(tmp_path):
     frame.particles.position = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
     frame.particles.types, frame.particles.typeid = ["A", "B"], [0, 1, 0]
     frame.particles.diameter = [1, 2, 1]
+    frame.particles.type_shapes = [{"type": "Ellipsoid", "a": 1, "b": 2, "c": 3}]
+    frame.particles.orientation = [[1, 0, 0, 0], [1, 0, 0, 0], [0.6, 0, 0.8, 0]]
     frame.configuration.box = [6, 6, 6, 0.1, 0, 0]
     frame.bonds.N, frame.bonds.group, frame.bonds.types, frame.bonds.typeid = 1, [[2, 0]], ["b"], [0]
     with hoomd.open(tmp_path / "a.gsd", "w") as file:
@@ -144,6 +146,8 @@ def test_frames_of_gsd(tmp_path):
     assert ours.bonds.tolist() == theirs.bonds.tolist() == [[0, 2]]
     assert np.array_equal(ours.positions, theirs.positions) and np.array_equal(ours.radius, theirs.radius)
     assert np.array_equal(ours.kinds, theirs.kinds)
+    assert ours.semi_axes.tolist() == [[1, 2, 3], [0, 0, 0], [1, 2, 3]]
+    assert np.allclose(ours.semi_axes, theirs.semi_axes) and np.allclose(ours.orientation, theirs.orientation)
     assert np.allclose(ours.cell[1], theirs.cell[1]) and np.allclose(ours.cell[0], theirs.cell[0])
 
 
@@ -198,6 +202,14 @@ def test_frames_of_ovito_are_those_that_are_read(ovito, folder):
     assert np.allclose(spherule.from_ovito(theirs).color, [[0.215861, 0, 1]], atol=1e-6)
 
 
+def test_shapes_of_ovito_are_those_that_are_read(ovito, folder):
+    (folder / "shapes.lammpstrj").write_text(SHAPES)
+    ours = spherule.read(folder / "shapes.lammpstrj")
+    theirs = spherule.from_ovito(ovito.import_file(str(folder / "shapes.lammpstrj")).compute())
+    assert np.allclose(ours.semi_axes, theirs.semi_axes) and np.allclose(ours.orientation, theirs.orientation)
+    assert np.allclose(ours.radius, theirs.radius)
+
+
 def test_bonds_of_ovito_cross_the_cell(ovito):
     data = pytest.importorskip("ovito.data").DataCollection()
     particles = data.create_particles(count=3)
@@ -229,7 +241,7 @@ def same_as_the_program(program, path, tmp_path, options, arguments):
 
 
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("name", [*FILES, "a.npy", "a.npz", "bonds.mol2", "water.gro", "zero.csv"])
+@pytest.mark.parametrize("name", [*FILES, "a.npy", "a.npz", "bonds.mol2", "water.gro", "zero.csv", "shapes.lammpstrj"])
 def test_pictures_of_files_are_those_of_the_program(program, folder, tmp_path, name):
     (folder / "bonds.mol2").write_text(
         "@<TRIPOS>MOLECULE\nm\n3 1 0 0 0\nSMALL\nNO_CHARGES\n@<TRIPOS>ATOM\n1 C1 0 0 0 C.3\n2 C2 1.5 0 0 C.3\n"
@@ -241,6 +253,7 @@ def test_pictures_of_files_are_those_of_the_program(program, folder, tmp_path, n
         "    1SOL    HW2    3   0.080   0.290   0.310\n    1SOL     MW    4   0.500   0.900   0.100\n   1.0 1.0 1.0\n"
     )
     (folder / "zero.csv").write_text("x,y,z,radius\n0,0,0,1\n5,5,5,0\n1,2,3,0.5\n")
+    (folder / "shapes.lammpstrj").write_text(SHAPES)
     same_as_the_program(program, folder / name, tmp_path, {}, [])
     if name in ("a.xyz", "bonds.mol2", "water.gro"):
         same_as_the_program(
@@ -249,6 +262,61 @@ def test_pictures_of_files_are_those_of_the_program(program, folder, tmp_path, n
         same_as_the_program(
             program, folder / name, tmp_path, {"color_by": "coordination"}, ["--color-by", "coordination"]
         )
+
+
+#: An ellipsoid, a sphere, and an ellipsoid that is turned.
+SHAPES = (
+    "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS ff ff ff\n0 9\n0 9\n0 9\n"
+    "ITEM: ATOMS id type x y z radius shapex shapey shapez quatw quati quatj quatk\n"
+    "1 1 1 1 1 1 1 2 3 1 0 0 0\n2 2 4 1 1 0.5 0 0 0 1 0 0 0\n3 1 7 1 1 1 1 2 3 0.6 0.8 0 0\n"
+)
+
+
+def test_files_with_shapes_become_ellipsoids(folder):
+    (folder / "a.dump").write_text(SHAPES)
+    particles = spherule.read(folder / "a.dump")
+    assert particles.semi_axes.tolist() == [[0.5, 1, 1.5], [0, 0, 0], [0.5, 1, 1.5]]
+    assert np.allclose(particles.orientation, [[1, 0, 0, 0], [1, 0, 0, 0], [0.6, 0.8, 0, 0]])
+    assert particles.radius.tolist() == [1.5, 0.5, 1.5]
+    assert "2 ellipsoids" in repr(particles)
+
+
+def test_ellipsoids_keep_the_rows_of_their_arrays():
+    positions = np.array([[0, 0, 0], [3, 0, 0], [6, 0, 0.0]])
+    axes = np.array([[1, 0.5, 0.5], [0, 0, 0], [0.4, 1.2, 0.4]], np.float32)
+    options = dict(size=(90, 30), spp=1, layers="id", view="z", preset="chalk")
+    picture = spherule.render(positions, semi_axes=axes, radius=[1, 0.5, 1.2], **options)
+    ids = picture.layers["id"]
+    assert set(np.unique(ids[ids < spherule.GROUND]).tolist()) == {0, 1, 2}
+    columns = [ids[:, left : left + 30] for left in (0, 30, 60)]
+    middle = [np.unique(part[part < spherule.GROUND]).tolist() for part in columns]
+    assert middle == [[0], [1], [2]]
+    # A radius is that of the longest semi-axis, and one triple is for all.
+    scene = spherule.Scene(positions, semi_axes=[1, 2, 4], radius=2)
+    assert len(scene) == 3
+    assert np.allclose(scene.bounds, ([-0.5, -1, -2], [6.5, 1, 2]))
+    turned = spherule.Scene(positions, semi_axes=[1, 2, 4], orientation=[1, 0, 0, 1])
+    assert np.allclose(turned.bounds, ([-2, -1, -4], [8, 1, 4]))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (dict(semi_axes=[[1, 1, 1], [1, -1, 1]]), r"semi_axes\[1\] is .*greater than 0"),
+        (dict(semi_axes=[[1, 1, 1], [1, 0, 1]]), r"semi_axes\[1\]"),
+        (dict(semi_axes=[[1, 1, np.nan], [1, 1, 1]]), r"semi_axes\[0\]"),
+        (dict(semi_axes=[[1, 1, 1]]), r"`semi_axes` has the shape \(1, 3\)"),
+        (dict(semi_axes="long"), "`semi_axes`"),
+        (dict(orientation=[1, 0, 0, 0]), "`orientation` needs `semi_axes`"),
+        (dict(semi_axes=[1, 2, 3], orientation=[[1, 0, 0, 0], [0, 0, 0, 0]]), r"orientation\[1\] is 0"),
+        (dict(semi_axes=[1, 2, 3], orientation=[[1, 0, 0], [0, 0, 0]]), r"`orientation` has the shape \(2, 3\)"),
+        (dict(semi_axes=[1, 2, 3], orientation=[[1, np.inf, 0, 0], [1, 0, 0, 0]]), r"orientation\[0, 1\] is inf"),
+        (dict(semi_axes=[1, 1, 1e5]), "ellipsoid 0"),
+    ],
+)
+def test_shapes_that_are_none_are_refused_by_row(options, message):
+    with pytest.raises(spherule.Error, match=message):
+        spherule.render([[0, 0, 0], [5, 0, 0]], size=(20, 10), spp=1, **options)
 
 
 def test_rows_that_are_not_drawn_keep_the_numbers_of_others(folder):

@@ -9,9 +9,11 @@ pub(super) fn found(world: &World) -> Vec<String> {
     let features = &world.features;
     let mut found = Vec::new();
     for kind in MaterialKind::ALL {
-        let count = features.spheres_by_kind[kind as usize];
-        if count > 0 {
-            found.push(format!("{} of {}", spheres(count), kind.name()));
+        if features.bodies_of(kind) > 0 {
+            let columns =
+                [&features.spheres_by_kind, &features.sticks_by_kind, &features.ellipsoids_by_kind];
+            let [spheres, sticks, ellipsoids] = columns.map(|column| column[kind as usize]);
+            found.push(format!("{} of {}", bodies(spheres, sticks, ellipsoids), kind.name()));
         }
     }
     if let Some(kind) = features.ground_kind {
@@ -40,11 +42,12 @@ pub(super) fn spheres(count: u64) -> String {
     plural(count, "sphere")
 }
 
-/// `2 spheres`, or `2 spheres, 1 stick, 3 ellipsoids`.
+/// `2 spheres`, or `2 spheres, 1 stick, 3 ellipsoids`: those that there are.
 pub(super) fn bodies(count: u64, sticks: u64, ellipsoids: u64) -> String {
-    let others = [(sticks, "stick"), (ellipsoids, "ellipsoid")];
-    let others = others.into_iter().filter(|(count, _)| *count > 0);
-    others.fold(spheres(count), |text, (count, noun)| format!("{text}, {}", plural(count, noun)))
+    let all = [(count, "sphere"), (sticks, "stick"), (ellipsoids, "ellipsoid")];
+    let there = all.into_iter().filter(|(count, _)| *count > 0);
+    let texts: Vec<String> = there.map(|(count, noun)| plural(count, noun)).collect();
+    if texts.is_empty() { spheres(0) } else { texts.join(", ") }
 }
 
 /// A count and its noun.

@@ -1,7 +1,7 @@
 //! `spherule info`: prints the contents of a scene, its memory, and the work that a render skips.
 
 use super::args::InfoArgs;
-use super::contents::{dropped, found, plural, spheres};
+use super::contents::{bodies, dropped, found, plural};
 use super::files::Files;
 use super::particles::ParticleInfo;
 use super::rows::RowInfo;
@@ -11,7 +11,7 @@ use indicatif::{BinaryBytes, HumanCount};
 use serde::Serialize;
 use spherule_render::World;
 use spherule_render::film::Region;
-use spherule_render::scene::{Projection, Scene, bounds};
+use spherule_render::scene::{NamedMaterial, Projection, Scene};
 use spherule_render::shade::MaterialKind;
 use std::process::ExitCode;
 
@@ -49,6 +49,8 @@ struct MaterialInfo {
     name: String,
     kind: &'static str,
     spheres: u64,
+    sticks: u64,
+    ellipsoids: u64,
 }
 
 #[derive(Serialize)]
@@ -126,7 +128,7 @@ impl Info {
             sticks: scene.sticks.len(),
             ellipsoids: scene.ellipsoids.len(),
             dropped_spheres: world.features.vanished + world.features.hidden,
-            bounds: bounds(&scene.spheres).map(|ends| ends.map(|end| end.to_array())),
+            bounds: scene.bounds().map(|ends| ends.map(|end| end.to_array())),
             radius: radii(scene),
             slices: scene.slices.iter().map(slices::text).collect(),
             materials: materials(scene),
@@ -152,15 +154,19 @@ impl Info {
         if self.ellipsoids > 0 {
             output::print(format_args!("ellipsoids   {}", HumanCount(self.ellipsoids as u64)));
         }
-        if let (Some([low, high]), Some([least, greatest])) = (self.bounds, self.radius) {
+        if let Some([low, high]) = self.bounds {
             output::print(format_args!("bounds       {low:?} to {high:?}"));
+        }
+        if let Some([least, greatest]) = self.radius {
             output::print(format_args!("radius       {least} to {greatest}"));
         }
         for slice in &self.slices {
             output::print(format_args!("cut away     {slice}"));
         }
-        for MaterialInfo { name, kind, spheres: count } in self.materials.iter().take(SHOWN) {
-            output::print(format_args!("material     {name}: {kind}, {}", spheres(*count)));
+        for material in self.materials.iter().take(SHOWN) {
+            let MaterialInfo { name, kind, spheres, sticks, ellipsoids } = material;
+            let count = bodies(*spheres, *sticks, *ellipsoids);
+            output::print(format_args!("material     {name}: {kind}, {count}"));
         }
         if self.materials.len() > SHOWN {
             let more = self.materials.len() - SHOWN;
@@ -249,14 +255,18 @@ fn radii(scene: &Scene) -> Option<[f64; 2]> {
 }
 
 fn materials(scene: &Scene) -> Vec<MaterialInfo> {
-    let mut counts = vec![0; scene.materials.len()];
+    let info = |named: &NamedMaterial| MaterialInfo {
+        name: named.name.clone(),
+        kind: MaterialKind::of(&named.material).name(),
+        spheres: 0,
+        sticks: 0,
+        ellipsoids: 0,
+    };
+    let mut infos: Vec<MaterialInfo> = scene.materials.iter().map(info).collect();
     for row in 0..scene.spheres.len() {
-        counts[scene.spheres.material_of(row) as usize] += 1;
+        infos[scene.spheres.material_of(row) as usize].spheres += 1;
     }
-    let rows = scene.materials.iter().zip(counts);
-    rows.map(|(named, spheres)| {
-        let kind = MaterialKind::of(&named.material).name();
-        MaterialInfo { name: named.name.clone(), kind, spheres }
-    })
-    .collect()
+    scene.sticks.material.iter().for_each(|&row| infos[row as usize].sticks += 1);
+    scene.ellipsoids.material.iter().for_each(|&row| infos[row as usize].ellipsoids += 1);
+    infos
 }

@@ -3,7 +3,7 @@
 use super::settings::List;
 use glam::DVec3;
 use serde_json::json;
-use spherule_render::scene::{FileError, Scene, Slice, SliceMode, SlicePlane, bounds};
+use spherule_render::scene::{FileError, Scene, Slice, SliceMode, SlicePlane};
 use spherule_render::suggest;
 use std::path::Path;
 
@@ -41,13 +41,13 @@ impl SliceArgs {
         allow_empty: bool,
     ) -> Result<Vec<DVec3>, FileError> {
         if !self.planes.is_empty() {
-            let whole = cell.or_else(|| bounds(&scene.spheres)).unwrap_or_default();
+            let whole = cell.or_else(|| scene.bounds()).unwrap_or_default();
             let mode = self.slice_mode.unwrap_or_default();
             scene.slices.extend(self.planes.iter().map(|plane| plane.slice(whole, mode)));
         }
         let normals = scene.cut_normals();
         let dropped = if scene.slices.is_empty() { 0 } else { scene.drop_cut() };
-        if dropped > 0 && scene.spheres.is_empty() && !allow_empty {
+        if dropped > 0 && scene.framed().next().is_none() && !allow_empty {
             let message = format!("the slices cut away all of its {dropped} spheres");
             return Err(FileError::whole_file(path, message).with_help(
                 "a slice describes the side that is cut away; for the other side write z<10 \

@@ -9,7 +9,7 @@ use spherule_render::layers::{Features, Layer, layers};
 use spherule_render::ray::{GROUND, Hits, MISS, Rays};
 use spherule_render::render::Options;
 use spherule_render::sampling::{stream, unit};
-use spherule_render::scene::{Material, Rgb, Scene, Slice, SliceMode, write};
+use spherule_render::scene::{Material, Rgb, Scene, Slice, SliceMode, Spheres, write};
 use spherule_render::trace::{self, PacketWidth, Tracer, Traversal};
 use spherule_render::world::World;
 use std::f64::consts::PI;
@@ -216,6 +216,26 @@ fn the_background_is_attenuated_by_translucent_ellipsoids() {
     assert_expected(measure(&scene), 0.7_f64.powi(3), "three ellipsoids");
 }
 
+/// Twenty bodies have their own material, among twenty of another kind, as five of them have.
+#[test]
+fn each_of_many_bodies_has_its_own_material() {
+    let mut scene = furnace();
+    let (black, white) = (material(&mut scene, metal(0.0)), material(&mut scene, lambertian(1.0)));
+    for x in 0..20 {
+        let (center, away) = (DVec3::X * f64::from(x), DVec3::new(f64::from(x), 9.0, 0.0));
+        scene.ellipsoids.push(center, DVec3::new(0.4, 0.3, 0.2), turned(), white, Rgb::ONE);
+        scene.spheres.push(away, 0.2, black, Rgb::ONE);
+    }
+    let mut alone = scene.clone();
+    alone.spheres = Spheres::default();
+    for mut scene in [scene, alone] {
+        look_parallel(&mut scene, DVec3::Z * 5.0, DVec3::ZERO, 0.1);
+        assert_expected(measure(&scene), 1.0, "white among black");
+        look_parallel(&mut scene, DVec3::new(19.0, 0.0, 5.0), DVec3::X * 19.0, 0.1);
+        assert_expected(measure(&scene), 1.0, "the last one");
+    }
+}
+
 #[test]
 fn caps_are_flat_ellipses() {
     let mut scene = parallel();
@@ -228,7 +248,7 @@ fn caps_are_flat_ellipses() {
     assert!((f64::from(middle.depth) - 9.1).abs() < 1e-5 && middle.normal[2] > 0.9999);
     // The cap is smaller by 0.8 than the ellipsoid, and its normal is that of the cut.
     for (x, y, is_flat) in
-        [(1.5, 0.0, true), (1.7, 0.0, false), (0.0, 0.7, true), (0.0, 0.9, false)]
+        [(1.3, 0.0, true), (1.8, 0.0, false), (0.0, 0.6, true), (0.0, 0.92, false)]
     {
         let normal = at(&features, x + 0.01, y - 0.01).normal;
         assert_eq!(normal[2] > 0.9999, is_flat, "{x} {y} {normal:?}");

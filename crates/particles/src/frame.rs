@@ -6,6 +6,7 @@ use crate::Rgb;
 use crate::bonds::Bonds;
 use crate::categories::retain;
 use crate::cell::Cell;
+use crate::shapes::Shapes;
 use crate::trails::Trails;
 use glam::DVec3;
 
@@ -37,6 +38,8 @@ pub struct ParticleFrame {
     pub roles: Vec<(Role, String)>,
     /// Bonds, if they were asked for and there are any.
     pub bonds: Option<Bonds>,
+    /// Shapes of particles that are ellipsoids; their radius is that of a sphere around them.
+    pub shapes: Shapes,
     /// Earlier positions, if they were asked for and there are any.
     pub trails: Trails,
     /// The simulation cell, if the file has one.
@@ -138,6 +141,7 @@ impl ParticleFrame {
         let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
         codes.for_each(|codes| codes.retain(keep));
         self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
+        self.shapes.retain(keep);
         self.trails.retain(keep);
     }
 
@@ -151,6 +155,7 @@ impl ParticleFrame {
         let codes = texts.map(|column| &mut column.codes).chain([&mut self.kinds.codes]);
         codes.for_each(|codes| codes.pick(rows));
         self.bonds.iter_mut().for_each(|bonds| bonds.pick(rows));
+        self.shapes.pick(rows);
         self.trails.pick(rows);
     }
 

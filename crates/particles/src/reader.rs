@@ -5,6 +5,7 @@ use super::derived::Derived;
 use super::frame::ParticleFrame;
 use super::frame_reader::FrameReader;
 use super::options::{Format, FrameChoice, ReadOptions};
+use super::shapes::ShapeColumns;
 use super::smoothing::Window;
 use super::source::{Source, is_standard_input};
 use super::superposition::{AlignBy, Reference};
@@ -26,6 +27,7 @@ pub struct Frames {
     drops_bonds: bool,
     whole: bool,
     derived: Vec<Derived>,
+    shapes: ShapeColumns,
     smoothing: Option<Window>,
     trails: Option<History>,
     /// Options with which the first frame is read, and it itself once it is needed.
@@ -61,6 +63,7 @@ impl Frames {
             // Rows of LAMMPS files are sorted by them.
             inner.columns.wanted.push(topology::ID.to_owned());
         }
+        let shapes = ShapeColumns::ask(&mut inner);
         let reader: Box<dyn FrameReader> = match &inner.topology {
             None => open_positions(path, &inner)?,
             Some(topology) => Box::new(Joined::new(path, topology, &inner)?),
@@ -72,6 +75,7 @@ impl Frames {
             drops_bonds: options.bonds == BondSource::None,
             whole: options.whole,
             derived,
+            shapes,
             smoothing: (options.smooth > 0).then(|| Window::new(options.smooth)),
             trails: (options.trail > 0).then(|| History::new(options.trail)),
             align: options.align.clone().map(|by| Alignment {
@@ -94,13 +98,14 @@ impl Frames {
         if self.trails.is_some() && self.smoothing.is_none() {
             topology::sort(&mut frame);
         }
-        frame.add_undrawn_columns();
         if frame.format.lacks_names() && frame.kinds.codes.is_empty() && !frame.is_empty() {
             let warning =
                 "its particles have no names; --topology FILE reads them from another file";
             frame.warnings.push(warning.to_owned());
         }
         let fault = |message: String| FileError::whole_file(&self.path, message);
+        self.shapes.apply(&mut frame).map_err(fault)?;
+        frame.add_undrawn_columns();
         frame.find_bonds(&self.bonds).map_err(fault)?;
         for column in &self.derived {
             column.add(&mut frame).map_err(fault)?;

@@ -107,6 +107,7 @@ impl Reference {
         for row in 0..frame.len() {
             [frame.x[row], frame.y[row], frame.z[row]] = moved(frame.position(row)).to_array();
         }
+        frame.shapes.rotate(DQuat::from_mat3(&rotation));
         if let Some(cell) = &mut frame.cell {
             cell.origin = moved(cell.origin);
             cell.vectors = cell.vectors.map(|edge| rotation * edge);

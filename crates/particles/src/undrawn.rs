@@ -9,7 +9,7 @@ pub(crate) enum Undrawn {
     Bonds,
     Faces,
     Edges,
-    /// Ellipsoids, polyhedra, rods and other shapes of particles.
+    /// Polyhedra, rods and other shapes of particles.
     Shapes,
     Orientations,
     /// Ellipsoids of thermal displacement.
@@ -62,8 +62,11 @@ impl ParticleFrame {
         }
     }
 
-    /// Adds a warning about columns of shapes and orientations, which are not drawn.
+    /// Adds a warning about columns of shapes and orientations that are not drawn.
     pub(crate) fn add_undrawn_columns(&mut self) {
+        if !self.shapes.is_empty() {
+            return;
+        }
         let count = self.len() as u64;
         for (kind, names) in
             [(Undrawn::Shapes, &SHAPES[..]), (Undrawn::Orientations, &ORIENTATIONS[..])]

@@ -69,13 +69,14 @@ impl FrameFacts {
         }
         let path = job.source.name();
         let file = path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+        let particles = scene.spheres.len() + scene.ellipsoids.len();
         let own = [
             ("time", time),
             ("step", step),
             ("frame", frame),
             ("file", Value::Text(file)),
             ("title", Value::Text(title)),
-            ("particles", Value::Whole(scene.spheres.len() as i64)),
+            ("particles", Value::Whole(particles as i64)),
         ];
         let own = own.map(|(name, value)| (name.to_owned(), value));
         let values = values.into_iter().map(|(name, value)| (name, Value::Text(value)));

@@ -226,7 +226,7 @@ impl AnnotationArgs {
         let refuse = |message: &str| Err(Failure::usage("render", message));
         let mut annotations = std::mem::take(&mut scene.annotations);
         // Frames of a trajectory may be empty.
-        let none = job.looks.allow_empty && scene.spheres.is_empty();
+        let none = job.looks.allow_empty && scene.is_empty();
         match (self.legend, &facts.categories) {
             (Some(position), Some(categories)) => {
                 let label = match &job.looks.coloring {

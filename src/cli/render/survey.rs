@@ -84,7 +84,7 @@ impl Survey {
         }
         let staged = Staged::load(job, Some(particles))?;
         let Staged { mut scene, cuts, legend, orientation, categories, .. } = staged;
-        if scene.spheres.is_empty() {
+        if scene.is_empty() {
             return Ok(());
         }
         self.shown += 1;

@@ -279,7 +279,7 @@ impl Loader {
             title: job.source.title(&scene).into_owned(),
             spheres: count,
             types: labels.kinds.table.iter().map(|kind| kind.name.clone()).collect(),
-            size: size(&scene.spheres),
+            size: size(&scene),
             look: scene.look,
             preset: job.preset(),
             orientation,
@@ -445,11 +445,8 @@ fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
     short.then(|| particles::count_frames(path, options).ok()).flatten()
 }
 
-/// Half the diagonal of the bounding box of all spheres.
-fn size(spheres: &Spheres) -> f64 {
-    let rows = || (0..spheres.len()).map(|row| (spheres.center(row), spheres.radius[row]));
-    let low = rows().fold(DVec3::INFINITY, |low, (center, radius)| low.min(center - radius));
-    let high = rows().fold(DVec3::NEG_INFINITY, |high, (center, radius)| high.max(center + radius));
-    let size = (high - low).length() / 2.0;
+/// Half the diagonal of the bounding box of all spheres and ellipsoids.
+fn size(scene: &Scene) -> f64 {
+    let size = scene.bounds().map_or(0.0, |[low, high]| (high - low).length() / 2.0);
     if size.is_finite() && size > 0.0 { size } else { 1.0 }
 }

@@ -97,7 +97,7 @@ impl LensArgs {
         let distance = match (focus, point) {
             (Focus::Distance(distance), _) => *distance,
             // Frames of a trajectory may be empty.
-            (Focus::Particle(_), None) if scene.spheres.is_empty() => return Ok(()),
+            (Focus::Particle(_), None) if scene.is_empty() => return Ok(()),
             (Focus::Particle(_), None) => {
                 let message = "--focus id:ID needs a particle file; give a distance";
                 return Err(Failure::usage("render", message));

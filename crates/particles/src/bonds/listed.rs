@@ -45,8 +45,18 @@ impl Numbering {
         numbering
     }
 
-    /// Returns the row of the atom whose number is a field of a line.
+    /// Returns the row of the atom whose number is a field of a line with a bond.
     pub(crate) fn row(&self, line: &Line, field: &[u8]) -> Result<u32, FileError> {
+        self.row_of(line, field, unknown)
+    }
+
+    /// Returns the row of the atom whose number is a field of a line; `unknown` makes the error if there is no such atom.
+    pub(crate) fn row_of(
+        &self,
+        line: &Line,
+        field: &[u8],
+        unknown: impl Fn(&Line, &[u8]) -> FileError,
+    ) -> Result<u32, FileError> {
         let number = line.whole_number(field)?;
         let row = match self {
             Self::Dense(rows) => usize::try_from(number).ok().and_then(|at| rows.get(at)),
@@ -56,7 +66,7 @@ impl Numbering {
             NONE => Err(unknown(line, field)),
             MANY => {
                 let error = line.error_at(field, format!("several atoms have the number {number}"));
-                Err(error.with_help("number the atoms, each once, or read no bonds"))
+                Err(error.with_help("number the atoms, each once"))
             }
             row => Ok(row),
         }

@@ -20,7 +20,7 @@ use super::source::Source;
 use super::undrawn::Undrawn;
 use crate::FileError;
 use crate::binary::BinaryFile;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -261,8 +261,8 @@ impl Gsd {
         Ok(bonds.finish())
     }
 
-    /// Adds warnings about shapes other than spheres.
-    fn add_undrawn(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
+    /// Reads the bonds and the shapes, and adds warnings about those that are not drawn.
+    fn bonds_and_shapes(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
         if self.options.reads_bonds() {
             frame.bonds = Some(self.bonds(frame.len())?);
         } else {
@@ -273,16 +273,34 @@ impl Gsd {
             Some(shapes) => Some(shapes),
             None => self.file.texts(0, "particles/type_shapes")?,
         };
-        let shapes: Vec<bool> =
-            shapes.unwrap_or_default().iter().map(|shape| is_shape(shape)).collect();
+        let shapes: Vec<TypeShape> =
+            shapes.unwrap_or_default().iter().map(|shape| TypeShape::of(shape)).collect();
         let codes = &frame.kinds.codes;
-        let rows = (0..codes.len())
-            .filter(|&row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default());
-        let count = rows.count() as u64;
-        frame.add_undrawn(Undrawn::Shapes, count);
+        let shape = |row| shapes.get(codes.code(row) as usize).copied().unwrap_or_default();
+        let rows = 0..codes.len();
+        let others = rows.clone().filter(|&row| shape(row) == TypeShape::Other).count();
+        let is_ellipsoid = |shape: &TypeShape| matches!(shape, TypeShape::Ellipsoid(_));
+        let count = frame.len() as u64;
+        if shapes.iter().any(is_ellipsoid) {
+            let axes = rows.map(|row| match shape(row) {
+                TypeShape::Ellipsoid(axes) => axes,
+                _ => DVec3::ZERO,
+            });
+            let axes = axes.collect();
+            let parts = self.particles("particles/orientation", count, 4, &[0, 1, 2, 3])?;
+            let turned = match parts.as_deref() {
+                Some([w, x, y, z]) => {
+                    let turned = |row: usize| DQuat::from_xyzw(x[row], y[row], z[row], w[row]);
+                    (0..frame.len()).map(turned).collect()
+                }
+                _ => Vec::new(),
+            };
+            frame.set_shapes(axes, turned, self.options.chooses_radii());
+        }
+        frame.add_undrawn(Undrawn::Shapes, others as u64);
         let turned = |frame| self.file.size(frame, "particles/orientation").is_some();
-        if turned(self.next) || turned(0) {
-            frame.add_undrawn(Undrawn::Orientations, frame.len() as u64);
+        if frame.shapes.is_empty() && (turned(self.next) || turned(0)) {
+            frame.add_undrawn(Undrawn::Orientations, count);
         }
         Ok(())
     }
@@ -306,17 +324,44 @@ impl Gsd {
         let step = self.whole("configuration/step")?.and_then(|step| step.first().copied());
         frame.step = Some(step.unwrap_or(0.0) as i64);
         frame.cell = self.whole("configuration/box")?.and_then(|edges| cell(&edges));
-        self.add_undrawn(&mut frame)?;
+        self.bonds_and_shapes(&mut frame)?;
         frame.columns = COLUMNS.map(str::to_owned).into();
         frame.columns.extend(parts.into_iter().map(|part| part.name));
         Ok(frame)
     }
 }
 
-/// Returns whether the JSON description of a type's shape is not a sphere.
-fn is_shape(text: &str) -> bool {
-    let kind = text.split_once("\"type\"").map(|(_, kind)| kind.trim_start_matches([':', ' ']));
-    kind.is_some_and(|kind| !kind.starts_with("\"Sphere\""))
+/// The shape of a type of particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum TypeShape {
+    /// A sphere, or nothing that the file tells.
+    #[default]
+    Sphere,
+    /// An ellipsoid with these semi-axes.
+    Ellipsoid(DVec3),
+    /// A polyhedron, a rod or the like, or an ellipsoid without its semi-axes.
+    Other,
+}
+
+impl TypeShape {
+    /// Reads the shape of a type, a flat object in JSON
+    /// (<https://gsd.readthedocs.io/en/stable/shapes.html>).
+    fn of(text: &str) -> Self {
+        let value = |key: &str| {
+            let (_, rest) = text.split_once(&format!("\"{key}\""))?;
+            let rest = rest.trim_start().strip_prefix(':')?.trim_start();
+            Some(rest[..rest.find([',', '}'])?].trim_end())
+        };
+        let axis = |key: &str| value(key)?.parse().ok().filter(|axis| *axis > 0.0);
+        match value("type") {
+            None | Some("\"Sphere\"") => Self::Sphere,
+            Some("\"Ellipsoid\"") => match (axis("a"), axis("b"), axis("c")) {
+                (Some(a), Some(b), Some(c)) => Self::Ellipsoid(DVec3::new(a, b, c)),
+                _ => Self::Other,
+            },
+            Some(_) => Self::Other,
+        }
+    }
 }
 
 /// Returns the cell of a HOOMD-blue box, centered at the origin: lengths along the axes, and tilt

@@ -10,7 +10,7 @@ use crate::builder::Builder;
 use crate::cell::Cell;
 use crate::element::Element;
 use crate::fields::Fields;
-use crate::frame::{LengthUnit, ParticleFrame};
+use crate::frame::{LengthUnit, NumberColumn, ParticleFrame};
 use crate::frame_reader::FrameReader;
 use crate::lines::{Line, Lines};
 use crate::naming::{drop_uncertain_elements, kind};
@@ -21,6 +21,9 @@ use crate::source::Source;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;
+
+/// Names of the columns of the section `Ellipsoids` in dumps.
+const ELLIPSOID: [&str; 7] = ["shapex", "shapey", "shapez", "quatw", "quati", "quatj", "quatk"];
 
 /// Reader of the single frame of a data file.
 pub(in super::super) struct Data {
@@ -129,6 +132,36 @@ impl Data {
             bonds.push_named(&path, bond, kind)?;
         }
         Ok(bonds.finish())
+    }
+
+    /// Reads the section `Ellipsoids`, which follows the atoms: the number of each one's atom, its three diameters and its quaternion. Adds
+    /// them as the columns that dumps have; atoms without an ellipsoid have diameters of 0.
+    fn ellipsoids(&mut self, frame: &mut ParticleFrame) -> Result<(), FileError> {
+        let ids = frame.numbers.iter().find(|column| column.name == velocities::ID);
+        let Some(ids) = ids.map(|ids| Numbering::of(&ids.values)) else { return Ok(()) };
+        let mut values = [(); ELLIPSOID.len()].map(|()| vec![0.0; frame.len()]);
+        while !self.at_section()? {
+            let Some(line) = Self::line(&mut self.lines)? else { break };
+            let mut fields = Fields::blanks(content(line.bytes).unwrap_or_default());
+            let mut field = || {
+                let help = "a row is the number of an atom, three diameters and a quaternion";
+                let error = || line.whole("not the columns of an ellipsoid").with_help(help);
+                fields.next().ok_or_else(error)
+            };
+            let row = ids.row_of(&line, field()?, |line, field| {
+                let name = String::from_utf8_lossy(field).into_owned();
+                let message = format!("an ellipsoid of atom {name}, but there is no such atom");
+                line.error_at(field, message).with_help("remove the row, or add the atom")
+            })?;
+            for column in &mut values {
+                column[row as usize] = line.number(field()?)?;
+            }
+        }
+        for (name, values) in ELLIPSOID.into_iter().zip(values) {
+            frame.numbers.push(NumberColumn { name: name.to_owned(), values });
+            frame.columns.push(name.to_owned());
+        }
+        Ok(())
     }
 
     /// Calls a function with the first two fields of each row of a section.
@@ -262,7 +295,7 @@ impl FrameReader for Data {
         }
         let Some(title) = self.lines.next()? else { return Ok(None) };
         let mut head = Head { title: title.text().trim().to_owned(), ..Head::default() };
-        let lends_ids = self.options.reads_bonds() && velocities::want_ids(&mut self.options);
+        let mut lends_ids = self.options.reads_bonds() && velocities::want_ids(&mut self.options);
         let mut velocities = Velocities::take(&mut self.options);
         let (mut frame, mut bonds) = (None, None);
         let mut undrawn = Vec::new();
@@ -276,7 +309,12 @@ impl FrameReader for Data {
             match name.trim() {
                 "Masses" => self.masses(&mut head)?,
                 "Atom Type Labels" => self.labels(&mut head)?,
-                "Atoms" => frame = Some(self.atoms(&head, comment)?),
+                "Atoms" => {
+                    if head.counts.contains_key("ellipsoids") {
+                        lends_ids |= velocities::want_ids(&mut self.options);
+                    }
+                    frame = Some(self.atoms(&head, comment)?);
+                }
                 "Velocities" if velocities.find(head.atoms) => {
                     while !self.at_section()? {
                         let line = Self::line(&mut self.lines)?;
@@ -284,6 +322,9 @@ impl FrameReader for Data {
                     }
                 }
                 "Bonds" if self.options.reads_bonds() => bonds = Some(self.bonds(frame.as_ref())?),
+                "Ellipsoids" if frame.is_some() && head.counts.contains_key("ellipsoids") => {
+                    frame.iter_mut().try_for_each(|frame| self.ellipsoids(frame))?;
+                }
                 section => {
                     let count = self.pass(section == "Bodies")?;
                     undrawn.extend(super::undrawn(section).map(|kind| (kind, count)));

@@ -93,15 +93,15 @@ impl MaterialQueues {
             return self.sort_by(columns, |hits| table.queues_of(hits));
         }
         let ground = world.ground.map_or(ESCAPED, |ground| ground.material.kind() as usize);
-        let kinds = &world.features.spheres_by_kind;
-        let mut present = (0..MaterialKind::COUNT).filter(|&kind| kinds[kind] > 0);
+        let bodies = |kind: &MaterialKind| world.features.bodies_of(*kind) > 0;
+        let mut present = MaterialKind::ALL.into_iter().filter(bodies);
         match (&world.appearance.material, present.next(), present.next()) {
             (Column::Rows(ids), _, Some(_)) if !ids.is_empty() => {
                 let kind = |hit: u32| ids[(hit as usize).min(ids.len() - 1)].kind() as usize;
                 self.sort_by(columns, |hits| queue_numbers(hits, ground, kind));
             }
             (_, only, _) => {
-                let only = only.unwrap_or(ESCAPED);
+                let only = only.map_or(ESCAPED, |kind| kind as usize);
                 self.sort_by(columns, |hits| queue_numbers(hits, ground, |_| only));
             }
         }
@@ -128,7 +128,7 @@ impl MaterialQueues {
     }
 }
 
-/// Returns the queue numbers of a row of hits. `kind` returns the kind of a sphere, and anything for
+/// Returns the queue numbers of a row of hits. `kind` returns the kind of a body, and anything for
 /// other rows.
 #[inline(always)]
 fn queue_numbers(hits: U32x16, ground: usize, kind: impl Fn(u32) -> usize) -> U32x16 {

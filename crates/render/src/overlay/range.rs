@@ -1,23 +1,24 @@
-//! Depth range of the spheres of a scene.
+//! Depth range of the bodies of a scene.
 
-use crate::world::World;
+use crate::body_tree::Shape;
+use crate::world::{World, WorldBody};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Number of spheres in a run: neighbors in the tree's order, and so in space.
+/// Number of bodies in a run: neighbors in the tree's order, and so in space.
 const RUN: usize = 512;
 
 /// Relative tolerance of distances to bounding spheres, far above their rounding error.
 const SLACK: f64 = 1e-9;
 
-/// Bounding spheres of runs of a world's spheres, for computing [`RunBounds::depths`] of many cameras
-/// from a small part of the spheres.
+/// Bounding spheres of runs of a world's bodies, for computing [`RunBounds::depths`] of many cameras
+/// from a small part of the bodies.
 ///
 /// They are invalid for a world that was built anew, but stay valid if the world's camera changes.
 #[derive(Clone, Debug)]
 pub struct RunBounds {
-    /// Center and radius, in the world's unit; each contains all spheres of its run.
+    /// Center and radius, in the world's unit; each contains all spheres of its run, and those in place of other bodies.
     bounding_spheres: Vec<(DVec3, f64)>,
 }
 
@@ -25,7 +26,7 @@ impl RunBounds {
     /// Computes the bounding spheres of a world.
     pub fn of(world: &World) -> Self {
         let bounding_sphere = |run: usize| {
-            let spheres = || rows(world, run).map(|row| world.spheres.exact(row));
+            let spheres = || rows(world, run).map(|row| sphere_of(world, row));
             let low = spheres().fold(DVec3::INFINITY, |low, sphere| low.min(sphere.0));
             let high = spheres().fold(DVec3::NEG_INFINITY, |high, sphere| high.max(sphere.0));
             let center = low.midpoint(high);
@@ -35,7 +36,7 @@ impl RunBounds {
         Self { bounding_spheres: (0..count(world)).into_par_iter().map(bounding_sphere).collect() }
     }
 
-    /// Returns the range of distances of all spheres from the camera, in the scene's unit: equal to
+    /// Returns the range of distances of all bodies from the camera, in the scene's unit: equal to
     /// [`depths`] to the last bit.
     pub fn depths(&self, world: &World) -> [f64; 2] {
         let bounds: Vec<[f64; 2]> = self
@@ -54,27 +55,46 @@ impl RunBounds {
     }
 }
 
-/// Returns the range of distances of all spheres from the camera, in the scene's unit; distances behind
-/// a camera of parallel projection count as 0.
+/// Returns the range of distances of all bodies from the camera, in the scene's unit; distances behind
+/// a camera of parallel projection count as 0. Ellipsoids count as spheres that are as wide as the box around them.
 pub fn depths(world: &World) -> [f64; 2] {
     let runs = (0..count(world)).into_par_iter();
     clamp_near(runs.map(|run| of_rows(world, rows(world, run))).reduce(|| NONE, union))
 }
 
-/// The depth range of no spheres.
+/// The depth range of no bodies.
 const NONE: [f64; 2] = [f64::INFINITY, 0.0];
 
 fn count(world: &World) -> usize {
-    world.spheres.len().div_ceil(RUN)
+    body_count(world).div_ceil(RUN)
+}
+
+/// Returns the number of bodies, of which each half of a stick is one.
+fn body_count(world: &World) -> usize {
+    world.spheres.len() + 2 * world.sticks.len() + world.ellipsoids.len()
+}
+
+/// Returns a sphere in place of a body, by the number of its hits.
+fn sphere_of(world: &World, hit: usize) -> (DVec3, f64) {
+    match world.body(hit as u32) {
+        Some(WorldBody::Stick(stick)) => {
+            (stick.ends[(hit - world.spheres.len()) % 2], stick.radius)
+        }
+        Some(WorldBody::Ellipsoid(body)) => {
+            let [low, high] = body.extent();
+            (body.center, (high - low).max_element() / 2.0)
+        }
+        Some(WorldBody::Sphere(_)) | None => world.spheres.exact(hit),
+    }
 }
 
 fn rows(world: &World, run: usize) -> Range<usize> {
-    run * RUN..world.spheres.len().min((run + 1) * RUN)
+    run * RUN..body_count(world).min((run + 1) * RUN)
 }
 
 fn of_rows(world: &World, rows: Range<usize>) -> [f64; 2] {
     let ends = |row: usize| {
-        let (center, radius) = world.spheres.exact(row);
+        let (center, radius) = sphere_of(world, row);
         let distance = world.camera.distance(center) / world.transform.scale;
         let radius = radius / world.transform.scale;
         [distance - radius, distance + radius]
@@ -82,7 +102,7 @@ fn of_rows(world: &World, rows: Range<usize>) -> [f64; 2] {
     rows.map(ends).fold(NONE, union)
 }
 
-/// Returns bounds of the distances of all spheres in a bounding sphere: by the triangle inequality, a
+/// Returns bounds of the distances of all bodies in a bounding sphere: by the triangle inequality, a
 /// distance changes by at most the distance between two points.
 fn bounds(world: &World, (center, radius): (DVec3, f64)) -> [f64; 2] {
     let distance = world.camera.distance(center);
@@ -101,13 +121,17 @@ fn clamp_near([near, far]: [f64; 2]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Pose, Projection, Scene};
+    use crate::scene::{Pose, Projection, Rgb, Scene};
+    use glam::DQuat;
     use std::path::Path;
 
     #[test]
-    fn runs_give_the_range_of_all_spheres() {
+    fn runs_give_the_range_of_all_bodies() {
         let text = "[[generate]]\nkind = \"volume\"\ncount = 20000";
         let mut scene = Scene::parse(text, "test", Path::new("")).unwrap();
+        let semi_axes = DVec3::new(3.0, 1.0, 1.0);
+        scene.ellipsoids.push(DVec3::X * -20.0, semi_axes, DQuat::IDENTITY, 0, Rgb::ONE);
+        scene.sticks.push([DVec3::ZERO, DVec3::Y * 30.0], 0.5, 0, [Rgb::ONE; 2]);
         let mut world = World::build(&scene).unwrap();
         let runs = RunBounds::of(&world);
         for eye in [DVec3::new(30.0, 9.0, 4.0), DVec3::new(1.0, -2.0, 0.5), DVec3::Z * 1e3] {
@@ -138,7 +162,7 @@ mod tests {
                     let spread = DVec3::new((t * 12.9).sin(), (t * 78.2).sin(), (t * 37.7).cos());
                     let is_large = count == 2048 && i == 300 + 600 * index;
                     let radius = if is_large { 40.0 } else { 0.01 };
-                    scene.spheres.push(middle + spread, radius, 0, crate::scene::Rgb::ONE);
+                    scene.spheres.push(middle + spread, radius, 0, Rgb::ONE);
                 }
             }
             let world = World::build(&scene).unwrap();
@@ -161,7 +185,7 @@ mod tests {
         let mut scene = crate::scene::generate::default_scene(1);
         scene.spheres = crate::scene::Spheres::default();
         for z in [0.0, 10.0] {
-            scene.spheres.push(DVec3::Z * z, 1.0, 0, crate::scene::Rgb::ONE);
+            scene.spheres.push(DVec3::Z * z, 1.0, 0, Rgb::ONE);
         }
         scene.camera.projection = Projection::Orthographic { height: Some(3.0) };
         scene.camera.pose = Pose::LookAt { eye: DVec3::Z * 5.0, target: DVec3::ZERO };

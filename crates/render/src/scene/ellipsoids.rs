@@ -52,6 +52,15 @@ impl Ellipsoids {
         self.color.push(color);
     }
 
+    /// Moves the ellipsoids of another scene's columns, with the same materials, to the end.
+    pub(crate) fn append(&mut self, other: &mut Self) {
+        self.center.append(&mut other.center);
+        self.semi_axes.append(&mut other.semi_axes);
+        self.orientation.append(&mut other.orientation);
+        self.material.append(&mut other.material);
+        self.color.append(&mut other.color);
+    }
+
     /// Returns the longest semi-axis of ellipsoid `row`.
     pub fn reach(&self, row: usize) -> f64 {
         self.semi_axes[row].max_element()

@@ -86,6 +86,11 @@ impl Material {
         }
     }
 
+    /// Returns whether any body can have the material; glass and emitters are for spheres alone.
+    pub(crate) fn is_solid(&self) -> bool {
+        !matches!(self, Self::Dielectric { .. } | Self::Emitter { .. })
+    }
+
     /// The same material with another opacity, 0..=1; glass and emitters stay as they are.
     #[must_use]
     pub fn with_opacity(&self, opacity: f64) -> Self {

@@ -41,7 +41,7 @@ pub use light::{BRIGHTEST, Environment, EnvironmentMap, Light};
 pub use look::{Background, Look};
 pub use material::{ConductorFresnel, Ground, Material, NamedMaterial};
 pub use preset::Preset;
-pub use slice::{Slice, SliceMode, SlicePlane, bounds};
+pub use slice::{Slice, SliceMode, SlicePlane};
 pub use spheres::Spheres;
 pub use spherule_particles::{FileError, Place};
 pub use sticks::Sticks;

@@ -93,12 +93,15 @@ impl Features {
         }
     }
 
+    /// Returns the number of bodies with this kind of material.
+    pub fn bodies_of(&self, kind: MaterialKind) -> u64 {
+        let columns = [&self.spheres_by_kind, &self.sticks_by_kind, &self.ellipsoids_by_kind];
+        columns.map(|column| column[kind as usize]).iter().sum()
+    }
+
     /// Returns whether anything has this kind of material.
     pub fn has(&self, kind: MaterialKind) -> bool {
-        self.spheres_by_kind[kind as usize] > 0
-            || self.sticks_by_kind[kind as usize] > 0
-            || self.ellipsoids_by_kind[kind as usize] > 0
-            || self.ground_kind == Some(kind)
+        self.bodies_of(kind) > 0 || self.ground_kind == Some(kind)
     }
 
     /// Returns descriptions of the work that the render omits.

@@ -272,8 +272,7 @@ fn ground(ground: &Ground, materials: &[NamedMaterial]) -> Result<(), WorldError
 
 /// Returns whether there is a material, neither glass nor an emitter.
 fn is_solid(materials: &[NamedMaterial], row: u32) -> bool {
-    let material = materials.get(row as usize).map(|named| &named.material);
-    !matches!(material, None | Some(Material::Dielectric { .. } | Material::Emitter { .. }))
+    materials.get(row as usize).is_some_and(|named| named.material.is_solid())
 }
 
 /// Checks columns of ellipsoids.

@@ -23,8 +23,8 @@ use self::block::{Block, Source};
 use self::materials::Materials;
 use super::particles::{self, Orientation, Particles, ReadOptions, TypeMaterial};
 use super::{
-    Camera, Ellipsoids, Environment, EnvironmentMap, FileError, Light, Look, Material,
-    NamedMaterial, Preset, Rgb, Scene, Settings, Spheres,
+    Camera, Environment, EnvironmentMap, FileError, Light, Look, Material, NamedMaterial, Preset,
+    Rgb, Scene, Settings, Spheres,
 };
 use crate::memory::{self, Shortage, read_at_most};
 use memchr::memchr_iter;
@@ -167,13 +167,14 @@ impl Scene {
         }
         let materials = materials.into_rows();
         let sticks = particles.sticks(&materials, &rows);
+        let ellipsoids = particles.take_ellipsoids(&materials, &rows);
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);
         Self {
             title: title.to_owned(),
             spheres,
             sticks,
-            ellipsoids: Ellipsoids::default(),
+            ellipsoids,
             materials,
             warnings: particles.warnings,
             ..Self::default()

@@ -163,8 +163,9 @@ fn read_file(
         ..ReadOptions::default()
     };
     let path = existing(source, &file)?;
-    let particles = particles::read(&path, &options)?;
-    let added = Footprint::of_columns(&particles.spheres, &[]);
+    let mut particles = particles::read(&path, &options)?;
+    let ellipsoids = particles.shapes.semi_axes.len() as u64;
+    let added = Footprint { ellipsoids, ..Footprint::of_columns(&particles.spheres, &[]) };
     check_capacity(&scene.spheres, &added, added.scene(), materials)
         .map_err(|message| file.error(message))?;
     let mut rows = Vec::new();
@@ -178,6 +179,8 @@ fn read_file(
             })?
         });
     }
+    let mut ellipsoids = particles.take_ellipsoids(materials.rows(), &rows);
+    scene.ellipsoids.append(&mut ellipsoids);
     scene.spheres.append(particles.spheres, &rows);
     scene.warnings.extend(particles.warnings);
     Ok(())

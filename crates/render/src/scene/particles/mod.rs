@@ -3,6 +3,7 @@
 //! The package `spherule-particles` reads files into a [`ParticleFrame`]; here it becomes [`Particles`],
 //! whose spheres have radii and colors.
 
+mod ellipsoids;
 mod model;
 mod orientation;
 mod periodic;
@@ -19,7 +20,7 @@ pub use spheres::Particles;
 pub use spherule_particles::{
     AlignBy, BondRules, BondSource, Bonds, Cell, Codes, Columns, Element, Format, FrameChoice,
     FrameCount, Frames, Kind, Kinds, LengthUnit, NumberColumn, ParticleFrame, Radii, ReadOptions,
-    ReadProgress, Role, SharedNames, TextColumn, Trails, count_frames, read_frame,
+    ReadProgress, Role, Shapes, SharedNames, TextColumn, Trails, count_frames, read_frame,
 };
 pub use style::{
     Category, Coloring, ColumnColors, ElementColors, GHOST, Legend, Opacity, ParticleStyle,

@@ -1,7 +1,7 @@
 //! Models of molecules: particles as spheres of their radii, or as balls and sticks.
 
 use super::Particles;
-use crate::scene::{Material, NamedMaterial, Sticks};
+use crate::scene::{NamedMaterial, Sticks};
 use glam::DVec3;
 
 /// The way in which particles and their bonds are drawn.
@@ -74,10 +74,8 @@ impl Particles {
     /// Materials that sticks cannot have are replaced by the first one.
     pub(in crate::scene) fn sticks(&self, materials: &[NamedMaterial], rows: &[u32]) -> Sticks {
         let mut sticks = Sticks::default();
-        let solid = |row: u32| {
-            let material = materials.get(row as usize).map(|named| &named.material);
-            !matches!(material, Some(Material::Dielectric { .. } | Material::Emitter { .. }))
-        };
+        let solid =
+            |row: u32| materials.get(row as usize).is_none_or(|named| named.material.is_solid());
         let material = |sphere: usize| {
             let row = rows.get(self.spheres.material_of(sphere) as usize).copied().unwrap_or(0);
             if solid(row) { row } else { 0 }

@@ -2,7 +2,7 @@
 
 use super::radii::{FoundRadii, half_spacing, radii};
 use super::style::{Column, ElementColors, ID, INDEX, TypeMaterial};
-use super::{Bonds, Cell, LengthUnit, NumberColumn, ParticleFrame, Trails};
+use super::{Bonds, Cell, LengthUnit, NumberColumn, ParticleFrame, Shapes, Trails};
 use super::{Format, ReadOptions, Role};
 use super::{Kinds, TextColumn};
 use crate::color::category;
@@ -30,6 +30,8 @@ pub struct Particles {
     pub bonds: Option<Bonds>,
     /// Radius of the sticks that are drawn for bonds ([`Model`](super::Model)); 0: none are drawn.
     pub stick_radius: f64,
+    /// Shapes of the particles that are ellipsoids, and not the spheres around them that `spheres` has.
+    pub shapes: Shapes,
     /// Earlier positions of the spheres, which are drawn as sticks; empty if they were not asked for
     /// ([`ReadOptions::trail`]).
     pub trails: Trails,
@@ -96,6 +98,7 @@ impl Particles {
         let texts = self.texts.iter_mut().map(|column| &mut column.codes);
         texts.chain([&mut self.kinds.codes]).for_each(|codes| codes.retain(keep));
         self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
+        self.shapes.retain(keep);
         self.trails.retain(keep);
     }
 }
@@ -161,6 +164,7 @@ pub(super) fn spheres(
         texts: frame.texts,
         bonds: frame.bonds,
         stick_radius: 0.0,
+        shapes: frame.shapes,
         trails: frame.trails,
         cell,
         format: frame.format,

@@ -4,7 +4,7 @@ mod text;
 
 pub use text::SlicePlane;
 
-use super::{Scene, Spheres};
+use super::Scene;
 use glam::DVec3;
 
 /// A half space that is cut away: the points `p` with `normal . p > distance`.
@@ -75,7 +75,7 @@ impl Scene {
         self.slices.iter().any(|slice| slice.drops(center, radius))
     }
 
-    /// Returns the normals of the slices that cut or remove any sphere, toward what is cut away.
+    /// Returns the normals of the slices that cut or remove any sphere or ellipsoid, toward what is cut away.
     pub fn cut_normals(&self) -> Vec<DVec3> {
         let cuts = |slice: &&Slice| {
             let spheres = &self.spheres;
@@ -84,9 +84,28 @@ impl Scene {
                 SliceMode::Remove | SliceMode::Hide => 0.0,
             };
             let cut = |row: usize| slice.depth(spheres.center(row)) + reach(row) > 0.0;
-            (0..spheres.len()).any(cut)
+            let others = &self.ellipsoids;
+            let extent = |row: usize| match slice.mode {
+                SliceMode::Caps => others.extent(row, slice.normal),
+                SliceMode::Remove | SliceMode::Hide => 0.0,
+            };
+            let cut_other = |row: usize| slice.depth(others.center[row]) + extent(row) > 0.0;
+            (0..spheres.len()).any(cut) || (0..others.len()).any(cut_other)
         };
         self.slices.iter().filter(cuts).map(|slice| slice.normal).collect()
+    }
+
+    /// The box of all spheres and ellipsoids: lower and upper corner; `None` if there are none.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        let Self { spheres, ellipsoids, .. } = self;
+        let own =
+            (0..spheres.len()).map(|row| (spheres.center(row), DVec3::splat(spheres.radius[row])));
+        let others = (0..ellipsoids.len()).map(|row| {
+            let extent = DVec3::AXES.map(|axis| ellipsoids.extent(row, axis));
+            (ellipsoids.center[row], DVec3::from(extent))
+        });
+        let boxes = own.chain(others).map(|(center, extent)| [center - extent, center + extent]);
+        boxes.reduce(|[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
     }
 
     /// Drops the spheres that the slices remove, so that their memory is freed and cameras frame the
@@ -102,19 +121,11 @@ impl Scene {
     }
 }
 
-/// The box of all spheres: lower and upper corner; `None` if there are none.
-pub fn bounds(spheres: &Spheres) -> Option<[DVec3; 2]> {
-    let boxes = (0..spheres.len()).map(|row| {
-        let (center, radius) = (spheres.center(row), spheres.radius[row]);
-        [center - radius, center + radius]
-    });
-    boxes.reduce(|[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::Rgb;
+    use glam::DQuat;
 
     fn scene(mode: SliceMode) -> Scene {
         let mut scene = Scene::default();
@@ -145,9 +156,14 @@ mod tests {
     }
 
     #[test]
-    fn bounds_include_radii() {
-        let all = bounds(&scene(SliceMode::Remove).spheres);
+    fn bounds_include_radii_and_ellipsoids() {
+        let mut own = scene(SliceMode::Remove);
+        let all = own.bounds();
         assert_eq!(all, Some([DVec3::new(-3.0, -1.0, -1.0), DVec3::new(4.0, 1.0, 1.0)]));
-        assert_eq!(bounds(&Spheres::default()), None);
+        let semi_axes = DVec3::new(0.5, 1.5, 0.5);
+        own.ellipsoids.push(DVec3::Y, semi_axes, DQuat::IDENTITY, 0, Rgb::ONE);
+        let all = own.bounds();
+        assert_eq!(all, Some([DVec3::new(-3.0, -1.0, -1.0), DVec3::new(4.0, 2.5, 1.0)]));
+        assert_eq!(Scene::default().bounds(), None);
     }
 }
