@@ -191,7 +191,7 @@ def from_ovito(data: Any) -> Particles:
         radius = np.where(semi_axes.any(axis=1), semi_axes.max(axis=1), radius)
         if "Orientation" in properties:
             orientation = np.asarray(properties["Orientation"], np.float64)[:, [3, 0, 1, 2]]
-            orientation = np.where(orientation.any(axis=1)[:, None], orientation, [1.0, 0.0, 0.0, 0.0])
+            orientation = np.where(orientation.any(axis=1, keepdims=True), orientation, [1.0, 0.0, 0.0, 0.0])
     bonds = shifts = None
     listed = _optional(found, "bonds")
     if listed is not None and "Topology" in listed.keys():

@@ -92,7 +92,7 @@ pub struct AttenuatedRay {
     pub ends: [u32; 2],
     /// The depth at which it ends.
     pub threshold: OpticalDepth,
-    /// Distance beyond which nothing counts, and the hit there: [`GROUND`], or [`MISS`] for none.
+    /// Distance beyond which nothing counts, and the hit there: [`GROUND`](crate::ray::GROUND), or [`MISS`] for none.
     pub known: (f64, u32),
 }
 
