@@ -1,47 +1,15 @@
 //! Ellipsoids: compared with spheres, with closed forms, and between traversals.
 
+use crate::bodies::{assert_one_picture, assert_traversals_agree, at, features, numbers, parallel};
 use crate::common::{
-    assert_every_pixel, assert_expected, assert_scenes_agree, dark, furnace, glass, lambertian,
-    look, look_parallel, material, measure, metal, mirror, render_scene, render_scene_with, sphere,
+    assert_every_pixel, assert_expected, assert_scenes_agree, furnace, glass, lambertian, look,
+    look_parallel, material, measure, metal, mirror, render_scene, sphere,
 };
 use glam::{DMat3, DQuat, DVec3};
-use spherule_render::layers::{Features, Layer, layers};
-use spherule_render::ray::{GROUND, Hits, MISS, Rays};
-use spherule_render::render::Options;
-use spherule_render::sampling::{stream, unit};
+use spherule_render::ray::MISS;
 use spherule_render::scene::{Material, Rgb, Scene, Slice, SliceMode, Spheres, write};
-use spherule_render::trace::{self, PacketWidth, Tracer, Traversal};
 use spherule_render::world::World;
 use std::f64::consts::PI;
-
-/// Returns numbers from 0 to 1.
-fn numbers(seed: u64) -> impl FnMut() -> f64 {
-    let mut count = 0;
-    move || {
-        count += 1;
-        f64::from(unit(stream(seed, count) as u32))
-    }
-}
-
-/// A scene without light that the camera sees from the z axis, six units high, with a hundred pixels for a unit of area.
-fn parallel() -> Scene {
-    let mut scene = dark();
-    look_parallel(&mut scene, DVec3::Z * 10.0, DVec3::ZERO, 6.0);
-    (scene.settings.width, scene.settings.height) = (60, 60);
-    scene
-}
-
-fn features(scene: &Scene) -> Vec<Features> {
-    let world = World::build(scene).expect("a valid scene");
-    layers(&world, &scene.settings, &Options::default(), &Layer::ALL)
-        .expect("valid settings")
-        .pixels
-}
-
-fn at(features: &[Features], x: f64, y: f64) -> Features {
-    let pixel = |v: f64| ((v + 3.0) * 10.0) as usize;
-    features[pixel(-y) * 60 + pixel(x)]
-}
 
 /// A rotation about no axis of coordinates.
 fn turned() -> DQuat {
@@ -127,80 +95,21 @@ fn bodies() -> Scene {
 
 #[test]
 fn all_traversals_find_the_same_hits() {
-    let mut slices = vec![Vec::new()];
-    for mode in [SliceMode::Caps, SliceMode::Hide, SliceMode::Remove] {
-        slices.push(vec![Slice { normal: DVec3::X, distance: 0.1, mode }]);
-    }
     let mut counts = [0; 3];
-    for slices in slices {
-        let mut scene = bodies();
-        scene.slices = slices;
-        let world = World::build(&scene).unwrap();
-        let (spheres, sticks) = (world.spheres.len(), world.sticks.len());
-        let (mut number, unit) = (numbers(9), world.transform.length(1.0));
-        for from_camera in [true, false] {
-            let mut rays = Rays::with_capacity(500);
-            for _ in 0..500 {
-                let mut point =
-                    || DVec3::from([number(), number(), number()].map(|x| 2.0 * x - 1.0)) * unit;
-                let own = if from_camera { MISS } else { GROUND };
-                let origin = point() * 2.0;
-                let direction = (point() - origin).normalize();
-                rays.push(origin.as_vec3(), direction.as_vec3(), own);
-            }
-            let found = |traversal, width| {
-                let (mut hits, mut shadows) = (Hits::with_capacity(500), Hits::with_capacity(500));
-                let tracer = Tracer { traversal, width };
-                trace::closest(tracer, &world, &rays, &mut hits);
-                trace::occluded(tracer, &world, &rays, &mut shadows);
-                let hidden =
-                    shadows.sphere.iter().map(|&sphere| sphere != MISS).collect::<Vec<_>>();
-                (hits.t, hits.sphere, hidden)
-            };
-            let expected = found(Traversal::Brute, PacketWidth::One);
-            for traversal in
-                [Traversal::Single, Traversal::Stream, Traversal::Packet, Traversal::Auto]
-            {
-                for width in PacketWidth::ALL {
-                    let found = found(traversal, width);
-                    assert_eq!(found.1, expected.1);
-                    assert_eq!(found.2, expected.2);
-                }
-            }
-            for row in 0..500 {
-                let hit = expected.1[row];
-                assert_eq!(hit != MISS, expected.2[row], "row {row}");
-                if hit != MISS {
-                    let hit = hit as usize;
-                    counts
-                        [usize::from(hit >= spheres) + usize::from(hit >= spheres + 2 * sticks)] +=
-                        1;
-                }
-            }
-        }
-    }
+    assert_traversals_agree(&bodies(), |world, hit| {
+        let first = world.spheres.len();
+        counts[usize::from(hit >= first) + usize::from(hit >= first + 2 * world.sticks.len())] += 1;
+    });
     assert!(counts.iter().all(|&count| count > 50), "{counts:?}");
 }
 
 #[test]
 fn pictures_do_not_depend_on_widths_and_threads() {
     let mut scene = bodies();
-    for translucent in [false, true] {
-        if translucent {
-            let surface = Box::new(scene.materials[0].material.clone());
-            scene.materials[0].material = Material::Translucent { opacity: 0.4, surface };
-        }
-        let picture = |traversal, width, threads| {
-            let tracer = Tracer { traversal, width };
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let options = Options { tracer, ..Options::default() };
-            pool.install(|| render_scene_with(&scene, &options).image.pixels)
-        };
-        let expected = picture(Traversal::Single, PacketWidth::One, 1);
-        for (width, threads) in [(PacketWidth::Four, 2), (PacketWidth::Sixteen, 3)] {
-            assert!(picture(Traversal::Auto, width, threads) == expected, "{translucent}");
-        }
-    }
+    assert_one_picture(&scene);
+    let surface = Box::new(scene.materials[0].material.clone());
+    scene.materials[0].material = Material::Translucent { opacity: 0.4, surface };
+    assert_one_picture(&scene);
 }
 
 #[test]

@@ -7,6 +7,7 @@
 mod common;
 
 mod adaptive;
+mod bodies;
 mod ellipsoids;
 mod layers;
 mod readers;

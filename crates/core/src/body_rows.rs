@@ -3,7 +3,7 @@
 use crate::capsules::CapsuleRow;
 use crate::ray::GROUND;
 
-/// How many bodies there are of the kinds whose numbers come before those of others.
+/// The numbers of bodies of the kinds that come before others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BodyRows {
     /// Number of spheres.

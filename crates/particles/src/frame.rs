@@ -165,5 +165,6 @@ impl ParticleFrame {
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.radius];
         columns.into_iter().chain(values).for_each(Vec::shrink_to_fit);
         self.color.shrink_to_fit();
+        self.shapes.shrink();
     }
 }

@@ -309,12 +309,6 @@ impl ReadOptions {
         matches!(self.bonds, BondSource::Auto | BondSource::File)
     }
 
-    /// Returns whether a column of radii or diameters is chosen.
-    pub(crate) fn chooses_radii(&self) -> bool {
-        let of_size = |(role, _): &(Role, String)| matches!(role, Role::Radius | Role::Diameter);
-        matches!(self.radii, Radii::Column(_)) || self.columns.roles.iter().any(of_size)
-    }
-
     /// Checks that every number is in range.
     ///
     /// # Errors

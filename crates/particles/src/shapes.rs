@@ -2,7 +2,7 @@
 
 use super::frame::ParticleFrame;
 use super::memory;
-use super::options::{Columns, Format, ReadOptions};
+use super::options::{Columns, Format, Radii, ReadOptions, Role};
 use crate::categories::{pick, retain};
 use glam::{DQuat, DVec3};
 
@@ -16,6 +16,9 @@ pub struct Shapes {
     pub orientation: Vec<DQuat>,
 }
 
+/// Names of columns of semi-axes.
+pub(crate) const SEMI_AXES: [&str; 3] = ["semi_axes_x", "semi_axes_y", "semi_axes_z"];
+
 /// Names of columns of semi-axes or diameters, and the factor that makes them semi-axes.
 const AXES: [([&str; 3], f64); 6] = [
     // LAMMPS writes diameters. Its computes may have any names; these are usual.
@@ -25,7 +28,7 @@ const AXES: [([&str; 3], f64); 6] = [
     // OVITO, in extended XYZ and in text files.
     (["aspherical_shape_x", "aspherical_shape_y", "aspherical_shape_z"], 1.0),
     (["aspherical shape.x", "aspherical shape.y", "aspherical shape.z"], 1.0),
-    (["semi_axes_x", "semi_axes_y", "semi_axes_z"], 1.0),
+    (SEMI_AXES, 1.0),
 ];
 
 /// Names of columns of quaternions: of the real part, and of the parts along x, y and z.
@@ -46,7 +49,7 @@ const NUMBERED: [([&str; 4], Last); 5] = [
     (["quaternion_1", "quaternion_2", "quaternion_3", "quaternion_4"], Last::InText),
 ];
 
-/// When the real part of a numbered quaternion is the last part.
+/// The place of the real part of a numbered quaternion: first, or last.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Last {
     Never,
@@ -91,6 +94,11 @@ impl Shapes {
         self.orientation = self.orientation.repeat(count);
     }
 
+    pub(crate) fn shrink(&mut self) {
+        self.semi_axes.shrink_to_fit();
+        self.orientation.shrink_to_fit();
+    }
+
     pub(crate) fn pick(&mut self, rows: &[u32]) {
         pick(&mut self.semi_axes, rows);
         pick(&mut self.orientation, rows);
@@ -117,21 +125,23 @@ fn names() -> impl Iterator<Item = &'static str> {
 impl ShapeColumns {
     /// Asks for all columns of shapes.
     pub(crate) fn ask(options: &mut ReadOptions) -> Self {
-        let keeps_radii = options.chooses_radii();
+        let of_size = |(role, _): &(Role, String)| matches!(role, Role::Radius | Role::Diameter);
+        let keeps_radii =
+            matches!(options.radii, Radii::Column(_)) || options.columns.roles.iter().any(of_size);
         let Columns { kept, wanted, rest, .. } = &mut options.columns;
         let asked = [&kept[..], wanted].concat();
         wanted.extend(names().map(str::to_owned));
         Self { asked, rest: rest.unwrap_or(0), keeps_radii }
     }
 
-    /// Makes shapes of the columns of a frame, unless it has shapes, and removes those columns that were not asked for.
+    /// Makes shapes of the columns of a frame, and removes those columns that were not asked for.
     ///
     /// # Errors
     ///
     /// A message, if there is too little memory.
     pub(crate) fn apply(&self, frame: &mut ParticleFrame) -> Result<(), String> {
         let axes = AXES.iter().find_map(|(names, factor)| Some((find(frame, *names)?, *factor)));
-        if let Some((at, factor)) = axes.filter(|_| frame.shapes.is_empty() && !frame.is_empty()) {
+        if let Some((at, factor)) = axes.filter(|_| !frame.is_empty()) {
             let bytes = frame.len() * (size_of::<DVec3>() + size_of::<DQuat>() + size_of::<f64>());
             memory::check(bytes as u64)
                 .map_err(|shortage| format!("its shapes need {shortage}"))?;
@@ -141,7 +151,7 @@ impl ShapeColumns {
                 frame.warnings.push(warning);
             }
             let orientation = orientation(frame);
-            if orientation.is_empty() {
+            if orientation.is_empty() && frame.format != Format::Gsd {
                 frame.warnings.push("shapes without orientations are not turned".to_owned());
             }
             let axes =
@@ -182,11 +192,15 @@ fn orientation(frame: &mut ParticleFrame) -> Vec<DQuat> {
     let [w, x, y, z] = match (named, numbered()) {
         (Some(at), _) => at,
         (None, Some((at, first, last))) => {
-            let binary = matches!(frame.format, Format::Npy | Format::Npz | Format::Hdf5);
+            let binary =
+                matches!(frame.format, Format::Gsd | Format::Npy | Format::Npz | Format::Hdf5);
             let is_last = last == Last::Always || last == Last::InText && !binary;
-            let order = if is_last { "x, y, z and w" } else { "w, x, y and z" };
-            let warning = format!("orientations from `{first}` on are taken as {order}");
-            frame.warnings.push(warning);
+            // HOOMD-blue defines the order.
+            if frame.format != Format::Gsd {
+                let order = if is_last { "x, y, z and w" } else { "w, x, y and z" };
+                let warning = format!("orientations from `{first}` on are taken as {order}");
+                frame.warnings.push(warning);
+            }
             let [a, b, c, d] = at;
             if is_last { [d, a, b, c] } else { at }
         }
@@ -199,6 +213,7 @@ fn orientation(frame: &mut ParticleFrame) -> Vec<DQuat> {
 
 impl ParticleFrame {
     /// Makes ellipsoids of particles with these semi-axes, in the file's unit; three zeros or numbers that are missing make a sphere.
+    /// There is a row for each particle, and one in `orientation` too, unless that is empty.
     /// The radius becomes the longest semi-axis unless `keeps_radii`. Quaternions need not be normalized; none at all turn nothing.
     pub fn set_shapes(
         &mut self,

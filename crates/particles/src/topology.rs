@@ -158,9 +158,6 @@ impl Joined {
             let factor = frame.unit.per_angstrom() / particles.unit.per_angstrom();
             frame.radius = particles.radius.iter().map(|radius| radius * factor).collect();
         }
-        if frame.shapes.is_empty() {
-            frame.shapes.clone_from(&particles.shapes);
-        }
         if !particles.color.is_empty() {
             frame.color.clone_from(&particles.color);
         }

@@ -1,19 +1,9 @@
 //! Tests of columns that follow from bonds, of whole molecules and of smoothed trajectories.
 
+mod common;
+
+use common::file;
 use spherule_particles::{Columns, Frames, ParticleFrame, ReadOptions, read_frame};
-use std::path::PathBuf;
-
-struct File {
-    _folder: tempfile::TempDir,
-    path: PathBuf,
-}
-
-fn file(content: &str) -> File {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("input");
-    std::fs::write(&path, content).expect("a file");
-    File { _folder: folder, path }
-}
 
 fn wanted(names: &[&str]) -> ReadOptions {
     let wanted = names.iter().map(|&name| name.to_owned()).collect();

@@ -1,20 +1,10 @@
 //! Tests of ellipsoids in files of several programs: the same two, one of them turned, in each format.
 
+mod common;
+
+use common::file;
 use glam::{DQuat, DVec3};
 use spherule_particles::{AlignBy, FrameChoice, ParticleFrame, ReadOptions, read_frame};
-use std::path::PathBuf;
-
-struct File {
-    _folder: tempfile::TempDir,
-    path: PathBuf,
-}
-
-fn file(content: &str) -> File {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("input");
-    std::fs::write(&path, content).expect("a file");
-    File { _folder: folder, path }
-}
 
 fn frame(content: &str) -> ParticleFrame {
     let file = file(content);

@@ -16,11 +16,12 @@ use super::frame::{NumberColumn, ParticleFrame};
 use super::frame_reader::FrameReader;
 use super::options::{Format, Radii, ReadOptions, Role, component_names};
 use super::schema::unknown_column;
+use super::shapes::SEMI_AXES;
 use super::source::Source;
 use super::undrawn::Undrawn;
 use crate::FileError;
 use crate::binary::BinaryFile;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -280,27 +281,26 @@ impl Gsd {
         let rows = 0..codes.len();
         let others = rows.clone().filter(|&row| shape(row) == TypeShape::Other).count();
         let is_ellipsoid = |shape: &TypeShape| matches!(shape, TypeShape::Ellipsoid(_));
-        let count = frame.len() as u64;
+        let mut semi_axes = Vec::new();
         if shapes.iter().any(is_ellipsoid) {
-            let axes = rows.map(|row| match shape(row) {
-                TypeShape::Ellipsoid(axes) => axes,
-                _ => DVec3::ZERO,
-            });
-            let axes = axes.collect();
-            let parts = self.particles("particles/orientation", count, 4, &[0, 1, 2, 3])?;
-            let turned = match parts.as_deref() {
-                Some([w, x, y, z]) => {
-                    let turned = |row: usize| DQuat::from_xyzw(x[row], y[row], z[row], w[row]);
-                    (0..frame.len()).map(turned).collect()
-                }
-                _ => Vec::new(),
-            };
-            frame.set_shapes(axes, turned, self.options.chooses_radii());
+            // As columns, they become shapes like those of other formats.
+            for (axis, name) in SEMI_AXES.into_iter().enumerate() {
+                let value = |row| match shape(row) {
+                    TypeShape::Ellipsoid(axes) => axes[axis],
+                    TypeShape::Sphere | TypeShape::Other => 0.0,
+                };
+                let values = rows.clone().map(value).collect();
+                semi_axes.push(NumberColumn { name: name.to_owned(), values });
+            }
         }
         frame.add_undrawn(Undrawn::Shapes, others as u64);
+        if !semi_axes.is_empty() {
+            frame.numbers.extend(semi_axes);
+            return Ok(());
+        }
         let turned = |frame| self.file.size(frame, "particles/orientation").is_some();
-        if frame.shapes.is_empty() && (turned(self.next) || turned(0)) {
-            frame.add_undrawn(Undrawn::Orientations, count);
+        if turned(self.next) || turned(0) {
+            frame.add_undrawn(Undrawn::Orientations, frame.len() as u64);
         }
         Ok(())
     }
