@@ -167,7 +167,7 @@ impl Scene {
         }
         let materials = materials.into_rows();
         let sticks = particles.sticks(&materials, &rows);
-        let ellipsoids = particles.take_ellipsoids(&materials, &rows);
+        let ellipsoids = particles.take_ellipsoids(&materials, &rows, title);
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);
         Self {

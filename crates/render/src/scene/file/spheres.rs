@@ -179,7 +179,8 @@ fn read_file(
             })?
         });
     }
-    let mut ellipsoids = particles.take_ellipsoids(materials.rows(), &rows);
+    let mut ellipsoids =
+        particles.take_ellipsoids(materials.rows(), &rows, &path.to_string_lossy());
     scene.ellipsoids.append(&mut ellipsoids);
     scene.spheres.append(particles.spheres, &rows);
     scene.warnings.extend(particles.warnings);

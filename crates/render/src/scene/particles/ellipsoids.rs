@@ -5,13 +5,14 @@ use crate::scene::{Ellipsoids, NamedMaterial};
 
 impl Particles {
     /// Takes the particles that are ellipsoids out of the spheres; `materials` are those of the scene, and `rows` the row there of
-    /// each material of the particles.
+    /// each material of the particles; warnings name `source`.
     ///
     /// Materials that only spheres can have are replaced by the first one, with a warning.
     pub(in crate::scene) fn take_ellipsoids(
         &mut self,
         materials: &[NamedMaterial],
         rows: &[u32],
+        source: &str,
     ) -> Ellipsoids {
         let mut ellipsoids = Ellipsoids::default();
         if self.shapes.is_empty() {
@@ -38,7 +39,7 @@ impl Particles {
         }
         if replaced > 0 {
             let warning = format!(
-                "{replaced} ellipsoids cannot be glass or emitters, and have another material"
+                "{source}: {replaced} ellipsoids cannot be glass or emitters, and have another material"
             );
             self.warnings.push(warning);
         }
@@ -75,8 +76,8 @@ mod tests {
         assert!(scene.warnings.is_empty());
 
         particles.material_names = vec!["glass".to_owned()];
-        let scene = Scene::of_particles(particles.clone(), "");
+        let scene = Scene::of_particles(particles.clone(), "file");
         assert_eq!(scene.ellipsoids.material, [0, 0]);
-        assert!(scene.warnings[0].starts_with("2 ellipsoids"), "{:?}", scene.warnings);
+        assert!(scene.warnings[0].starts_with("file: 2 ellipsoids"), "{:?}", scene.warnings);
     }
 }
