@@ -96,9 +96,9 @@ pub mod scene {
     #[doc(inline)]
     pub use spherule_render::scene::{
         Anchor, Annotations, Axis, AxisTripod, Background, Camera, ColorBar, ColorLegend,
-        ConductorFresnel, Denoise, Ellipsoids, Environment, EnvironmentMap, FileError, Filter,
-        Footprint, Ground, Header, Identity, Insets, Integrator, InvalidSetting, Label, Lens,
-        Lettering, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset,
+        ConductorFresnel, Cones, Denoise, Ellipsoids, Environment, EnvironmentMap, FileError,
+        Filter, Footprint, Ground, Header, Identity, Insets, Integrator, InvalidSetting, Label,
+        Lens, Lettering, Light, LightChoice, Look, Material, NamedMaterial, Place, Pose, Preset,
         Projection, Rgb, Roulette, SamplerKind, ScaleBar, Scene, Settings, Slice, SliceMode,
         SlicePlane, Spheres, Sticks, Tone, text_without_columns, write, write_as,
     };

@@ -91,7 +91,7 @@ STYLE = frozenset(
 #: Sections of scene files; the color bar is one, too, if it is a dict.
 SECTIONS = frozenset(
     "title render camera look legend axes scale_bar label lettering environment ground slice light material sphere "
-    "stick ellipsoid generate file".split()
+    "stick ellipsoid cone generate file".split()
 )
 
 #: Keys of the section `render`.

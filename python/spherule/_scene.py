@@ -61,7 +61,7 @@ class Scene:
         slices: Planes that cut spheres away, as in ``["z > 50%"]``; ``slice_mode`` is ``"remove"``, ``"caps"`` or
             ``"hide"``.
         render, camera, look, legend, axes, scale_bar, label, lettering, environment, ground, slice, light, material,
-            sphere, stick, ellipsoid, generate, file: Sections, as :mod:`spherule.sections` types them.
+            sphere, stick, ellipsoid, cone, generate, file: Sections, as :mod:`spherule.sections` types them.
 
     Raises:
         Error: Anything that cannot be used, by name and row, with the text of the program.

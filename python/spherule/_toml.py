@@ -59,7 +59,7 @@ def _table(name: str, table: Mapping[str, Any]) -> str:
 
 
 #: Sections of which there may be several.
-LISTS = ("slice", "light", "label", "sphere", "stick", "ellipsoid", "generate", "file")
+LISTS = ("slice", "light", "label", "sphere", "stick", "ellipsoid", "cone", "generate", "file")
 
 
 def document(sections: Mapping[str, Any]) -> tuple[str, dict[str, list[str]]]:

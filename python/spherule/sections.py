@@ -226,6 +226,19 @@ class Ellipsoid(_Ellipsoid, total=False):
     color: Color
 
 
+class _Cone(TypedDict):
+    apex: Vector
+    base: Vector
+    radius: float
+
+
+class Cone(_Cone, total=False):
+    """``[[cone]]``: ``base`` is the center of the flat base."""
+
+    material: str
+    color: Color
+
+
 class _Stick(TypedDict):
     to: Vector
     radius: float
@@ -301,5 +314,6 @@ class Sections(TypedDict, total=False):
     sphere: Sequence[Sphere]
     stick: Sequence[Stick]
     ellipsoid: Sequence[Ellipsoid]
+    cone: Sequence[Cone]
     generate: Sequence[Generate]
     file: Sequence[File]

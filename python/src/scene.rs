@@ -425,7 +425,7 @@ impl Work {
             rows.extend(number(added));
             if let Some(ellipsoids) = ellipsoids.filter(|rows| !rows.is_empty()) {
                 let more = scene.ellipsoids.len() - ellipsoids.len();
-                rows.extend(number(2 * scene.sticks.len()));
+                rows.extend(number(scene.sticks.len()));
                 rows.extend(ellipsoids);
                 rows.extend(number(more));
             }
@@ -475,6 +475,12 @@ impl Work {
             let (center, semi_axes) = (given.center[row], given.semi_axes[row]);
             let (orientation, color) = (given.orientation[row], given.color[row]);
             scene.ellipsoids.push(center, semi_axes, orientation, material, color);
+        }
+        let given = &self.given.cones;
+        for row in 0..given.len() {
+            let material = rows.get(given.material[row] as usize).copied().unwrap_or(0);
+            let (apex, base) = (given.apex[row], given.base[row]);
+            scene.cones.push(apex, base, given.radius[row], material, given.color[row]);
         }
     }
 }

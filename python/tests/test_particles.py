@@ -291,6 +291,12 @@ def test_ellipsoids_keep_the_rows_of_their_arrays():
     columns = [ids[:, left : left + 30] for left in (0, 30, 60)]
     middle = [np.unique(part[part < spherule.GROUND]).tolist() for part in columns]
     assert middle == [[0], [1], [2]]
+    # Sticks of sections are numbered between spheres and ellipsoids, and keep the rows of both.
+    stick = {"from": [0, 9, 0], "to": [6, 9, 0], "radius": 0.1}
+    cone = {"apex": [0, 8, 0], "base": [0, 7, 0], "radius": 0.1}
+    with_others = spherule.Scene(positions, semi_axes=axes, radius=[1, 0.5, 1.2], stick=[stick], cone=[cone], view="z")
+    ids = with_others.render(size=(90, 150), spp=1, layers="id").layers["id"]
+    assert set(np.unique(ids[ids < spherule.GROUND]).tolist()) == {0, 1, 2, 3, 4}
     # A radius is that of the longest semi-axis, and one triple is for all.
     scene = spherule.Scene(positions, semi_axes=[1, 2, 4], radius=2)
     assert len(scene) == 3

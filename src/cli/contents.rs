@@ -10,10 +10,7 @@ pub(super) fn found(world: &World) -> Vec<String> {
     let mut found = Vec::new();
     for kind in MaterialKind::ALL {
         if features.bodies_of(kind) > 0 {
-            let columns =
-                [&features.spheres_by_kind, &features.sticks_by_kind, &features.ellipsoids_by_kind];
-            let [spheres, sticks, ellipsoids] = columns.map(|column| column[kind as usize]);
-            found.push(format!("{} of {}", bodies(spheres, sticks, ellipsoids), kind.name()));
+            found.push(format!("{} of {}", bodies(features.counts_of(kind)), kind.name()));
         }
     }
     if let Some(kind) = features.ground_kind {
@@ -42,10 +39,10 @@ pub(super) fn spheres(count: u64) -> String {
     plural(count, "sphere")
 }
 
-/// `2 spheres`, or `2 spheres, 1 stick, 3 ellipsoids`: those that there are.
-pub(super) fn bodies(count: u64, sticks: u64, ellipsoids: u64) -> String {
-    let all = [(count, "sphere"), (sticks, "stick"), (ellipsoids, "ellipsoid")];
-    let there = all.into_iter().filter(|(count, _)| *count > 0);
+/// `2 spheres`, or `2 spheres, 1 stick, 3 ellipsoids, 4 cones`: those that there are, by their counts in this order.
+pub(super) fn bodies(counts: [u64; 4]) -> String {
+    let all = counts.into_iter().zip(["sphere", "stick", "ellipsoid", "cone"]);
+    let there = all.filter(|(count, _)| *count > 0);
     let texts: Vec<String> = there.map(|(count, noun)| plural(count, noun)).collect();
     if texts.is_empty() { spheres(0) } else { texts.join(", ") }
 }

@@ -25,6 +25,7 @@ struct Info {
     spheres: usize,
     sticks: usize,
     ellipsoids: usize,
+    cones: usize,
     dropped_spheres: u64,
     /// Lower and upper corner; null without spheres.
     bounds: Option<[[f64; 3]; 2]>,
@@ -51,6 +52,7 @@ struct MaterialInfo {
     spheres: u64,
     sticks: u64,
     ellipsoids: u64,
+    cones: u64,
 }
 
 #[derive(Serialize)]
@@ -127,6 +129,7 @@ impl Info {
             spheres: scene.spheres.len(),
             sticks: scene.sticks.len(),
             ellipsoids: scene.ellipsoids.len(),
+            cones: scene.cones.len(),
             dropped_spheres: world.features.vanished + world.features.hidden,
             bounds: scene.bounds().map(|ends| ends.map(|end| end.to_array())),
             radius: radii(scene),
@@ -154,6 +157,9 @@ impl Info {
         if self.ellipsoids > 0 {
             output::print(format_args!("ellipsoids   {}", HumanCount(self.ellipsoids as u64)));
         }
+        if self.cones > 0 {
+            output::print(format_args!("cones        {}", HumanCount(self.cones as u64)));
+        }
         if let Some([low, high]) = self.bounds {
             output::print(format_args!("bounds       {low:?} to {high:?}"));
         }
@@ -164,8 +170,8 @@ impl Info {
             output::print(format_args!("cut away     {slice}"));
         }
         for material in self.materials.iter().take(SHOWN) {
-            let MaterialInfo { name, kind, spheres, sticks, ellipsoids } = material;
-            let count = bodies(*spheres, *sticks, *ellipsoids);
+            let MaterialInfo { name, kind, spheres, sticks, ellipsoids, cones } = material;
+            let count = bodies([*spheres, *sticks, *ellipsoids, *cones]);
             output::print(format_args!("material     {name}: {kind}, {count}"));
         }
         if self.materials.len() > SHOWN {
@@ -261,6 +267,7 @@ fn materials(scene: &Scene) -> Vec<MaterialInfo> {
         spheres: 0,
         sticks: 0,
         ellipsoids: 0,
+        cones: 0,
     };
     let mut infos: Vec<MaterialInfo> = scene.materials.iter().map(info).collect();
     for row in 0..scene.spheres.len() {
@@ -268,5 +275,6 @@ fn materials(scene: &Scene) -> Vec<MaterialInfo> {
     }
     scene.sticks.material.iter().for_each(|&row| infos[row as usize].sticks += 1);
     scene.ellipsoids.material.iter().for_each(|&row| infos[row as usize].ellipsoids += 1);
+    scene.cones.material.iter().for_each(|&row| infos[row as usize].cones += 1);
     infos
 }

@@ -1,4 +1,4 @@
-//! What the tests of sticks and of ellipsoids share: scenes, layers, and the comparison of traversals.
+//! What the tests of sticks, ellipsoids and cones share: scenes, layers, and the comparison of traversals.
 
 use crate::common::{dark, look_parallel, render_scene_with};
 use glam::DVec3;

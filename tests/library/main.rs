@@ -5,6 +5,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod cones;
 
 mod adaptive;
 mod bodies;

@@ -5,6 +5,7 @@ use crate::body_tree::{BodyTree, FilterRay, Shape};
 use crate::bounded::COARSE;
 use crate::bvh::{SMALL_STACK, STACK, Search, walk};
 use crate::capsules::{self, Capsule, CapsuleRow, Capsules, Part};
+use crate::cones::{self, Cone, Cones};
 use crate::ellipsoids::{self, Ellipsoid, Ellipsoids};
 use crate::exact::{self, Distance};
 use crate::intersect::{CLEAR, Root, confirm_closely};
@@ -23,13 +24,19 @@ pub struct BodyTrees<'a> {
     pub capsules: &'a Capsules,
     /// Ellipsoids; `None` if there are none.
     pub ellipsoids: Option<&'a Ellipsoids>,
+    /// Cones; `None` if there are none.
+    pub cones: Option<&'a Cones>,
 }
 
 impl BodyTrees<'_> {
     /// The numbers of hits.
     #[inline(always)]
     fn rows(&self) -> BodyRows {
-        BodyRows { spheres: self.spheres.len(), capsules: self.capsules.len() }
+        BodyRows {
+            spheres: self.spheres.len(),
+            capsules: self.capsules.len(),
+            ellipsoids: self.ellipsoids.map_or(0, Ellipsoids::len),
+        }
     }
 
     /// The body of a hit.
@@ -39,22 +46,23 @@ impl BodyTrees<'_> {
             Some(BodyRow::Sphere(row)) => Body::Sphere(row),
             Some(BodyRow::Capsule(row)) => Body::Capsule(row.capsule, Part::Body),
             Some(BodyRow::Ellipsoid(row)) => Body::Ellipsoid(row),
+            Some(BodyRow::Cone(row)) => Body::Cone(row),
             None if hit == MISS => Body::Nothing,
             None => Body::Ground,
         }
     }
 }
 
-/// Replaces each hit by one on a capsule or ellipsoid if that is nearer. On entry hits are those of the spheres and the ground, or
-/// [`MISS`] with a bound; see [`BodyTrees`] for the hits on return. Of bodies
-/// at equal distances spheres come first, then capsules.
+/// Replaces each hit by one on a body that is no sphere if that is nearer. On entry hits are those of the spheres and the ground, or
+/// [`MISS`] with a bound; see [`BodyTrees`] for the hits on return. Of bodies at equal distances spheres come first, then
+/// capsules, ellipsoids and cones.
 ///
 /// Returns how many decisions were made on integers.
 pub fn closest(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u64 {
     trace::<false>(bodies, rays, hits)
 }
 
-/// Finds whether each ray that has no hit yet hits a capsule or ellipsoid nearer than `hits.t`.
+/// Finds whether each ray that has no hit yet hits a body that is no sphere nearer than `hits.t`.
 ///
 /// Returns how many decisions were made on integers.
 pub fn occluded(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u64 {
@@ -68,6 +76,9 @@ fn trace<const ANY: bool>(bodies: BodyTrees, rays: &Rays, hits: &mut Hits) -> u6
     }
     if let Some(ellipsoids) = bodies.ellipsoids {
         exact += trace_kind::<Ellipsoid, ANY>(bodies, ellipsoids, rays, hits);
+    }
+    if let Some(cones) = bodies.cones {
+        exact += trace_kind::<Cone, ANY>(bodies, cones, rays, hits);
     }
     exact
 }
@@ -92,7 +103,7 @@ fn trace_kind<K: Kind, const ANY: bool>(
             Body::Sphere(_) => Nearest { t, error: t * CLEAR, body },
             // The exit of a ray that is inside a body: a given number.
             _ if body.is(own) => Nearest { t, error: 0.0, body: Body::Nothing },
-            Body::Capsule(..) | Body::Ellipsoid(_) => {
+            Body::Capsule(..) | Body::Ellipsoid(_) | Body::Cone(_) => {
                 Nearest { t, error: (t * COARSE).max(f64::MIN_POSITIVE), body }
             }
         };
@@ -169,6 +180,23 @@ impl Kind for Ellipsoid {
     }
 }
 
+impl Kind for Cone {
+    #[inline(always)]
+    fn decide(&self, ray: &ExactRay, row: usize) -> Option<(Root, Body)> {
+        cones::intersect(ray, self).map(|root| (root, Body::Cone(row)))
+    }
+
+    #[inline(always)]
+    fn row(row: usize) -> Body {
+        Body::Cone(row)
+    }
+
+    #[inline(always)]
+    fn hit(bodies: &BodyTrees, row: usize, _: &ExactRay, _: f64) -> u32 {
+        bodies.rows().hit(BodyRow::Cone(row))
+    }
+}
+
 /// The nearest hit so far, or the distance at which the search ends.
 #[derive(Clone, Copy)]
 struct Nearest {
@@ -187,15 +215,17 @@ enum Body {
     /// With the part of its surface that is hit.
     Capsule(usize, Part),
     Ellipsoid(usize),
+    Cone(usize),
 }
 
 impl Body {
-    /// Returns whether both are the same capsule or ellipsoid.
+    /// Returns whether both are the same body, which is no sphere.
     #[inline(always)]
     fn is(self, other: Self) -> bool {
         match (self, other) {
             (Self::Capsule(row, _), Self::Capsule(other, _))
-            | (Self::Ellipsoid(row), Self::Ellipsoid(other)) => row == other,
+            | (Self::Ellipsoid(row), Self::Ellipsoid(other))
+            | (Self::Cone(row), Self::Cone(other)) => row == other,
             _ => false,
         }
     }
@@ -306,7 +336,7 @@ impl<K: Kind, const ANY: bool> RaySearch<'_, K, ANY> {
 
     /// Decides where the ray hits the nearest body so far, with a close bound.
     fn decide(&self, body: Body) -> Option<Root> {
-        let BodyTrees { spheres, capsules, ellipsoids } = self.bodies;
+        let BodyTrees { spheres, capsules, ellipsoids, cones } = self.bodies;
         match body {
             Body::Nothing | Body::Ground => None,
             Body::Sphere(row) => {
@@ -315,29 +345,32 @@ impl<K: Kind, const ANY: bool> RaySearch<'_, K, ANY> {
             }
             Body::Capsule(row, _) => capsules.body(row).decide(self.ray, row).map(|hit| hit.0),
             Body::Ellipsoid(row) => ellipsoids?.body(row).decide(self.ray, row).map(|hit| hit.0),
+            Body::Cone(row) => cones?.body(row).decide(self.ray, row).map(|hit| hit.0),
         }
     }
 
     /// The distance of a hit without rounding. One without error is a given number: a bound, or 0 where the ray starts on a
     /// body.
     fn distance(&self, root: &Root, body: Body) -> Distance {
-        let BodyTrees { spheres, capsules, ellipsoids } = self.bodies;
-        match (body, ellipsoids) {
-            _ if root.error == 0.0 => Distance::Number(root.t),
-            (Body::Sphere(row), _) => {
+        let BodyTrees { spheres, capsules, ellipsoids, cones } = self.bodies;
+        let distance = match body {
+            _ if root.error == 0.0 => None,
+            Body::Sphere(row) => {
                 let (center, radius) = spheres.exact(row);
-                Distance::Hit(center, radius)
+                Some(Distance::Hit(center, radius))
             }
-            (Body::Capsule(row, _), _) => Distance::Capsule(capsules.body(row)),
-            (Body::Ellipsoid(row), Some(ellipsoids)) => Distance::Ellipsoid(ellipsoids.body(row)),
-            _ => Distance::Number(root.t),
-        }
+            Body::Capsule(row, _) => Some(Distance::Capsule(capsules.body(row))),
+            Body::Ellipsoid(row) => ellipsoids.map(|all| Distance::Ellipsoid(all.body(row))),
+            Body::Cone(row) => cones.map(|all| Distance::Cone(all.body(row))),
+            Body::Nothing | Body::Ground => None,
+        };
+        distance.unwrap_or(Distance::Number(root.t))
     }
 
     /// Returns whether the part of the surface is also that of the nearest hit: of molecules drawn with sticks, ends
     /// coincide with atoms and with ends of other sticks.
     fn coincides(&self, body: Body) -> bool {
-        let BodyTrees { spheres, capsules, ellipsoids } = self.bodies;
+        let BodyTrees { spheres, capsules, ellipsoids, cones } = self.bodies;
         match (body, self.nearest.body) {
             (Body::Capsule(row, part), Body::Capsule(other, other_part)) => {
                 let (capsule, other) = (capsules.body(row), capsules.body(other));
@@ -352,18 +385,22 @@ impl<K: Kind, const ANY: bool> RaySearch<'_, K, ANY> {
             (Body::Ellipsoid(row), Body::Ellipsoid(other)) => {
                 ellipsoids.is_some_and(|all| all.body(row) == all.body(other))
             }
+            (Body::Cone(row), Body::Cone(other)) => {
+                cones.is_some_and(|all| all.body(row) == all.body(other))
+            }
             _ => false,
         }
     }
 
     /// Returns whether a body comes before the nearest hit, which is at the same distance: spheres come first, then capsules,
-    /// then ellipsoids, the ground last, and a bound is no hit.
+    /// ellipsoids and cones, the ground last, and a bound is no hit.
     fn precedes(&self, body: Body) -> bool {
         let id = self.tree.ids();
         match (body, self.nearest.body) {
             (_, Body::Ground) => true,
             (Body::Capsule(row, _), Body::Capsule(other, _))
-            | (Body::Ellipsoid(row), Body::Ellipsoid(other)) => id[row] < id[other],
+            | (Body::Ellipsoid(row), Body::Ellipsoid(other))
+            | (Body::Cone(row), Body::Cone(other)) => id[row] < id[other],
             _ => false,
         }
     }

@@ -1,4 +1,4 @@
-//! Numbers of hits: rows of the spheres, after them two for each capsule, and after these one for each ellipsoid.
+//! Numbers of hits: rows of the spheres, after them two for each capsule, then one for each ellipsoid, and one for each cone.
 
 use crate::capsules::CapsuleRow;
 use crate::ray::GROUND;
@@ -10,6 +10,8 @@ pub struct BodyRows {
     pub spheres: usize,
     /// Number of capsules.
     pub capsules: usize,
+    /// Number of ellipsoids.
+    pub ellipsoids: usize,
 }
 
 /// A body, by its row among those of its kind.
@@ -21,6 +23,8 @@ pub enum BodyRow {
     Capsule(CapsuleRow),
     /// An ellipsoid.
     Ellipsoid(usize),
+    /// A cone.
+    Cone(usize),
 }
 
 impl BodyRows {
@@ -32,9 +36,12 @@ impl BodyRows {
         }
         let hit = hit as usize;
         let Some(row) = hit.checked_sub(self.spheres) else { return Some(BodyRow::Sphere(hit)) };
-        Some(match row.checked_sub(2 * self.capsules) {
-            Some(row) => BodyRow::Ellipsoid(row),
-            None => BodyRow::Capsule(CapsuleRow { capsule: row / 2, half: row % 2 }),
+        let Some(rest) = row.checked_sub(2 * self.capsules) else {
+            return Some(BodyRow::Capsule(CapsuleRow { capsule: row / 2, half: row % 2 }));
+        };
+        Some(match rest.checked_sub(self.ellipsoids) {
+            None => BodyRow::Ellipsoid(rest),
+            Some(row) => BodyRow::Cone(row),
         })
     }
 
@@ -45,6 +52,7 @@ impl BodyRows {
             BodyRow::Sphere(row) => row,
             BodyRow::Capsule(CapsuleRow { capsule, half }) => self.spheres + 2 * capsule + half,
             BodyRow::Ellipsoid(row) => self.spheres + 2 * self.capsules + row,
+            BodyRow::Cone(row) => self.spheres + 2 * self.capsules + self.ellipsoids + row,
         };
         row as u32
     }
@@ -57,7 +65,7 @@ mod tests {
 
     #[test]
     fn every_hit_is_one_body() {
-        let rows = BodyRows { spheres: 3, capsules: 2 };
+        let rows = BodyRows { spheres: 3, capsules: 2, ellipsoids: 2 };
         let capsule = |capsule, half| BodyRow::Capsule(CapsuleRow { capsule, half });
         let expected = [
             BodyRow::Sphere(0),
@@ -69,13 +77,15 @@ mod tests {
             capsule(1, 1),
             BodyRow::Ellipsoid(0),
             BodyRow::Ellipsoid(1),
+            BodyRow::Cone(0),
+            BodyRow::Cone(1),
         ];
         for (hit, &row) in (0..).zip(&expected) {
             assert_eq!(rows.row(hit), Some(row));
             assert_eq!(rows.hit(row), hit);
         }
         assert!(rows.row(GROUND).is_none() && rows.row(MISS).is_none());
-        let alone = BodyRows { spheres: 0, capsules: 0 };
-        assert_eq!(alone.row(0), Some(BodyRow::Ellipsoid(0)));
+        let alone = BodyRows { spheres: 0, capsules: 0, ellipsoids: 0 };
+        assert_eq!(alone.row(0), Some(BodyRow::Cone(0)));
     }
 }

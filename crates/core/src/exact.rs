@@ -11,13 +11,16 @@
 //! It takes microseconds, and is needed about never: [`crate::intersect::confirm`] says when.
 
 mod capsule;
+mod cone;
 mod dyadic;
 mod ellipsoid;
 
 pub use capsule::{CapsuleRoot, capsule_hit};
+pub use cone::{cone_exit, cone_hit};
 pub use ellipsoid::ellipsoid_hit;
 
 use crate::capsule::Capsule;
+use crate::cone::Cone;
 use crate::ellipsoid::Ellipsoid;
 use crate::ray::ExactRay;
 use dyadic::{Dyadic, dot, nearest_root};
@@ -111,6 +114,8 @@ pub enum Distance {
     Capsule(Capsule),
     /// The distance at which the ray hits this ellipsoid; it must hit it.
     Ellipsoid(Ellipsoid),
+    /// The distance at which the ray hits this cone; it must hit it.
+    Cone(Cone),
     /// This number.
     Number(f64),
 }
@@ -124,6 +129,16 @@ struct Quotient {
 }
 
 impl Quotient {
+    /// A quotient of two numbers; `None` where the divisor is 0.
+    fn ratio(dividend: Dyadic, divisor: Dyadic) -> Option<Self> {
+        let zero = Dyadic::new(0.0);
+        match divisor.sign() {
+            0 => None,
+            1 => Some(Self { p: dividend, sign: 0, q: zero, a: divisor }),
+            _ => Some(Self { p: -dividend, sign: 0, q: zero, a: -divisor }),
+        }
+    }
+
     /// -1, 0 or 1.
     fn sign(&self) -> i32 {
         sign_of_sum(&self.p, (self.sign, &self.q), (0, &self.q))
@@ -160,6 +175,7 @@ impl Distance {
             Self::Ellipsoid(ellipsoid) => {
                 ellipsoid::first(ray, &ellipsoid).unwrap_or_else(|| number(0.0))
             }
+            Self::Cone(cone) => cone::first(ray, &cone).unwrap_or_else(|| number(0.0)),
             Self::Number(t) => number(t),
         }
     }

@@ -41,6 +41,8 @@ mod bounded;
 mod bvh;
 mod capsule;
 mod capsules;
+mod cone;
+mod cones;
 mod conservative;
 mod elementary;
 mod ellipsoid;
@@ -87,6 +89,10 @@ pub mod internals {
     /// Capsules: cylinders with round ends.
     pub mod capsules {
         pub use crate::capsules::*;
+    }
+    /// Cones.
+    pub mod cones {
+        pub use crate::cones::*;
     }
     /// The conservative test in single precision.
     pub mod conservative {

@@ -13,6 +13,7 @@ use crate::body_rows::{BodyRow, BodyRows};
 use crate::body_tree;
 use crate::bvh::{Intersection, Tree, for_each_intersection};
 use crate::capsules::{self, CapsuleRow, Capsules, Part};
+use crate::cones::Cones;
 use crate::elementary;
 use crate::ellipsoids::Ellipsoids;
 use crate::exact::{self, Distance};
@@ -79,6 +80,8 @@ pub struct TranslucentBodies<'a, D> {
     pub capsules: &'a Capsules,
     /// Ellipsoids.
     pub ellipsoids: &'a Ellipsoids,
+    /// Cones.
+    pub cones: &'a Cones,
     /// The depth of the body of a hit, numbered as [`BodyRows`] says.
     pub depth: D,
 }
@@ -173,7 +176,11 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
 
     /// The numbers of hits.
     fn rows(&self) -> BodyRows {
-        BodyRows { spheres: self.tree.spheres.len(), capsules: self.capsules.len() }
+        BodyRows {
+            spheres: self.tree.spheres.len(),
+            capsules: self.capsules.len(),
+            ellipsoids: self.ellipsoids.len(),
+        }
     }
 
     /// Calls a function with each body that may end the ray. The function returns a distance beyond which no body matters, or breaks.
@@ -223,10 +230,20 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
                 body(rows.hit(BodyRow::Ellipsoid(found.row)), found, &mut t_far)
             });
         }
+        if !ended.get() && !self.cones.is_empty() {
+            let own = ends.map(|end| match rows.row(end) {
+                Some(BodyRow::Cone(row)) => Some(row),
+                _ => None,
+            });
+            let first = t_far;
+            body_tree::for_each_intersection(self.cones, ray, own, first, |found| {
+                body(rows.hit(BodyRow::Cone(found.row)), found, &mut t_far)
+            });
+        }
     }
 
     /// Compares the distances of two bodies; of those at the same distance the one that comes first in the user's order, spheres
-    /// before capsules and these before ellipsoids, counts as the nearer one. The ground comes last, and a bound first.
+    /// before capsules, ellipsoids and cones, counts as the nearer one. The ground comes last, and a bound first.
     fn order(&self, ray: &ExactRay, a: &Fragment, b: &Fragment, exact: &mut u64) -> Ordering {
         if a.root.t + a.root.error < b.root.t - b.root.error {
             return Ordering::Less;
@@ -267,7 +284,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
         let capsule = match self.rows().row(fragment.hit)? {
             BodyRow::Sphere(row) => return Some(self.tree.spheres.exact(row)),
             BodyRow::Capsule(row) => self.capsules.body(row.capsule),
-            BodyRow::Ellipsoid(_) => return None,
+            BodyRow::Ellipsoid(_) | BodyRow::Cone(_) => return None,
         };
         match capsules::intersect(ray, &capsule)?.part {
             Part::End(end) => Some((capsule.ends[end], capsule.radius)),
@@ -288,6 +305,9 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
             Some(BodyRow::Ellipsoid(row)) => {
                 return (fragment.root, Distance::Ellipsoid(self.ellipsoids.body(row)));
             }
+            Some(BodyRow::Cone(row)) => {
+                return (fragment.root, Distance::Cone(self.cones.body(row)));
+            }
             Some(BodyRow::Sphere(row)) => row,
             None => return (number, Distance::Number(fragment.root.t)),
         };
@@ -306,7 +326,8 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
             Some(BodyRow::Sphere(row)) => (1, self.tree.spheres.id[row]),
             Some(BodyRow::Capsule(row)) => (2, self.capsules.ids()[row.capsule]),
             Some(BodyRow::Ellipsoid(row)) => (3, self.ellipsoids.ids()[row]),
-            None => (4, 0),
+            Some(BodyRow::Cone(row)) => (4, self.cones.ids()[row]),
+            None => (5, 0),
         }
     }
 }

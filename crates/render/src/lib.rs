@@ -18,8 +18,8 @@
 // Exact ray queries on spheres.
 pub use spherule_core as query;
 pub use spherule_core::internals::{
-    bodies, body_rows, body_tree, bvh, capsules, elementary, ellipsoids, exact, intersect, lanes,
-    ray, spheres, translucency, vec3,
+    bodies, body_rows, body_tree, bvh, capsules, cones, elementary, ellipsoids, exact, intersect,
+    lanes, ray, spheres, translucency, vec3,
 };
 
 // Particle files, and what their readers share with scene files.

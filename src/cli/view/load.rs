@@ -445,7 +445,7 @@ fn count(path: &Path, options: &ReadOptions, asked: bool) -> Option<u64> {
     short.then(|| particles::count_frames(path, options).ok()).flatten()
 }
 
-/// Half the diagonal of the bounding box of all spheres and ellipsoids.
+/// Half the diagonal of the bounding box of all spheres, ellipsoids and cones.
 fn size(scene: &Scene) -> f64 {
     let size = scene.bounds().map_or(0.0, |[low, high]| (high - low).length() / 2.0);
     if size.is_finite() && size > 0.0 { size } else { 1.0 }

@@ -210,12 +210,14 @@ fn trees_find_the_hits_of_brute_force() {
         let tree = crate::bvh::Tree { bvh: &bvh, spheres: &spheres };
         crate::bvh::Tracer::default().closest(tree, &rays, &mut hits);
         crate::bvh::Tracer::default().occluded(tree, &rays, &mut shadows);
-        let bodies = BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None };
+        let bodies =
+            BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None, cones: None };
         closest(bodies, &rays, &mut hits);
         occluded(bodies, &rays, &mut shadows);
         for row in 0..200 {
             let ray = rays.exact(row);
-            let rows_of = BodyRows { spheres: spheres.len(), capsules: capsules.len() };
+            let rows_of =
+                BodyRows { spheres: spheres.len(), capsules: capsules.len(), ellipsoids: 0 };
             let by_id = |hit: u32| match rows_of.row(hit) {
                 Some(BodyRow::Capsule(hit)) => spheres.len() + capsules.ids()[hit.capsule] as usize,
                 _ => spheres.id[hit as usize] as usize,
@@ -263,7 +265,7 @@ fn the_filter_keeps_what_is_hit() {
         let mut hits = Hits::with_capacity(1);
         let spheres = Spheres::default();
         closest(
-            BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None },
+            BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None, cones: None },
             &rays,
             &mut hits,
         );
@@ -290,7 +292,7 @@ fn rays_from_a_surface_do_not_hit_it() {
             rays.push(on.as_vec3(), random.direction().as_vec3(), own);
             let mut hits = Hits::with_capacity(1);
             closest(
-                BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None },
+                BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: None, cones: None },
                 &rays,
                 &mut hits,
             );

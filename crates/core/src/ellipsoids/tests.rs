@@ -208,8 +208,12 @@ fn trees_find_the_hits_of_brute_force() {
         crate::bvh::Tracer::default().occluded(tree, &rays, &mut shadows);
         // The hits among spheres and capsules are tested elsewhere.
         let mut rest = hits.clone();
-        let bodies =
-            BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: Some(&ellipsoids) };
+        let bodies = BodyTrees {
+            spheres: &spheres,
+            capsules: &capsules,
+            ellipsoids: Some(&ellipsoids),
+            cones: None,
+        };
         closest(BodyTrees { ellipsoids: None, ..bodies }, &rays, &mut rest);
         closest(bodies, &rays, &mut hits);
         occluded(bodies, &rays, &mut shadows);
@@ -223,7 +227,11 @@ fn trees_find_the_hits_of_brute_force() {
             let first = first.filter(|(t, _)| other.is_none_or(|other| t.to_f64() < other));
             assert_eq!(shadows.sphere[row] != MISS, first.is_some() || other.is_some());
             if let Some((t, id)) = first {
-                let rows = BodyRows { spheres: spheres.len(), capsules: capsules.len() };
+                let rows = BodyRows {
+                    spheres: spheres.len(),
+                    capsules: capsules.len(),
+                    ellipsoids: ellipsoids.len(),
+                };
                 let Some(BodyRow::Ellipsoid(found)) = rows.row(hits.sphere[row]) else {
                     panic!("round {round} row {row}: {}", hits.sphere[row]);
                 };
@@ -253,8 +261,12 @@ fn the_filter_keeps_what_is_hit() {
         let mut rays = Rays::with_capacity(1);
         rays.push(ray.origin.as_vec3(), ray.direction.as_vec3(), MISS);
         let mut hits = Hits::with_capacity(1);
-        let bodies =
-            BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: Some(&ellipsoids) };
+        let bodies = BodyTrees {
+            spheres: &spheres,
+            capsules: &capsules,
+            ellipsoids: Some(&ellipsoids),
+            cones: None,
+        };
         closest(bodies, &rays, &mut hits);
         assert_eq!(hits.sphere[0], 0, "{ray:?} {item:?}");
         kept += 1;
@@ -274,8 +286,12 @@ fn rays_from_a_surface_do_not_hit_it_and_leave_at_its_far_side() {
         let mut rays = Rays::with_capacity(1);
         rays.push((body.center + on).as_vec3(), (toward - on).normalize().as_vec3(), 0);
         let mut hits = Hits::with_capacity(1);
-        let bodies =
-            BodyTrees { spheres: &spheres, capsules: &capsules, ellipsoids: Some(&ellipsoids) };
+        let bodies = BodyTrees {
+            spheres: &spheres,
+            capsules: &capsules,
+            ellipsoids: Some(&ellipsoids),
+            cones: None,
+        };
         closest(bodies, &rays, &mut hits);
         assert_eq!(hits.sphere[0], MISS);
         let exact = ExactRay {

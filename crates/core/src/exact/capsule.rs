@@ -5,7 +5,7 @@
 //! Lagrange's identity. Where it enters, `y = (F + t d).v` says whether it enters the capsule there (`0 <= y <= v.v`), or on
 //! the sphere about an end, if at all: a line that is in the cylinder at an end's plane is in that end's sphere.
 
-use super::dyadic::{Dyadic, dot};
+use super::dyadic::{Dyadic, cross, dot};
 use super::{Encounter, Quotient, sign_of_sum};
 use crate::capsule::{Capsule, Part};
 use crate::ray::ExactRay;
@@ -103,12 +103,4 @@ impl<'a> Line<'a> {
         let root = Quotient { p: b, sign, q: discriminant, a };
         (root.q.sign() >= 0).then_some((root, Part::End(end)))
     }
-}
-
-/// Vector product.
-fn cross(a: &[Dyadic; 3], b: &[Dyadic; 3]) -> [Dyadic; 3] {
-    std::array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        &(&a[j] * &b[k]) - &(&a[k] * &b[j])
-    })
 }

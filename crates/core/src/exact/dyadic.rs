@@ -127,6 +127,14 @@ pub(super) fn dot(a: &[Dyadic; 3], b: &[Dyadic; 3]) -> Dyadic {
     &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
 }
 
+/// Vector product.
+pub(super) fn cross(a: &[Dyadic; 3], b: &[Dyadic; 3]) -> [Dyadic; 3] {
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        &(&a[j] * &b[k]) - &(&a[k] * &b[j])
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

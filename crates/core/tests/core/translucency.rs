@@ -7,6 +7,7 @@ use spherule_core::internals::body_tree::Shape;
 use spherule_core::internals::bvh::Tree;
 use spherule_core::internals::bvh::builders::{Builder, build};
 use spherule_core::internals::capsules::{Capsule, CapsuleItem, Capsules};
+use spherule_core::internals::cones::{Cone, ConeItem, Cones};
 use spherule_core::internals::ellipsoids::{Ellipsoid, EllipsoidItem, Ellipsoids};
 use spherule_core::internals::exact::{self, Distance};
 use spherule_core::internals::random::Random;
@@ -22,6 +23,7 @@ enum Body {
     Sphere(DVec3, f64),
     Capsule(Capsule),
     Ellipsoid(Ellipsoid),
+    Cone(Cone),
 }
 
 impl Body {
@@ -46,6 +48,12 @@ impl Body {
                 }
                 exact::ellipsoid_hit(ray, &ellipsoid).map(|_| Distance::Ellipsoid(ellipsoid))
             }
+            Self::Cone(cone) => {
+                if !is_opaque && cone.contains(ray.origin) {
+                    return None;
+                }
+                exact::cone_hit(ray, &cone).map(|_| Distance::Cone(cone))
+            }
         }
     }
 }
@@ -57,6 +65,7 @@ struct Scene {
     spheres: Spheres,
     capsules: Capsules,
     ellipsoids: Ellipsoids,
+    cones: Cones,
 }
 
 impl Scene {
@@ -81,6 +90,13 @@ impl Scene {
                 EllipsoidItem::new(point(), axes, turned, i as u32).expect("an ellipsoid")
             })
             .collect();
+        let mut cone_items = Vec::new();
+        while cone_items.len() < 20 {
+            // Of the lattice's points some are equal, between which there is no cone.
+            let id = cone_items.len();
+            let cone = ConeItem::new(point(), point(), [0.25, 0.5][id % 2], id as u32);
+            cone_items.extend(cone);
+        }
         let mut spheres = Spheres::with_capacity(rows.len());
         for (id, &(center, radius)) in rows.iter().enumerate() {
             spheres.push(center, radius, id as u32);
@@ -98,18 +114,27 @@ impl Scene {
         for (row, &id) in ellipsoids.ids().iter().enumerate() {
             of_items[id as usize] = Some(Body::Ellipsoid(ellipsoids.body(row)));
         }
-        let bodies = of_spheres.chain(of_sticks).chain(of_items.into_iter().flatten()).collect();
-        let rows = BodyRows { spheres: rows.len(), capsules: sticks.len() };
-        (Self { bodies, rows, spheres, capsules, ellipsoids }, bvh)
+        let cones = Cones::build(&cone_items, builder);
+        let of_cones = cone_items.iter().map(|item| {
+            let row = cones.ids().iter().position(|&id| id == item.id()).expect("a cone");
+            Body::Cone(cones.body(row))
+        });
+        let of_items = of_items.into_iter().flatten();
+        let bodies = of_spheres.chain(of_sticks).chain(of_items).chain(of_cones).collect();
+        let (capsule_count, ellipsoid_count) = (sticks.len(), items.len());
+        let rows =
+            BodyRows { spheres: rows.len(), capsules: capsule_count, ellipsoids: ellipsoid_count };
+        (Self { bodies, rows, spheres, capsules, ellipsoids, cones }, bvh)
     }
 
     /// The place of the body of a hit in the user's order.
     fn place(&self, hit: u32) -> Option<usize> {
-        let BodyRows { spheres, capsules } = self.rows;
+        let BodyRows { spheres, capsules, ellipsoids } = self.rows;
         Some(match self.rows.row(hit)? {
             BodyRow::Sphere(row) => self.spheres.id[row] as usize,
             BodyRow::Capsule(row) => spheres + self.capsules.ids()[row.capsule] as usize,
             BodyRow::Ellipsoid(row) => spheres + capsules + self.ellipsoids.ids()[row] as usize,
+            BodyRow::Cone(row) => spheres + capsules + ellipsoids + self.cones.ids()[row] as usize,
         })
     }
 
@@ -151,13 +176,14 @@ fn ray(random: &mut Random) -> ExactRay {
 #[test]
 fn rays_end_where_all_hits_in_their_exact_order_end_them() {
     let builders = Builder::ALL;
-    let (mut ends, mut misses) = ([0; 3], 0);
+    let (mut ends, mut misses) = ([0; 4], 0);
     for seed in 0..6 {
         let (scene, bvh) = Scene::new(seed, builders[seed as usize % 3]);
         let bodies = TranslucentBodies {
             tree: Tree { bvh: &bvh, spheres: &scene.spheres },
             capsules: &scene.capsules,
             ellipsoids: &scene.ellipsoids,
+            cones: &scene.cones,
             depth: |hit| {
                 let place = scene.place(hit).expect("a hit on a body");
                 OpticalDepth::of_opacity(Scene::opacity(place))
@@ -176,10 +202,14 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
             assert_eq!(bodies.occluded(&attenuated).0, expected.is_some(), "{ray:?}");
             match expected {
                 Some(place) => {
-                    let BodyRows { spheres, capsules } = scene.rows;
-                    let kind =
-                        usize::from(place >= spheres) + usize::from(place >= spheres + capsules);
-                    ends[kind] += 1;
+                    let BodyRows { spheres, capsules, ellipsoids } = scene.rows;
+                    let kinds = [spheres, capsules, ellipsoids];
+                    let mut before = 0;
+                    let is_before = |count: &&usize| {
+                        before += **count;
+                        before <= place
+                    };
+                    ends[kinds.iter().take_while(is_before).count()] += 1;
                 }
                 None => misses += 1,
             }
@@ -191,7 +221,7 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
             }
         }
     }
-    assert!(ends.iter().all(|&ends| ends > 100) && misses > 100, "{ends:?} {misses}");
+    assert!(ends.iter().all(|&ends| ends > 100) && misses > 50, "{ends:?} {misses}");
 }
 
 #[test]

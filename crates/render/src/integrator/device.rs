@@ -60,6 +60,9 @@ fn unsupported(job: &Job) -> Option<&'static str> {
     if !world.ellipsoids.is_empty() {
         return Some("the scene has ellipsoids");
     }
+    if !world.cones.is_empty() {
+        return Some("the scene has cones");
+    }
     if world.features.translucent {
         return Some("the scene has translucent bodies");
     }

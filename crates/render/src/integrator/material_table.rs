@@ -29,16 +29,11 @@ fn hit_at(place: usize) -> u32 {
     }
 }
 
-/// Returns the number of hits with a material, but for the ground's: spheres, halves of sticks, and ellipsoids.
-fn rows(world: &World) -> usize {
-    world.spheres.len() + 2 * world.sticks.len() + world.ellipsoids.len()
-}
-
 /// Returns the material of a hit, `None` if there is no such sphere or ground.
 fn material(world: &World, hit: u32) -> Option<MaterialId> {
     let there = match hit {
         GROUND => world.ground.is_some(),
-        _ => (hit as usize) < rows(world),
+        _ => (hit as usize) < world.body_count(),
     };
     there.then(|| world.material(hit))
 }
@@ -47,7 +42,7 @@ impl MaterialTable {
     /// Creates the table; `None` if there are too many spheres. `nothing` is the queue number of a
     /// miss.
     pub fn new(world: &World, nothing: usize) -> Option<Self> {
-        if rows(world) > MAX_SPHERES {
+        if world.body_count() > MAX_SPHERES {
             return None;
         }
         let queue = |place| {

@@ -245,7 +245,7 @@ fn chord_exit(entry: Vec3<F64x8>, direction: Vec3<F64x8>) -> Vec3<F64x8> {
     entry - direction * (F64x8::splat(2.0) * entry.dot_unfused(direction) / length2)
 }
 
-/// Computes the point and the normal of a hit on a stick or an ellipsoid.
+/// Computes the point and the normal of a hit on a body that is no sphere.
 fn compute_other_body(world: &World, work: &mut Workspace, row: usize) {
     let (ray, t) = (work.rays.exact(row), work.hits.t[row]);
     let (point, normal) = match world.body(work.hits.sphere[row]) {
@@ -259,6 +259,11 @@ fn compute_other_body(world: &World, work: &mut Workspace, row: usize) {
             let from_center = body.onto_surface(ray.at_from(body.center, t));
             let normal = against_unless_known(&ray, body.normal(from_center));
             (body.center + from_center, normal)
+        }
+        Some(WorldBody::Cone(body)) => {
+            let from_apex = body.onto_surface(ray.at_from(body.apex, t));
+            let normal = against_unless_known(&ray, body.normal(from_apex));
+            (body.apex + from_apex, normal)
         }
     };
     work.surface.point.set(row, point.as_vec3());

@@ -16,6 +16,7 @@ use super::shading_row::SurfaceRow;
 use super::shadow_queue::ShadowQueue;
 use super::surface::{Surface, chord_length, exit_distance};
 use crate::capsules;
+use crate::cones;
 use crate::ellipsoids;
 use crate::film::{Region, View};
 use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
@@ -238,6 +239,7 @@ impl Workspace {
         match world.body(self.hits.sphere[row]) {
             Some(WorldBody::Stick(stick)) => return capsules::exit_distance(&ray, &stick),
             Some(WorldBody::Ellipsoid(body)) => return ellipsoids::exit_distance(&ray, &body),
+            Some(WorldBody::Cone(body)) => return cones::exit_distance(&ray, &body),
             _ => (),
         }
         let (center, radius) = world.spheres.exact(self.hits.sphere[row] as usize);

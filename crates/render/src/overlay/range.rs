@@ -56,7 +56,7 @@ impl RunBounds {
 }
 
 /// Returns the range of distances of all bodies from the camera, in the scene's unit; distances behind
-/// a camera of parallel projection count as 0. Ellipsoids count as spheres that are as wide as the box around them.
+/// a camera of parallel projection count as 0. Ellipsoids and cones count as spheres that are as wide as the box around them.
 pub fn depths(world: &World) -> [f64; 2] {
     let runs = (0..count(world)).into_par_iter();
     clamp_near(runs.map(|run| of_rows(world, rows(world, run))).reduce(|| NONE, union))
@@ -71,7 +71,7 @@ fn count(world: &World) -> usize {
 
 /// Returns the number of bodies, of which each half of a stick is one.
 fn body_count(world: &World) -> usize {
-    world.spheres.len() + 2 * world.sticks.len() + world.ellipsoids.len()
+    world.body_count()
 }
 
 /// Returns a sphere in place of a body, by the number of its hits.
@@ -80,12 +80,16 @@ fn sphere_of(world: &World, hit: usize) -> (DVec3, f64) {
         Some(WorldBody::Stick(stick)) => {
             (stick.ends[(hit - world.spheres.len()) % 2], stick.radius)
         }
-        Some(WorldBody::Ellipsoid(body)) => {
-            let [low, high] = body.extent();
-            (body.center, (high - low).max_element() / 2.0)
-        }
+        Some(WorldBody::Ellipsoid(body)) => around(&body),
+        Some(WorldBody::Cone(body)) => around(&body),
         Some(WorldBody::Sphere(_)) | None => world.spheres.exact(hit),
     }
+}
+
+/// Returns a sphere that is as wide as the box around a body.
+fn around<S: Shape>(body: &S) -> (DVec3, f64) {
+    let [low, high] = body.extent();
+    (low.midpoint(high), (high - low).max_element() / 2.0)
 }
 
 fn rows(world: &World, run: usize) -> Range<usize> {
@@ -132,6 +136,7 @@ mod tests {
         let semi_axes = DVec3::new(3.0, 1.0, 1.0);
         scene.ellipsoids.push(DVec3::X * -20.0, semi_axes, DQuat::IDENTITY, 0, Rgb::ONE);
         scene.sticks.push([DVec3::ZERO, DVec3::Y * 30.0], 0.5, 0, [Rgb::ONE; 2]);
+        scene.cones.push(DVec3::Z * -25.0, DVec3::Z * -20.0, 2.0, 0, Rgb::ONE);
         let mut world = World::build(&scene).unwrap();
         let runs = RunBounds::of(&world);
         for eye in [DVec3::new(30.0, 9.0, 4.0), DVec3::new(1.0, -2.0, 0.5), DVec3::Z * 1e3] {

@@ -24,7 +24,8 @@ pub(crate) fn view(job: &Job, Region { x, y, width, height }: Region) -> View {
     let beam = world.camera.beam(low, high);
     let hit = world.bvh.may_be_hit(&world.spheres, &beam)
         || world.sticks.all.may_be_hit(&beam)
-        || world.ellipsoids.all.may_be_hit(&beam);
+        || world.ellipsoids.all.may_be_hit(&beam)
+        || world.cones.all.may_be_hit(&beam);
     if hit { View::Anything } else { View::Background }
 }
 

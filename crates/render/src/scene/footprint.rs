@@ -34,6 +34,12 @@ const ELLIPSOID: u64 = 96;
 /// color.
 const ELLIPSOID_BUILDING: u64 = 232;
 
+/// A cone in the scene's columns: apex, base, radius, material and color.
+const CONE: u64 = 72;
+
+/// A cone while its tree is built, in addition: as for an ellipsoid.
+const CONE_BUILDING: u64 = 156;
+
 /// A flag, such as for spheres that slices hide from the camera.
 const FLAG: u64 = 1;
 
@@ -70,6 +76,8 @@ pub struct Footprint {
     pub sticks: u64,
     /// Ellipsoids.
     pub ellipsoids: u64,
+    /// Cones.
+    pub cones: u64,
     /// Spheres that the camera sees, if slices hide others.
     pub visible: Option<u64>,
 }
@@ -83,8 +91,13 @@ impl Footprint {
             scene.slices.iter().filter(|slice| slice.mode == SliceMode::Hide).collect();
         let hidden = |row: &usize| hiding.iter().any(|slice| slice.hides(spheres.center(*row)));
         let visible = || (0..spheres.len()).filter(|row| !hidden(row)).count() as u64;
-        let (sticks, ellipsoids) = (scene.sticks.len() as u64, scene.ellipsoids.len() as u64);
-        Self { visible: (!hiding.is_empty()).then(visible), sticks, ellipsoids, ..columns }
+        Self {
+            visible: (!hiding.is_empty()).then(visible),
+            sticks: scene.sticks.len() as u64,
+            ellipsoids: scene.ellipsoids.len() as u64,
+            cones: scene.cones.len() as u64,
+            ..columns
+        }
     }
 
     /// Counts spheres in their columns.
@@ -96,6 +109,7 @@ impl Footprint {
             emitters: emitters(spheres, materials),
             sticks: 0,
             ellipsoids: 0,
+            cones: 0,
             visible: None,
         }
     }
@@ -109,6 +123,7 @@ impl Footprint {
             emitters: self.emitters.saturating_add(other.emitters),
             sticks: self.sticks.saturating_add(other.sticks),
             ellipsoids: self.ellipsoids.saturating_add(other.ellipsoids),
+            cones: self.cones.saturating_add(other.cones),
             visible: None,
         }
     }
@@ -118,8 +133,10 @@ impl Footprint {
         let colors = if self.colors == ColorColumn::None { 0 } else { size_of::<Rgb>() as u64 };
         let each = Spheres::POSITION_BYTES + colors + self.material_bytes();
         let spheres = self.spheres.saturating_mul(each);
-        let others = self.sticks.saturating_mul(STICK);
-        spheres.saturating_add(others).saturating_add(self.ellipsoids.saturating_mul(ELLIPSOID))
+        spheres
+            .saturating_add(self.sticks.saturating_mul(STICK))
+            .saturating_add(self.ellipsoids.saturating_mul(ELLIPSOID))
+            .saturating_add(self.cones.saturating_mul(CONE))
     }
 
     /// Returns the peak memory in bytes of scene and world, while
@@ -151,12 +168,14 @@ impl Footprint {
         let world = self.resident().saturating_add(kept);
         let hiding = world.saturating_add(each(flags)).saturating_add(hiding);
         let lighting = world.saturating_add(self.emitters.saturating_mul(EMITTER));
-        let sticks = if kept > 0 { STICK_BUILDING } else { STICK + STICK_BUILDING };
-        let ellipsoids = if kept > 0 { ELLIPSOID_BUILDING } else { ELLIPSOID + ELLIPSOID_BUILDING };
+        let other = |count: u64, column: u64, building: u64| {
+            count.saturating_mul(if kept > 0 { building } else { column + building })
+        };
         let spheres = encoding.max(placing).max(building).max(hiding).max(lighting);
         spheres
-            .saturating_add(self.sticks.saturating_mul(sticks))
-            .saturating_add(self.ellipsoids.saturating_mul(ellipsoids))
+            .saturating_add(other(self.sticks, STICK, STICK_BUILDING))
+            .saturating_add(other(self.ellipsoids, ELLIPSOID, ELLIPSOID_BUILDING))
+            .saturating_add(other(self.cones, CONE, CONE_BUILDING))
     }
 
     fn material_bytes(&self) -> u64 {
@@ -255,6 +274,7 @@ mod tests {
             emitters: u64::MAX,
             sticks: u64::MAX,
             ellipsoids: u64::MAX,
+            cones: u64::MAX,
             visible: Some(u64::MAX),
         };
         assert_eq!((all.scene(), all.peak(), all.resident()), (u64::MAX, u64::MAX, u64::MAX));

@@ -81,8 +81,8 @@ impl fmt::Display for Identity {
     }
 }
 
-/// Hashes the spheres, and the sticks and ellipsoids if there are any.
-fn bodies(Scene { spheres, sticks, ellipsoids, .. }: &Scene) -> [u8; 32] {
+/// Hashes the spheres, and the sticks, ellipsoids and cones if there are any.
+fn bodies(Scene { spheres, sticks, ellipsoids, cones, .. }: &Scene) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     for column in [&spheres.x, &spheres.y, &spheres.z, &spheres.radius] {
         add(&mut hasher, column, |number| number.to_le_bytes());
@@ -98,6 +98,9 @@ fn bodies(Scene { spheres, sticks, ellipsoids, .. }: &Scene) -> [u8; 32] {
     }
     if !ellipsoids.is_empty() {
         hasher.update(sections::ellipsoids(ellipsoids, |row| row.to_string()).as_bytes());
+    }
+    if !cones.is_empty() {
+        hasher.update(sections::cones(cones, |row| row.to_string()).as_bytes());
     }
     *hasher.finalize().as_bytes()
 }

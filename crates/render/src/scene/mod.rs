@@ -8,6 +8,7 @@
 mod annotations;
 mod axis;
 mod camera;
+mod cones;
 mod ellipsoids;
 pub mod file;
 mod footprint;
@@ -32,6 +33,7 @@ pub use annotations::{
 };
 pub use axis::Axis;
 pub use camera::{Camera, Insets, Lens, Pose, Projection};
+pub use cones::Cones;
 pub use ellipsoids::Ellipsoids;
 pub use file::included_files;
 pub use footprint::{ColorColumn, Footprint};
@@ -58,6 +60,8 @@ pub struct Scene {
     pub sticks: Sticks,
     /// Ellipsoids, in columns. They are numbered after the sticks.
     pub ellipsoids: Ellipsoids,
+    /// Cones, in columns. They are numbered after the ellipsoids.
+    pub cones: Cones,
     /// Materials of spheres and ground; `Spheres::material` and `Ground::material` are rows of it.
     pub materials: Vec<NamedMaterial>,
     /// The infinite ground plane, if there is one.

@@ -87,8 +87,14 @@ impl Scene {
         (0..all.len()).filter(move |&row| !dropped(row))
     }
 
-    /// Returns spheres whose convex hull holds what slices leave: the spheres, those about the ends of sticks, and those around
-    /// ellipsoids.
+    /// Returns the rows of the cones that slices do not remove.
+    pub fn shown_cones(&self) -> impl Iterator<Item = usize> {
+        let dropped = |row| self.slices.iter().any(|slice| slice.drops_cone(&self.cones, row));
+        (0..self.cones.len()).filter(move |&row| !dropped(row))
+    }
+
+    /// Returns spheres whose convex hull holds what slices leave: the spheres, those about the ends of sticks, those around
+    /// ellipsoids, and those about the apexes and bases of cones.
     pub fn framed(&self) -> impl Iterator<Item = (DVec3, f64)> {
         let spheres = self.shown().map(|row| (self.spheres.center(row), self.spheres.radius[row]));
         let ends = self
@@ -97,11 +103,15 @@ impl Scene {
         let around = self
             .shown_ellipsoids()
             .map(|row| (self.ellipsoids.center[row], self.ellipsoids.reach(row)));
-        spheres.chain(ends).chain(around)
+        let cones = self.shown_cones().flat_map(|row| self.cones.hull(row));
+        spheres.chain(ends).chain(around).chain(cones)
     }
 
     /// Returns whether there is no body.
     pub fn is_empty(&self) -> bool {
-        self.spheres.is_empty() && self.sticks.is_empty() && self.ellipsoids.is_empty()
+        self.spheres.is_empty()
+            && self.sticks.is_empty()
+            && self.ellipsoids.is_empty()
+            && self.cones.is_empty()
     }
 }

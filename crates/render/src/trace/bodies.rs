@@ -1,10 +1,11 @@
-//! The bodies that rays may hit: spheres, sticks and ellipsoids.
+//! The bodies that rays may hit: spheres, sticks, ellipsoids and cones.
 
 use super::{Query, Tracer};
 use crate::bodies::{self, BodyTrees};
 use crate::body_rows::{BodyRow, BodyRows};
 use crate::bvh::Tree;
 use crate::capsules::{CapsuleRow, Capsules};
+use crate::cones::Cones;
 use crate::ellipsoids::Ellipsoids;
 use crate::ray::{Hits, Rays};
 use crate::translucency::{OpticalDepth, TranslucentBodies};
@@ -16,13 +17,19 @@ pub(super) struct Bodies<'a> {
     tree: Tree<'a>,
     sticks: &'a Capsules,
     ellipsoids: &'a Ellipsoids,
+    cones: &'a Cones,
 }
 
 impl<'a> Bodies<'a> {
     /// All bodies of a world.
     pub(super) fn all(world: &'a World) -> Self {
         let tree = Tree { bvh: &world.bvh, spheres: &world.spheres };
-        Self { tree, sticks: &world.sticks.all, ellipsoids: &world.ellipsoids.all }
+        Self {
+            tree,
+            sticks: &world.sticks.all,
+            ellipsoids: &world.ellipsoids.all,
+            cones: &world.cones.all,
+        }
     }
 
     /// The bodies that the camera sees.
@@ -30,13 +37,21 @@ impl<'a> Bodies<'a> {
         let visible = world.camera_visible.as_ref();
         let (bvh, spheres) = visible
             .map_or((&world.bvh, &world.spheres), |visible| (&visible.bvh, &visible.spheres));
-        let (sticks, ellipsoids) = (world.sticks.seen(), world.ellipsoids.seen());
-        Self { tree: Tree { bvh, spheres }, sticks, ellipsoids }
+        Self {
+            tree: Tree { bvh, spheres },
+            sticks: world.sticks.seen(),
+            ellipsoids: world.ellipsoids.seen(),
+            cones: world.cones.seen(),
+        }
     }
 
     /// The numbers of hits.
     fn rows(&self) -> BodyRows {
-        BodyRows { spheres: self.tree.spheres.len(), capsules: self.sticks.len() }
+        BodyRows {
+            spheres: self.tree.spheres.len(),
+            capsules: self.sticks.len(),
+            ellipsoids: self.ellipsoids.len(),
+        }
     }
 
     /// Returns the hit in a world of a hit on a body that the camera sees.
@@ -51,6 +66,7 @@ impl<'a> Bodies<'a> {
                 BodyRow::Capsule(CapsuleRow { capsule: world.sticks.row_of_seen(capsule), half })
             }
             BodyRow::Ellipsoid(row) => BodyRow::Ellipsoid(world.ellipsoids.row_of_seen(row)),
+            BodyRow::Cone(row) => BodyRow::Cone(world.cones.row_of_seen(row)),
         };
         world.body_rows().hit(row)
     }
@@ -60,8 +76,8 @@ impl<'a> Bodies<'a> {
         self,
         depth: D,
     ) -> TranslucentBodies<'a, D> {
-        let Self { tree, sticks, ellipsoids } = self;
-        TranslucentBodies { tree, capsules: sticks, ellipsoids, depth }
+        let Self { tree, sticks, ellipsoids, cones } = self;
+        TranslucentBodies { tree, capsules: sticks, ellipsoids, cones, depth }
     }
 
     /// Traces rays with the processor.
@@ -76,11 +92,15 @@ impl<'a> Bodies<'a> {
     /// Traces rays among bodies other than spheres, whose hits are known.
     #[inline(always)]
     pub(super) fn trace_others(self, query: Query, rays: &Rays, hits: &mut Hits) -> u64 {
-        if self.sticks.is_empty() && self.ellipsoids.is_empty() {
+        if self.sticks.is_empty() && self.ellipsoids.is_empty() && self.cones.is_empty() {
             return 0;
         }
-        let ellipsoids = (!self.ellipsoids.is_empty()).then_some(self.ellipsoids);
-        let bodies = BodyTrees { spheres: self.tree.spheres, capsules: self.sticks, ellipsoids };
+        let bodies = BodyTrees {
+            spheres: self.tree.spheres,
+            capsules: self.sticks,
+            ellipsoids: (!self.ellipsoids.is_empty()).then_some(self.ellipsoids),
+            cones: (!self.cones.is_empty()).then_some(self.cones),
+        };
         match query {
             Query::Closest => bodies::closest(bodies, rays, hits),
             Query::Any => bodies::occluded(bodies, rays, hits),
@@ -91,8 +111,11 @@ impl<'a> Bodies<'a> {
     pub(super) fn enclosing(&self, point: glam::Vec3) -> Option<u32> {
         let (tree, exact) = (&self.tree, point.as_dvec3());
         let stick = || Some(self.cap_of_stick(self.sticks.enclosing(exact)?, point));
-        let ellipsoid = || Some(self.cap_of_ellipsoid(self.ellipsoids.enclosing(exact)?));
-        tree.bvh.enclosing_sphere(tree.spheres, point).or_else(stick).or_else(ellipsoid)
+        let cap = |row: BodyRow| self.rows().hit(row);
+        let ellipsoid = || Some(cap(BodyRow::Ellipsoid(self.ellipsoids.enclosing(exact)?)));
+        let cone = || Some(cap(BodyRow::Cone(self.cones.enclosing(exact)?)));
+        let sphere = tree.bvh.enclosing_sphere(tree.spheres, point);
+        sphere.or_else(stick).or_else(ellipsoid).or_else(cone)
     }
 
     /// Returns the hits on the caps of all bodies that contain a point, in their order on the cut: the first is that of
@@ -102,9 +125,12 @@ impl<'a> Bodies<'a> {
         let sticks = self.sticks.all_enclosing(exact);
         let sticks = sticks.into_iter().map(move |capsule| self.cap_of_stick(capsule, point));
         let ellipsoids = self.ellipsoids.all_enclosing(exact);
-        let ellipsoids = ellipsoids.into_iter().map(move |row| self.cap_of_ellipsoid(row));
+        let cones = self.cones.all_enclosing(exact);
+        let rows = ellipsoids.into_iter().map(BodyRow::Ellipsoid);
+        let rows = rows.chain(cones.into_iter().map(BodyRow::Cone));
+        let others = rows.map(move |row| self.rows().hit(row));
         let spheres = tree.bvh.enclosing_spheres(tree.spheres, point);
-        spheres.into_iter().chain(sticks).chain(ellipsoids)
+        spheres.into_iter().chain(sticks).chain(others)
     }
 
     /// The hit on the cap of a stick at a point.
@@ -112,10 +138,5 @@ impl<'a> Bodies<'a> {
         let body = self.sticks.body(capsule);
         let half = usize::from(body.normal(point.as_dvec3() - body.ends[0]).1 > 0.5);
         self.rows().hit(BodyRow::Capsule(CapsuleRow { capsule, half }))
-    }
-
-    /// The hit on the cap of an ellipsoid.
-    fn cap_of_ellipsoid(&self, row: usize) -> u32 {
-        self.rows().hit(BodyRow::Ellipsoid(row))
     }
 }

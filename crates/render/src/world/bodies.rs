@@ -1,4 +1,4 @@
-//! The sticks and ellipsoids of a scene in world space.
+//! The sticks, ellipsoids and cones of a scene in world space.
 
 use super::appearance::{Colors, Column};
 use super::{Appearance, Materials, Transform, World};
@@ -6,6 +6,7 @@ use crate::body_rows::{BodyRow, BodyRows};
 use crate::body_tree::{BodyTree, Shape};
 use crate::bvh::builders::Builder;
 use crate::capsules::{Capsule, CapsuleItem};
+use crate::cones::{Cone, ConeItem};
 use crate::ellipsoids::{Ellipsoid, EllipsoidItem};
 use crate::scene::{Rgb, Scene};
 use crate::shade::{MaterialId, MaterialKind};
@@ -36,6 +37,7 @@ pub(crate) enum WorldBody {
     Sphere(usize),
     Stick(Capsule),
     Ellipsoid(Ellipsoid),
+    Cone(Cone),
 }
 
 impl<S: Shape> Default for WorldBodies<S> {
@@ -110,6 +112,20 @@ pub(super) fn ellipsoids(scene: &Scene, transform: &Transform) -> WorldBodies<El
     WorldBodies::build(&items, ellipsoids.len(), is_hidden)
 }
 
+/// Transforms the cones that slices leave, and builds their tree. Those that are too small for single precision are left out.
+pub(super) fn cones(scene: &Scene, transform: &Transform) -> WorldBodies<Cone> {
+    let cones = &scene.cones;
+    let place = |row: usize| {
+        let [apex, base] =
+            [cones.apex[row], cones.base[row]].map(|point| transform.point(point).as_vec3());
+        let radius = transform.length(cones.radius[row]) as f32;
+        ConeItem::new(apex, base, radius, row as u32).ok()
+    };
+    let items: Vec<_> = scene.shown_cones().filter_map(place).collect();
+    let is_hidden = |row: u32| hides(scene, cones.middle(row as usize));
+    WorldBodies::build(&items, cones.len(), is_hidden)
+}
+
 fn hides(scene: &Scene, middle: DVec3) -> bool {
     scene.slices.iter().any(|slice| slice.hides(middle))
 }
@@ -118,13 +134,22 @@ impl World {
     /// Returns the numbers of hits on bodies.
     #[inline(always)]
     pub(crate) fn body_rows(&self) -> BodyRows {
-        BodyRows { spheres: self.spheres.len(), capsules: self.sticks.len() }
+        BodyRows {
+            spheres: self.spheres.len(),
+            capsules: self.sticks.len(),
+            ellipsoids: self.ellipsoids.len(),
+        }
+    }
+
+    /// Returns the number of hits on bodies, of which each half of a stick is one.
+    pub(crate) fn body_count(&self) -> usize {
+        self.body_rows().hit(BodyRow::Cone(self.cones.len())) as usize
     }
 
     /// Returns whether there are bodies other than spheres.
     #[inline(always)]
     pub fn has_other_bodies(&self) -> bool {
-        !self.sticks.is_empty() || !self.ellipsoids.is_empty()
+        !self.sticks.is_empty() || !self.ellipsoids.is_empty() || !self.cones.is_empty()
     }
 
     /// Returns the body of a hit; `None` for the ground, and for none.
@@ -134,6 +159,7 @@ impl World {
             BodyRow::Sphere(row) => WorldBody::Sphere(row),
             BodyRow::Capsule(row) => WorldBody::Stick(self.sticks.all.body(row.capsule)),
             BodyRow::Ellipsoid(row) => WorldBody::Ellipsoid(self.ellipsoids.all.body(row)),
+            BodyRow::Cone(row) => WorldBody::Cone(self.cones.all.body(row)),
         })
     }
 
@@ -147,49 +173,77 @@ impl World {
 
     /// Returns the number of ellipsoids of a kind of material.
     pub(super) fn ellipsoids_of(&self, kind: MaterialKind) -> u64 {
-        let first = self.body_rows().hit(BodyRow::Ellipsoid(0)) as usize;
+        self.rows_of(kind, BodyRow::Ellipsoid(0), self.ellipsoids.len())
+    }
+
+    /// Returns the number of cones of a kind of material.
+    pub(super) fn cones_of(&self, kind: MaterialKind) -> u64 {
+        self.rows_of(kind, BodyRow::Cone(0), self.cones.len())
+    }
+
+    /// Returns how many of some bodies, from the first one on, have a kind of material.
+    fn rows_of(&self, kind: MaterialKind, first: BodyRow, count: usize) -> u64 {
+        let first = self.body_rows().hit(first) as usize;
         let is_kind = |&row: &usize| self.appearance.material.row(first + row).kind() == kind;
-        (0..self.ellipsoids.len()).filter(is_kind).count() as u64
+        (0..count).filter(is_kind).count() as u64
     }
 }
 
-/// Appends rows for the halves of sticks and for ellipsoids to the appearance of `spheres` spheres.
-pub(super) fn append_appearance(
-    appearance: &mut Appearance,
-    scene: &Scene,
-    materials: &Materials,
-    (sticks, ellipsoids): (&BodyTree<Capsule>, &BodyTree<Ellipsoid>),
-    spheres: usize,
-) {
-    let rows = || {
-        let halves = sticks.ids().iter().flat_map(|&id| {
-            let (material, colors) =
-                (scene.sticks.material[id as usize], scene.sticks.colors[id as usize]);
-            colors.map(|color| (materials.id(material), color))
-        });
-        let whole = ellipsoids.ids().iter().map(|&id| {
+/// All bodies that are no spheres.
+pub(super) struct OtherBodies<'a> {
+    pub(super) sticks: &'a WorldBodies<Capsule>,
+    pub(super) ellipsoids: &'a WorldBodies<Ellipsoid>,
+    pub(super) cones: &'a WorldBodies<Cone>,
+}
+
+impl OtherBodies<'_> {
+    /// Returns the material and the color of each hit: of the halves of sticks, then of ellipsoids, then of cones.
+    fn appearances(
+        &self,
+        scene: &Scene,
+        materials: &Materials,
+    ) -> impl Iterator<Item = (MaterialId, Rgb)> {
+        let Scene { sticks, ellipsoids, cones, .. } = scene;
+        let halves = self.sticks.all.ids().iter().flat_map(|&id| {
             let row = id as usize;
-            (materials.id(scene.ellipsoids.material[row]), scene.ellipsoids.color[row])
+            sticks.colors[row].map(|color| (sticks.material[row], color))
         });
-        halves.chain(whole)
-    };
-    let Some((first, _)): Option<(MaterialId, Rgb)> = rows().next() else { return };
-    let uniform = match &appearance.material {
-        Column::Uniform(id) => spheres == 0 || *id == first,
-        Column::Rows(rows) => rows.is_empty(),
-    };
-    appearance.material = if uniform && rows().all(|(id, _)| id == first) {
-        Column::Uniform(first)
-    } else {
-        let own = (0..spheres).map(|row| appearance.material.row(row));
-        Column::Rows(own.chain(rows().map(|(id, _)| id)).collect())
-    };
-    if appearance.color.is_some() || !rows().all(|(_, color)| color == Rgb::ONE) {
-        let own = (0..spheres).map(|row| match &appearance.color {
-            Some(colors) => colors.row(row),
-            None => Rgb::ONE,
-        });
-        let all: Vec<Rgb> = own.chain(rows().map(|(_, color)| color)).collect();
-        appearance.color = Some(Colors::new(Cow::Owned(all)));
+        let of_ellipsoids = self.ellipsoids.all.ids().iter();
+        let of_ellipsoids = of_ellipsoids
+            .map(|&id| (ellipsoids.material[id as usize], ellipsoids.color[id as usize]));
+        let of_cones = self.cones.all.ids().iter();
+        let of_cones = of_cones.map(|&id| (cones.material[id as usize], cones.color[id as usize]));
+        let all = halves.chain(of_ellipsoids).chain(of_cones);
+        all.map(|(material, color)| (materials.id(material), color))
+    }
+
+    /// Appends rows for these bodies to the appearance of `spheres` spheres.
+    pub(super) fn append_appearance(
+        &self,
+        appearance: &mut Appearance,
+        scene: &Scene,
+        materials: &Materials,
+        spheres: usize,
+    ) {
+        let rows = || self.appearances(scene, materials);
+        let Some((first, _)) = rows().next() else { return };
+        let uniform = match &appearance.material {
+            Column::Uniform(id) => spheres == 0 || *id == first,
+            Column::Rows(rows) => rows.is_empty(),
+        };
+        appearance.material = if uniform && rows().all(|(id, _)| id == first) {
+            Column::Uniform(first)
+        } else {
+            let own = (0..spheres).map(|row| appearance.material.row(row));
+            Column::Rows(own.chain(rows().map(|(id, _)| id)).collect())
+        };
+        if appearance.color.is_some() || !rows().all(|(_, color)| color == Rgb::ONE) {
+            let own = (0..spheres).map(|row| match &appearance.color {
+                Some(colors) => colors.row(row),
+                None => Rgb::ONE,
+            });
+            let all: Vec<Rgb> = own.chain(rows().map(|(_, color)| color)).collect();
+            appearance.color = Some(Colors::new(Cow::Owned(all)));
+        }
     }
 }

@@ -19,6 +19,8 @@ pub struct Features {
     pub sticks_by_kind: [u64; MaterialKind::COUNT],
     /// Ellipsoids of each kind of material, likewise.
     pub ellipsoids_by_kind: [u64; MaterialKind::COUNT],
+    /// Cones of each kind of material, likewise.
+    pub cones_by_kind: [u64; MaterialKind::COUNT],
     /// Spheres too small for single precision relative to the largest coordinate, omitted.
     pub vanished: u64,
     /// Spheres that coincide with an earlier one, among many about one center, omitted.
@@ -61,6 +63,7 @@ impl Features {
             spheres_by_kind,
             sticks_by_kind: MaterialKind::ALL.map(|kind| world.sticks_of(kind)),
             ellipsoids_by_kind: MaterialKind::ALL.map(|kind| world.ellipsoids_of(kind)),
+            cones_by_kind: MaterialKind::ALL.map(|kind| world.cones_of(kind)),
             vanished: omitted.vanished,
             cut_away: omitted.cut_away,
             cuts: world.cut.len() as u64,
@@ -95,8 +98,18 @@ impl Features {
 
     /// Returns the number of bodies with this kind of material.
     pub fn bodies_of(&self, kind: MaterialKind) -> u64 {
-        let columns = [&self.spheres_by_kind, &self.sticks_by_kind, &self.ellipsoids_by_kind];
-        columns.map(|column| column[kind as usize]).iter().sum()
+        self.counts_of(kind).iter().sum()
+    }
+
+    /// Returns the numbers of spheres, sticks, ellipsoids and cones with this kind of material.
+    pub fn counts_of(&self, kind: MaterialKind) -> [u64; 4] {
+        let columns = [
+            &self.spheres_by_kind,
+            &self.sticks_by_kind,
+            &self.ellipsoids_by_kind,
+            &self.cones_by_kind,
+        ];
+        columns.map(|column| column[kind as usize])
     }
 
     /// Returns whether anything has this kind of material.

@@ -7,9 +7,9 @@ use crate::image::Image;
 use crate::memory;
 use crate::scene::particles::Cell;
 use crate::scene::{
-    self, BRIGHTEST, Background, Camera, ConductorFresnel, Ellipsoids, Environment, EnvironmentMap,
-    Ground, Lens, Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Slice,
-    Sticks, is_radiance,
+    self, BRIGHTEST, Background, Camera, ConductorFresnel, Cones, Ellipsoids, Environment,
+    EnvironmentMap, Ground, Lens, Light, Look, Material, NamedMaterial, Pose, Projection, Rgb,
+    Scene, Slice, Sticks, is_radiance,
 };
 use glam::DVec3;
 
@@ -32,6 +32,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), WorldError> {
     look(&scene.look)?;
     sticks(&scene.sticks, scene.spheres.len(), &scene.materials)?;
     ellipsoids(scene)?;
+    cones(scene)?;
     let invalid = scene.spheres.color.iter().position(|&color| !is_fraction(color));
     invalid.map_or(Ok(()), |row| {
         let color = scene.spheres.color[row];
@@ -311,6 +312,41 @@ fn ellipsoids(scene: &Scene) -> Result<(), WorldError> {
         })?;
         require(is_solid(&scene.materials, material[row]), || {
             format!("ellipsoid {row} must have a material, which cannot be glass or an emitter")
+        })?;
+    }
+    Ok(())
+}
+
+/// Checks columns of cones.
+fn cones(scene: &Scene) -> Result<(), WorldError> {
+    let Cones { apex, base, radius, material, color } = &scene.cones;
+    let n = radius.len();
+    require([apex.len(), base.len(), material.len(), color.len()] == [n; 4], || {
+        format!("the columns of the cones differ in length from `radius`, {n}")
+    })?;
+    let others = scene.spheres.len() + 2 * scene.sticks.len() + scene.ellipsoids.len();
+    let most = Cones::MAX.min((scene::Spheres::MAX as usize).saturating_sub(others));
+    require(n <= most, || {
+        format!("too many cones: {n}, but at most {most} fit; render a part of them")
+    })?;
+    for row in 0..n {
+        require(apex[row].is_finite() && base[row].is_finite(), || {
+            format!("the apex and the base of cone {row} must be finite")
+        })?;
+        more_than_0(&format!("the radius of cone {row}"), radius[row])?;
+        let ratio = scene.cones.ratio(row);
+        require(ratio <= Cones::MAX_RATIO, || {
+            let most = Cones::MAX_RATIO;
+            format!(
+                "of the height and the radius of cone {row} one is {ratio} times the other, but at most {most} fit"
+            )
+        })?;
+        require(is_fraction(color[row]), || {
+            let color = color[row];
+            format!("the color of cone {row} is {color}, but must be 0 to 1 in each channel")
+        })?;
+        require(is_solid(&scene.materials, material[row]), || {
+            format!("cone {row} must have a material, which cannot be glass or an emitter")
         })?;
     }
     Ok(())

@@ -58,6 +58,7 @@ use crate::body_rows::BodyRow;
 use crate::bvh::builders::Builder;
 use crate::bvh::{Bvh, DeviceTracer};
 use crate::capsules::Capsule;
+use crate::cones::Cone;
 use crate::ellipsoids::Ellipsoid;
 use crate::memory::Shortage;
 use crate::ray::{GROUND, MISS};
@@ -95,8 +96,13 @@ pub struct World {
     /// Ellipsoids, which have rows after those.
     #[doc(hidden)]
     pub ellipsoids: WorldBodies<Ellipsoid>,
+    /// Cones, which have rows after those.
+    #[doc(hidden)]
+    pub cones: WorldBodies<Cone>,
     /// Number of sticks of the scene, those that slices remove included.
     scene_sticks: u32,
+    /// Number of ellipsoids of the scene, likewise.
+    scene_ellipsoids: u32,
     /// Planes at which spheres are cut.
     #[doc(hidden)]
     pub cut: Cut,
@@ -248,9 +254,11 @@ impl World {
         let materials = Materials::build(&scene.materials);
         let sticks = bodies::sticks(scene, &transform);
         let ellipsoids = bodies::ellipsoids(scene, &transform);
+        let cones = bodies::cones(scene, &transform);
         let count = spheres.len();
-        let others = (&sticks.all, &ellipsoids.all);
-        bodies::append_appearance(&mut appearance, scene, &materials, others, count);
+        let others =
+            bodies::OtherBodies { sticks: &sticks, ellipsoids: &ellipsoids, cones: &cones };
+        others.append_appearance(&mut appearance, scene, &materials, count);
         let cut = Cut::build(&scene.slices, &transform);
         let camera = Camera::build(scene, &placement, &transform);
         let environment = Environment::build(&scene.environment, &scene.look);
@@ -271,7 +279,9 @@ impl World {
             bvh,
             sticks,
             ellipsoids,
+            cones,
             scene_sticks: scene.sticks.len() as u32,
+            scene_ellipsoids: scene.ellipsoids.len() as u32,
             cut,
             camera_visible,
             coincident: Vec::new(),
@@ -300,6 +310,7 @@ impl World {
         self.camera_visible.is_some()
             || self.sticks.visible.is_some()
             || self.ellipsoids.visible.is_some()
+            || self.cones.visible.is_some()
             || !self.cut.is_empty()
     }
 
@@ -341,7 +352,9 @@ impl World {
             bvh: Bvh::default(),
             sticks: WorldBodies::default(),
             ellipsoids: WorldBodies::default(),
+            cones: WorldBodies::default(),
             scene_sticks: 0,
+            scene_ellipsoids: 0,
             cut: Cut::default(),
             camera_visible: None,
             coincident: Vec::new(),
@@ -394,7 +407,7 @@ impl World {
         !self.caustic_casters.is_empty() || (mirrors && self.lights.samples_mirrored_light())
     }
 
-    /// Returns the number of what is hit: of spheres, after them sticks, and after these ellipsoids, in the scene's order; other
+    /// Returns the number of what is hit: of spheres, after them sticks, then ellipsoids, then cones, in the scene's order; other
     /// hits are unchanged.
     pub(crate) fn id_of(&self, hit: u32) -> u32 {
         let given = self.omitted();
@@ -404,6 +417,10 @@ impl World {
             Some(BodyRow::Capsule(row)) => spheres as u32 + self.sticks.all.ids()[row.capsule],
             Some(BodyRow::Ellipsoid(row)) => {
                 spheres as u32 + self.scene_sticks + self.ellipsoids.all.ids()[row]
+            }
+            Some(BodyRow::Cone(row)) => {
+                let before = spheres as u32 + self.scene_sticks + self.scene_ellipsoids;
+                before + self.cones.all.ids()[row]
             }
             None => hit,
         }
@@ -420,6 +437,7 @@ impl World {
                     stick.normal(point.as_dvec3() - stick.ends[0]).0.as_vec3()
                 }
                 WorldBody::Ellipsoid(body) => body.normal(point.as_dvec3() - body.center).as_vec3(),
+                WorldBody::Cone(body) => body.normal(point.as_dvec3() - body.apex).as_vec3(),
             }),
         }
     }

@@ -34,7 +34,7 @@ pub struct Transform {
 impl Transform {
     /// Of a scene, with all its spheres.
     pub(super) fn of(scene: &Scene, camera: &Placement) -> Self {
-        let Scene { spheres, sticks, ellipsoids, .. } = scene;
+        let Scene { spheres, sticks, ellipsoids, cones, .. } = scene;
         let shift = if !spheres.is_empty() {
             middle(spheres)
         } else if !sticks.is_empty() {
@@ -42,6 +42,8 @@ impl Transform {
         } else if !ellipsoids.is_empty() {
             let reach: Vec<f64> = (0..ellipsoids.len()).map(|row| ellipsoids.reach(row)).collect();
             middle(&at_points(&ellipsoids.center, &reach))
+        } else if !cones.is_empty() {
+            middle(&at_points(&cones.base, &cones.radius))
         } else {
             DVec3::ZERO
         };
@@ -55,6 +57,10 @@ impl Transform {
             ends.zip(radii).map(|(&end, &radius)| reach_of(end, radius)).fold(reach, f64::max);
         let reach = (0..ellipsoids.len())
             .map(|row| reach_of(ellipsoids.center[row], ellipsoids.reach(row)))
+            .fold(reach, f64::max);
+        let reach = (0..cones.len())
+            .flat_map(|row| cones.hull(row))
+            .map(|(center, radius)| reach_of(center, radius))
             .fold(reach, f64::max);
         Self { shift, scale: 1.0, reach }.with_camera(camera)
     }

@@ -59,23 +59,25 @@ impl World {
         }
     }
 
-    /// Returns whether an end of a stick, or the surroundings of an ellipsoid, are in a region of the picture.
+    /// Returns whether an end of a stick, or the surroundings of an ellipsoid or a cone, are in a region of the picture.
     fn other_bodies_in_view(&self, region: Region) -> bool {
         let low = DVec2::new(f64::from(region.x), f64::from(region.y));
         let high = low + DVec2::new(f64::from(region.width), f64::from(region.height));
         let in_view = |sphere| self.camera.coverage(sphere, low, high) > 0.0;
-        let (sticks, ellipsoids) = (self.sticks.seen(), self.ellipsoids.seen());
+        let sticks = self.sticks.seen();
         let stick_in_view = |row: usize| {
             let stick = sticks.body(row);
             stick.ends.iter().any(|&end| in_view((end, stick.radius)))
         };
-        let ellipsoid_in_view = |row: usize| {
-            let body = ellipsoids.body(row);
-            let [least, most] = body.extent();
-            in_view((body.center, (most - least).max_element() / 2.0))
+        let box_in_view = |[least, most]: [glam::DVec3; 2]| {
+            in_view((least.midpoint(most), (most - least).max_element() / 2.0))
         };
+        let (ellipsoids, cones) = (self.ellipsoids.seen(), self.cones.seen());
+        let ellipsoid_in_view = |row: usize| box_in_view(ellipsoids.body(row).extent());
+        let cone_in_view = |row: usize| box_in_view(cones.body(row).extent());
         (0..sticks.len()).into_par_iter().any(stick_in_view)
             || (0..ellipsoids.len()).into_par_iter().any(ellipsoid_in_view)
+            || (0..cones.len()).into_par_iter().any(cone_in_view)
     }
 
     /// Returns the number of spheres whose centers are outside of the picture.

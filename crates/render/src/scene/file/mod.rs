@@ -7,6 +7,7 @@
 mod annotations;
 mod block;
 mod camera;
+mod cones;
 mod ellipsoids;
 mod environment;
 mod lights;
@@ -209,6 +210,7 @@ fn read(source: &Source, root: &Block) -> Result<Scene, FileError> {
     spheres::read(source, root, (&mut scene, &mut materials))?;
     sticks::read(root, (&mut scene.sticks, &mut materials))?;
     ellipsoids::read(root, (&mut scene.ellipsoids, &mut materials))?;
+    cones::read(root, (&mut scene.cones, &mut materials))?;
     scene.ground = materials::read_ground(root, &mut materials)?;
     scene.materials = materials.into_rows();
     let environment = root.block("environment", &schema::ENVIRONMENT)?;

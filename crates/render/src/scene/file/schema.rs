@@ -54,6 +54,7 @@ pub(super) const ROOT: Schema = plain(
         ("sphere", &[]),
         ("stick", &[]),
         ("ellipsoid", &[]),
+        ("cone", &[]),
         ("generate", &[]),
         ("file", &[]),
     ],
@@ -224,6 +225,11 @@ pub(super) const ELLIPSOID: Schema = plain(
     &[("center", &[]), ("semi_axes", &[]), ("orientation", &[]), ("material", &[]), ("color", &[])],
 );
 
+pub(super) const CONE: Schema = plain(
+    "[[cone]]",
+    &[("apex", &[]), ("base", &[]), ("radius", &[]), ("material", &[]), ("color", &[])],
+);
+
 pub(super) const GENERATE: Schema = Schema {
     section: "[[generate]]",
     selector: "kind",
@@ -259,7 +265,7 @@ pub(super) const FILE: Schema = plain(
 mod tests {
     use super::*;
 
-    const ALL: [&Schema; 20] = [
+    const ALL: [&Schema; 21] = [
         &ROOT,
         &RENDER,
         &CAMERA,
@@ -278,6 +284,7 @@ mod tests {
         &SPHERE,
         &STICK,
         &ELLIPSOID,
+        &CONE,
         &GENERATE,
         &FILE,
     ];

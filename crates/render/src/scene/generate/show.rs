@@ -2,8 +2,8 @@
 
 use super::{Field, Group};
 use crate::scene::{
-    Annotations, Camera, Ellipsoids, Environment, EnvironmentMap, Ground, Insets, Lens, Light,
-    Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Sticks, Tone,
+    Annotations, Camera, Cones, Ellipsoids, Environment, EnvironmentMap, Ground, Insets, Lens,
+    Light, Look, Material, NamedMaterial, Pose, Projection, Rgb, Scene, Settings, Sticks, Tone,
 };
 use glam::DVec3;
 
@@ -28,6 +28,7 @@ pub fn default_scene(seed: u64) -> Scene {
         spheres,
         sticks: Sticks::default(),
         ellipsoids: Ellipsoids::default(),
+        cones: Cones::default(),
         materials,
         ground: Some(ground),
         slices: Vec::new(),

@@ -75,7 +75,7 @@ impl Scene {
         self.slices.iter().any(|slice| slice.drops(center, radius))
     }
 
-    /// Returns the normals of the slices that cut or remove any sphere or ellipsoid, toward what is cut away.
+    /// Returns the normals of the slices that cut or remove any sphere, ellipsoid or cone, toward what is cut away.
     pub fn cut_normals(&self) -> Vec<DVec3> {
         let cuts = |slice: &&Slice| {
             let spheres = &self.spheres;
@@ -90,14 +90,21 @@ impl Scene {
                 SliceMode::Remove | SliceMode::Hide => 0.0,
             };
             let cut_other = |row: usize| slice.depth(others.center[row]) + extent(row) > 0.0;
-            (0..spheres.len()).any(cut) || (0..others.len()).any(cut_other)
+            let cones = &self.cones;
+            let cut_cone = |row: usize| match slice.mode {
+                SliceMode::Caps => cones.range(row, slice.normal)[1] > slice.distance,
+                SliceMode::Remove | SliceMode::Hide => slice.depth(cones.middle(row)) > 0.0,
+            };
+            (0..spheres.len()).any(cut)
+                || (0..others.len()).any(cut_other)
+                || (0..cones.len()).any(cut_cone)
         };
         self.slices.iter().filter(cuts).map(|slice| slice.normal).collect()
     }
 
-    /// The box of all spheres and ellipsoids: lower and upper corner; `None` if there are none.
+    /// The box of all spheres, ellipsoids and cones: lower and upper corner; `None` if there are none.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let Self { spheres, ellipsoids, .. } = self;
+        let Self { spheres, ellipsoids, cones, .. } = self;
         let own =
             (0..spheres.len()).map(|row| (spheres.center(row), DVec3::splat(spheres.radius[row])));
         let others = (0..ellipsoids.len()).map(|row| {
@@ -105,7 +112,13 @@ impl Scene {
             (ellipsoids.center[row], DVec3::from(extent))
         });
         let boxes = own.chain(others).map(|(center, extent)| [center - extent, center + extent]);
-        boxes.reduce(|[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
+        let of_cones = (0..cones.len()).map(|row| {
+            let ranges = DVec3::AXES.map(|axis| cones.range(row, axis));
+            [0, 1].map(|end| DVec3::from(ranges.map(|range| range[end])))
+        });
+        boxes
+            .chain(of_cones)
+            .reduce(|[low, high], [lower, upper]| [low.min(lower), high.max(upper)])
     }
 
     /// Drops the spheres that the slices remove, so that their memory is freed and cameras frame the
@@ -156,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_include_radii_and_ellipsoids() {
+    fn bounds_include_radii_ellipsoids_and_cones() {
         let mut own = scene(SliceMode::Remove);
         let all = own.bounds();
         assert_eq!(all, Some([DVec3::new(-3.0, -1.0, -1.0), DVec3::new(4.0, 1.0, 1.0)]));
@@ -164,6 +177,9 @@ mod tests {
         own.ellipsoids.push(DVec3::Y, semi_axes, DQuat::IDENTITY, 0, Rgb::ONE);
         let all = own.bounds();
         assert_eq!(all, Some([DVec3::new(-3.0, -1.0, -1.0), DVec3::new(4.0, 2.5, 1.0)]));
+        own.cones.push(DVec3::Y * -3.0, DVec3::Y * -2.0, 4.0, 0, Rgb::ONE);
+        let all = own.bounds();
+        assert_eq!(all, Some([DVec3::new(-4.0, -3.0, -4.0), DVec3::new(4.0, 2.5, 4.0)]));
         assert_eq!(Scene::default().bounds(), None);
     }
 }

@@ -113,6 +113,7 @@ fn check(scene: &Scene) -> Result<(), String> {
     let used = used.chain(scene.ground.iter().map(|ground| ground.material));
     let used = used.chain(scene.sticks.material.iter().copied());
     let used = used.chain(scene.ellipsoids.material.iter().copied());
+    let used = used.chain(scene.cones.material.iter().copied());
     match used.max() {
         Some(row) if row as usize >= scene.materials.len() => {
             Err(format!("row {row} of the materials is used, but not there"))
@@ -163,6 +164,7 @@ fn document(scene: &Scene, header: &Header, sky: &str) -> String {
     let name = |row: u32| quoted(&scene.materials[row as usize].name);
     text += &sections::sticks(&scene.sticks, name);
     text += &sections::ellipsoids(&scene.ellipsoids, name);
+    text += &sections::cones(&scene.cones, name);
     text
 }
 

@@ -2,7 +2,7 @@
 
 use crate::color::{Scale, Spacing};
 use crate::scene::{
-    Annotations, AxisTripod, Background, Camera, ColorBar, ColorLegend, ConductorFresnel,
+    Annotations, AxisTripod, Background, Camera, ColorBar, ColorLegend, ConductorFresnel, Cones,
     Ellipsoids, Environment, EnvironmentMap, Insets, Label, Lens, Lettering, Light, Look, Material,
     Pose, Projection, Rgb, ScaleBar, Slice, Sticks,
 };
@@ -268,6 +268,22 @@ pub(in crate::scene) fn ellipsoids(
             text,
             "[[ellipsoid]]\ncenter = {center}\nsemi_axes = {semi_axes}\n\
              orientation = [{w:?}, {x:?}, {y:?}, {z:?}]\nmaterial = {material}\ncolor = {color}\n\n"
+        );
+    }
+    text
+}
+
+/// The sections of the cones, likewise.
+pub(in crate::scene) fn cones(cones: &Cones, material: impl Fn(u32) -> String) -> String {
+    let mut text = String::new();
+    for row in 0..cones.len() {
+        let [apex, base] = [cones.apex[row], cones.base[row]].map(vector);
+        let (color, material) = (rgb(cones.color[row]), material(cones.material[row]));
+        let radius = cones.radius[row];
+        let _ = write!(
+            text,
+            "[[cone]]\napex = {apex}\nbase = {base}\nradius = {radius:?}\nmaterial = {material}\n\
+             color = {color}\n\n"
         );
     }
     text
