@@ -116,9 +116,10 @@ pub mod scene {
     pub mod particles {
         #[doc(inline)]
         pub use spherule_render::scene::particles::{
-            BondRules, BondSource, Bonds, Cell, Coloring, ColumnColors, ElementColors, Legend,
-            Model, Opacity, Orientation, ParticleStyle, Particles, PeriodicError, Selection,
-            Shapes, Trails, TypeMaterial, TypeStyle, UpReason, of_frame, read,
+            ArrowCentering, ArrowSizes, ArrowStyle, Arrows, BondRules, BondSource, Bonds, Cell,
+            Coloring, ColumnColors, ElementColors, Legend, Model, Opacity, Orientation,
+            ParticleStyle, Particles, PeriodicError, Selection, Shapes, Trails, TypeMaterial,
+            TypeStyle, UpReason, VectorColumns, of_frame, read,
         };
     }
 }

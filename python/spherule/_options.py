@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from ._native import Stop
     from .sections import (
+        ArrowCenter,
         Color,
         ColorBar,
         ColorMap,
@@ -55,6 +56,11 @@ if TYPE_CHECKING:
         bond_radius: float
         opacity: float | str
         translucent: str
+        arrows: Any
+        arrow_scale: float
+        arrow_radius: float
+        arrow_color: Color
+        arrow_center: ArrowCenter
         types: Mapping[str, TypeStyle]
         preset: Preset
         background: Color
@@ -85,7 +91,7 @@ PARTICLES = frozenset("radius semi_axes orientation color kinds materials column
 #: Arguments that say how particles are drawn.
 STYLE = frozenset(
     "values radius_scale select colors color_by color_map color_range color_log color_bar label_of_values types model "
-    "bonds bond_radius opacity translucent preset background view up wrap replicate show_cell slices slice_mode".split()
+    "bonds bond_radius opacity translucent arrows arrow_scale arrow_radius arrow_color arrow_center preset background view up wrap replicate show_cell slices slice_mode".split()
 )
 
 #: Sections of scene files; the color bar is one, too, if it is a dict.

@@ -49,6 +49,10 @@ class Scene:
             ``bond_radius`` is the radius of their sticks.
         opacity: A number from 0 to 1, or the name of a column whose numbers it is, perhaps with those that become 0 and
             1, as in ``"charge:-1,1"``: what is behind is seen without refraction.
+        arrows: Vectors to draw: (n, 3) numbers; ``"velocity"``, ``"force"``, ``"dipole"`` or ``"spin"``; three names of
+            columns, or what these have in common before x, y and z. ``arrow_scale`` is the length for a vector of
+            length 1, ``arrow_radius`` that of shafts, ``arrow_color`` a color for all, and ``arrow_center`` the part
+            at the particle: ``"tail"``, ``"middle"`` or ``"head"``.
         translucent: Draw only particles for which this is true with ``opacity`` (0.2 if that is not given).
         select: Draw only particles for which this is true, as in ``"element != H and z > 10"``.
         radius_scale: A factor on all radii.
@@ -280,6 +284,15 @@ def _columns(particles: Any, given: dict[str, Any], sections: Mapping[str, Any])
         # By this name they are found before any other column.
         table["numbers"] = [(name, column), *(own for own in table["numbers"] if own[0] != name)]
         given["color_by"] = name
+    arrows = given.get("arrows")
+    if arrows is not None and not isinstance(arrows, str) and np.ndim(arrows) > 1:
+        vectors = _arrays.table("arrows", arrows)
+        if vectors.shape[0] != count:
+            raise Error(f"`arrows` has the shape {vectors.shape}, but must have ({count}, 3)")
+        own_names = [f"arrows_{axis}" for axis in "xyz"]
+        columns = [(name, np.ascontiguousarray(vectors[:, axis])) for axis, name in enumerate(own_names)]
+        table["numbers"] = [*columns, *(own for own in table["numbers"] if own[0] not in own_names)]
+        given["arrows"] = own_names
     return table
 
 
@@ -329,9 +342,27 @@ def _style(given: Mapping[str, Any]) -> dict[str, Any]:
     if not (through is None or isinstance(through, str)):
         through = repr(_values.number("opacity", through))
     style["opacity"] = through
+    style.update(_arrows(given))
     style["bond_radius"] = _optional(given, "bond_radius", _values.number)
     color_log = _values.flag("color_log", given.get("color_log", False))
     return {**style, "color_range": ends, "color_log": color_log, "types": types}
+
+
+def _arrows(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of arrows."""
+    columns = given.get("arrows")
+    if columns is not None and not isinstance(columns, str):
+        columns = ",".join(_values.items("arrows", columns, _values.text, 3))
+    chosen: dict[str, Any] = {name: _optional(given, name, _values.number) for name in ("arrow_scale", "arrow_radius")}
+    chosen["arrow_center"] = _optional(given, "arrow_center", _values.text)
+    color = given.get("arrow_color")
+    if color is not None:
+        color = tuple(float(value) for value in _arrays.colors("arrow_color", color, 1)[0])
+    chosen["arrow_color"] = color
+    for name, value in chosen.items():
+        if columns is None and value is not None:
+            raise Error(f"`{name}` needs `arrows`")
+    return {"arrows": columns, **chosen}
 
 
 def _optional(given: Mapping[str, Any], name: str, check: Callable[[str, Any], Any]) -> Any:

@@ -22,6 +22,7 @@ Model = Literal["space-filling", "ball-and-stick", "licorice"]
 Preset = Literal["figure", "chalk", "studio", "cloudy", "glossy", "depthcue", "outline", "ghost", "x-ray"]
 Side = Literal["auto", "iso", "x", "y", "z", "-x", "-y", "-z"]
 UpAxis = Literal["x", "y", "z", "-x", "-y", "-z"]
+ArrowCenter = Literal["tail", "middle", "head"]
 SliceMode = Literal["remove", "caps", "hide"]
 
 

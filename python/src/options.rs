@@ -11,8 +11,8 @@ use spherule::particles::{
     Radii, ReadOptions, TextColumn,
 };
 use spherule::scene::particles::{
-    BondSource, Coloring, ColumnColors, ElementColors, Model, Opacity, ParticleStyle, Selection,
-    TypeMaterial, TypeStyle,
+    ArrowCentering, ArrowStyle, BondSource, Coloring, ColumnColors, ElementColors, Model, Opacity,
+    ParticleStyle, Selection, TypeMaterial, TypeStyle,
 };
 use std::str::FromStr;
 
@@ -73,6 +73,11 @@ pub(crate) struct StyleTable {
     bond_radius: Option<f64>,
     opacity: Option<String>,
     translucent: Option<String>,
+    arrows: Option<String>,
+    arrow_scale: Option<f64>,
+    arrow_radius: Option<f64>,
+    arrow_color: Option<[f32; 3]>,
+    arrow_center: Option<String>,
     types: Vec<TypeTuple>,
 }
 
@@ -172,6 +177,7 @@ impl StyleTable {
         let translucent = selection(self.translucent.as_deref())?;
         let opacity = self.opacity.as_deref().map(Opacity::from_str).transpose();
         let opacity = opacity.map_err(|why| fault(format!("`opacity`: {why}")))?;
+        let arrows = self.arrows().map_err(fault)?;
         let coloring = match (self.color_by, self.colors.as_deref()) {
             (Some(column), _) => {
                 let (map, reversed) = match self.color_map.as_deref() {
@@ -228,9 +234,36 @@ impl StyleTable {
             bond_radius,
             opacity,
             translucent,
+            arrows,
             types,
             ..ParticleStyle::default()
         })
+    }
+}
+
+impl StyleTable {
+    /// The arrows that are asked for.
+    fn arrows(&self) -> Result<Option<ArrowStyle>, String> {
+        let Some(columns) = &self.arrows else { return Ok(None) };
+        for (name, size) in [("arrow_scale", self.arrow_scale), ("arrow_radius", self.arrow_radius)]
+        {
+            if let Some(size) = size.filter(|size| !(*size > 0.0 && size.is_finite())) {
+                return Err(format!("`{name}` is {size}, but must be more than 0"));
+            }
+        }
+        let centering = self.arrow_center.as_deref().map(|name| {
+            let found = ArrowCentering::ALL.iter().find(|(own, _)| *own == name);
+            let names = ArrowCentering::ALL.map(|(name, _)| name).join(", ");
+            let fault = || format!("`arrow_center` is \"{name}\", but must be one of {names}");
+            found.map(|(_, own)| *own).ok_or_else(fault)
+        });
+        Ok(Some(ArrowStyle {
+            columns: columns.parse()?,
+            scale: self.arrow_scale,
+            radius: self.arrow_radius,
+            color: self.arrow_color.map(Rgb::from),
+            centering: centering.transpose()?.unwrap_or_default(),
+        }))
     }
 }
 

@@ -331,3 +331,46 @@ def test_rows_that_are_not_drawn_keep_the_numbers_of_others(folder):
         picture = spherule.render(folder / "zero.csv", layers="id", size=(60, 40), spp=1)
     ids = picture.layers["id"]
     assert set(np.unique(ids[ids < spherule.GROUND]).tolist()) == {1}
+
+
+def test_vectors_are_drawn_as_arrows(program, tmp_path):
+    positions = np.array([[0, 0, 0], [3, 0, 0], [6, 0, 0.0]])
+    vectors = np.array([[0, 2, 0], [0, 0, 0], [0, 4, 0]], np.float32)
+    options = dict(size=(60, 50), spp=4, view="z", radius=0.5)
+    plain = spherule.render(positions, **options)
+    columns = dict(zip(("vx", "vy", "vz"), vectors.T))
+    pictures = [
+        spherule.render(positions, arrows=vectors, **options),
+        spherule.render(positions, arrows=tuple(vectors.T), **options),
+        spherule.render(positions, arrows="velocity", columns=columns, **options),
+        spherule.render(positions, arrows=("vx", "vy", "vz"), columns=columns, arrow_center="tail", **options),
+    ]
+    for picture in pictures:
+        assert np.array_equal(picture.pixels, pictures[0].pixels)
+    assert not np.array_equal(plain.pixels, pictures[0].pixels)
+    rows = ["x,y,z,radius,vx,vy,vz", *(",".join(map(str, (*p, 0.5, *v))) for p, v in zip(positions, vectors))]
+    (tmp_path / "a.csv").write_text("\n".join(rows) + "\n")
+    same_as_the_program(
+        program,
+        tmp_path / "a.csv",
+        tmp_path,
+        {"arrows": "velocity", "arrow_scale": 0.5, "arrow_radius": 0.1, "arrow_color": "red", "arrow_center": "middle"},
+        "--arrows velocity --arrow-scale 0.5 --arrow-radius 0.1 --arrow-color red --arrow-center middle".split(),
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (dict(arrows=[[1, 0, 0]]), r"`arrows` has the shape \(1, 3\)"),
+        (dict(arrows="velocity"), "`vx`"),
+        (dict(arrows=["vx", "vy"]), "`arrows`"),
+        (dict(arrow_scale=2.0), "`arrow_scale` needs `arrows`"),
+        (dict(arrows=[[1, 0, 0]] * 2, arrow_scale=-1.0), "`arrow_scale` is -1"),
+        (dict(arrows=[[1, 0, 0]] * 2, arrow_center="side"), "`arrow_center`"),
+        (dict(arrows=[[1, 0, 0]] * 2, arrow_color="rde"), "rde"),
+    ],
+)
+def test_arrows_that_are_none_are_refused_by_name(options, message):
+    with pytest.raises(spherule.Error, match=message):
+        spherule.render([[0, 0, 0], [5, 0, 0]], radius=1, size=(20, 10), spp=1, **options)

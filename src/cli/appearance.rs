@@ -4,15 +4,16 @@ use super::settings::List;
 use super::with_text::{self, WithText};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde_json::{Value, json};
-use spherule_render::color::{Map, Spacing};
+use spherule_render::color::{self, Map, Spacing};
 use spherule_render::graphics::Format;
-use spherule_render::scene::Anchor;
 use spherule_render::scene::particles::{
-    BondSource, Coloring, ColumnColors, ElementColors, Legend, Model, Opacity, ParticleStyle,
-    Selection, TypeStyle,
+    ArrowCentering, ArrowStyle, BondSource, Coloring, ColumnColors, ElementColors, Legend, Model,
+    Opacity, ParticleStyle, Selection, TypeStyle, VectorColumns,
 };
+use spherule_render::scene::{Anchor, Rgb};
 use spherule_render::suggest;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 /// Options for the appearance of particles.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -77,6 +78,29 @@ pub(super) struct AppearanceArgs {
     /// Draw only particles for which EXPR is true with --opacity, the others opaque; as in --select
     #[arg(long, value_name = "EXPR", allow_hyphen_values = true, value_parser = |text: &str| text.parse::<WithText<Selection>>())]
     translucent: Option<WithText<Selection>>,
+    /// Draw an arrow for a vector of each particle: velocity, force, dipole or spin; three columns, as in vx,vy,vz;
+    /// or what their names have in common before x, y and z
+    #[arg(long, value_name = "VECTOR|X,Y,Z", value_parser = |text: &str| text.parse::<WithText<VectorColumns>>())]
+    arrows: Option<WithText<VectorColumns>>,
+    /// Length of the arrow of a vector of length 1, in the file's unit [default: the median arrow is four times as
+    /// long as the median radius]
+    #[arg(long, value_name = "FACTOR", value_parser = radius, requires = "arrows")]
+    arrow_scale: Option<f64>,
+    /// Radius of the shafts of arrows, in the file's unit; short arrows are thinner [default: a quarter of the
+    /// median radius]
+    #[arg(long, value_name = "R", value_parser = radius, requires = "arrows")]
+    arrow_radius: Option<f64>,
+    /// Color of all arrows, #rrggbb or a CSS name [default: that of each particle]
+    #[arg(
+        long,
+        value_name = "COLOR",
+        value_parser = |text: &str| text.parse::<WithText<ArrowColor>>(),
+        requires = "arrows"
+    )]
+    arrow_color: Option<WithText<ArrowColor>>,
+    /// Part of an arrow that is at its particle: tail, middle or head [default: tail]
+    #[arg(long, value_name = "tail|middle|head", value_parser = centering, requires = "arrows")]
+    arrow_center: Option<ArrowCentering>,
     /// Radius, color, material and opacity of a particle type, by its name or element; overrides all else; may be
     /// repeated. Colors are #rrggbb or CSS names; materials are lambertian, plastic, metal, glass, mirror and
     /// emitter
@@ -95,6 +119,24 @@ pub(super) struct AppearanceArgs {
         value_parser = bar
     )]
     pub(super) color_bar: Option<BarPlace>,
+}
+
+/// The color of arrows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct ArrowColor(Rgb);
+
+impl FromStr for ArrowColor {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        color::of_name(text).map(Self)
+    }
+}
+
+fn centering(text: &str) -> Result<ArrowCentering, String> {
+    let found = ArrowCentering::ALL.iter().find(|(name, _)| *name == text).map(|(_, own)| *own);
+    let names = || ArrowCentering::ALL.map(|(name, _)| name).into_iter();
+    found.ok_or_else(|| suggest::help(text, names(), "parts of arrows are"))
 }
 
 /// Place of a color bar.
@@ -224,6 +266,7 @@ impl AppearanceArgs {
             bond_radius,
             opacity: self.opacity.as_deref().cloned(),
             translucent: self.translucent.as_deref().cloned(),
+            arrows: self.arrows(),
             types,
             ..ParticleStyle::default()
         }
@@ -255,8 +298,31 @@ impl AppearanceArgs {
         with_text::insert(&mut list, "bonds", &self.bonds);
         with_text::insert(&mut list, "opacity", &self.opacity);
         with_text::insert(&mut list, "translucent", &self.translucent);
+        with_text::insert(&mut list, "arrows", &self.arrows);
+        if let Some(scale) = self.arrow_scale {
+            list.insert("arrow_scale".to_owned(), json!(scale));
+        }
+        if let Some(radius) = self.arrow_radius {
+            list.insert("arrow_radius".to_owned(), json!(radius));
+        }
+        with_text::insert(&mut list, "arrow_color", &self.arrow_color);
+        let named = |(_, own): &&(&str, ArrowCentering)| Some(*own) == self.arrow_center;
+        if let Some((name, _)) = ArrowCentering::ALL.iter().find(named) {
+            list.insert("arrow_center".to_owned(), json!(name));
+        }
         with_text::insert(&mut list, "type", &self.types);
         list
+    }
+
+    /// The arrows that are asked for.
+    fn arrows(&self) -> Option<ArrowStyle> {
+        Some(ArrowStyle {
+            columns: self.arrows.as_deref()?.clone(),
+            scale: self.arrow_scale,
+            radius: self.arrow_radius,
+            color: self.arrow_color.as_deref().map(|ArrowColor(color)| *color),
+            centering: self.arrow_center.unwrap_or_default(),
+        })
     }
 
     fn coloring(&self) -> Coloring {

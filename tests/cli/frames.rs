@@ -79,6 +79,23 @@ fn the_color_range_is_shared_by_all_frames() {
     }
 }
 
+/// The arrow of the second frame is twice as long as that of the first, for which the scale is chosen.
+#[test]
+fn the_scale_of_arrows_is_shared_by_all_frames() {
+    let folder = Folder::new();
+    let frame = |v: f64| format!("1\nProperties=species:S:1:pos:R:3:velo:R:3\nC 0 0 0 {v} 0 0\n");
+    folder.write("a.xyz", &[frame(1.0), frame(2.0)].concat());
+    let arrows = ["--radii", "0.5", "--arrows", "velocity"];
+    run(&folder, &[&arrows[..], &["--frame", "all", "-o", "b.png"]].concat());
+    // Four times the radius for the first frame's vector, and a quarter of the radius.
+    let sizes = ["--arrow-scale", "2", "--arrow-radius", "0.125"];
+    run(&folder, &[&arrows[..], &sizes, &["--frame", "all", "-o", "c.png"]].concat());
+    let read = |name: &str| Image::read(folder.path(name)).expect("a picture");
+    assert_eq!(read("b-0000.png"), read("c-0000.png"));
+    assert_eq!(read("b-0001.png"), read("c-0001.png"));
+    assert_ne!(read("b-0000.png"), read("b-0001.png"));
+}
+
 #[test]
 fn ranges_are_those_of_the_frames_that_have_numbers() {
     let folder = Folder::new();

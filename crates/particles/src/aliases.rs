@@ -5,7 +5,7 @@ use super::options::Role;
 /// Groups of synonyms in PDB, GRO, mmCIF, LAMMPS and extended XYZ files, and in `MDAnalysis`, VMD,
 /// `PyMOL` and OVITO. If a file has no column of the requested name, the first synonym in the file is
 /// used.
-pub const GROUPS: [&[&str]; 22] = [
+pub const GROUPS: [&[&str]; 28] = [
     &["id", "serial", "particle identifier", "number", "atom_id", "atomid"],
     &["name", "atom_name", "atomname", "label_atom_id", "auth_atom_id"],
     &["residue", "resname", "resn", "auth_comp_id", "label_comp_id", "residue_name"],
@@ -25,6 +25,12 @@ pub const GROUPS: [&[&str]; 22] = [
     &["fx", "force.x", "force_x", "forces_x"],
     &["fy", "force.y", "force_y", "forces_y"],
     &["fz", "force.z", "force_z", "forces_z"],
+    &["mux", "dipole.x", "dipole_x", "dipoles_x", "dipole orientation.x"],
+    &["muy", "dipole.y", "dipole_y", "dipoles_y", "dipole orientation.y"],
+    &["muz", "dipole.z", "dipole_z", "dipoles_z", "dipole orientation.z"],
+    &["spx", "spin.x", "spin_x", "magmom_x", "magmoms_x"],
+    &["spy", "spin.y", "spin_y", "magmom_y", "magmoms_y"],
+    &["spz", "spin.z", "spin_z", "magmom_z", "magmoms_z"],
     &["xu", "unwrapped position.x"],
     &["yu", "unwrapped position.y"],
     &["zu", "unwrapped position.z"],

@@ -8,7 +8,7 @@ use crate::categories::retain;
 use crate::cell::Cell;
 use crate::shapes::Shapes;
 use crate::trails::Trails;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// The particles of one frame, with the frame's metadata. Row `i` of every column belongs to
 /// particle `i`. Numbers are in the file's units, and nothing is dropped.
@@ -42,6 +42,9 @@ pub struct ParticleFrame {
     pub shapes: Shapes,
     /// Earlier positions, if they were asked for and there are any.
     pub trails: Trails,
+    /// The rotation of the frame since it was read, by which vectors in `numbers` have to be turned
+    /// ([`ReadOptions::align`](crate::ReadOptions::align)).
+    pub rotation: DMat3,
     /// The simulation cell, if the file has one.
     pub cell: Option<Cell>,
     /// The file's title or comment; empty if it has none.

@@ -108,6 +108,7 @@ impl Reference {
             [frame.x[row], frame.y[row], frame.z[row]] = moved(frame.position(row)).to_array();
         }
         frame.shapes.rotate(DQuat::from_mat3(&rotation));
+        frame.rotation = rotation;
         if let Some(cell) = &mut frame.cell {
             cell.origin = moved(cell.origin);
             cell.vectors = cell.vectors.map(|edge| rotation * edge);

@@ -83,4 +83,6 @@ fn orientations_turn_with_frames_that_are_aligned() {
     let frame = read_frame(&file.path, &options).expect("a frame");
     let back = frame.shapes.orientation_of(0) * DVec3::Y;
     assert!(back.distance(DVec3::X) < 1e-9, "{back}");
+    // Vectors of columns, which stay as they are, are turned by the same rotation where they are drawn.
+    assert!((frame.rotation * DVec3::Y).distance(DVec3::X) < 1e-9);
 }

@@ -13,7 +13,7 @@ use spherule_render::overlay::Canvas;
 use spherule_render::overlay::annotations::{self, AnnotationDrawing};
 use spherule_render::overlay::color_bar::Bar;
 use spherule_render::scene::particles::{
-    self, Cell, Legend, Orientation, ParticleStyle, Particles,
+    self, ArrowSizes, Cell, Legend, Orientation, ParticleStyle, Particles,
 };
 use spherule_render::scene::{Annotations, FileError, Look, Scene};
 use std::path::Path;
@@ -46,6 +46,8 @@ pub(super) struct Loaded {
     pub(super) facts: FrameFacts,
     /// Center of the particle in focus, if the focus is a particle.
     pub(super) focus: Option<DVec3>,
+    /// The sizes of arrows, if there are any.
+    pub(super) arrow_sizes: Option<ArrowSizes>,
 }
 
 /// Loads the scene, with colors, materials and replicas of particles.
@@ -56,7 +58,7 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
         job.views.refuse_cells()?;
         let (facts, scene) = (FrameFacts::default(), job.source.load()?);
         let (legend, cell, orientation, focus) = (None, None, None, None);
-        return Ok(Loaded { scene, legend, cell, orientation, facts, focus });
+        return Ok(Loaded { scene, legend, cell, orientation, facts, focus, arrow_sizes: None });
     };
     let mut particles = match given {
         Some(particles) => particles,
@@ -69,8 +71,10 @@ pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Loaded, Failur
     let shared = job.common.as_ref().and_then(|common| common.orientation);
     let orientation = shared.unwrap_or_else(|| job.views.orientation(&particles));
     let title = job.source.title(&Scene::default()).into_owned();
+    let arrow_sizes = particles.arrows.sizes;
     let scene = job.preset().unwrap_or_default().scene(particles, &title, &orientation);
-    Ok(Loaded { scene, legend, cell, orientation: Some(orientation), facts, focus })
+    let orientation = Some(orientation);
+    Ok(Loaded { scene, legend, cell, orientation, facts, focus, arrow_sizes })
 }
 
 /// Returns the center of the particle in focus, if the focus is a particle.

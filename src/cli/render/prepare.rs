@@ -19,7 +19,9 @@ use spherule_render::denoise::{self, Asked, Choice};
 use spherule_render::film::Region;
 use spherule_render::prepared::{self, PreparedScene};
 use spherule_render::render::{ImagePart, Render};
-use spherule_render::scene::particles::{Category, Cell, Legend, Orientation, Particles};
+use spherule_render::scene::particles::{
+    ArrowSizes, Category, Cell, Legend, Orientation, Particles,
+};
 use spherule_render::scene::{Denoise, Identity, Scene, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -74,6 +76,8 @@ pub(super) struct Staged {
     pub(super) categories: Option<Vec<Category>>,
     /// Center of the particle in focus, if the focus is a particle.
     focus: Option<DVec3>,
+    /// The sizes of arrows, if there are any.
+    pub(super) arrow_sizes: Option<ArrowSizes>,
     load: Duration,
 }
 
@@ -81,8 +85,9 @@ impl Staged {
     /// Loads the scene; `given` are its particles, if they are already loaded.
     pub(super) fn load(job: &Job, given: Option<Particles>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let appearance::Loaded { mut scene, legend, cell, orientation, mut facts, focus } =
-            appearance::load(job, given)?;
+        let loaded = appearance::load(job, given)?;
+        let appearance::Loaded { mut scene, legend, cell, orientation, mut facts, .. } = loaded;
+        let appearance::Loaded { focus, arrow_sizes, .. } = loaded;
         let box_of = cell.as_ref().map(Cell::bounds);
         let path = job.source.name().into_owned();
         let cuts = job.slices.cut(&mut scene, Path::new(&path), box_of, job.looks.allow_empty)?;
@@ -101,7 +106,7 @@ impl Staged {
             job.encoding.display.apply(&mut scene.settings);
         }
         let FrameFacts { categories, .. } = facts;
-        Ok(Self { scene, cuts, legend, orientation, categories, focus, load })
+        Ok(Self { scene, cuts, legend, orientation, categories, focus, arrow_sizes, load })
     }
 }
 

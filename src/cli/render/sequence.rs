@@ -67,6 +67,7 @@ pub(super) fn run(
     print_framing(&job, &plan);
     survey.fix_radius(&mut options);
     survey.fix_colors(&mut job.looks.coloring);
+    survey.fix_arrows(job.looks.arrows.as_mut());
     let session = Session { video, ..session };
     Sequence { job, plan, files, session, resumed }.of_frames(path, &options, reader, survey)
 }

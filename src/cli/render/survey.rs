@@ -7,8 +7,8 @@ use crate::cli::contents::plural;
 use crate::cli::failure::Failure;
 use crate::cli::views::corners;
 use spherule_render::scene::particles::{
-    Category, Coloring, Orientation, ParticleFrame, ParticleStyle, Particles, Radii, ReadOptions,
-    SharedNames, of_frame,
+    ArrowSizes, ArrowStyle, Category, Coloring, Orientation, ParticleFrame, ParticleStyle,
+    Particles, Radii, ReadOptions, SharedNames, of_frame,
 };
 use spherule_render::scene::{Camera, FileError};
 use spherule_render::world::WorldError;
@@ -44,6 +44,8 @@ pub(super) struct Survey {
     radius: Option<f64>,
     /// The names that colors stand for, if they are asked for.
     categories: Option<Vec<Category>>,
+    /// The sizes of arrows in the first frame that has any.
+    arrow_sizes: Option<ArrowSizes>,
     /// Warnings about the first frame that shows a sphere.
     pub(super) warnings: Vec<String>,
     frames: u64,
@@ -83,7 +85,8 @@ impl Survey {
             self.numeric |= colors.is_numeric(&particles);
         }
         let staged = Staged::load(job, Some(particles))?;
-        let Staged { mut scene, cuts, legend, orientation, categories, .. } = staged;
+        let Staged { mut scene, cuts, legend, orientation, categories, arrow_sizes, .. } = staged;
+        self.arrow_sizes = self.arrow_sizes.or(arrow_sizes);
         if scene.is_empty() {
             return Ok(());
         }
@@ -126,6 +129,13 @@ impl Survey {
     pub(super) fn fix_colors(&self, coloring: &mut Coloring) {
         if let (Coloring::Column(colors), Some(ends)) = (coloring, self.ends) {
             colors.ends.get_or_insert(ends);
+        }
+    }
+
+    /// Sets the sizes of the arrows of all frames.
+    pub(super) fn fix_arrows(&self, arrows: Option<&mut ArrowStyle>) {
+        if let (Some(arrows), Some(sizes)) = (arrows, self.arrow_sizes) {
+            arrows.fix(sizes);
         }
     }
 

@@ -15,7 +15,7 @@ mod ticks;
 
 pub use categories::{CATEGORIES, category};
 pub use map::Map;
-pub use names::{names, parse};
+pub use names::{names, of_name, parse};
 pub use range::{Range, RangeError, Spacing};
 pub use scale::Scale;
 pub use spherule_particles::internals::{linear_from_srgb, srgb};

@@ -1,6 +1,7 @@
 //! CSS color names.
 
 use super::{Rgb, srgb};
+use crate::suggest;
 
 /// The named colors of CSS Color Module Level 4, section 6.1, in alphabetical order.
 const NAMES: [(&str, [u8; 3]); 148] = [
@@ -165,6 +166,18 @@ fn named(text: &str) -> Option<Rgb> {
     let row = NAMES.binary_search_by(|(own, _)| (*own).cmp(&name)).ok()?;
     let [red, green, blue] = NAMES[row].1;
     Some(srgb(u32::from_be_bytes([0, red, green, blue])))
+}
+
+/// Parses a color as [`parse`] does.
+///
+/// # Errors
+///
+/// A message, with the name of a similar color.
+pub fn of_name(text: &str) -> Result<Rgb, String> {
+    parse(text).ok_or_else(|| {
+        let near = suggest::question(text, names());
+        format!("`{text}` is not a valid color: write #rrggbb or the name of a CSS color{near}")
+    })
 }
 
 /// Returns the CSS names of all colors, in alphabetical order.

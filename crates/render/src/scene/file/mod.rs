@@ -168,6 +168,7 @@ impl Scene {
         }
         let materials = materials.into_rows();
         let sticks = particles.sticks(&materials, &rows);
+        let cones = particles.cones(&materials, &rows);
         let ellipsoids = particles.take_ellipsoids(&materials, &rows, title);
         let mut spheres = Spheres::default();
         spheres.append(particles.spheres, &rows);
@@ -176,6 +177,7 @@ impl Scene {
             spheres,
             sticks,
             ellipsoids,
+            cones,
             materials,
             warnings: particles.warnings,
             ..Self::default()

@@ -23,8 +23,8 @@ pub use spherule_particles::{
     ReadProgress, Role, Shapes, SharedNames, TextColumn, Trails, count_frames, read_frame,
 };
 pub use style::{
-    Category, Coloring, ColumnColors, ElementColors, GHOST, Legend, Opacity, ParticleStyle,
-    TypeMaterial, TypeStyle,
+    ArrowCentering, ArrowSizes, ArrowStyle, Arrows, Category, Coloring, ColumnColors,
+    ElementColors, GHOST, Legend, Opacity, ParticleStyle, TypeMaterial, TypeStyle, VectorColumns,
 };
 
 use super::FileError;

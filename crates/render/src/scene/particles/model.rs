@@ -1,7 +1,7 @@
 //! Models of molecules: particles as spheres of their radii, or as balls and sticks.
 
 use super::Particles;
-use crate::scene::{NamedMaterial, Sticks};
+use crate::scene::{Cones, NamedMaterial, Sticks};
 use glam::DVec3;
 
 /// The way in which particles and their bonds are drawn.
@@ -60,28 +60,28 @@ impl Model {
     }
 }
 
-fn median(values: &[f64]) -> Option<f64> {
+pub(super) fn median(values: &[f64]) -> Option<f64> {
     let mut values = values.to_vec();
     let half = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(half, f64::total_cmp).1)
 }
 
 impl Particles {
-    /// Returns the bonds as sticks with the colors of both ends; `materials` are those of the scene, and `rows` the row there of
-    /// each material of the particles.
+    /// Returns the bonds as sticks with the colors of both ends, and trails and the shafts of arrows; `materials` are those of the
+    /// scene, and `rows` the row there of each material of the particles.
     ///
     /// A bond that crosses the cell becomes two halves, one at each end, and so does one between different materials.
     /// Materials that sticks cannot have are replaced by the first one.
     pub(in crate::scene) fn sticks(&self, materials: &[NamedMaterial], rows: &[u32]) -> Sticks {
         let mut sticks = Sticks::default();
-        let solid =
-            |row: u32| materials.get(row as usize).is_none_or(|named| named.material.is_solid());
-        let material = |sphere: usize| {
-            let row = rows.get(self.spheres.material_of(sphere) as usize).copied().unwrap_or(0);
-            if solid(row) { row } else { 0 }
-        };
+        let material = |sphere: usize| self.solid_material(sphere, materials, rows);
         if !self.trails.is_empty() {
             self.append_trails(material, &mut sticks);
+        }
+        for row in 0..self.arrows.vectors.len() {
+            let Some(arrow) = self.arrows.of(row, self.spheres.center(row)) else { continue };
+            let color = self.arrows.color.unwrap_or_else(|| self.spheres.color_of(row));
+            sticks.push(arrow.shaft, arrow.radius, material(row), [color; 2]);
         }
         let Some(bonds) = self.bonds.as_ref().filter(|_| self.stick_radius > 0.0) else {
             return sticks;
@@ -101,6 +101,26 @@ impl Particles {
             }
         }
         sticks
+    }
+
+    /// Returns the heads of arrows; arguments are those of [`Particles::sticks`].
+    pub(in crate::scene) fn cones(&self, materials: &[NamedMaterial], rows: &[u32]) -> Cones {
+        let mut cones = Cones::default();
+        for row in 0..self.arrows.vectors.len() {
+            let Some(arrow) = self.arrows.of(row, self.spheres.center(row)) else { continue };
+            let color = self.arrows.color.unwrap_or_else(|| self.spheres.color_of(row));
+            let ([apex, base], material) = (arrow.head, self.solid_material(row, materials, rows));
+            cones.push(apex, base, arrow.head_radius, material, color);
+        }
+        cones
+    }
+
+    /// Returns the row of the material that a sphere's sticks and arrows have: the sphere's, or the first one if only spheres can
+    /// have that.
+    fn solid_material(&self, sphere: usize, materials: &[NamedMaterial], rows: &[u32]) -> u32 {
+        let row = rows.get(self.spheres.material_of(sphere) as usize).copied().unwrap_or(0);
+        let solid = materials.get(row as usize).is_none_or(|named| named.material.is_solid());
+        if solid { row } else { 0 }
     }
 
     /// Appends the trails as chains of sticks, from each sphere back. A chain ends at a position that is not finite.

@@ -89,6 +89,7 @@ impl Particles {
         self.repeat_columns(count);
         self.shapes.repeat(count);
         self.trails.repeat(count);
+        self.arrows.vectors = self.arrows.vectors.repeat(count);
         if let Some(bonds) = &mut self.bonds {
             bonds.replicate(self.spheres.len() / count, copies);
         }
@@ -127,11 +128,12 @@ impl Particles {
         let codes = texts.chain([&self.kinds.codes]).filter(|codes| !codes.is_empty());
         let codes: usize = codes.map(Codes::width).sum();
         let numbers = size_of::<f64>() * (self.numbers.len() + 3 * self.trails.steps.len());
+        let arrows = if self.arrows.vectors.is_empty() { 0 } else { size_of::<DVec3>() };
         let shapes = if self.shapes.is_empty() { 0 } else { size_of::<(DVec3, DQuat)>() };
         // Bonds are sorted beside their columns; they are spread over the particles.
         let bonds = self.bonds.as_ref().map_or(0, Bonds::len) * 3 * size_of::<[u32; 3]>();
         let bonds = bonds.div_ceil(self.spheres.len().max(1));
-        spheres.row_bytes() + (numbers + shapes + codes + bonds) as u64
+        spheres.row_bytes() + (numbers + arrows + shapes + codes + bonds) as u64
     }
 
     fn repeat_columns(&mut self, count: usize) {

@@ -1,13 +1,14 @@
 //! Conversion of particle frames to spheres: finds radii and colors, and drops invalid rows.
 
 use super::radii::{FoundRadii, half_spacing, radii};
-use super::style::{Column, ElementColors, ID, INDEX, TypeMaterial};
+use super::style::{Arrows, Column, ElementColors, ID, INDEX, TypeMaterial};
 use super::{Bonds, Cell, LengthUnit, NumberColumn, ParticleFrame, Shapes, Trails};
 use super::{Format, ReadOptions, Role};
 use super::{Kinds, TextColumn};
 use crate::color::category;
 use crate::memory;
 use crate::scene::{FileError, NamedMaterial, Rgb, Spheres};
+use glam::DMat3;
 use spherule_particles::internals::{clipped, listed, pairs, retain};
 use std::path::Path;
 
@@ -35,6 +36,11 @@ pub struct Particles {
     /// Earlier positions of the spheres, which are drawn as sticks; empty if they were not asked for
     /// ([`ReadOptions::trail`]).
     pub trails: Trails,
+    /// Arrows for vectors, if they were asked for ([`ParticleStyle::arrows`](super::ParticleStyle::arrows)).
+    pub arrows: Arrows,
+    /// The rotation of the frame since it was read, by which vectors in `numbers` have to be turned
+    /// ([`ReadOptions::align`]).
+    pub rotation: DMat3,
     /// The cell of the simulation, scaled like positions.
     pub cell: Option<Cell>,
     /// Format of the file.
@@ -100,6 +106,7 @@ impl Particles {
         self.bonds.iter_mut().for_each(|bonds| bonds.retain(keep));
         self.shapes.retain(keep);
         self.trails.retain(keep);
+        self.arrows.retain(keep);
     }
 }
 
@@ -166,6 +173,8 @@ pub(super) fn spheres(
         stick_radius: 0.0,
         shapes: frame.shapes,
         trails: frame.trails,
+        arrows: Arrows::default(),
+        rotation: frame.rotation,
         cell,
         format: frame.format,
         columns: frame.columns,

@@ -1,11 +1,13 @@
 //! The style of particles: the user's choices of colors, radii, materials and selection.
 
+mod arrows;
 mod categories;
 mod colors;
 mod columns;
 mod opacity;
 mod types;
 
+pub use arrows::{ArrowCentering, ArrowSizes, ArrowStyle, Arrows, VectorColumns};
 pub use categories::Category;
 pub use colors::{ColumnColors, ElementColors, Legend};
 pub(super) use columns::{Column, ID, INDEX, unknown};
@@ -51,6 +53,8 @@ pub struct ParticleStyle {
     pub opacity: Option<Opacity>,
     /// Selection of the particles that `opacity` is for; `None` selects all.
     pub translucent: Option<Selection>,
+    /// Arrows for vectors of particles; `None` for none.
+    pub arrows: Option<ArrowStyle>,
     /// Styles of single types, which override all else; the last one for a type applies.
     pub types: Vec<TypeStyle>,
     /// True if ids are read although neither colors nor the selection need them.
@@ -82,6 +86,7 @@ impl ParticleStyle {
             columns.push(name.clone());
         }
         columns.extend(self.translucent.iter().flat_map(Selection::columns));
+        columns.extend(self.arrows.iter().flat_map(|arrows| arrows.columns.0.clone()));
         if self.ids {
             columns.push(ID.to_owned());
         }
@@ -118,6 +123,9 @@ impl ParticleStyle {
             Coloring::Elements(scheme) => scheme.apply(path, particles).map(|()| None)?,
             Coloring::Column(colors) => colors.apply(path, particles, self.allow_empty)?,
         };
+        if let Some(arrows) = &self.arrows {
+            arrows.apply(path, particles)?;
+        }
         self.model.apply(particles, self.bond_radius);
         let table = &particles.kinds.table;
         let known =

@@ -3,6 +3,7 @@ use crate::color::elements::cpk;
 use crate::color::{Map, RangeError, Spacing, category, srgb};
 use crate::scene::particles::{Columns, LengthUnit, Radii, ReadOptions, read};
 use crate::scene::{Material, Rgb, Scene};
+use glam::DVec3;
 
 const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp pp pp\n0 9\n\
                     0 9\n0 9\nITEM: ATOMS type x y z radius q mol\n1 1 2 0 .5 10 a\n\
@@ -364,4 +365,60 @@ fn opacities_that_are_none_are_refused() {
     assert!(error.message.contains("weight"), "{error}");
     let error = apply(WATER, &by("type")).expect_err("texts");
     assert!(error.message.contains("texts"), "{error}");
+}
+
+const VECTORS: &str = "x,y,z,radius,vx,vy,vz,name\n0,0,0,1,2,0,0,a\n5,0,0,1,0,4,0,b\n10,0,0,1,0,0,0,c\n15,0,0,1,0,0,8,d\n";
+
+fn with_arrows(text: &str, change: impl FnOnce(&mut ArrowStyle)) -> ParticleStyle {
+    let mut arrows = ArrowStyle::new(text.parse().expect("a vector"));
+    change(&mut arrows);
+    ParticleStyle { arrows: Some(arrows), ..ParticleStyle::default() }
+}
+
+#[test]
+fn vectors_become_sticks_and_cones() {
+    let style = with_arrows("velocity", |_| ());
+    let (particles, _) = apply(VECTORS, &style).expect("arrows");
+    // The median of the vectors that are not 0 is as long as four radii.
+    assert_eq!(particles.arrows.sizes, Some(ArrowSizes { scale: 1.0, radius: 0.25 }));
+    let scene = Scene::of_particles(particles, "");
+    assert_eq!((scene.sticks.len(), scene.cones.len(), scene.spheres.len()), (3, 3, 4));
+    let heads = [DVec3::X * 2.0, DVec3::new(5.0, 4.0, 0.0), DVec3::new(15.0, 0.0, 8.0)];
+    for (row, head) in heads.into_iter().enumerate() {
+        assert!(scene.cones.apex[row].distance(head) < 1e-12, "{}", scene.cones.apex[row]);
+        assert_eq!(scene.sticks.to[row], scene.cones.base[row]);
+    }
+    let chosen = with_arrows("vx,vy,vz", |arrows| {
+        (arrows.scale, arrows.radius) = (Some(0.5), Some(0.01));
+        (arrows.color, arrows.centering) = (Some(Rgb::X), ArrowCentering::Head);
+    });
+    let (particles, _) = apply(VECTORS, &chosen).expect("arrows");
+    let scene = Scene::of_particles(particles, "");
+    assert!(scene.cones.apex[0].distance(DVec3::ZERO) < 1e-12);
+    assert!(scene.sticks.from[0].distance(DVec3::X * -0.99) < 1e-12);
+    assert_eq!((scene.cones.color[2], scene.sticks.colors[1]), (Rgb::X, [Rgb::X; 2]));
+}
+
+#[test]
+fn arrows_follow_selections_rotations_and_copies() {
+    let mut style = with_arrows("v", |arrows| arrows.scale = Some(1.0));
+    style.select = Some("x > 4".parse().expect("a selection"));
+    let (mut particles, _) = apply(VECTORS, &style).expect("arrows");
+    assert_eq!(particles.arrows.vectors, [DVec3::Y * 4.0, DVec3::ZERO, DVec3::Z * 8.0]);
+    particles.rotation = glam::DMat3::from_rotation_x(std::f64::consts::FRAC_PI_2);
+    style.select = None;
+    style.apply(Path::new("a"), &mut particles).expect("arrows");
+    assert!(particles.arrows.vectors[0].distance(DVec3::Z * 4.0) < 1e-12);
+}
+
+#[test]
+fn vectors_that_are_not_there_are_refused_by_name() {
+    let refused = |text: &str| apply(VECTORS, &with_arrows(text, |_| ())).expect_err(text).message;
+    assert!(refused("force").contains("`fx`"), "{}", refused("force"));
+    assert!(refused("vx,vy,name").contains("`name` has texts"));
+    let zero =
+        VECTORS.replace("2,0,0,a", "0,0,0,a").replace("0,4,0", "0,0,0").replace("0,8,d", "0,0,d");
+    let (particles, _) = apply(&zero, &with_arrows("velocity", |_| ())).expect("no arrows");
+    assert!(particles.arrows.sizes.is_none());
+    assert!(particles.warnings.iter().any(|text| text.contains("no arrows")));
 }

@@ -100,7 +100,7 @@ impl FromStr for TypeStyle {
             let (key, value) = entry.split_once('=').ok_or(usage)?;
             match key.trim() {
                 "radius" => style.radius = Some(radius(value.trim())?),
-                "color" => style.color = Some(color(value.trim())?),
+                "color" => style.color = Some(color::of_name(value.trim())?),
                 "material" => style.material = Some(material(value.trim())?),
                 "opacity" => style.opacity = Some(opacity(value.trim())?),
                 other => {
@@ -124,13 +124,6 @@ fn radius(text: &str) -> Result<f64, String> {
 fn opacity(text: &str) -> Result<f64, String> {
     let opacity = text.parse().ok().filter(|opacity| (0.0..=1.0).contains(opacity));
     opacity.ok_or_else(|| format!("`{text}` is not a valid opacity: write a number from 0 to 1"))
-}
-
-fn color(text: &str) -> Result<Rgb, String> {
-    color::parse(text).ok_or_else(|| {
-        let near = suggest::question(text, color::names());
-        format!("`{text}` is not a valid color: write #rrggbb or the name of a CSS color{near}")
-    })
 }
 
 fn material(text: &str) -> Result<TypeMaterial, String> {
