@@ -84,7 +84,10 @@ impl Survey {
         if let Coloring::Column(colors) = &job.looks.coloring {
             self.numeric |= colors.is_numeric(&particles);
         }
-        let staged = Staged::load(job, Some(particles))?;
+        // The arrows of later frames have the sizes of those before.
+        let mut sized = job.clone();
+        self.fix_arrows(sized.looks.arrows.as_mut());
+        let staged = Staged::load(&sized, Some(particles))?;
         let Staged { mut scene, cuts, legend, orientation, categories, arrow_sizes, .. } = staged;
         self.arrow_sizes = self.arrow_sizes.or(arrow_sizes);
         if scene.is_empty() {
