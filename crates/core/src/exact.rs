@@ -15,7 +15,7 @@ mod cone;
 mod dyadic;
 mod ellipsoid;
 
-pub use capsule::{CapsuleRoot, capsule_hit};
+pub use capsule::{CapsuleRoot, capsule_exit, capsule_hit};
 pub use cone::{cone_exit, cone_hit};
 pub use ellipsoid::ellipsoid_hit;
 

@@ -50,7 +50,7 @@ pub(super) fn run(args: &Args) -> Result<ExitCode, Failure> {
         let picture = draw(&plot::plot(&report), format)?;
         write(path, |writer| writer.write_all(&picture))?;
     }
-    let wrong = report.wrong(Form::Spherule);
+    let wrong = report.all_wrong();
     if args.json {
         let surface_rays = report.surface_rays();
         output::print_json(&Summary { wrong, surface_rays, report: &report });
@@ -106,11 +106,13 @@ fn write(
 
 /// Returns the last line of the report.
 fn conclusion(report: &Report) -> String {
-    let (wrong, rays) = (report.wrong(Form::Spherule), report.rays + report.surface_rays());
+    let wrong = report.all_wrong();
+    let rays = report.rays + report.surface_rays() + report.body_rays();
     let [wrong, rays, bounds] = [wrong, rays, report.bounds()].map(HumanCount);
     let counted = format!("{wrong} wrong results in {rays} rays and {bounds} bounds");
     let at_fault = report.regimes.iter().filter(|regime| regime.form(Form::Spherule).wrong() > 0);
-    let names: Vec<_> = at_fault.map(|regime| regime.name).collect();
+    let bodies = report.bodies.iter().filter(|body| body.wrong() > 0).map(|body| body.name);
+    let names: Vec<_> = at_fault.map(|regime| regime.name).chain(bodies).collect();
     if names.is_empty() { counted } else { format!("{counted}, in {}", names.join(", ")) }
 }
 

@@ -1,7 +1,7 @@
 //! Tables of the results, for the terminal.
 
 use spherule_measure::report::{Cell, Column, Style, Table};
-use spherule_measure::stress::{Form, FormReport, RegimeReport, Report};
+use spherule_measure::stress::{BodyReport, Form, FormReport, RegimeReport, Report};
 
 /// Intersection tests that are shown, and their names.
 const USUAL: &[(Form, &str)] =
@@ -36,7 +36,37 @@ pub(super) fn text(report: &Report) -> String {
             .shares("self-hits", SURFACE, |form| form.self_hits, |regime| regime.leaving)
             .shares("missed exits", SURFACE, |form| form.missed_exits, |regime| regime.entering),
     ];
-    tables.map(|grid| grid.table.text()).join("\n")
+    let mut texts = tables.map(|grid| grid.table.text()).to_vec();
+    if !report.bodies.is_empty() {
+        texts.push(bodies(&report.bodies).text());
+    }
+    texts.join("\n")
+}
+
+/// A table with a row for each kind of body other than spheres.
+fn bodies(bodies: &[BodyReport]) -> Table {
+    let heading = "other bodies";
+    let columns = [
+        ("rays", ""),
+        ("hit", ""),
+        ("exact", ""),
+        ("wrong hit or miss", ""),
+        ("wrong body or distance", ""),
+    ];
+    let names = [Column::new("", "").group(heading)].into_iter();
+    let columns = names.chain(columns.map(|(name, unit)| Column::new(name, unit).group("")));
+    let mut table = Table::new(heading, heading, columns.collect());
+    for body in bodies {
+        let counts = [
+            body.rays,
+            body.hits,
+            body.exact,
+            body.wrong_hits,
+            body.wrong_bodies + body.wrong_distances,
+        ];
+        table.push([body.name.into()].into_iter().chain(counts.map(Cell::Count)));
+    }
+    table
 }
 
 /// A table with a row for each regime.
@@ -109,7 +139,7 @@ mod tests {
         let regimes = REGIMES.iter().collect();
         let text = text(&run(&Options { rays: 3300, seed: 0, regimes }, &|_| ()));
         let lines: Vec<_> = text.lines().collect();
-        assert_eq!(lines.len(), 3 * (REGIMES.len() + 2) + 2);
+        assert_eq!(lines.len(), 3 * (REGIMES.len() + 2) + 2 + 1 + 3 + 2);
         assert!(lines[0].starts_with("decisions") && lines[2].starts_with("near_unit"));
         let (group, name) = (lines[0].find("wrong sphere"), lines[1].rfind("naive"));
         assert!(group <= name && name < group.map(|at| at + 12), "{text}");

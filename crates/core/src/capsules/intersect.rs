@@ -63,13 +63,15 @@ fn surface_at_origin(ray: &ExactRay, capsule: &Capsule) -> Option<(Part, DVec3)>
 #[cold]
 #[inline(never)]
 fn decide_exactly(ray: &ExactRay, capsule: &Capsule) -> Option<CapsuleHit> {
-    let finite = ray.origin.is_finite()
-        && ray.direction.is_finite()
-        && capsule.ends.iter().all(|end| end.is_finite())
-        && capsule.radius.is_finite();
-    let hit = finite.then(|| exact::capsule_hit(ray, capsule)).flatten()?;
+    let hit = is_finite(ray, capsule).then(|| exact::capsule_hit(ray, capsule)).flatten()?;
     let root = Root { t: hit.t, error: hit.t * NEAREST, exact: true };
     Some(CapsuleHit { root, part: hit.part })
+}
+
+fn is_finite(ray: &ExactRay, capsule: &Capsule) -> bool {
+    let [start, end] = capsule.ends;
+    [ray.origin, ray.direction, start, end].into_iter().all(DVec3::is_finite)
+        && capsule.radius.is_finite()
 }
 
 /// Returns the distance at which a line leaves a capsule, ahead of its origin, which is on the surface or inside, within
@@ -78,8 +80,8 @@ pub fn exit_distance(ray: &ExactRay, capsule: &Capsule) -> f64 {
     let leave = |line: Line| line.crossing(Bounded::exact(1.0));
     let t = match Line::new(ray, capsule).and_then(|line| line.map_or(Ok(None), leave)) {
         Ok(crossing) => crossing.map_or(0.0, |(t, _)| t.value),
-        // From inside, and otherwise as close to the surface as can be.
-        Err(Doubt) => exact::capsule_hit(ray, capsule).map_or(0.0, |hit| hit.t),
+        Err(Doubt) if is_finite(ray, capsule) => exact::capsule_exit(ray, capsule).unwrap_or(0.0),
+        Err(Doubt) => 0.0,
     };
     t.max(0.0)
 }

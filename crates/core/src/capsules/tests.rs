@@ -301,6 +301,32 @@ fn rays_from_a_surface_do_not_hit_it() {
     }
 }
 
+/// From surface to surface, through the crease between cylinder and end, where double precision is in doubt.
+#[test]
+fn rays_leave_at_the_far_side() {
+    let mut random = Random::new(15);
+    let mut chords = 0;
+    for _ in 0..4000 {
+        let ends = [0, 1].map(|_| point(&mut random));
+        let capsule = Capsule { ends, radius: 0.1 };
+        let mut crease = |along: f64| {
+            let normal = random.perpendicular((ends[1] - ends[0]).normalize());
+            (ends[0].lerp(ends[1], along) + normal * capsule.radius, normal)
+        };
+        let ((on, _), (toward, normal)) = (crease(0.3), crease(1.0));
+        let chord = (toward - on).length();
+        let direction = (toward - on) / chord;
+        if direction.dot(normal) < 0.01 {
+            continue;
+        }
+        let ray = ExactRay { origin: on, direction, origin_error: 0.0 };
+        let exit = exit_distance(&ray, &capsule);
+        assert!((exit - chord).abs() < 1e-6 * chord, "{exit} {chord}");
+        chords += 1;
+    }
+    assert!(chords > 1000, "{chords}");
+}
+
 #[test]
 fn points_are_enclosed_by_the_first_capsule() {
     let mut random = Random::new(10);

@@ -24,6 +24,12 @@ pub fn capsule_hit(ray: &ExactRay, capsule: &Capsule) -> Option<CapsuleRoot> {
     first(ray, capsule).map(|(root, part)| CapsuleRoot { t: root.nearest(), part })
 }
 
+/// Returns the distance at which a line leaves a capsule, likewise; `None` if it misses it or leaves it before the origin.
+pub fn capsule_exit(ray: &ExactRay, capsule: &Capsule) -> Option<f64> {
+    let (leave, _) = Line::new(ray, capsule).crossing(1)?;
+    (leave.sign() > 0).then(|| leave.nearest())
+}
+
 /// Returns the distance of the hit, and the part that is hit: where the line enters if that is ahead of the origin, or
 /// else where it leaves if that is.
 pub(super) fn first(ray: &ExactRay, capsule: &Capsule) -> Option<(Quotient, Part)> {

@@ -16,6 +16,7 @@
 //! assert!(report.regimes[1].form(Form::Naive).wrong_hits > 100);
 //! ```
 
+pub mod bodies;
 mod bounds;
 pub mod forms;
 mod integers;
@@ -28,6 +29,7 @@ pub mod run;
 mod scenes;
 mod surface;
 
+pub use bodies::BodyReport;
 pub use forms::Form;
 pub use regimes::{REGIMES, Regime};
 pub use report::{FormReport, RegimeReport, Report};

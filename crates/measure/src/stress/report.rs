@@ -1,5 +1,6 @@
 //! Reports of runs.
 
+use super::bodies::BodyReport;
 use super::forms::Form;
 use super::regimes::Regime;
 use serde::Serialize;
@@ -14,6 +15,8 @@ pub struct Report {
     pub rays: u64,
     /// Report of each regime.
     pub regimes: Vec<RegimeReport>,
+    /// Report of each kind of body other than spheres; empty if only some regimes were tested.
+    pub bodies: Vec<BodyReport>,
 }
 
 /// The report of a regime.
@@ -161,6 +164,17 @@ impl Report {
         self.regimes.iter().map(|regime| regime.form(form).wrong()).sum()
     }
 
+    /// Returns the number of wrong answers of Spherule of all kinds, for spheres and for other bodies.
+    pub fn all_wrong(&self) -> u64 {
+        let of_bodies = self.bodies.iter().map(BodyReport::wrong).sum::<u64>();
+        self.wrong(Form::Spherule) + of_bodies
+    }
+
+    /// Returns the number of rays among bodies other than spheres.
+    pub fn body_rays(&self) -> u64 {
+        self.bodies.iter().map(|report| report.rays).sum()
+    }
+
     /// Returns the number of rays that start on a surface.
     pub fn surface_rays(&self) -> u64 {
         self.regimes.iter().map(|regime| regime.leaving + regime.entering).sum()
@@ -231,7 +245,7 @@ mod tests {
         regime.form_mut(Form::Naive).self_hits = 4;
         regime.form_mut(Form::Good).t_error = 1.5;
         regime.bounds = 7;
-        Report { seed: 3, rays: 10, regimes: vec![regime] }
+        Report { seed: 3, rays: 10, regimes: vec![regime], bodies: Vec::new() }
     }
 
     #[test]

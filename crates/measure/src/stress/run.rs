@@ -1,10 +1,11 @@
 //! Runs of all tests on random scenes and rays.
 
+use super::bodies;
 use super::bounds;
 use super::forms::{self, Answer, Form};
 use super::rays::{self, Columns, Ray};
 use super::reference::{self, Decision, DoubleDouble};
-use super::regimes::Regime;
+use super::regimes::{REGIMES, Regime};
 use super::report::{FormReport, RegimeReport, Report};
 use super::scenes;
 use super::surface;
@@ -25,6 +26,9 @@ const MEASURED: usize = 16;
 /// For this many rays, one further ray starts outward from a surface and one inward.
 const SURFACE: usize = 8;
 
+/// Of a regime's number of rays, one in this many tests each kind of body other than spheres: its reference is slow.
+const BODY_SHARE: u64 = 4;
+
 /// Options of a run.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -36,7 +40,7 @@ pub struct Options {
     pub regimes: Vec<&'static Regime>,
 }
 
-/// Runs all tests in the current thread pool. `progress` is called from any thread with the number of
+/// Runs all tests in the current thread pool; those of bodies other than spheres only with all regimes. `progress` is called from any thread with the number of
 /// rays finished since its last call.
 ///
 /// The report does not depend on the number of threads.
@@ -48,7 +52,10 @@ pub fn run(options: &Options, progress: &(dyn Fn(u64) + Sync)) -> Report {
     });
     let regimes: Vec<RegimeReport> = regimes.collect();
     let rays = regimes.iter().map(|regime| regime.rays).sum();
-    Report { seed: options.seed, rays, regimes }
+    let all = options.regimes.len() == REGIMES.len();
+    let of_kind = options.rays / count / BODY_SHARE;
+    let bodies = if all { bodies::run(of_kind, options.seed) } else { Vec::new() };
+    Report { seed: options.seed, rays, regimes, bodies }
 }
 
 fn run_regime(
@@ -198,7 +205,6 @@ impl Spherule {
 
 #[cfg(test)]
 mod tests {
-    use super::super::regimes::REGIMES;
     use super::*;
     use std::sync::atomic::{AtomicU64, Ordering};
 
