@@ -16,10 +16,11 @@ use spherule::layers::{Layer, Layers, layers};
 use spherule::overlay::{Canvas, annotations};
 use spherule::particles::internals::memory;
 use spherule::render::{
-    End, Film, Judge, Noise, Options, Region, Render, RenderError, ResumableRender,
+    End, Film, Judge, Noise, Options, Region, Render, RenderError, ResumableRender, Statistics,
 };
 use spherule::scene::{Annotations, Identity, Look, Settings, Tone};
 use spherule::split::Part;
+use std::mem::take;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -211,8 +212,9 @@ impl Session {
     pub(crate) fn show(&mut self, cancel: &AtomicBool) -> Result<Shown, Fault> {
         let stopped = || cancel.load(Ordering::SeqCst);
         let has_statistics = self.layers.iter().any(|layer| layer.is_statistic());
-        let mut render = if stopped() && !has_statistics {
-            self.render.unmeasured()
+        let mut render = if stopped() {
+            let statistics = has_statistics.then(|| Statistics::of(self.render.film()));
+            Render { statistics, ..self.render.unmeasured() }
         } else {
             self.render.render()
         };
@@ -226,7 +228,7 @@ impl Session {
             is_denoised = true;
             render.image = denoised.image;
         }
-        let (named, layers) = self.layers(&render, cancel)?;
+        let (named, layers) = self.layers(&mut render, cancel)?;
         let mut warnings = Vec::new();
         let mut canvas = Canvas::with_look(
             &self.look,
@@ -268,8 +270,12 @@ impl Session {
         Options { region: Some(self.region), cancel: Some(cancel), ..Options::default() }
     }
 
-    /// Traces the layers that were asked for; returns those that there are.
-    fn layers(&self, render: &Render, cancel: &AtomicBool) -> Result<(Vec<Layer>, Layers), Fault> {
+    /// Traces the layers that were asked for, and takes the statistics of a render; returns the layers that there are.
+    fn layers(
+        &self,
+        render: &mut Render,
+        cancel: &AtomicBool,
+    ) -> Result<(Vec<Layer>, Layers), Fault> {
         let Region { width, height, .. } = self.region;
         let mut made = Layers { width, height, pixels: Vec::new(), statistics: None };
         let mut named = self.layers.clone();
@@ -287,7 +293,7 @@ impl Session {
                 pixel.id = rows.get(pixel.id as usize).copied().unwrap_or(pixel.id);
             }
         }
-        made.statistics.clone_from(&render.statistics);
+        made.statistics = render.statistics.take();
         Ok((named, made))
     }
 }
@@ -296,7 +302,7 @@ impl Shown {
     /// The picture as a table for the class `Picture`.
     fn table(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let Self { render, title, settings, matte, judged, denoised, warnings, .. } = self;
-        let (named, layers) = (self.named, self.layers);
+        let (named, mut layers) = (self.named, self.layers);
         let Settings { width, height, .. } = settings;
         let size = (height as usize, width as usize);
         let table = PyDict::new(py);
@@ -327,18 +333,20 @@ impl Shown {
         table.set_item("warnings", warnings)?;
         let arrays = PyDict::new(py);
         for layer in named {
-            arrays.set_item(layer.name(), layer_array(py, layer, &layers, size)?)?;
+            if !arrays.contains(layer.name())? {
+                arrays.set_item(layer.name(), take_layer(py, layer, &mut layers, size)?)?;
+            }
         }
         table.set_item("layers", arrays)?;
         Ok(table)
     }
 }
 
-/// A layer as an array of a value or three per pixel.
-fn layer_array<'py>(
+/// Takes a layer as an array of a value or three per pixel; statistics, which are columns already, are not copied.
+fn take_layer<'py>(
     py: Python<'py>,
     layer: Layer,
-    layers: &Layers,
+    layers: &mut Layers,
     (height, width): (usize, usize),
 ) -> PyResult<Bound<'py, PyAny>> {
     let Layers { pixels, statistics, .. } = layers;
@@ -358,9 +366,9 @@ fn layer_array<'py>(
         Layer::Coverage => floats(pixels.iter().map(|pixel| pixel.coverage).collect()),
         Layer::Id => whole(pixels.iter().map(|pixel| pixel.id).collect()),
         Layer::Variance => {
-            triples(statistics.as_ref().ok_or_else(missing)?.variance.pixels.clone())
+            triples(take(&mut statistics.as_mut().ok_or_else(missing)?.variance.pixels))
         }
-        _ => whole(statistics.as_ref().ok_or_else(missing)?.samples.clone()),
+        _ => whole(take(&mut statistics.as_mut().ok_or_else(missing)?.samples)),
     }
 }
 
