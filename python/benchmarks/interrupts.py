@@ -17,10 +17,12 @@ import sys
 import time
 
 CODE = """
-import sys, time, warnings
+import signal, sys, time, warnings
 import numpy as np
 import spherule
 
+# Background jobs of shells ignore the signal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 warnings.simplefilter("ignore")
 cloud = np.random.default_rng(1).random(({count}, 3), dtype=np.float32)
 kinds = np.arange({count}) % 3

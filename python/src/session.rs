@@ -212,12 +212,9 @@ impl Session {
     pub(crate) fn show(&mut self, cancel: &AtomicBool) -> Result<Shown, Fault> {
         let stopped = || cancel.load(Ordering::SeqCst);
         let has_statistics = self.layers.iter().any(|layer| layer.is_statistic());
-        let mut render = if stopped() {
-            let statistics = has_statistics.then(|| Statistics::of(self.render.film()));
-            Render { statistics, ..self.render.unmeasured() }
-        } else {
-            self.render.render()
-        };
+        let statistics = has_statistics.then(|| Statistics::of(self.render.film()));
+        let noise = if stopped() { None } else { self.render.noise() };
+        let mut render = Render { noise, statistics, ..self.render.unmeasured() };
         let judged = self.denoiser.as_ref().filter(|_| !stopped()).and_then(|denoiser| {
             let options = self.finishing(cancel);
             denoiser.judge(&self.world, self.render.film(), &options)

@@ -11,10 +11,12 @@ import time
 import pytest
 
 LONG = """
-    import sys, threading, time, warnings
+    import signal, sys, threading, time, warnings
     import numpy as np
     import spherule
 
+    # Background jobs of shells ignore the signal.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     warnings.simplefilter("ignore")
     cloud = np.random.default_rng(1).random(({count}, 3), dtype=np.float32)
     print("ready", flush=True)

@@ -60,7 +60,10 @@ impl OverlayCache {
         let find = || self.runs.get_or_insert_with(|| RunBounds::of(world)).depths(world);
         let depths = deep.then(find);
         let region = Region { x: 0, y: 0, width: image.width, height: image.height };
-        let layers = layers.layers();
+        let layers = layers.layers(options);
+        if options.is_cancelled() {
+            return Ok(None);
+        }
         let overlay = Overlay { world, region, layers: &layers, depths };
         let matte = overlay.draw_look(&mut image, &request.look, ground.map(GroundRender::ground));
         Ok(Some(OverlaidImage { image, matte }))

@@ -141,7 +141,7 @@ impl Denoiser {
         if !progress.layers.refine(world, &settings, options) {
             return None;
         }
-        let layers = progress.layers.layers();
+        let layers = progress.layers.layers(options);
         let judged = self.judge_picture(film, &layers, before, options)?;
         progress.last = Some((total, judged));
         Some(progress)

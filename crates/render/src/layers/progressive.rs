@@ -87,8 +87,8 @@ impl ProgressiveLayers {
         next.into_inner() >= tiles && self.tiles.iter().all(|tile| tile.is_complete(samples))
     }
 
-    /// Returns the layers so far.
-    pub fn layers(&self) -> Layers {
+    /// Returns the layers so far. Once the flag of the options is set, pixels are left out.
+    pub fn layers(&self, options: &Options) -> Layers {
         let Region { x: left, width, height, .. } = self.region;
         let in_row = width as usize;
         // Zeros are memory that is not there before a thread writes to it.
@@ -96,7 +96,7 @@ impl ProgressiveLayers {
         let rows = pixels.par_chunks_mut(in_row * TILE as usize);
         let rows = rows.zip(self.tiles.par_chunks(width.div_ceil(TILE) as usize));
         rows.for_each(|(pixels, tiles)| {
-            for tile in tiles {
+            for tile in tiles.iter().take_while(|_| !options.is_cancelled()) {
                 let top = tile.region.y;
                 for ((x, y), features) in tile.region.morton().zip(tile.features()) {
                     pixels[(y - top) as usize * in_row + (x - left) as usize] = features;
@@ -189,7 +189,7 @@ mod tests {
             for spp in [1, 2, 5, 16, 20, 37, 36, 40] {
                 assert!(growing.refine(&world, &of(spp), &options));
                 let whole = layers(&world, &of(spp), &options, &[Layer::Depth]).unwrap();
-                assert_eq!(growing.layers(), whole, "{sampler:?} {spp}");
+                assert_eq!(growing.layers(&Options::default()), whole, "{sampler:?} {spp}");
             }
         }
     }
@@ -205,6 +205,6 @@ mod tests {
         assert!(!growing.refine(&world, &scene.settings, &stopped));
         assert!(growing.refine(&world, &scene.settings, &Options::default()));
         let whole = layers(&world, &scene.settings, &Options::default(), &[Layer::Depth]).unwrap();
-        assert_eq!(growing.layers(), whole);
+        assert_eq!(growing.layers(&Options::default()), whole);
     }
 }

@@ -76,7 +76,7 @@ pub struct Options<'a> {
 
 impl Options<'_> {
     /// Returns whether the flag is set.
-    pub(crate) fn is_cancelled(&self) -> bool {
+    pub fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 }

@@ -11,7 +11,7 @@ use super::{
 use crate::film::{Film, Region, View};
 use crate::integrator::Job;
 use crate::integrator::device::device_job;
-use crate::noise::{FIRST_SAMPLES, StopCondition};
+use crate::noise::{FIRST_SAMPLES, Noise, StopCondition};
 use crate::sampling::{PixelFilter, Sampler};
 use crate::scene::{Integrator, Settings};
 use crate::trace::Traversal;
@@ -178,11 +178,14 @@ impl ResumableRender {
 
     /// Returns the image so far with its statistics.
     pub fn render(&self) -> Render {
-        let (film, settings) = (&self.state.film, &self.settings);
-        let measured = settings.has_target() || self.statistics;
-        let noise = measured.then(|| self.state.noise(settings.until_error.is_some())).flatten();
-        let statistics = self.statistics.then(|| Statistics::of(film));
-        Render { noise, statistics, ..self.unmeasured() }
+        let statistics = self.statistics.then(|| Statistics::of(&self.state.film));
+        Render { noise: self.noise(), statistics, ..self.unmeasured() }
+    }
+
+    /// Returns the error of the image so far, if the render has a target or statistics.
+    pub fn noise(&self) -> Option<Noise> {
+        let measured = self.settings.has_target() || self.statistics;
+        measured.then(|| self.state.noise(self.settings.until_error.is_some())).flatten()
     }
 
     /// Returns the same without statistics and error, which take a while for large pictures.
