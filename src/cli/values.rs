@@ -189,7 +189,7 @@ mod tests {
             ("spp", &["0", "-1", "1.5", "16777217", "many"]),
             ("roulette", &["0", "1.01", "-0.5", "NaN", "inf", "some"]),
             ("exposure", &["NaN", "inf", "101", "-101", "bright"]),
-            ("ao_distance", &["0", "-1", "NaN", "-inf"]),
+            ("ao_distance", &["-1", "NaN", "-inf"]),
             ("until_error", &["0", "0%", "-1%", "101%", "NaN", "inf", "1 %%", "%", "small", ""]),
             ("time", &["60", "0s", "-1s", "1 fortnight", "100y", "s", ""]),
             ("depth", &["-1", "4294967296", "none"]),

@@ -25,7 +25,7 @@ fn bad_input_is_refused_with_help() {
         ("render --roulette 0", 2, &["--roulette", "more than 0"]),
         ("render --roulette 1.5", 2, &["--roulette", "at most 1"]),
         ("render --shadow-samples 0", 2, &["--shadow-samples"]),
-        ("render --ao-distance 0", 2, &["--ao-distance", "more than 0"]),
+        ("render --ao-distance=-1", 2, &["--ao-distance", "0 or more"]),
         ("render --lanes 3", 2, &["--lanes", "1, 4, 8, 16"]),
         ("render --traversal quick", 2, &["--traversal", "brute, scalar, stream, packet"]),
         ("render --builder best", 2, &["--builder", "median, surface-area, morton"]),

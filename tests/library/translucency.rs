@@ -50,6 +50,8 @@ fn previews_show_opacity_by_a_pattern_of_dots() {
         for z in 0..bodies {
             sphere(&mut scene, DVec3::Z * f64::from(z), 1.0, black(0.5));
         }
+        // Something opaque behind all of them: without it, no dots are needed.
+        sphere(&mut scene, DVec3::Z * -5.0, 2.0, lambertian(0.9));
         look_parallel(&mut scene, DVec3::Z * 5.0, DVec3::ZERO, 0.1);
         (scene.settings.width, scene.settings.height) = (20, 12);
         let world = World::build(&scene).unwrap();
@@ -59,6 +61,67 @@ fn previews_show_opacity_by_a_pattern_of_dots() {
         {
             let square = (0..16).map(|i| light(left + i % 4, top + i / 4));
             assert_eq!(square.filter(|&light| light > 0.5).count(), seen, "{bodies} {left} {top}");
+        }
+    }
+}
+
+#[test]
+fn the_environment_behind_translucent_bodies_has_no_noise() {
+    let mut scene = stack(0.35);
+    scene.settings.spp = 2;
+    let check = |pixels: &[[f32; 3]], what: &str| {
+        for value in pixels.iter().flatten() {
+            assert!((value - 0.65_f32.powi(4)).abs() < 1e-6, "{what}: {value}");
+        }
+    };
+    for integrator in [
+        Integrator::Path,
+        Integrator::Whitted { shadow_samples: 1 },
+        Integrator::Ao { distance: f64::INFINITY },
+    ] {
+        scene.settings.integrator = integrator;
+        check(&render_scene(&scene).image.pixels, &format!("{integrator:?}"));
+    }
+    let world = World::build(&scene).unwrap();
+    let image = preview(&world, &scene.settings, &Options::default(), true).unwrap().unwrap();
+    check(&image.pixels, "preview");
+}
+
+#[test]
+fn colors_alone_are_composited_without_noise() {
+    let mut scene = furnace();
+    let colors = [Rgb::new(0.9, 0.1, 0.2), Rgb::new(0.2, 0.8, 0.4), Rgb::new(0.5, 0.5, 1.0)];
+    let opacities = [0.3, 0.6, 0.2];
+    let mut seen = Rgb::ZERO;
+    let mut passing = 1.0_f32;
+    for (i, (&color, &opacity)) in colors.iter().zip(&opacities).enumerate() {
+        let surface = Box::new(Material::Lambertian { color });
+        sphere(&mut scene, DVec3::Z * -(i as f64), 2.0, Material::Translucent { opacity, surface });
+        seen += passing * opacity as f32 * color;
+        passing *= 1.0 - opacity as f32;
+    }
+    scene.settings.integrator = Integrator::Ao { distance: 0.0 };
+    look_parallel(&mut scene, DVec3::Z * 5.0, DVec3::ZERO, 0.1);
+    for behind in [None, Some(Rgb::new(0.3, 0.7, 0.1))] {
+        // The furnace's light, or an opaque body.
+        if let Some(color) = behind {
+            sphere(&mut scene, DVec3::Z * -9.0, 3.0, Material::Lambertian { color });
+        }
+        scene.settings.spp = 1;
+        let expected = seen + passing * behind.unwrap_or(Rgb::ONE);
+        for pixel in render_scene(&scene).image.pixels {
+            assert!(
+                (Rgb::from(pixel) - expected).abs().max_element() < 1e-6,
+                "{pixel:?} {expected}"
+            );
+        }
+        let world = World::build(&scene).unwrap();
+        let image = preview(&world, &scene.settings, &Options::default(), true).unwrap().unwrap();
+        for pixel in image.pixels {
+            assert!(
+                (Rgb::from(pixel) - expected).abs().max_element() < 0.03,
+                "{pixel:?} {expected}"
+            );
         }
     }
 }

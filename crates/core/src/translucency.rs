@@ -35,6 +35,9 @@ impl OpticalDepth {
     /// That of an opaque body.
     pub const OPAQUE: Self = Self(1 << 62);
 
+    /// Depth beyond which the light behind all bodies is left to chance: 1/256 of it passes.
+    const DEEP: Self = Self(8 << 32);
+
     const HALVING: f64 = (1_u64 << 32) as f64;
 
     /// The optical depth of a body of an opacity from 0 to 1.
@@ -45,10 +48,15 @@ impl OpticalDepth {
         Self((-elementary::log2(1.0 - opacity) * Self::HALVING).round() as u64)
     }
 
+    /// The opacity of all bodies with this sum.
+    pub fn opacity(self) -> f64 {
+        1.0 - elementary::exp2(-(self.0 as f64 / Self::HALVING))
+    }
+
     /// The threshold of a ray, from a number that is distributed uniformly from 0 up to 1, not 1 itself. A single body stops
     /// the ray if the number is less than its opacity.
-    pub fn threshold(uniform: f32) -> Self {
-        let depth = -elementary::log2(1.0 - f64::from(uniform)) * Self::HALVING;
+    pub fn threshold(uniform: f64) -> Self {
+        let depth = -elementary::log2(1.0 - uniform) * Self::HALVING;
         // More than 0: rays do not end before the first body.
         Self(depth.round() as u64 + 1)
     }
@@ -116,23 +124,104 @@ impl Fragment {
         Self { root, hit, inside: false, depth: OpticalDepth::OPAQUE }
     }
 
+    /// The body as what a part of a ray's light sees.
+    fn seen(&self, coverage: f64) -> SeenBody {
+        let coverage = if self.hit == MISS { 0.0 } else { coverage };
+        SeenBody { t: self.root.t, hit: self.hit, coverage }
+    }
+
     /// A distance beyond which nothing is nearer.
     fn far(&self) -> f32 {
         ((self.root.t + self.root.error) as f32).next_up()
     }
 }
 
+/// Returns the sum of the depths of bodies.
+fn sum_of(fragments: &[Fragment]) -> OpticalDepth {
+    fragments.iter().fold(OpticalDepth::NONE, |sum, body| sum.plus(body.depth))
+}
+
+/// Returns the first of bodies, in their order along a ray, at which the sum of depths reaches a threshold.
+fn first_at(fragments: &[Fragment], threshold: OpticalDepth) -> Option<usize> {
+    let mut sum = OpticalDepth::NONE;
+    fragments.iter().position(|fragment| {
+        sum = sum.plus(fragment.depth);
+        sum >= threshold
+    })
+}
+
+/// Returns bodies, in their order along a ray, with the part of its light that each stands for.
+pub fn shares(fragments: &[Fragment]) -> impl Iterator<Item = (u32, f64)> {
+    let mut sum = OpticalDepth::NONE;
+    fragments.iter().map(move |fragment| {
+        let before = sum.opacity();
+        sum = sum.plus(fragment.depth);
+        (fragment.hit, sum.opacity() - before)
+    })
+}
+
+/// A body that a ray sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenBody {
+    /// Distance along the ray.
+    pub t: f64,
+    /// The body, the known hit, or [`MISS`].
+    pub hit: u32,
+    /// The part of the ray's light that the hit stands for, from 0 to 1. The rest is what nothing hides: the light behind all
+    /// bodies.
+    pub coverage: f64,
+}
+
 impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
-    /// Returns the distance and the hit at which a ray ends: `attenuated.known` if no body ends it before. `fragments` is memory to
-    /// work with. Also returns how many decisions were made on integers.
+    /// Returns the body at which a ray ends: `attenuated.known` if none ends it before. `fragments` is memory to work with. Also
+    /// returns how many decisions were made on integers.
     pub fn closest(
         &self,
         attenuated: &AttenuatedRay,
         fragments: &mut Vec<Fragment>,
-    ) -> (f64, u32, u64) {
+    ) -> (SeenBody, u64) {
+        let (end, exact) = self.gather(attenuated, fragments);
+        (end.seen(1.0), exact)
+    }
+
+    /// Chooses one of the bodies on a ray by a number that is distributed uniformly from 0 up to 1. Where nothing opaque is
+    /// behind them, one is chosen always, and only what it stands for is less than all of the light: so the picture has no noise
+    /// from rays that pass all bodies. `attenuated.threshold` is not used. On return `fragments` are the bodies on the ray, down
+    /// to the first beyond which hardly any light passes. Also returns how many decisions were made on integers.
+    pub fn choose(
+        &self,
+        attenuated: &AttenuatedRay,
+        number: f64,
+        fragments: &mut Vec<Fragment>,
+    ) -> (SeenBody, u64) {
+        let threshold = OpticalDepth::threshold(number);
+        let farthest =
+            AttenuatedRay { threshold: threshold.max(OpticalDepth::DEEP), ..*attenuated };
+        let (end, exact) = self.gather(&farthest, fragments);
+        let all = sum_of(fragments);
+        let opens = end.hit == MISS && OpticalDepth::NONE < all && all < OpticalDepth::DEEP;
+        let (threshold, coverage) = if opens {
+            let coverage = all.opacity();
+            (OpticalDepth::threshold(number * coverage).min(all), coverage)
+        } else {
+            (threshold, 1.0)
+        };
+        let body = first_at(fragments, threshold).map_or(end, |body| fragments[body]);
+        if end.hit != MISS {
+            fragments.push(end);
+        }
+        if let Some(last) = first_at(fragments, OpticalDepth::DEEP) {
+            fragments.truncate(last + 1);
+        }
+        (body.seen(coverage), exact)
+    }
+
+    /// Finds the body at which a ray ends, and those before it, in their order. Also returns how many decisions were made on
+    /// integers.
+    fn gather(&self, attenuated: &AttenuatedRay, fragments: &mut Vec<Fragment>) -> (Fragment, u64) {
         fragments.clear();
         let mut end = Fragment::known(attenuated.known);
-        let mut exact = 0;
+        let (mut all, mut exact) = (OpticalDepth::NONE, 0);
         self.for_each_body(attenuated, end.far(), |fragment| {
             exact += u64::from(fragment.root.exact);
             let before = |other: &Fragment, exact: &mut u64| {
@@ -143,22 +232,39 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
             }
             let place = fragments.iter().rposition(|other| before(other, &mut exact));
             fragments.insert(place.map_or(0, |place| place + 1), fragment);
-            let mut sum = OpticalDepth::NONE;
-            let last = fragments.iter().position(|fragment| {
-                sum = sum.plus(fragment.depth);
-                sum >= attenuated.threshold
-            });
-            if let Some(last) = last {
+            all = all.plus(fragment.depth);
+            if all >= attenuated.threshold
+                && let Some(last) = first_at(fragments, attenuated.threshold)
+            {
                 end = fragments[last];
                 fragments.truncate(last);
+                all = sum_of(fragments);
             }
             ControlFlow::Continue(end.far())
         });
-        (end.root.t, end.hit, exact)
+        (end, exact)
     }
 
     /// Returns whether a ray ends before `attenuated.known`, and how many decisions were made on integers.
     pub fn occluded(&self, attenuated: &AttenuatedRay) -> (bool, u64) {
+        let (sum, exact) = self.depth_before(attenuated);
+        (sum >= attenuated.threshold, exact)
+    }
+
+    /// Returns the part of the light at `attenuated.known` that passes all bodies before it, and how many decisions were made on
+    /// integers. Where hardly any does, the threshold decides between none and all.
+    pub fn transmittance(&self, attenuated: &AttenuatedRay) -> (f64, u64) {
+        let threshold = attenuated.threshold.max(OpticalDepth::DEEP);
+        let (sum, exact) = self.depth_before(&AttenuatedRay { threshold, ..*attenuated });
+        if sum < OpticalDepth::DEEP {
+            return (1.0 - sum.opacity(), exact);
+        }
+        (if sum < threshold { 1.0 } else { 0.0 }, exact)
+    }
+
+    /// Returns the depth of all bodies before `attenuated.known`, or a part of it that reaches the threshold. Also returns how
+    /// many decisions were made on integers.
+    fn depth_before(&self, attenuated: &AttenuatedRay) -> (OpticalDepth, u64) {
         let end = Fragment::known(attenuated.known);
         let (mut sum, mut exact) = (OpticalDepth::NONE, 0);
         self.for_each_body(attenuated, end.far(), |fragment| {
@@ -171,7 +277,7 @@ impl<D: Fn(u32) -> OpticalDepth> TranslucentBodies<'_, D> {
             }
             ControlFlow::Continue(end.far())
         });
-        (sum >= attenuated.threshold, exact)
+        (sum, exact)
     }
 
     /// The numbers of hits.

@@ -232,7 +232,7 @@ fn mixed_materials_in_all_scenes_are_the_processors() {
 fn looks_of_particles_are_the_processors() {
     let Some(device) = device() else { return };
     // The processor renders translucent ones.
-    let opaque = Preset::ALL.into_iter().filter(|preset| preset.material().opacity() == 1.0);
+    let opaque = Preset::ALL.into_iter().filter(|preset| preset.material(1).opacity() == 1.0);
     for preset in opaque {
         let mut scene = named("paper-field-20.toml");
         diffuse(&mut scene);

@@ -84,7 +84,7 @@ pub enum Integrator {
     },
     /// Ambient occlusion: the cosine-weighted fraction of directions that see the sky.
     Ao {
-        /// Maximum distance of occluders; more than 0, `f64::INFINITY` for no limit.
+        /// Maximum distance of occluders; 0 for none, `f64::INFINITY` for no limit.
         distance: f64,
     },
 }

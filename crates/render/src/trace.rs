@@ -10,7 +10,8 @@ pub use crate::bvh::{PacketWidth, Tracer, Traversal};
 
 use self::bodies::Bodies;
 use self::clipped::ClippedRays;
-use self::translucent::Thresholds;
+use self::translucent::Choice;
+pub(crate) use self::translucent::Chosen;
 use crate::bvh::Tree;
 use crate::ray::{Hits, MISS, Rays};
 use crate::world::World;
@@ -29,31 +30,25 @@ enum Query {
 ///
 /// Returns the number of decisions made by exact integer arithmetic.
 pub fn closest(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
-    closest_by(tracer, world, rays, hits, Thresholds::Hashed)
+    closest_by(tracer, world, rays, hits, Choice::Hashed)
 }
 
-/// Finds what [`closest`] does for rays of the camera, with a number for each, from 0 up to 1, that decides at which translucent
-/// body it ends; none if there are no such bodies.
+/// Finds what [`closest`] does for rays of the camera, whose translucent bodies are chosen by numbers; these are empty if there
+/// are no such bodies.
 pub(crate) fn closest_from_camera(
     tracer: Tracer,
     world: &World,
     rays: &Rays,
     hits: &mut Hits,
-    numbers: &[f32],
+    chosen: Chosen,
 ) -> u64 {
-    closest_by(tracer, world, rays, hits, Thresholds::Given(numbers))
+    closest_by(tracer, world, rays, hits, Choice::Given(chosen))
 }
 
-fn closest_by(
-    tracer: Tracer,
-    world: &World,
-    rays: &Rays,
-    hits: &mut Hits,
-    thresholds: Thresholds,
-) -> u64 {
+fn closest_by(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits, choice: Choice) -> u64 {
     closest_ground(world, rays, hits);
     if world.features.translucent {
-        return translucent::trace(tracer, Query::Closest, world, (rays, hits), thresholds);
+        return translucent::trace(tracer, Query::Closest, world, (rays, hits), choice);
     }
     trace(tracer, Query::Closest, world, rays, hits)
 }
@@ -70,11 +65,27 @@ pub fn closest_ground(world: &World, rays: &Rays, hits: &mut Hits) {
 ///
 /// Returns the number of decisions made by exact integer arithmetic.
 pub fn occluded(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits) -> u64 {
+    occluded_by(tracer, world, rays, hits, Choice::Hashed)
+}
+
+/// Finds what [`occluded`] does; `transmittance` is 1 on entry, and on return what translucent bodies let pass of the light of each
+/// ray that is not occluded. It is empty if there are no such bodies.
+pub(crate) fn attenuated(
+    tracer: Tracer,
+    world: &World,
+    rays: &Rays,
+    hits: &mut Hits,
+    transmittance: &mut [f32],
+) -> u64 {
+    occluded_by(tracer, world, rays, hits, Choice::Transmittance(transmittance))
+}
+
+fn occluded_by(tracer: Tracer, world: &World, rays: &Rays, hits: &mut Hits, choice: Choice) -> u64 {
     if let Some(ground) = &world.ground {
         occlude_by_ground(ground, rays, hits);
     }
     if world.features.translucent {
-        return translucent::trace(tracer, Query::Any, world, (rays, hits), Thresholds::Hashed);
+        return translucent::trace(tracer, Query::Any, world, (rays, hits), choice);
     }
     trace(tracer, Query::Any, world, rays, hits)
 }

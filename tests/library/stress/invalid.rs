@@ -82,7 +82,7 @@ fn settings_out_of_range() {
         scene.settings.integrator = Integrator::Whitted { shadow_samples: 0 };
     });
     assert_refused("`ao_distance`", |scene| {
-        scene.settings.integrator = Integrator::Ao { distance: 0.0 };
+        scene.settings.integrator = Integrator::Ao { distance: -1.0 };
     });
 }
 

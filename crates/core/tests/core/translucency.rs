@@ -13,7 +13,10 @@ use spherule_core::internals::exact::{self, Distance};
 use spherule_core::internals::random::Random;
 use spherule_core::internals::ray::{ExactRay, MISS};
 use spherule_core::internals::spheres::Spheres;
-use spherule_core::internals::translucency::{AttenuatedRay, OpticalDepth, TranslucentBodies};
+use spherule_core::internals::translucency::{
+    AttenuatedRay, OpticalDepth, SeenBody, TranslucentBodies,
+};
+use std::collections::HashMap;
 
 const OPACITIES: [f64; 5] = [0.0, 0.1, 0.5, 0.8, 1.0];
 
@@ -192,10 +195,11 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
         let mut random = Random::new(100 + seed);
         let mut fragments = Vec::new();
         for _ in 0..400 {
-            let (ray, threshold) = (ray(&mut random), OpticalDepth::threshold(random.single()));
+            let (ray, threshold) =
+                (ray(&mut random), OpticalDepth::threshold(f64::from(random.single())));
             let known = (f64::INFINITY, MISS);
             let attenuated = AttenuatedRay { ray, ends: [MISS; 2], threshold, known };
-            let (t, hit, _) = bodies.closest(&attenuated, &mut fragments);
+            let (SeenBody { t, hit, .. }, _) = bodies.closest(&attenuated, &mut fragments);
             let expected = scene.oracle(&ray, threshold);
             assert_eq!(scene.place(hit), expected, "{ray:?}");
             assert_eq!(t.is_finite(), expected.is_some());
@@ -217,11 +221,59 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
                 // A bound before the body leaves the ray free of it.
                 let known = (t * 0.999, MISS);
                 let shorter = AttenuatedRay { known, ..attenuated };
-                assert_ne!(bodies.closest(&shorter, &mut fragments).1, hit);
+                assert_ne!(bodies.closest(&shorter, &mut fragments).0.hit, hit);
             }
         }
     }
     assert!(ends.iter().all(|&ends| ends > 100) && misses > 50, "{ends:?} {misses}");
+}
+
+#[test]
+fn chosen_bodies_stand_for_the_share_of_rays_that_end_at_them() {
+    const NUMBERS: u32 = 64;
+    let (mut open, mut closed) = (0, 0);
+    for seed in 0..3 {
+        let (scene, bvh) = Scene::new(seed, Builder::ALL[seed as usize % 3]);
+        let opacity = |place| Scene::opacity(place) * [1.0, 0.02][seed as usize % 2];
+        let bodies = TranslucentBodies {
+            tree: Tree { bvh: &bvh, spheres: &scene.spheres },
+            capsules: &scene.capsules,
+            ellipsoids: &scene.ellipsoids,
+            cones: &scene.cones,
+            depth: |hit| {
+                OpticalDepth::of_opacity(opacity(scene.place(hit).expect("a hit on a body")))
+            },
+        };
+        let (mut random, mut fragments) = (Random::new(200 + seed), Vec::new());
+        for _ in 0..200 {
+            let ray = ray(&mut random);
+            let mut shares = HashMap::<u32, f64>::new();
+            let mut passing = 0.0;
+            for i in 0..NUMBERS {
+                let number = (f64::from(i) + 0.5) / f64::from(NUMBERS);
+                let threshold = OpticalDepth::threshold(number);
+                let known = (f64::INFINITY, MISS);
+                let attenuated = AttenuatedRay { ray, ends: [MISS; 2], threshold, known };
+                let (ended, _) = bodies.closest(&attenuated, &mut fragments);
+                let (seen, _) = bodies.choose(&attenuated, number, &mut fragments);
+                assert!((0.0..=1.0).contains(&seen.coverage));
+                assert_eq!(seen.hit == MISS, seen.coverage == 0.0);
+                *shares.entry(ended.hit).or_default() += 1.0;
+                passing += bodies.transmittance(&attenuated).0;
+                passing -= if ended.hit == MISS { 1.0 } else { 0.0 };
+                *shares.entry(seen.hit).or_default() -= seen.coverage;
+                *shares.entry(MISS).or_default() -=
+                    if seen.hit == MISS { 1.0 } else { 1.0 - seen.coverage };
+                if seen.hit != MISS {
+                    *(if seen.coverage < 1.0 { &mut open } else { &mut closed }) += 1;
+                }
+            }
+            // Of numbers in equal steps each interval has its length, but for one at each end.
+            assert!(f64::abs(passing) <= 1.0, "{ray:?} {passing}");
+            assert!(shares.values().all(|share| share.abs() <= 2.0), "{ray:?} {shares:?}");
+        }
+    }
+    assert!(open > 1000 && closed > 1000, "{open} {closed}");
 }
 
 #[test]
@@ -230,7 +282,7 @@ fn one_body_ends_the_share_of_rays_that_is_its_opacity() {
         let depth = OpticalDepth::of_opacity(opacity);
         let count = 1 << 16;
         let ended = (0..count)
-            .filter(|&i| depth >= OpticalDepth::threshold((i as f32 + 0.5) / count as f32))
+            .filter(|&i| depth >= OpticalDepth::threshold((f64::from(i) + 0.5) / f64::from(count)))
             .count();
         let share = ended as f64 / f64::from(count);
         assert!((share - opacity).abs() <= 1.0 / f64::from(count), "{opacity}: {share}");
@@ -238,7 +290,7 @@ fn one_body_ends_the_share_of_rays_that_is_its_opacity() {
     assert!(OpticalDepth::of_opacity(1.0).is_opaque());
     assert!(OpticalDepth::NONE < OpticalDepth::threshold(0.0));
     // The largest random number ends no ray at a body that is not there, and every ray at an opaque one.
-    let largest = OpticalDepth::threshold(1.0_f32.next_down());
+    let largest = OpticalDepth::threshold(1.0_f64.next_down());
     assert!(OpticalDepth::of_opacity(0.999) < largest && largest < OpticalDepth::OPAQUE);
     let half = OpticalDepth::of_opacity(0.5);
     assert_eq!(half.plus(half), OpticalDepth::of_opacity(0.75));

@@ -2,14 +2,14 @@
 //! limit.
 //!
 //! Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", EGWR 1998. Surfaces are tinted by
-//! their color, whatever their material; rays that hit nothing see the background.
+//! their color, whatever their material; rays that hit nothing see the background. With a limit of 0 nothing is near, and surfaces
+//! show their color alone.
 
 use super::Job;
 use super::shading_row::{ShadingRow, SurfaceRow};
 use super::shadow_queue::{self, enqueue_shadow_rays};
 use super::stages;
 use super::workspace::Workspace;
-use crate::ray::MISS;
 use crate::sampling::cosine_hemispheres;
 use crate::scene::Rgb;
 use crate::shade::MaterialKind;
@@ -17,18 +17,30 @@ use crate::world::{LightRow, ROW};
 
 /// Traces one ambient occlusion ray per path; `distance` is in world units.
 pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
+    if distance == 0.0 {
+        work.composite_colors();
+    }
     stages::intersect(job, work);
-    for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
+    for row in 0..work.len() {
+        let throughput = work.throughput_behind(row);
+        if throughput == Rgb::ZERO {
+            continue;
+        }
         let environment = &job.world.environment;
         let direction = work.rays.direction.row(row);
         let seen = environment.background.unwrap_or_else(|| environment.radiance(direction));
-        work.paths.radiance[work.states.path(row)] = seen;
+        work.paths.radiance[work.states.path(row)] += throughput * seen;
     }
     for kind in MaterialKind::ALL {
         let Some(queue) = work.queues.take(kind) else { continue };
         for rows in queue.rows() {
             let surface_row = SurfaceRow::load(&queue, rows.0);
             let shading = ShadingRow::new(&queue, rows, &surface_row);
+            let light = surface_row.state.throughput.times(surface_row.albedo(job.world));
+            if distance == 0.0 {
+                work.paths.add(surface_row.state.path, light, shading.lanes);
+                continue;
+            }
             let numbers = work.paths.sampler_row(&shading.surface_row.state);
             let draw = job.sampler.scatter_row(&numbers, 0, false);
             let direction = shading.to_world(cosine_hemispheres(draw.direction));
@@ -36,10 +48,12 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
                 t: [distance; ROW],
                 ..LightRow::distant(direction, Rgb::ONE, shading.lanes)
             };
-            let light = surface_row.albedo(job.world);
             enqueue_shadow_rays(job, work, &surface_row, (&sky, shading.lanes), light);
         }
         work.queues.put(kind, queue);
+    }
+    if distance == 0.0 {
+        work.add_missing_colors();
     }
     shadow_queue::trace_shadow_rays(job, work);
 }

@@ -66,8 +66,8 @@ fn unsupported(job: &Job) -> Option<&'static str> {
     if world.features.translucent {
         return Some("the scene has translucent bodies");
     }
-    if let Integrator::Ao { .. } = job.settings.integrator {
-        return None;
+    if let Integrator::Ao { distance } = job.settings.integrator {
+        return (distance == 0.0).then_some("nothing occludes");
     }
     if !world.lights.is_empty() && world.lights.single_sun().is_none() {
         return Some("the scene has lights other than a sun and an even sky");

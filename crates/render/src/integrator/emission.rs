@@ -14,8 +14,8 @@ use crate::shade::MaterialKind;
 use crate::vec3::Vec3;
 use crate::world::{CausticSource, Receiver, ReceiverRow, SkyLight};
 
-/// Adds the light of the environment and the suns to paths that leave the scene. The camera may see a
-/// background instead: in place of both, or behind glass in place of the environment.
+/// Adds the light of the environment and the suns to paths that leave the scene, and to those that the camera sees among
+/// translucent bodies with nothing opaque behind. The camera may see a background instead: in place of both, or behind glass in place of the environment.
 pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
     let (environment, lights) = (&job.world.environment, &job.world.lights);
     if let Some(background) = environment.background.filter(|_| bounce == 0) {
@@ -28,13 +28,18 @@ pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
         return;
     }
     let constant = environment.constant().filter(|_| !sampled);
+    let translucent = bounce == 0 && job.world.features.translucent;
     for first in (0..work.len()).step_by(MAX_LANES) {
+        let there = first_lanes(work.len() - first);
         let missed = bits_of::<F32x16>(&work.hits.sphere[first..]).has_bits_of(bits(MISS));
-        let escaped = missed.bits() & first_lanes(work.len() - first);
+        let escaped = there & if translucent { !0 } else { missed.bits() };
         if escaped == 0 {
             continue;
         }
-        let state = work.states.load(first);
+        let mut state = work.states.load(first);
+        if translucent {
+            state.throughput = gather_light(there, |lane| work.throughput_behind(first + lane));
+        }
         let specular_only = state.previous.specular_only().bits();
         let lit =
             if sampled || environment.illuminates { escaped } else { escaped & specular_only };
@@ -63,10 +68,11 @@ fn left_glass(job: &Job, work: &Workspace, first: usize, lanes: u32) -> u32 {
     set_bits(lanes).filter(is_glass).fold(0, |lanes, lane| lanes | 1 << lane)
 }
 
-/// Adds the background to camera rays that hit nothing.
+/// Adds the background to camera rays that nothing opaque ends.
 fn add_background(work: &mut Workspace, background: Rgb) {
-    for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
-        work.paths.radiance[work.states.path(row)] += work.states.throughput(row) * background;
+    for row in 0..work.len() {
+        let light = work.throughput_behind(row) * background;
+        work.paths.radiance[work.states.path(row)] += light;
     }
 }
 

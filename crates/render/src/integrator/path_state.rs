@@ -156,6 +156,13 @@ impl PathStates {
         row
     }
 
+    /// Sets all channels of the throughput of the path in row `i`.
+    pub(super) fn set_throughput(&mut self, i: usize, throughput: f32) {
+        for channel in 0..3 {
+            self.columns.set(THROUGHPUT + channel, i, throughput.to_bits());
+        }
+    }
+
     /// Sets the index of the path in a row.
     #[cfg(test)]
     pub(super) fn set_path(&mut self, i: usize, path: u32) {

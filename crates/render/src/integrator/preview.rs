@@ -38,16 +38,24 @@ pub struct Lighting {
     pub lights: bool,
     /// True if they cast shadows.
     pub shadows: bool,
+    /// True if surfaces show their color alone.
+    pub flat: bool,
 }
 
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace, lighting: &Lighting) {
+    if lighting.flat {
+        work.composite_colors();
+    }
     for bounce in 0..=DEPTH.min(job.depth()) {
         stages::intersect(job, work);
         whitted::add_environment(job, work, bounce);
         whitted::add_emitted(job, work);
         glass::scatter_by(job, work, bounce, |_, _| F32x16::splat(0.5));
         stages::for_each_kind(job.world, &mut Shade { job, work, lighting });
+        if bounce == 0 && lighting.flat {
+            work.add_missing_colors();
+        }
         if !stages::end_bounce(job, work) {
             return;
         }
@@ -102,7 +110,8 @@ impl Shade<'_> {
     ) {
         let SurfaceRow { at, state, .. } = shading.surface_row;
         let above = bsdf.eval(shading.outgoing, Vec3::splat(0.0, 0.0, 1.0));
-        let facing = F32x16::splat(EDGE) + F32x16::splat(1.0 - EDGE) * shading.outgoing.z;
+        let edge = if self.lighting.flat { 1.0 } else { EDGE };
+        let facing = F32x16::splat(edge) + F32x16::splat(1.0 - edge) * shading.outgoing.z;
         let own = F32x16::new(at.own.map(f32::from_bits));
         let on_ground = own.has_bits_of(bits::<F32x16>(GROUND));
         let visible = Lanes::select(on_ground, F32x16::splat(1.0), facing);

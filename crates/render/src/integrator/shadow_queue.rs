@@ -27,16 +27,19 @@ pub struct ShadowQueue {
     pub path: Vec<u32>,
     /// Light that arrives if the ray is not occluded.
     pub light: Columns3,
+    /// The part of the light that translucent bodies let pass; empty if there are none.
+    transmittance: Vec<f32>,
 }
 
 impl ShadowQueue {
-    /// Creates an empty queue with room for [`SHADOW_QUEUE_SIZE`] rays.
-    pub fn new() -> Self {
+    /// Creates an empty queue with room for [`SHADOW_QUEUE_SIZE`] rays, among translucent bodies or not.
+    pub fn new(translucent: bool) -> Self {
         Self {
             rays: Rays::with_capacity(SHADOW_QUEUE_SIZE),
             hits: Hits::with_capacity(SHADOW_QUEUE_SIZE),
             path: vec![0; SHADOW_QUEUE_SIZE + ROW],
             light: Columns3::with_rows(SHADOW_QUEUE_SIZE + ROW),
+            transmittance: vec![1.0; if translucent { SHADOW_QUEUE_SIZE + ROW } else { 0 }],
         }
     }
 
@@ -72,12 +75,6 @@ impl ShadowQueue {
         self.hits.set(row, next.end.0, MISS);
         self.path[row] = next.path;
         self.light.set(row, next.light);
-    }
-}
-
-impl Default for ShadowQueue {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -138,13 +135,23 @@ fn cap_occludes(world: &World, work: &Workspace, row: usize, sample: &LightSampl
 pub fn trace_shadow_rays(job: &Job, work: &mut Workspace) {
     work.clock.end(Stage::Shade);
     let shadows = &mut work.shadow_queue;
-    work.counters.exact_decisions += test_occlusion(job, &shadows.rays, &mut shadows.hits);
+    let ShadowQueue { rays, hits, transmittance, .. } = shadows;
+    work.counters.exact_decisions += if transmittance.is_empty() {
+        test_occlusion(job, rays, hits)
+    } else {
+        transmittance.fill(1.0);
+        trace::attenuated(job.tracer, job.world, rays, hits, transmittance)
+    };
     for first in (0..shadows.rays.len()).step_by(MAX_LANES) {
         let there = first_lanes(shadows.rays.len() - first);
         let hits: F32x16 = bits_of(&shadows.hits.sphere[first..]);
         let lit = hits.has_bits_of(bits(MISS)).bits() & there;
         let path = U32x16::new(*row(&shadows.path, first));
-        work.paths.add(path, shadows.light.load(first), lit);
+        let mut light = shadows.light.load(first);
+        if !shadows.transmittance.is_empty() {
+            light = light * F32x16::new(*row(&shadows.transmittance, first));
+        }
+        work.paths.add(path, light, lit);
     }
     work.counters.shadow_rays += shadows.rays.len() as u64;
     work.probes.count_rays(shadows.path[..shadows.rays.len()].iter().copied());
@@ -181,7 +188,7 @@ mod tests {
         let from = ReceiverRow { point, normal: direction, own: numbers.map(|x| 2 * x) };
         let light = direction * F32x16::splat(0.5);
         for bits in [0, 1, 0xffff, 0xff, 0xa5a5, 0x8000, 0xfffe] {
-            let mut shadows = ShadowQueue::new();
+            let mut shadows = ShadowQueue::new(false);
             for _ in 0..3 {
                 shadows.push_row(&from, (&samples, bits), (U32x16::new(numbers), light));
             }

@@ -19,11 +19,10 @@ pub fn intersect(job: &Job, work: &mut Workspace) {
     match std::mem::replace(&mut work.view, View::Anything) {
         View::Background => trace::closest_ground(job.world, &work.rays, &mut work.hits),
         View::Anything => {
-            let (tracer, rays, hits) = (job.tracer, &work.rays, &mut work.hits);
-            work.counters.exact_decisions += if rays.own.first() == Some(&MISS) {
-                trace::closest_from_camera(tracer, job.world, rays, hits, &work.thresholds)
+            work.counters.exact_decisions += if work.rays.own.first() == Some(&MISS) {
+                work.trace_camera_rays(job)
             } else {
-                trace::closest(tracer, job.world, rays, hits)
+                trace::closest(job.tracer, job.world, &work.rays, &mut work.hits)
             };
         }
     }

@@ -54,7 +54,11 @@ pub fn integrate(job: &Job, work: &mut Workspace, samples: u32) {
 /// and glass alone, so there is no MIS weight.
 pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
     let environment = &job.world.environment;
-    for row in (0..work.len()).filter(|&row| work.hits.sphere[row] == MISS) {
+    for row in 0..work.len() {
+        let throughput = work.throughput_behind(row);
+        if throughput == Rgb::ZERO {
+            continue;
+        }
         let direction = work.rays.direction.row(row);
         let suns: Rgb = job.world.lights.suns_toward(direction).map(|(_, radiance)| radiance).sum();
         let own = work.rays.own[row];
@@ -65,7 +69,7 @@ pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
             }
             _ => environment.radiance(direction) + suns,
         };
-        work.paths.radiance[work.states.path(row)] += work.states.throughput(row) * light;
+        work.paths.radiance[work.states.path(row)] += throughput * light;
     }
 }
 

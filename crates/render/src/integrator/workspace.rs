@@ -23,6 +23,7 @@ use crate::lanes::{F32x16, MAX_LANES, Packing, U32x16, set_bits};
 use crate::ray::{ExactRay, GROUND, Hits, MISS, Rays};
 use crate::sampling::{SampleRow, Sampler, SamplerRow, SamplerState, SamplerStates, StartRow};
 use crate::scene::Rgb;
+use crate::trace::{self, Chosen};
 use crate::vec3 as row;
 use crate::world::{World, WorldBody};
 use glam::Vec3;
@@ -56,8 +57,13 @@ pub struct Workspace {
     pub states: PathStates,
     /// By path: radiance and sampler states.
     pub paths: Paths,
-    /// By row: numbers from 0 up to 1 that decide at which translucent bodies camera rays end; empty if there are none.
+    /// By row: numbers from 0 up to 1 by which camera rays choose translucent bodies; empty if there are none.
     pub thresholds: Vec<f32>,
+    /// By row: the part of a camera ray's light that its hit stands for, if it hits anything; the rest comes from behind
+    /// translucent bodies. Empty if there are none.
+    coverage: Vec<f32>,
+    /// By row: the mean albedo of all bodies on a camera ray, less that of its hit, if colors are composited. Otherwise empty.
+    missing_albedo: Vec<Rgb>,
     /// Hits by kind of material.
     pub queues: MaterialQueues,
     /// Materials of the spheres, if there are few.
@@ -98,6 +104,7 @@ impl Workspace {
     /// Allocates room for [`BATCH`] paths through `world`.
     pub fn new(world: &World, elisions: Elisions) -> Self {
         let normals = world.lights.by_receiver();
+        let translucent = if world.features.translucent { ROWS } else { 0 };
         let nesting = if elisions.glass && !world.features.nested_glass { 0 } else { MAX_NESTING };
         Self {
             rays: Rays::with_capacity(BATCH),
@@ -110,11 +117,13 @@ impl Workspace {
                 interiors: vec![MISS; BATCH * nesting],
                 nesting,
             },
-            thresholds: if world.features.translucent { vec![0.0; ROWS] } else { Vec::new() },
+            thresholds: vec![0.0; translucent],
+            coverage: vec![0.0; translucent],
+            missing_albedo: Vec::new(),
             queues: MaterialQueues::new(world, normals),
             material_table: MaterialTable::new(world, ESCAPED),
             next_rays: NextRays::new(normals),
-            shadow_queue: ShadowQueue::new(),
+            shadow_queue: ShadowQueue::new(world.features.translucent),
             caustics: Caustics::new(world),
             seen_lights: SeenLights::default(),
             probes: ProbeBatch::default(),
@@ -173,6 +182,8 @@ impl Workspace {
         self.rays.begin(count);
         self.hits.t[..count].fill(f64::INFINITY);
         self.hits.sphere[..count].fill(MISS);
+        self.coverage.fill(1.0);
+        self.missing_albedo.fill(Rgb::ZERO);
         self.paths.radiance[..count].fill(Rgb::ZERO);
         let nesting = self.paths.nesting;
         self.paths.interiors[..count * nesting].fill(MISS);
@@ -181,6 +192,52 @@ impl Workspace {
     /// Returns the sampler state of the path in a row.
     pub(super) fn sampler_state(&self, row: usize) -> SamplerState {
         self.paths.sampler_states.state(self.states.path(row), self.states.sequence_place(row))
+    }
+
+    /// Finds the hits of camera rays. Returns the number of decisions made by exact integer arithmetic.
+    pub(super) fn trace_camera_rays(&mut self, job: &Job) -> u64 {
+        let Self { rays, hits, states, thresholds, coverage, missing_albedo, .. } = self;
+        let chosen = Chosen { numbers: thresholds, coverage, missing_albedo };
+        let exact = trace::closest_from_camera(job.tracer, job.world, rays, hits, chosen);
+        for (row, &coverage) in coverage.iter().enumerate().take(rays.len()) {
+            if hits.sphere[row] != MISS && coverage < 1.0 {
+                states.set_throughput(row, coverage);
+            }
+        }
+        exact
+    }
+
+    /// Lets camera rays find the colors of all translucent bodies on their way, not only of the one that they choose.
+    pub(super) fn composite_colors(&mut self) {
+        self.missing_albedo.resize(self.coverage.len(), Rgb::ZERO);
+    }
+
+    /// Adds the composited colors of camera rays to paths that have got that of their hit alone.
+    pub(super) fn add_missing_colors(&mut self) {
+        for (row, &missing) in self.missing_albedo.iter().enumerate().take(self.rays.len()) {
+            let radiance = &mut self.paths.radiance[self.states.path(row)];
+            // Not less than 0 but for rounding.
+            *radiance = (*radiance + missing).max(Rgb::ZERO);
+        }
+    }
+
+    /// Returns the part of the light of a camera ray that its hit stands for; 0 if it hits nothing.
+    #[inline]
+    pub(crate) fn coverage(&self, row: usize) -> f32 {
+        if self.hits.sphere[row] == MISS {
+            return 0.0;
+        }
+        self.coverage.get(row).copied().unwrap_or(1.0)
+    }
+
+    /// Returns the throughput of what is behind all bodies on the ray in a row: 0 if the ray ends before.
+    #[inline]
+    pub(super) fn throughput_behind(&self, row: usize) -> Rgb {
+        if self.hits.sphere[row] == MISS {
+            return self.states.throughput(row);
+        }
+        let from_camera = self.rays.own[row] == MISS;
+        Rgb::splat(if from_camera { 1.0 - self.coverage(row) } else { 0.0 })
     }
 
     /// Fills the material queues.

@@ -56,7 +56,8 @@ pub fn preview(
     } else {
         Irradiance::of(&world.environment)
     };
-    let lighting = Lighting { irradiance, lights: !occlusion, shadows };
+    let flat = settings.integrator == Integrator::Ao { distance: 0.0 };
+    let lighting = Lighting { irradiance, lights: !occlusion, shadows, flat };
     let (width, height) = (region.width as usize, region.height as usize);
     let mut pixels = vec![[0.0; 3]; width * height];
     let tiles: Vec<Region> = Film::tile_regions(region).collect();

@@ -12,6 +12,7 @@ use super::{
     Background, Camera, Environment, EnvironmentMap, Ground, Integrator, Light, Look, Material,
     NamedMaterial, Pose, Rgb, Scene,
 };
+use crate::elementary;
 use glam::DVec3;
 
 /// Albedo of matte bodies and of the ground; colors of particles are factors on it.
@@ -100,8 +101,13 @@ const GLOSSY: Lighting = Lighting {
 const EVEN: Lighting =
     Lighting { tilted: false, sky: Sky { radiance: [1.0, 1.0], toward: UP }, sun: None };
 
-/// Opacity of bodies in an x-ray picture.
-const FAINT: f64 = 0.06;
+/// Returns the opacity of bodies in an x-ray picture of `count` of them. A ray through the middle of a heap meets a number of
+/// bodies that grows with its cubic root; about half of the light stays in the heap whatever the count.
+fn faint(count: usize) -> f64 {
+    let root = elementary::exp2(elementary::log2(count.max(1) as f64) / 3.0);
+    let opacity = 1.26 / root;
+    (opacity.clamp(0.001, 0.5) * 1e3).round() / 1e3
+}
 
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 
@@ -137,7 +143,8 @@ impl Preset {
     /// Creates a scene of particles with this look, except for its lights, and with a camera that frames
     /// all of them.
     pub fn scene(self, particles: Particles, title: &str, orientation: &Orientation) -> Scene {
-        let mut scene = Scene::of_particles_with(particles, title, &self.material());
+        let material = self.material(particles.spheres.len());
+        let mut scene = Scene::of_particles_with(particles, title, &material);
         scene.camera = orientation.camera();
         scene.look = self.look();
         self.set(&mut scene);
@@ -149,13 +156,14 @@ impl Preset {
     pub fn integrator(self, own_materials: bool) -> Integrator {
         match self {
             Self::Chalk if !own_materials => Integrator::Ao { distance: f64::INFINITY },
+            Self::XRay if !own_materials => Integrator::Ao { distance: 0.0 },
             _ => Integrator::Path,
         }
     }
 
     /// Sets the integrator of a scene whose other materials are the user's choice.
     pub fn set(self, scene: &mut Scene) {
-        let usual = self.material();
+        let usual = self.material(scene.spheres.len());
         let is_own = |row: &NamedMaterial| row.material.surface() != usual.surface();
         let own = scene.materials.iter().any(is_own);
         scene.settings.integrator = self.integrator(own);
@@ -178,14 +186,15 @@ impl Preset {
 
     /// Gives every sphere this look's material; names stay, and opacities of less than 1.
     pub fn replace_materials(self, scene: &mut Scene) {
+        let material = self.material(scene.spheres.len());
         let ground = scene.ground.as_ref().map(|ground| ground.material as usize);
         for (index, row) in scene.materials.iter_mut().enumerate() {
             let opacity = match row.material.opacity() {
                 _ if Some(index) == ground => 1.0,
-                1.0 => self.material().opacity(),
+                1.0 => material.opacity(),
                 opacity => opacity,
             };
-            row.material = self.material().with_opacity(opacity);
+            row.material = material.with_opacity(opacity);
         }
     }
 
@@ -202,14 +211,14 @@ impl Preset {
         scene.ground = (self == Self::Studio).then(|| ground(scene, up));
     }
 
-    /// Returns the material of particles that have none of their own; their colors are factors on
+    /// Returns the material of `count` particles that have none of their own; their colors are factors on
     /// its albedo.
-    pub fn material(self) -> Material {
+    pub fn material(self, count: usize) -> Material {
         let matte = Material::Lambertian { color: Rgb::splat(MATTE) };
         match self {
             Self::Glossy => Material::Plastic { color: Rgb::splat(POLISHED), ior: 1.5 },
             Self::Ghost => matte.with_opacity(GHOST),
-            Self::XRay => matte.with_opacity(FAINT),
+            Self::XRay => matte.with_opacity(faint(count)),
             _ => matte,
         }
     }
@@ -316,7 +325,7 @@ mod tests {
             let world = World::build(&scene).unwrap();
             assert_eq!(world.ground.is_some(), preset == Preset::Studio);
             let ao = matches!(scene.settings.integrator, Integrator::Ao { .. });
-            assert_eq!(ao, preset == Preset::Chalk);
+            assert_eq!(ao, matches!(preset, Preset::Chalk | Preset::XRay));
         }
     }
 
@@ -324,13 +333,13 @@ mod tests {
     fn materials_of_the_user_stay_and_set_the_integrator() {
         let glass = Material::Dielectric { ior: 1.5, color: Rgb::ONE };
         for preset in Preset::ALL {
-            let mut scene = Scene::of_particles_with(Particles::default(), "", &preset.material());
+            let mut scene = Scene::of_particles_with(Particles::default(), "", &preset.material(0));
             let material = glass.clone();
             scene.materials.push(NamedMaterial { name: "glass".to_owned(), material });
             scene.spheres.push(DVec3::ZERO, 1.0, 1, Rgb::X);
             preset.set(&mut scene);
             preset.light(&mut scene, DVec3::Y);
-            assert_eq!(scene.materials[0].material, preset.material());
+            assert_eq!(scene.materials[0].material, preset.material(0));
             assert_eq!(scene.materials[1].material, glass);
             assert_eq!(scene.settings.integrator, Integrator::Path, "{}", preset.name());
         }

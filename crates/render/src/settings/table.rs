@@ -330,8 +330,13 @@ pub const SETTINGS: &[Setting] = &[
     },
     Setting {
         name: "ao_distance",
-        help: "Maximum distance of occluders in the scene's unit, for the integrator ao",
-        kind: Kind::Number { limits: Limits::Positive, placeholder: "DISTANCE", words: &["inf"] },
+        help: "Maximum distance of occluders in the scene's unit, for the integrator ao; with 0, \
+               surfaces show their color alone",
+        kind: Kind::Number {
+            limits: Limits::NotNegative,
+            placeholder: "DISTANCE",
+            words: &["inf"],
+        },
         scope: Scope::ParameterOf(&["ao"]),
         need: Need::Nothing,
         role: Role::Samples,

@@ -2,33 +2,40 @@
 //!
 //! Rays are first traced as if all bodies were opaque, which is right for those whose first hit is opaque. The others are
 //! traced again, one by one, with all bodies that they intersect ([`TranslucentBodies`](crate::translucency::TranslucentBodies)).
+//!
+//! Rays of the camera choose one of their bodies even if they could pass all of them, and get the light behind the bodies besides:
+//! what would be a few bright dots among many dark ones has no noise. Not so where a cut clips rays.
 
 use super::bodies::Bodies;
 use super::clipped::{ClippedRays, Crossing};
 use super::{Query, Tracer};
 use crate::ray::{GROUND, Hits, MISS, Rays};
 use crate::sampling::{mix, stream, unit};
-use crate::translucency::{AttenuatedRay, Fragment, OpticalDepth};
+use crate::scene::Rgb;
+use crate::translucency::{self, AttenuatedRay, Fragment, OpticalDepth, SeenBody};
 use crate::world::World;
 use glam::Vec3;
 
-/// Uniform random numbers that decide at which translucent bodies rays end.
-#[derive(Clone, Copy)]
-pub(super) enum Thresholds<'a> {
-    /// A hash of each ray.
+/// How bodies are chosen at which rays end.
+pub(super) enum Choice<'a> {
+    /// Each ray ends or passes, decided by a hash of the ray.
     Hashed,
-    /// A number for each ray, from 0 up to 1.
-    Given(&'a [f32]),
+    /// By a number for each ray, from 0 up to 1. Those that nothing opaque stops choose one of the bodies always.
+    Given(Chosen<'a>),
+    /// None: shadow rays find the part of the light that passes all bodies, by row; 1 on entry.
+    Transmittance(&'a mut [f32]),
 }
 
-impl Thresholds<'_> {
-    /// The depth at which the ray of a row ends.
-    fn of(self, rays: &Rays, row: usize) -> OpticalDepth {
-        OpticalDepth::threshold(match self {
-            Self::Hashed => hashed(rays, row),
-            Self::Given(numbers) => numbers[row],
-        })
-    }
+/// Numbers of camera rays, and what their hits stand for.
+pub(crate) struct Chosen<'a> {
+    /// By row: a number from 0 up to 1.
+    pub numbers: &'a [f32],
+    /// By row: 1 on entry, and on return the part of the ray's light that its hit stands for, from 0 to 1; the rest comes from
+    /// behind all bodies.
+    pub coverage: &'a mut [f32],
+    /// By row: 0 on entry, and on return the sum of the albedos of all bodies on the ray, less that of its hit, each times the part
+    /// of the ray's light that it stands for. Empty if it is not asked for.
+    pub missing_albedo: &'a mut [Rgb],
 }
 
 /// Returns a number that depends on a ray alone.
@@ -47,18 +54,24 @@ pub(super) fn trace(
     query: Query,
     world: &World,
     (rays, hits): (&Rays, &mut Hits),
-    thresholds: Thresholds,
+    choice: Choice,
 ) -> u64 {
     let from_camera = rays.own.first() == Some(&MISS);
     let bodies = if from_camera { Bodies::visible(world) } else { Bodies::all(world) };
-    let all: Vec<OpticalDepth> = (0..rays.len()).map(|row| thresholds.of(rays, row)).collect();
-    let mut job = TranslucentTrace { tracer, query, world, bodies, from_camera, thresholds: all };
+    let threshold = |row| {
+        OpticalDepth::threshold(f64::from(match &choice {
+            Choice::Hashed | Choice::Transmittance(_) => hashed(rays, row),
+            Choice::Given(Chosen { numbers, .. }) => numbers[row],
+        }))
+    };
+    let thresholds = (0..rays.len()).map(threshold).collect();
+    let mut job = TranslucentTrace { tracer, query, world, bodies, from_camera, thresholds };
     let exact = if world.cut.is_empty() {
-        job.trace(rays, hits)
+        job.trace(rays, hits, choice)
     } else {
         let cap = |row, point, crossing| job.cap(row, point, crossing);
         let mut clipped = ClippedRays::new(world, rays, hits, cap);
-        let exact = job.trace(&clipped.rays, &mut clipped.hits);
+        let exact = job.trace(&clipped.rays, &mut clipped.hits, Choice::Hashed);
         clipped.write_hits(hits);
         exact
     };
@@ -91,6 +104,16 @@ impl TranslucentTrace<'_> {
         self.world.optical_depth(hit)
     }
 
+    /// Returns the composited albedo of the bodies on a ray of the camera, less that of the one that is seen.
+    fn missing_albedo(&self, seen: &SeenBody, fragments: &[Fragment]) -> Rgb {
+        let mut missing = Rgb::ZERO;
+        for (hit, share) in translucency::shares(fragments) {
+            let share = share - if hit == seen.hit { seen.coverage } else { 0.0 };
+            missing += share as f32 * self.world.albedo(self.bodies.hit_in(self.world, hit));
+        }
+        missing
+    }
+
     /// Returns the body whose cap a ray hits at a point of a cut. The cap of a translucent body has its opacity where rays
     /// enter the region that is kept, and is not there where they leave it.
     fn cap(&mut self, row: usize, point: Vec3, crossing: Crossing) -> Option<u32> {
@@ -108,7 +131,7 @@ impl TranslucentTrace<'_> {
     }
 
     /// Traces rays that no cut clips any more.
-    fn trace(&self, rays: &Rays, hits: &mut Hits) -> u64 {
+    fn trace(&self, rays: &Rays, hits: &mut Hits, mut choice: Choice) -> u64 {
         let known: Vec<(f64, u32)> =
             (0..rays.len()).map(|row| (hits.t[row], hits.sphere[row])).collect();
         let mut exact = self.bodies.trace(self.tracer, self.query, rays, hits);
@@ -123,13 +146,29 @@ impl TranslucentTrace<'_> {
             };
             match self.query {
                 Query::Closest if !self.depth(hits.sphere[row]).is_opaque() => {
-                    let (t, hit, decided) = bodies.closest(&attenuated(), &mut fragments);
-                    hits.set(row, t, hit);
+                    let (body, decided) = if let Choice::Given(chosen) = &mut choice {
+                        let number = f64::from(chosen.numbers[row]);
+                        let seen = bodies.choose(&attenuated(), number, &mut fragments);
+                        chosen.coverage[row] = seen.0.coverage as f32;
+                        if let Some(missing) = chosen.missing_albedo.get_mut(row) {
+                            *missing = self.missing_albedo(&seen.0, &fragments);
+                        }
+                        seen
+                    } else {
+                        bodies.closest(&attenuated(), &mut fragments)
+                    };
+                    hits.set(row, body.t, body.hit);
                     exact += decided;
                 }
                 // One opaque body is enough.
                 Query::Any if known.1 == MISS && !self.depth(hits.sphere[row]).is_opaque() => {
-                    let (occluded, decided) = bodies.occluded(&attenuated());
+                    let (occluded, decided) = if let Choice::Transmittance(passing) = &mut choice {
+                        let (part, decided) = bodies.transmittance(&attenuated());
+                        passing[row] = part as f32;
+                        (part == 0.0, decided)
+                    } else {
+                        bodies.occluded(&attenuated())
+                    };
                     if !occluded {
                         hits.sphere[row] = MISS;
                     }

@@ -130,7 +130,7 @@ fn every_range_is_checked() {
         ("[render]\nfilter = ?", &["\"tent\""], "\"box\""),
         ("[render]\ntone = ?", &["\"aces\""], "\"filmic\""),
         ("[render]\nintegrator = \"whitted\"\nshadow_samples = ?", &["0", "-1"], "1"),
-        ("[render]\nintegrator = \"ao\"\nao_distance = ?", &["0", "inf", "-1"], "1e-9"),
+        ("[render]\nintegrator = \"ao\"\nao_distance = ?", &["-1e-9", "inf", "-1"], "0"),
         ("[camera]\nfov = ?", &["0", "-1", "180", "nan", "inf"], "179.9"),
         ("[camera]\nprojection = \"orthographic\"\nheight = ?", &["0", "-1", "inf"], "1e-9"),
         (

@@ -327,7 +327,7 @@ fn opacities_are_of_all_of_a_selection_of_a_column_or_of_a_type() {
 
 #[test]
 fn opacities_replace_those_of_presets_where_they_are_given() {
-    let ghost = crate::scene::Preset::Ghost.material();
+    let ghost = crate::scene::Preset::Ghost.material(1);
     let of = |style: &ParticleStyle| {
         let (particles, _) = apply(WATER, style).expect("a valid style");
         let scene = Scene::of_particles_with(particles, "water", &ghost);
