@@ -8,6 +8,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use spherule::query::{Hits, NOTHING, QueryError, RayColumns, Surface};
+use std::cell::RefCell;
 
 /// The most rays of a task: as many as are put in order together.
 const BATCH: usize = 1 << 16;
@@ -238,11 +239,18 @@ impl<'a> RowsOfRays<'a> {
 
     /// Calls `trace` with the rays in columns: where they lie if they are columns, or else transposed.
     fn in_columns<T>(&self, trace: impl FnOnce(&RayColumns) -> T) -> T {
-        let (mut from, mut toward) = ([const { Vec::new() }; 3], [const { Vec::new() }; 3]);
-        let origin = columns_of(self.origins, &mut from);
-        let direction = columns_of(self.directions, &mut toward);
-        trace(&RayColumns { origin, direction })
+        TRANSPOSED.with_borrow_mut(|[from, toward]| {
+            let origin = columns_of(self.origins, from);
+            let direction = columns_of(self.directions, toward);
+            trace(&RayColumns { origin, direction })
+        })
     }
+}
+
+thread_local! {
+    /// Columns of origins and directions of a task's rays: new memory for each task takes longer than the copies.
+    static TRANSPOSED: RefCell<[[Vec<f32>; 3]; 2]> =
+        const { RefCell::new([const { [const { Vec::new() }; 3] }; 2]) };
 }
 
 /// The columns of a table, copied to `place` unless they are contiguous.
