@@ -2,6 +2,7 @@
 
 use crate::folder::{Folder, text};
 use spherule_render::image::Image;
+use spherule_render::scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// Particles of three types, one of them twice, with a column, in two frames.
@@ -83,6 +84,21 @@ fn looks_by_key_keep_the_materials_of_types() {
         assert_eq!(scene.matches("dielectric").count(), 1, "{keys} {scene}");
         assert!(scene.contains("lambertian") && scene.contains("\"path\""), "{scene}");
     }
+}
+
+#[test]
+fn arrows_of_all_frames_have_one_scale() {
+    let folder = Folder::new();
+    let frame =
+        |speed: f64| format!("1\nProperties=species:S:1:pos:R:3:velo:R:3\nNa 0 0 0 {speed} 0 0\n");
+    folder.write("run.xyz", &(frame(1.0) + &frame(3.0)));
+    let script = "size 64x48\nwait 1\nsave a.toml\nkey right\nwait 1\nsave b.toml\n";
+    view(&folder, &["run.xyz", "--radii", "1", "--arrows", "velocity"], script);
+    let [a, b] = ["a.toml", "b.toml"].map(|name| {
+        let scene = Scene::load(&folder.path(name)).expect("a scene");
+        (scene.cones.apex[0].x, scene.cones.radius[0])
+    });
+    assert!((b.0 / a.0 - 3.0).abs() < 1e-6 && (b.1 - a.1).abs() < 1e-6, "{a:?} {b:?}");
 }
 
 #[test]

@@ -14,8 +14,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use spherule_render::World;
 use spherule_render::scene::particles::{
-    self, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend, NumberColumn,
-    Orientation, ParticleStyle, Particles, ReadOptions, ReadProgress, Role, TextColumn,
+    self, ArrowSizes, Cell, Codes, Coloring, ColumnColors, FrameChoice, Kind, Kinds, Legend,
+    NumberColumn, Orientation, ParticleStyle, Particles, ReadOptions, ReadProgress, Role,
+    TextColumn,
 };
 use spherule_render::scene::{Rgb, Scene, Spheres};
 use spherule_render::world::framing;
@@ -171,16 +172,20 @@ struct StyledScene {
     facts: FrameFacts,
     /// Center of the particle in focus, if the focus is a particle.
     focus: Option<DVec3>,
+    /// Scale and radius of arrows, if there are any.
+    arrow_sizes: Option<ArrowSizes>,
 }
 
 impl StyledScene {
     fn new(
         job: &Job,
         content: &Content,
+        arrow_sizes: Option<ArrowSizes>,
         mut particles: Particles,
         scene: Option<Scene>,
     ) -> Result<Self, Failure> {
-        let legend = apply_style(job, content, &mut particles)?;
+        let legend = apply_style(job, content, arrow_sizes, &mut particles)?;
+        let arrow_sizes = particles.arrows.sizes;
         let cell = particles.cell;
         let name = job.source.name();
         let focus = focus(job, Path::new(name.as_ref()), &particles)?;
@@ -203,7 +208,7 @@ impl StyledScene {
             orientation = Some(found);
             preset.or(job.preset()).unwrap_or_default().scene(particles, &title, &found)
         };
-        Ok(Self { scene, labels, legend, cell, orientation, facts, focus })
+        Ok(Self { scene, labels, legend, cell, orientation, facts, focus, arrow_sizes })
     }
 }
 
@@ -211,13 +216,15 @@ impl StyledScene {
 pub(super) struct Loader {
     job: Arc<Job<'static>>,
     base: Option<Base>,
+    /// Sizes of the arrows of the first frame that had some: those of others compare with them.
+    arrow_sizes: Option<ArrowSizes>,
     /// True once loading has started.
     began: bool,
 }
 
 impl Loader {
     pub(super) fn new(job: Arc<Job<'static>>) -> Self {
-        Self { job, base: None, began: false }
+        Self { job, base: None, arrow_sizes: None, began: false }
     }
 
     /// Reads the source if necessary, applies colors and materials, and builds the world.
@@ -243,8 +250,9 @@ impl Loader {
             self.base = Some(read);
             parts
         };
-        let StyledScene { mut scene, labels, legend, cell, orientation, facts: frame_facts, focus } =
-            StyledScene::new(job, content, particles, scene)?;
+        let styled = StyledScene::new(job, content, self.arrow_sizes, particles, scene)?;
+        self.arrow_sizes = self.arrow_sizes.or(styled.arrow_sizes);
+        let StyledScene { mut scene, labels, legend, cell, orientation, focus, .. } = styled;
         if first {
             check_legend(job, legend.as_ref())?;
         }
@@ -256,7 +264,7 @@ impl Loader {
         )?;
         job.style.set(job.preset(), &mut scene);
         job.views.show_cell(&mut scene, cell.as_ref());
-        annotate(job, &mut scene, legend.as_ref(), &frame_facts)?;
+        annotate(job, &mut scene, legend.as_ref(), &styled.facts)?;
         job.picture.settings.apply(&mut scene.settings);
         job.views.frame(&mut scene, orientation.as_ref(), None, &cuts)?;
         let failed = |error| Failure::World(job.source.name().into_owned(), error);
@@ -338,7 +346,7 @@ impl Origin {
             return failed("the file has changed since it was read; open it again");
         }
         let base = Base::load(&self.job, &self.content, None, &Progress::default())?;
-        let dressed = StyledScene::new(&self.job, &self.content, base.particles, base.scene)?;
+        let dressed = StyledScene::new(&self.job, &self.content, None, base.particles, base.scene)?;
         Ok(dressed.scene.spheres)
     }
 }
@@ -403,6 +411,7 @@ impl Labels {
 fn apply_style(
     job: &Job,
     content: &Content,
+    arrow_sizes: Option<ArrowSizes>,
     particles: &mut Particles,
 ) -> Result<Option<Legend>, Failure> {
     let condition = content.condition();
@@ -416,7 +425,10 @@ fn apply_style(
         .clone()
         .map(|column| Coloring::Column(ColumnColors { column, ..ColumnColors::default() }));
     let coloring = coloring.unwrap_or_else(|| job.looks.coloring.clone());
-    let looks = ParticleStyle { select, coloring, allow_empty: false, ..job.looks.clone() };
+    let mut looks = ParticleStyle { select, coloring, allow_empty: false, ..job.looks.clone() };
+    if let (Some(arrows), Some(sizes)) = (&mut looks.arrows, arrow_sizes) {
+        arrows.fix(sizes);
+    }
     let name = job.source.name();
     Ok(looks.apply(Path::new(name.as_ref()), particles)?)
 }

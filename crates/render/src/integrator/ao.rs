@@ -53,7 +53,7 @@ pub fn integrate(job: &Job, work: &mut Workspace, distance: f64) {
         work.queues.put(kind, queue);
     }
     if distance == 0.0 {
-        work.add_missing_colors();
+        work.add_missing_colors(Rgb::ONE);
     }
     shadow_queue::trace_shadow_rays(job, work);
 }

@@ -2,7 +2,8 @@
 //!
 //! Nothing is random: rays go through the middles of pixels, shadow rays to the middles of lights; the environment lights
 //! surfaces as if nothing hid it; mirrors and glass continue a path in one direction. So there is no noise, shadows are
-//! hard, and light from other surfaces is missing.
+//! hard, and light from other surfaces is missing. Where bodies are translucent, the colors of all on a ray are seen, lit as the
+//! one that the ray chooses.
 
 use super::Job;
 use super::glass;
@@ -18,7 +19,7 @@ use crate::ray::GROUND;
 use crate::shade::{Bsdf, Material, MaterialId, MaterialKind, mirror};
 use crate::vec3::Vec3;
 use crate::world::{Irradiance, MAX_MIDDLES};
-use std::f32::consts::PI;
+use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Maximum number of bounces at mirrors and glass.
 const DEPTH: u32 = 6;
@@ -29,6 +30,9 @@ const MIN_THROUGHPUT: f32 = 0.01;
 /// Fraction of the environment that is taken as visible from the edge of a sphere; more is toward its middle. Without
 /// it, spheres under even light would look flat.
 const EDGE: f32 = 0.4;
+
+/// About the mean light of surfaces, as a part of what they get where nothing hides the environment.
+const MEAN: f32 = 0.8;
 
 /// The light of a preview.
 pub struct Lighting {
@@ -44,17 +48,16 @@ pub struct Lighting {
 
 /// Follows all paths to their ends.
 pub fn integrate(job: &Job, work: &mut Workspace, lighting: &Lighting) {
-    if lighting.flat {
-        work.composite_colors();
-    }
+    work.composite_colors();
     for bounce in 0..=DEPTH.min(job.depth()) {
         stages::intersect(job, work);
         whitted::add_environment(job, work, bounce);
         whitted::add_emitted(job, work);
         glass::scatter_by(job, work, bounce, |_, _| F32x16::splat(0.5));
         stages::for_each_kind(job.world, &mut Shade { job, work, lighting });
-        if bounce == 0 && lighting.flat {
-            work.add_missing_colors();
+        if bounce == 0 {
+            let visible = if lighting.flat { 1.0 } else { MEAN };
+            work.add_missing_colors(visible * FRAC_1_PI * lighting.irradiance.mean());
         }
         if !stages::end_bounce(job, work) {
             return;

@@ -212,12 +212,12 @@ impl Workspace {
         self.missing_albedo.resize(self.coverage.len(), Rgb::ZERO);
     }
 
-    /// Adds the composited colors of camera rays to paths that have got that of their hit alone.
-    pub(super) fn add_missing_colors(&mut self) {
+    /// Adds the composited colors of camera rays, with this light, to paths that have got that of their hit alone.
+    pub(super) fn add_missing_colors(&mut self, light: Rgb) {
         for (row, &missing) in self.missing_albedo.iter().enumerate().take(self.rays.len()) {
             let radiance = &mut self.paths.radiance[self.states.path(row)];
-            // Not less than 0 but for rounding.
-            *radiance = (*radiance + missing).max(Rgb::ZERO);
+            // Where all surfaces have this light, it is less than 0 by rounding alone.
+            *radiance = (*radiance + missing * light).max(Rgb::ZERO);
         }
     }
 

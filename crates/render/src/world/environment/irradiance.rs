@@ -62,6 +62,12 @@ impl Irradiance {
         Self { coefficients }
     }
 
+    /// Returns the mean over all normals.
+    pub fn mean(&self) -> Rgb {
+        let [unit, ..] = harmonics(glam::Vec3::Z.into());
+        self.coefficients[0] * unit
+    }
+
     /// Returns the irradiance of surfaces with these unit normals, by channel.
     #[inline(always)]
     pub fn at<L: Lanes>(&self, normal: Vec3<L>) -> Vec3<L> {
