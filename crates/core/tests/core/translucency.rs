@@ -4,8 +4,8 @@
 use glam::{DQuat, DVec3, Vec3};
 use spherule_core::internals::body_rows::{BodyRow, BodyRows};
 use spherule_core::internals::body_tree::Shape;
-use spherule_core::internals::bvh::Tree;
 use spherule_core::internals::bvh::builders::{Builder, build};
+use spherule_core::internals::bvh::{Bvh, Tree};
 use spherule_core::internals::capsules::{Capsule, CapsuleItem, Capsules};
 use spherule_core::internals::cones::{Cone, ConeItem, Cones};
 use spherule_core::internals::ellipsoids::{Ellipsoid, EllipsoidItem, Ellipsoids};
@@ -72,7 +72,7 @@ struct Scene {
 }
 
 impl Scene {
-    fn new(seed: u64, builder: Builder) -> (Self, spherule_core::internals::bvh::Bvh) {
+    fn new(seed: u64, builder: Builder) -> (Self, Bvh) {
         let mut random = Random::new(seed);
         let mut step = |n: u32| (random.single() * n as f32).floor();
         let mut point = || Vec3::new(step(5), step(5), step(5)) * 0.5;
@@ -145,6 +145,24 @@ impl Scene {
         OPACITIES[place * 7 % OPACITIES.len()]
     }
 
+    /// Its bodies, with a factor on their opacities.
+    fn bodies<'a>(
+        &'a self,
+        bvh: &'a Bvh,
+        factor: f64,
+    ) -> TranslucentBodies<'a, impl Fn(u32) -> OpticalDepth + 'a> {
+        TranslucentBodies {
+            tree: Tree { bvh, spheres: &self.spheres },
+            capsules: &self.capsules,
+            ellipsoids: &self.ellipsoids,
+            cones: &self.cones,
+            depth: move |hit| {
+                let place = self.place(hit).expect("a hit on a body");
+                OpticalDepth::of_opacity(factor * Self::opacity(place))
+            },
+        }
+    }
+
     /// The body at which a ray ends.
     fn oracle(&self, ray: &ExactRay, threshold: OpticalDepth) -> Option<usize> {
         let depth = |place| OpticalDepth::of_opacity(Self::opacity(place));
@@ -182,16 +200,7 @@ fn rays_end_where_all_hits_in_their_exact_order_end_them() {
     let (mut ends, mut misses) = ([0; 4], 0);
     for seed in 0..6 {
         let (scene, bvh) = Scene::new(seed, builders[seed as usize % 3]);
-        let bodies = TranslucentBodies {
-            tree: Tree { bvh: &bvh, spheres: &scene.spheres },
-            capsules: &scene.capsules,
-            ellipsoids: &scene.ellipsoids,
-            cones: &scene.cones,
-            depth: |hit| {
-                let place = scene.place(hit).expect("a hit on a body");
-                OpticalDepth::of_opacity(Scene::opacity(place))
-            },
-        };
+        let bodies = scene.bodies(&bvh, 1.0);
         let mut random = Random::new(100 + seed);
         let mut fragments = Vec::new();
         for _ in 0..400 {
@@ -234,16 +243,7 @@ fn chosen_bodies_stand_for_the_share_of_rays_that_end_at_them() {
     let (mut open, mut closed) = (0, 0);
     for seed in 0..3 {
         let (scene, bvh) = Scene::new(seed, Builder::ALL[seed as usize % 3]);
-        let opacity = |place| Scene::opacity(place) * [1.0, 0.02][seed as usize % 2];
-        let bodies = TranslucentBodies {
-            tree: Tree { bvh: &bvh, spheres: &scene.spheres },
-            capsules: &scene.capsules,
-            ellipsoids: &scene.ellipsoids,
-            cones: &scene.cones,
-            depth: |hit| {
-                OpticalDepth::of_opacity(opacity(scene.place(hit).expect("a hit on a body")))
-            },
-        };
+        let bodies = scene.bodies(&bvh, [1.0, 0.02][seed as usize % 2]);
         let (mut random, mut fragments) = (Random::new(200 + seed), Vec::new());
         for _ in 0..200 {
             let ray = ray(&mut random);

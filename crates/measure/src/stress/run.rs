@@ -26,7 +26,7 @@ const MEASURED: usize = 16;
 /// For this many rays, one further ray starts outward from a surface and one inward.
 const SURFACE: usize = 8;
 
-/// Of a regime's number of rays, one in this many tests each kind of body other than spheres: its reference is slow.
+/// Number of a regime's rays for each one that tests sticks, ellipsoids or cones: their reference is slow.
 const BODY_SHARE: u64 = 4;
 
 /// Options of a run.

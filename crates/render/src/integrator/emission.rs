@@ -15,7 +15,8 @@ use crate::vec3::Vec3;
 use crate::world::{CausticSource, Receiver, ReceiverRow, SkyLight};
 
 /// Adds the light of the environment and the suns to paths that leave the scene, and to those that the camera sees among
-/// translucent bodies with nothing opaque behind. The camera may see a background instead: in place of both, or behind glass in place of the environment.
+/// translucent bodies with nothing opaque behind. The camera may see a background instead: in place of both, or
+/// behind glass in place of the environment.
 pub(super) fn add_environment(job: &Job, work: &mut Workspace, bounce: u32) {
     let (environment, lights) = (&job.world.environment, &job.world.lights);
     if let Some(background) = environment.background.filter(|_| bounce == 0) {

@@ -4,7 +4,7 @@
 //! traced again, one by one, with all bodies that they intersect ([`TranslucentBodies`](crate::translucency::TranslucentBodies)).
 //!
 //! Rays of the camera choose one of their bodies even if they could pass all of them, and get the light behind the bodies besides:
-//! what would be a few bright dots among many dark ones has no noise. Not so where a cut clips rays.
+//! what would be a few bright dots among many dark ones has no noise. Where a cut clips them, they end or pass by chance.
 
 use super::bodies::Bodies;
 use super::clipped::{ClippedRays, Crossing};
@@ -16,13 +16,13 @@ use crate::translucency::{self, AttenuatedRay, Fragment, OpticalDepth, SeenBody}
 use crate::world::World;
 use glam::Vec3;
 
-/// How bodies are chosen at which rays end.
+/// The choice of the bodies at which rays end.
 pub(super) enum Choice<'a> {
     /// Each ray ends or passes, decided by a hash of the ray.
     Hashed,
     /// By a number for each ray, from 0 up to 1. Those that nothing opaque stops choose one of the bodies always.
     Given(Chosen<'a>),
-    /// None: shadow rays find the part of the light that passes all bodies, by row; 1 on entry.
+    /// No body: shadow rays pass all of them, and find the part of their light that does, by row; 1 on entry.
     Transmittance(&'a mut [f32]),
 }
 

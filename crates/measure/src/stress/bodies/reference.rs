@@ -31,7 +31,7 @@ pub(super) enum Body {
     Cone(Cone),
 }
 
-/// Where points `x` of a line are in a part: `a t^2 + 2 b t + c <= 0`, and `start + t slope` is 0 to `height`.
+/// A part of a body as a line crosses it: points at `t` with `a t^2 + 2 b t + c <= 0`, and with `start + t slope` from 0 to `height`.
 struct Part {
     form: [Fixed; 3],
     slab: Option<Slab>,
